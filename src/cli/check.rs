@@ -1,0 +1,39 @@
+//! `glint check`: are these scenes valid?
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+
+use super::{WRONG, complain, say};
+use crate::scene::{Document, Scene};
+
+#[derive(Debug, Args)]
+pub struct CheckWords {
+    /// Scene files (RON)
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+}
+
+/// One line per valid file on stdout, one message per refused file on stderr.
+pub fn run(words: &CheckWords) -> ExitCode {
+    let mut code = ExitCode::SUCCESS;
+    for path in &words.scenes {
+        match Document::load(path) {
+            Ok(document) => say(&format!("{}: ok, {}", path.display(), contents(&document.scene))),
+            Err(error) => {
+                complain(&error.to_string());
+                code = WRONG.into();
+            }
+        }
+    }
+    code
+}
+
+fn contents(scene: &Scene) -> String {
+    let count = |n: usize, one: &str| format!("{n} {one}{}", if n == 1 { "" } else { "s" });
+    let objects = count(scene.objects.len(), "object");
+    let lights = count(scene.lights.len(), "light");
+    let packs = count(scene.color_packs.len(), "color pack");
+    format!("{objects}, {lights}, {packs}")
+}

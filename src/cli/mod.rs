@@ -1,0 +1,106 @@
+//! The command line: parses words, prints lines. Results go to stdout, errors to stderr; the exit
+//! code is 0 for done, 1 for failed work, 2 for wrong words or a wrong file.
+
+mod check;
+mod fallback;
+mod render;
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+pub use fallback::picture_instead_of_window;
+
+/// Exit code when the work failed.
+const FAILED: u8 = 1;
+/// Exit code when the words or the file were wrong.
+const WRONG: u8 = 2;
+
+/// Commands of later versions, so that asking for one is answered by name.
+const NOT_YET: [&str; 5] = ["export", "plan", "chart", "stability", "job"];
+
+#[derive(Debug, Parser)]
+#[command(
+    name = "glint",
+    version,
+    about = "A scene editor whose viewport is a CPU ray tracer",
+    long_about = "A scene editor whose viewport is a CPU ray tracer.\n\nWithout a command, opens the editor on SCENE (on the demo scene if there is none).",
+    args_conflicts_with_subcommands = true
+)]
+struct Words {
+    /// The scene to open in the editor (RON)
+    scene: Option<PathBuf>,
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Trace a scene into a picture
+    Render(render::RenderWords),
+    /// Validate scene files
+    Check(check::CheckWords),
+}
+
+/// What the command line asked for.
+#[derive(Debug)]
+pub enum Asked {
+    /// Open the editor on a scene file, or on the demo.
+    Editor(Option<PathBuf>),
+    /// Nothing more: the command ran and ends with this code.
+    Done(ExitCode),
+}
+
+/// Reads the command line and runs its command, if it has one.
+pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
+    let words: Vec<OsString> = words.into_iter().collect();
+    if let Some(name) = NOT_YET.iter().find(|name| words.get(1).is_some_and(|word| word == **name)) {
+        return Asked::Done(refuse(&format!(
+            "`glint {name}` is not built yet; this version has `glint`, `glint render` and `glint check`"
+        )));
+    }
+    match Words::try_parse_from(words) {
+        Ok(Words { command: None, scene }) => Asked::Editor(scene),
+        Ok(Words { command: Some(Command::Render(words)), .. }) => Asked::Done(render::run(&words)),
+        Ok(Words { command: Some(Command::Check(words)), .. }) => Asked::Done(check::run(&words)),
+        Err(error) => {
+            // Help and version are "errors" of exit code 0 that go to stdout.
+            let _ = error.print();
+            Asked::Done(if error.use_stderr() { WRONG.into() } else { ExitCode::SUCCESS })
+        }
+    }
+}
+
+/// One result line on stdout. A reader that went away is no fault of ours.
+fn say(line: &str) {
+    use std::io::Write as _;
+    let _ = writeln!(std::io::stdout(), "{line}");
+}
+
+fn complain(error: &str) {
+    use std::io::Write as _;
+    let _ = writeln!(std::io::stderr(), "error: {error}");
+}
+
+fn refuse(error: &str) -> ExitCode {
+    complain(error);
+    WRONG.into()
+}
+
+fn fail(error: &str) -> ExitCode {
+    complain(error);
+    FAILED.into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory as _;
+
+    #[test]
+    fn the_words_are_consistent() {
+        Words::command().debug_assert();
+    }
+}

@@ -1,0 +1,275 @@
+//! `glint render`: a scene file in, a picture file out.
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::RecvTimeoutError;
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use super::{fail, refuse, say};
+use crate::export::save_image;
+use crate::image::{Cost, Format, Image, render};
+use crate::plan::{Methods, Picture, Precision, RayOffset, SphereMethod, TriangleMethod};
+use crate::scene::{Document, MAX_SIDE, Projection, Scene};
+use crate::trace::{Threads, Watch};
+use crate::worker::run_errand;
+
+/// Time after which a running render is worth a progress bar, and between its updates.
+const PROGRESS_TICK: Duration = Duration::from_millis(100);
+
+#[derive(Debug, Args)]
+pub struct RenderWords {
+    /// The scene file (RON)
+    scene: PathBuf,
+    /// The picture to write; ends in .png or .ppm
+    #[arg(short, long, value_name = "IMAGE", required_unless_present = "stats")]
+    output: Option<PathBuf>,
+    /// Width in pixels; alone, it keeps the scene's aspect
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SIDE)))]
+    width: Option<u32>,
+    /// Height in pixels; alone, it keeps the scene's aspect
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SIDE)))]
+    height: Option<u32>,
+    /// Projection in place of the scene's own
+    #[arg(long)]
+    camera: Option<CameraWord>,
+    /// How edges are smoothed
+    #[arg(long, default_value = "none", value_parser = antialias)]
+    antialias: Antialias,
+    /// Real type of the tracer: auto takes f32 unless it would show
+    #[arg(long, default_value = "auto")]
+    precision: PrecisionWord,
+    /// Where shadow and reflection rays start: robust, or fixed:DISTANCE along the ray
+    #[arg(long, default_value = "robust", value_parser = offset)]
+    offset: RayOffset,
+    /// Sphere formula
+    #[arg(long, default_value = "stable")]
+    sphere: SphereWord,
+    /// Triangle formula
+    #[arg(long, default_value = "watertight", value_parser = triangle)]
+    triangle: TriangleMethod,
+    /// Tracing threads [default: one per core]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    threads: Option<u16>,
+    /// Trace so many times; the statistics take the median
+    #[arg(long, default_value = "1")]
+    repeat: NonZeroUsize,
+    /// Print one JSON object about the trace on stdout
+    #[arg(long)]
+    stats: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum CameraWord {
+    Perspective,
+    Orthographic,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum PrecisionWord {
+    Auto,
+    F32,
+    F64,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum SphereWord {
+    Stable,
+    Classic,
+}
+
+#[derive(Serialize)]
+struct Stats {
+    trace_ms: f64,
+    trace_ms_min: f64,
+    rays: RayCounts,
+    lanes: &'static str,
+    threads: usize,
+    width: usize,
+    height: usize,
+}
+
+#[derive(Serialize)]
+struct RayCounts {
+    camera: u64,
+    shadow: u64,
+    reflected: u64,
+}
+
+/// How edges are smoothed: not at all, so far.
+#[derive(Clone, Copy, Debug)]
+enum Antialias {
+    None,
+}
+
+fn antialias(word: &str) -> Result<Antialias, String> {
+    match word {
+        "none" => Ok(Antialias::None),
+        "adaptive" => Err("adaptive is not built yet; use none".to_owned()),
+        grid if grid.starts_with("grid:") => Err(format!("{grid} is not built yet; use none")),
+        _ => Err("expected none".to_owned()),
+    }
+}
+
+fn offset(word: &str) -> Result<RayOffset, String> {
+    if word == "robust" {
+        return Ok(RayOffset::Robust);
+    }
+    let distance = word.strip_prefix("fixed:").and_then(|number| number.parse::<f64>().ok());
+    match distance.filter(|d| d.is_finite() && *d >= 0.0) {
+        Some(distance) => Ok(RayOffset::Fixed(distance)),
+        None => Err("expected robust, or fixed: and a distance ≥ 0, such as fixed:0.1".to_owned()),
+    }
+}
+
+fn triangle(word: &str) -> Result<TriangleMethod, String> {
+    match word {
+        "watertight" => Ok(TriangleMethod::Watertight),
+        "edges" => Ok(TriangleMethod::Edges),
+        "moller-trumbore" => Err("moller-trumbore is not built yet; use watertight or edges".to_owned()),
+        _ => Err("expected watertight or edges".to_owned()),
+    }
+}
+
+/// Traces and writes the picture, then prints what was asked for.
+pub fn run(words: &RenderWords) -> ExitCode {
+    // A name that cannot be written is known before the first ray.
+    if let Some(Err(error)) = words.output.as_deref().map(Format::of_path) {
+        return refuse(&error.to_string());
+    }
+    let scene = match Document::load(&words.scene) {
+        Ok(document) => document.scene,
+        Err(error) => return refuse(&error.to_string()),
+    };
+    let threads = match Threads::new(words.threads.map(usize::from)) {
+        Ok(threads) => threads,
+        Err(error) => return fail(&error.to_string()),
+    };
+    let Antialias::None = words.antialias;
+    let picture = words.picture(&scene);
+    let count = threads.count();
+    let Some((image, costs)) = trace(scene, picture, threads, words.repeat.get()) else {
+        return fail("the trace ended without a picture");
+    };
+    if let Some(path) = &words.output
+        && let Err(error) = save_image(&image, path)
+    {
+        return fail(&error.to_string());
+    }
+    let stats = stats(&image, &costs, count);
+    match (&words.output, words.stats) {
+        (_, true) => match serde_json::to_string(&stats) {
+            Ok(json) => say(&json),
+            Err(error) => return fail(&error.to_string()),
+        },
+        (Some(path), false) => say(&summary(path, &stats)),
+        (None, false) => {}
+    }
+    ExitCode::SUCCESS
+}
+
+impl RenderWords {
+    fn picture(&self, scene: &Scene) -> Picture {
+        let own = (scene.render.width, scene.render.height);
+        let (width, height) = match (self.width, self.height) {
+            (None, None) => own,
+            (Some(width), Some(height)) => (width, height),
+            (Some(width), None) => (width, in_proportion(width, own.1, own.0)),
+            (None, Some(height)) => (in_proportion(height, own.0, own.1), height),
+        };
+        Picture {
+            projection: self.camera.map(|word| match word {
+                CameraWord::Perspective => Projection::Perspective,
+                CameraWord::Orthographic => Projection::Orthographic,
+            }),
+            precision: match self.precision {
+                PrecisionWord::Auto => Precision::Auto,
+                PrecisionWord::F32 => Precision::Single,
+                PrecisionWord::F64 => Precision::Double,
+            },
+            methods: Methods {
+                sphere: match self.sphere {
+                    SphereWord::Stable => SphereMethod::Stable,
+                    SphereWord::Classic => SphereMethod::Classic,
+                },
+                triangle: self.triangle,
+                offset: self.offset,
+            },
+            ..Picture::sized(width, height)
+        }
+    }
+}
+
+/// `side · numerator / denominator`, rounded, within the sizes that exist.
+fn in_proportion(side: u32, numerator: u32, denominator: u32) -> u32 {
+    let exact = (u64::from(side) * u64::from(numerator) + u64::from(denominator) / 2)
+        / u64::from(denominator);
+    u32::try_from(exact).unwrap_or(MAX_SIDE).clamp(1, MAX_SIDE)
+}
+
+/// Traces `repeat` times, with a bar on a terminal if it takes a while.
+fn trace(scene: Scene, picture: Picture, threads: Threads, repeat: usize) -> Option<(Image, Vec<Cost>)> {
+    let watch = Arc::new(Watch::default());
+    let total = u64::from(picture.width) * u64::from(picture.height) * repeat as u64;
+    let result = run_errand("glint-render", {
+        let watch = Arc::clone(&watch);
+        move || {
+            let runs: Option<Vec<(Image, Cost)>> = (0..repeat)
+                .map(|_| threads.run(|| render(&scene, &picture, &watch)))
+                .collect();
+            let (images, costs): (Vec<_>, Vec<_>) = runs?.into_iter().unzip();
+            images.into_iter().next_back().map(|image| (image, costs))
+        }
+    });
+    let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {eta} left");
+    let mut bar = None;
+    loop {
+        match result.recv_timeout(PROGRESS_TICK) {
+            Ok(traced) => return traced,
+            Err(RecvTimeoutError::Disconnected) => return None,
+            Err(RecvTimeoutError::Timeout) => {
+                // Draws to stderr, and only where that is a terminal.
+                let bar = bar.get_or_insert_with(|| {
+                    let bar = ProgressBar::new(total);
+                    style.iter().cloned().for_each(|style| bar.set_style(style));
+                    bar
+                });
+                bar.set_position(watch.pixels.load(Ordering::Relaxed));
+            }
+        }
+    }
+}
+
+fn stats(image: &Image, costs: &[Cost], threads: usize) -> Stats {
+    let mut millis: Vec<f64> = costs.iter().map(|cost| cost.time.as_secs_f64() * 1e3).collect();
+    millis.sort_by(f64::total_cmp);
+    let middle = millis.len() / 2;
+    let median = if millis.len() % 2 == 1 {
+        millis[middle]
+    } else {
+        f64::midpoint(millis[middle - 1], millis[middle])
+    };
+    let Cost { rays, lanes, .. } = costs[0];
+    Stats {
+        trace_ms: median,
+        trace_ms_min: millis[0],
+        rays: RayCounts { camera: rays.camera, shadow: rays.shadow, reflected: rays.reflected },
+        lanes,
+        threads,
+        width: image.width,
+        height: image.height,
+    }
+}
+
+fn summary(path: &Path, stats: &Stats) -> String {
+    let Stats { width, height, trace_ms, .. } = stats;
+    let rays = stats.rays.camera + stats.rays.shadow + stats.rays.reflected;
+    let per_pixel = rays as f64 / (width * height) as f64;
+    format!("{}: {width}×{height}, {trace_ms:.1} ms, {per_pixel:.2} rays/px", path.display())
+}

@@ -1,0 +1,92 @@
+//! Pictures as files: PNG and binary PPM.
+
+use std::io::{Cursor, Seek, Write};
+use std::path::Path;
+
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::codecs::pnm::{PnmEncoder, PnmSubtype, SampleEncoding};
+use image::{ExtendedColorType, ImageEncoder as _, ImageError};
+
+use super::Image;
+
+/// A file format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Portable Network Graphics, lossless and compressed.
+    Png,
+    /// Binary portable pixmap (P6), lossless and plain.
+    Ppm,
+}
+
+/// A file name that says no known format.
+#[derive(Debug, thiserror::Error, PartialEq, Eq)]
+#[error("{name:?} ends in no known picture format; end it in .png or .ppm")]
+pub struct FormatError {
+    name: String,
+}
+
+impl Format {
+    /// The format that a file's ending asks for, in any case.
+    ///
+    /// # Errors
+    /// [`FormatError`] for any ending but `.png` and `.ppm`.
+    pub fn of_path(path: &Path) -> Result<Self, FormatError> {
+        let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+        match ending.as_deref() {
+            Some("png") => Ok(Self::Png),
+            Some("ppm") => Ok(Self::Ppm),
+            _ => Err(FormatError { name: path.display().to_string() }),
+        }
+    }
+}
+
+impl Image {
+    /// The bytes of a file in this format, without alpha.
+    ///
+    /// # Errors
+    /// What the encoder says; none is known for a valid picture.
+    pub fn encode(&self, format: Format) -> Result<Vec<u8>, ImageError> {
+        let mut file = Cursor::new(Vec::new());
+        self.encode_to(format, &mut file)?;
+        Ok(file.into_inner())
+    }
+
+    fn encode_to(&self, format: Format, file: &mut (impl Write + Seek)) -> Result<(), ImageError> {
+        let rgb: Vec<u8> = self.pixels.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect();
+        let size = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
+        let (width, height, kind) = (size(self.width), size(self.height), ExtendedColorType::Rgb8);
+        match format {
+            Format::Png => {
+                PngEncoder::new_with_quality(file, CompressionType::Fast, FilterType::Adaptive)
+                    .write_image(&rgb, width, height, kind)
+            }
+            Format::Ppm => PnmEncoder::new(file)
+                .with_subtype(PnmSubtype::Pixmap(SampleEncoding::Binary))
+                .write_image(&rgb, width, height, kind),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_read_back_as_the_picture() {
+        let mut image = Image::new(7, 3);
+        image.pixels[4] = [1, 2, 250, 255];
+        for format in [Format::Png, Format::Ppm] {
+            let bytes = image.encode(format).expect("encodes");
+            let back = image::load_from_memory(&bytes).expect("decodes").to_rgba8();
+            assert_eq!(back.into_raw(), image.pixels.concat());
+        }
+    }
+
+    #[test]
+    fn endings_name_the_format() {
+        assert_eq!(Format::of_path(Path::new("a/b.PNG")), Ok(Format::Png));
+        assert_eq!(Format::of_path(Path::new("b.ppm")), Ok(Format::Ppm));
+        let refused = Format::of_path(Path::new("b.jpg")).expect_err("not a known format");
+        assert_eq!(refused.to_string(), r#""b.jpg" ends in no known picture format; end it in .png or .ppm"#);
+    }
+}

@@ -1,0 +1,138 @@
+//! Three real numbers: a point, a direction or a linear colour.
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+use super::Real;
+
+/// Three real numbers in the order x, y, z (or red, green, blue).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Vec3<R> {
+    /// First component: right, or red.
+    pub x: R,
+    /// Second component: up, or green.
+    pub y: R,
+    /// Third component: towards the viewer, or blue.
+    pub z: R,
+}
+
+impl<R> Vec3<R> {
+    /// The vector (x, y, z).
+    pub const fn new(x: R, y: R, z: R) -> Self {
+        Self { x, y, z }
+    }
+}
+
+impl<R: Real> Vec3<R> {
+    /// The same number three times.
+    #[inline(always)]
+    pub fn splat(value: R) -> Self {
+        Self::new(value, value, value)
+    }
+
+    /// Narrows (or copies) a double-precision vector.
+    #[inline(always)]
+    pub fn from_f64(v: Vec3<f64>) -> Self {
+        Self::new(R::from_f64(v.x), R::from_f64(v.y), R::from_f64(v.z))
+    }
+
+    /// The same vector in double precision (exact).
+    #[inline(always)]
+    pub fn to_f64(self) -> Vec3<f64> {
+        Vec3::new(self.x.to_f64(), self.y.to_f64(), self.z.to_f64())
+    }
+
+    /// Scalar product.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> R {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    /// Vector product.
+    #[inline(always)]
+    pub fn cross(self, other: Self) -> Self {
+        Self::new(
+            self.y * other.z - self.z * other.y,
+            self.z * other.x - self.x * other.z,
+            self.x * other.y - self.y * other.x,
+        )
+    }
+
+    /// Component-wise product, the way colours filter each other.
+    #[inline(always)]
+    pub fn filter(self, other: Self) -> Self {
+        Self::new(self.x * other.x, self.y * other.y, self.z * other.z)
+    }
+
+    /// Euclidean length.
+    #[inline(always)]
+    pub fn length(self) -> R {
+        self.dot(self).sqrt()
+    }
+
+    /// The vector of length 1 in this direction, or `None` where there is no direction (zero, NaN or infinite).
+    #[inline(always)]
+    pub fn unit(self) -> Option<Self> {
+        let length = self.length();
+        (length > R::ZERO && length < R::INFINITY).then(|| self * (R::ONE / length))
+    }
+
+    /// The largest magnitude among the components.
+    #[inline(always)]
+    pub fn max_abs(self) -> R {
+        self.x.abs().max(self.y.abs()).max(self.z.abs())
+    }
+
+    /// Every component at least `floor` and at most `ceiling`; NaN becomes `floor`.
+    #[inline(always)]
+    pub fn clamp(self, floor: R, ceiling: R) -> Self {
+        Self::new(
+            self.x.max(floor).min(ceiling),
+            self.y.max(floor).min(ceiling),
+            self.z.max(floor).min(ceiling),
+        )
+    }
+
+    /// The components in order.
+    #[inline(always)]
+    pub fn to_array(self) -> [R; 3] {
+        [self.x, self.y, self.z]
+    }
+}
+
+impl<R> From<[R; 3]> for Vec3<R> {
+    fn from([x, y, z]: [R; 3]) -> Self {
+        Self { x, y, z }
+    }
+}
+
+impl<R: Real> Add for Vec3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self::new(self.x + other.x, self.y + other.y, self.z + other.z)
+    }
+}
+
+impl<R: Real> Sub for Vec3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.x - other.x, self.y - other.y, self.z - other.z)
+    }
+}
+
+impl<R: Real> Mul<R> for Vec3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: R) -> Self {
+        Self::new(self.x * factor, self.y * factor, self.z * factor)
+    }
+}
+
+impl<R: Real> Neg for Vec3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::new(-self.x, -self.y, -self.z)
+    }
+}

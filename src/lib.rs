@@ -1,0 +1,17 @@
+//! Glint: a scene editor whose viewport is a CPU ray tracer.
+
+pub mod lanes;
+
+pub mod scene;
+
+pub mod plan;
+
+pub mod trace;
+
+pub mod image;
+
+pub mod export;
+
+pub mod worker;
+
+pub mod cli;

@@ -1,0 +1,315 @@
+//! The scene as flat lists of one kind each.
+
+use std::collections::HashMap;
+
+use super::{Methods, Picture, View};
+use crate::lanes::{Exponent, Real, Vec3};
+use crate::scene::{ColorPack, LightObj, Scene, Shape};
+
+/// A scene and a view of it, ready to be traced. Coordinates are relative to the scene's middle,
+/// so that single precision is spent on the scene and not on its distance from the origin.
+#[derive(Clone, Debug)]
+pub struct Plan<R> {
+    /// Primary rays.
+    pub view: View<R>,
+    /// Spheres: first those that cast shadows, then the markers of the lights.
+    pub spheres: Vec<Sphere<R>>,
+    /// How many of [`Self::spheres`] cast shadows.
+    pub casting_spheres: usize,
+    /// Planes.
+    pub planes: Vec<Plane<R>>,
+    /// Triangles.
+    pub triangles: Vec<Triangle<R>>,
+    /// Lights that shine.
+    pub lights: Vec<Light<R>>,
+    /// What the primitives' `material` numbers mean.
+    pub materials: Vec<Material<R>>,
+    /// Colour of a ray that hits nothing, 0–1.
+    pub background: Vec3<R>,
+    /// How many reflections a ray may have behind it and still spawn another.
+    pub reflection_limit: u32,
+    /// The formulas to trace with.
+    pub methods: Methods,
+}
+
+/// A ball.
+#[derive(Clone, Copy, Debug)]
+pub struct Sphere<R> {
+    /// Its middle.
+    pub center: Vec3<R>,
+    /// > 0.
+    pub radius: R,
+    /// Index into [`Plan::materials`].
+    pub material: u32,
+}
+
+/// An endless plane: the points p with normal · p = offset.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane<R> {
+    /// Unit normal.
+    pub normal: Vec3<R>,
+    /// Distance from the scene's middle along the normal.
+    pub offset: R,
+    /// Index into [`Plan::materials`].
+    pub material: u32,
+}
+
+/// A flat triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Triangle<R> {
+    /// The corners.
+    pub corners: [Vec3<R>; 3],
+    /// Unit normal, outwards for corners that are clockwise seen from outside.
+    pub normal: Vec3<R>,
+    /// Whether it shares a corner with another triangle. Its neighbours then shadow it at the seam
+    /// unless secondary rays start a few roundings off the surface.
+    pub in_mesh: bool,
+    /// Index into [`Plan::materials`].
+    pub material: u32,
+}
+
+/// A point light.
+#[derive(Clone, Copy, Debug)]
+pub struct Light<R> {
+    /// Where it shines from.
+    pub position: Vec3<R>,
+    /// > 0.
+    pub intensity: R,
+}
+
+/// A material with everything multiplied in that is the same for all its points. Colours are 0–1.
+#[derive(Clone, Copy, Debug)]
+pub struct Material<R> {
+    /// What is seen without any light: ambient intensity · ambient, or the full ambient colour of a
+    /// marker.
+    pub base: Vec3<R>,
+    /// How lights and mirrored things add to it; `None` for markers and for packs that are black
+    /// in both.
+    pub surface: Option<Surface<R>>,
+}
+
+/// The part of a material that answers to light.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface<R> {
+    /// Matte colour.
+    pub diffuse: Vec3<R>,
+    /// Highlight colour.
+    pub specular: Vec3<R>,
+    /// Sharpness of the highlight.
+    pub exponent: Exponent,
+    /// (Σ intensities) · specular, the filter of the mirror image; `None` where there is none.
+    pub mirror: Option<Vec3<R>>,
+}
+
+impl<R: Real> Plan<R> {
+    /// Packs what `picture` of `scene` can show. The scene must pass [`crate::scene::check`].
+    pub fn new(scene: &Scene, picture: &Picture) -> Self {
+        let centre = bounds(scene)
+            .map_or(scene.camera.position, |(low, high)| low * 0.5 + high * 0.5);
+        let mut plan = Self {
+            view: View::new(&scene.camera, picture, centre),
+            spheres: Vec::new(),
+            casting_spheres: 0,
+            planes: Vec::new(),
+            triangles: Vec::new(),
+            lights: pack_lights(scene, centre),
+            materials: pack_materials(scene),
+            background: linear(scene.background),
+            reflection_limit: scene.render.reflection_limit,
+            methods: picture.methods,
+        };
+        plan.pack_objects(scene, centre);
+        plan.casting_spheres = plan.spheres.len();
+        if scene.light_visualization {
+            plan.pack_markers(scene, centre);
+        }
+        plan
+    }
+
+    fn pack_objects(&mut self, scene: &Scene, centre: Vec3<f64>) {
+        let corner_users = count_corner_users(scene);
+        for object in scene.objects.iter().filter(|object| object.visible) {
+            let material = material_number(scene, &object.color_pack);
+            match object.shape {
+                Shape::Sphere { center, radius } => self.spheres.push(Sphere {
+                    center: Vec3::from_f64(center - centre),
+                    radius: R::from_f64(radius),
+                    material,
+                }),
+                Shape::Plane { point, normal } => {
+                    let Some(normal) = normal.unit() else { continue };
+                    self.planes.push(Plane {
+                        normal: Vec3::from_f64(normal),
+                        offset: R::from_f64(normal.dot(point - centre)),
+                        material,
+                    });
+                }
+                Shape::Triangle { a, b, c } => {
+                    let Some(normal) = (c - a).cross(b - a).unit() else { continue };
+                    self.triangles.push(Triangle {
+                        corners: [a, b, c].map(|corner| Vec3::from_f64(corner - centre)),
+                        normal: Vec3::from_f64(normal),
+                        in_mesh: [a, b, c].iter().any(|p| corner_users[&bits(*p)] > 1),
+                        material,
+                    });
+                }
+            }
+        }
+    }
+
+    fn pack_markers(&mut self, scene: &Scene, centre: Vec3<f64>) {
+        let first_marker_material = scene.color_packs.len();
+        for light in scene.lights.iter().filter(|light| light.visible) {
+            let Some(LightObj { radius, color_pack }) = &light.marker else { continue };
+            let pack = material_number(scene, color_pack) as usize;
+            self.spheres.push(Sphere {
+                center: Vec3::from_f64(light.position - centre),
+                radius: R::from_f64(*radius),
+                material: number(first_marker_material + pack),
+            });
+        }
+    }
+}
+
+/// Smallest and largest corner of the box around everything visible that has an end, lights
+/// included; `None` if there is nothing.
+pub(super) fn bounds(scene: &Scene) -> Option<(Vec3<f64>, Vec3<f64>)> {
+    let visible = scene.objects.iter().filter(|object| object.visible);
+    let lights = scene.lights.iter().filter(|light| light.visible);
+    let boxes = visible
+        .filter_map(|object| object.shape.bounds())
+        .chain(lights.map(|light| (light.position, light.position)));
+    boxes.reduce(|(low_a, high_a), (low_b, high_b)| {
+        let fold = |a: Vec3<f64>, b: Vec3<f64>, pick: fn(f64, f64) -> f64| {
+            Vec3::new(pick(a.x, b.x), pick(a.y, b.y), pick(a.z, b.z))
+        };
+        (fold(low_a, low_b, f64::min), fold(high_a, high_b, f64::max))
+    })
+}
+
+fn pack_lights<R: Real>(scene: &Scene, centre: Vec3<f64>) -> Vec<Light<R>> {
+    let shining = scene.lights.iter().filter(|light| light.visible && light.intensity > 0.0);
+    shining
+        .map(|light| Light {
+            position: Vec3::from_f64(light.position - centre),
+            intensity: R::from_f64(light.intensity),
+        })
+        .collect()
+}
+
+/// One material per pack, then one per pack as a marker wears it.
+fn pack_materials<R: Real>(scene: &Scene) -> Vec<Material<R>> {
+    let lights = scene.lights.iter().filter(|light| light.visible);
+    let total_intensity: f64 = lights.map(|light| light.intensity).sum();
+    let lit = scene.color_packs.values().map(|pack| Material {
+        base: linear(pack.ambient * scene.ambient_intensity),
+        surface: pack_surface(pack, total_intensity),
+    });
+    let markers = scene
+        .color_packs
+        .values()
+        .map(|pack| Material { base: linear(pack.ambient), surface: None });
+    lit.chain(markers).collect()
+}
+
+fn pack_surface<R: Real>(pack: &ColorPack, total_intensity: f64) -> Option<Surface<R>> {
+    let shines = pack.specular.max_abs() > 0.0;
+    let mirrors = pack.reflective && shines && total_intensity > 0.0;
+    (shines || pack.diffuse.max_abs() > 0.0).then(|| Surface {
+        diffuse: linear(pack.diffuse),
+        specular: linear(pack.specular),
+        exponent: Exponent::new(pack.phong_exponent),
+        mirror: mirrors.then(|| linear(pack.specular * total_intensity)),
+    })
+}
+
+/// 0–255 to 0–1.
+fn linear<R: Real>(color: Vec3<f64>) -> Vec3<R> {
+    Vec3::from_f64(color * (1.0 / 255.0))
+}
+
+fn material_number(scene: &Scene, pack: &str) -> u32 {
+    number(scene.color_packs.get_index_of(pack).unwrap_or_default())
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "a file has far fewer than 2^32 packs")]
+fn number(index: usize) -> u32 {
+    index as u32
+}
+
+/// How many visible triangles meet at each corner.
+fn count_corner_users(scene: &Scene) -> HashMap<[u64; 3], usize> {
+    let mut users = HashMap::new();
+    for object in scene.objects.iter().filter(|object| object.visible) {
+        if let Shape::Triangle { a, b, c } = object.shape {
+            for corner in [a, b, c] {
+                *users.entry(bits(corner)).or_insert(0) += 1;
+            }
+        }
+    }
+    users
+}
+
+fn bits(point: Vec3<f64>) -> [u64; 3] {
+    // Adding zero makes one zero of the two.
+    point.to_array().map(|part| (part + 0.0).to_bits())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan(scene: &Scene) -> Plan<f32> {
+        Plan::new(scene, &Picture::sized(64, 64))
+    }
+
+    #[test]
+    fn hidden_markers_and_objects_are_in_no_list() {
+        let mut scene = Scene::demo();
+        let full = plan(&scene);
+        assert_eq!((full.spheres.len(), full.casting_spheres), (4, 2));
+        scene.light_visualization = false;
+        assert_eq!(plan(&scene).spheres.len(), 2);
+        scene.objects[0].visible = false;
+        scene.objects[2].visible = false;
+        let sparse = plan(&scene);
+        assert_eq!((sparse.spheres.len(), sparse.triangles.len()), (1, 5));
+    }
+
+    #[test]
+    fn a_light_that_is_off_is_no_light() {
+        let mut scene = Scene::demo();
+        scene.lights[0].intensity = 0.0;
+        assert_eq!(plan(&scene).lights.len(), 1);
+        scene.lights[1].visible = false;
+        assert_eq!(plan(&scene).lights.len(), 0);
+        let mirrors = plan(&scene).materials.iter().any(|m| m.surface.is_some_and(|s| s.mirror.is_some()));
+        assert!(!mirrors, "without light there is nothing to mirror with");
+    }
+
+    #[test]
+    fn triangles_that_share_corners_are_a_mesh() {
+        let mut scene = Scene::demo();
+        assert!(plan(&scene).triangles.iter().all(|triangle| triangle.in_mesh));
+        scene.objects.truncate(3);
+        assert!(plan(&scene).triangles.iter().all(|triangle| !triangle.in_mesh));
+    }
+
+    #[test]
+    fn distance_from_the_origin_costs_no_precision() {
+        let scene = Scene::demo();
+        let mut moved = scene.clone();
+        let by = Vec3::new(1e6, -3e6, 2e6);
+        for object in &mut moved.objects {
+            object.shape = object.shape.moved(by);
+        }
+        for light in &mut moved.lights {
+            light.position = light.position + by;
+        }
+        moved.camera.position = moved.camera.position + by;
+        let (here, there) = (plan(&scene), plan(&moved));
+        for (a, b) in here.spheres.iter().zip(&there.spheres) {
+            assert_eq!(a.center, b.center);
+        }
+    }
+}

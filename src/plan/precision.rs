@@ -1,0 +1,69 @@
+//! Which real type a scene needs: single precision wherever its errors stay invisible.
+
+use super::pack::bounds;
+use crate::lanes::Vec3;
+use crate::scene::{Scene, Shape};
+
+/// What was asked of the kernel's real type.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// Single, unless [`needs_double`].
+    #[default]
+    Auto,
+    /// Single precision.
+    Single,
+    /// Double precision, the reference.
+    Double,
+}
+
+/// Largest ratio of a sphere's distance to its radius in single precision: the perpendicular
+/// discriminant is then off by at most 3.2·u·ρ ≈ 1/1000 of the radius.
+const MAX_DISTANCE_PER_RADIUS: f64 = 5e3;
+/// Largest ratio of the scene's extent to its smallest feature in single precision.
+const MAX_EXTENT_PER_FEATURE: f64 = 1e5;
+
+/// Whether single precision would show in the picture.
+pub fn needs_double(scene: &Scene) -> bool {
+    let Some((low, high)) = bounds(scene) else { return false };
+    let centre = (low + high) * 0.5;
+    let eye = scene.camera.position;
+    let extent = (high - low).length().max((eye - centre).length());
+    let visible = scene.objects.iter().filter(|object| object.visible);
+    visible.map(|object| &object.shape).any(|shape| match feature(shape) {
+        None => false,
+        Some((at, size)) => {
+            (eye - at).length() > MAX_DISTANCE_PER_RADIUS * size
+                || extent > MAX_EXTENT_PER_FEATURE * size
+        }
+    })
+}
+
+/// Where a bounded shape is and how small its smallest measure.
+fn feature(shape: &Shape) -> Option<(Vec3<f64>, f64)> {
+    match *shape {
+        Shape::Sphere { center, radius } => Some((center, radius)),
+        Shape::Plane { .. } => None,
+        Shape::Triangle { a, b, c } => {
+            let longest = (b - a).length().max((c - a).length()).max((c - b).length());
+            Some((a, (b - a).cross(c - a).length() / longest))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rule_flips_at_its_boundary() {
+        let mut scene = Scene::demo();
+        assert!(!needs_double(&scene));
+        scene.objects.retain(|object| object.name == "Sphere 1");
+        scene.lights.clear();
+        let away = |radii: f64| Vec3::new(125.0, 50.0, -150.0 + radii * 50.0);
+        scene.camera.position = away(MAX_DISTANCE_PER_RADIUS * 0.999);
+        assert!(!needs_double(&scene));
+        scene.camera.position = away(MAX_DISTANCE_PER_RADIUS * 1.001);
+        assert!(needs_double(&scene));
+    }
+}

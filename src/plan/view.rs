@@ -1,0 +1,104 @@
+//! Primary rays: from a pixel to a ray.
+
+use super::Picture;
+use crate::lanes::{Real, Vec3};
+use crate::scene::{Basis, Camera, Projection};
+
+/// The camera made ready: turns pixels into rays with unit directions.
+#[derive(Clone, Copy, Debug)]
+pub struct View<R> {
+    /// The eye, or the centre of the view window.
+    origin: Vec3<R>,
+    /// Right, one image height (perspective) or view height (orthographic) long.
+    u: Vec3<R>,
+    /// Up, of the same length.
+    v: Vec3<R>,
+    /// From the eye to the middle of the image plane, in image heights (perspective); the common
+    /// unit direction (orthographic).
+    forward: Vec3<R>,
+    projection: Projection,
+    /// Half the width and height in pixels.
+    half: (R, R),
+    /// Image heights per pixel.
+    pixel: R,
+}
+
+impl<R: Real> View<R> {
+    /// Makes `camera` ready, with everything moved by `-centre`.
+    pub fn new(camera: &Camera, picture: &Picture, centre: Vec3<f64>) -> Self {
+        let Basis { u, v, w } = camera.basis().unwrap_or(Basis {
+            u: Vec3::new(1.0, 0.0, 0.0),
+            v: Vec3::new(0.0, 1.0, 0.0),
+            w: Vec3::new(0.0, 0.0, 1.0),
+        });
+        let projection = picture.projection.unwrap_or(camera.projection);
+        let (scale, forward) = match projection {
+            Projection::Perspective => (1.0, -w * camera.projection_distance),
+            Projection::Orthographic => (camera.orthographic_height, -w),
+        };
+        let (width, height) = (f64::from(picture.width), f64::from(picture.height));
+        Self {
+            origin: Vec3::from_f64(camera.position - centre),
+            u: Vec3::from_f64(u * scale),
+            v: Vec3::from_f64(v * scale),
+            forward: Vec3::from_f64(forward),
+            projection,
+            half: (R::from_f64(width / 2.0), R::from_f64(height / 2.0)),
+            pixel: R::from_f64(1.0 / height),
+        }
+    }
+
+    /// Origin and unit direction of the ray through the place (x, y) of the picture, in pixels from
+    /// its left and upper edge. The centre of the first pixel is (½, ½).
+    #[inline]
+    pub fn ray(&self, x: R, y: R) -> (Vec3<R>, Vec3<R>) {
+        let across = (x - self.half.0) * self.pixel;
+        let upwards = (self.half.1 - y) * self.pixel;
+        let offset = self.u * across + self.v * upwards;
+        match self.projection {
+            Projection::Orthographic => (self.origin + offset, self.forward),
+            Projection::Perspective => {
+                let direction = self.forward + offset;
+                (self.origin, direction * (R::ONE / direction.length()))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rays(picture: &Picture, camera: &Camera, x: f64, y: f64) -> (Vec3<f64>, Vec3<f64>) {
+        View::<f64>::new(camera, picture, Vec3::new(0.0, 0.0, 0.0)).ray(x, y)
+    }
+
+    #[test]
+    fn both_projections_look_along_the_camera_in_the_middle() {
+        let camera = Camera::default();
+        for projection in [Projection::Perspective, Projection::Orthographic] {
+            let picture = Picture { projection: Some(projection), ..Picture::sized(101, 51) };
+            let (origin, direction) = rays(&picture, &camera, 50.5, 25.5);
+            let w = camera.basis().expect("valid").w;
+            assert!((origin - camera.position).length() < 1e-12);
+            assert!((direction + w).length() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_top_of_the_picture_is_half_a_field_of_view_up() {
+        let camera = Camera::default();
+        let basis = camera.basis().expect("valid");
+        let (_, direction) = rays(&Picture::sized(64, 64), &camera, 32.0, 0.0);
+        let angle = direction.dot(basis.v).asin();
+        assert!((angle - camera.field_of_view_radians() / 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn pictures_of_any_size_frame_the_same() {
+        let camera = Camera { projection: Projection::Orthographic, ..Camera::default() };
+        let small = rays(&Picture::sized(20, 10), &camera, 5.0, 2.5);
+        let large = rays(&Picture::sized(2000, 1000), &camera, 500.0, 250.0);
+        assert!((small.0 - large.0).length() < 1e-12);
+    }
+}

@@ -1,0 +1,263 @@
+//! The door between scenes and the disk: RON in, RON out, nothing half-done either way.
+
+use std::fmt;
+use std::fs::{self, File};
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+
+use ron::extensions::Extensions;
+use ron::ser::PrettyConfig;
+
+use super::check::{Problem, check};
+use super::locate::{claimed_version, has_inner_comments, header, locate};
+use super::{Scene, VERSION};
+
+/// Longest scene file that is read, in bytes: room for about 200,000 objects.
+const MAX_BYTES: u64 = 32 << 20;
+/// Deepest nesting of brackets; a scene needs five.
+const MAX_DEPTH: usize = 32;
+/// Most characters of a line that an error shows, so that a file on one line stays readable.
+const EXCERPT: usize = 100;
+
+/// A scene and the comment header of its file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Document {
+    /// Comments before the scene, kept when saving; empty or ending with a line break.
+    pub header: String,
+    /// The scene.
+    pub scene: Scene,
+}
+
+/// Why a scene could not be read or written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// The text is not a valid scene.
+    #[error("{0}")]
+    Refused(Refusal),
+    /// The file is larger than any scene: nothing was read.
+    #[error("{path}: a scene file has at most {limit} bytes, this one has {found}", path = .path.display())]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Its length in bytes.
+        found: u64,
+        /// The most that is read.
+        limit: u64,
+    },
+    /// The disk said no.
+    #[error("cannot {verb} {path}: {source}", path = .path.display())]
+    Disk {
+        /// What was tried: `read` or `write`.
+        verb: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What the system answered.
+        source: io::Error,
+    },
+}
+
+/// A refused text: where, what is wrong, and the line itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refusal {
+    /// The file, or how the text is called.
+    pub name: String,
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// What is wrong and what was expected, without a full stop.
+    pub sentence: String,
+    /// The line around the column, at most [`EXCERPT`] characters.
+    excerpt: String,
+    /// Characters of the excerpt before the caret.
+    indent: usize,
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { name, line, column, sentence, excerpt, indent } = self;
+        let number = line.to_string();
+        let margin = " ".repeat(number.len());
+        let caret = format!("{:indent$}^", "");
+        write!(f, "{name}:{line}:{column}: {sentence}\n {number} | {excerpt}\n {margin} | {caret}")
+    }
+}
+
+impl Document {
+    /// Reads and checks a scene file.
+    ///
+    /// # Errors
+    /// [`SceneError`]: unreadable, too large, or refused with its place. Nothing is half-loaded.
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        let bytes = read_bounded(path)?;
+        let name = path.display().to_string();
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let good = error.utf8_error().valid_up_to();
+            let start = String::from_utf8_lossy(&error.as_bytes()[..good]).into_owned();
+            refuse(&name, &start, start.len(), "the file is not UTF-8 text".to_owned())
+        })?;
+        Self::parse(&name, &text)
+    }
+
+    /// Reads and checks a scene from RON text.
+    ///
+    /// # Errors
+    /// [`SceneError::Refused`], with `scene` in place of a file name.
+    pub fn from_text(text: &str) -> Result<Self, SceneError> {
+        Self::parse("scene", text)
+    }
+
+    fn parse(name: &str, text: &str) -> Result<Self, SceneError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        if let Some(version) = claimed_version(text).filter(|&version| version > VERSION) {
+            let problem = check(&Scene { version, ..Scene::empty() }).err();
+            return Err(refuse_problem(name, text, problem));
+        }
+        let scene: Scene = options().from_str(text).map_err(|error| {
+            let start = error.span.start;
+            let at = offset_of(text, start.line, start.col);
+            refuse(name, text, at, sentence_of(&error.code))
+        })?;
+        match check(&scene) {
+            Ok(()) => Ok(Self { header: header(text).to_owned(), scene }),
+            Err(problem) => Err(refuse_problem(name, text, Some(problem))),
+        }
+    }
+
+    /// The text of the file: the header, then the scene in the one form that Glint writes.
+    pub fn to_text(&self) -> String {
+        let config = PrettyConfig::new()
+            .struct_names(true)
+            .depth_limit(2)
+            .new_line("\n")
+            .compact_maps(false);
+        let body = options().to_string_pretty(&self.scene, config).unwrap_or_default();
+        format!("{}{body}\n", self.header)
+    }
+
+    /// Writes the scene to `path`, whole or not at all. If the file there has comments that the
+    /// new text does not keep, it is copied to `NAME.bak` first; that path is returned.
+    ///
+    /// # Errors
+    /// [`SceneError::Disk`]; the file at `path` is then untouched.
+    pub fn save(&self, path: &Path) -> Result<Option<PathBuf>, SceneError> {
+        let disk = |source| SceneError::Disk { verb: "write", path: path.to_owned(), source };
+        let old = fs::read_to_string(path).ok().filter(|text| has_inner_comments(text));
+        let backup = old
+            .map(|text| {
+                let mut name = path.as_os_str().to_owned();
+                name.push(".bak");
+                let backup = PathBuf::from(name);
+                write_atomic(&backup, text.as_bytes()).map(|()| backup)
+            })
+            .transpose()
+            .map_err(disk)?;
+        write_atomic(path, self.to_text().as_bytes()).map_err(disk)?;
+        Ok(backup)
+    }
+}
+
+/// Writes `bytes` to `path` so that a reader finds either the old file or the new one, whole: they
+/// go to a new file beside it, to the disk, and then under the name. Links are followed and the
+/// permissions of an existing file kept.
+///
+/// # Errors
+/// Whatever the system answers; the file at `path` is then untouched.
+pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let existing = fs::metadata(&target).ok();
+    if existing.as_ref().is_some_and(|metadata| !metadata.is_file()) {
+        return Err(io::Error::other("there is something of that name that is not a file"));
+    }
+    let folder = match target.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let mut beside = new_file_builder().tempfile_in(folder)?;
+    beside.write_all(bytes)?;
+    if let Some(existing) = existing {
+        beside.as_file().set_permissions(existing.permissions())?;
+    }
+    beside.as_file().sync_all()?;
+    beside.persist(&target).map_err(|error| error.error)?;
+    // The rename itself must survive a power cut too; where folders cannot be synced, it is the
+    // system's business.
+    let _ = File::open(folder).and_then(|folder| folder.sync_all());
+    Ok(())
+}
+
+fn new_file_builder() -> tempfile::Builder<'static, 'static> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".glint-").suffix(".tmp");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder
+}
+
+fn read_bounded(path: &Path) -> Result<Vec<u8>, SceneError> {
+    let disk = |source| SceneError::Disk { verb: "read", path: path.to_owned(), source };
+    let file = File::open(path).map_err(disk)?;
+    let metadata = file.metadata().map_err(disk)?;
+    let too_large = |found| SceneError::TooLarge { path: path.to_owned(), found, limit: MAX_BYTES };
+    if metadata.len() > MAX_BYTES {
+        return Err(too_large(metadata.len()));
+    }
+    // A pipe has no length: what it gives is bounded while it is read.
+    let mut bytes = Vec::new();
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(disk)?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(too_large(bytes.len() as u64));
+    }
+    Ok(bytes)
+}
+
+fn options() -> ron::Options {
+    ron::Options::default()
+        .with_default_extension(Extensions::IMPLICIT_SOME)
+        .with_recursion_limit(MAX_DEPTH)
+}
+
+/// The parser's own words, without its full stops and back-ticks around whole sentences.
+fn sentence_of(error: &ron::Error) -> String {
+    match error {
+        ron::Error::Message(message) => message.clone(),
+        ron::Error::ExceededRecursionLimit => {
+            format!("brackets are nested more than {MAX_DEPTH} deep")
+        }
+        ron::Error::Eof => "the file ends in the middle of the scene".to_owned(),
+        other => other.to_string(),
+    }
+}
+
+fn refuse_problem(name: &str, text: &str, problem: Option<Problem>) -> SceneError {
+    let Problem { path, sentence } =
+        problem.unwrap_or(Problem { path: Vec::new(), sentence: "not a scene".to_owned() });
+    refuse(name, text, locate(text, &path), sentence)
+}
+
+/// Byte offset of a 1-based line and column in characters.
+fn offset_of(text: &str, line: usize, column: usize) -> usize {
+    let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
+    let within = text[start..].char_indices().nth(column.saturating_sub(1));
+    within.map_or(text.len(), |(index, _)| start + index)
+}
+
+fn refuse(name: &str, text: &str, at: usize, sentence: String) -> SceneError {
+    let start = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
+    let before: Vec<char> = text[start..at].chars().collect();
+    let after = text[at..].chars().take_while(|&c| c != '\n' && c != '\r');
+    let indent = before.len().min(EXCERPT / 2);
+    let shown = before[before.len() - indent..].iter().copied().chain(after).take(EXCERPT);
+    SceneError::Refused(Refusal {
+        name: name.to_owned(),
+        line: text[..at].matches('\n').count() + 1,
+        column: before.len() + 1,
+        sentence,
+        excerpt: shown.map(|c| if c.is_control() { ' ' } else { c }).collect(),
+        indent,
+    })
+}

@@ -1,0 +1,265 @@
+//! Where in a RON text a value stands. The parser's positions are gone once the scene is data; a
+//! check that fails afterwards walks the text again to the field it means.
+
+use std::str::FromStr;
+
+/// One step from a value into its parts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// The named field of a struct.
+    Field(&'static str),
+    /// The item of a list or tuple, from 0.
+    Index(usize),
+    /// The value under a key of a map.
+    Key(String),
+}
+
+/// Byte offset of the value that `path` leads to, or of the last value on the way that exists:
+/// a field that was left out is reported where its struct stands.
+pub fn locate(text: &str, path: &[Step]) -> usize {
+    let mut cursor = Cursor { text, at: 0 };
+    cursor.skip_preamble();
+    for step in path {
+        let here = cursor.at;
+        if !cursor.enter(step) {
+            return here;
+        }
+    }
+    cursor.at
+}
+
+/// The `version` that a text claims, if it has the shape of a scene at all. Read before anything
+/// else, so that a file from the future is refused by its version and not by its new fields.
+pub fn claimed_version(text: &str) -> Option<u32> {
+    let at = locate(text, &[Step::Field("version")]);
+    let digits = text[at..].split(|c: char| !c.is_ascii_digit()).next()?;
+    u32::from_str(digits).ok()
+}
+
+/// The comments (and blank lines) before the first value.
+pub fn header(text: &str) -> &str {
+    let mut cursor = Cursor { text, at: 0 };
+    cursor.skip_space();
+    &text[..cursor.at]
+}
+
+/// Whether comments stand after the first value: saving would lose them.
+pub fn has_inner_comments(text: &str) -> bool {
+    let mut cursor = Cursor { text, at: header(text).len() };
+    while let Some(next) = cursor.peek() {
+        if cursor.rest().starts_with("//") || cursor.rest().starts_with("/*") {
+            return true;
+        }
+        cursor.skip_token(next);
+    }
+    false
+}
+
+struct Cursor<'a> {
+    text: &'a str,
+    at: usize,
+}
+
+impl<'a> Cursor<'a> {
+    fn rest(&self) -> &'a str {
+        &self.text[self.at..]
+    }
+
+    fn peek(&self) -> Option<char> {
+        self.rest().chars().next()
+    }
+
+    /// Passes white space and comments (block comments nest).
+    fn skip_space(&mut self) {
+        loop {
+            let rest = self.rest();
+            if let Some(after) = rest.strip_prefix("//") {
+                self.at += 2 + after.find('\n').unwrap_or(after.len());
+            } else if rest.starts_with("/*") {
+                self.skip_block_comment();
+            } else if let Some(space) = rest.chars().next().filter(|c| c.is_whitespace()) {
+                self.at += space.len_utf8();
+            } else {
+                return;
+            }
+        }
+    }
+
+    fn skip_block_comment(&mut self) {
+        let mut depth = 0_usize;
+        while let Some(next) = self.peek() {
+            if self.rest().starts_with("/*") {
+                depth += 1;
+                self.at += 2;
+            } else if self.rest().starts_with("*/") {
+                depth -= 1;
+                self.at += 2;
+                if depth == 0 {
+                    return;
+                }
+            } else {
+                self.at += next.len_utf8();
+            }
+        }
+    }
+
+    /// Passes comments and `#![enable(…)]` attributes before the value.
+    fn skip_preamble(&mut self) {
+        self.skip_space();
+        while self.rest().starts_with("#!") {
+            self.at += self.rest().find(']').map_or(self.rest().len(), |end| end + 1);
+            self.skip_space();
+        }
+    }
+
+    /// Passes one string, or one character of anything else.
+    fn skip_token(&mut self, next: char) {
+        let raw = self.rest().strip_prefix('r').map(|after| {
+            let hashes = after.len() - after.trim_start_matches('#').len();
+            (hashes, after[hashes..].starts_with('"'))
+        });
+        match (next, raw) {
+            ('"', _) => self.skip_string(),
+            ('r', Some((hashes, true))) => {
+                let end = format!("\"{}", "#".repeat(hashes));
+                let body = self.at + 2 + hashes;
+                self.at = self.text[body..].find(&end).map_or(self.text.len(), |i| body + i + end.len());
+            }
+            _ => self.at += next.len_utf8(),
+        }
+    }
+
+    fn skip_string(&mut self) {
+        let mut escaped = false;
+        for (index, c) in self.rest().char_indices().skip(1) {
+            if c == '"' && !escaped {
+                self.at += index + 1;
+                return;
+            }
+            escaped = c == '\\' && !escaped;
+        }
+        self.at = self.text.len();
+    }
+
+    fn identifier(&mut self) -> &'a str {
+        let rest = self.rest();
+        let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len());
+        self.at += end;
+        &rest[..end]
+    }
+
+    /// Passes one whole value, up to the comma or bracket that ends it.
+    fn skip_value(&mut self) {
+        let mut depth = 0_usize;
+        loop {
+            self.skip_space();
+            match self.peek() {
+                None => return,
+                Some(',' | ':' | ')' | ']' | '}') if depth == 0 => return,
+                Some(next) => {
+                    match next {
+                        '(' | '[' | '{' => depth += 1,
+                        ')' | ']' | '}' => depth -= 1,
+                        _ => {}
+                    }
+                    self.skip_token(next);
+                }
+            }
+        }
+    }
+
+    /// Steps into the value under the cursor; false, and the cursor anywhere, if it has no such part.
+    fn enter(&mut self, step: &Step) -> bool {
+        self.identifier();
+        self.skip_space();
+        if !matches!(self.peek(), Some('(' | '[' | '{')) {
+            return false;
+        }
+        self.at += 1;
+        for index in 0.. {
+            self.skip_space();
+            if matches!(self.peek(), None | Some(')' | ']' | '}')) {
+                return false;
+            }
+            if self.item_matches(step, index) {
+                return true;
+            }
+            self.skip_value();
+            if self.peek() == Some(',') {
+                self.at += 1;
+            }
+        }
+        false
+    }
+
+    /// With the cursor on an item: moves to its value and says whether it is the one.
+    fn item_matches(&mut self, step: &Step, index: usize) -> bool {
+        let start = self.at;
+        let found = match step {
+            Step::Index(wanted) => return *wanted == index,
+            Step::Field(name) => self.identifier() == *name,
+            Step::Key(key) => {
+                self.skip_value();
+                ron::from_str::<String>(self.text[start..self.at].trim()).is_ok_and(|k| k == *key)
+            }
+        };
+        self.skip_space();
+        if self.peek() == Some(':') {
+            self.at += 1;
+            self.skip_space();
+            return found;
+        }
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = r#"// header (with: brackets)
+/* and /* nested */ */
+Scene(
+    version: 1, // inner
+    color_packs: { "a\"b": ColorPack(ambient: (1, 2, 3)), "c": ColorPack(ambient: (4, 5, 6)) },
+    objects: [Object(name: "x, ]", shape: Sphere(radius: 1)), Object(name: r"y", shape: Sphere(radius: 22))],
+)"#;
+
+    fn found(path: &[Step]) -> &str {
+        &TEXT[locate(TEXT, path)..][..2]
+    }
+
+    #[test]
+    fn values_are_found_behind_strings_and_comments() {
+        let field = Step::Field;
+        let key = |name: &str| Step::Key(name.to_owned());
+        assert_eq!(found(&[field("version")]), "1,");
+        assert_eq!(found(&[field("color_packs"), key("c"), field("ambient"), Step::Index(1)]), "5,");
+        assert_eq!(found(&[field("color_packs"), key("a\"b"), field("ambient")]), "(1");
+        assert_eq!(found(&[field("objects"), Step::Index(1), field("shape"), field("radius")]), "22");
+    }
+
+    #[test]
+    fn what_was_left_out_is_reported_at_its_struct() {
+        let path = [Step::Field("objects"), Step::Index(0), Step::Field("color_pack")];
+        assert_eq!(found(&path), "Ob");
+        assert_eq!(found(&[Step::Field("lights")]), "Sc");
+    }
+
+    #[test]
+    fn headers_and_inner_comments_are_told_apart() {
+        assert!(header(TEXT).ends_with("*/ */\n"));
+        assert!(has_inner_comments(TEXT));
+        assert!(!has_inner_comments("// only\nScene(objects: [\"// not one\"])"));
+        assert_eq!(claimed_version(TEXT), Some(1));
+    }
+
+    #[test]
+    fn no_text_makes_it_panic() {
+        for end in (0..TEXT.len()).filter(|&end| TEXT.is_char_boundary(end)) {
+            let cut = &TEXT[..end];
+            assert!(locate(cut, &[Step::Field("objects"), Step::Index(1)]) <= cut.len());
+            let _ = (claimed_version(cut), has_inner_comments(cut));
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! The primitives as the file stores them.
+
+use serde::{Deserialize, Serialize};
+
+use super::notation;
+use crate::lanes::Vec3;
+
+/// A primitive: all numbers in world units.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Shape {
+    /// A ball.
+    Sphere {
+        /// Its middle.
+        center: Vec3<f64>,
+        /// > 0.
+        #[serde(with = "notation::number")]
+        radius: f64,
+    },
+    /// An endless plane.
+    Plane {
+        /// Any point on it.
+        point: Vec3<f64>,
+        /// Across it; any length but zero.
+        normal: Vec3<f64>,
+    },
+    /// A flat triangle, its corners clockwise seen from outside.
+    Triangle {
+        /// First corner.
+        a: Vec3<f64>,
+        /// Second corner.
+        b: Vec3<f64>,
+        /// Third corner.
+        c: Vec3<f64>,
+    },
+}
+
+impl Shape {
+    /// The name of the kind, as the file writes it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Sphere { .. } => "Sphere",
+            Self::Plane { .. } => "Plane",
+            Self::Triangle { .. } => "Triangle",
+        }
+    }
+
+    /// One shape of every kind, of the given size around `at`: what "Add" offers.
+    pub fn examples(at: Vec3<f64>, size: f64) -> [Self; 3] {
+        let corner = |x: f64, y: f64| at + Vec3::new(x * size, y * size, 0.0);
+        [
+            Self::Sphere { center: at, radius: size / 2.0 },
+            Self::Plane { point: at, normal: Vec3::new(0.0, 1.0, 0.0) },
+            Self::Triangle { a: corner(-0.5, -0.4), b: corner(0.0, 0.5), c: corner(0.5, -0.4) },
+        ]
+    }
+
+    /// Smallest and largest corner of the box around the shape; `None` for what never ends.
+    pub fn bounds(&self) -> Option<(Vec3<f64>, Vec3<f64>)> {
+        match self {
+            Self::Sphere { center, radius } => {
+                let reach = Vec3::splat(*radius);
+                Some((*center - reach, *center + reach))
+            }
+            Self::Plane { .. } => None,
+            Self::Triangle { a, b, c } => {
+                let fold = |pick: fn(f64, f64) -> f64| {
+                    Vec3::new(
+                        pick(pick(a.x, b.x), c.x),
+                        pick(pick(a.y, b.y), c.y),
+                        pick(pick(a.z, b.z), c.z),
+                    )
+                };
+                Some((fold(f64::min), fold(f64::max)))
+            }
+        }
+    }
+
+    /// The same shape, moved.
+    #[must_use]
+    pub fn moved(&self, by: Vec3<f64>) -> Self {
+        match *self {
+            Self::Sphere { center, radius } => Self::Sphere { center: center + by, radius },
+            Self::Plane { point, normal } => Self::Plane { point: point + by, normal },
+            Self::Triangle { a, b, c } => Self::Triangle { a: a + by, b: b + by, c: c + by },
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! What runs per ray and per tile: one file per primitive with its competing formulas side by side,
+//! shading, and the tile loop. Knows no scene, no file and no pixel format.
+//!
+//! A new primitive is a file here, a list in the plan and its lines in `hit.rs`.
+
+mod hit;
+mod plane;
+mod shade;
+mod sphere;
+mod threads;
+mod tiles;
+mod triangle;
+
+use std::sync::atomic::{AtomicBool, AtomicU64};
+
+pub use threads::{PoolError, Threads};
+pub use tiles::{Grid, TILE, Tracer};
+
+use crate::lanes::{Real, Vec3};
+
+/// A half-line: origin and unit direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray<R> {
+    /// Where it starts.
+    pub origin: Vec3<R>,
+    /// Where it goes; of length 1.
+    pub direction: Vec3<R>,
+}
+
+impl<R: Real> Ray<R> {
+    /// The point `t` along.
+    #[inline(always)]
+    pub fn at(&self, t: R) -> Vec3<R> {
+        self.origin + self.direction * t
+    }
+}
+
+/// How many rays were traced, by what they were for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rays {
+    /// From the camera.
+    pub camera: u64,
+    /// From a surface to a light.
+    pub shadow: u64,
+    /// From a mirror.
+    pub reflected: u64,
+}
+
+impl Rays {
+    /// All of them.
+    pub fn total(self) -> u64 {
+        self.camera + self.shadow + self.reflected
+    }
+}
+
+impl std::ops::Add for Rays {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self {
+            camera: self.camera + other.camera,
+            shadow: self.shadow + other.shadow,
+            reflected: self.reflected + other.reflected,
+        }
+    }
+}
+
+/// What a running trace and its caller tell each other.
+#[derive(Debug, Default)]
+pub struct Watch {
+    /// Set by the caller to end the trace within one row of a tile.
+    pub stop: AtomicBool,
+    /// Pixels traced so far.
+    pub pixels: AtomicU64,
+}

@@ -1,0 +1,56 @@
+//! Ray against plane.
+
+use super::Ray;
+use crate::lanes::{Real, Vec3};
+use crate::plan::Plane;
+
+/// t = (offset - n·o) / (n·d), or infinity if that is not in front. A ray along the plane divides
+/// by zero; the comparison then fails and the plane is rightly not seen edge-on.
+#[inline(always)]
+pub fn intersect<R: Real>(ray: &Ray<R>, plane: &Plane<R>) -> R {
+    let t = (plane.offset - plane.normal.dot(ray.origin)) / plane.normal.dot(ray.direction);
+    if t > R::ZERO { t } else { R::INFINITY }
+}
+
+/// The hit at `t`, drawn onto the plane.
+#[inline]
+pub fn refine<R: Real>(ray: &Ray<R>, plane: &Plane<R>, t: R) -> Vec3<R> {
+    let point = ray.at(t);
+    point - plane.normal * (plane.normal.dot(point) - plane.offset)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn floor() -> Plane<f32> {
+        Plane { normal: Vec3::new(0.0, 1.0, 0.0), offset: 0.0, material: 0 }
+    }
+
+    fn ray_at_degrees(degrees: f64) -> Ray<f32> {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        Ray {
+            origin: Vec3::new(0.0, 1.0, 0.0),
+            direction: Vec3::from_f64(Vec3::new(cos, -sin, 0.0)),
+        }
+    }
+
+    #[test]
+    fn grazing_rays_lose_digits_no_faster_than_one_over_the_sine() {
+        for degrees in [45.0, 1.0, 0.01, 1e-4, 1e-5] {
+            let ray = ray_at_degrees(degrees);
+            let exact = 1.0 / -f64::from(ray.direction.y);
+            let error = (f64::from(intersect(&ray, &floor())) / exact - 1.0).abs();
+            let u = f64::from(f32::UNIT_ROUNDOFF);
+            assert!(error <= 8.0 * u / degrees.to_radians().sin(), "{degrees}: {error:e}");
+        }
+    }
+
+    #[test]
+    fn edge_on_and_behind_are_misses() {
+        assert_eq!(intersect(&ray_at_degrees(0.0), &floor()), f32::INFINITY);
+        assert_eq!(intersect(&ray_at_degrees(-30.0), &floor()), f32::INFINITY);
+        let inside = Ray { origin: Vec3::splat(0.0), ..ray_at_degrees(0.0) };
+        assert_eq!(intersect(&inside, &floor()), f32::INFINITY, "0/0");
+    }
+}

@@ -1,0 +1,112 @@
+//! How coarse the first picture after an edit may be: as fine as fits into the frame budget.
+
+use std::time::Duration;
+
+/// Time that a picture may take while something is being dragged: 30 pictures a second.
+const BUDGET: Duration = Duration::from_millis(33);
+/// A first picture never has fewer pixels along its longer side: better late than unreadable.
+const FLOOR_PIXELS: usize = 128;
+/// Coarsest step, whatever the size of the picture.
+const COARSEST: usize = 16;
+/// Pictures in a row that must have had time to spare before the next one is finer.
+const PATIENCE: u32 = 3;
+/// Weight of the newest measurement in the moving average.
+const NEWEST: f64 = 0.35;
+
+/// Follows the cost of a pixel and chooses steps from it.
+#[derive(Clone, Debug)]
+pub struct Budget {
+    nanos_per_pixel: f64,
+    step: usize,
+    spare: u32,
+}
+
+impl Budget {
+    /// Starts coarse: nothing is known yet.
+    pub fn new() -> Self {
+        Self { nanos_per_pixel: 0.0, step: 8, spare: 0 }
+    }
+
+    /// The step of the first pass over a picture of this size.
+    pub fn choose(&mut self, width: usize, height: usize) -> usize {
+        let coarsest = (width.max(height) / FLOOR_PIXELS).clamp(1, COARSEST);
+        let floor = 1 << coarsest.ilog2();
+        let needed = self.cheapest_step(width, height).min(floor);
+        if needed >= self.step {
+            self.step = needed;
+            self.spare = 0;
+        } else {
+            self.spare += 1;
+            if self.spare >= PATIENCE {
+                self.step /= 2;
+                self.spare = 0;
+            }
+        }
+        self.step = self.step.min(floor);
+        self.step
+    }
+
+    /// Learns from a first pass of `pixels` pixels.
+    pub fn learn(&mut self, pixels: u64, time: Duration) {
+        let nanos = time.as_nanos() as f64 / pixels.max(1) as f64;
+        self.nanos_per_pixel = match self.nanos_per_pixel {
+            0.0 => nanos,
+            old => old + (nanos - old) * NEWEST,
+        };
+    }
+
+    fn cheapest_step(&self, width: usize, height: usize) -> usize {
+        let fits = |step: &usize| {
+            let pixels = (width.div_ceil(*step) * height.div_ceil(*step)) as f64;
+            pixels * self.nanos_per_pixel <= BUDGET.as_nanos() as f64
+        };
+        [1, 2, 4, 8].into_iter().find(fits).unwrap_or(COARSEST)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIDE: usize = 1024;
+
+    fn after(nanos_per_pixel: u64, frames: usize) -> (Budget, Vec<usize>) {
+        let mut budget = Budget::new();
+        let steps = (0..frames)
+            .map(|_| {
+                budget.learn(1000, Duration::from_nanos(nanos_per_pixel * 1000));
+                budget.choose(SIDE, SIDE)
+            })
+            .collect();
+        (budget, steps)
+    }
+
+    #[test]
+    fn a_cheap_scene_becomes_sharp_one_step_at_a_time() {
+        let (_, steps) = after(10, 12);
+        assert_eq!(steps, [8, 8, 4, 4, 4, 2, 2, 2, 1, 1, 1, 1]);
+    }
+
+    #[test]
+    fn an_expensive_scene_stops_at_the_floor() {
+        let (mut budget, steps) = after(1_000_000, 4);
+        assert_eq!(steps, [8, 8, 8, 8], "128 pixels are left");
+        assert_eq!(budget.choose(200, 100), 1, "a small picture has nothing to save");
+        assert_eq!(budget.choose(4096, 100), COARSEST);
+    }
+
+    #[test]
+    fn a_cost_at_the_border_does_not_flicker() {
+        let border = BUDGET.as_nanos() as u64 / (SIDE * SIDE / 4) as u64;
+        let (mut budget, _) = after(border, 20);
+        let mut changes = 0;
+        let mut last = budget.choose(SIDE, SIDE);
+        for n in 0..300_u64 {
+            budget.learn(1000, Duration::from_nanos((border - 3 + n % 7) * 1000));
+            let step = budget.choose(SIDE, SIDE);
+            changes += usize::from(step != last);
+            last = step;
+        }
+        assert!(changes <= 60, "{changes} changes in 300 frames");
+    }
+}

@@ -1,0 +1,25 @@
+//! One-off work off the caller's thread.
+
+use std::io;
+use std::sync::mpsc::{Receiver, channel};
+use std::thread::JoinHandle;
+
+/// Runs `work` on a thread of that name; what it returns arrives in the channel, which is closed
+/// without it if the thread cannot start or panics.
+pub fn run_errand<T: Send + 'static>(
+    name: &str,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Receiver<T> {
+    let (sender, receiver) = channel();
+    // Where no thread can be had, the sender is dropped with the closure: the receiver sees the
+    // closed channel, which is the failure that it has to handle anyway.
+    let _ = spawn(name, move || {
+        let _ = sender.send(work());
+    });
+    receiver
+}
+
+/// Starts a thread with a name, for debuggers and process lists.
+pub(super) fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<JoinHandle<()>> {
+    std::thread::Builder::new().name(name.to_owned()).spawn(work)
+}

@@ -1,0 +1,153 @@
+//! The thread itself: takes the most urgent job, traces, publishes.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, PoisonError};
+use std::time::Instant;
+
+use super::budget::Budget;
+use super::{
+    Event, Frame, LiveJob, Pace, Running, RunningJob, Shared, StillJob, lock,
+};
+use crate::export::save_image;
+use crate::image::{Cost, Image, render};
+use crate::trace::{Grid, Rays, Threads, Tracer, Watch};
+
+enum Job {
+    Live(LiveJob),
+    Still(StillJob),
+}
+
+/// Works until told to quit. A panic in a job becomes an event, and the lane lives on.
+pub(super) fn run(shared: &Shared, threads: &Threads) {
+    let mut budget = Budget::new();
+    while let Some((job, watch)) = next_job(shared) {
+        let outcome = catch_unwind(AssertUnwindSafe(|| {
+            threads.run(|| match job {
+                Job::Live(job) => live(shared, &job, &watch, &mut budget),
+                Job::Still(job) => still(shared, &job, &watch),
+            });
+        }));
+        finish(shared);
+        if let Err(panic) = outcome {
+            shared.tell(Event::Failed(format!(
+                "The tracer stopped with a fault of its own: {}. Your scene is untouched; change it or undo the last step to go on.",
+                panic_text(panic.as_ref())
+            )));
+        }
+        (shared.wake)();
+    }
+}
+
+/// Waits for work: the live view before the still picture.
+fn next_job(shared: &Shared) -> Option<(Job, Arc<Watch>)> {
+    let mut mailbox = lock(&shared.mailbox);
+    loop {
+        if mailbox.quit {
+            return None;
+        }
+        let live = mailbox.live.take().map(Job::Live);
+        if let Some(job) = live.or_else(|| mailbox.still.take().map(Job::Still)) {
+            let watch = Arc::new(Watch::default());
+            mailbox.running = Some(Running {
+                job: match &job {
+                    Job::Live(live) => RunningJob::Live { revision: live.revision },
+                    Job::Still(still) => RunningJob::Still(still.clone()),
+                },
+                watch: Arc::clone(&watch),
+                started: Instant::now(),
+            });
+            return Some((job, watch));
+        }
+        mailbox = shared.bell.wait(mailbox).unwrap_or_else(PoisonError::into_inner);
+    }
+}
+
+/// Clears the running job. A still picture that is to be written, and was stopped for the sake of
+/// the live view, goes back into its slot.
+fn finish(shared: &Shared) {
+    let mut mailbox = lock(&shared.mailbox);
+    let Some(running) = mailbox.running.take() else { return };
+    let stopped = running.watch.stop.load(std::sync::atomic::Ordering::Relaxed);
+    if let RunningJob::Still(still) = running.job
+        && stopped
+        && still.save_to.is_some()
+        && mailbox.still.is_none()
+    {
+        mailbox.still = Some(still);
+    }
+}
+
+/// A coarse pass that always completes, so that there is always something new to show; then finer
+/// ones until a newer job comes. Every pixel is traced once.
+fn live(shared: &Shared, job: &LiveJob, watch: &Watch, budget: &mut Budget) {
+    let start = Instant::now();
+    let tracer = Tracer::new(&job.scene, &job.picture);
+    let mut image = Image::new(tracer.width(), tracer.height());
+    let first = match job.pace {
+        Pace::Progressive => budget.choose(image.width, image.height),
+        Pace::Whole => 1,
+    };
+    let mut rays = Rays::default();
+    let mut grid = Grid { step: first, coarser: None };
+    loop {
+        let watch = if grid.step == first { &shared.first_pass } else { watch };
+        let Some(new) = image.trace(&tracer, grid, watch) else { return };
+        rays = rays + new;
+        if grid.step == first {
+            budget.learn(new.camera, start.elapsed());
+        }
+        shared.publish(Frame {
+            revision: job.revision,
+            image: Arc::new(image.thinned(grid.step)),
+            full_size: (image.width, image.height),
+            step: grid.step,
+            is_still: false,
+            cost: Cost { time: start.elapsed(), rays, lanes: tracer.lanes() },
+        });
+        if grid.step == 1 {
+            return;
+        }
+        grid = Grid { step: grid.step / 2, coarser: Some(grid.step) };
+    }
+}
+
+fn still(shared: &Shared, job: &StillJob, watch: &Watch) {
+    let Some((image, cost)) = render(&job.scene, &job.picture, watch) else { return };
+    let image = Arc::new(image);
+    shared.publish(Frame {
+        revision: job.revision,
+        full_size: (image.width, image.height),
+        image: Arc::clone(&image),
+        step: 1,
+        is_still: true,
+        cost,
+    });
+    if let Some(path) = &job.save_to {
+        shared.tell(match save_image(&image, path) {
+            Ok(()) => Event::Saved(path.clone()),
+            Err(error) => Event::Failed(error.to_string()),
+        });
+    }
+}
+
+impl Shared {
+    /// Puts a picture into the slot, unless a newer revision's is already there.
+    fn publish(&self, frame: Frame) {
+        let mut news = lock(&self.news);
+        if news.frame.as_ref().is_none_or(|waiting| waiting.revision <= frame.revision) {
+            news.frame = Some(frame);
+        }
+        drop(news);
+        (self.wake)();
+    }
+
+    fn tell(&self, event: Event) {
+        lock(&self.news).events.push(event);
+        (self.wake)();
+    }
+}
+
+fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "no reason given".to_owned())
+}

@@ -1,0 +1,282 @@
+//! The background lane: one named thread that owns the tracer. The editor drops a job into a slot
+//! and goes on; the newest job wins; finished pictures wait in another slot. Nothing here knows
+//! about windows: `wake` is called whenever there is something to look at.
+
+mod budget;
+mod errand;
+mod lane;
+
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+pub use errand::run_errand;
+
+use crate::image::{Cost, Image};
+use crate::plan::Picture;
+use crate::scene::Scene;
+use crate::trace::{PoolError, Threads, Watch};
+
+/// What the live view shall show.
+#[derive(Clone, Debug)]
+pub struct LiveJob {
+    /// Number of the scene's state; only ever grows.
+    pub revision: u64,
+    /// The scene at that revision.
+    pub scene: Arc<Scene>,
+    /// The picture, at its full resolution.
+    pub picture: Picture,
+    /// Whether coarse pictures may come first, to keep up with the hand that edits.
+    pub pace: Pace,
+}
+
+/// How a live picture is approached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// A coarse picture within the frame budget, then finer ones.
+    Progressive,
+    /// The full picture at once.
+    Whole,
+}
+
+/// A picture at full quality, on request.
+#[derive(Clone, Debug)]
+pub struct StillJob {
+    /// Number of the scene's state.
+    pub revision: u64,
+    /// The scene at that revision.
+    pub scene: Arc<Scene>,
+    /// The picture.
+    pub picture: Picture,
+    /// Where to write it. A picture that is to be written outlives edits: it is started again when
+    /// the live view is done.
+    pub save_to: Option<PathBuf>,
+}
+
+/// A picture to look at.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// The scene's state that it shows.
+    pub revision: u64,
+    /// The pixels that are traced so far: every `step`-th of the full picture.
+    pub image: Arc<Image>,
+    /// Full width and height in pixels.
+    pub full_size: (usize, usize),
+    /// 1 in a finished picture.
+    pub step: usize,
+    /// Whether this is the still picture and not the live view.
+    pub is_still: bool,
+    /// What it cost so far.
+    pub cost: Cost,
+}
+
+/// What the lane is doing.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Activity {
+    /// Nothing.
+    Idle,
+    /// Tracing the live view of a revision.
+    Live {
+        /// The revision.
+        revision: u64,
+    },
+    /// Tracing a still picture.
+    Still {
+        /// Pixels traced, of [`Self::Still::total`].
+        done: u64,
+        /// Pixels of the picture.
+        total: u64,
+        /// Time since it was started.
+        elapsed: Duration,
+    },
+}
+
+/// What happened on the lane that the user should know.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// A still picture was written to this file.
+    Saved(PathBuf),
+    /// Something failed, in words for the user.
+    Failed(String),
+}
+
+/// The handle on the lane. Dropping it ends the thread.
+#[derive(Debug)]
+pub struct Worker {
+    shared: Arc<Shared>,
+    lane: Option<JoinHandle<()>>,
+}
+
+struct Shared {
+    mailbox: Mutex<Mailbox>,
+    bell: Condvar,
+    news: Mutex<News>,
+    /// Of first passes, which only quitting stops.
+    first_pass: Watch,
+    wake: Box<dyn Fn() + Send + Sync>,
+}
+
+#[derive(Debug, Default)]
+struct Mailbox {
+    live: Option<LiveJob>,
+    still: Option<StillJob>,
+    running: Option<Running>,
+    quit: bool,
+}
+
+#[derive(Debug)]
+struct Running {
+    job: RunningJob,
+    watch: Arc<Watch>,
+    started: Instant,
+}
+
+#[derive(Debug)]
+enum RunningJob {
+    Live { revision: u64 },
+    Still(StillJob),
+}
+
+#[derive(Debug, Default)]
+struct News {
+    frame: Option<Frame>,
+    events: Vec<Event>,
+}
+
+impl std::fmt::Debug for Shared {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.debug_struct("Shared").finish_non_exhaustive()
+    }
+}
+
+impl Worker {
+    /// Starts the lane with `threads` tracing threads. `wake` is called from the lane after every
+    /// frame and event.
+    ///
+    /// # Errors
+    /// [`PoolError`] when the system starts no threads.
+    pub fn new(
+        threads: Option<usize>,
+        wake: impl Fn() + Send + Sync + 'static,
+    ) -> Result<Self, PoolError> {
+        let threads = Threads::new(threads)?;
+        let shared = Arc::new(Shared {
+            mailbox: Mutex::default(),
+            bell: Condvar::new(),
+            news: Mutex::default(),
+            first_pass: Watch::default(),
+            wake: Box::new(wake),
+        });
+        let lane = errand::spawn("glint-lane", {
+            let shared = Arc::clone(&shared);
+            move || lane::run(&shared, &threads)
+        });
+        Ok(Self { shared, lane: lane.ok() })
+    }
+
+    /// Asks for a live picture in place of any that waits; finer passes over an older one end
+    /// within a few milliseconds. A still picture of an older revision is given up.
+    pub fn submit(&self, job: LiveJob) {
+        let mut mailbox = lock(&self.shared.mailbox);
+        let is_stale = |still: &StillJob| still.revision < job.revision && still.save_to.is_none();
+        mailbox.still.take_if(|still| is_stale(still));
+        mailbox.stop_running();
+        mailbox.live = Some(job);
+        drop(mailbox);
+        self.shared.bell.notify_one();
+    }
+
+    /// Asks for a still picture in place of any that waits or runs.
+    pub fn request_still(&self, job: StillJob) {
+        let mut mailbox = lock(&self.shared.mailbox);
+        if matches!(&mailbox.running, Some(Running { job: RunningJob::Still(_), .. })) {
+            mailbox.stop_running();
+        }
+        mailbox.still = Some(job);
+        drop(mailbox);
+        self.shared.bell.notify_one();
+    }
+
+    /// Gives up the still picture, waiting or running.
+    pub fn cancel_still(&self) {
+        let mut mailbox = lock(&self.shared.mailbox);
+        mailbox.still = None;
+        if let Some(Running { job: RunningJob::Still(still), .. }) = &mut mailbox.running {
+            still.save_to = None;
+            mailbox.stop_running();
+        }
+    }
+
+    /// The newest picture, if there is one that was not taken yet.
+    pub fn take_frame(&self) -> Option<Frame> {
+        lock(&self.shared.news).frame.take()
+    }
+
+    /// What happened since the last call, in order.
+    pub fn take_events(&self) -> Vec<Event> {
+        std::mem::take(&mut lock(&self.shared.news).events)
+    }
+
+    /// What the lane is doing, or is about to.
+    pub fn activity(&self) -> Activity {
+        let mailbox = lock(&self.shared.mailbox);
+        match (&mailbox.running, &mailbox.live, &mailbox.still) {
+            (Some(Running { job: RunningJob::Live { revision }, .. }), ..) => {
+                Activity::Live { revision: *revision }
+            }
+            (Some(running), ..) => running.still_activity(),
+            (None, Some(live), _) => Activity::Live { revision: live.revision },
+            (None, None, Some(still)) => Activity::Still {
+                done: 0,
+                total: pixels(&still.picture),
+                elapsed: Duration::ZERO,
+            },
+            (None, None, None) => Activity::Idle,
+        }
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        let mut mailbox = lock(&self.shared.mailbox);
+        mailbox.quit = true;
+        self.shared.first_pass.stop.store(true, Ordering::Relaxed);
+        mailbox.stop_running();
+        drop(mailbox);
+        self.shared.bell.notify_one();
+        if let Some(lane) = self.lane.take() {
+            // A panic on the lane was already shown as an event.
+            let _ = lane.join();
+        }
+    }
+}
+
+impl Mailbox {
+    fn stop_running(&self) {
+        if let Some(running) = &self.running {
+            running.watch.stop.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+impl Running {
+    fn still_activity(&self) -> Activity {
+        let total = match &self.job {
+            RunningJob::Still(still) => pixels(&still.picture),
+            RunningJob::Live { .. } => 0,
+        };
+        let done = self.watch.pixels.load(Ordering::Relaxed);
+        Activity::Still { done, total, elapsed: self.started.elapsed() }
+    }
+}
+
+fn pixels(picture: &Picture) -> u64 {
+    u64::from(picture.width) * u64::from(picture.height)
+}
+
+/// A panic while the lock was held left plain data behind: it is used as it is.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
