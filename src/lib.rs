@@ -14,4 +14,6 @@ pub mod export;
 
 pub mod worker;
 
+pub mod editor;
+
 pub mod cli;

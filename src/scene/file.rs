@@ -239,11 +239,14 @@ fn refuse_problem(name: &str, text: &str, problem: Option<Problem>) -> SceneErro
     refuse(name, text, locate(text, &path), sentence)
 }
 
-/// Byte offset of a 1-based line and column in characters.
+/// Byte offset of a 1-based line and column in characters, moved past white space: the parser
+/// says where it stopped reading, the reader looks for what stands there.
 fn offset_of(text: &str, line: usize, column: usize) -> usize {
     let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
     let within = text[start..].char_indices().nth(column.saturating_sub(1));
-    within.map_or(text.len(), |(index, _)| start + index)
+    let at = within.map_or(text.len(), |(index, _)| start + index);
+    let space = text[at..].len() - text[at..].trim_start().len();
+    if at + space == text.len() { at } else { at + space }
 }
 
 fn refuse(name: &str, text: &str, at: usize, sentence: String) -> SceneError {

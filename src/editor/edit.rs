@@ -1,0 +1,318 @@
+//! The changes that can be made to a scene, each with its name in the history.
+
+use crate::lanes::Vec3;
+use crate::scene::{Camera, ColorPack, Light, LightObj, Object, Render, Scene, Shape};
+
+use super::Selection;
+
+/// A list of the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// [`Scene::lights`].
+    Light,
+    /// [`Scene::objects`].
+    Object,
+    /// [`Scene::color_packs`].
+    Pack,
+}
+
+/// One entry of a list of the scene, by its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Item {
+    /// Which list.
+    pub kind: Kind,
+    /// Place in the list, from 0.
+    pub index: usize,
+}
+
+/// A change of the scene. The `&'static str` names the field that changed: edits of one field
+/// during one gesture are one step in the history.
+#[derive(Clone, Debug)]
+pub enum Edit {
+    /// Another camera.
+    Camera(Camera, &'static str),
+    /// Another background colour, 0–255.
+    Background(Vec3<f64>),
+    /// Another ambient intensity, 0–1.
+    Ambient(f64),
+    /// Whether the markers of lights are seen.
+    LightVisualization(bool),
+    /// Other settings of the still picture.
+    Render(Render, &'static str),
+    /// Another object in this place.
+    Object(usize, Object, &'static str),
+    /// Another light in this place.
+    Light(usize, Light, &'static str),
+    /// Another pack under the name in this place.
+    Pack(usize, ColorPack, &'static str),
+    /// A new object of this shape.
+    AddObject(Shape),
+    /// A new light here.
+    AddLight(Vec3<f64>),
+    /// A new pack.
+    AddPack,
+    /// Another name; whatever refers to a pack follows it.
+    Rename(Item, String),
+    /// A copy behind the original.
+    Duplicate(Item),
+    /// Away with it; a pack that is in use stays.
+    Delete(Item),
+    /// To another place in its list, counted without it.
+    Move(Item, usize),
+    /// A copy of its pack for this object alone.
+    MakePackUnique(usize),
+}
+
+impl Item {
+    /// The object in this place.
+    pub const fn object(index: usize) -> Self {
+        Self { kind: Kind::Object, index }
+    }
+
+    /// The light in this place.
+    pub const fn light(index: usize) -> Self {
+        Self { kind: Kind::Light, index }
+    }
+
+    /// The pack in this place.
+    pub const fn pack(index: usize) -> Self {
+        Self { kind: Kind::Pack, index }
+    }
+
+    /// Its name, if the scene has it.
+    pub fn name(self, scene: &Scene) -> Option<&str> {
+        match self.kind {
+            Kind::Light => scene.lights.get(self.index).map(|light| light.name.as_str()),
+            Kind::Object => scene.objects.get(self.index).map(|object| object.name.as_str()),
+            Kind::Pack => scene.color_packs.get_index(self.index).map(|(name, _)| name.as_str()),
+        }
+    }
+}
+
+impl Edit {
+    /// What the step is called in the history.
+    pub fn label(&self, scene: &Scene) -> String {
+        let name = |item: Item| item.name(scene).unwrap_or_default().to_owned();
+        match self {
+            Self::Camera(_, field) => format!("Camera: {field}"),
+            Self::Background(_) => "Background".to_owned(),
+            Self::Ambient(_) => "Ambient intensity".to_owned(),
+            Self::LightVisualization(true) => "Show light markers".to_owned(),
+            Self::LightVisualization(false) => "Hide light markers".to_owned(),
+            Self::Render(_, field) => format!("Render: {field}"),
+            Self::Object(index, _, field) => format!("{}: {field}", name(Item::object(*index))),
+            Self::Light(index, _, field) => format!("{}: {field}", name(Item::light(*index))),
+            Self::Pack(index, _, field) => format!("{}: {field}", name(Item::pack(*index))),
+            Self::AddObject(shape) => format!("Add {}", shape.kind()),
+            Self::AddLight(_) => "Add Light".to_owned(),
+            Self::AddPack => "Add ColorPack".to_owned(),
+            Self::Rename(item, to) => format!("Rename {} to {to}", name(*item)),
+            Self::Duplicate(item) => format!("Duplicate {}", name(*item)),
+            Self::Delete(item) => format!("Delete {}", name(*item)),
+            Self::Move(item, _) => format!("Move {}", name(*item)),
+            Self::MakePackUnique(index) => format!("{}: own color pack", name(Item::object(*index))),
+        }
+    }
+
+    /// Changes the scene; returns what shall be selected, if that changes too.
+    ///
+    /// # Errors
+    /// Why the change is refused, in words for the user; the scene is then half-changed and to be
+    /// thrown away.
+    pub fn apply(self, scene: &mut Scene) -> Result<Option<Selection>, String> {
+        match self {
+            Self::Camera(camera, _) => scene.camera = camera,
+            Self::Background(color) => scene.background = color,
+            Self::Ambient(intensity) => scene.ambient_intensity = intensity,
+            Self::LightVisualization(visible) => scene.light_visualization = visible,
+            Self::Render(render, _) => scene.render = render,
+            Self::Object(index, object, _) => replace(&mut scene.objects, index, object),
+            Self::Light(index, light, _) => replace(&mut scene.lights, index, light),
+            Self::Pack(index, pack, _) => {
+                if let Some((_, place)) = scene.color_packs.get_index_mut(index) {
+                    *place = pack;
+                }
+            }
+            Self::AddObject(shape) => return Ok(select(add_object(scene, shape))),
+            Self::AddLight(position) => return Ok(select(add_light(scene, position))),
+            Self::AddPack => return Ok(select(add_pack(scene))),
+            Self::Rename(item, name) => rename(scene, item, name.trim())?,
+            Self::Duplicate(item) => return Ok(duplicate(scene, item).and_then(select)),
+            Self::Delete(item) => delete(scene, item)?,
+            Self::Move(item, to) => return Ok(select(move_item(scene, item, to))),
+            Self::MakePackUnique(index) => make_pack_unique(scene, index),
+        }
+        Ok(None)
+    }
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "the shape that apply returns")]
+fn select(item: Item) -> Option<Selection> {
+    Some(Selection::Item(item))
+}
+
+fn replace<T>(list: &mut [T], index: usize, value: T) {
+    if let Some(place) = list.get_mut(index) {
+        *place = value;
+    }
+}
+
+/// `wanted`, or the first of `BASE 2`, `BASE 3`, … that is not taken, where BASE is `wanted`
+/// without its number.
+fn free_name(wanted: &str, is_taken: impl Fn(&str) -> bool) -> String {
+    if !is_taken(wanted) {
+        return wanted.to_owned();
+    }
+    let base = wanted.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
+    let base = if base.is_empty() { wanted } else { base };
+    let mut numbered = (1_u64..).map(|number| format!("{base} {number}"));
+    numbered.find(|name| !is_taken(name)).unwrap_or_default()
+}
+
+fn free_object_name(scene: &Scene, wanted: &str) -> String {
+    free_name(wanted, |name| scene.objects.iter().any(|object| object.name == name))
+}
+
+fn free_light_name(scene: &Scene, wanted: &str) -> String {
+    free_name(wanted, |name| scene.lights.iter().any(|light| light.name == name))
+}
+
+fn free_pack_name(scene: &Scene, wanted: &str) -> String {
+    free_name(wanted, |name| scene.color_packs.contains_key(name))
+}
+
+/// The pack that a new object or marker wears: the named one, any, or a new one.
+fn some_pack(scene: &mut Scene, preferred: &str) -> String {
+    if scene.color_packs.contains_key(preferred) {
+        return preferred.to_owned();
+    }
+    if scene.color_packs.is_empty() {
+        add_pack(scene);
+    }
+    scene.color_packs.keys().next().cloned().unwrap_or_default()
+}
+
+fn add_object(scene: &mut Scene, shape: Shape) -> Item {
+    let name = free_object_name(scene, &format!("{} 1", shape.kind()));
+    let color_pack = some_pack(scene, "");
+    scene.objects.push(Object { name, color_pack, shape, visible: true });
+    Item::object(scene.objects.len() - 1)
+}
+
+fn add_light(scene: &mut Scene, position: Vec3<f64>) -> Item {
+    let name = free_light_name(scene, "Light 1");
+    let radius = scene.lights.iter().find_map(|light| Some(light.marker.as_ref()?.radius));
+    let marker = LightObj {
+        color_pack: some_pack(scene, "light"),
+        radius: radius.unwrap_or(LightObj::default().radius),
+    };
+    scene.lights.push(Light { name, position, intensity: 0.2, marker: Some(marker), visible: true });
+    Item::light(scene.lights.len() - 1)
+}
+
+fn add_pack(scene: &mut Scene) -> Item {
+    let name = free_pack_name(scene, "pack 1");
+    let (index, _) = scene.color_packs.insert_full(name, ColorPack::default());
+    Item::pack(index)
+}
+
+fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
+    let Item { kind, index } = item;
+    match kind {
+        Kind::Object => {
+            let mut copy = scene.objects.get(index)?.clone();
+            copy.name = free_object_name(scene, &copy.name);
+            scene.objects.insert(index + 1, copy);
+        }
+        Kind::Light => {
+            let mut copy = scene.lights.get(index)?.clone();
+            copy.name = free_light_name(scene, &copy.name);
+            scene.lights.insert(index + 1, copy);
+        }
+        Kind::Pack => {
+            let (name, pack) = scene.color_packs.get_index(index)?;
+            let (name, pack) = (free_pack_name(scene, name), pack.clone());
+            scene.color_packs.shift_insert(index + 1, name, pack);
+        }
+    }
+    Some(Item { kind, index: index + 1 })
+}
+
+fn delete(scene: &mut Scene, item: Item) -> Result<(), String> {
+    let Item { kind, index } = item;
+    match kind {
+        Kind::Object if index < scene.objects.len() => drop(scene.objects.remove(index)),
+        Kind::Light if index < scene.lights.len() => drop(scene.lights.remove(index)),
+        Kind::Pack => {
+            let name = item.name(scene).unwrap_or_default().to_owned();
+            let users = scene.users_of_pack(&name);
+            if !users.is_empty() {
+                return Err(format!(
+                    "{name:?} is used by {}; give them another color pack first",
+                    users.join(", ")
+                ));
+            }
+            scene.color_packs.shift_remove_index(index);
+        }
+        Kind::Object | Kind::Light => {}
+    }
+    Ok(())
+}
+
+fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), String> {
+    let from = item.name(scene).unwrap_or_default().to_owned();
+    if from == to {
+        return Ok(());
+    }
+    match item.kind {
+        Kind::Object => scene.objects[item.index].name = to.to_owned(),
+        Kind::Light => scene.lights[item.index].name = to.to_owned(),
+        Kind::Pack if scene.color_packs.contains_key(to) => {
+            return Err(format!("There is another color pack named {to:?}; choose another name"));
+        }
+        Kind::Pack => {
+            let pack = scene.color_packs.shift_remove(&from).unwrap_or_default();
+            scene.color_packs.shift_insert(item.index, to.to_owned(), pack);
+            let markers = scene.lights.iter_mut().filter_map(|light| light.marker.as_mut());
+            let worn = markers.map(|marker| &mut marker.color_pack);
+            let worn = worn.chain(scene.objects.iter_mut().map(|object| &mut object.color_pack));
+            worn.filter(|name| **name == from).for_each(|name| to.clone_into(name));
+        }
+    }
+    Ok(())
+}
+
+fn move_item(scene: &mut Scene, item: Item, to: usize) -> Item {
+    let Item { kind, index } = item;
+    let last = match kind {
+        Kind::Object => scene.objects.len(),
+        Kind::Light => scene.lights.len(),
+        Kind::Pack => scene.color_packs.len(),
+    }
+    .saturating_sub(1);
+    if index > last {
+        return item;
+    }
+    let to = to.min(last);
+    match kind {
+        Kind::Object => {
+            let object = scene.objects.remove(index);
+            scene.objects.insert(to, object);
+        }
+        Kind::Light => {
+            let light = scene.lights.remove(index);
+            scene.lights.insert(to, light);
+        }
+        Kind::Pack => scene.color_packs.move_index(index, to),
+    }
+    Item { kind, index: to }
+}
+
+fn make_pack_unique(scene: &mut Scene, index: usize) {
+    let Some(object) = scene.objects.get(index) else { return };
+    let Some(place) = scene.color_packs.get_index_of(&object.color_pack) else { return };
+    if let Some(copy) = duplicate(scene, Item::pack(place)) {
+        let name = copy.name(scene).unwrap_or_default().to_owned();
+        scene.objects[index].color_pack = name;
+    }
+}

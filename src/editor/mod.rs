@@ -1,0 +1,293 @@
+//! What matters between frames but is lost on quitting: the open document, the selection, the
+//! history, the flight. Panels read this state and push [`Action`]s; [`Editor::apply`] is the one
+//! place that changes anything. Knows no widgets.
+
+mod edit;
+mod fly;
+mod history;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+pub use edit::{Edit, Item, Kind};
+pub use fly::{Motion, Orientation};
+use fly::Flight;
+use history::{History, Snapshot};
+
+use crate::scene::{DEMO_TEXT, Document, Scene, SceneError, check};
+
+/// What the inspector shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Selection {
+    /// The camera.
+    #[default]
+    Camera,
+    /// Ambient intensity, background, light visualization.
+    World,
+    /// The still picture's size and reflections.
+    Render,
+    /// One entry of a list of the scene.
+    Item(Item),
+}
+
+/// What the picture area shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mode {
+    /// The live view at the resolution of the screen.
+    #[default]
+    Live,
+    /// The live view at 64 pixels, as in Glint's ancestor.
+    LowRes,
+    /// The still picture; back to [`Mode::Live`] when the scene changes.
+    HighRes,
+}
+
+/// Something that a panel asks for.
+#[derive(Clone, Debug)]
+pub enum Action {
+    /// Change the scene.
+    Edit(Edit),
+    /// Move the camera as part of a flight.
+    Fly(Motion),
+    /// Show something in the inspector.
+    Select(Selection),
+    /// Step back in the history.
+    Undo,
+    /// Step forward in the history.
+    Redo,
+    /// Show something else in the picture area.
+    Show(Mode),
+}
+
+/// Something the user should read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Message {
+    /// Whether something went wrong.
+    pub is_error: bool,
+    /// What happened and, for errors, what to do.
+    pub text: String,
+}
+
+/// The open document and everything about working on it.
+#[derive(Debug)]
+pub struct Editor {
+    scene: Arc<Scene>,
+    revision: u64,
+    header: String,
+    path: Option<PathBuf>,
+    saved: Arc<Scene>,
+    is_dirty: bool,
+    history: History,
+    flight: Flight,
+    /// What the inspector shows.
+    pub selection: Selection,
+    /// What the picture area shows.
+    pub mode: Mode,
+    /// What the user should read, oldest first; the window takes them away.
+    pub messages: Vec<Message>,
+}
+
+impl Editor {
+    /// Opens the demo scene, as a new document.
+    pub fn demo() -> Self {
+        let document = Document::from_text(DEMO_TEXT);
+        Self::new(document.unwrap_or(Document { header: String::new(), scene: Scene::empty() }), None)
+    }
+
+    fn new(document: Document, path: Option<PathBuf>) -> Self {
+        let scene = Arc::new(document.scene);
+        Self {
+            saved: Arc::clone(&scene),
+            scene,
+            revision: 1,
+            header: document.header,
+            path,
+            is_dirty: false,
+            history: History::default(),
+            flight: Flight::default(),
+            selection: Selection::default(),
+            mode: Mode::default(),
+            messages: Vec::new(),
+        }
+    }
+
+    /// The scene as it is now.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// Grows with every change of the scene.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// The file of the document, if it has one.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    /// Whether there are changes that no file has.
+    pub fn is_dirty(&self) -> bool {
+        self.is_dirty
+    }
+
+    /// What the document is called: its file name, or `demo` or `untitled`.
+    pub fn title(&self) -> String {
+        match &self.path {
+            Some(path) => path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
+            None if self.header.is_empty() => "untitled".to_owned(),
+            None => "demo".to_owned(),
+        }
+    }
+
+    /// The name of the step that undo would take back.
+    pub fn undo_label(&self) -> Option<&str> {
+        self.history.undo_label()
+    }
+
+    /// The name of the step that redo would bring again.
+    pub fn redo_label(&self) -> Option<&str> {
+        self.history.redo_label()
+    }
+
+    /// The angles of the camera, from its vectors.
+    pub fn orientation(&self) -> Orientation {
+        self.flight.orientation(&self.scene.camera)
+    }
+
+    /// Does what a panel asked for.
+    pub fn apply(&mut self, action: Action) {
+        match action {
+            Action::Edit(edit) => self.edit(edit),
+            Action::Fly(motion) => {
+                let camera = self.flight.step(&self.scene.camera, &motion);
+                self.edit(Edit::Camera(camera, "move"));
+            }
+            Action::Select(selection) => self.selection = selection,
+            Action::Undo => self.travel(History::undo),
+            Action::Redo => self.travel(History::redo),
+            Action::Show(mode) => self.mode = mode,
+        }
+    }
+
+    /// Ends the gesture: the next edit is a step of its own in the history.
+    pub fn end_gesture(&mut self) {
+        self.history.end_gesture();
+    }
+
+    /// Starts a document from an empty scene.
+    pub fn start_new(&mut self) {
+        self.replace(Document { header: String::new(), scene: Scene::empty() }, None);
+    }
+
+    /// Starts a document from the demo scene.
+    pub fn start_demo(&mut self) {
+        let Self { scene, header, .. } = Self::demo();
+        self.replace(Document { header, scene: Arc::unwrap_or_clone(scene) }, None);
+    }
+
+    /// Opens a file in place of the document; the document stays if that fails.
+    ///
+    /// # Errors
+    /// Why the file was refused.
+    pub fn open(&mut self, path: &Path) -> Result<(), SceneError> {
+        let document = Document::load(path)?;
+        self.replace(document, Some(path.to_owned()));
+        Ok(())
+    }
+
+    /// Writes the document to `path`, which becomes its file.
+    ///
+    /// # Errors
+    /// Why it could not be written; the document then still counts as changed.
+    pub fn save(&mut self, path: &Path) -> Result<(), SceneError> {
+        let document = Document { header: self.header.clone(), scene: Scene::clone(&self.scene) };
+        let backup = document.save(path)?;
+        self.path = Some(path.to_owned());
+        self.saved = Arc::clone(&self.scene);
+        self.is_dirty = false;
+        let kept = backup.map_or(String::new(), |backup| {
+            format!("; the file had comments inside, so it was kept as {}", backup.display())
+        });
+        self.inform(format!("Saved {}{kept}", path.display()));
+        Ok(())
+    }
+
+    /// Takes up unsaved work that another run of the program left behind.
+    pub fn recover(&mut self, document: Document, path: Option<PathBuf>) {
+        self.replace(document, path);
+        self.saved = Arc::new(Scene::empty());
+        self.is_dirty = true;
+    }
+
+    /// The text of the document as it would be saved.
+    pub fn to_text(&self) -> String {
+        Document { header: self.header.clone(), scene: Scene::clone(&self.scene) }.to_text()
+    }
+
+    /// Tells the user something.
+    pub fn inform(&mut self, text: String) {
+        self.messages.push(Message { is_error: false, text });
+    }
+
+    /// Tells the user that something went wrong.
+    pub fn complain(&mut self, text: String) {
+        self.messages.push(Message { is_error: true, text });
+    }
+
+    fn replace(&mut self, document: Document, path: Option<PathBuf>) {
+        let revision = self.revision + 1;
+        let messages = std::mem::take(&mut self.messages);
+        *self = Self { revision, messages, ..Self::new(document, path) };
+    }
+
+    fn edit(&mut self, edit: Edit) {
+        let label = edit.label(&self.scene);
+        let mut next = Scene::clone(&self.scene);
+        let selection = match edit.apply(&mut next) {
+            Ok(selection) => selection.unwrap_or(self.selection),
+            Err(reason) => return self.complain(reason),
+        };
+        if next == *self.scene {
+            return;
+        }
+        if let Err(problem) = check(&next) {
+            return self.complain(format!("{label}: {}", problem.sentence));
+        }
+        let before = Snapshot { scene: Arc::clone(&self.scene), selection: self.selection };
+        self.history.record(label, before);
+        self.selection = selection;
+        self.set_scene(Arc::new(next));
+    }
+
+    fn travel(&mut self, step: fn(&mut History, Snapshot) -> Option<Snapshot>) {
+        let here = Snapshot { scene: Arc::clone(&self.scene), selection: self.selection };
+        if let Some(there) = step(&mut self.history, here) {
+            self.selection = there.selection;
+            self.set_scene(there.scene);
+        }
+    }
+
+    fn set_scene(&mut self, scene: Arc<Scene>) {
+        self.is_dirty = *scene != *self.saved;
+        self.scene = scene;
+        self.revision += 1;
+        self.selection = self.selection.within(&self.scene);
+        if self.mode == Mode::HighRes {
+            self.mode = Mode::Live;
+        }
+    }
+}
+
+impl Selection {
+    /// The selection, or the camera if the scene has no such item.
+    fn within(self, scene: &Scene) -> Self {
+        match self {
+            Self::Item(item) if item.name(scene).is_none() => Self::Camera,
+            valid => valid,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,130 @@
+use super::*;
+use crate::lanes::Vec3;
+use crate::scene::Shape;
+use proptest::prelude::*;
+
+fn radius_edit(editor: &Editor, radius: f64) -> Action {
+    let mut object = editor.scene().objects[0].clone();
+    if let Shape::Sphere { radius: r, .. } = &mut object.shape {
+        *r = radius;
+    }
+    Action::Edit(Edit::Object(0, object, "radius"))
+}
+
+fn steps(editor: &mut Editor) -> usize {
+    let mut count = 0;
+    while editor.undo_label().is_some() {
+        editor.apply(Action::Undo);
+        count += 1;
+    }
+    count
+}
+
+#[test]
+fn a_drag_is_one_step_and_two_drags_are_two() {
+    let mut editor = Editor::demo();
+    for radius in [51.0, 52.0, 53.0] {
+        let action = radius_edit(&editor, radius);
+        editor.apply(action);
+    }
+    editor.end_gesture();
+    let action = radius_edit(&editor, 60.0);
+    editor.apply(action);
+    assert_eq!(editor.undo_label(), Some("Sphere 1: radius"));
+    editor.apply(Action::Undo);
+    assert_eq!(editor.scene().objects[0].shape, Shape::Sphere { center: Vec3::new(125.0, 50.0, -150.0), radius: 53.0 });
+    assert_eq!(steps(&mut editor), 1);
+    assert!(!editor.is_dirty(), "undone to the saved state");
+}
+
+#[test]
+fn an_invalid_edit_changes_nothing_and_says_why() {
+    let mut editor = Editor::demo();
+    let action = radius_edit(&editor, -1.0);
+    editor.apply(action);
+    assert_eq!(**editor.scene(), Scene::demo());
+    assert_eq!(editor.undo_label(), None);
+    assert_eq!(editor.messages[0].text, "Sphere 1: radius: radius must be greater than 0, found -1");
+}
+
+#[test]
+fn a_pack_in_use_stays_and_a_renamed_one_is_followed() {
+    let mut editor = Editor::demo();
+    editor.apply(Action::Edit(Edit::Delete(Item::pack(2))));
+    assert!(editor.messages[0].text.contains("is used by Triangle 1, Triangle 2"));
+    editor.apply(Action::Edit(Edit::Rename(Item::pack(2), "glass".to_owned())));
+    assert_eq!(editor.scene().objects[3].color_pack, "glass");
+    assert_eq!(editor.scene().users_of_pack("glass").len(), 6);
+}
+
+#[test]
+fn a_unique_pack_leaves_the_others_alone() {
+    let mut editor = Editor::demo();
+    editor.apply(Action::Edit(Edit::MakePackUnique(2)));
+    let scene = editor.scene();
+    assert_eq!(scene.objects[2].color_pack, "tetrahedron 1");
+    assert_eq!(scene.color_packs["tetrahedron 1"], scene.color_packs["tetrahedron"]);
+    assert_eq!(scene.users_of_pack("tetrahedron").len(), 5);
+}
+
+#[test]
+fn high_res_ends_with_the_next_change() {
+    let mut editor = Editor::demo();
+    editor.apply(Action::Show(Mode::HighRes));
+    editor.apply(Action::Edit(Edit::Ambient(0.25)));
+    assert_eq!(editor.mode, Mode::Live);
+}
+
+#[test]
+fn a_file_that_is_refused_leaves_the_document_alone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("bad.ron");
+    crate::scene::write_atomic(&path, b"Scene(version: 1, objects: 5)").expect("written");
+    let mut editor = Editor::demo();
+    editor.apply(Action::Edit(Edit::Ambient(0.25)));
+    let error = editor.open(&path).expect_err("refused").to_string();
+    assert!(error.starts_with(&format!("{}:1:28: ", path.display())), "{error}");
+    assert_eq!(editor.scene().ambient_intensity, 0.25);
+    assert!(editor.is_dirty());
+}
+
+fn any_edit() -> impl Strategy<Value = Action> {
+    let item = (0..3_u8, 0..12_usize).prop_map(|(kind, index)| match kind {
+        0 => Item::light(index),
+        1 => Item::object(index),
+        _ => Item::pack(index),
+    });
+    prop_oneof![
+        (0.0..1.0_f64).prop_map(Edit::Ambient),
+        any::<bool>().prop_map(Edit::LightVisualization),
+        Just(Edit::AddPack),
+        Just(Edit::AddLight(Vec3::new(1.0, 2.0, 3.0))),
+        (0..3_usize).prop_map(|kind| {
+            Edit::AddObject(Shape::examples(Vec3::new(0.0, 0.0, 0.0), 10.0)[kind].clone())
+        }),
+        item.clone().prop_map(Edit::Delete),
+        item.clone().prop_map(Edit::Duplicate),
+        (item, 0..12_usize).prop_map(|(item, to)| Edit::Move(item, to)),
+        (0..12_usize).prop_map(Edit::MakePackUnique),
+    ]
+    .prop_map(Action::Edit)
+}
+
+proptest! {
+    #[test]
+    fn any_edits_leave_a_valid_scene_and_are_undone_to_the_start(edits in prop::collection::vec(any_edit(), 1..30)) {
+        let mut editor = Editor::demo();
+        for edit in edits {
+            editor.apply(edit);
+            editor.end_gesture();
+            prop_assert_eq!(check(editor.scene()), Ok(()));
+        }
+        let end = Scene::clone(editor.scene());
+        let count = steps(&mut editor);
+        prop_assert_eq!(&**editor.scene(), &Scene::demo());
+        for _ in 0..count {
+            editor.apply(Action::Redo);
+        }
+        prop_assert_eq!(&**editor.scene(), &end);
+    }
+}
