@@ -16,4 +16,6 @@ pub mod worker;
 
 pub mod editor;
 
+pub mod ui;
+
 pub mod cli;

@@ -2,11 +2,15 @@
 
 use std::process::ExitCode;
 
-use glint::cli::{Asked, picture_instead_of_window, run};
+use glint::cli::{Asked, picture_instead_of_window};
+use glint::{cli, ui};
 
 fn main() -> ExitCode {
-    match run(std::env::args_os()) {
+    match cli::run(std::env::args_os()) {
         Asked::Done(code) => code,
-        Asked::Editor(scene) => picture_instead_of_window(scene.as_deref(), "none yet"),
+        Asked::Editor(scene) => match ui::run(scene.clone()) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(no_window) => picture_instead_of_window(scene.as_deref(), &no_window.to_string()),
+        },
     }
 }

@@ -20,7 +20,11 @@ pub fn run(words: &CheckWords) -> ExitCode {
     let mut code = ExitCode::SUCCESS;
     for path in &words.scenes {
         match Document::load(path) {
-            Ok(document) => say(&format!("{}: ok, {}", path.display(), contents(&document.scene))),
+            Ok(document) => say(&format!(
+                "{}: ok, {}",
+                path.display(),
+                contents(&document.scene)
+            )),
             Err(error) => {
                 complain(&error.to_string());
                 code = WRONG.into();

@@ -32,9 +32,8 @@ pub fn picture_instead_of_window(scene: Option<&Path>, reason: &str) -> ExitCode
              glint: `glint render` and `glint check` need none of these; tracing the scene to a picture instead."
         );
     }
-    let traced = Threads::new(None).map(|threads| {
-        threads.run(|| render(&scene, &Picture::still(&scene), &Watch::default()))
-    });
+    let traced = Threads::new(None)
+        .map(|threads| threads.run(|| render(&scene, &Picture::still(&scene), &Watch::default())));
     let image = match traced {
         Ok(Some((image, _))) => image,
         Ok(None) => return fail("the trace ended without a picture"),
@@ -43,7 +42,12 @@ pub fn picture_instead_of_window(scene: Option<&Path>, reason: &str) -> ExitCode
     let path = free_path(&name);
     match save_image(&image, &path) {
         Ok(()) => {
-            say(&format!("{}: {}×{}", path.display(), image.width, image.height));
+            say(&format!(
+                "{}: {}×{}",
+                path.display(),
+                image.width,
+                image.height
+            ));
             ExitCode::SUCCESS
         }
         Err(error) => fail(&error.to_string()),

@@ -56,19 +56,35 @@ pub enum Asked {
 /// Reads the command line and runs its command, if it has one.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
     let words: Vec<OsString> = words.into_iter().collect();
-    if let Some(name) = NOT_YET.iter().find(|name| words.get(1).is_some_and(|word| word == **name)) {
+    if let Some(name) = NOT_YET
+        .iter()
+        .find(|name| words.get(1).is_some_and(|word| word == **name))
+    {
         return Asked::Done(refuse(&format!(
             "`glint {name}` is not built yet; this version has `glint`, `glint render` and `glint check`"
         )));
     }
     match Words::try_parse_from(words) {
-        Ok(Words { command: None, scene }) => Asked::Editor(scene),
-        Ok(Words { command: Some(Command::Render(words)), .. }) => Asked::Done(render::run(&words)),
-        Ok(Words { command: Some(Command::Check(words)), .. }) => Asked::Done(check::run(&words)),
+        Ok(Words {
+            command: None,
+            scene,
+        }) => Asked::Editor(scene),
+        Ok(Words {
+            command: Some(Command::Render(words)),
+            ..
+        }) => Asked::Done(render::run(&words)),
+        Ok(Words {
+            command: Some(Command::Check(words)),
+            ..
+        }) => Asked::Done(check::run(&words)),
         Err(error) => {
             // Help and version are "errors" of exit code 0 that go to stdout.
             let _ = error.print();
-            Asked::Done(if error.use_stderr() { WRONG.into() } else { ExitCode::SUCCESS })
+            Asked::Done(if error.use_stderr() {
+                WRONG.into()
+            } else {
+                ExitCode::SUCCESS
+            })
         }
     }
 }

@@ -121,7 +121,9 @@ fn offset(word: &str) -> Result<RayOffset, String> {
     if word == "robust" {
         return Ok(RayOffset::Robust);
     }
-    let distance = word.strip_prefix("fixed:").and_then(|number| number.parse::<f64>().ok());
+    let distance = word
+        .strip_prefix("fixed:")
+        .and_then(|number| number.parse::<f64>().ok());
     match distance.filter(|d| d.is_finite() && *d >= 0.0) {
         Some(distance) => Ok(RayOffset::Fixed(distance)),
         None => Err("expected robust, or fixed: and a distance ≥ 0, such as fixed:0.1".to_owned()),
@@ -132,7 +134,9 @@ fn triangle(word: &str) -> Result<TriangleMethod, String> {
     match word {
         "watertight" => Ok(TriangleMethod::Watertight),
         "edges" => Ok(TriangleMethod::Edges),
-        "moller-trumbore" => Err("moller-trumbore is not built yet; use watertight or edges".to_owned()),
+        "moller-trumbore" => {
+            Err("moller-trumbore is not built yet; use watertight or edges".to_owned())
+        }
         _ => Err("expected watertight or edges".to_owned()),
     }
 }
@@ -214,7 +218,12 @@ fn in_proportion(side: u32, numerator: u32, denominator: u32) -> u32 {
 }
 
 /// Traces `repeat` times, with a bar on a terminal if it takes a while.
-fn trace(scene: Scene, picture: Picture, threads: Threads, repeat: usize) -> Option<(Image, Vec<Cost>)> {
+fn trace(
+    scene: Scene,
+    picture: Picture,
+    threads: Threads,
+    repeat: usize,
+) -> Option<(Image, Vec<Cost>)> {
     let watch = Arc::new(Watch::default());
     let total = u64::from(picture.width) * u64::from(picture.height) * repeat as u64;
     let result = run_errand("glint-render", {
@@ -247,7 +256,10 @@ fn trace(scene: Scene, picture: Picture, threads: Threads, repeat: usize) -> Opt
 }
 
 fn stats(image: &Image, costs: &[Cost], threads: usize) -> Stats {
-    let mut millis: Vec<f64> = costs.iter().map(|cost| cost.time.as_secs_f64() * 1e3).collect();
+    let mut millis: Vec<f64> = costs
+        .iter()
+        .map(|cost| cost.time.as_secs_f64() * 1e3)
+        .collect();
     millis.sort_by(f64::total_cmp);
     let middle = millis.len() / 2;
     let median = if millis.len() % 2 == 1 {
@@ -259,7 +271,11 @@ fn stats(image: &Image, costs: &[Cost], threads: usize) -> Stats {
     Stats {
         trace_ms: median,
         trace_ms_min: millis[0],
-        rays: RayCounts { camera: rays.camera, shadow: rays.shadow, reflected: rays.reflected },
+        rays: RayCounts {
+            camera: rays.camera,
+            shadow: rays.shadow,
+            reflected: rays.reflected,
+        },
         lanes,
         threads,
         width: image.width,
@@ -268,8 +284,16 @@ fn stats(image: &Image, costs: &[Cost], threads: usize) -> Stats {
 }
 
 fn summary(path: &Path, stats: &Stats) -> String {
-    let Stats { width, height, trace_ms, .. } = stats;
+    let Stats {
+        width,
+        height,
+        trace_ms,
+        ..
+    } = stats;
     let rays = stats.rays.camera + stats.rays.shadow + stats.rays.reflected;
     let per_pixel = rays as f64 / (width * height) as f64;
-    format!("{}: {width}×{height}, {trace_ms:.1} ms, {per_pixel:.2} rays/px", path.display())
+    format!(
+        "{}: {width}×{height}, {trace_ms:.1} ms, {per_pixel:.2} rays/px",
+        path.display()
+    )
 }

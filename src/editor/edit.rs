@@ -66,25 +66,43 @@ pub enum Edit {
 impl Item {
     /// The object in this place.
     pub const fn object(index: usize) -> Self {
-        Self { kind: Kind::Object, index }
+        Self {
+            kind: Kind::Object,
+            index,
+        }
     }
 
     /// The light in this place.
     pub const fn light(index: usize) -> Self {
-        Self { kind: Kind::Light, index }
+        Self {
+            kind: Kind::Light,
+            index,
+        }
     }
 
     /// The pack in this place.
     pub const fn pack(index: usize) -> Self {
-        Self { kind: Kind::Pack, index }
+        Self {
+            kind: Kind::Pack,
+            index,
+        }
     }
 
     /// Its name, if the scene has it.
     pub fn name(self, scene: &Scene) -> Option<&str> {
         match self.kind {
-            Kind::Light => scene.lights.get(self.index).map(|light| light.name.as_str()),
-            Kind::Object => scene.objects.get(self.index).map(|object| object.name.as_str()),
-            Kind::Pack => scene.color_packs.get_index(self.index).map(|(name, _)| name.as_str()),
+            Kind::Light => scene
+                .lights
+                .get(self.index)
+                .map(|light| light.name.as_str()),
+            Kind::Object => scene
+                .objects
+                .get(self.index)
+                .map(|object| object.name.as_str()),
+            Kind::Pack => scene
+                .color_packs
+                .get_index(self.index)
+                .map(|(name, _)| name.as_str()),
         }
     }
 }
@@ -110,7 +128,9 @@ impl Edit {
             Self::Duplicate(item) => format!("Duplicate {}", name(*item)),
             Self::Delete(item) => format!("Delete {}", name(*item)),
             Self::Move(item, _) => format!("Move {}", name(*item)),
-            Self::MakePackUnique(index) => format!("{}: own color pack", name(Item::object(*index))),
+            Self::MakePackUnique(index) => {
+                format!("{}: own color pack", name(Item::object(*index)))
+            }
         }
     }
 
@@ -163,18 +183,24 @@ fn free_name(wanted: &str, is_taken: impl Fn(&str) -> bool) -> String {
     if !is_taken(wanted) {
         return wanted.to_owned();
     }
-    let base = wanted.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
+    let base = wanted
+        .trim_end_matches(|c: char| c.is_ascii_digit())
+        .trim_end();
     let base = if base.is_empty() { wanted } else { base };
     let mut numbered = (1_u64..).map(|number| format!("{base} {number}"));
     numbered.find(|name| !is_taken(name)).unwrap_or_default()
 }
 
 fn free_object_name(scene: &Scene, wanted: &str) -> String {
-    free_name(wanted, |name| scene.objects.iter().any(|object| object.name == name))
+    free_name(wanted, |name| {
+        scene.objects.iter().any(|object| object.name == name)
+    })
 }
 
 fn free_light_name(scene: &Scene, wanted: &str) -> String {
-    free_name(wanted, |name| scene.lights.iter().any(|light| light.name == name))
+    free_name(wanted, |name| {
+        scene.lights.iter().any(|light| light.name == name)
+    })
 }
 
 fn free_pack_name(scene: &Scene, wanted: &str) -> String {
@@ -195,18 +221,32 @@ fn some_pack(scene: &mut Scene, preferred: &str) -> String {
 fn add_object(scene: &mut Scene, shape: Shape) -> Item {
     let name = free_object_name(scene, &format!("{} 1", shape.kind()));
     let color_pack = some_pack(scene, "");
-    scene.objects.push(Object { name, color_pack, shape, visible: true });
+    scene.objects.push(Object {
+        name,
+        color_pack,
+        shape,
+        visible: true,
+    });
     Item::object(scene.objects.len() - 1)
 }
 
 fn add_light(scene: &mut Scene, position: Vec3<f64>) -> Item {
     let name = free_light_name(scene, "Light 1");
-    let radius = scene.lights.iter().find_map(|light| Some(light.marker.as_ref()?.radius));
+    let radius = scene
+        .lights
+        .iter()
+        .find_map(|light| Some(light.marker.as_ref()?.radius));
     let marker = LightObj {
         color_pack: some_pack(scene, "light"),
         radius: radius.unwrap_or(LightObj::default().radius),
     };
-    scene.lights.push(Light { name, position, intensity: 0.2, marker: Some(marker), visible: true });
+    scene.lights.push(Light {
+        name,
+        position,
+        intensity: 0.2,
+        marker: Some(marker),
+        visible: true,
+    });
     Item::light(scene.lights.len() - 1)
 }
 
@@ -235,7 +275,10 @@ fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
             scene.color_packs.shift_insert(index + 1, name, pack);
         }
     }
-    Some(Item { kind, index: index + 1 })
+    Some(Item {
+        kind,
+        index: index + 1,
+    })
 }
 
 fn delete(scene: &mut Scene, item: Item) -> Result<(), String> {
@@ -268,15 +311,28 @@ fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), String> {
         Kind::Object => scene.objects[item.index].name = to.to_owned(),
         Kind::Light => scene.lights[item.index].name = to.to_owned(),
         Kind::Pack if scene.color_packs.contains_key(to) => {
-            return Err(format!("There is another color pack named {to:?}; choose another name"));
+            return Err(format!(
+                "There is another color pack named {to:?}; choose another name"
+            ));
         }
         Kind::Pack => {
             let pack = scene.color_packs.shift_remove(&from).unwrap_or_default();
-            scene.color_packs.shift_insert(item.index, to.to_owned(), pack);
-            let markers = scene.lights.iter_mut().filter_map(|light| light.marker.as_mut());
+            scene
+                .color_packs
+                .shift_insert(item.index, to.to_owned(), pack);
+            let markers = scene
+                .lights
+                .iter_mut()
+                .filter_map(|light| light.marker.as_mut());
             let worn = markers.map(|marker| &mut marker.color_pack);
-            let worn = worn.chain(scene.objects.iter_mut().map(|object| &mut object.color_pack));
-            worn.filter(|name| **name == from).for_each(|name| to.clone_into(name));
+            let worn = worn.chain(
+                scene
+                    .objects
+                    .iter_mut()
+                    .map(|object| &mut object.color_pack),
+            );
+            worn.filter(|name| **name == from)
+                .for_each(|name| to.clone_into(name));
         }
     }
     Ok(())
@@ -309,8 +365,12 @@ fn move_item(scene: &mut Scene, item: Item, to: usize) -> Item {
 }
 
 fn make_pack_unique(scene: &mut Scene, index: usize) {
-    let Some(object) = scene.objects.get(index) else { return };
-    let Some(place) = scene.color_packs.get_index_of(&object.color_pack) else { return };
+    let Some(object) = scene.objects.get(index) else {
+        return;
+    };
+    let Some(place) = scene.color_packs.get_index_of(&object.color_pack) else {
+        return;
+    };
     if let Some(copy) = duplicate(scene, Item::pack(place)) {
         let name = copy.name(scene).unwrap_or_default().to_owned();
         scene.objects[index].color_pack = name;

@@ -35,6 +35,32 @@ pub struct Motion {
     pub pitch: f64,
 }
 
+impl Motion {
+    /// Both motions at once.
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        Self {
+            forward: self.forward + other.forward,
+            right: self.right + other.right,
+            up: self.up + other.up,
+            yaw: self.yaw + other.yaw,
+            pitch: self.pitch + other.pitch,
+        }
+    }
+
+    /// The motion with its distances and its turns scaled.
+    #[must_use]
+    pub fn times(&self, distance: f64, turn: f64) -> Self {
+        Self {
+            forward: self.forward * distance,
+            right: self.right * distance,
+            up: self.up * distance,
+            yaw: self.yaw * turn,
+            pitch: self.pitch * turn,
+        }
+    }
+}
+
 /// The angles of the camera as last written, so that a long flight never derives them from rounded
 /// vectors again.
 #[derive(Clone, Debug, Default)]
@@ -45,7 +71,9 @@ pub(super) struct Flight {
 impl Orientation {
     /// The angles of a camera's basis.
     pub fn of(camera: &Camera) -> Self {
-        let Some(Basis { u, v, w }) = camera.basis() else { return Self::default() };
+        let Some(Basis { u, v, w }) = camera.basis() else {
+            return Self::default();
+        };
         let look = -w;
         let level = look.x.hypot(look.z);
         let pitch = look.y.atan2(level);
@@ -54,17 +82,33 @@ impl Orientation {
             let yaw = look.x.atan2(-look.z);
             let flat = Vec3::new(yaw.cos(), 0.0, yaw.sin());
             let roll = (-flat.dot(v)).atan2(flat.dot(u));
-            return Self { yaw, pitch, roll: -roll };
+            return Self {
+                yaw,
+                pitch,
+                roll: -roll,
+            };
         }
         // Straight up or down, yaw and roll are one: call it yaw.
-        Self { yaw: u.z.atan2(u.x), pitch, roll: 0.0 }
+        Self {
+            yaw: u.z.atan2(u.x),
+            pitch,
+            roll: 0.0,
+        }
     }
 
     /// Viewing direction and up vector, both of length 1 and at right angles.
     pub fn vectors(self) -> (Vec3<f64>, Vec3<f64>) {
         let Self { yaw, pitch, roll } = self;
-        let look = Vec3::new(yaw.sin() * pitch.cos(), pitch.sin(), -yaw.cos() * pitch.cos());
-        let level_up = Vec3::new(-yaw.sin() * pitch.sin(), pitch.cos(), yaw.cos() * pitch.sin());
+        let look = Vec3::new(
+            yaw.sin() * pitch.cos(),
+            pitch.sin(),
+            -yaw.cos() * pitch.cos(),
+        );
+        let level_up = Vec3::new(
+            -yaw.sin() * pitch.sin(),
+            pitch.cos(),
+            yaw.cos() * pitch.sin(),
+        );
         let right = Vec3::new(yaw.cos(), 0.0, yaw.sin());
         (look, level_up * roll.cos() + right * roll.sin())
     }
@@ -72,7 +116,11 @@ impl Orientation {
     /// The camera with these angles in place of its own.
     pub fn apply(self, camera: &Camera) -> Camera {
         let (look_at, up) = self.vectors();
-        Camera { look_at, up, ..camera.clone() }
+        Camera {
+            look_at,
+            up,
+            ..camera.clone()
+        }
     }
 
     fn turned(self, yaw: f64, pitch: f64) -> Self {
@@ -133,7 +181,11 @@ mod tests {
         let mut camera = Camera::default();
         for n in 0..1_000_000_u32 {
             let wobble = f64::from(n % 1000) / 1000.0 - 0.4995;
-            let motion = Motion { yaw: 0.0017, pitch: wobble * 0.01, ..Motion::default() };
+            let motion = Motion {
+                yaw: 0.0017,
+                pitch: wobble * 0.01,
+                ..Motion::default()
+            };
             camera = flight.step(&camera, &motion);
         }
         let (look, up) = (camera.look_at, camera.up);
@@ -147,7 +199,13 @@ mod tests {
         let mut flight = Flight::default();
         let mut camera = Camera::default();
         for _ in 0..100 {
-            camera = flight.step(&camera, &Motion { pitch: 0.1, ..Motion::default() });
+            camera = flight.step(
+                &camera,
+                &Motion {
+                    pitch: 0.1,
+                    ..Motion::default()
+                },
+            );
             assert!(camera.basis().expect("a basis").v.y > 0.0);
         }
         assert!((flight.orientation(&camera).pitch - MAX_PITCH).abs() < 1e-12);
@@ -162,11 +220,25 @@ mod tests {
             ..Camera::default()
         };
         let step = |motion: Motion| Flight::default().step(&level, &motion);
-        let motion = Motion { forward: 2.0, right: 3.0, up: 4.0, ..Motion::default() };
+        let motion = Motion {
+            forward: 2.0,
+            right: 3.0,
+            up: 4.0,
+            ..Motion::default()
+        };
         assert_eq!(step(motion).position, Vec3::new(3.0, 4.0, -2.0));
-        let right = step(Motion { yaw: 0.1, ..Motion::default() });
-        assert!(right.look_at.x > 0.0, "a turn to the right looks to the right");
-        let up = step(Motion { pitch: 0.1, ..Motion::default() });
+        let right = step(Motion {
+            yaw: 0.1,
+            ..Motion::default()
+        });
+        assert!(
+            right.look_at.x > 0.0,
+            "a turn to the right looks to the right"
+        );
+        let up = step(Motion {
+            pitch: 0.1,
+            ..Motion::default()
+        });
         assert!(up.look_at.y > 0.0, "a tilt upwards looks up");
     }
 

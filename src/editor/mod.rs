@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 pub use edit::{Edit, Item, Kind};
-pub use fly::{Motion, Orientation};
 use fly::Flight;
+pub use fly::{Motion, Orientation};
 use history::{History, Snapshot};
 
 use crate::scene::{DEMO_TEXT, Document, Scene, SceneError, check};
@@ -91,7 +91,13 @@ impl Editor {
     /// Opens the demo scene, as a new document.
     pub fn demo() -> Self {
         let document = Document::from_text(DEMO_TEXT);
-        Self::new(document.unwrap_or(Document { header: String::new(), scene: Scene::empty() }), None)
+        Self::new(
+            document.unwrap_or(Document {
+                header: String::new(),
+                scene: Scene::empty(),
+            }),
+            None,
+        )
     }
 
     fn new(document: Document, path: Option<PathBuf>) -> Self {
@@ -134,7 +140,11 @@ impl Editor {
     /// What the document is called: its file name, or `demo` or `untitled`.
     pub fn title(&self) -> String {
         match &self.path {
-            Some(path) => path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
+            Some(path) => path
+                .file_name()
+                .unwrap_or(path.as_os_str())
+                .to_string_lossy()
+                .into_owned(),
             None if self.header.is_empty() => "untitled".to_owned(),
             None => "demo".to_owned(),
         }
@@ -177,13 +187,25 @@ impl Editor {
 
     /// Starts a document from an empty scene.
     pub fn start_new(&mut self) {
-        self.replace(Document { header: String::new(), scene: Scene::empty() }, None);
+        self.replace(
+            Document {
+                header: String::new(),
+                scene: Scene::empty(),
+            },
+            None,
+        );
     }
 
     /// Starts a document from the demo scene.
     pub fn start_demo(&mut self) {
         let Self { scene, header, .. } = Self::demo();
-        self.replace(Document { header, scene: Arc::unwrap_or_clone(scene) }, None);
+        self.replace(
+            Document {
+                header,
+                scene: Arc::unwrap_or_clone(scene),
+            },
+            None,
+        );
     }
 
     /// Opens a file in place of the document; the document stays if that fails.
@@ -201,16 +223,28 @@ impl Editor {
     /// # Errors
     /// Why it could not be written; the document then still counts as changed.
     pub fn save(&mut self, path: &Path) -> Result<(), SceneError> {
-        let document = Document { header: self.header.clone(), scene: Scene::clone(&self.scene) };
+        let document = Document {
+            header: self.header.clone(),
+            scene: Scene::clone(&self.scene),
+        };
         let backup = document.save(path)?;
         self.path = Some(path.to_owned());
         self.saved = Arc::clone(&self.scene);
         self.is_dirty = false;
         let kept = backup.map_or(String::new(), |backup| {
-            format!("; the file had comments inside, so it was kept as {}", backup.display())
+            format!(
+                "; the file had comments inside, so it was kept as {}",
+                backup.display()
+            )
         });
         self.inform(format!("Saved {}{kept}", path.display()));
         Ok(())
+    }
+
+    /// Gives the changes since the last save up: the document no longer counts as changed.
+    pub fn forget_changes(&mut self) {
+        self.saved = Arc::clone(&self.scene);
+        self.is_dirty = false;
     }
 
     /// Takes up unsaved work that another run of the program left behind.
@@ -222,23 +256,37 @@ impl Editor {
 
     /// The text of the document as it would be saved.
     pub fn to_text(&self) -> String {
-        Document { header: self.header.clone(), scene: Scene::clone(&self.scene) }.to_text()
+        Document {
+            header: self.header.clone(),
+            scene: Scene::clone(&self.scene),
+        }
+        .to_text()
     }
 
     /// Tells the user something.
     pub fn inform(&mut self, text: String) {
-        self.messages.push(Message { is_error: false, text });
+        self.messages.push(Message {
+            is_error: false,
+            text,
+        });
     }
 
     /// Tells the user that something went wrong.
     pub fn complain(&mut self, text: String) {
-        self.messages.push(Message { is_error: true, text });
+        self.messages.push(Message {
+            is_error: true,
+            text,
+        });
     }
 
     fn replace(&mut self, document: Document, path: Option<PathBuf>) {
         let revision = self.revision + 1;
         let messages = std::mem::take(&mut self.messages);
-        *self = Self { revision, messages, ..Self::new(document, path) };
+        *self = Self {
+            revision,
+            messages,
+            ..Self::new(document, path)
+        };
     }
 
     fn edit(&mut self, edit: Edit) {
@@ -254,14 +302,20 @@ impl Editor {
         if let Err(problem) = check(&next) {
             return self.complain(format!("{label}: {}", problem.sentence));
         }
-        let before = Snapshot { scene: Arc::clone(&self.scene), selection: self.selection };
+        let before = Snapshot {
+            scene: Arc::clone(&self.scene),
+            selection: self.selection,
+        };
         self.history.record(label, before);
         self.selection = selection;
         self.set_scene(Arc::new(next));
     }
 
     fn travel(&mut self, step: fn(&mut History, Snapshot) -> Option<Snapshot>) {
-        let here = Snapshot { scene: Arc::clone(&self.scene), selection: self.selection };
+        let here = Snapshot {
+            scene: Arc::clone(&self.scene),
+            selection: self.selection,
+        };
         if let Some(there) = step(&mut self.history, here) {
             self.selection = there.selection;
             self.set_scene(there.scene);

@@ -32,7 +32,13 @@ fn a_drag_is_one_step_and_two_drags_are_two() {
     editor.apply(action);
     assert_eq!(editor.undo_label(), Some("Sphere 1: radius"));
     editor.apply(Action::Undo);
-    assert_eq!(editor.scene().objects[0].shape, Shape::Sphere { center: Vec3::new(125.0, 50.0, -150.0), radius: 53.0 });
+    assert_eq!(
+        editor.scene().objects[0].shape,
+        Shape::Sphere {
+            center: Vec3::new(125.0, 50.0, -150.0),
+            radius: 53.0
+        }
+    );
     assert_eq!(steps(&mut editor), 1);
     assert!(!editor.is_dirty(), "undone to the saved state");
 }
@@ -44,15 +50,25 @@ fn an_invalid_edit_changes_nothing_and_says_why() {
     editor.apply(action);
     assert_eq!(**editor.scene(), Scene::demo());
     assert_eq!(editor.undo_label(), None);
-    assert_eq!(editor.messages[0].text, "Sphere 1: radius: radius must be greater than 0, found -1");
+    assert_eq!(
+        editor.messages[0].text,
+        "Sphere 1: radius: radius must be greater than 0, found -1"
+    );
 }
 
 #[test]
 fn a_pack_in_use_stays_and_a_renamed_one_is_followed() {
     let mut editor = Editor::demo();
     editor.apply(Action::Edit(Edit::Delete(Item::pack(2))));
-    assert!(editor.messages[0].text.contains("is used by Triangle 1, Triangle 2"));
-    editor.apply(Action::Edit(Edit::Rename(Item::pack(2), "glass".to_owned())));
+    assert!(
+        editor.messages[0]
+            .text
+            .contains("is used by Triangle 1, Triangle 2")
+    );
+    editor.apply(Action::Edit(Edit::Rename(
+        Item::pack(2),
+        "glass".to_owned(),
+    )));
     assert_eq!(editor.scene().objects[3].color_pack, "glass");
     assert_eq!(editor.scene().users_of_pack("glass").len(), 6);
 }
@@ -63,7 +79,10 @@ fn a_unique_pack_leaves_the_others_alone() {
     editor.apply(Action::Edit(Edit::MakePackUnique(2)));
     let scene = editor.scene();
     assert_eq!(scene.objects[2].color_pack, "tetrahedron 1");
-    assert_eq!(scene.color_packs["tetrahedron 1"], scene.color_packs["tetrahedron"]);
+    assert_eq!(
+        scene.color_packs["tetrahedron 1"],
+        scene.color_packs["tetrahedron"]
+    );
     assert_eq!(scene.users_of_pack("tetrahedron").len(), 5);
 }
 
@@ -83,7 +102,10 @@ fn a_file_that_is_refused_leaves_the_document_alone() {
     let mut editor = Editor::demo();
     editor.apply(Action::Edit(Edit::Ambient(0.25)));
     let error = editor.open(&path).expect_err("refused").to_string();
-    assert!(error.starts_with(&format!("{}:1:28: ", path.display())), "{error}");
+    assert!(
+        error.starts_with(&format!("{}:1:28: ", path.display())),
+        "{error}"
+    );
     assert_eq!(editor.scene().ambient_intensity, 0.25);
     assert!(editor.is_dirty());
 }

@@ -31,11 +31,15 @@ impl Format {
     /// # Errors
     /// [`FormatError`] for any ending but `.png` and `.ppm`.
     pub fn of_path(path: &Path) -> Result<Self, FormatError> {
-        let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+        let ending = path
+            .extension()
+            .map(|e| e.to_string_lossy().to_ascii_lowercase());
         match ending.as_deref() {
             Some("png") => Ok(Self::Png),
             Some("ppm") => Ok(Self::Ppm),
-            _ => Err(FormatError { name: path.display().to_string() }),
+            _ => Err(FormatError {
+                name: path.display().to_string(),
+            }),
         }
     }
 }
@@ -52,7 +56,11 @@ impl Image {
     }
 
     fn encode_to(&self, format: Format, file: &mut (impl Write + Seek)) -> Result<(), ImageError> {
-        let rgb: Vec<u8> = self.pixels.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect();
+        let rgb: Vec<u8> = self
+            .pixels
+            .iter()
+            .flat_map(|&[r, g, b, _]| [r, g, b])
+            .collect();
         let size = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
         let (width, height, kind) = (size(self.width), size(self.height), ExtendedColorType::Rgb8);
         match format {
@@ -87,6 +95,9 @@ mod tests {
         assert_eq!(Format::of_path(Path::new("a/b.PNG")), Ok(Format::Png));
         assert_eq!(Format::of_path(Path::new("b.ppm")), Ok(Format::Ppm));
         let refused = Format::of_path(Path::new("b.jpg")).expect_err("not a known format");
-        assert_eq!(refused.to_string(), r#""b.jpg" ends in no known picture format; end it in .png or .ppm"#);
+        assert_eq!(
+            refused.to_string(),
+            r#""b.jpg" ends in no known picture format; end it in .png or .ppm"#
+        );
     }
 }

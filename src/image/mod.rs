@@ -35,7 +35,11 @@ pub struct Cost {
 impl Image {
     /// A black picture.
     pub fn new(width: usize, height: usize) -> Self {
-        Self { width, height, pixels: vec![[0, 0, 0, 255]; width * height] }
+        Self {
+            width,
+            height,
+            pixels: vec![[0, 0, 0, 255]; width * height],
+        }
     }
 
     /// Traces the pixels of `grid`; `None` if `watch` said stop.
@@ -48,8 +52,14 @@ impl Image {
     #[must_use]
     pub fn thinned(&self, step: usize) -> Self {
         let rows = self.pixels.chunks(self.width.max(1)).step_by(step);
-        let pixels = rows.flat_map(|row| row.iter().copied().step_by(step)).collect();
-        Self { width: self.width.div_ceil(step), height: self.height.div_ceil(step), pixels }
+        let pixels = rows
+            .flat_map(|row| row.iter().copied().step_by(step))
+            .collect();
+        Self {
+            width: self.width.div_ceil(step),
+            height: self.height.div_ceil(step),
+            pixels,
+        }
     }
 }
 
@@ -60,7 +70,14 @@ pub fn render(scene: &Scene, picture: &Picture, watch: &Watch) -> Option<(Image,
     let tracer = Tracer::new(scene, picture);
     let mut image = Image::new(tracer.width(), tracer.height());
     let rays = image.trace(&tracer, Grid::ALL, watch)?;
-    Some((image, Cost { time: start.elapsed(), rays, lanes: tracer.lanes() }))
+    Some((
+        image,
+        Cost {
+            time: start.elapsed(),
+            rays,
+            lanes: tracer.lanes(),
+        },
+    ))
 }
 
 /// Linear 0–1 to 0–255, rounded to nearest; there is no gamma in the model.
@@ -82,7 +99,10 @@ mod tests {
     fn colours_are_rounded_to_nearest() {
         assert_eq!(quantize([0.0, 0.5, 1.0]), [0, 128, 255, 255]);
         assert_eq!(quantize([-1.0, 2.0, 1.49 / 255.0]), [0, 255, 1, 255]);
-        assert_eq!(quantize([1.51 / 255.0, f64::NAN, 254.49 / 255.0]), [2, 0, 254, 255]);
+        assert_eq!(
+            quantize([1.51 / 255.0, f64::NAN, 254.49 / 255.0]),
+            [2, 0, 254, 255]
+        );
     }
 
     #[test]

@@ -90,7 +90,10 @@ mod tests {
         }
         #[allow(clippy::cast_possible_truncation, reason = "the formula that fails")]
         let plain = worst_level(1e6, |n, h| n.dot(h).max(0.0).powf(1e6_f64 as f32));
-        assert!(plain > 5.0, "the plain power must fail at 1e6, or this test has no power: {plain}");
+        assert!(
+            plain > 5.0,
+            "the plain power must fail at 1e6, or this test has no power: {plain}"
+        );
     }
 
     #[test]

@@ -82,6 +82,26 @@ impl<R: Real> Vec3<R> {
         self.x.abs().max(self.y.abs()).max(self.z.abs())
     }
 
+    /// The smaller component of each pair.
+    #[inline(always)]
+    pub fn min(self, other: Self) -> Self {
+        Self::new(
+            self.x.min(other.x),
+            self.y.min(other.y),
+            self.z.min(other.z),
+        )
+    }
+
+    /// The larger component of each pair.
+    #[inline(always)]
+    pub fn max(self, other: Self) -> Self {
+        Self::new(
+            self.x.max(other.x),
+            self.y.max(other.y),
+            self.z.max(other.z),
+        )
+    }
+
     /// Every component at least `floor` and at most `ceiling`; NaN becomes `floor`.
     #[inline(always)]
     pub fn clamp(self, floor: R, ceiling: R) -> Self {

@@ -104,7 +104,8 @@ pub struct Surface<R> {
 impl<R: Real> Plan<R> {
     /// Packs what `picture` of `scene` can show. The scene must pass [`crate::scene::check`].
     pub fn new(scene: &Scene, picture: &Picture) -> Self {
-        let centre = bounds(scene)
+        let centre = scene
+            .bounds()
             .map_or(scene.camera.position, |(low, high)| low * 0.5 + high * 0.5);
         let mut plan = Self {
             view: View::new(&scene.camera, picture, centre),
@@ -137,7 +138,9 @@ impl<R: Real> Plan<R> {
                     material,
                 }),
                 Shape::Plane { point, normal } => {
-                    let Some(normal) = normal.unit() else { continue };
+                    let Some(normal) = normal.unit() else {
+                        continue;
+                    };
                     self.planes.push(Plane {
                         normal: Vec3::from_f64(normal),
                         offset: R::from_f64(normal.dot(point - centre)),
@@ -145,7 +148,9 @@ impl<R: Real> Plan<R> {
                     });
                 }
                 Shape::Triangle { a, b, c } => {
-                    let Some(normal) = (c - a).cross(b - a).unit() else { continue };
+                    let Some(normal) = (c - a).cross(b - a).unit() else {
+                        continue;
+                    };
                     self.triangles.push(Triangle {
                         corners: [a, b, c].map(|corner| Vec3::from_f64(corner - centre)),
                         normal: Vec3::from_f64(normal),
@@ -160,7 +165,9 @@ impl<R: Real> Plan<R> {
     fn pack_markers(&mut self, scene: &Scene, centre: Vec3<f64>) {
         let first_marker_material = scene.color_packs.len();
         for light in scene.lights.iter().filter(|light| light.visible) {
-            let Some(LightObj { radius, color_pack }) = &light.marker else { continue };
+            let Some(LightObj { radius, color_pack }) = &light.marker else {
+                continue;
+            };
             let pack = material_number(scene, color_pack) as usize;
             self.spheres.push(Sphere {
                 center: Vec3::from_f64(light.position - centre),
@@ -171,24 +178,11 @@ impl<R: Real> Plan<R> {
     }
 }
 
-/// Smallest and largest corner of the box around everything visible that has an end, lights
-/// included; `None` if there is nothing.
-pub(super) fn bounds(scene: &Scene) -> Option<(Vec3<f64>, Vec3<f64>)> {
-    let visible = scene.objects.iter().filter(|object| object.visible);
-    let lights = scene.lights.iter().filter(|light| light.visible);
-    let boxes = visible
-        .filter_map(|object| object.shape.bounds())
-        .chain(lights.map(|light| (light.position, light.position)));
-    boxes.reduce(|(low_a, high_a), (low_b, high_b)| {
-        let fold = |a: Vec3<f64>, b: Vec3<f64>, pick: fn(f64, f64) -> f64| {
-            Vec3::new(pick(a.x, b.x), pick(a.y, b.y), pick(a.z, b.z))
-        };
-        (fold(low_a, low_b, f64::min), fold(high_a, high_b, f64::max))
-    })
-}
-
 fn pack_lights<R: Real>(scene: &Scene, centre: Vec3<f64>) -> Vec<Light<R>> {
-    let shining = scene.lights.iter().filter(|light| light.visible && light.intensity > 0.0);
+    let shining = scene
+        .lights
+        .iter()
+        .filter(|light| light.visible && light.intensity > 0.0);
     shining
         .map(|light| Light {
             position: Vec3::from_f64(light.position - centre),
@@ -205,10 +199,10 @@ fn pack_materials<R: Real>(scene: &Scene) -> Vec<Material<R>> {
         base: linear(pack.ambient * scene.ambient_intensity),
         surface: pack_surface(pack, total_intensity),
     });
-    let markers = scene
-        .color_packs
-        .values()
-        .map(|pack| Material { base: linear(pack.ambient), surface: None });
+    let markers = scene.color_packs.values().map(|pack| Material {
+        base: linear(pack.ambient),
+        surface: None,
+    });
     lit.chain(markers).collect()
 }
 
@@ -232,7 +226,10 @@ fn material_number(scene: &Scene, pack: &str) -> u32 {
     number(scene.color_packs.get_index_of(pack).unwrap_or_default())
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "a file has far fewer than 2^32 packs")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "a file has far fewer than 2^32 packs"
+)]
 fn number(index: usize) -> u32 {
     index as u32
 }
@@ -283,16 +280,29 @@ mod tests {
         assert_eq!(plan(&scene).lights.len(), 1);
         scene.lights[1].visible = false;
         assert_eq!(plan(&scene).lights.len(), 0);
-        let mirrors = plan(&scene).materials.iter().any(|m| m.surface.is_some_and(|s| s.mirror.is_some()));
+        let mirrors = plan(&scene)
+            .materials
+            .iter()
+            .any(|m| m.surface.is_some_and(|s| s.mirror.is_some()));
         assert!(!mirrors, "without light there is nothing to mirror with");
     }
 
     #[test]
     fn triangles_that_share_corners_are_a_mesh() {
         let mut scene = Scene::demo();
-        assert!(plan(&scene).triangles.iter().all(|triangle| triangle.in_mesh));
+        assert!(
+            plan(&scene)
+                .triangles
+                .iter()
+                .all(|triangle| triangle.in_mesh)
+        );
         scene.objects.truncate(3);
-        assert!(plan(&scene).triangles.iter().all(|triangle| !triangle.in_mesh));
+        assert!(
+            plan(&scene)
+                .triangles
+                .iter()
+                .all(|triangle| !triangle.in_mesh)
+        );
     }
 
     #[test]

@@ -1,6 +1,5 @@
 //! Which real type a scene needs: single precision wherever its errors stay invisible.
 
-use super::pack::bounds;
 use crate::lanes::Vec3;
 use crate::scene::{Scene, Shape};
 
@@ -24,18 +23,22 @@ const MAX_EXTENT_PER_FEATURE: f64 = 1e5;
 
 /// Whether single precision would show in the picture.
 pub fn needs_double(scene: &Scene) -> bool {
-    let Some((low, high)) = bounds(scene) else { return false };
+    let Some((low, high)) = scene.bounds() else {
+        return false;
+    };
     let centre = (low + high) * 0.5;
     let eye = scene.camera.position;
     let extent = (high - low).length().max((eye - centre).length());
     let visible = scene.objects.iter().filter(|object| object.visible);
-    visible.map(|object| &object.shape).any(|shape| match feature(shape) {
-        None => false,
-        Some((at, size)) => {
-            (eye - at).length() > MAX_DISTANCE_PER_RADIUS * size
-                || extent > MAX_EXTENT_PER_FEATURE * size
-        }
-    })
+    visible
+        .map(|object| &object.shape)
+        .any(|shape| match feature(shape) {
+            None => false,
+            Some((at, size)) => {
+                (eye - at).length() > MAX_DISTANCE_PER_RADIUS * size
+                    || extent > MAX_EXTENT_PER_FEATURE * size
+            }
+        })
 }
 
 /// Where a bounded shape is and how small its smallest measure.

@@ -77,7 +77,10 @@ mod tests {
     fn both_projections_look_along_the_camera_in_the_middle() {
         let camera = Camera::default();
         for projection in [Projection::Perspective, Projection::Orthographic] {
-            let picture = Picture { projection: Some(projection), ..Picture::sized(101, 51) };
+            let picture = Picture {
+                projection: Some(projection),
+                ..Picture::sized(101, 51)
+            };
             let (origin, direction) = rays(&picture, &camera, 50.5, 25.5);
             let w = camera.basis().expect("valid").w;
             assert!((origin - camera.position).length() < 1e-12);
@@ -96,7 +99,10 @@ mod tests {
 
     #[test]
     fn pictures_of_any_size_frame_the_same() {
-        let camera = Camera { projection: Projection::Orthographic, ..Camera::default() };
+        let camera = Camera {
+            projection: Projection::Orthographic,
+            ..Camera::default()
+        };
         let small = rays(&Picture::sized(20, 10), &camera, 5.0, 2.5);
         let large = rays(&Picture::sized(2000, 1000), &camera, 500.0, 250.0);
         assert!((small.0 - large.0).length() < 1e-12);

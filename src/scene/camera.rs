@@ -107,7 +107,10 @@ mod tests {
 
     #[test]
     fn parallel_vectors_span_nothing() {
-        let camera = Camera { up: Camera::default().look_at * 3.0, ..Camera::default() };
+        let camera = Camera {
+            up: Camera::default().look_at * 3.0,
+            ..Camera::default()
+        };
         assert_eq!(camera.basis(), None);
     }
 

@@ -40,14 +40,17 @@ pub fn check(scene: &Scene) -> Result<(), Problem> {
     let root = At(Vec::new());
     check_version(&root, scene.version)?;
     root.field("background").color(scene.background)?;
-    root.field("ambient_intensity").within(scene.ambient_intensity, 0.0, 1.0)?;
+    root.field("ambient_intensity")
+        .within(scene.ambient_intensity, 0.0, 1.0)?;
     check_camera(&root.field("camera"), &scene.camera)?;
     check_packs(&root.field("color_packs"), scene)?;
     check_objects(&root.field("objects"), scene)?;
     check_lights(&root.field("lights"), scene)?;
     check_render(&root.field("render"), &scene.render)?;
     let fps = scene.animation.frames_per_second;
-    root.field("animation").field("frames_per_second").within(fps, 1.0, 240.0)
+    root.field("animation")
+        .field("frames_per_second")
+        .within(fps, 1.0, 240.0)
 }
 
 fn check_version(root: &At, version: u32) -> Check {
@@ -66,11 +69,15 @@ fn check_camera(at: &At, camera: &Camera) -> Check {
     at.field("look_at").direction(camera.look_at)?;
     at.field("up").direction(camera.up)?;
     if camera.basis().is_none() {
-        return at.field("up").refuse("up must not be parallel to look_at".to_owned());
+        return at
+            .field("up")
+            .refuse("up must not be parallel to look_at".to_owned());
     }
     let (nearest, farthest) = PROJECTION_DISTANCES;
-    at.field("projection_distance").within(camera.projection_distance, nearest, farthest)?;
-    at.field("orthographic_height").positive(camera.orthographic_height)
+    at.field("projection_distance")
+        .within(camera.projection_distance, nearest, farthest)?;
+    at.field("orthographic_height")
+        .positive(camera.orthographic_height)
 }
 
 fn check_packs(at: &At, scene: &Scene) -> Check {
@@ -80,7 +87,8 @@ fn check_packs(at: &At, scene: &Scene) -> Check {
         at.field("ambient").color(pack.ambient)?;
         at.field("diffuse").color(pack.diffuse)?;
         at.field("specular").color(pack.specular)?;
-        at.field("phong_exponent").within(pack.phong_exponent, 0.0, MAX_EXPONENT)?;
+        at.field("phong_exponent")
+            .within(pack.phong_exponent, 0.0, MAX_EXPONENT)?;
     }
     Ok(())
 }
@@ -136,7 +144,10 @@ fn check_shape(at: &At, shape: &Shape) -> Check {
             for (name, corner) in [("a", a), ("b", b), ("c", c)] {
                 at.field(name).point(*corner)?;
             }
-            let longest = (*b - *a).length().max((*c - *a).length()).max((*c - *b).length());
+            let longest = (*b - *a)
+                .length()
+                .max((*c - *a).length())
+                .max((*c - *b).length());
             let twice_area = (*b - *a).cross(*c - *a).length();
             if twice_area > MIN_TRIANGLE_RATIO * longest * longest {
                 return Ok(());
@@ -175,10 +186,14 @@ fn check_name(at: &At, name: &str) -> Check {
         return at.refuse("a name must not be empty".to_owned());
     }
     if name.chars().any(char::is_control) {
-        return at.refuse(format!("a name must not hold control characters, found {name:?}"));
+        return at.refuse(format!(
+            "a name must not hold control characters, found {name:?}"
+        ));
     }
     if name.chars().count() > MAX_NAME {
-        return at.refuse(format!("a name must not be longer than {MAX_NAME} characters"));
+        return at.refuse(format!(
+            "a name must not be longer than {MAX_NAME} characters"
+        ));
     }
     Ok(())
 }
@@ -187,11 +202,23 @@ fn check_pack_exists(at: &At, scene: &Scene, name: &str) -> Check {
     if scene.color_packs.contains_key(name) {
         return Ok(());
     }
-    let known: Vec<String> = scene.color_packs.keys().take(8).map(|k| format!("{k:?}")).collect();
-    let more = if scene.color_packs.len() > known.len() { ", …" } else { "" };
+    let known: Vec<String> = scene
+        .color_packs
+        .keys()
+        .take(8)
+        .map(|k| format!("{k:?}"))
+        .collect();
+    let more = if scene.color_packs.len() > known.len() {
+        ", …"
+    } else {
+        ""
+    };
     at.refuse(match known.len() {
         0 => format!("there is no color pack named {name:?}: the scene has none"),
-        _ => format!("there is no color pack named {name:?}; there are {}{more}", known.join(", ")),
+        _ => format!(
+            "there is no color pack named {name:?}; there are {}{more}",
+            known.join(", ")
+        ),
     })
 }
 
@@ -225,7 +252,10 @@ impl At {
     }
 
     fn refuse(&self, sentence: String) -> Check {
-        Err(Problem { path: self.0.clone(), sentence })
+        Err(Problem {
+            path: self.0.clone(),
+            sentence,
+        })
     }
 
     fn finite(&self, values: &[f64]) -> Check {
@@ -254,8 +284,16 @@ impl At {
         if value > 0.0 && value <= MAX_COORDINATE {
             return Ok(());
         }
-        let bound = if value > 0.0 { "at most 1e12" } else { "greater than 0" };
-        self.refuse(format!("{} must be {bound}, found {}", self.name(), format_number(value)))
+        let bound = if value > 0.0 {
+            "at most 1e12"
+        } else {
+            "greater than 0"
+        };
+        self.refuse(format!(
+            "{} must be {bound}, found {}",
+            self.name(),
+            format_number(value)
+        ))
     }
 
     fn point(&self, value: Vec3<f64>) -> Check {
@@ -274,13 +312,20 @@ impl At {
         self.point(value)?;
         match value.unit() {
             Some(_) => Ok(()),
-            None => self.refuse(format!("{} must have a direction, found (0, 0, 0)", self.name())),
+            None => self.refuse(format!(
+                "{} must have a direction, found (0, 0, 0)",
+                self.name()
+            )),
         }
     }
 
     fn color(&self, value: Vec3<f64>) -> Check {
         self.finite(&value.to_array())?;
-        match value.to_array().into_iter().find(|channel| !(0.0..=255.0).contains(channel)) {
+        match value
+            .to_array()
+            .into_iter()
+            .find(|channel| !(0.0..=255.0).contains(channel))
+        {
             None => Ok(()),
             Some(channel) => self.refuse(format!(
                 "{} must have channels between 0 and 255, found {}",

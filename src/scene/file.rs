@@ -76,11 +76,21 @@ pub struct Refusal {
 
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { name, line, column, sentence, excerpt, indent } = self;
+        let Self {
+            name,
+            line,
+            column,
+            sentence,
+            excerpt,
+            indent,
+        } = self;
         let number = line.to_string();
         let margin = " ".repeat(number.len());
         let caret = format!("{:indent$}^", "");
-        write!(f, "{name}:{line}:{column}: {sentence}\n {number} | {excerpt}\n {margin} | {caret}")
+        write!(
+            f,
+            "{name}:{line}:{column}: {sentence}\n {number} | {excerpt}\n {margin} | {caret}"
+        )
     }
 }
 
@@ -95,7 +105,12 @@ impl Document {
         let text = String::from_utf8(bytes).map_err(|error| {
             let good = error.utf8_error().valid_up_to();
             let start = String::from_utf8_lossy(&error.as_bytes()[..good]).into_owned();
-            refuse(&name, &start, start.len(), "the file is not UTF-8 text".to_owned())
+            refuse(
+                &name,
+                &start,
+                start.len(),
+                "the file is not UTF-8 text".to_owned(),
+            )
         })?;
         Self::parse(&name, &text)
     }
@@ -111,7 +126,11 @@ impl Document {
     fn parse(name: &str, text: &str) -> Result<Self, SceneError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         if let Some(version) = claimed_version(text).filter(|&version| version > VERSION) {
-            let problem = check(&Scene { version, ..Scene::empty() }).err();
+            let problem = check(&Scene {
+                version,
+                ..Scene::empty()
+            })
+            .err();
             return Err(refuse_problem(name, text, problem));
         }
         let scene: Scene = options().from_str(text).map_err(|error| {
@@ -120,7 +139,10 @@ impl Document {
             refuse(name, text, at, sentence_of(&error.code))
         })?;
         match check(&scene) {
-            Ok(()) => Ok(Self { header: header(text).to_owned(), scene }),
+            Ok(()) => Ok(Self {
+                header: header(text).to_owned(),
+                scene,
+            }),
             Err(problem) => Err(refuse_problem(name, text, Some(problem))),
         }
     }
@@ -132,7 +154,9 @@ impl Document {
             .depth_limit(2)
             .new_line("\n")
             .compact_maps(false);
-        let body = options().to_string_pretty(&self.scene, config).unwrap_or_default();
+        let body = options()
+            .to_string_pretty(&self.scene, config)
+            .unwrap_or_default();
         format!("{}{body}\n", self.header)
     }
 
@@ -142,8 +166,14 @@ impl Document {
     /// # Errors
     /// [`SceneError::Disk`]; the file at `path` is then untouched.
     pub fn save(&self, path: &Path) -> Result<Option<PathBuf>, SceneError> {
-        let disk = |source| SceneError::Disk { verb: "write", path: path.to_owned(), source };
-        let old = fs::read_to_string(path).ok().filter(|text| has_inner_comments(text));
+        let disk = |source| SceneError::Disk {
+            verb: "write",
+            path: path.to_owned(),
+            source,
+        };
+        let old = fs::read_to_string(path)
+            .ok()
+            .filter(|text| has_inner_comments(text));
         let backup = old
             .map(|text| {
                 let mut name = path.as_os_str().to_owned();
@@ -167,8 +197,13 @@ impl Document {
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let existing = fs::metadata(&target).ok();
-    if existing.as_ref().is_some_and(|metadata| !metadata.is_file()) {
-        return Err(io::Error::other("there is something of that name that is not a file"));
+    if existing
+        .as_ref()
+        .is_some_and(|metadata| !metadata.is_file())
+    {
+        return Err(io::Error::other(
+            "there is something of that name that is not a file",
+        ));
     }
     let folder = match target.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -199,16 +234,26 @@ fn new_file_builder() -> tempfile::Builder<'static, 'static> {
 }
 
 fn read_bounded(path: &Path) -> Result<Vec<u8>, SceneError> {
-    let disk = |source| SceneError::Disk { verb: "read", path: path.to_owned(), source };
+    let disk = |source| SceneError::Disk {
+        verb: "read",
+        path: path.to_owned(),
+        source,
+    };
     let file = File::open(path).map_err(disk)?;
     let metadata = file.metadata().map_err(disk)?;
-    let too_large = |found| SceneError::TooLarge { path: path.to_owned(), found, limit: MAX_BYTES };
+    let too_large = |found| SceneError::TooLarge {
+        path: path.to_owned(),
+        found,
+        limit: MAX_BYTES,
+    };
     if metadata.len() > MAX_BYTES {
         return Err(too_large(metadata.len()));
     }
     // A pipe has no length: what it gives is bounded while it is read.
     let mut bytes = Vec::new();
-    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(disk)?;
+    file.take(MAX_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .map_err(disk)?;
     if bytes.len() as u64 > MAX_BYTES {
         return Err(too_large(bytes.len() as u64));
     }
@@ -234,19 +279,29 @@ fn sentence_of(error: &ron::Error) -> String {
 }
 
 fn refuse_problem(name: &str, text: &str, problem: Option<Problem>) -> SceneError {
-    let Problem { path, sentence } =
-        problem.unwrap_or(Problem { path: Vec::new(), sentence: "not a scene".to_owned() });
+    let Problem { path, sentence } = problem.unwrap_or(Problem {
+        path: Vec::new(),
+        sentence: "not a scene".to_owned(),
+    });
     refuse(name, text, locate(text, &path), sentence)
 }
 
 /// Byte offset of a 1-based line and column in characters, moved past white space: the parser
 /// says where it stopped reading, the reader looks for what stands there.
 fn offset_of(text: &str, line: usize, column: usize) -> usize {
-    let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
+    let start: usize = text
+        .split_inclusive('\n')
+        .take(line.saturating_sub(1))
+        .map(str::len)
+        .sum();
     let within = text[start..].char_indices().nth(column.saturating_sub(1));
     let at = within.map_or(text.len(), |(index, _)| start + index);
     let space = text[at..].len() - text[at..].trim_start().len();
-    if at + space == text.len() { at } else { at + space }
+    if at + space == text.len() {
+        at
+    } else {
+        at + space
+    }
 }
 
 fn refuse(name: &str, text: &str, at: usize, sentence: String) -> SceneError {
@@ -254,13 +309,19 @@ fn refuse(name: &str, text: &str, at: usize, sentence: String) -> SceneError {
     let before: Vec<char> = text[start..at].chars().collect();
     let after = text[at..].chars().take_while(|&c| c != '\n' && c != '\r');
     let indent = before.len().min(EXCERPT / 2);
-    let shown = before[before.len() - indent..].iter().copied().chain(after).take(EXCERPT);
+    let shown = before[before.len() - indent..]
+        .iter()
+        .copied()
+        .chain(after)
+        .take(EXCERPT);
     SceneError::Refused(Refusal {
         name: name.to_owned(),
         line: text[..at].matches('\n').count() + 1,
         column: before.len() + 1,
         sentence,
-        excerpt: shown.map(|c| if c.is_control() { ' ' } else { c }).collect(),
+        excerpt: shown
+            .map(|c| if c.is_control() { ' ' } else { c })
+            .collect(),
         indent,
     })
 }

@@ -45,7 +45,10 @@ pub fn header(text: &str) -> &str {
 
 /// Whether comments stand after the first value: saving would lose them.
 pub fn has_inner_comments(text: &str) -> bool {
-    let mut cursor = Cursor { text, at: header(text).len() };
+    let mut cursor = Cursor {
+        text,
+        at: header(text).len(),
+    };
     while let Some(next) = cursor.peek() {
         if cursor.rest().starts_with("//") || cursor.rest().starts_with("/*") {
             return true;
@@ -107,7 +110,10 @@ impl<'a> Cursor<'a> {
     fn skip_preamble(&mut self) {
         self.skip_space();
         while self.rest().starts_with("#!") {
-            self.at += self.rest().find(']').map_or(self.rest().len(), |end| end + 1);
+            self.at += self
+                .rest()
+                .find(']')
+                .map_or(self.rest().len(), |end| end + 1);
             self.skip_space();
         }
     }
@@ -123,7 +129,9 @@ impl<'a> Cursor<'a> {
             ('r', Some((hashes, true))) => {
                 let end = format!("\"{}", "#".repeat(hashes));
                 let body = self.at + 2 + hashes;
-                self.at = self.text[body..].find(&end).map_or(self.text.len(), |i| body + i + end.len());
+                self.at = self.text[body..]
+                    .find(&end)
+                    .map_or(self.text.len(), |i| body + i + end.len());
             }
             _ => self.at += next.len_utf8(),
         }
@@ -143,7 +151,9 @@ impl<'a> Cursor<'a> {
 
     fn identifier(&mut self) -> &'a str {
         let rest = self.rest();
-        let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len());
+        let end = rest
+            .find(|c: char| !(c.is_alphanumeric() || c == '_'))
+            .unwrap_or(rest.len());
         self.at += end;
         &rest[..end]
     }
@@ -234,14 +244,37 @@ Scene(
         let field = Step::Field;
         let key = |name: &str| Step::Key(name.to_owned());
         assert_eq!(found(&[field("version")]), "1,");
-        assert_eq!(found(&[field("color_packs"), key("c"), field("ambient"), Step::Index(1)]), "5,");
-        assert_eq!(found(&[field("color_packs"), key("a\"b"), field("ambient")]), "(1");
-        assert_eq!(found(&[field("objects"), Step::Index(1), field("shape"), field("radius")]), "22");
+        assert_eq!(
+            found(&[
+                field("color_packs"),
+                key("c"),
+                field("ambient"),
+                Step::Index(1)
+            ]),
+            "5,"
+        );
+        assert_eq!(
+            found(&[field("color_packs"), key("a\"b"), field("ambient")]),
+            "(1"
+        );
+        assert_eq!(
+            found(&[
+                field("objects"),
+                Step::Index(1),
+                field("shape"),
+                field("radius")
+            ]),
+            "22"
+        );
     }
 
     #[test]
     fn what_was_left_out_is_reported_at_its_struct() {
-        let path = [Step::Field("objects"), Step::Index(0), Step::Field("color_pack")];
+        let path = [
+            Step::Field("objects"),
+            Step::Index(0),
+            Step::Field("color_pack"),
+        ];
         assert_eq!(found(&path), "Ob");
         assert_eq!(found(&[Step::Field("lights")]), "Sc");
     }
@@ -250,7 +283,9 @@ Scene(
     fn headers_and_inner_comments_are_told_apart() {
         assert!(header(TEXT).ends_with("*/ */\n"));
         assert!(has_inner_comments(TEXT));
-        assert!(!has_inner_comments("// only\nScene(objects: [\"// not one\"])"));
+        assert!(!has_inner_comments(
+            "// only\nScene(objects: [\"// not one\"])"
+        ));
         assert_eq!(claimed_version(TEXT), Some(1));
     }
 

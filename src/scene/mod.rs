@@ -9,6 +9,7 @@ mod check;
 mod file;
 mod locate;
 mod notation;
+mod recovery;
 mod shape;
 
 use indexmap::IndexMap;
@@ -19,6 +20,7 @@ pub use check::{Problem, check};
 pub use file::{Document, SceneError, write_atomic};
 pub use locate::Step;
 pub use notation::{format_number, parse_vec3};
+pub use recovery::{Leftover, Recovery};
 pub use shape::Shape;
 
 use crate::lanes::Vec3;
@@ -164,9 +166,14 @@ impl Scene {
     ///
     /// # Panics
     /// Never: a test reads the embedded text.
-    #[expect(clippy::expect_used, reason = "the embedded text is tested to be a valid scene")]
+    #[expect(
+        clippy::expect_used,
+        reason = "the embedded text is tested to be a valid scene"
+    )]
     pub fn demo() -> Self {
-        Document::from_text(DEMO_TEXT).expect("the embedded demo scene is valid").scene
+        Document::from_text(DEMO_TEXT)
+            .expect("the embedded demo scene is valid")
+            .scene
     }
 
     /// An empty scene with the demo's camera and a pack and a light to start from.
@@ -190,13 +197,35 @@ impl Scene {
         }
     }
 
+    /// Smallest and largest corner of the box around everything visible that has an end, lights
+    /// included; `None` if there is nothing.
+    pub fn bounds(&self) -> Option<(Vec3<f64>, Vec3<f64>)> {
+        let visible = self.objects.iter().filter(|object| object.visible);
+        let lights = self.lights.iter().filter(|light| light.visible);
+        let boxes = visible
+            .filter_map(|object| object.shape.bounds())
+            .chain(lights.map(|light| (light.position, light.position)));
+        boxes.reduce(|(low, high), (other_low, other_high)| {
+            (low.min(other_low), high.max(other_high))
+        })
+    }
+
     /// The names of the objects and lights that use the pack `name`, in outliner order.
     pub fn users_of_pack(&self, name: &str) -> Vec<&str> {
         let lights = self.lights.iter().filter(|light| {
-            light.marker.as_ref().is_some_and(|marker| marker.color_pack == name)
+            light
+                .marker
+                .as_ref()
+                .is_some_and(|marker| marker.color_pack == name)
         });
-        let objects = self.objects.iter().filter(|object| object.color_pack == name);
-        lights.map(|light| light.name.as_str()).chain(objects.map(|o| o.name.as_str())).collect()
+        let objects = self
+            .objects
+            .iter()
+            .filter(|object| object.color_pack == name);
+        lights
+            .map(|light| light.name.as_str())
+            .chain(objects.map(|o| o.name.as_str()))
+            .collect()
     }
 }
 
@@ -214,19 +243,29 @@ impl Default for ColorPack {
 
 impl Default for LightObj {
     fn default() -> Self {
-        Self { radius: 5.0, color_pack: "light".to_owned() }
+        Self {
+            radius: 5.0,
+            color_pack: "light".to_owned(),
+        }
     }
 }
 
 impl Default for Render {
     fn default() -> Self {
-        Self { width: 1024, height: 1024, reflection_limit: 1 }
+        Self {
+            width: 1024,
+            height: 1024,
+            reflection_limit: 1,
+        }
     }
 }
 
 impl Default for Animation {
     fn default() -> Self {
-        Self { frames_per_second: 14.0, keys: Vec::new() }
+        Self {
+            frames_per_second: 14.0,
+            keys: Vec::new(),
+        }
     }
 }
 
@@ -234,7 +273,10 @@ fn yes() -> bool {
     true
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks with a reference")]
+#[expect(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde asks with a reference"
+)]
 fn is_true(value: &bool) -> bool {
     *value
 }
@@ -249,7 +291,11 @@ fn default_intensity() -> f64 {
 
 fn light_pack() -> ColorPack {
     let yellow = Vec3::new(255.0, 255.0, 0.0);
-    ColorPack { ambient: yellow, diffuse: yellow, ..ColorPack::default() }
+    ColorPack {
+        ambient: yellow,
+        diffuse: yellow,
+        ..ColorPack::default()
+    }
 }
 
 fn default_packs() -> IndexMap<String, ColorPack> {
@@ -262,7 +308,13 @@ fn default_packs() -> IndexMap<String, ColorPack> {
         ("sphere 1".to_owned(), matte(255.0, 128.0, 255.0)),
         ("sphere 2".to_owned(), matte(255.0, 128.0, 128.0)),
         ("tetrahedron".to_owned(), matte(128.0, 255.0, 255.0)),
-        ("plane".to_owned(), ColorPack { reflective: true, ..ColorPack::default() }),
+        (
+            "plane".to_owned(),
+            ColorPack {
+                reflective: true,
+                ..ColorPack::default()
+            },
+        ),
         ("light".to_owned(), light_pack()),
     ])
 }
@@ -277,7 +329,10 @@ fn default_lights() -> Vec<Light> {
         marker: None,
         visible: true,
     };
-    vec![light("Light 1", 100.0, 100.0, -50.0), light("Light 2", 231.0, 63.0, -127.0)]
+    vec![
+        light("Light 1", 100.0, 100.0, -50.0),
+        light("Light 2", 231.0, 63.0, -127.0),
+    ]
 }
 
 #[cfg(test)]
@@ -287,8 +342,13 @@ mod tests {
     #[test]
     fn what_a_file_leaves_out_is_what_the_demo_has() {
         let demo = Scene::demo();
-        let sparse = Document::from_text("Scene(version: 1, objects: [])").expect("valid").scene;
-        let mut expected = Scene { objects: Vec::new(), ..demo };
+        let sparse = Document::from_text("Scene(version: 1, objects: [])")
+            .expect("valid")
+            .scene;
+        let mut expected = Scene {
+            objects: Vec::new(),
+            ..demo
+        };
         for light in &mut expected.lights {
             light.marker = None;
         }

@@ -18,8 +18,14 @@ pub mod number {
     use super::{Deserialize, Deserializer, LARGEST_PLAIN, Serializer};
 
     /// Writes `value`.
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks with a reference")]
-    #[expect(clippy::cast_possible_truncation, reason = "checked to be a small whole number")]
+    #[expect(
+        clippy::trivially_copy_pass_by_ref,
+        reason = "serde asks with a reference"
+    )]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "checked to be a small whole number"
+    )]
     pub fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
         let is_plain = value.fract() == 0.0 && value.abs() < LARGEST_PLAIN;
         if is_plain && (*value != 0.0 || value.is_sign_positive()) {
@@ -42,7 +48,10 @@ pub fn format_number(value: f64) -> String {
 
 /// Reads `1, 2, 3`, `(1, 2, 3)` or `1 2 3`; `None` if that is not three finite numbers.
 pub fn parse_vec3(text: &str) -> Option<Vec3<f64>> {
-    let inner = text.trim().trim_start_matches(['(', '[']).trim_end_matches([')', ']']);
+    let inner = text
+        .trim()
+        .trim_start_matches(['(', '['])
+        .trim_end_matches([')', ']']);
     let numbers: Option<Vec<f64>> = inner
         .split([',', ' ', ';', '\t'])
         .filter(|part| !part.is_empty())
@@ -117,7 +126,9 @@ impl<'de> Visitor<'de> for Packs {
         let mut packs = IndexMap::new();
         while let Some(name) = map.next_key::<String>()? {
             if packs.contains_key(&name) {
-                return Err(A::Error::custom(format!("there is another color pack named {name:?}")));
+                return Err(A::Error::custom(format!(
+                    "there is another color pack named {name:?}"
+                )));
             }
             packs.insert(name, map.next_value()?);
         }

@@ -49,9 +49,19 @@ impl Shape {
     pub fn examples(at: Vec3<f64>, size: f64) -> [Self; 3] {
         let corner = |x: f64, y: f64| at + Vec3::new(x * size, y * size, 0.0);
         [
-            Self::Sphere { center: at, radius: size / 2.0 },
-            Self::Plane { point: at, normal: Vec3::new(0.0, 1.0, 0.0) },
-            Self::Triangle { a: corner(-0.5, -0.4), b: corner(0.0, 0.5), c: corner(0.5, -0.4) },
+            Self::Sphere {
+                center: at,
+                radius: size / 2.0,
+            },
+            Self::Plane {
+                point: at,
+                normal: Vec3::new(0.0, 1.0, 0.0),
+            },
+            Self::Triangle {
+                a: corner(-0.5, -0.4),
+                b: corner(0.0, 0.5),
+                c: corner(0.5, -0.4),
+            },
         ]
     }
 
@@ -63,16 +73,7 @@ impl Shape {
                 Some((*center - reach, *center + reach))
             }
             Self::Plane { .. } => None,
-            Self::Triangle { a, b, c } => {
-                let fold = |pick: fn(f64, f64) -> f64| {
-                    Vec3::new(
-                        pick(pick(a.x, b.x), c.x),
-                        pick(pick(a.y, b.y), c.y),
-                        pick(pick(a.z, b.z), c.z),
-                    )
-                };
-                Some((fold(f64::min), fold(f64::max)))
-            }
+            Self::Triangle { a, b, c } => Some((a.min(*b).min(*c), a.max(*b).max(*c))),
         }
     }
 
@@ -80,9 +81,19 @@ impl Shape {
     #[must_use]
     pub fn moved(&self, by: Vec3<f64>) -> Self {
         match *self {
-            Self::Sphere { center, radius } => Self::Sphere { center: center + by, radius },
-            Self::Plane { point, normal } => Self::Plane { point: point + by, normal },
-            Self::Triangle { a, b, c } => Self::Triangle { a: a + by, b: b + by, c: c + by },
+            Self::Sphere { center, radius } => Self::Sphere {
+                center: center + by,
+                radius,
+            },
+            Self::Plane { point, normal } => Self::Plane {
+                point: point + by,
+                normal,
+            },
+            Self::Triangle { a, b, c } => Self::Triangle {
+                a: a + by,
+                b: b + by,
+                c: c + by,
+            },
         }
     }
 }

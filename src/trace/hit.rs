@@ -67,7 +67,10 @@ pub fn nearest<R: Real>(plan: &Plan<R>, path: &Path<R>) -> Option<Hit<R>> {
             let primitive = Primitive::Triangle(index);
             if primitive != path.start {
                 let method = plan.methods.triangle;
-                offer(triangle::intersect(method, ray, &shear, triangle), primitive);
+                offer(
+                    triangle::intersect(method, ray, &shear, triangle),
+                    primitive,
+                );
             }
         }
     }
@@ -117,12 +120,24 @@ fn refine<R: Real>(plan: &Plan<R>, ray: &Ray<R>, t: R, primitive: Primitive) -> 
         Primitive::Sphere(index) => {
             let sphere = &plan.spheres[index];
             let (point, normal) = sphere::refine(ray, sphere, t);
-            Hit { point, normal, material: sphere.material, primitive, slack: R::ZERO }
+            Hit {
+                point,
+                normal,
+                material: sphere.material,
+                primitive,
+                slack: R::ZERO,
+            }
         }
         Primitive::Plane(index) => {
             let plane = &plan.planes[index];
             let point = plane::refine(ray, plane, t);
-            Hit { point, normal: plane.normal, material: plane.material, primitive, slack: R::ZERO }
+            Hit {
+                point,
+                normal: plane.normal,
+                material: plane.material,
+                primitive,
+                slack: R::ZERO,
+            }
         }
         Primitive::Triangle(index) => {
             let triangle = &plan.triangles[index];
@@ -135,7 +150,13 @@ fn refine<R: Real>(plan: &Plan<R>, ray: &Ray<R>, t: R, primitive: Primitive) -> 
             } else {
                 R::ZERO
             };
-            Hit { point, normal: triangle.normal, material: triangle.material, primitive, slack }
+            Hit {
+                point,
+                normal: triangle.normal,
+                material: triangle.material,
+                primitive,
+                slack,
+            }
         }
     })
 }
@@ -148,11 +169,17 @@ impl<R: Real> Hit<R> {
                 let along = self.normal.dot(direction) >= R::ZERO;
                 let slack = if along { self.slack } else { -self.slack };
                 let origin = self.point + self.normal * slack;
-                Path { ray: Ray { origin, direction }, start: self.primitive }
+                Path {
+                    ray: Ray { origin, direction },
+                    start: self.primitive,
+                }
             }
             RayOffset::Fixed(distance) => {
                 let origin = self.point + direction * R::from_f64(distance);
-                Path { ray: Ray { origin, direction }, start: Primitive::Nothing }
+                Path {
+                    ray: Ray { origin, direction },
+                    start: Primitive::Nothing,
+                }
             }
         }
     }

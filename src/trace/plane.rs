@@ -24,7 +24,11 @@ mod tests {
     use super::*;
 
     fn floor() -> Plane<f32> {
-        Plane { normal: Vec3::new(0.0, 1.0, 0.0), offset: 0.0, material: 0 }
+        Plane {
+            normal: Vec3::new(0.0, 1.0, 0.0),
+            offset: 0.0,
+            material: 0,
+        }
     }
 
     fn ray_at_degrees(degrees: f64) -> Ray<f32> {
@@ -42,7 +46,10 @@ mod tests {
             let exact = 1.0 / -f64::from(ray.direction.y);
             let error = (f64::from(intersect(&ray, &floor())) / exact - 1.0).abs();
             let u = f64::from(f32::UNIT_ROUNDOFF);
-            assert!(error <= 8.0 * u / degrees.to_radians().sin(), "{degrees}: {error:e}");
+            assert!(
+                error <= 8.0 * u / degrees.to_radians().sin(),
+                "{degrees}: {error:e}"
+            );
         }
     }
 
@@ -50,7 +57,10 @@ mod tests {
     fn edge_on_and_behind_are_misses() {
         assert_eq!(intersect(&ray_at_degrees(0.0), &floor()), f32::INFINITY);
         assert_eq!(intersect(&ray_at_degrees(-30.0), &floor()), f32::INFINITY);
-        let inside = Ray { origin: Vec3::splat(0.0), ..ray_at_degrees(0.0) };
+        let inside = Ray {
+            origin: Vec3::splat(0.0),
+            ..ray_at_degrees(0.0)
+        };
         assert_eq!(intersect(&inside, &floor()), f32::INFINITY, "0/0");
     }
 }

@@ -8,13 +8,25 @@ use crate::plan::{Light, Plan, Surface};
 /// The linear colour (0–1 per channel) that a camera ray brings back.
 pub fn camera_color<R: Real>(plan: &Plan<R>, ray: Ray<R>, rays: &mut Rays) -> Vec3<R> {
     rays.camera += 1;
-    color(plan, &Path { ray, start: Primitive::Nothing }, 0, rays)
+    color(
+        plan,
+        &Path {
+            ray,
+            start: Primitive::Nothing,
+        },
+        0,
+        rays,
+    )
 }
 
 fn color<R: Real>(plan: &Plan<R>, path: &Path<R>, bounces: u32, rays: &mut Rays) -> Vec3<R> {
-    let Some(mut hit) = nearest(plan, path) else { return plan.background };
+    let Some(mut hit) = nearest(plan, path) else {
+        return plan.background;
+    };
     let material = &plan.materials[hit.material as usize];
-    let Some(surface) = &material.surface else { return material.base };
+    let Some(surface) = &material.surface else {
+        return material.base;
+    };
     let direction = path.ray.direction;
     // Both sides of everything are lit: the normal faces the viewer.
     if hit.normal.dot(direction) > R::ZERO {
@@ -46,7 +58,9 @@ fn light_color<R: Real>(
     let dark = Vec3::splat(R::ZERO);
     let to_light = light.position - hit.point;
     // A light in the surface has no direction: it adds nothing.
-    let Some(l) = to_light.unit() else { return dark };
+    let Some(l) = to_light.unit() else {
+        return dark;
+    };
     let cosine = hit.normal.dot(l);
     if !(cosine > R::ZERO) {
         return dark;

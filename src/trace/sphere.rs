@@ -75,14 +75,23 @@ pub fn refine<R: Real>(ray: &Ray<R>, sphere: &Sphere<R>, t: R) -> (Vec3<R>, Vec3
     let d = d * (1.0 / d.length());
     let b = -d.dot(x);
     let perpendicular = x + d * b;
-    let half_chord = (radius * radius - perpendicular.dot(perpendicular)).max(0.0).sqrt();
+    let half_chord = (radius * radius - perpendicular.dot(perpendicular))
+        .max(0.0)
+        .sqrt();
     let q = b + half_chord.copysign(b);
     let other = (x.dot(x) - radius * radius) / q;
     let rough = t.to_f64();
-    let t = if (other - rough).abs() < (q - rough).abs() { other } else { q };
+    let t = if (other - rough).abs() < (q - rough).abs() {
+        other
+    } else {
+        q
+    };
     let outwards = x + d * t;
     let normal = outwards * (1.0 / outwards.length());
-    (Vec3::from_f64(center + normal * radius), Vec3::from_f64(normal))
+    (
+        Vec3::from_f64(center + normal * radius),
+        Vec3::from_f64(normal),
+    )
 }
 
 #[cfg(test)]
@@ -93,13 +102,30 @@ mod tests {
     /// A ray from `ratio` radii away past a unit sphere at `miss` radii from its centre, turned by
     /// three angles so that no axis is special; the exact entry distance beside it.
     fn aimed(ratio: f64, miss: f64, turn: [f64; 3]) -> (Ray<f32>, Sphere<f32>, f64) {
-        let d = Vec3::new(turn[0].cos() * turn[1].cos(), turn[1].sin(), turn[0].sin() * turn[1].cos());
-        let side = d.cross(Vec3::new(turn[2].cos(), 0.3, turn[2].sin())).unit().expect("not along d");
+        let d = Vec3::new(
+            turn[0].cos() * turn[1].cos(),
+            turn[1].sin(),
+            turn[0].sin() * turn[1].cos(),
+        );
+        let side = d
+            .cross(Vec3::new(turn[2].cos(), 0.3, turn[2].sin()))
+            .unit()
+            .expect("not along d");
         let center = d * ratio + side * miss;
-        let sphere = Sphere { center: Vec3::from_f64(center), radius: 1.0_f32, material: 0 };
-        let ray = Ray { origin: Vec3::splat(0.0_f32), direction: Vec3::from_f64(d) };
+        let sphere = Sphere {
+            center: Vec3::from_f64(center),
+            radius: 1.0_f32,
+            material: 0,
+        };
+        let ray = Ray {
+            origin: Vec3::splat(0.0_f32),
+            direction: Vec3::from_f64(d),
+        };
         // The truth belongs to the rounded numbers that the kernel is given.
-        let (c, d) = (sphere.center.to_f64(), ray.direction.to_f64().unit().expect("unit"));
+        let (c, d) = (
+            sphere.center.to_f64(),
+            ray.direction.to_f64().unit().expect("unit"),
+        );
         let b = d.dot(c);
         let across = c - d * b;
         let t = b - (1.0 - across.dot(across)).max(0.0).sqrt();
@@ -122,7 +148,10 @@ mod tests {
                 .count()
         };
         assert_eq!(wrong(SphereMethod::Stable), 0);
-        assert!(wrong(SphereMethod::Classic) > 800, "the classic formula fails at 4096 radii");
+        assert!(
+            wrong(SphereMethod::Classic) > 800,
+            "the classic formula fails at 4096 radii"
+        );
     }
 
     #[test]
@@ -137,7 +166,11 @@ mod tests {
                 .collect();
             errors.sort_by(f64::total_cmp);
             let u = f64::from(f32::UNIT_ROUNDOFF);
-            assert!(errors[3995] <= 4.0 * u * (ratio + 2.0), "{ratio}: {:e}", errors[3995]);
+            assert!(
+                errors[3995] <= 4.0 * u * (ratio + 2.0),
+                "{ratio}: {:e}",
+                errors[3995]
+            );
         }
     }
 
@@ -145,22 +178,39 @@ mod tests {
     fn a_planet_is_hit_at_the_right_height() {
         for height in [1e-1, 1e-3, 1e-5, 1e-7_f64] {
             let radius = 1e6;
-            let sphere = Sphere { center: Vec3::new(0.0_f32, 0.0, 0.0), radius: radius as f32, material: 0 };
+            let sphere = Sphere {
+                center: Vec3::new(0.0_f32, 0.0, 0.0),
+                radius: radius as f32,
+                material: 0,
+            };
             let y = (radius * (1.0 + height)) as f32;
             let direction = Vec3::from_f64(Vec3::new(0.3_f64, -0.9, 0.2).unit().expect("unit"));
-            let ray = Ray { origin: Vec3::new(0.0, y, 0.0), direction };
+            let ray = Ray {
+                origin: Vec3::new(0.0, y, 0.0),
+                direction,
+            };
             let t = intersect(SphereMethod::Stable, &ray, &sphere);
             let (point, normal) = refine(&ray, &sphere, t);
             let on_surface = (point.to_f64().length() - radius).abs() / radius;
-            assert!(on_surface <= 4.0 * f64::from(f32::UNIT_ROUNDOFF), "{height}: {on_surface:e}");
+            assert!(
+                on_surface <= 4.0 * f64::from(f32::UNIT_ROUNDOFF),
+                "{height}: {on_surface:e}"
+            );
             assert!((f64::from(normal.length()) - 1.0).abs() < 1e-6);
         }
     }
 
     #[test]
     fn what_is_no_number_is_a_miss() {
-        let sphere = Sphere { center: Vec3::new(0.0, 0.0, f32::NAN), radius: 1.0, material: 0 };
-        let ray = Ray { origin: Vec3::splat(0.0), direction: Vec3::new(0.0, 0.0, 1.0) };
+        let sphere = Sphere {
+            center: Vec3::new(0.0, 0.0, f32::NAN),
+            radius: 1.0,
+            material: 0,
+        };
+        let ray = Ray {
+            origin: Vec3::splat(0.0),
+            direction: Vec3::new(0.0, 0.0, 1.0),
+        };
         for method in [SphereMethod::Stable, SphereMethod::Classic] {
             assert_eq!(intersect(method, &ray, &sphere), f32::INFINITY);
         }

@@ -27,7 +27,10 @@ pub struct Grid {
 
 impl Grid {
     /// Every pixel.
-    pub const ALL: Self = Self { step: 1, coarser: None };
+    pub const ALL: Self = Self {
+        step: 1,
+        coarser: None,
+    };
 
     fn row_pixels(self, row: usize, from: usize, to: usize) -> impl Iterator<Item = usize> {
         let Self { step, coarser } = self;
@@ -65,7 +68,11 @@ impl Tracer {
         } else {
             Kernel::Single(Box::new(Plan::new(scene, picture)))
         };
-        Self { width: picture.width as usize, height: picture.height as usize, kernel }
+        Self {
+            width: picture.width as usize,
+            height: picture.height as usize,
+            kernel,
+        }
     }
 
     /// Width in pixels.
@@ -112,20 +119,35 @@ impl Tracer {
         watch: &Watch,
         store: impl Fn([f64; 3]) -> P + Sync,
     ) -> Option<Rays> {
-        let bands = pixels.par_chunks_mut(self.width * TILE).with_max_len(1).enumerate();
+        let bands = pixels
+            .par_chunks_mut(self.width * TILE)
+            .with_max_len(1)
+            .enumerate();
         bands
             .map(|(index, rows)| {
                 let mut rays = Rays::default();
                 for left in (0..self.width).step_by(TILE) {
                     let columns = left..(left + TILE).min(self.width);
-                    self.tile(plan, rows, index * TILE, columns, grid, watch, &store, &mut rays)?;
+                    self.tile(
+                        plan,
+                        rows,
+                        index * TILE,
+                        columns,
+                        grid,
+                        watch,
+                        &store,
+                        &mut rays,
+                    )?;
                 }
                 Some(rays)
             })
             .try_reduce(Rays::default, |a, b| Some(a + b))
     }
 
-    #[expect(clippy::too_many_arguments, reason = "one call site, in the loop above")]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "one call site, in the loop above"
+    )]
     fn tile<R: Real, P>(
         &self,
         plan: &Plan<R>,
@@ -149,7 +171,9 @@ impl Tracer {
             for x in grid.row_pixels(y, columns.start, columns.end) {
                 line[x] = store(pixel_color(plan, x, y, rays).to_f64().to_array());
             }
-            watch.pixels.fetch_add(rays.camera - before, Ordering::Relaxed);
+            watch
+                .pixels
+                .fetch_add(rays.camera - before, Ordering::Relaxed);
         }
         Some(())
     }

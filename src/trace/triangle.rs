@@ -29,7 +29,12 @@ impl<R: Real> Shear<R> {
         };
         let axes = [(z + 1) % 3, (z + 2) % 3, z];
         let reciprocal = R::ONE / d[z];
-        Self { axes, x: d[axes[0]] * reciprocal, y: d[axes[1]] * reciprocal, z: reciprocal }
+        Self {
+            axes,
+            x: d[axes[0]] * reciprocal,
+            y: d[axes[1]] * reciprocal,
+            z: reciprocal,
+        }
     }
 
     /// A corner relative to the ray's origin: sheared x and y, and its depth along the axis.
@@ -37,7 +42,11 @@ impl<R: Real> Shear<R> {
     fn apply(&self, corner: Vec3<R>) -> [R; 3] {
         let p = corner.to_array();
         let depth = p[self.axes[2]];
-        [p[self.axes[0]] - self.x * depth, p[self.axes[1]] - self.y * depth, depth]
+        [
+            p[self.axes[0]] - self.x * depth,
+            p[self.axes[1]] - self.y * depth,
+            depth,
+        ]
     }
 }
 
@@ -62,7 +71,9 @@ pub fn intersect<R: Real>(
 /// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
 #[inline(always)]
 pub fn watertight<R: Real>(ray: &Ray<R>, shear: &Shear<R>, triangle: &Triangle<R>) -> R {
-    let [a, b, c] = triangle.corners.map(|corner| shear.apply(corner - ray.origin));
+    let [a, b, c] = triangle
+        .corners
+        .map(|corner| shear.apply(corner - ray.origin));
     let u = c[0] * b[1] - c[1] * b[0];
     let v = a[0] * c[1] - a[1] * c[0];
     let w = b[0] * a[1] - b[1] * a[0];
@@ -88,7 +99,11 @@ pub fn edges<R: Real>(ray: &Ray<R>, triangle: &Triangle<R>) -> R {
     let inside = [(a, b), (b, c), (c, a)]
         .iter()
         .all(|&(from, to)| (to - from).cross(p - from).dot(n) <= R::ZERO);
-    if inside && t > R::ZERO { t } else { R::INFINITY }
+    if inside && t > R::ZERO {
+        t
+    } else {
+        R::INFINITY
+    }
 }
 
 /// The hit at `t`, drawn onto the triangle's plane.
@@ -104,8 +119,17 @@ mod tests {
     use proptest::prelude::*;
 
     fn triangle(a: Vec3<f32>, b: Vec3<f32>, c: Vec3<f32>) -> Triangle<f32> {
-        let normal = (c - a).to_f64().cross((b - a).to_f64()).unit().expect("has area");
-        Triangle { corners: [a, b, c], normal: Vec3::from_f64(normal), in_mesh: true, material: 0 }
+        let normal = (c - a)
+            .to_f64()
+            .cross((b - a).to_f64())
+            .unit()
+            .expect("has area");
+        Triangle {
+            corners: [a, b, c],
+            normal: Vec3::from_f64(normal),
+            in_mesh: true,
+            material: 0,
+        }
     }
 
     /// A closed ball of triangles around the origin: an octahedron, each face split `depth` times
@@ -133,9 +157,16 @@ mod tests {
         // A turn and a stretch, so that no plane of the mesh lies along an axis.
         let place = |v: Vec3<f64>| {
             let (x, y) = (0.8 * v.x - 0.6 * v.y, 0.6 * v.x + 0.8 * v.y);
-            Vec3::from_f64(Vec3::new(x * 1.3, y * 0.96 - v.z * 0.28, y * 0.28 + v.z * 0.96))
+            Vec3::from_f64(Vec3::new(
+                x * 1.3,
+                y * 0.96 - v.z * 0.28,
+                y * 0.28 + v.z * 0.96,
+            ))
         };
-        faces.iter().map(|f| triangle(place(f[0]), place(f[1]), place(f[2]))).collect()
+        faces
+            .iter()
+            .map(|f| triangle(place(f[0]), place(f[1]), place(f[2])))
+            .collect()
     }
 
     /// Of `n` rays from inside aimed at corners (or points on edges), how many meet nothing.
@@ -144,11 +175,23 @@ mod tests {
         (0..n)
             .filter(|&i| {
                 let [a, b, _] = mesh[i % mesh.len()].corners;
-                let s = if at_corners { 0.0 } else { (i as f32 * 0.618_034).fract() };
-                let target = (a + (b - a) * s - origin).to_f64().unit().expect("not at the target");
-                let ray = Ray { origin, direction: Vec3::from_f64(target) };
+                let s = if at_corners {
+                    0.0
+                } else {
+                    (i as f32 * 0.618_034).fract()
+                };
+                let target = (a + (b - a) * s - origin)
+                    .to_f64()
+                    .unit()
+                    .expect("not at the target");
+                let ray = Ray {
+                    origin,
+                    direction: Vec3::from_f64(target),
+                };
                 let shear = Shear::new(ray.direction);
-                !mesh.iter().any(|t| intersect(method, &ray, &shear, t).is_finite())
+                !mesh
+                    .iter()
+                    .any(|t| intersect(method, &ray, &shear, t).is_finite())
             })
             .count()
     }
@@ -157,9 +200,15 @@ mod tests {
     fn nothing_leaks_through_a_mesh_and_the_old_formula_leaks() {
         let mesh = ball(3);
         for at_corners in [true, false] {
-            assert_eq!(leaks(TriangleMethod::Watertight, &mesh, 10_000, at_corners), 0);
+            assert_eq!(
+                leaks(TriangleMethod::Watertight, &mesh, 10_000, at_corners),
+                0
+            );
             let old = leaks(TriangleMethod::Edges, &mesh, 10_000, at_corners);
-            assert!(old > 100, "{old} of 10,000: the edge formula is known to leak over 1 %");
+            assert!(
+                old > 100,
+                "{old} of 10,000: the edge formula is known to leak over 1 %"
+            );
         }
     }
 
@@ -168,20 +217,30 @@ mod tests {
     fn nothing_leaks_in_two_million_rays() {
         let mesh = ball(2);
         for at_corners in [true, false] {
-            assert_eq!(leaks(TriangleMethod::Watertight, &mesh, 1_000_000, at_corners), 0);
+            assert_eq!(
+                leaks(TriangleMethod::Watertight, &mesh, 1_000_000, at_corners),
+                0
+            );
         }
     }
 
     #[test]
     fn edge_on_and_behind_are_misses() {
-        let t = triangle(Vec3::new(0.0, 0.0, 0.0), Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0));
+        let t = triangle(
+            Vec3::new(0.0, 0.0, 0.0),
+            Vec3::new(1.0, 0.0, 0.0),
+            Vec3::new(0.0, 1.0, 0.0),
+        );
         for (origin, direction) in [
             (Vec3::new(-1.0, 0.2, 0.0), Vec3::new(1.0, 0.0, 0.0)),
             (Vec3::new(0.2, 0.2, 1.0), Vec3::new(0.0, 0.0, 1.0)),
         ] {
             let ray = Ray { origin, direction };
             for method in [TriangleMethod::Watertight, TriangleMethod::Edges] {
-                assert_eq!(intersect(method, &ray, &Shear::new(direction), &t), f32::INFINITY);
+                assert_eq!(
+                    intersect(method, &ray, &Shear::new(direction), &t),
+                    f32::INFINITY
+                );
             }
         }
     }

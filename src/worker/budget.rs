@@ -27,7 +27,11 @@ pub struct Budget {
 impl Budget {
     /// Starts coarse: nothing is known yet.
     pub fn new() -> Self {
-        Self { nanos_per_pixel: 0.0, step: 8, spare: 0 }
+        Self {
+            nanos_per_pixel: 0.0,
+            step: 8,
+            spare: 0,
+        }
     }
 
     /// The step of the first pass over a picture of this size.
@@ -95,7 +99,11 @@ mod tests {
     fn an_expensive_scene_stops_at_the_floor() {
         let (mut budget, steps) = after(1_000_000, 4);
         assert_eq!(steps, [8, 8, 8, 8], "128 pixels are left");
-        assert_eq!(budget.choose(200, 100), 1, "a small picture has nothing to save");
+        assert_eq!(
+            budget.choose(200, 100),
+            1,
+            "a small picture has nothing to save"
+        );
         assert_eq!(budget.choose(4096, 100), COARSEST);
     }
 

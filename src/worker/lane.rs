@@ -5,9 +5,7 @@ use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
 use super::budget::Budget;
-use super::{
-    Event, Frame, LiveJob, Pace, Running, RunningJob, Shared, StillJob, lock,
-};
+use super::{Event, Frame, LiveJob, Pace, Running, RunningJob, Shared, StillJob, lock};
 use crate::export::save_image;
 use crate::image::{Cost, Image, render};
 use crate::trace::{Grid, Rays, Threads, Tracer, Watch};
@@ -50,7 +48,9 @@ fn next_job(shared: &Shared) -> Option<(Job, Arc<Watch>)> {
             let watch = Arc::new(Watch::default());
             mailbox.running = Some(Running {
                 job: match &job {
-                    Job::Live(live) => RunningJob::Live { revision: live.revision },
+                    Job::Live(live) => RunningJob::Live {
+                        revision: live.revision,
+                    },
                     Job::Still(still) => RunningJob::Still(still.clone()),
                 },
                 watch: Arc::clone(&watch),
@@ -58,7 +58,10 @@ fn next_job(shared: &Shared) -> Option<(Job, Arc<Watch>)> {
             });
             return Some((job, watch));
         }
-        mailbox = shared.bell.wait(mailbox).unwrap_or_else(PoisonError::into_inner);
+        mailbox = shared
+            .bell
+            .wait(mailbox)
+            .unwrap_or_else(PoisonError::into_inner);
     }
 }
 
@@ -66,8 +69,13 @@ fn next_job(shared: &Shared) -> Option<(Job, Arc<Watch>)> {
 /// the live view, goes back into its slot.
 fn finish(shared: &Shared) {
     let mut mailbox = lock(&shared.mailbox);
-    let Some(running) = mailbox.running.take() else { return };
-    let stopped = running.watch.stop.load(std::sync::atomic::Ordering::Relaxed);
+    let Some(running) = mailbox.running.take() else {
+        return;
+    };
+    let stopped = running
+        .watch
+        .stop
+        .load(std::sync::atomic::Ordering::Relaxed);
     if let RunningJob::Still(still) = running.job
         && stopped
         && still.save_to.is_some()
@@ -88,10 +96,19 @@ fn live(shared: &Shared, job: &LiveJob, watch: &Watch, budget: &mut Budget) {
         Pace::Whole => 1,
     };
     let mut rays = Rays::default();
-    let mut grid = Grid { step: first, coarser: None };
+    let mut grid = Grid {
+        step: first,
+        coarser: None,
+    };
     loop {
-        let watch = if grid.step == first { &shared.first_pass } else { watch };
-        let Some(new) = image.trace(&tracer, grid, watch) else { return };
+        let watch = if grid.step == first {
+            &shared.first_pass
+        } else {
+            watch
+        };
+        let Some(new) = image.trace(&tracer, grid, watch) else {
+            return;
+        };
         rays = rays + new;
         if grid.step == first {
             budget.learn(new.camera, start.elapsed());
@@ -102,17 +119,26 @@ fn live(shared: &Shared, job: &LiveJob, watch: &Watch, budget: &mut Budget) {
             full_size: (image.width, image.height),
             step: grid.step,
             is_still: false,
-            cost: Cost { time: start.elapsed(), rays, lanes: tracer.lanes() },
+            cost: Cost {
+                time: start.elapsed(),
+                rays,
+                lanes: tracer.lanes(),
+            },
         });
         if grid.step == 1 {
             return;
         }
-        grid = Grid { step: grid.step / 2, coarser: Some(grid.step) };
+        grid = Grid {
+            step: grid.step / 2,
+            coarser: Some(grid.step),
+        };
     }
 }
 
 fn still(shared: &Shared, job: &StillJob, watch: &Watch) {
-    let Some((image, cost)) = render(&job.scene, &job.picture, watch) else { return };
+    let Some((image, cost)) = render(&job.scene, &job.picture, watch) else {
+        return;
+    };
     let image = Arc::new(image);
     shared.publish(Frame {
         revision: job.revision,
@@ -134,7 +160,11 @@ impl Shared {
     /// Puts a picture into the slot, unless a newer revision's is already there.
     fn publish(&self, frame: Frame) {
         let mut news = lock(&self.news);
-        if news.frame.as_ref().is_none_or(|waiting| waiting.revision <= frame.revision) {
+        if news
+            .frame
+            .as_ref()
+            .is_none_or(|waiting| waiting.revision <= frame.revision)
+        {
             news.frame = Some(frame);
         }
         drop(news);
@@ -149,5 +179,6 @@ impl Shared {
 
 fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
-    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "no reason given".to_owned())
+    text.or_else(|| panic.downcast_ref::<String>().cloned())
+        .unwrap_or_else(|| "no reason given".to_owned())
 }

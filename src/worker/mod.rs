@@ -173,7 +173,10 @@ impl Worker {
             let shared = Arc::clone(&shared);
             move || lane::run(&shared, &threads)
         });
-        Ok(Self { shared, lane: lane.ok() })
+        Ok(Self {
+            shared,
+            lane: lane.ok(),
+        })
     }
 
     /// Asks for a live picture in place of any that waits; finer passes over an older one end
@@ -191,7 +194,13 @@ impl Worker {
     /// Asks for a still picture in place of any that waits or runs.
     pub fn request_still(&self, job: StillJob) {
         let mut mailbox = lock(&self.shared.mailbox);
-        if matches!(&mailbox.running, Some(Running { job: RunningJob::Still(_), .. })) {
+        if matches!(
+            &mailbox.running,
+            Some(Running {
+                job: RunningJob::Still(_),
+                ..
+            })
+        ) {
             mailbox.stop_running();
         }
         mailbox.still = Some(job);
@@ -203,7 +212,11 @@ impl Worker {
     pub fn cancel_still(&self) {
         let mut mailbox = lock(&self.shared.mailbox);
         mailbox.still = None;
-        if let Some(Running { job: RunningJob::Still(still), .. }) = &mut mailbox.running {
+        if let Some(Running {
+            job: RunningJob::Still(still),
+            ..
+        }) = &mut mailbox.running
+        {
             still.save_to = None;
             mailbox.stop_running();
         }
@@ -223,11 +236,19 @@ impl Worker {
     pub fn activity(&self) -> Activity {
         let mailbox = lock(&self.shared.mailbox);
         match (&mailbox.running, &mailbox.live, &mailbox.still) {
-            (Some(Running { job: RunningJob::Live { revision }, .. }), ..) => {
-                Activity::Live { revision: *revision }
-            }
+            (
+                Some(Running {
+                    job: RunningJob::Live { revision },
+                    ..
+                }),
+                ..,
+            ) => Activity::Live {
+                revision: *revision,
+            },
             (Some(running), ..) => running.still_activity(),
-            (None, Some(live), _) => Activity::Live { revision: live.revision },
+            (None, Some(live), _) => Activity::Live {
+                revision: live.revision,
+            },
             (None, None, Some(still)) => Activity::Still {
                 done: 0,
                 total: pixels(&still.picture),
@@ -268,7 +289,11 @@ impl Running {
             RunningJob::Live { .. } => 0,
         };
         let done = self.watch.pixels.load(Ordering::Relaxed);
-        Activity::Still { done, total, elapsed: self.started.elapsed() }
+        Activity::Still {
+            done,
+            total,
+            elapsed: self.started.elapsed(),
+        }
     }
 }
 

@@ -1,0 +1,144 @@
+//! Unsaved work, kept on disk while a document has changes, so that a crash or a killed process
+//! costs no edit. Each running program has a file of its own and holds a lock beside it; a file
+//! whose lock is free was left behind.
+
+use std::fs::{self, File, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::file::{Document, write_atomic};
+
+/// First line of a recovery file: the path of the document follows.
+const MARK: &str = "// unsaved changes of: ";
+
+/// This program's place for unsaved work.
+#[derive(Debug)]
+pub struct Recovery {
+    path: PathBuf,
+    lock_path: PathBuf,
+    /// Held until the program ends, however it ends.
+    _lock: File,
+}
+
+/// Unsaved work that was left behind.
+#[derive(Debug)]
+pub struct Leftover {
+    /// The scene.
+    pub document: Document,
+    /// The file that it belongs to, if it had one.
+    pub path: Option<PathBuf>,
+}
+
+impl Recovery {
+    /// Takes a place in `folder`, which is made if need be.
+    ///
+    /// # Errors
+    /// What the system answered; the program then works without recovery.
+    pub fn new(folder: &Path) -> io::Result<Self> {
+        fs::create_dir_all(folder)?;
+        let mut number = std::process::id();
+        loop {
+            let path = folder.join(format!("unsaved-{number}.ron"));
+            let lock_path = path.with_extension("lock");
+            let lock = File::create(&lock_path)?;
+            match lock.try_lock() {
+                // A leftover of the same number is not to be overwritten.
+                Ok(()) if !path.exists() => {
+                    return Ok(Self {
+                        path,
+                        lock_path,
+                        _lock: lock,
+                    });
+                }
+                Ok(()) | Err(TryLockError::WouldBlock) => number = number.wrapping_add(1),
+                Err(TryLockError::Error(error)) => return Err(error),
+            }
+        }
+    }
+
+    /// Keeps the unsaved work of the document of `path`.
+    ///
+    /// # Errors
+    /// What the system answered; the last kept state is then still there.
+    pub fn keep(&self, text: &str, path: Option<&Path>) -> io::Result<()> {
+        let name = path.map_or(String::new(), |path| path.display().to_string());
+        write_atomic(&self.path, format!("{MARK}{name}\n{text}").as_bytes())
+    }
+
+    /// There is no unsaved work (any more).
+    pub fn clear(&self) {
+        // What cannot be removed is offered for recovery once too often, which harms nobody.
+        let _ = fs::remove_file(&self.path);
+    }
+
+    /// Takes one piece of work that an ended program left in the folder, and removes it from there.
+    pub fn take_leftover(&self) -> Option<Leftover> {
+        let entries = fs::read_dir(self.path.parent()?).ok()?;
+        let files = entries.filter_map(|entry| Some(entry.ok()?.path()));
+        let is_other = |path: &PathBuf| {
+            path.extension().is_some_and(|ending| ending == "ron") && *path != self.path
+        };
+        files.filter(is_other).find_map(|path| take(&path))
+    }
+}
+
+impl Drop for Recovery {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(&self.lock_path);
+    }
+}
+
+fn take(path: &Path) -> Option<Leftover> {
+    let lock_path = path.with_extension("lock");
+    let lock = File::create(&lock_path).ok()?;
+    lock.try_lock().ok()?;
+    let text = fs::read_to_string(path).ok()?;
+    let (first, body) = text.strip_prefix(MARK)?.split_once('\n')?;
+    let document = Document::from_text(body).ok()?;
+    let _ = fs::remove_file(path);
+    let _ = fs::remove_file(&lock_path);
+    Some(Leftover {
+        document,
+        path: (!first.is_empty()).then(|| PathBuf::from(first)),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::DEMO_TEXT;
+
+    #[test]
+    fn work_of_an_ended_program_is_found_and_of_a_running_one_is_not() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let first = Recovery::new(folder.path()).expect("a place");
+        first
+            .keep(DEMO_TEXT, Some(Path::new("/a/b.ron")))
+            .expect("kept");
+        let second = Recovery::new(folder.path()).expect("another place");
+        assert!(
+            second.take_leftover().is_none(),
+            "the first program still runs"
+        );
+        drop(first);
+        let leftover = second.take_leftover().expect("left behind");
+        assert_eq!(leftover.path.as_deref(), Some(Path::new("/a/b.ron")));
+        assert_eq!(leftover.document.to_text(), DEMO_TEXT);
+        assert!(second.take_leftover().is_none(), "it is taken once");
+    }
+
+    #[test]
+    fn cleared_work_is_gone() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let first = Recovery::new(folder.path()).expect("a place");
+        first.keep(DEMO_TEXT, None).expect("kept");
+        first.clear();
+        drop(first);
+        assert!(
+            Recovery::new(folder.path())
+                .expect("a place")
+                .take_leftover()
+                .is_none()
+        );
+    }
+}

@@ -1,0 +1,82 @@
+//! Asking for a path: the desktop's own dialog, on a thread of its own, or a prompt in the window
+//! where the desktop offers none.
+
+use std::path::PathBuf;
+use std::sync::mpsc::Receiver;
+
+use egui::Context;
+
+use crate::worker::run_errand;
+
+/// What a path is asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Ask {
+    /// A scene to open.
+    OpenScene,
+    /// Where to write the scene.
+    SaveScene,
+    /// Where to write the picture.
+    SaveImage,
+}
+
+impl Ask {
+    /// What the dialog is called.
+    pub fn title(&self) -> &'static str {
+        match self {
+            Self::OpenScene => "Open scene",
+            Self::SaveScene => "Save scene",
+            Self::SaveImage => "Save image",
+        }
+    }
+
+    /// Whether something is written to the path.
+    pub fn writes(&self) -> bool {
+        !matches!(self, Self::OpenScene)
+    }
+
+    /// The endings that files of this kind have; the first is added where there is none.
+    pub fn endings(&self) -> &'static [&'static str] {
+        match self {
+            Self::OpenScene | Self::SaveScene => &["ron"],
+            Self::SaveImage => &["png", "ppm"],
+        }
+    }
+}
+
+/// Something that asks the user for a path.
+pub trait Dialogs {
+    /// Asks, starting from `suggested`; the answer, or `None` for cancelled, arrives later.
+    fn ask(&mut self, ctx: &Context, ask: &Ask, suggested: PathBuf) -> Receiver<Option<PathBuf>>;
+}
+
+/// The desktop's dialogs.
+#[derive(Debug)]
+pub struct Native;
+
+impl Dialogs for Native {
+    fn ask(&mut self, ctx: &Context, ask: &Ask, suggested: PathBuf) -> Receiver<Option<PathBuf>> {
+        let (ask, wake) = (ask.clone(), ctx.clone());
+        run_errand("glint-dialog", move || {
+            let mut dialog = rfd::FileDialog::new().set_title(ask.title());
+            dialog = match ask {
+                Ask::OpenScene | Ask::SaveScene => dialog.add_filter("Glint scene", ask.endings()),
+                Ask::SaveImage => dialog.add_filter("Picture", ask.endings()),
+            };
+            if let Some(folder) = suggested.parent().filter(|folder| folder.is_dir()) {
+                dialog = dialog.set_directory(folder);
+            }
+            if ask.writes()
+                && let Some(name) = suggested.file_name()
+            {
+                dialog = dialog.set_file_name(name.to_string_lossy());
+            }
+            let path = if ask.writes() {
+                dialog.save_file()
+            } else {
+                dialog.pick_file()
+            };
+            wake.request_repaint();
+            path
+        })
+    }
+}

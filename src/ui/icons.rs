@@ -1,0 +1,38 @@
+//! The symbols of the window, from the embedded icon font.
+
+use egui::{Response, RichText, Ui};
+use egui_material_icons::MaterialIcon;
+pub use egui_material_icons::icons::{
+    ICON_ADD as ADD, ICON_CHANGE_HISTORY as TRIANGLE, ICON_CIRCLE as SPHERE, ICON_CLOSE as CLOSE,
+    ICON_CONTENT_COPY as COPY, ICON_CROP_LANDSCAPE as PLANE, ICON_ERROR as ERROR,
+    ICON_EXPAND_MORE as MORE, ICON_IMAGE as IMAGE, ICON_INFO as INFO, ICON_LIGHTBULB as LIGHT,
+    ICON_PALETTE as PACK, ICON_PUBLIC as WORLD, ICON_VIDEOCAM as CAMERA,
+    ICON_VISIBILITY as VISIBLE, ICON_VISIBILITY_OFF as HIDDEN,
+};
+
+use super::theme::{GRID, ICON};
+use crate::scene::Shape;
+
+/// The symbol of a shape.
+pub fn of_shape(shape: &Shape) -> MaterialIcon {
+    match shape {
+        Shape::Sphere { .. } => SPHERE,
+        Shape::Plane { .. } => PLANE,
+        Shape::Triangle { .. } => TRIANGLE,
+    }
+}
+
+/// A symbol as text.
+pub fn text(icon: MaterialIcon) -> RichText {
+    icon.rich_text().size(ICON)
+}
+
+/// A button that is only a symbol; `name` is what screen readers and the tooltip say.
+pub fn button(ui: &mut Ui, icon: MaterialIcon, name: &str) -> Response {
+    ui.scope(|ui| {
+        ui.spacing_mut().button_padding.x = GRID / 2.0;
+        let button = egui::Button::new(text(icon)).frame_when_inactive(false);
+        ui.add(button).accessible_name(name).on_hover_text(name)
+    })
+    .inner
+}

@@ -1,0 +1,245 @@
+//! The bar on top: menus, and the switches that are used all the time.
+
+use std::path::PathBuf;
+
+use egui::{Button, Context, MenuBar, Theme, Ui};
+
+use super::commands::{Command, is_enabled, key_of};
+use super::outliner::add_menu;
+use super::{Out, icons};
+use crate::editor::{Editor, Mode, Selection};
+use crate::scene::Projection;
+
+/// What of the window can be shown or hidden.
+#[derive(Clone, Copy, Debug)]
+pub struct Layout {
+    /// The panel on the left.
+    pub outliner: bool,
+    /// The panel on the right.
+    pub inspector: bool,
+    /// Whether the still picture is shown one pixel to one pixel, with scroll bars.
+    pub actual_size: bool,
+}
+
+/// What can be done to the selected item.
+pub const ITEM_COMMANDS: [(&str, Command); 5] = [
+    ("Rename", Command::Rename),
+    ("Duplicate", Command::Duplicate),
+    ("Move up", Command::MoveUp),
+    ("Move down", Command::MoveDown),
+    ("Delete", Command::Delete),
+];
+
+/// Shows the bar.
+pub fn show(ui: &mut Ui, editor: &Editor, recent: &[PathBuf], layout: &mut Layout, out: &mut Out) {
+    MenuBar::new().ui(ui, |ui| {
+        ui.menu_button("File", |ui| file_menu(ui, recent, out));
+        ui.menu_button("Edit", |ui| edit_menu(ui, editor, out));
+        ui.menu_button("Add", |ui| add_menu(ui, editor.scene(), out));
+        ui.menu_button("View", |ui| view_menu(ui, editor, layout, out));
+        ui.menu_button("Render", |ui| {
+            entry(ui, "High-res picture", Command::HighRes, true, out);
+            entry(ui, "Save image…", Command::SaveImage, true, out);
+            ui.separator();
+            if ui.button("Picture settings").clicked() {
+                out.select(Selection::Render);
+            }
+        });
+        ui.menu_button("Help", |ui| {
+            entry(ui, "Shortcuts", Command::Shortcuts, true, out);
+            ui.separator();
+            ui.weak(concat!("Glint ", env!("CARGO_PKG_VERSION")));
+        });
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            switches(ui, editor, out)
+        });
+    });
+}
+
+/// A menu entry with its key.
+pub fn entry(ui: &mut Ui, text: &str, command: Command, enabled: bool, out: &mut Out) {
+    let key = key_of(ui, &command).unwrap_or_default();
+    let button = Button::new(text).shortcut_text(key);
+    if ui
+        .add_enabled(enabled, button)
+        .accessible_name(text)
+        .clicked()
+    {
+        out.commands.push(command);
+    }
+}
+
+fn file_menu(ui: &mut Ui, recent: &[PathBuf], out: &mut Out) {
+    entry(ui, "New", Command::New, true, out);
+    entry(ui, "Open…", Command::Open, true, out);
+    ui.add_enabled_ui(!recent.is_empty(), |ui| {
+        ui.menu_button("Open recent", |ui| {
+            for path in recent {
+                let name = path
+                    .file_name()
+                    .unwrap_or(path.as_os_str())
+                    .to_string_lossy();
+                if ui
+                    .button(name)
+                    .on_hover_text(path.display().to_string())
+                    .clicked()
+                {
+                    out.commands.push(Command::OpenRecent(path.clone()));
+                }
+            }
+        });
+    });
+    entry(ui, "Open demo", Command::OpenDemo, true, out);
+    ui.separator();
+    entry(ui, "Save", Command::Save, true, out);
+    entry(ui, "Save as…", Command::SaveAs, true, out);
+    entry(ui, "Save image…", Command::SaveImage, true, out);
+    ui.separator();
+    entry(ui, "Quit", Command::Quit, true, out);
+}
+
+fn edit_menu(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+    let step = |verb: &str, label: Option<&str>| match label {
+        Some(label) => format!("{verb} “{label}”"),
+        None => verb.to_owned(),
+    };
+    let undo = step("Undo", editor.undo_label());
+    entry(
+        ui,
+        &undo,
+        Command::Undo,
+        is_enabled(&Command::Undo, editor),
+        out,
+    );
+    let redo = step("Redo", editor.redo_label());
+    entry(
+        ui,
+        &redo,
+        Command::Redo,
+        is_enabled(&Command::Redo, editor),
+        out,
+    );
+    ui.separator();
+    for (text, command) in ITEM_COMMANDS {
+        let enabled = is_enabled(&command, editor);
+        entry(ui, text, command, enabled, out);
+    }
+}
+
+fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut Out) {
+    mode_entries(ui, editor, out);
+    ui.separator();
+    entry(ui, "Perspective", Command::Perspective, true, out);
+    entry(ui, "Orthographic", Command::Orthographic, true, out);
+    ui.separator();
+    ui.checkbox(&mut layout.actual_size, "High-res at actual size");
+    ui.checkbox(&mut layout.outliner, "Outliner");
+    ui.checkbox(&mut layout.inspector, "Inspector");
+    ui.separator();
+    theme_choice(ui);
+}
+
+fn theme_choice(ui: &mut Ui) {
+    let ctx: Context = ui.ctx().clone();
+    for (theme, name) in [(Theme::Dark, "Dark theme"), (Theme::Light, "Light theme")] {
+        if ui.radio(ctx.theme() == theme, name).clicked() {
+            ctx.set_theme(theme);
+        }
+    }
+}
+
+fn mode_entries(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+    for (mode, text, command) in [
+        (Mode::Live, "Live", Command::Live),
+        (Mode::LowRes, "Low-res (64 pixels)", Command::LowRes),
+        (Mode::HighRes, "High-res picture", Command::HighRes),
+    ] {
+        let key = key_of(ui, &command).unwrap_or_default();
+        let button = Button::selectable(editor.mode == mode, text).shortcut_text(key);
+        if ui.add(button).accessible_name(text).clicked() {
+            out.commands.push(command);
+        }
+    }
+}
+
+/// From right to left: lights, projection, picture, live view.
+fn switches(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+    let scene = editor.scene();
+    let markers = scene.light_visualization;
+    let hint = "Show the markers of lights (I on, U off)";
+    if switch(
+        ui,
+        markers,
+        (icons::text(icons::LIGHT), "Lights"),
+        "Lights",
+        hint,
+    ) {
+        out.commands.push(if markers {
+            Command::MarkersOff
+        } else {
+            Command::MarkersOn
+        });
+    }
+    let is_perspective = scene.camera.projection == Projection::Perspective;
+    let name = if is_perspective {
+        "Perspective"
+    } else {
+        "Orthographic"
+    };
+    let hint = "Projection (P perspective, O orthographic); click to change";
+    if switch(
+        ui,
+        false,
+        (icons::text(icons::CAMERA), name),
+        "Projection",
+        hint,
+    ) {
+        let other = if is_perspective {
+            Command::Orthographic
+        } else {
+            Command::Perspective
+        };
+        out.commands.push(other);
+    }
+    let is_still = editor.mode == Mode::HighRes;
+    let hint = "Trace the picture at its full size (H); Esc goes back to the live view";
+    if switch(
+        ui,
+        is_still,
+        (icons::text(icons::IMAGE), "High-res"),
+        "High-res",
+        hint,
+    ) {
+        out.commands.push(if is_still {
+            Command::Live
+        } else {
+            Command::HighRes
+        });
+    }
+    let name = if editor.mode == Mode::LowRes {
+        "Low-res"
+    } else {
+        "Live"
+    };
+    let live = ui.add(Button::selectable(
+        !is_still,
+        (name, icons::text(icons::MORE)),
+    ));
+    let live = live
+        .accessible_name("Picture mode")
+        .on_hover_text("What the picture area shows");
+    egui::Popup::menu(&live).show(|ui| mode_entries(ui, editor, out));
+}
+
+fn switch<'a>(
+    ui: &mut Ui,
+    on: bool,
+    text: impl egui::IntoAtoms<'a>,
+    name: &str,
+    hint: &str,
+) -> bool {
+    ui.add(Button::selectable(on, text))
+        .accessible_name(name)
+        .on_hover_text(hint)
+        .clicked()
+}

@@ -1,0 +1,43 @@
+//! The window: egui panels that read the editor's state and push actions. One file per panel;
+//! `theme.rs` has every colour and spacing, `commands.rs` every key.
+
+mod app;
+mod commands;
+mod dialogs;
+mod files;
+mod flying;
+mod help;
+mod icons;
+mod inspector;
+mod menu;
+mod outliner;
+mod rows;
+mod status;
+mod theme;
+mod toasts;
+mod viewport;
+mod window;
+
+pub use app::{App, Setup};
+pub use commands::{Command, FLIGHT, SHORTCUTS};
+pub use dialogs::{Ask, Dialogs};
+pub use window::{NoWindow, run};
+
+use crate::editor::{Action, Edit, Selection};
+
+/// What panels ask for while they are drawn; done when all of them are.
+#[derive(Debug, Default)]
+struct Out {
+    actions: Vec<Action>,
+    commands: Vec<commands::Command>,
+}
+
+impl Out {
+    fn edit(&mut self, edit: Edit) {
+        self.actions.push(Action::Edit(edit));
+    }
+
+    fn select(&mut self, selection: Selection) {
+        self.actions.push(Action::Select(selection));
+    }
+}

@@ -1,0 +1,364 @@
+//! The panel on the left: everything in the scene by name. Only the rows in sight are laid out, so
+//! ten thousand objects cost no more than twenty.
+
+use egui::{Button, Id, Key, Rect, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2};
+use egui_material_icons::MaterialIcon;
+
+use super::inspector::name_field;
+use super::theme::{GRID, ROW, palette};
+use super::{Out, icons, menu};
+use crate::editor::{Edit, Editor, Item, Kind, Selection};
+use crate::lanes::Vec3;
+use crate::scene::{Scene, Shape};
+
+/// What the panel remembers between frames.
+#[derive(Debug, Default)]
+pub struct Outliner {
+    filter: String,
+    folded: Vec<Kind>,
+    renaming: Option<Item>,
+}
+
+/// One line of the list.
+enum Line {
+    Single(Selection, MaterialIcon, &'static str),
+    Group(Kind, usize),
+    Entry(Item),
+}
+
+impl Outliner {
+    /// Starts editing the name of an item in its row.
+    pub fn rename(&mut self, item: Item) {
+        self.renaming = Some(item);
+    }
+
+    /// Shows the panel and pushes what is asked for.
+    pub fn show(&mut self, ui: &mut Ui, editor: &Editor, out: &mut Out) {
+        ui.add_space(GRID / 2.0);
+        ui.horizontal(|ui| {
+            let width = ui.available_width() - ROW - GRID;
+            let field = TextEdit::singleline(&mut self.filter).hint_text("Filter");
+            ui.add_sized([width, ROW], field.align(egui::Align2::LEFT_CENTER))
+                .accessible_name("Filter");
+            let add = icons::button(ui, icons::ADD, "Add");
+            egui::Popup::menu(&add).show(|ui| add_menu(ui, editor.scene(), out));
+        });
+        let lines = self.lines(editor.scene());
+        ui.spacing_mut().item_spacing.y = 0.0;
+        ScrollArea::vertical()
+            .auto_shrink(false)
+            .show_rows(ui, ROW, lines.len(), |ui, range| {
+                for line in &lines[range] {
+                    match line {
+                        Line::Single(selection, icon, name) => {
+                            let rect = row(ui);
+                            let look = Look {
+                                icon: *icon,
+                                is_bright: true,
+                                is_selected: editor.selection == *selection,
+                            };
+                            if entry(ui, rect, look, name).clicked() {
+                                out.select(*selection);
+                            }
+                        }
+                        Line::Group(kind, count) => self.group(ui, *kind, *count),
+                        Line::Entry(item) => self.item(ui, editor, *item, out),
+                    }
+                }
+            });
+    }
+
+    fn lines(&self, scene: &Scene) -> Vec<Line> {
+        let mut lines = vec![
+            Line::Single(Selection::Camera, icons::CAMERA, "Camera"),
+            Line::Single(Selection::World, icons::WORLD, "World"),
+            Line::Single(Selection::Render, icons::IMAGE, "Picture"),
+        ];
+        let filter = self.filter.trim().to_lowercase();
+        for (kind, count) in [
+            (Kind::Light, scene.lights.len()),
+            (Kind::Object, scene.objects.len()),
+            (Kind::Pack, scene.color_packs.len()),
+        ] {
+            lines.push(Line::Group(kind, count));
+            if self.folded.contains(&kind) {
+                continue;
+            }
+            let items = (0..count).map(|index| Item { kind, index });
+            let matches = |item: &Item| {
+                filter.is_empty()
+                    || item
+                        .name(scene)
+                        .is_some_and(|name| name.to_lowercase().contains(&filter))
+            };
+            lines.extend(items.filter(matches).map(Line::Entry));
+        }
+        lines
+    }
+
+    fn group(&mut self, ui: &mut Ui, kind: Kind, count: usize) {
+        let name = match kind {
+            Kind::Light => "Lights",
+            Kind::Object => "Objects",
+            Kind::Pack => "ColorPacks",
+        };
+        let is_folded = self.folded.contains(&kind);
+        let (rect, response) =
+            ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
+        response
+            .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, !is_folded, name));
+        let colors = palette(ui.ctx());
+        let mut arrow =
+            Rect::from_center_size(pos2(rect.left() + 8.0, rect.center().y), vec2(8.0, 8.0));
+        if is_folded {
+            arrow = arrow.translate(vec2(-1.0, 0.0));
+        }
+        egui::collapsing_header::paint_default_icon(
+            &mut ui.new_child(UiBuilder::new().max_rect(arrow)),
+            if is_folded { 0.0 } else { 1.0 },
+            &response.clone().with_new_rect(arrow),
+        );
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        let painter = ui.painter();
+        painter.text(
+            pos2(rect.left() + 20.0, rect.center().y),
+            egui::Align2::LEFT_CENTER,
+            name,
+            font.clone(),
+            colors.muted,
+        );
+        painter.text(
+            pos2(rect.right() - GRID, rect.center().y),
+            egui::Align2::RIGHT_CENTER,
+            count,
+            font,
+            colors.muted,
+        );
+        if response.clicked() {
+            if is_folded {
+                self.folded.retain(|folded| *folded != kind);
+            } else {
+                self.folded.push(kind);
+            }
+        }
+    }
+
+    fn item(&mut self, ui: &mut Ui, editor: &Editor, item: Item, out: &mut Out) {
+        let scene = editor.scene();
+        let Some(name) = item.name(scene) else { return };
+        if self.renaming == Some(item) {
+            self.rename_row(ui, item, name, out);
+            return;
+        }
+        let (icon, visible) = look(scene, item);
+        let is_selected = editor.selection == Selection::Item(item);
+        let (mut rect, mut eye_rect) = (row(ui), Rect::NOTHING);
+        if visible.is_some() {
+            (rect, eye_rect) = rect.split_left_right_at_x(rect.right() - ROW - GRID / 2.0);
+        }
+        let response = entry(
+            ui,
+            rect,
+            Look {
+                icon,
+                is_bright: visible != Some(false),
+                is_selected,
+            },
+            name,
+        );
+        if response.clicked() {
+            out.select(Selection::Item(item));
+        }
+        if response.double_clicked() {
+            self.renaming = Some(item);
+        }
+        reorder(ui, &response, item, out);
+        response.context_menu(|ui| {
+            out.select(Selection::Item(item));
+            for (text, command) in menu::ITEM_COMMANDS {
+                menu::entry(ui, text, command, true, out);
+            }
+        });
+        if let Some(visible) = visible {
+            ui.scope_builder(UiBuilder::new().max_rect(eye_rect), |ui| {
+                eye(ui, scene, item, name, visible, out);
+            });
+        }
+    }
+
+    fn rename_row(&mut self, ui: &mut Ui, item: Item, name: &str, out: &mut Out) {
+        ui.allocate_ui(vec2(ui.available_width(), ROW), |ui| {
+            let id = Id::unique(("rename", item));
+            if !ui.memory(|memory| memory.has_focus(id)) {
+                ui.memory_mut(|memory| memory.request_focus(id));
+            }
+            let new = name_field(ui, "new name", id, name);
+            let is_left = ui.input(|input| {
+                input.key_pressed(Key::Enter)
+                    || input.key_pressed(Key::Escape)
+                    || input.pointer.any_click()
+            });
+            if let Some(new) = new {
+                out.edit(Edit::Rename(item, new));
+                self.renaming = None;
+            } else if is_left {
+                self.renaming = None;
+            }
+        });
+    }
+}
+
+/// The symbol of an item, and whether it is visible if it can be hidden.
+fn look(scene: &Scene, item: Item) -> (MaterialIcon, Option<bool>) {
+    match item.kind {
+        Kind::Light => (
+            icons::LIGHT,
+            scene.lights.get(item.index).map(|light| light.visible),
+        ),
+        Kind::Object => {
+            let object = scene.objects.get(item.index);
+            let icon = object.map_or(icons::SPHERE, |object| icons::of_shape(&object.shape));
+            (icon, object.map(|object| object.visible))
+        }
+        Kind::Pack => (icons::PACK, None),
+    }
+}
+
+/// The next row of the list, over its whole width.
+fn row(ui: &mut Ui) -> Rect {
+    ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover())
+        .0
+}
+
+/// How an entry looks.
+struct Look {
+    icon: MaterialIcon,
+    is_bright: bool,
+    is_selected: bool,
+}
+
+/// An entry that can be selected and dragged.
+fn entry(ui: &mut Ui, rect: Rect, look: Look, name: &str) -> egui::Response {
+    let colors = palette(ui.ctx());
+    let color = if look.is_bright {
+        colors.text
+    } else {
+        colors.muted
+    };
+    let texts = (
+        icons::text(look.icon).color(color),
+        egui::RichText::new(name).color(color),
+    );
+    let button = Button::selectable(look.is_selected, texts)
+        .right_text("")
+        .truncate()
+        .sense(Sense::click_and_drag())
+        .min_size(rect.size());
+    ui.put(rect, button).accessible_name(name)
+}
+
+/// Drag a row onto another to put it there.
+fn reorder(ui: &Ui, response: &egui::Response, item: Item, out: &mut Out) {
+    response.dnd_set_drag_payload(item);
+    let fits = |dragged: &Item| dragged.kind == item.kind && dragged.index != item.index;
+    if let Some(dragged) = response
+        .dnd_hover_payload::<Item>()
+        .filter(|dragged| fits(dragged))
+    {
+        let y = if dragged.index < item.index {
+            response.rect.bottom()
+        } else {
+            response.rect.top()
+        };
+        ui.painter()
+            .hline(response.rect.x_range(), y, (2.0, palette(ui.ctx()).accent));
+    }
+    if let Some(dragged) = response
+        .dnd_release_payload::<Item>()
+        .filter(|dragged| fits(dragged))
+    {
+        out.edit(Edit::Move(*dragged, item.index));
+    }
+}
+
+fn eye(ui: &mut Ui, scene: &Scene, item: Item, name: &str, visible: bool, out: &mut Out) {
+    let (icon, verb) = if visible {
+        (icons::VISIBLE, "Hide")
+    } else {
+        (icons::HIDDEN, "Show")
+    };
+    if !icons::button(ui, icon, &format!("{verb} {name}")).clicked() {
+        return;
+    }
+    let field = if visible { "hide" } else { "show" };
+    match item.kind {
+        Kind::Light => {
+            let light = crate::scene::Light {
+                visible: !visible,
+                ..scene.lights[item.index].clone()
+            };
+            out.edit(Edit::Light(item.index, light, field));
+        }
+        Kind::Object => {
+            let object = crate::scene::Object {
+                visible: !visible,
+                ..scene.objects[item.index].clone()
+            };
+            out.edit(Edit::Object(item.index, object, field));
+        }
+        Kind::Pack => {}
+    }
+}
+
+/// What can be added, placed in front of the camera.
+pub fn add_menu(ui: &mut Ui, scene: &Scene, out: &mut Out) {
+    let (at, size) = in_front_of_camera(scene);
+    for shape in Shape::examples(at, size) {
+        let name = format!("Add {}", shape.kind());
+        if ui
+            .add(Button::new((icons::text(icons::of_shape(&shape)), &name)))
+            .accessible_name(name)
+            .clicked()
+        {
+            out.edit(Edit::AddObject(shape));
+        }
+    }
+    let others = [
+        (
+            icons::LIGHT,
+            "Add Light",
+            Edit::AddLight(at + Vec3::new(0.0, size, 0.0)),
+        ),
+        (icons::PACK, "Add ColorPack", Edit::AddPack),
+    ];
+    for (icon, name, edit) in others {
+        if ui
+            .add(Button::new((icons::text(icon), name)))
+            .accessible_name(name)
+            .clicked()
+        {
+            out.edit(edit);
+        }
+    }
+}
+
+/// Where a new thing goes, and how large it is: in the middle of the picture, a fifth of its height.
+fn in_front_of_camera(scene: &Scene) -> (Vec3<f64>, f64) {
+    let camera = &scene.camera;
+    let look = camera.look_at.unit().unwrap_or(Vec3::new(0.0, 0.0, -1.0));
+    let extent = scene
+        .bounds()
+        .map_or(0.0, |(low, high)| (high - low).length());
+    let distance = if extent > 0.0 { extent / 2.0 } else { 100.0 };
+    let height = match camera.projection {
+        crate::scene::Projection::Perspective => distance / camera.projection_distance,
+        crate::scene::Projection::Orthographic => camera.orthographic_height,
+    };
+    // Whole numbers read better in the inspector, where the scene is large enough for them.
+    let tidy = |x: f64| if distance > 10.0 { x.round() } else { x };
+    let at = camera.position + look * distance;
+    (
+        Vec3::new(tidy(at.x), tidy(at.y), tidy(at.z)),
+        tidy(height / 5.0).max(1e-6),
+    )
+}

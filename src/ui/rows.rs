@@ -1,0 +1,345 @@
+//! The rows of the inspector: label left, value right. Every number drags, types and steps; a
+//! double-click on its label brings the default back; vectors paste as `1, 2, 3`.
+
+use std::cell::Cell;
+use std::ops::RangeInclusive;
+
+use egui::{Align, ComboBox, DragValue, Label, Layout, Response, RichText, Sense, Ui, vec2};
+
+use super::theme::{GRID, HEX, LABEL, ROW};
+use crate::lanes::Vec3;
+use crate::scene::{format_number, parse_vec3};
+
+/// What a number may be, and what is said about it.
+#[derive(Clone, Debug)]
+pub struct Field {
+    /// Label, and accessible name of the value.
+    pub name: &'static str,
+    /// Tooltip: meaning and range.
+    pub hint: &'static str,
+    /// Behind the number.
+    pub unit: &'static str,
+    /// What a double-click on the label brings back.
+    pub default: f64,
+    /// Values outside are pulled to its ends.
+    pub range: RangeInclusive<f64>,
+    /// Change per point of dragging; `None` follows the value's size.
+    pub speed: Option<f64>,
+}
+
+/// A number without bounds, for positions.
+pub fn coordinate(name: &'static str, hint: &'static str) -> Field {
+    Field {
+        name,
+        hint,
+        unit: "",
+        default: 0.0,
+        range: -1e12..=1e12,
+        speed: None,
+    }
+}
+
+/// A stack of rows that remembers which field was changed.
+pub struct Rows<'u> {
+    /// Where the rows go.
+    pub ui: &'u mut Ui,
+    changed: Option<&'static str>,
+}
+
+impl<'u> Rows<'u> {
+    /// No rows yet.
+    pub fn new(ui: &'u mut Ui) -> Self {
+        Self { ui, changed: None }
+    }
+
+    /// The field that changed in this frame, if one did.
+    pub fn changed(&self) -> Option<&'static str> {
+        self.changed
+    }
+
+    fn note(&mut self, name: &'static str, changed: bool) {
+        if changed {
+            self.changed = Some(name);
+        }
+    }
+
+    /// A title above rows.
+    pub fn heading(&mut self, text: &str) {
+        self.ui.add_space(GRID);
+        self.ui.label(RichText::new(text).strong());
+    }
+
+    /// A number.
+    pub fn number(&mut self, field: &Field, value: &mut f64) {
+        let before = *value;
+        row(self.ui, field, |ui, reset| {
+            if reset {
+                *value = field.default;
+            }
+            let width = ui.available_width();
+            drag(ui, field, field.name, value, width, None);
+        });
+        self.note(field.name, *value != before);
+    }
+
+    /// Three numbers in one row.
+    pub fn vector(&mut self, field: &Field, value: &mut Vec3<f64>) {
+        let before = *value;
+        row(self.ui, field, |ui, reset| {
+            if reset {
+                *value = Vec3::splat(field.default);
+            }
+            let pasted = Cell::new(None);
+            let width = (ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0;
+            for (axis, part) in [
+                ("x", &mut value.x),
+                ("y", &mut value.y),
+                ("z", &mut value.z),
+            ] {
+                let name = format!("{} {axis}", field.name);
+                drag(ui, field, &name, part, width, Some(&pasted));
+            }
+            if let Some(whole) = pasted.get() {
+                *value = whole;
+            }
+        });
+        self.note(field.name, *value != before);
+    }
+
+    /// A colour: a swatch that opens a picker, and its channels 0–255.
+    pub fn color(&mut self, name: &'static str, hint: &'static str, value: &mut Vec3<f64>) {
+        let before = *value;
+        let field = Field {
+            name,
+            hint,
+            unit: "",
+            default: 255.0,
+            range: 0.0..=255.0,
+            speed: Some(1.0),
+        };
+        row(self.ui, &field, |ui, reset| {
+            if reset {
+                *value = Vec3::splat(field.default);
+            }
+            ui.spacing_mut().interact_size.x = ROW;
+            swatch(ui, name, value);
+            let gaps = 3.0 * ui.spacing().item_spacing.x;
+            let width = (ui.available_width() - HEX - gaps) / 3.0;
+            let pasted = Cell::new(None);
+            for (channel, part) in [
+                ("red", &mut value.x),
+                ("green", &mut value.y),
+                ("blue", &mut value.z),
+            ] {
+                let name = format!("{name} {channel}");
+                drag(ui, &field, &name, part, width, Some(&pasted));
+            }
+            if let Some(whole) = pasted.get() {
+                *value = whole.clamp(0.0, 255.0);
+            }
+            hex(ui, name, value);
+        });
+        self.note(name, *value != before);
+    }
+
+    /// A tick box.
+    pub fn toggle(&mut self, name: &'static str, hint: &str, value: &mut bool) {
+        let changed = labelled(self.ui, name, hint, |ui, label| {
+            ui.checkbox(value, "")
+                .labelled_by(label.id)
+                .on_hover_text(hint)
+                .changed()
+        });
+        self.note(name, changed);
+    }
+
+    /// One of some words.
+    pub fn choice<T: PartialEq>(
+        &mut self,
+        name: &'static str,
+        hint: &str,
+        value: &mut T,
+        options: impl IntoIterator<Item = (T, String)>,
+    ) {
+        let options: Vec<(T, String)> = options.into_iter().collect();
+        let shown = options
+            .iter()
+            .find(|(option, _)| option == value)
+            .map_or("", |(_, word)| word);
+        let shown = shown.to_owned();
+        let chosen = labelled(self.ui, name, hint, |ui, label| {
+            let combo = ComboBox::from_id_salt(name)
+                .width(ui.available_width())
+                .truncate();
+            let opened = combo.selected_text(shown).show_ui(ui, |ui| {
+                let is_on = |option: &T| option == value;
+                options
+                    .into_iter()
+                    .filter_map(|(option, word)| {
+                        let on = is_on(&option);
+                        ui.selectable_label(on, word).clicked().then_some(option)
+                    })
+                    .last()
+            });
+            opened.response.labelled_by(label.id).on_hover_text(hint);
+            opened.inner.flatten()
+        });
+        if let Some(option) = chosen {
+            let changed = option != *value;
+            *value = option;
+            self.note(name, changed);
+        }
+    }
+}
+
+/// A row whose label resets it.
+fn row(ui: &mut Ui, field: &Field, add: impl FnOnce(&mut Ui, bool)) {
+    let hint = format!(
+        "{}\nDouble-click: back to {}{}",
+        field.hint,
+        format_number(field.default),
+        field.unit
+    );
+    labelled(ui, field.name, &hint, |ui, label| {
+        let reset = label.double_clicked();
+        add(ui, reset);
+    });
+}
+
+/// A label of fixed width, then the rest of the row.
+fn labelled<T>(
+    ui: &mut Ui,
+    name: &str,
+    hint: &str,
+    add: impl FnOnce(&mut Ui, &Response) -> T,
+) -> T {
+    ui.horizontal(|ui| {
+        let layout = Layout::left_to_right(Align::Center);
+        let label = ui.allocate_ui_with_layout(vec2(LABEL, ROW), layout, |ui| {
+            ui.set_min_width(LABEL);
+            ui.add(
+                Label::new(RichText::new(name).weak())
+                    .truncate()
+                    .sense(Sense::click()),
+            )
+        });
+        let label = label.inner.on_hover_text(hint);
+        // Narrow fields keep their digits clear of their borders, and no more.
+        ui.spacing_mut().button_padding.x = GRID / 2.0;
+        add(ui, &label)
+    })
+    .inner
+}
+
+/// One draggable number. Typing three numbers puts them into `pasted` as a whole vector.
+fn drag(
+    ui: &mut Ui,
+    field: &Field,
+    name: &str,
+    value: &mut f64,
+    width: f32,
+    pasted: Option<&Cell<Option<Vec3<f64>>>>,
+) {
+    let by_size = || (value.abs() * 0.01).max(0.01);
+    let speed = field.speed.unwrap_or_else(by_size);
+    let parser = |text: &str| {
+        let text = text.trim().trim_end_matches(field.unit);
+        if let (Some(pasted), Some(whole)) = (pasted, parse_vec3(text)) {
+            pasted.set(Some(whole));
+            return Some(whole.x);
+        }
+        text.trim().parse().ok()
+    };
+    let mut edited = *value;
+    let widget = DragValue::new(&mut edited)
+        .speed(speed)
+        .range(field.range.clone())
+        .clamp_existing_to_range(false)
+        .update_while_editing(false)
+        .custom_formatter(|number, _| rounded(number, field.unit))
+        .suffix(field.unit)
+        .clip_text(true)
+        .custom_parser(parser);
+    let response = ui
+        .add_sized([width.max(8.0), ROW], widget)
+        .accessible_name(name);
+    // Formatting rounds what is shown; only a change by hand may reach the scene.
+    if response.changed() && edited.is_finite() {
+        *value = edited.clamp(*field.range.start(), *field.range.end());
+    }
+    response.on_hover_text(field.hint);
+}
+
+/// The number with enough decimals to see what dragging changes, without a tail of digits.
+fn rounded(value: f64, unit: &str) -> String {
+    let decimals = match value.abs() {
+        _ if unit == "°" => 2,
+        size if size >= 100.0 => 2,
+        size if size >= 1.0 => 3,
+        size if size >= 1e-3 => 5,
+        _ => return format_number(value),
+    };
+    let text = format!("{value:.decimals$}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" {
+        "0".to_owned()
+    } else {
+        text.to_owned()
+    }
+}
+
+fn swatch(ui: &mut Ui, name: &str, value: &mut Vec3<f64>) {
+    let mut bytes = to_bytes(*value);
+    let response = ui
+        .color_edit_button_srgb(&mut bytes)
+        .accessible_name(format!("{name} swatch"));
+    // The button writes rounded colours back in every frame; only a pick counts.
+    if response.changed() {
+        *value = Vec3::from(bytes.map(f64::from));
+    }
+}
+
+/// The colour as `#RRGGBB`, to copy and to type.
+fn hex(ui: &mut Ui, name: &str, value: &mut Vec3<f64>) {
+    let [r, g, b] = to_bytes(*value);
+    let packed = f64::from(u32::from_be_bytes([0, r, g, b]));
+    let mut edited = packed;
+    let widget = DragValue::new(&mut edited)
+        .speed(0.0)
+        .update_while_editing(false)
+        .custom_formatter(|number, _| format!("#{:06X}", number as u32))
+        .custom_parser(|text| parse_hex(text).map(f64::from));
+    let response = ui
+        .add_sized([HEX, ROW], widget)
+        .accessible_name(format!("{name} hex"));
+    if response.changed() && edited != packed {
+        let [_, r, g, b] = (edited as u32).to_be_bytes();
+        *value = Vec3::new(f64::from(r), f64::from(g), f64::from(b));
+    }
+    response.on_hover_text("Click to type or copy, for example #FF8040");
+}
+
+fn parse_hex(text: &str) -> Option<u32> {
+    let digits = text.trim().trim_start_matches('#');
+    (digits.len() == 6)
+        .then(|| u32::from_str_radix(digits, 16).ok())
+        .flatten()
+}
+
+fn to_bytes(color: Vec3<f64>) -> [u8; 3] {
+    color.to_array().map(|channel| channel.round() as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hex_colours_are_read_with_or_without_hash() {
+        assert_eq!(parse_hex("#FF8040"), Some(0x00FF_8040));
+        assert_eq!(parse_hex(" ff8040 "), Some(0x00FF_8040));
+        for text in ["", "#FFF", "#GG8040", "#FF804000"] {
+            assert_eq!(parse_hex(text), None, "{text}");
+        }
+    }
+}

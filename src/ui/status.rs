@@ -1,0 +1,85 @@
+//! The line at the bottom: the truth about the picture on screen, and what the tracer is doing.
+
+use std::time::{Duration, Instant};
+
+use egui::{Align, Layout, ProgressBar, RichText, Ui};
+
+use super::Out;
+use super::commands::Command;
+use crate::worker::Activity;
+
+/// Time after which a running picture is worth showing that it runs.
+const PATIENCE: Duration = Duration::from_millis(100);
+/// Time after which the remaining time is shown.
+const FORECAST: Duration = Duration::from_secs(1);
+
+/// Shows the line.
+pub fn show(
+    ui: &mut Ui,
+    picture: &str,
+    activity: &Activity,
+    autosaved: Option<Instant>,
+    out: &mut Out,
+) {
+    ui.horizontal_centered(|ui| {
+        ui.label(RichText::new(picture).monospace().weak());
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| match activity {
+            Activity::Still {
+                done,
+                total,
+                elapsed,
+            } if *elapsed >= PATIENCE => {
+                progress(ui, *done, *total, *elapsed, out);
+            }
+            Activity::Idle => {
+                if let Some(at) = autosaved {
+                    ui.weak(format!("autosaved {}", ago(at.elapsed())));
+                }
+            }
+            Activity::Live { .. } | Activity::Still { .. } => {
+                ui.weak("tracing");
+            }
+        });
+    });
+}
+
+fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut Out) {
+    let share = done as f64 / total.max(1) as f64;
+    if ui
+        .small_button("Cancel")
+        .on_hover_text("Give the high-res picture up (Esc)")
+        .clicked()
+    {
+        out.commands.push(Command::CancelStill);
+    }
+    let left = if elapsed >= FORECAST && share > 0.0 {
+        let seconds = elapsed.as_secs_f64() * (1.0 - share) / share;
+        format!(" · {} left", in_words(seconds))
+    } else {
+        String::new()
+    };
+    // Never 100 % before it is done.
+    let text = format!("High-res {:.0} %{left}", (share * 100.0).floor().min(99.0));
+    ui.add(
+        ProgressBar::new(share as f32)
+            .desired_width(180.0)
+            .text(text),
+    );
+    ui.request_repaint_after(Duration::from_millis(50));
+}
+
+fn in_words(seconds: f64) -> String {
+    if seconds < 90.0 {
+        format!("{:.0} s", seconds.ceil())
+    } else {
+        format!("{:.0} min", (seconds / 60.0).ceil())
+    }
+}
+
+fn ago(time: Duration) -> String {
+    match time.as_secs() {
+        0..=2 => "just now".to_owned(),
+        seconds @ 3..=89 => format!("{seconds} s ago"),
+        seconds => format!("{} min ago", seconds / 60),
+    }
+}

@@ -1,0 +1,158 @@
+//! Every colour and every spacing of the window. Nothing else in `ui` names one.
+
+use egui::style::WidgetVisuals;
+use egui::{
+    Color32, Context, CornerRadius, FontFamily, FontId, Stroke, Style, TextStyle, Theme, Visuals,
+    vec2,
+};
+
+/// Height of a row of widgets, in points.
+pub const ROW: f32 = 24.0;
+/// The grid: spacings are multiples of half of it.
+pub const GRID: f32 = 8.0;
+/// Width of the labels in the inspector.
+pub const LABEL: f32 = 80.0;
+/// Width of the outliner when it is first shown.
+pub const OUTLINER: f32 = 224.0;
+/// Width of the inspector; it does not follow its content.
+pub const INSPECTOR: f32 = 320.0;
+/// Width of a colour as `#RRGGBB`.
+pub const HEX: f32 = 60.0;
+/// Size of plain text.
+pub const TEXT: f32 = 13.0;
+/// Size of the icons.
+pub const ICON: f32 = 16.0;
+
+const RADIUS: CornerRadius = CornerRadius::same(4);
+
+/// The roles that colours play.
+#[derive(Clone, Copy, Debug)]
+pub struct Palette {
+    /// Behind everything, around the picture.
+    pub window: Color32,
+    /// Panels.
+    pub panel: Color32,
+    /// Fields and buttons.
+    pub raised: Color32,
+    /// Fields and buttons under the pointer.
+    pub hovered: Color32,
+    /// Lines between panels.
+    pub line: Color32,
+    /// Text.
+    pub text: Color32,
+    /// Text that explains.
+    pub muted: Color32,
+    /// The one accent: selection, primary button.
+    pub accent: Color32,
+    /// Text on the accent.
+    pub on_accent: Color32,
+    /// The selected row.
+    pub selected: Color32,
+    /// Errors, and nothing else.
+    pub error: Color32,
+}
+
+const DARK: Palette = Palette {
+    window: Color32::from_rgb(0x16, 0x18, 0x1D),
+    panel: Color32::from_rgb(0x1C, 0x1F, 0x26),
+    raised: Color32::from_rgb(0x24, 0x28, 0x32),
+    hovered: Color32::from_rgb(0x2F, 0x34, 0x40),
+    line: Color32::from_rgb(0x2F, 0x34, 0x40),
+    text: Color32::from_rgb(0xD7, 0xDB, 0xE4),
+    muted: Color32::from_rgb(0x8B, 0x93, 0xA5),
+    accent: Color32::from_rgb(0xF2, 0xB1, 0x34),
+    on_accent: Color32::from_rgb(0x16, 0x18, 0x1D),
+    selected: Color32::from_rgb(0x4A, 0x3D, 0x22),
+    error: Color32::from_rgb(0xFF, 0x6B, 0x6B),
+};
+
+const LIGHT: Palette = Palette {
+    window: Color32::from_rgb(0xD9, 0xDC, 0xE2),
+    panel: Color32::from_rgb(0xF4, 0xF5, 0xF8),
+    raised: Color32::from_rgb(0xE6, 0xE9, 0xEF),
+    hovered: Color32::from_rgb(0xD5, 0xDA, 0xE3),
+    line: Color32::from_rgb(0xC9, 0xCE, 0xD8),
+    text: Color32::from_rgb(0x22, 0x26, 0x2E),
+    muted: Color32::from_rgb(0x5F, 0x68, 0x7A),
+    accent: Color32::from_rgb(0xB4, 0x77, 0x00),
+    on_accent: Color32::from_rgb(0xFF, 0xFF, 0xFF),
+    selected: Color32::from_rgb(0xF6, 0xE2, 0xB8),
+    error: Color32::from_rgb(0xC6, 0x28, 0x28),
+};
+
+/// The colours of the theme that is on.
+pub fn palette(ctx: &Context) -> Palette {
+    of(ctx.theme())
+}
+
+fn of(theme: Theme) -> Palette {
+    match theme {
+        Theme::Dark => DARK,
+        Theme::Light => LIGHT,
+    }
+}
+
+/// Gives the window its fonts and both its themes; the dark one is on until the user chooses.
+pub fn install(ctx: &Context) {
+    egui_material_icons::initialize(ctx);
+    for theme in [Theme::Dark, Theme::Light] {
+        ctx.style_mut_of(theme, |style| restyle(style, theme));
+    }
+    ctx.set_theme(Theme::Dark);
+}
+
+fn restyle(style: &mut Style, theme: Theme) {
+    let spacing = &mut style.spacing;
+    spacing.item_spacing = vec2(GRID / 2.0, GRID / 2.0);
+    spacing.button_padding = vec2(GRID, GRID / 4.0);
+    spacing.interact_size = vec2(40.0, ROW);
+    spacing.combo_width = 0.0;
+    style.text_styles = [
+        (TextStyle::Small, 11.0, FontFamily::Proportional),
+        (TextStyle::Body, TEXT, FontFamily::Proportional),
+        (TextStyle::Button, TEXT, FontFamily::Proportional),
+        (TextStyle::Heading, 16.0, FontFamily::Proportional),
+        (TextStyle::Monospace, 12.0, FontFamily::Monospace),
+    ]
+    .into_iter()
+    .map(|(name, size, family)| (name, FontId::new(size, family)))
+    .collect();
+    style.drag_value_text_style = TextStyle::Monospace;
+    style.interaction.selectable_labels = false;
+    style.interaction.tooltip_delay = 0.5;
+    style.visuals = visuals(theme);
+}
+
+fn visuals(theme: Theme) -> Visuals {
+    let p = of(theme);
+    let mut visuals = theme.default_visuals();
+    visuals.override_text_color = None;
+    visuals.weak_text_color = Some(p.muted);
+    visuals.panel_fill = p.panel;
+    visuals.window_fill = p.panel;
+    visuals.window_stroke = Stroke::new(1.0, p.line);
+    visuals.extreme_bg_color = p.window;
+    visuals.text_edit_bg_color = Some(p.raised);
+    visuals.faint_bg_color = p.raised;
+    visuals.error_fg_color = p.error;
+    visuals.warn_fg_color = p.accent;
+    visuals.hyperlink_color = p.accent;
+    visuals.selection.bg_fill = p.selected;
+    visuals.selection.stroke = Stroke::new(1.0, p.accent);
+    visuals.window_corner_radius = RADIUS;
+    visuals.menu_corner_radius = RADIUS;
+    let state = |fill: Color32, text: Color32, border: Color32| WidgetVisuals {
+        bg_fill: fill,
+        weak_bg_fill: fill,
+        bg_stroke: Stroke::new(1.0, border),
+        corner_radius: RADIUS,
+        fg_stroke: Stroke::new(1.0, text),
+        expansion: 0.0,
+    };
+    visuals.widgets.noninteractive = state(p.panel, p.text, p.line);
+    visuals.widgets.inactive = state(p.raised, p.text, p.line);
+    visuals.widgets.hovered = state(p.hovered, p.text, Color32::TRANSPARENT);
+    visuals.widgets.active = state(p.hovered, p.text, p.accent);
+    visuals.widgets.open = state(p.hovered, p.text, Color32::TRANSPARENT);
+    visuals
+}

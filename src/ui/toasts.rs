@@ -1,0 +1,116 @@
+//! Messages in the lower right corner: what happened, until read; what went wrong, until dismissed.
+
+use egui::{Align2, Area, Context, Frame, Id, Margin, RichText, ScrollArea, Stroke, vec2};
+
+use super::icons;
+use super::theme::{GRID, palette};
+use crate::editor::Message;
+
+/// Seconds that a message stays that is not an error.
+const LIFETIME: f64 = 5.0;
+/// Most messages on screen; older ones make room.
+const MOST: usize = 5;
+
+/// The messages on screen.
+#[derive(Debug, Default)]
+pub struct Toasts {
+    shown: Vec<Toast>,
+}
+
+#[derive(Debug)]
+struct Toast {
+    message: Message,
+    /// Time of `Context` at which it appeared.
+    since: f64,
+}
+
+impl Toasts {
+    /// Puts messages on screen; one that is there already is renewed instead of repeated.
+    pub fn push(&mut self, ctx: &Context, messages: Vec<Message>) {
+        let since = ctx.input(|input| input.time);
+        for message in messages {
+            self.shown.retain(|toast| toast.message != message);
+            self.shown.push(Toast { message, since });
+        }
+        let excess = self.shown.len().saturating_sub(MOST);
+        self.shown.drain(..excess);
+    }
+
+    /// Draws them above the status line.
+    pub fn show(&mut self, ctx: &Context) {
+        let now = ctx.input(|input| input.time);
+        self.shown
+            .retain(|toast| toast.message.is_error || now - toast.since < LIFETIME);
+        let next = self
+            .shown
+            .iter()
+            .filter(|toast| !toast.message.is_error)
+            .map(|t| t.since + LIFETIME - now);
+        if let Some(seconds) = next.reduce(f64::min) {
+            ctx.request_repaint_after_secs(seconds as f32);
+        }
+        let mut height = 4.0 * GRID;
+        let mut dismissed = None;
+        for (index, toast) in self.shown.iter().enumerate().rev() {
+            let area = Area::new(Id::unique(("toast", index)))
+                .anchor(Align2::RIGHT_BOTTOM, vec2(-2.0 * GRID, -height))
+                .order(egui::Order::Foreground)
+                .show(ctx, |ui| draw(ui, &toast.message));
+            if area.inner {
+                dismissed = Some(index);
+            }
+            height += area.response.rect.height() + GRID;
+        }
+        if let Some(index) = dismissed {
+            self.shown.remove(index);
+        }
+    }
+}
+
+/// Draws one message; true if it was dismissed.
+fn draw(ui: &mut egui::Ui, message: &Message) -> bool {
+    let colors = palette(ui.ctx());
+    let (icon, color) = if message.is_error {
+        (icons::ERROR, colors.error)
+    } else {
+        (icons::INFO, colors.accent)
+    };
+    let frame = Frame::new()
+        .fill(colors.raised)
+        .stroke(Stroke::new(
+            1.0,
+            if message.is_error {
+                colors.error
+            } else {
+                colors.line
+            },
+        ))
+        .corner_radius(4)
+        .inner_margin(Margin::same(10));
+    frame
+        .show(ui, |ui| {
+            ui.set_width(440.0);
+            ui.horizontal_top(|ui| {
+                ui.label(icons::text(icon).color(color));
+                ui.vertical(|ui| {
+                    ui.set_width(ui.available_width() - 2.0 * super::theme::ROW - 2.0 * GRID);
+                    ScrollArea::vertical().max_height(160.0).show(ui, |ui| {
+                        let text = RichText::new(&message.text).color(colors.text);
+                        // A refused file shows its line and a caret, which must stand under each other.
+                        let text = if message.text.contains('\n') {
+                            text.monospace()
+                        } else {
+                            text
+                        };
+                        ui.add(egui::Label::new(text).wrap().selectable(true));
+                    });
+                });
+                if icons::button(ui, icons::COPY, "Copy message").clicked() {
+                    ui.copy_text(message.text.clone());
+                }
+                icons::button(ui, icons::CLOSE, "Dismiss").clicked()
+            })
+            .inner
+        })
+        .inner
+}

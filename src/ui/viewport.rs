@@ -1,0 +1,229 @@
+//! The picture in the middle: exact pixels, letterboxed, nothing over it.
+
+use std::sync::Arc;
+
+use egui::{
+    Color32, ColorImage, Context, Painter, Pos2, Rect, Response, ScrollArea, Sense, TextureFilter,
+    TextureHandle, TextureOptions, TextureWrapMode, Ui, Vec2, pos2, vec2,
+};
+
+use crate::scene::Scene;
+use crate::worker::Frame;
+
+/// Each picture pixel is a square of screen pixels; a larger picture is averaged, not picked from.
+const SHARP: TextureOptions = TextureOptions {
+    magnification: TextureFilter::Nearest,
+    minification: TextureFilter::Linear,
+    wrap_mode: TextureWrapMode::ClampToEdge,
+    mipmap_mode: None,
+};
+
+/// The newest pictures of each kind, on the graphics card.
+#[derive(Default)]
+pub struct Screen {
+    live: Option<Shown>,
+    still: Option<Shown>,
+}
+
+struct Shown {
+    frame: Frame,
+    texture: TextureHandle,
+}
+
+/// Where the picture goes, and its size in screen pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// On the screen, in points, on whole pixels.
+    pub rect: Rect,
+    /// Width and height in pixels.
+    pub pixels: (u32, u32),
+}
+
+impl Screen {
+    /// Takes up a picture, unless a newer one is shown.
+    pub fn take(&mut self, ctx: &Context, frame: Frame) {
+        let place = if frame.is_still {
+            &mut self.still
+        } else {
+            &mut self.live
+        };
+        if place
+            .as_ref()
+            .is_some_and(|shown| shown.frame.revision > frame.revision)
+        {
+            return;
+        }
+        let pixels = frame
+            .image
+            .pixels
+            .iter()
+            .map(|&[r, g, b, _]| Color32::from_rgb(r, g, b));
+        let image = ColorImage::new([frame.image.width, frame.image.height], pixels.collect());
+        let name = if frame.is_still {
+            "still picture"
+        } else {
+            "live view"
+        };
+        match place {
+            Some(shown) => {
+                shown.texture.set(image, SHARP);
+                shown.frame = frame;
+            }
+            None => {
+                *place = Some(Shown {
+                    texture: ctx.load_texture(name, image, SHARP),
+                    frame,
+                })
+            }
+        }
+    }
+
+    /// The still picture of this revision and size, if it is there.
+    pub fn still(&self, revision: u64, size: (u32, u32)) -> Option<&Frame> {
+        let frame = &self.still.as_ref()?.frame;
+        let (width, height) = (size.0 as usize, size.1 as usize);
+        (frame.revision == revision && frame.full_size == (width, height)).then_some(frame)
+    }
+
+    /// The newest live picture.
+    pub fn live(&self) -> Option<&Frame> {
+        self.live.as_ref().map(|shown| &shown.frame)
+    }
+
+    /// Draws the still picture at its own size, with scroll bars.
+    pub fn show_still_at_actual_size(&self, ui: &mut Ui) -> Option<Response> {
+        let shown = self.still.as_ref()?;
+        let scale = ui.pixels_per_point();
+        let (width, height) = shown.frame.full_size;
+        let size = vec2(width as f32, height as f32) / scale;
+        let output = ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+            let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+            let corner = (rect.min.to_vec2() * scale).round() / scale;
+            paint(
+                ui.painter(),
+                shown,
+                Rect::from_min_size(corner.to_pos2(), size),
+            );
+            response
+        });
+        Some(output.inner)
+    }
+
+    /// Draws the still picture, or the newest live one, into its place.
+    pub fn show(&self, ui: &mut Ui, place: Place, still: bool) -> Response {
+        let response = ui.allocate_rect(place.rect, Sense::click_and_drag());
+        let name = if still {
+            "High-res picture"
+        } else {
+            "Live view"
+        };
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
+        let shown = if still {
+            self.still.as_ref().or(self.live.as_ref())
+        } else {
+            self.live.as_ref()
+        };
+        if let Some(shown) = shown {
+            paint(ui.painter(), shown, place.rect);
+        }
+        response
+    }
+}
+
+/// A coarse picture has every `step`-th pixel: each is drawn as a square around its own place, so
+/// that nothing moves when the picture becomes finer.
+fn paint(painter: &Painter, shown: &Shown, rect: Rect) {
+    let Frame {
+        image,
+        full_size,
+        step,
+        ..
+    } = &shown.frame;
+    let share = |thin: usize, full: usize| {
+        let covered = (thin * step) as f32;
+        let half = (step / 2) as f32;
+        (half / covered, (full as f32 + half) / covered)
+    };
+    let (left, right) = share(image.width, full_size.0);
+    let (top, bottom) = share(image.height, full_size.1);
+    let part = Rect::from_min_max(pos2(left, top), pos2(right, bottom));
+    painter.image(shown.texture.id(), rect, part, Color32::WHITE);
+}
+
+/// The largest place of the picture's aspect in `area`, on whole screen pixels.
+pub fn fit(area: Rect, scene: &Scene, pixels_per_point: f32) -> Place {
+    let aspect = scene.render.width as f32 / scene.render.height as f32;
+    let space = area.size() * pixels_per_point;
+    let width = space.x.min(space.y * aspect).floor().max(1.0);
+    let height = (width / aspect)
+        .round()
+        .clamp(1.0, space.y.floor().max(1.0));
+    let size = Vec2::new(width, height);
+    let corner = (area.center().to_vec2() * pixels_per_point - size / 2.0).round();
+    let rect = Rect::from_min_size(
+        Pos2::ZERO + corner / pixels_per_point,
+        size / pixels_per_point,
+    );
+    Place {
+        rect,
+        pixels: (width as u32, height as u32),
+    }
+}
+
+/// The size of the low-res view: 64 pixels along the longer side.
+pub fn low_res(pixels: (u32, u32)) -> (u32, u32) {
+    const LONGER: f32 = 64.0;
+    let scale = LONGER / pixels.0.max(pixels.1) as f32;
+    let side = |side: u32| ((side as f32 * scale).round() as u32).max(1);
+    (side(pixels.0), side(pixels.1))
+}
+
+/// What the status line says about a picture.
+pub fn describe(frame: &Frame, scene: &Arc<Scene>) -> String {
+    let (width, height) = frame.full_size;
+    let (thin, low) = (frame.image.width, frame.image.height);
+    let size = if frame.step == 1 {
+        format!("{width}×{height}")
+    } else {
+        format!("{thin}×{low} of {width}×{height}")
+    };
+    let camera = frame.cost.rays.camera.max(1) as f64;
+    let per_pixel = frame.cost.rays.total() as f64 / camera;
+    let bounces = scene.render.reflection_limit;
+    let objects = scene.objects.iter().filter(|object| object.visible).count();
+    format!(
+        "{size} · {:.1} ms · {per_pixel:.1} rays/px · {} · {bounces} bounce{} · {objects} object{}",
+        frame.cost.time.as_secs_f64() * 1e3,
+        frame.cost.lanes,
+        if bounces == 1 { "" } else { "s" },
+        if objects == 1 { "" } else { "s" },
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_picture_keeps_its_aspect_and_sits_on_whole_pixels() {
+        let mut scene = Scene::demo();
+        scene.render.width = 1920;
+        scene.render.height = 1080;
+        for scale in [1.0, 1.25, 2.0] {
+            let area = Rect::from_min_size(pos2(10.3, 33.7), vec2(701.3, 650.2));
+            let Place { rect, pixels } = fit(area, &scene, scale);
+            assert!(area.expand(1.0).contains_rect(rect));
+            let aspect = pixels.0 as f32 / pixels.1 as f32;
+            assert!((aspect - 16.0 / 9.0).abs() < 0.01, "{pixels:?}");
+            let corner = rect.min.to_vec2() * scale;
+            assert!((corner - corner.round()).length() < 1e-3, "{corner:?}");
+        }
+    }
+
+    #[test]
+    fn low_res_is_the_ancestors_64() {
+        assert_eq!(low_res((700, 700)), (64, 64));
+        assert_eq!(low_res((1920, 1080)), (64, 36));
+        assert_eq!(low_res((1, 5000)), (1, 64));
+    }
+}
