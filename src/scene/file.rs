@@ -10,6 +10,7 @@ use ron::ser::PrettyConfig;
 
 use super::check::{Problem, check};
 use super::locate::{claimed_version, has_inner_comments, header, locate};
+use super::words::sentence;
 use super::{Scene, VERSION};
 
 /// Longest scene file that is read, in bytes: room for about 200,000 objects.
@@ -136,7 +137,10 @@ impl Document {
         let scene: Scene = options().from_str(text).map_err(|error| {
             let start = error.span.start;
             let at = offset_of(text, start.line, start.col);
-            refuse(name, text, at, sentence_of(&error.code))
+            let sentence = sentence(&error.code, MAX_DEPTH);
+            let is_end = text[at..].trim().is_empty() && error.code != ron::Error::Eof;
+            let ends = if is_end { "the file ends here; " } else { "" };
+            refuse(name, text, at, format!("{ends}{sentence}"))
         })?;
         match check(&scene) {
             Ok(()) => Ok(Self {
@@ -264,18 +268,6 @@ fn options() -> ron::Options {
     ron::Options::default()
         .with_default_extension(Extensions::IMPLICIT_SOME)
         .with_recursion_limit(MAX_DEPTH)
-}
-
-/// The parser's own words, without its full stops and back-ticks around whole sentences.
-fn sentence_of(error: &ron::Error) -> String {
-    match error {
-        ron::Error::Message(message) => message.clone(),
-        ron::Error::ExceededRecursionLimit => {
-            format!("brackets are nested more than {MAX_DEPTH} deep")
-        }
-        ron::Error::Eof => "the file ends in the middle of the scene".to_owned(),
-        other => other.to_string(),
-    }
 }
 
 fn refuse_problem(name: &str, text: &str, problem: Option<Problem>) -> SceneError {

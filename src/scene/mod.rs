@@ -11,6 +11,7 @@ mod locate;
 mod notation;
 mod recovery;
 mod shape;
+mod words;
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};

@@ -101,10 +101,8 @@ impl Quiet {
 
 impl Drop for Quiet {
     fn drop(&mut self) {
-        if !std::thread::panicking() {
-            let usual = Arc::clone(&self.0);
-            std::panic::set_hook(Box::new(move |info| usual(info)));
-        }
+        let usual = Arc::clone(&self.0);
+        std::panic::set_hook(Box::new(move |info| usual(info)));
     }
 }
 

@@ -1,0 +1,62 @@
+//! What the RON parser found wrong, in sentences for people.
+
+use ron::Error;
+
+/// The sentence for a parser's error, without a full stop. `max_depth` is the parser's limit.
+pub fn sentence(error: &Error, max_depth: usize) -> String {
+    match error {
+        Error::Message(message) => message.clone(),
+        Error::Eof => "the file ends in the middle of the scene".to_owned(),
+        Error::ExceededRecursionLimit => format!("brackets are nested more than {max_depth} deep"),
+        Error::NoSuchStructField {
+            expected,
+            found,
+            outer,
+        } => {
+            let owner = outer.as_deref().unwrap_or("this");
+            format!("{owner} has no field `{found}`; it has {}", list(expected))
+        }
+        Error::NoSuchEnumVariant {
+            expected, found, ..
+        } => {
+            format!("there is no `{found}` here; expected {}", list(expected))
+        }
+        Error::MissingStructField { field, outer } => {
+            let owner = outer.as_deref().unwrap_or("this");
+            format!("{owner} needs a field `{field}`, which is not there")
+        }
+        Error::DuplicateStructField { field, .. } => format!("the field `{field}` comes twice"),
+        Error::ExpectedDifferentLength { found, .. } => {
+            format!("expected three numbers such as (1, 2, 3), found {found}")
+        }
+        Error::ExpectedNamedStructLike(name) => format!("expected {name}(…)"),
+        Error::ExpectedDifferentStructName { expected, found } => {
+            format!("expected {expected}(…), found {found}")
+        }
+        Error::ExpectedBoolean => "expected true or false".to_owned(),
+        Error::ExpectedFloat => "expected a number".to_owned(),
+        Error::ExpectedInteger => "expected a whole number".to_owned(),
+        Error::ExpectedString => "expected a text in quotation marks".to_owned(),
+        Error::ExpectedStringEnd => "the text has no closing quotation mark".to_owned(),
+        Error::ExpectedArray => "expected a list: […]".to_owned(),
+        Error::ExpectedMap => "expected a map: {\"name\": …}".to_owned(),
+        Error::ExpectedComma => "expected a comma".to_owned(),
+        Error::ExpectedArrayEnd | Error::ExpectedStructLikeEnd => {
+            "expected a comma or the closing bracket".to_owned()
+        }
+        Error::IntegerOutOfBounds => {
+            "the number is out of range; expected a whole number from 0 to 4294967295".to_owned()
+        }
+        Error::UnclosedBlockComment => "the comment has no closing */".to_owned(),
+        Error::TrailingCharacters => "there is more text behind the end of the scene".to_owned(),
+        other => other.to_string(),
+    }
+}
+
+fn list(names: &[&str]) -> String {
+    names
+        .iter()
+        .map(|name| format!("`{name}`"))
+        .collect::<Vec<_>>()
+        .join(", ")
+}

@@ -1,0 +1,264 @@
+//! The command line, through the real binary.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+const DEMO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/demo.ron");
+const BAD: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/tests/it/bad_scenes/sphere_radius_zero.ron"
+);
+
+fn glint(folder: &Path, words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_glint"))
+        .args(words)
+        .current_dir(folder)
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .output()
+        .expect("the program starts")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a folder")
+}
+
+#[test]
+fn render_writes_the_picture_and_one_json_object() {
+    let folder = folder();
+    let words = [
+        "render",
+        DEMO,
+        "-o",
+        "a.png",
+        "--width",
+        "96",
+        "--height",
+        "64",
+        "--threads",
+        "2",
+        "--repeat",
+        "3",
+        "--antialias",
+        "none",
+        "--stats",
+    ];
+    let run = glint(folder.path(), &words);
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    let stats: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    let mut keys: Vec<&String> = stats.as_object().expect("an object").keys().collect();
+    keys.sort();
+    assert_eq!(
+        keys,
+        [
+            "height",
+            "lanes",
+            "rays",
+            "threads",
+            "trace_ms",
+            "trace_ms_min",
+            "width"
+        ]
+    );
+    assert_eq!(
+        (&stats["width"], &stats["height"], &stats["threads"]),
+        (&96.into(), &64.into(), &2.into())
+    );
+    assert_eq!(stats["rays"]["camera"], 96 * 64);
+    assert!(
+        stats["rays"]["shadow"].as_u64() > Some(0) && stats["rays"]["reflected"].as_u64() > Some(0)
+    );
+    assert!(stats["trace_ms"].as_f64() >= stats["trace_ms_min"].as_f64());
+    assert_eq!(stats["lanes"], "f32×1");
+    let picture = image::open(folder.path().join("a.png")).expect("a picture");
+    assert_eq!((picture.width(), picture.height()), (96, 64));
+}
+
+#[test]
+fn formats_threads_and_repeats_give_the_same_pixels() {
+    let folder = folder();
+    for (name, extra) in [
+        ("a.png", ["--threads", "1"]),
+        ("b.ppm", ["--threads", "7"]),
+        ("c.PNG", ["--repeat", "2"]),
+    ] {
+        let words = [&["render", DEMO, "-o", name, "--width", "120"][..], &extra].concat();
+        assert!(glint(folder.path(), &words).status.success());
+    }
+    let pixels = ["a.png", "b.ppm", "c.PNG"].map(|name| {
+        image::open(folder.path().join(name))
+            .expect("a picture")
+            .to_rgb8()
+    });
+    assert_eq!(
+        pixels[0].dimensions(),
+        (120, 120),
+        "a width alone keeps the aspect"
+    );
+    assert!(pixels[0] == pixels[1] && pixels[1] == pixels[2]);
+    assert!(
+        std::fs::read(folder.path().join("b.ppm"))
+            .expect("there")
+            .starts_with(b"P6")
+    );
+}
+
+#[test]
+fn the_camera_can_be_chosen() {
+    let folder = folder();
+    for name in ["perspective", "orthographic"] {
+        let file = format!("{name}.ppm");
+        let words = [
+            "render", DEMO, "-o", &file, "--width", "64", "--camera", name,
+        ];
+        assert!(glint(folder.path(), &words).status.success());
+    }
+    let read = |name: &str| std::fs::read(folder.path().join(name)).expect("there");
+    assert_ne!(read("perspective.ppm"), read("orthographic.ppm"));
+}
+
+#[test]
+fn wrong_words_and_wrong_files_exit_with_2() {
+    let folder = folder();
+    let cases: [(&[&str], &str); 11] = [
+        (&["render", DEMO], "--output <IMAGE>"),
+        (
+            &["render", DEMO, "-o", "a.jpg"],
+            "\"a.jpg\" ends in no known picture format",
+        ),
+        (
+            &["render", DEMO, "-o", "a.png", "--width", "0"],
+            "0 is not in 1..=16384",
+        ),
+        (
+            &["render", DEMO, "-o", "a.png", "--antialias", "adaptive"],
+            "adaptive is not built yet; use none",
+        ),
+        (
+            &["render", DEMO, "-o", "a.png", "--antialias", "grid:4"],
+            "grid:4 is not built yet; use none",
+        ),
+        (
+            &[
+                "render",
+                DEMO,
+                "-o",
+                "a.png",
+                "--triangle",
+                "moller-trumbore",
+            ],
+            "moller-trumbore is not built yet",
+        ),
+        (&["render", DEMO, "-o", "a.png", "--frame", "3"], "--frame"),
+        (
+            &["render", BAD, "-o", "a.png"],
+            "radius must be greater than 0, found 0",
+        ),
+        (
+            &["render", "missing.ron", "-o", "a.png"],
+            "cannot read missing.ron",
+        ),
+        (&["chart", DEMO], "`glint chart` is not built yet"),
+        (&["check"], "<SCENE>..."),
+    ];
+    for (words, expected) in cases {
+        let run = glint(folder.path(), words);
+        assert_eq!(run.status.code(), Some(2), "{words:?}");
+        assert!(
+            text(&run.stderr).contains(expected),
+            "{words:?}: {}",
+            text(&run.stderr)
+        );
+        assert!(run.stdout.is_empty(), "{words:?}: {}", text(&run.stdout));
+    }
+    let left = std::fs::read_dir(folder.path()).expect("there").count();
+    assert_eq!(left, 0, "a refused command writes nothing");
+}
+
+#[test]
+fn failed_work_exits_with_1_and_names_the_file() {
+    let run = glint(
+        folder().path(),
+        &[
+            "render",
+            DEMO,
+            "-o",
+            "no/such/folder/a.png",
+            "--width",
+            "16",
+        ],
+    );
+    assert_eq!(run.status.code(), Some(1));
+    assert!(
+        text(&run.stderr).starts_with("error: cannot write no/such/folder/a.png: "),
+        "{}",
+        text(&run.stderr)
+    );
+}
+
+#[test]
+fn check_answers_for_every_file() {
+    let run = glint(folder().path(), &["check", DEMO, BAD]);
+    assert_eq!(run.status.code(), Some(2));
+    assert_eq!(
+        text(&run.stdout),
+        format!("{DEMO}: ok, 9 objects, 2 lights, 5 color packs\n")
+    );
+    let complaint = text(&run.stderr);
+    assert!(
+        complaint.contains(&format!(
+            "{BAD}:4:102: radius must be greater than 0, found 0"
+        )),
+        "{complaint}"
+    );
+    assert!(complaint.trim_end().ends_with('^'), "{complaint}");
+}
+
+#[test]
+fn help_and_version_are_results() {
+    for (words, expected) in [
+        (["--help"], "Usage: glint"),
+        (["--version"], env!("CARGO_PKG_VERSION")),
+    ] {
+        let run = glint(folder().path(), &words);
+        assert!(run.status.success() && text(&run.stdout).contains(expected));
+    }
+}
+
+#[test]
+fn without_a_display_the_editor_ends_in_a_picture() {
+    let folder = folder();
+    let run = glint(folder.path(), &[]);
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    let said = text(&run.stderr);
+    assert_eq!(said.lines().count(), 2, "{said}");
+    assert!(
+        said.contains("no window")
+            && said.contains("libxkbcommon-x11-0")
+            && said.contains("glint render"),
+        "{said}"
+    );
+    assert!(!said.contains("panicked"), "{said}");
+    let picture = image::open(folder.path().join("demo.png")).expect("a picture");
+    assert_eq!((picture.width(), picture.height()), (1024, 1024));
+    // A second run overwrites nothing.
+    std::fs::write(folder.path().join("demo.png"), "mine").expect("written");
+    assert!(glint(folder.path(), &[DEMO]).status.success());
+    assert_eq!(
+        std::fs::read(folder.path().join("demo.png")).expect("there"),
+        b"mine"
+    );
+    assert!(folder.path().join("demo-2.png").exists());
+    let bad = glint(folder.path(), &[BAD]);
+    assert_eq!(bad.status.code(), Some(2));
+    assert!(
+        text(&bad.stderr).contains("radius must be greater than 0"),
+        "{}",
+        text(&bad.stderr)
+    );
+}

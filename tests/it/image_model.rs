@@ -1,0 +1,328 @@
+//! The picture: the same bytes however it is made, and the model's rules on analytic scenes.
+
+use std::collections::HashSet;
+
+use glint::image::{Image, render};
+use glint::lanes::Vec3;
+use glint::plan::{Methods, Picture, Precision, RayOffset, SphereMethod, TriangleMethod};
+use glint::scene::{Projection, Scene, Shape};
+use glint::trace::{Grid, Rays, Threads, Tracer, Watch};
+
+use crate::random;
+
+fn picture(scene: &Scene, picture: &Picture) -> (Image, Rays) {
+    let (image, cost) = render(scene, picture, &Watch::default()).expect("not stopped");
+    (image, cost.rays)
+}
+
+fn small(scene: &Scene) -> Image {
+    picture(scene, &Picture::sized(160, 120)).0
+}
+
+/// The colour in the middle of a picture.
+fn middle(scene: &Scene) -> [u8; 3] {
+    let image = picture(scene, &Picture::sized(31, 31)).0;
+    let [r, g, b, _] = image.pixels[15 * 31 + 15];
+    [r, g, b]
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bytes() {
+    for scene in [Scene::demo(), random::scene(3), random::scene(4)] {
+        let pictures: HashSet<Vec<[u8; 4]>> = [1, 2, 7]
+            .map(|count| {
+                let threads = Threads::new(Some(count)).expect("threads");
+                threads.run(|| picture(&scene, &Picture::sized(201, 133)).0.pixels)
+            })
+            .into();
+        assert_eq!(pictures.len(), 1);
+    }
+}
+
+#[test]
+fn nested_passes_end_in_the_same_bytes_with_no_ray_more() {
+    let scene = Scene::demo();
+    let wanted = Picture::sized(203, 131);
+    let (whole, rays) = picture(&scene, &wanted);
+    let tracer = Tracer::new(&scene, &wanted);
+    let mut nested = Image::new(203, 131);
+    let mut traced = Rays::default();
+    let mut coarser = None;
+    for step in [16, 8, 4, 2, 1] {
+        let pass = nested.trace(&tracer, Grid { step, coarser }, &Watch::default());
+        traced = traced + pass.expect("not stopped");
+        coarser = Some(step);
+    }
+    assert_eq!(nested, whole);
+    assert_eq!(traced, rays);
+}
+
+#[test]
+fn single_and_double_precision_show_the_same() {
+    for scene in (0..6).map(random::scene).chain([Scene::demo()]) {
+        let at = |precision| Picture {
+            precision,
+            ..Picture::sized(256, 192)
+        };
+        let single = picture(&scene, &at(Precision::Single)).0;
+        let double = picture(&scene, &at(Precision::Double)).0;
+        let differ = single.pixels.iter().zip(&double.pixels);
+        let differ = differ
+            .filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 1))
+            .count();
+        assert!(
+            differ * 2000 <= single.pixels.len(),
+            "{differ} pixels differ"
+        );
+    }
+}
+
+#[test]
+fn the_classic_formulas_show_the_same_where_they_work() {
+    let scene = Scene::demo();
+    let robust = small(&scene);
+    let methods = Methods {
+        sphere: SphereMethod::Classic,
+        triangle: TriangleMethod::Edges,
+        offset: RayOffset::Fixed(0.1),
+    };
+    let classic = picture(
+        &scene,
+        &Picture {
+            methods,
+            ..Picture::sized(160, 120)
+        },
+    )
+    .0;
+    let differ = robust.pixels.iter().zip(&classic.pixels);
+    let differ = differ
+        .filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 2))
+        .count();
+    assert!(differ <= 100, "{differ} of 19200");
+}
+
+/// The demo scaled and moved as a whole.
+fn placed(scale: f64, by: Vec3<f64>) -> Scene {
+    let mut scene = Scene::demo();
+    let place = |v: Vec3<f64>| v * scale + by;
+    for object in &mut scene.objects {
+        object.shape = match object.shape {
+            Shape::Sphere { center, radius } => Shape::Sphere {
+                center: place(center),
+                radius: radius * scale,
+            },
+            Shape::Plane { point, normal } => Shape::Plane {
+                point: place(point),
+                normal,
+            },
+            Shape::Triangle { a, b, c } => Shape::Triangle {
+                a: place(a),
+                b: place(b),
+                c: place(c),
+            },
+        };
+    }
+    for light in &mut scene.lights {
+        light.position = place(light.position);
+        if let Some(marker) = &mut light.marker {
+            marker.radius *= scale;
+        }
+    }
+    scene.camera.position = place(scene.camera.position);
+    scene.camera.orthographic_height *= scale;
+    scene
+}
+
+fn changed_ppm(scale: f64, by: Vec3<f64>, methods: Methods) -> usize {
+    let at = |scene: &Scene, methods| {
+        picture(
+            scene,
+            &Picture {
+                precision: Precision::Single,
+                methods,
+                ..Picture::sized(320, 320)
+            },
+        )
+        .0
+    };
+    let (here, there) = (
+        at(&Scene::demo(), Methods::default()),
+        at(&placed(scale, by), methods),
+    );
+    let differ = here.pixels.iter().zip(&there.pixels);
+    let differ = differ
+        .filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 1))
+        .count();
+    differ * 1_000_000 / here.pixels.len()
+}
+
+#[test]
+fn no_scale_and_no_place_changes_the_picture() {
+    let here = Vec3::new(0.0, 0.0, 0.0);
+    for scale in [1e-4, 1e-2, 1e2, 1e4, 1e6] {
+        let ppm = changed_ppm(scale, here, Methods::default());
+        assert!(ppm <= 500, "scale {scale}: {ppm} ppm");
+    }
+    for distance in [1e3, 1e5, 1e7] {
+        let ppm = changed_ppm(
+            1.0,
+            Vec3::new(distance, -distance, distance),
+            Methods::default(),
+        );
+        assert!(ppm <= 500, "{distance} away: {ppm} ppm");
+    }
+    let fixed = Methods {
+        offset: RayOffset::Fixed(0.1),
+        ..Methods::default()
+    };
+    let ppm = changed_ppm(1e-4, here, fixed);
+    assert!(
+        ppm > 10_000,
+        "a fixed offset must fail in a tiny scene, or this test has no power: {ppm}"
+    );
+}
+
+/// A white ball of radius 1 in front of a camera that looks along -z, lit from the camera.
+fn ball() -> Scene {
+    let mut scene = Scene::empty();
+    scene.camera.position = Vec3::new(0.0, 0.0, 10.0);
+    scene.camera.look_at = Vec3::new(0.0, 0.0, -1.0);
+    scene.camera.up = Vec3::new(0.0, 1.0, 0.0);
+    scene.lights[0].position = Vec3::new(0.0, 0.0, 20.0);
+    scene.lights[0].intensity = 0.5;
+    scene.lights[0].marker.as_mut().expect("a marker").radius = 0.5;
+    let pack = &mut scene.color_packs["pack 1"];
+    pack.ambient = Vec3::new(40.0, 80.0, 120.0);
+    pack.diffuse = Vec3::new(100.0, 50.0, 0.0);
+    pack.specular = Vec3::new(0.0, 0.0, 60.0);
+    scene.objects.push(glint::scene::Object {
+        name: "Ball".to_owned(),
+        color_pack: "pack 1".to_owned(),
+        shape: Shape::Sphere {
+            center: Vec3::new(0.0, 0.0, 0.0),
+            radius: 1.0,
+        },
+        visible: true,
+    });
+    scene
+}
+
+#[test]
+fn ambient_diffuse_and_specular_add_up_as_written() {
+    // Straight on, n·l = n·h = 1: 0.5·(40, 80, 120) + 0.5·(100, 50, 0) + 0.5·(0, 0, 60).
+    assert_eq!(middle(&ball()), [70, 65, 90]);
+}
+
+#[test]
+fn a_blocked_light_leaves_ambient_and_a_marker_blocks_nothing() {
+    let mut scene = ball();
+    // The marker stands between the ball and the camera, but its light is behind it.
+    scene.lights[0].position = Vec3::new(0.0, 0.0, 5.0);
+    scene.light_visualization = false;
+    assert_eq!(middle(&scene), [70, 65, 90], "hidden markers are not there");
+    let mut blocker = scene.objects[0].clone();
+    blocker.name = "Blocker".to_owned();
+    scene.lights[0].position = Vec3::new(10.0, 0.0, 10.0);
+    blocker.shape = Shape::Sphere {
+        center: Vec3::new(5.0, 0.0, 5.5),
+        radius: 1.0,
+    };
+    let lit = middle(&scene);
+    scene.objects.push(blocker);
+    assert_eq!(
+        middle(&scene),
+        [20, 40, 60],
+        "only ambient is left of {lit:?}"
+    );
+    scene.objects[1].visible = false;
+    assert_eq!(middle(&scene), lit);
+}
+
+#[test]
+fn a_marker_is_full_ambient_and_nothing_else() {
+    let mut scene = ball();
+    scene.lights[0].position = Vec3::new(0.0, 0.0, 5.0);
+    assert_eq!(middle(&scene), [255, 255, 0]);
+    scene.color_packs["light"].ambient = Vec3::new(10.0, 20.0, 30.0);
+    assert_eq!(middle(&scene), [10, 20, 30]);
+}
+
+#[test]
+fn a_mirror_adds_the_sum_of_intensities_even_in_shadow() {
+    let mut scene = ball();
+    scene.background = Vec3::new(200.0, 0.0, 0.0);
+    scene.color_packs["pack 1"].reflective = true;
+    scene.color_packs["pack 1"].specular = Vec3::new(255.0, 255.0, 255.0);
+    // Behind the ball: no diffuse, no highlight, but the mirror stays: 0.5·ambient + 0.5·200.
+    scene.lights[0].position = Vec3::new(0.0, 0.0, -50.0);
+    scene.light_visualization = false;
+    assert_eq!(middle(&scene), [120, 40, 60]);
+    scene.render.reflection_limit = 0;
+    assert_eq!(middle(&scene), [20, 40, 60]);
+}
+
+#[test]
+fn a_camera_inside_a_ball_sees_its_lit_wall() {
+    let mut scene = ball();
+    scene.objects[0].shape = Shape::Sphere {
+        center: Vec3::new(0.0, 0.0, 0.0),
+        radius: 100.0,
+    };
+    assert_eq!(
+        middle(&scene),
+        [70, 65, 90],
+        "the inner wall faces the light inside"
+    );
+    scene.lights[0].position = Vec3::new(0.0, 0.0, 300.0);
+    assert_eq!(
+        middle(&scene),
+        [20, 40, 60],
+        "the near wall shadows a light outside"
+    );
+}
+
+#[test]
+fn degenerate_lights_and_views_stay_finite() {
+    let mut scene = ball();
+    scene.light_visualization = false;
+    scene.lights[0].position = Vec3::new(0.0, 0.0, 1.0);
+    assert_eq!(
+        middle(&scene),
+        [20, 40, 60],
+        "a light in the surface adds nothing"
+    );
+    scene.objects[0].shape = Shape::Plane {
+        point: Vec3::new(0.0, 0.0, 0.0),
+        normal: Vec3::new(0.0, 1.0, 0.0),
+    };
+    scene.camera.projection = Projection::Orthographic;
+    scene.background = Vec3::new(1.0, 2.0, 3.0);
+    assert_eq!(
+        middle(&scene),
+        [1, 2, 3],
+        "a plane seen edge-on is not seen"
+    );
+}
+
+#[test]
+fn rays_are_traced_only_where_they_can_show() {
+    let mut scene = Scene::demo();
+    let count = |scene: &Scene| picture(scene, &Picture::sized(160, 160)).1;
+    let full = count(&scene);
+    assert!(full.shadow > 0 && full.reflected > 0);
+    scene.color_packs["plane"].reflective = false;
+    let matte = count(&scene);
+    assert_eq!(matte.reflected, 0);
+    assert!(matte.shadow < full.shadow);
+    for light in &mut scene.lights {
+        light.intensity = 0.0;
+    }
+    assert_eq!(
+        count(&scene),
+        Rays {
+            camera: 25_600,
+            shadow: 0,
+            reflected: 0
+        }
+    );
+}

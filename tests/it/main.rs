@@ -1,0 +1,11 @@
+//! Tests of the program as a whole: real files, the real binary, a real window, a real peer.
+
+mod cli;
+mod house;
+mod image_model;
+mod povray;
+mod random;
+mod scenes;
+mod ui;
+mod window;
+mod worker;

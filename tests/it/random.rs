@@ -1,0 +1,154 @@
+//! Random scenes with a fixed seed: what both Glint and POV-Ray can say.
+
+use glint::lanes::Vec3;
+use glint::scene::{
+    Camera, ColorPack, Light, LightObj, Object, Projection, Render, Scene, Shape, check,
+};
+
+/// SplitMix64 (Steele, Lea and Flood 2014): a test must give the same scenes everywhere.
+pub struct Dice(pub u64);
+
+impl Dice {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    pub fn real(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn vector(&mut self, low: f64, high: f64) -> Vec3<f64> {
+        Vec3::new(
+            self.real(low, high),
+            self.real(low, high),
+            self.real(low, high),
+        )
+    }
+
+    fn chance(&mut self, share: f64) -> bool {
+        self.real(0.0, 1.0) < share
+    }
+}
+
+/// A scene of spheres, triangles and a plane, some of them mirrors, under one to three lights,
+/// seen through either camera. Highlights are grey and nothing is brighter than white, because
+/// POV-Ray has no coloured highlight and no clamp per bounce.
+pub fn scene(seed: u64) -> Scene {
+    let dice = &mut Dice(seed.wrapping_mul(7919) + 1);
+    let mut scene = Scene::empty();
+    scene.color_packs.clear();
+    scene.ambient_intensity = dice.real(0.2, 0.6);
+    scene.background = dice.vector(0.0, 120.0);
+    scene.light_visualization = dice.chance(0.7);
+    scene.render = Render {
+        width: 256,
+        height: 192,
+        reflection_limit: 1,
+    };
+    scene
+        .color_packs
+        .insert("light".to_owned(), pack(dice, false));
+    for number in 0..6 {
+        let reflective = number < 2;
+        scene
+            .color_packs
+            .insert(format!("pack {number}"), pack(dice, reflective));
+    }
+    add_objects(&mut scene, dice);
+    scene.lights = (0..1 + seed % 3)
+        .map(|number| light(dice, number))
+        .collect();
+    scene.camera = camera(dice, seed);
+    assert_eq!(check(&scene), Ok(()));
+    scene
+}
+
+fn pack(dice: &mut Dice, reflective: bool) -> ColorPack {
+    let diffuse = dice.vector(20.0, 200.0);
+    let share = dice.vector(0.2, 1.0);
+    ColorPack {
+        diffuse,
+        ambient: diffuse.filter(share),
+        specular: Vec3::splat(dice.real(0.0, 200.0)),
+        phong_exponent: dice.real(2.0, 120.0).round(),
+        reflective,
+    }
+}
+
+fn add_objects(scene: &mut Scene, dice: &mut Dice) {
+    let mut add = |shape: Shape, dice: &mut Dice| {
+        let color_pack = format!("pack {}", (dice.real(0.0, 6.0)) as usize);
+        let name = format!("Object {}", scene.objects.len() + 1);
+        scene.objects.push(Object {
+            name,
+            color_pack,
+            shape,
+            visible: true,
+        });
+    };
+    for _ in 0..8 {
+        let center = dice.vector(-60.0, 60.0);
+        add(
+            Shape::Sphere {
+                center,
+                radius: dice.real(4.0, 22.0),
+            },
+            dice,
+        );
+    }
+    for _ in 0..8 {
+        let a = dice.vector(-70.0, 70.0);
+        let (b, c) = (a + dice.vector(-40.0, 40.0), a + dice.vector(-40.0, 40.0));
+        add(Shape::Triangle { a, b, c }, dice);
+    }
+    let tilt = Vec3::new(dice.real(-0.2, 0.2), 1.0, dice.real(-0.2, 0.2));
+    add(
+        Shape::Plane {
+            point: Vec3::new(0.0, -60.0, 0.0),
+            normal: tilt,
+        },
+        dice,
+    );
+}
+
+fn light(dice: &mut Dice, number: u64) -> Light {
+    Light {
+        name: format!("Light {}", number + 1),
+        position: Vec3::new(
+            dice.real(-150.0, 150.0),
+            dice.real(60.0, 200.0),
+            dice.real(-50.0, 200.0),
+        ),
+        intensity: dice.real(0.05, 0.25),
+        marker: Some(LightObj {
+            radius: dice.real(2.0, 8.0),
+            color_pack: "light".to_owned(),
+        }),
+        visible: true,
+    }
+}
+
+fn camera(dice: &mut Dice, seed: u64) -> Camera {
+    let position = Vec3::new(
+        dice.real(-80.0, 80.0),
+        dice.real(-20.0, 120.0),
+        dice.real(120.0, 180.0),
+    );
+    let target = dice.vector(-20.0, 20.0);
+    Camera {
+        position,
+        look_at: target - position,
+        up: Vec3::new(dice.real(-0.3, 0.3), 1.0, 0.0),
+        projection: if seed % 2 == 0 {
+            Projection::Perspective
+        } else {
+            Projection::Orthographic
+        },
+        projection_distance: dice.real(0.6, 1.8),
+        orthographic_height: dice.real(100.0, 220.0),
+    }
+}

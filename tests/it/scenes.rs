@@ -1,0 +1,323 @@
+//! Scene files: the published ones, broken ones, and what saving does to a disk.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use glint::lanes::Vec3;
+use glint::scene::{Document, Scene, SceneError, Shape, check};
+use proptest::prelude::*;
+
+fn files_in(folder: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let entries = fs::read_dir(folder).expect("a folder");
+    let mut files: Vec<PathBuf> = entries
+        .map(|entry| entry.expect("an entry").path())
+        .collect();
+    files.sort();
+    files
+}
+
+/// What an error says behind the file's name, without the lines that show the place.
+fn said(path: &Path, error: &SceneError) -> String {
+    let text = error.to_string();
+    let first = text.lines().next().unwrap_or_default();
+    first
+        .strip_prefix(&format!("{}:", path.display()))
+        .unwrap_or(first)
+        .to_owned()
+}
+
+#[test]
+fn every_bad_scene_is_refused_in_the_words_of_its_first_line() {
+    let files = files_in("tests/it/bad_scenes");
+    assert!(files.len() >= 40, "{}", files.len());
+    for path in files {
+        let bytes = fs::read(&path).expect("readable");
+        let text = String::from_utf8_lossy(&bytes);
+        let expected = text
+            .lines()
+            .next()
+            .and_then(|line| line.strip_prefix("// "));
+        let error = Document::load(&path).expect_err("refused");
+        assert_eq!(
+            Some(said(&path, &error).as_str()),
+            expected,
+            "{}",
+            path.display()
+        );
+    }
+}
+
+#[test]
+fn a_refusal_shows_the_line_and_points_at_the_place() {
+    let text = "Scene(\n    version: 1,\n    ambient_intensity: 7,\n    objects: [],\n)\n";
+    let error = Document::from_text(text).expect_err("refused").to_string();
+    let expected = "scene:3:24: ambient_intensity must be between 0 and 1, found 7\n 3 |     ambient_intensity: 7,\n   |                        ^";
+    assert_eq!(error, expected);
+}
+
+#[test]
+fn a_long_line_is_shown_around_the_place_only() {
+    let objects =
+        "Object(name: \"x\", color_pack: \"plane\", shape: Sphere(center: (0, 0, 0), radius: 0)), "
+            .repeat(300);
+    let text = format!("Scene(version: 1, objects: [{objects}])");
+    let error = Document::from_text(&text).expect_err("refused").to_string();
+    assert!(
+        error.lines().all(|line| line.chars().count() < 120),
+        "{error}"
+    );
+    let caret = error.lines().last().expect("a caret").chars().count() - 1;
+    let shown = error.lines().nth(1).expect("the line").chars().nth(caret);
+    assert_eq!(shown, Some('0'));
+}
+
+#[test]
+fn emptiness_and_size_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("scene.ron");
+    fs::write(&path, "").expect("written");
+    let error = Document::load(&path).expect_err("empty");
+    assert_eq!(
+        said(&path, &error),
+        "1:1: the file ends here; expected Scene(…)"
+    );
+    let file = fs::File::create(&path).expect("made");
+    file.set_len(1 << 40).expect("a sparse terabyte");
+    let error = Document::load(&path).expect_err("too large").to_string();
+    assert!(
+        error.contains("a scene file has at most 33554432 bytes, this one has 1099511627776"),
+        "{error}"
+    );
+    let error = Document::load(&folder.path().join("none.ron"))
+        .expect_err("missing")
+        .to_string();
+    assert!(
+        error.starts_with("cannot read ") && error.contains("No such file"),
+        "{error}"
+    );
+}
+
+#[test]
+fn published_scenes_are_valid_and_saved_as_they_stand() {
+    let files = files_in("scenes");
+    assert!(files.len() >= 4);
+    for path in files {
+        let text = fs::read_to_string(&path).expect("readable");
+        let document = Document::load(&path).expect("valid");
+        assert_eq!(document.to_text(), text, "{}", path.display());
+    }
+}
+
+#[test]
+fn the_demo_has_every_number_of_the_report() {
+    let demo = Scene::demo();
+    let vector = |[x, y, z]: [f64; 3]| Vec3::new(x, y, z);
+    let sphere = |center, radius| Shape::Sphere {
+        center: vector(center),
+        radius,
+    };
+    let triangle = |a, b, c| Shape::Triangle {
+        a: vector(a),
+        b: vector(b),
+        c: vector(c),
+    };
+    let (p, q, r, s, top) = (
+        [175.0, 5.0, -75.0],
+        [225.0, 5.0, -75.0],
+        [225.0, 5.0, -125.0],
+        [175.0, 5.0, -125.0],
+        [200.0, 55.0, -100.0],
+    );
+    let expected = [
+        (
+            "Sphere 1",
+            sphere([125.0, 50.0, -150.0], 50.0),
+            [255.0, 128.0, 255.0],
+            false,
+        ),
+        (
+            "Sphere 2",
+            sphere([128.0, 41.0, -64.0], 20.0),
+            [255.0, 128.0, 128.0],
+            false,
+        ),
+        (
+            "Triangle 1",
+            triangle(p, top, q),
+            [128.0, 255.0, 255.0],
+            false,
+        ),
+        (
+            "Triangle 2",
+            triangle(q, top, r),
+            [128.0, 255.0, 255.0],
+            false,
+        ),
+        (
+            "Triangle 3",
+            triangle(r, top, s),
+            [128.0, 255.0, 255.0],
+            false,
+        ),
+        (
+            "Triangle 4",
+            triangle(s, top, p),
+            [128.0, 255.0, 255.0],
+            false,
+        ),
+        (
+            "Triangle 5",
+            triangle(r, s, p),
+            [128.0, 255.0, 255.0],
+            false,
+        ),
+        (
+            "Triangle 6",
+            triangle(q, r, p),
+            [128.0, 255.0, 255.0],
+            false,
+        ),
+        (
+            "Plane",
+            Shape::Plane {
+                point: vector([0.0; 3]),
+                normal: vector([0.0, 1.0, 0.0]),
+            },
+            [255.0, 128.0, 128.0],
+            true,
+        ),
+    ];
+    assert_eq!(demo.objects.len(), expected.len());
+    for (object, (name, shape, color, reflective)) in demo.objects.iter().zip(expected) {
+        let pack = &demo.color_packs[&object.color_pack];
+        assert_eq!((object.name.as_str(), &object.shape), (name, &shape));
+        assert_eq!(
+            (pack.ambient, pack.diffuse),
+            (vector(color), vector(color)),
+            "{name}"
+        );
+        assert_eq!(
+            (pack.specular, pack.phong_exponent),
+            (vector([255.0; 3]), 16.0),
+            "{name}"
+        );
+        assert_eq!(pack.reflective, reflective, "{name}");
+    }
+    let lights = [[100.0, 100.0, -50.0], [231.0, 63.0, -127.0]];
+    assert_eq!(demo.lights.len(), lights.len());
+    for (light, position) in demo.lights.iter().zip(lights) {
+        let marker = light.marker.as_ref().expect("a marker");
+        let pack = &demo.color_packs[&marker.color_pack];
+        assert_eq!(
+            (light.position, light.intensity, marker.radius),
+            (vector(position), 0.2, 5.0)
+        );
+        assert_eq!(
+            (pack.ambient, pack.reflective),
+            (vector([255.0, 255.0, 0.0]), false)
+        );
+    }
+    assert_eq!(
+        (demo.ambient_intensity, demo.background),
+        (0.5, vector([0.0; 3]))
+    );
+}
+
+#[test]
+fn saving_keeps_the_header_and_backs_inner_comments_up() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("scene.ron");
+    let text = "// My scene.\n\n/* by me */\nScene(version: 1, objects: [ /* none yet */ ])";
+    fs::write(&path, text).expect("written");
+    let document = Document::load(&path).expect("valid");
+    let backup = document.save(&path).expect("saved").expect("a backup");
+    assert_eq!(fs::read_to_string(&backup).expect("kept"), text);
+    let saved = fs::read_to_string(&path).expect("saved");
+    assert!(
+        saved.starts_with("// My scene.\n\n/* by me */\nScene(\n"),
+        "{saved}"
+    );
+    assert_eq!(Document::load(&path).expect("valid"), document);
+    assert_eq!(
+        document.save(&path).expect("saved again"),
+        None,
+        "nothing is lost the second time"
+    );
+}
+
+#[test]
+#[cfg(unix)]
+fn saving_follows_links_and_keeps_permissions() {
+    use std::os::unix::fs::{PermissionsExt as _, symlink};
+    let folder = tempfile::tempdir().expect("a folder");
+    let (real, link) = (
+        folder.path().join("real.ron"),
+        folder.path().join("link.ron"),
+    );
+    fs::write(&real, "old").expect("written");
+    fs::set_permissions(&real, fs::Permissions::from_mode(0o640)).expect("set");
+    symlink(&real, &link).expect("linked");
+    let document = Document {
+        header: String::new(),
+        scene: Scene::demo(),
+    };
+    document.save(&link).expect("saved");
+    assert!(
+        fs::symlink_metadata(&link)
+            .expect("there")
+            .file_type()
+            .is_symlink()
+    );
+    assert_eq!(
+        fs::metadata(&real).expect("there").permissions().mode() & 0o777,
+        0o640
+    );
+    assert_eq!(Document::load(&real).expect("valid").scene, Scene::demo());
+}
+
+#[test]
+fn a_save_that_fails_leaves_the_old_file_and_nothing_else() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let document = Document {
+        header: String::new(),
+        scene: Scene::demo(),
+    };
+    let inside = folder.path().join("missing").join("scene.ron");
+    let error = document
+        .save(&inside)
+        .expect_err("no such folder")
+        .to_string();
+    assert!(error.starts_with("cannot write "), "{error}");
+    // A folder under the name of the file: the new text must not be left lying beside it.
+    let taken = folder.path().join("taken.ron");
+    fs::create_dir(&taken).expect("made");
+    document.save(&taken).expect_err("a folder is in the way");
+    let left: Vec<_> = fs::read_dir(folder.path()).expect("there").collect();
+    assert_eq!(left.len(), 1, "{left:?}");
+}
+
+proptest! {
+    #[test]
+    fn damaged_texts_are_refused_without_a_panic(at in 0.0..1.0_f64, cut in 0..40_usize, put in "[-0-9a-zA-Z(){}\\[\\],:.\"/* \n]{0,6}") {
+        let text = glint::scene::DEMO_TEXT;
+        let start = (at * text.len() as f64) as usize;
+        let end = (start + cut).min(text.len());
+        let damaged = format!("{}{put}{}", &text[..start], &text[end..]);
+        match Document::from_text(&damaged) {
+            Ok(document) => prop_assert_eq!(check(&document.scene), Ok(())),
+            Err(error) => prop_assert!(error.to_string().starts_with("scene:"), "{}", error),
+        }
+    }
+
+    #[test]
+    fn any_scene_survives_its_file(seed in 0..1000_u64, x in prop::num::f64::NORMAL, y in -1e12..1e12_f64) {
+        let mut scene = crate::random::scene(seed);
+        scene.camera.position = Vec3::new(x.clamp(-1e12, 1e12), y, -0.0);
+        let document = Document { header: "// seed\n".to_owned(), scene };
+        let text = document.to_text();
+        let back = Document::from_text(&text).expect("valid");
+        prop_assert_eq!(&back.to_text(), &text);
+        prop_assert_eq!(back, document);
+    }
+}

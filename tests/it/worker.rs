@@ -1,0 +1,258 @@
+//! The background lane: newest wins, nothing is traced twice, nothing waits long.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use glint::image::render;
+use glint::lanes::Vec3;
+use glint::plan::Picture;
+use glint::scene::{Object, Scene, Shape};
+use glint::trace::Watch;
+use glint::worker::{Activity, Event, Frame, LiveJob, Pace, StillJob, Worker};
+
+/// A test that waits longer than this has lost.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+fn live(revision: u64, scene: &Arc<Scene>, side: u32) -> LiveJob {
+    let picture = Picture::sized(side, side);
+    LiveJob {
+        revision,
+        scene: Arc::clone(scene),
+        picture,
+        pace: Pace::Progressive,
+    }
+}
+
+fn still(revision: u64, scene: &Arc<Scene>, side: u32) -> StillJob {
+    let picture = Picture::sized(side, side);
+    StillJob {
+        revision,
+        scene: Arc::clone(scene),
+        picture,
+        save_to: None,
+    }
+}
+
+/// Waits for a frame that fits, collecting all that come on the way.
+fn wait_for(worker: &Worker, fits: impl Fn(&Frame) -> bool) -> Vec<Frame> {
+    let start = Instant::now();
+    let mut frames = Vec::new();
+    while start.elapsed() < PATIENCE {
+        if let Some(frame) = worker.take_frame() {
+            let is_it = fits(&frame);
+            frames.push(frame);
+            if is_it {
+                return frames;
+            }
+        }
+        std::thread::sleep(Duration::from_micros(200));
+    }
+    panic!("no such frame came; the lane is {:?}", worker.activity());
+}
+
+fn wait_until(what: &str, mut is_true: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !is_true() {
+        assert!(start.elapsed() < PATIENCE, "{what} never came true");
+        std::thread::sleep(Duration::from_micros(200));
+    }
+}
+
+/// Thousands of spheres: about 20 µs a pixel.
+fn slow_scene() -> Arc<Scene> {
+    let mut scene = Scene::demo();
+    for n in 0..2000_u32 {
+        let center = Vec3::new(f64::from(n % 50) * 8.0, 3.0, f64::from(n / 50) * -8.0);
+        scene.objects.push(Object {
+            name: format!("Ball {n}"),
+            color_pack: "sphere 1".to_owned(),
+            shape: Shape::Sphere {
+                center,
+                radius: 3.0,
+            },
+            visible: true,
+        });
+    }
+    Arc::new(scene)
+}
+
+#[test]
+fn many_submissions_end_in_the_last_ones_picture() {
+    let worker = Worker::new(Some(2), || {}).expect("a lane");
+    let mut scene = Scene::demo();
+    let mut last = Arc::new(scene.clone());
+    for revision in 1..=200_u32 {
+        scene.ambient_intensity = f64::from(revision) / 200.0;
+        scene.camera.position.x = 100.0 + f64::from(revision);
+        last = Arc::new(scene.clone());
+        worker.submit(live(u64::from(revision), &last, 300));
+        if revision % 10 == 0 {
+            std::thread::sleep(Duration::from_millis(3));
+        }
+    }
+    let frames = wait_for(&worker, |frame| frame.revision == 200 && frame.step == 1);
+    assert!(
+        frames
+            .windows(2)
+            .all(|pair| pair[0].revision <= pair[1].revision),
+        "never backwards"
+    );
+    let direct = render(&last, &Picture::sized(300, 300), &Watch::default())
+        .expect("not stopped")
+        .0;
+    assert_eq!(*frames.last().expect("one").image, direct);
+}
+
+#[test]
+fn refinement_traces_every_pixel_once_and_ends_byte_equal() {
+    let worker = Worker::new(Some(2), || {}).expect("a lane");
+    let scene = Arc::new(Scene::demo());
+    worker.submit(live(1, &scene, 640));
+    let frames = wait_for(&worker, |frame| frame.step == 1);
+    let finished = frames.last().expect("one");
+    assert_eq!(finished.cost.rays.camera, 640 * 640);
+    let (direct, cost) =
+        render(&scene, &Picture::sized(640, 640), &Watch::default()).expect("not stopped");
+    assert_eq!(*finished.image, direct);
+    assert_eq!(finished.cost.rays, cost.rays);
+}
+
+#[test]
+fn a_new_lane_shows_a_coarse_picture_first() {
+    let worker = Worker::new(Some(1), || {}).expect("a lane");
+    worker.submit(live(1, &slow_scene(), 512));
+    let first = wait_for(&worker, |_| true).remove(0);
+    assert!(first.step > 1);
+    assert_eq!(first.full_size, (512, 512));
+    assert_eq!(first.image.width, 512_usize.div_ceil(first.step));
+    assert!(first.image.width >= 64);
+}
+
+#[test]
+fn an_edit_during_a_still_picture_is_picked_up_at_once() {
+    let worker = Worker::new(None, || {}).expect("a lane");
+    let slow = slow_scene();
+    let quick = Arc::new(Scene::demo());
+    let mut waits = Vec::new();
+    for round in 0..5_u64 {
+        let revision = round * 2 + 1;
+        worker.request_still(still(revision, &slow, 4096));
+        let is_under_way = |activity| matches!(activity, Activity::Still { done, .. } if done > 0);
+        wait_until("a running still picture", || {
+            is_under_way(worker.activity())
+        });
+        let start = Instant::now();
+        worker.submit(live(revision + 1, &quick, 64));
+        wait_until("the live view", || {
+            !matches!(worker.activity(), Activity::Still { .. })
+        });
+        waits.push(start.elapsed());
+        wait_for(&worker, |frame| {
+            !frame.is_still && frame.revision == revision + 1
+        });
+    }
+    // On a busy machine a single wait can be the scheduler's; the lane's own is the shortest.
+    let shortest = waits.iter().min().expect("five");
+    assert!(*shortest <= Duration::from_millis(20), "{waits:?}");
+    wait_until("rest", || worker.activity() == Activity::Idle);
+    assert!(
+        worker.take_frame().is_none_or(|frame| !frame.is_still),
+        "the old still picture is given up"
+    );
+}
+
+#[test]
+fn a_cancelled_still_picture_never_comes() {
+    let worker = Worker::new(None, || {}).expect("a lane");
+    worker.request_still(still(1, &slow_scene(), 2048));
+    wait_until(
+        "progress",
+        || matches!(worker.activity(), Activity::Still { done, .. } if done > 0),
+    );
+    worker.cancel_still();
+    wait_until("rest", || worker.activity() == Activity::Idle);
+    assert!(worker.take_frame().is_none());
+}
+
+#[test]
+fn a_picture_that_is_to_be_saved_outlives_edits() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("still.png");
+    let worker = Worker::new(None, || {}).expect("a lane");
+    let slow = slow_scene();
+    worker.request_still(StillJob {
+        save_to: Some(path.clone()),
+        ..still(1, &slow, 256)
+    });
+    wait_until(
+        "progress",
+        || matches!(worker.activity(), Activity::Still { done, .. } if done > 0),
+    );
+    worker.submit(live(2, &Arc::new(Scene::demo()), 64));
+    let mut events = Vec::new();
+    wait_until("the file", || {
+        events.extend(worker.take_events());
+        !events.is_empty()
+    });
+    assert_eq!(events, [Event::Saved(path.clone())]);
+    let saved = image::open(&path).expect("a picture").to_rgba8();
+    let direct = render(&slow, &Picture::sized(256, 256), &Watch::default())
+        .expect("not stopped")
+        .0;
+    assert_eq!(
+        saved.into_raw(),
+        direct.pixels.concat(),
+        "it shows the scene as it was asked for"
+    );
+}
+
+#[test]
+fn a_picture_that_cannot_be_written_says_so() {
+    let worker = Worker::new(Some(1), || {}).expect("a lane");
+    let path = std::path::PathBuf::from("/nowhere/at/all.png");
+    worker.request_still(StillJob {
+        save_to: Some(path),
+        ..still(1, &Arc::new(Scene::demo()), 16)
+    });
+    let mut events = Vec::new();
+    wait_until("the failure", || {
+        events.extend(worker.take_events());
+        !events.is_empty()
+    });
+    assert!(
+        matches!(&events[0], Event::Failed(text) if text.starts_with("cannot write /nowhere/at/all.png: ")),
+        "{events:?}"
+    );
+}
+
+#[test]
+fn a_fault_in_the_tracer_is_shown_and_the_lane_lives_on() {
+    let worker = Worker::new(Some(1), || {}).expect("a lane");
+    // A scene that no file and no edit can make: an object without its pack has no material.
+    let mut broken = Scene::demo();
+    broken.color_packs.clear();
+    worker.submit(live(1, &Arc::new(broken), 64));
+    let mut events = Vec::new();
+    wait_until("the fault", || {
+        events.extend(worker.take_events());
+        !events.is_empty()
+    });
+    assert!(
+        matches!(&events[0], Event::Failed(text) if text.contains("fault of its own")),
+        "{events:?}"
+    );
+    worker.submit(live(2, &Arc::new(Scene::demo()), 64));
+    wait_for(&worker, |frame| frame.revision == 2 && frame.step == 1);
+}
+
+#[test]
+fn dropping_the_handle_ends_the_lane_soon() {
+    let worker = Worker::new(Some(2), || {}).expect("a lane");
+    worker.submit(live(1, &slow_scene(), 4096));
+    wait_until("work", || {
+        matches!(worker.activity(), Activity::Live { .. })
+    });
+    let start = Instant::now();
+    drop(worker);
+    assert!(start.elapsed() < Duration::from_secs(5));
+}
