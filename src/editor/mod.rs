@@ -214,7 +214,7 @@ impl Editor {
     /// Why the file was refused.
     pub fn open(&mut self, path: &Path) -> Result<(), SceneError> {
         let document = Document::load(path)?;
-        self.replace(document, Some(path.to_owned()));
+        self.replace(document, Some(absolute(path)));
         Ok(())
     }
 
@@ -228,7 +228,7 @@ impl Editor {
             scene: Scene::clone(&self.scene),
         };
         let backup = document.save(path)?;
-        self.path = Some(path.to_owned());
+        self.path = Some(absolute(path));
         self.saved = Arc::clone(&self.scene);
         self.is_dirty = false;
         let kept = backup.map_or(String::new(), |backup| {
@@ -341,6 +341,11 @@ impl Selection {
             valid => valid,
         }
     }
+}
+
+/// The path that means the same file wherever the program works next.
+fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
 #[cfg(test)]

@@ -71,14 +71,15 @@ impl Recovery {
         let _ = fs::remove_file(&self.path);
     }
 
-    /// Takes one piece of work that an ended program left in the folder, and removes it from there.
-    pub fn take_leftover(&self) -> Option<Leftover> {
+    /// Takes one piece of work that an ended program left in the folder, and removes it from there:
+    /// that of the file `of`, or any.
+    pub fn take_leftover(&self, of: Option<&Path>) -> Option<Leftover> {
         let entries = fs::read_dir(self.path.parent()?).ok()?;
         let files = entries.filter_map(|entry| Some(entry.ok()?.path()));
         let is_other = |path: &PathBuf| {
             path.extension().is_some_and(|ending| ending == "ron") && *path != self.path
         };
-        files.filter(is_other).find_map(|path| take(&path))
+        files.filter(is_other).find_map(|path| take(&path, of))
     }
 }
 
@@ -88,12 +89,15 @@ impl Drop for Recovery {
     }
 }
 
-fn take(path: &Path) -> Option<Leftover> {
+fn take(path: &Path, of: Option<&Path>) -> Option<Leftover> {
     let lock_path = path.with_extension("lock");
     let lock = File::create(&lock_path).ok()?;
     lock.try_lock().ok()?;
     let text = fs::read_to_string(path).ok()?;
     let (first, body) = text.strip_prefix(MARK)?.split_once('\n')?;
+    if of.is_some_and(|of| of != Path::new(first)) {
+        return None;
+    }
     let document = Document::from_text(body).ok()?;
     let _ = fs::remove_file(path);
     let _ = fs::remove_file(&lock_path);
@@ -117,14 +121,19 @@ mod tests {
             .expect("kept");
         let second = Recovery::new(folder.path()).expect("another place");
         assert!(
-            second.take_leftover().is_none(),
+            second.take_leftover(None).is_none(),
             "the first program still runs"
         );
         drop(first);
-        let leftover = second.take_leftover().expect("left behind");
+        let other = Some(Path::new("/c.ron"));
+        assert!(
+            second.take_leftover(other).is_none(),
+            "another file was asked for"
+        );
+        let leftover = second.take_leftover(None).expect("left behind");
         assert_eq!(leftover.path.as_deref(), Some(Path::new("/a/b.ron")));
         assert_eq!(leftover.document.to_text(), DEMO_TEXT);
-        assert!(second.take_leftover().is_none(), "it is taken once");
+        assert!(second.take_leftover(None).is_none(), "it is taken once");
     }
 
     #[test]
@@ -137,7 +146,7 @@ mod tests {
         assert!(
             Recovery::new(folder.path())
                 .expect("a place")
-                .take_leftover()
+                .take_leftover(None)
                 .is_none()
         );
     }

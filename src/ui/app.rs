@@ -1,32 +1,30 @@
 //! The window's frame: reads input, shows the panels, applies what they asked for, and hands the
 //! scene to the background lane.
 
-use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::path::PathBuf;
 
 use egui::{CentralPanel, Context, Frame, Margin, Panel, Ui, ViewportCommand};
 
+use super::autosave::Autosave;
 use super::commands::{Command, is_enabled, pressed};
 use super::dialogs::{Ask, Dialogs, Native};
 use super::files::{Files, Next, Outcome};
 use super::flying::Flying;
 use super::menu::Layout;
 use super::outliner::Outliner;
+use super::pictures::Pictures;
 use super::theme::{GRID, INSPECTOR, OUTLINER, ROW, palette};
 use super::toasts::Toasts;
-use super::viewport::{Place, Screen, describe, fit, low_res};
+use super::viewport::{Place, describe, fit};
 use super::window::data_folder;
 use super::{Out, help, inspector, menu, status, theme};
 use crate::editor::{Action, Edit, Editor, Mode, Selection};
-use crate::plan::Picture;
-use crate::scene::{Projection, Recovery};
+use crate::image::Image;
+use crate::scene::Projection;
 use crate::trace::PoolError;
-use crate::worker::{Activity, Event, LiveJob, Pace, StillJob, Worker};
 
 /// Where the list of recent files is kept between runs.
 const RECENT_KEY: &str = "recent files";
-/// Time between two autosaves of unsaved work.
-const AUTOSAVE: Duration = Duration::from_secs(5);
 
 /// What the program gives the window.
 pub struct Setup {
@@ -52,28 +50,16 @@ impl Setup {
 /// The window.
 pub struct App {
     editor: Editor,
-    worker: Worker,
+    pictures: Pictures,
     files: Files,
     outliner: Outliner,
-    screen: Screen,
     toasts: Toasts,
     flying: Flying,
     layout: Layout,
     shortcuts_open: bool,
-    submitted: Option<(u64, (u32, u32), Pace)>,
-    still_requested: Option<(u64, (u32, u32))>,
     may_close: bool,
     title: String,
-    recovery: Option<Recovery>,
     autosave: Autosave,
-}
-
-/// The state of autosaving.
-#[derive(Default)]
-struct Autosave {
-    /// What is kept: revision, and when.
-    kept: Option<(u64, Instant)>,
-    tried: Option<Instant>,
 }
 
 impl App {
@@ -87,16 +73,14 @@ impl App {
             options.quit_shortcuts.clear();
             options.zoom_with_keyboard = true;
         });
-        let wake = cc.egui_ctx.clone();
         let recent = cc
             .storage
             .and_then(|storage| eframe::get_value(storage, RECENT_KEY));
         let mut app = Self {
             editor: Editor::demo(),
-            worker: Worker::new(None, move || wake.request_repaint())?,
+            pictures: Pictures::new(&cc.egui_ctx)?,
             files: Files::new(setup.dialogs, recent.unwrap_or_default()),
             outliner: Outliner::default(),
-            screen: Screen::default(),
             toasts: Toasts::default(),
             flying: Flying::default(),
             layout: Layout {
@@ -105,17 +89,14 @@ impl App {
                 actual_size: false,
             },
             shortcuts_open: false,
-            submitted: None,
-            still_requested: None,
             may_close: false,
             title: String::new(),
-            recovery: None,
             autosave: Autosave::default(),
         };
         if let Some(path) = setup.scene {
             app.files.open(&mut app.editor, &path);
         }
-        app.start_recovery(setup.data_folder.as_deref());
+        app.autosave = Autosave::start(setup.data_folder.as_deref(), &mut app.editor);
         Ok(app)
     }
 
@@ -126,48 +107,12 @@ impl App {
 
     /// Whether the picture on screen is the finished one of the newest scene.
     pub fn is_settled(&self) -> bool {
-        let live = self.screen.live();
-        let is_live = live.is_some_and(|f| f.revision == self.editor.revision() && f.step == 1);
-        let is_shown = is_live || self.shown_still().is_some();
-        self.worker.activity() == Activity::Idle && is_shown
+        self.pictures.is_settled(&self.editor)
     }
 
-    /// Width and height of the picture on screen, in its own pixels.
-    pub fn shown_size(&self) -> Option<(usize, usize)> {
-        let frame = self.shown_still().or(self.screen.live())?;
-        Some((frame.image.width, frame.image.height))
-    }
-
-    /// The pixels on screen.
-    pub fn shown_pixels(&self) -> Option<&[[u8; 4]]> {
-        let frame = self.shown_still().or(self.screen.live())?;
-        Some(&frame.image.pixels)
-    }
-
-    fn shown_still(&self) -> Option<&crate::worker::Frame> {
-        if self.editor.mode != Mode::HighRes {
-            return None;
-        }
-        self.screen.still(self.editor.revision(), self.still_size())
-    }
-
-    fn still_size(&self) -> (u32, u32) {
-        let render = &self.editor.scene().render;
-        (render.width, render.height)
-    }
-
-    fn start_recovery(&mut self, folder: Option<&Path>) {
-        self.recovery = folder.and_then(|folder| Recovery::new(folder).ok());
-        let leftover = self.recovery.as_ref().and_then(Recovery::take_leftover);
-        let Some(leftover) = leftover else { return };
-        let name = leftover
-            .path
-            .as_ref()
-            .map_or("a new scene".to_owned(), |p| p.display().to_string());
-        self.editor.recover(leftover.document, leftover.path);
-        self.editor.inform(format!(
-            "Glint ended with unsaved changes to {name}; here they are. Save them, or open the file again to discard them."
-        ));
+    /// The picture on screen.
+    pub fn shown_picture(&self) -> Option<&Image> {
+        self.pictures.shown(&self.editor).map(|frame| &*frame.image)
     }
 
     fn show_panels(&mut self, ui: &mut Ui, out: &mut Out) -> Option<(Place, egui::Response)> {
@@ -176,14 +121,10 @@ impl App {
             menu::show(ui, &self.editor, &self.files.recent, &mut self.layout, out);
         });
         Panel::bottom("status").exact_size(ROW).show(ui, |ui| {
-            let frame = self.shown_still().or(self.screen.live());
+            let frame = self.pictures.shown(&self.editor);
             let text = frame.map_or(String::new(), |frame| describe(frame, self.editor.scene()));
-            let kept = self
-                .autosave
-                .kept
-                .map(|(_, at)| at)
-                .filter(|_| self.editor.is_dirty());
-            status::show(ui, &text, &self.worker.activity(), kept, out);
+            let kept = self.autosave.kept_since();
+            status::show(ui, &text, &self.pictures.activity(), kept, out);
         });
         if self.layout.outliner {
             Panel::left("outliner")
@@ -217,11 +158,11 @@ impl App {
             self.editor.scene(),
             ui.pixels_per_point(),
         );
-        let is_still = self.shown_still().is_some();
+        let is_still = self.pictures.shown_still(&self.editor).is_some();
         let response = if is_still && self.layout.actual_size {
-            self.screen.show_still_at_actual_size(ui)?
+            self.pictures.screen.show_still_at_actual_size(ui)?
         } else {
-            self.screen.show(ui, place, is_still)
+            self.pictures.screen.show(ui, place, is_still)
         };
         Some((place, response))
     }
@@ -268,7 +209,7 @@ impl App {
             Command::LowRes => Action::Show(Mode::LowRes),
             Command::HighRes => Action::Show(Mode::HighRes),
             Command::CancelStill => {
-                self.worker.cancel_still();
+                self.pictures.cancel_still();
                 Action::Show(Mode::Live)
             }
             Command::Perspective => projected(editor, Projection::Perspective),
@@ -296,7 +237,7 @@ impl App {
         if self.shortcuts_open {
             self.shortcuts_open = false;
         } else if self.editor.mode != Mode::Live {
-            self.worker.cancel_still();
+            self.pictures.cancel_still();
             self.editor.apply(Action::Show(Mode::Live));
         } else {
             return self.files.ask_to_quit(ctx, &mut self.editor);
@@ -313,78 +254,8 @@ impl App {
             }
             Some(Outcome::SaveImage(path)) => {
                 self.editor.apply(Action::Show(Mode::HighRes));
-                self.request_still(Some(path));
+                self.pictures.request_still(&self.editor, Some(path));
             }
-        }
-    }
-
-    fn request_still(&mut self, save_to: Option<PathBuf>) {
-        let scene = self.editor.scene();
-        self.still_requested = Some((self.editor.revision(), self.still_size()));
-        self.worker.request_still(StillJob {
-            revision: self.editor.revision(),
-            scene: scene.clone(),
-            picture: Picture::still(scene),
-            save_to,
-        });
-    }
-
-    /// Hands the lane what the picture area needs and does not have.
-    fn submit(&mut self, pixels: (u32, u32)) {
-        let revision = self.editor.revision();
-        if self.editor.mode == Mode::HighRes {
-            let wanted = (revision, self.still_size());
-            if self.shown_still().is_none() && self.still_requested != Some(wanted) {
-                self.request_still(None);
-            }
-            return;
-        }
-        self.still_requested = None;
-        let (size, pace) = match self.editor.mode {
-            Mode::LowRes => (low_res(pixels), Pace::Whole),
-            _ => (pixels, Pace::Progressive),
-        };
-        if self.submitted == Some((revision, size, pace)) {
-            return;
-        }
-        self.submitted = Some((revision, size, pace));
-        self.worker.submit(LiveJob {
-            revision,
-            scene: self.editor.scene().clone(),
-            picture: Picture::sized(size.0, size.1),
-            pace,
-        });
-    }
-
-    /// Keeps unsaved work on disk, every few seconds while there is new work.
-    fn autosave(&mut self, ctx: &Context) {
-        let Some(recovery) = &self.recovery else {
-            return;
-        };
-        let revision = self.editor.revision();
-        if !self.editor.is_dirty() {
-            if self.autosave.kept.take().is_some() {
-                recovery.clear();
-            }
-            return;
-        }
-        if self.autosave.kept.is_some_and(|(kept, _)| kept == revision) {
-            return;
-        }
-        if let Some(wait) = self
-            .autosave
-            .tried
-            .and_then(|at| AUTOSAVE.checked_sub(at.elapsed()))
-        {
-            ctx.request_repaint_after(wait);
-            return;
-        }
-        self.autosave.tried = Some(Instant::now());
-        match recovery.keep(&self.editor.to_text(), self.editor.path()) {
-            Ok(()) => self.autosave.kept = Some((revision, Instant::now())),
-            Err(error) => self.editor.complain(format!(
-                "Unsaved changes cannot be kept safe: {error}. Save your work and make room on the disk."
-            )),
         }
     }
 
@@ -408,15 +279,7 @@ fn projected(editor: &Editor, projection: Projection) -> Action {
 
 impl eframe::App for App {
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
-        if let Some(frame) = self.worker.take_frame() {
-            self.screen.take(ctx, frame);
-        }
-        for event in self.worker.take_events() {
-            match event {
-                Event::Saved(path) => self.editor.inform(format!("Saved {}", path.display())),
-                Event::Failed(reason) => self.editor.complain(reason),
-            }
-        }
+        self.pictures.poll(ctx, &mut self.editor);
         let outcome = self.files.poll(ctx, &mut self.editor);
         self.follow(ctx, outcome);
         for file in ctx.input(|input| input.raw.dropped_files.clone()) {
@@ -431,7 +294,7 @@ impl eframe::App for App {
             let outcome = self.files.start(ctx, &mut self.editor, Next::Quit);
             self.follow(ctx, outcome);
         }
-        self.autosave(ctx);
+        self.autosave.tick(ctx, &mut self.editor);
         self.show_title(ctx);
     }
 
@@ -468,7 +331,7 @@ impl eframe::App for App {
         self.toasts.push(&ctx, messages);
         self.toasts.show(&ctx);
         if let Some((place, _)) = picture {
-            self.submit(place.pixels);
+            self.pictures.submit(&self.editor, place.pixels);
         }
     }
 
@@ -477,8 +340,6 @@ impl eframe::App for App {
     }
 
     fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
-        if let Some(recovery) = &self.recovery {
-            recovery.clear();
-        }
+        self.autosave.end();
     }
 }

@@ -278,7 +278,7 @@ impl Files {
                 let path = with_ending(path, ask);
                 match editor.save(&path) {
                     Ok(()) => {
-                        self.remember(&path);
+                        self.remember(editor);
                         let next = self.after_save.take()?;
                         self.go_on(ctx, editor, next)
                     }
@@ -306,7 +306,7 @@ impl Files {
     /// Opens a file; if it is refused, the document stays and the user is told why.
     pub fn open(&mut self, editor: &mut Editor, path: &Path) {
         match editor.open(path) {
-            Ok(()) => self.remember(path),
+            Ok(()) => self.remember(editor),
             Err(error) => {
                 self.recent
                     .retain(|recent| recent != path || recent.exists());
@@ -315,10 +315,10 @@ impl Files {
         }
     }
 
-    fn remember(&mut self, path: &Path) {
-        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        self.recent.retain(|recent| *recent != path);
-        self.recent.insert(0, path);
+    fn remember(&mut self, editor: &Editor) {
+        let Some(path) = editor.path() else { return };
+        self.recent.retain(|recent| recent != path);
+        self.recent.insert(0, path.to_owned());
         self.recent.truncate(RECENT);
     }
 }

@@ -2,6 +2,7 @@
 //! `theme.rs` has every colour and spacing, `commands.rs` every key.
 
 mod app;
+mod autosave;
 mod commands;
 mod dialogs;
 mod files;
@@ -11,6 +12,7 @@ mod icons;
 mod inspector;
 mod menu;
 mod outliner;
+mod pictures;
 mod rows;
 mod status;
 mod theme;

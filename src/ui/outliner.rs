@@ -1,6 +1,7 @@
 //! The panel on the left: everything in the scene by name. Only the rows in sight are laid out, so
 //! ten thousand objects cost no more than twenty.
 
+use egui::text::{CCursor, CCursorRange};
 use egui::{Button, Id, Key, Rect, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2};
 use egui_material_icons::MaterialIcon;
 
@@ -40,7 +41,7 @@ impl Outliner {
             let field = TextEdit::singleline(&mut self.filter).hint_text("Filter");
             ui.add_sized([width, ROW], field.align(egui::Align2::LEFT_CENTER))
                 .accessible_name("Filter");
-            let add = icons::button(ui, icons::ADD, "Add");
+            let add = icons::button(ui, icons::ADD, "Add to scene");
             egui::Popup::menu(&add).show(|ui| add_menu(ui, editor.scene(), out));
         });
         let lines = self.lines(editor.scene());
@@ -191,6 +192,7 @@ impl Outliner {
             let id = Id::unique(("rename", item));
             if !ui.memory(|memory| memory.has_focus(id)) {
                 ui.memory_mut(|memory| memory.request_focus(id));
+                select_all(ui, id, name);
             }
             let new = name_field(ui, "new name", id, name);
             let is_left = ui.input(|input| {
@@ -206,6 +208,16 @@ impl Outliner {
             }
         });
     }
+}
+
+/// Typing shall replace the old name.
+fn select_all(ui: &Ui, id: Id, text: &str) {
+    let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
+    let end = CCursor::new(text.chars().count());
+    state
+        .cursor
+        .set_char_range(Some(CCursorRange::two(CCursor::new(0), end)));
+    state.store(ui.ctx(), id);
 }
 
 /// The symbol of an item, and whether it is visible if it can be hidden.

@@ -39,6 +39,18 @@ pub fn coordinate(name: &'static str, hint: &'static str) -> Field {
     }
 }
 
+/// A number from 0 to 1.
+pub fn fraction(name: &'static str, hint: &'static str, default: f64) -> Field {
+    Field {
+        name,
+        hint,
+        unit: "",
+        default,
+        range: 0.0..=1.0,
+        speed: Some(0.005),
+    }
+}
+
 /// A stack of rows that remembers which field was changed.
 pub struct Rows<'u> {
     /// Where the rows go.

@@ -54,7 +54,11 @@ fn translate(scene: &Scene) -> String {
         let texture = texture(&scene.color_packs[&object.color_pack], total);
         let _ = match &object.shape {
             Shape::Sphere { center, radius } => {
-                writeln!(pov, "sphere {{ {}, {radius:?} {texture} }}", vector(*center))
+                writeln!(
+                    pov,
+                    "sphere {{ {}, {radius:?} {texture} }}",
+                    vector(*center)
+                )
             }
             Shape::Plane { point, normal } => {
                 let n = normal.unit().expect("checked");

@@ -1,0 +1,83 @@
+//! Keeping unsaved work safe while the program runs, and taking it up after one that crashed.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use egui::Context;
+
+use crate::editor::Editor;
+use crate::scene::Recovery;
+
+/// Time between two autosaves.
+const INTERVAL: Duration = Duration::from_secs(5);
+
+/// The state of autosaving.
+#[derive(Default)]
+pub struct Autosave {
+    recovery: Option<Recovery>,
+    /// What is kept: revision, and since when.
+    kept: Option<(u64, Instant)>,
+    tried: Option<Instant>,
+}
+
+impl Autosave {
+    /// Takes a place in `folder`, and hands what a crashed program left there to the editor.
+    pub fn start(folder: Option<&Path>, editor: &mut Editor) -> Self {
+        let recovery = folder.and_then(|folder| Recovery::new(folder).ok());
+        if let Some(leftover) = recovery
+            .as_ref()
+            .and_then(|recovery| recovery.take_leftover(editor.path()))
+        {
+            let path = leftover.path.as_ref();
+            let name = path.map_or("a new scene".to_owned(), |path| path.display().to_string());
+            editor.recover(leftover.document, leftover.path);
+            editor.inform(format!(
+                "Glint ended with unsaved changes to {name}; here they are. Save them, or open the file again to discard them."
+            ));
+        }
+        Self {
+            recovery,
+            ..Self::default()
+        }
+    }
+
+    /// Since when the unsaved work is safe, if there is any.
+    pub fn kept_since(&self) -> Option<Instant> {
+        self.kept.map(|(_, since)| since)
+    }
+
+    /// Keeps unsaved work on disk, every few seconds while there is new work.
+    pub fn tick(&mut self, ctx: &Context, editor: &mut Editor) {
+        let Some(recovery) = &self.recovery else {
+            return;
+        };
+        if !editor.is_dirty() {
+            if self.kept.take().is_some() {
+                recovery.clear();
+            }
+            return;
+        }
+        let revision = editor.revision();
+        if self.kept.is_some_and(|(kept, _)| kept == revision) {
+            return;
+        }
+        if let Some(wait) = self.tried.and_then(|at| INTERVAL.checked_sub(at.elapsed())) {
+            ctx.request_repaint_after(wait);
+            return;
+        }
+        self.tried = Some(Instant::now());
+        match recovery.keep(&editor.to_text(), editor.path()) {
+            Ok(()) => self.kept = Some((revision, Instant::now())),
+            Err(error) => editor.complain(format!(
+                "Unsaved changes cannot be kept safe: {error}. Save your work and make room on the disk."
+            )),
+        }
+    }
+
+    /// The program ends as the user wished: there is nothing to recover.
+    pub fn end(&self) {
+        if let Some(recovery) = &self.recovery {
+            recovery.clear();
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! The camera: projection, place, angles and vectors.
+
+use egui::Ui;
+
+use super::title;
+use crate::editor::{Edit, Editor, Orientation};
+use crate::scene::{Camera, Projection};
+use crate::ui::rows::{Field, Rows, coordinate};
+use crate::ui::{Out, icons};
+
+/// Every property of the camera.
+pub fn show(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+    title(ui, icons::CAMERA, "Camera");
+    let before = &editor.scene().camera;
+    let mut camera = before.clone();
+    let mut rows = Rows::new(ui);
+    let kinds = [Projection::Perspective, Projection::Orthographic];
+    rows.choice(
+        "projection",
+        "Whether rays spread from the eye (P) or run side by side (O)",
+        &mut camera.projection,
+        kinds.map(|kind| (kind, format!("{kind:?}"))),
+    );
+    projection_rows(&mut rows, &mut camera);
+    rows.heading("Place");
+    let defaults = Camera::default();
+    rows.vector(
+        &coordinate("position", "Where the camera stands, in world units"),
+        &mut camera.position,
+    );
+    angle_rows(&mut rows, editor.orientation(), &mut camera);
+    rows.heading("Vectors");
+    rows.vector(
+        &Field {
+            default: 0.0,
+            ..coordinate("look_at", "Viewing direction; its length does not matter")
+        },
+        &mut camera.look_at,
+    );
+    rows.vector(
+        &coordinate("up", "Roughly upwards; must not be along look_at"),
+        &mut camera.up,
+    );
+    let reset = ui.button("Reset to the demo's camera").clicked();
+    let field = rows_changed(reset, &mut camera, defaults, before);
+    if let Some(field) = field {
+        out.edit(Edit::Camera(camera, field));
+    }
+}
+
+/// What the change of the camera is called, if it changed.
+fn rows_changed(
+    reset: bool,
+    camera: &mut Camera,
+    defaults: Camera,
+    before: &Camera,
+) -> Option<&'static str> {
+    if reset {
+        *camera = defaults;
+        return Some("reset");
+    }
+    let fields = [
+        (camera.position != before.position, "position"),
+        (camera.projection != before.projection, "projection"),
+        (
+            camera.projection_distance != before.projection_distance,
+            "projection distance",
+        ),
+        (
+            camera.orthographic_height != before.orthographic_height,
+            "orthographic height",
+        ),
+        (
+            camera.look_at != before.look_at || camera.up != before.up,
+            "direction",
+        ),
+    ];
+    fields
+        .into_iter()
+        .find_map(|(changed, name)| changed.then_some(name))
+}
+
+fn projection_rows(rows: &mut Rows, camera: &mut Camera) {
+    if camera.projection == Projection::Orthographic {
+        rows.number(
+            &Field {
+                name: "height",
+                hint: "Height of the view window, in world units",
+                unit: "",
+                default: 200.0,
+                range: 1e-6..=1e12,
+                speed: None,
+            },
+            &mut camera.orthographic_height,
+        );
+        return;
+    }
+    rows.number(
+        &Field {
+            name: "distance",
+            hint: "Projection distance: from the eye to the image plane, in image heights (0.001–100000). Longer is a narrower view",
+            unit: " h",
+            default: 0.5625,
+            range: 1e-3..=1e5,
+            speed: None,
+        },
+        &mut camera.projection_distance,
+    );
+    let degrees = camera.field_of_view_radians().to_degrees();
+    let mut edited = degrees;
+    rows.number(
+        &Field {
+            name: "view angle",
+            hint: "The same as an angle: vertical field of view in degrees",
+            unit: "°",
+            default: Camera::default().field_of_view_radians().to_degrees(),
+            range: 0.001..=179.0,
+            speed: Some(0.2),
+        },
+        &mut edited,
+    );
+    if edited != degrees {
+        camera.projection_distance = 0.5 / (edited.to_radians() / 2.0).tan();
+    }
+}
+
+/// Yaw, pitch and roll in degrees; a change rebuilds look_at and up from them.
+fn angle_rows(rows: &mut Rows, before: Orientation, camera: &mut Camera) {
+    let mut angles = before;
+    let parts = [
+        (
+            "yaw",
+            "Turn to the right, from -180° to 180°",
+            180.0,
+            &mut angles.yaw,
+        ),
+        (
+            "pitch",
+            "Tilt upwards, up to 89.9°",
+            89.9,
+            &mut angles.pitch,
+        ),
+        (
+            "roll",
+            "Lean to the right, from -180° to 180°",
+            180.0,
+            &mut angles.roll,
+        ),
+    ];
+    for (name, hint, limit, radians) in parts {
+        let degrees = radians.to_degrees();
+        let mut edited = degrees;
+        let field = Field {
+            name,
+            hint,
+            unit: "°",
+            default: 0.0,
+            range: -limit..=limit,
+            speed: Some(0.25),
+        };
+        rows.number(&field, &mut edited);
+        if edited != degrees {
+            *radians = edited.to_radians();
+        }
+    }
+    if angles != before {
+        *camera = angles.apply(camera);
+    }
+}

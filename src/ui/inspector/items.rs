@@ -1,0 +1,225 @@
+//! Lights, objects and colour packs.
+
+use egui::Ui;
+
+use super::title_field;
+use crate::editor::{Edit, Item, Selection};
+use crate::scene::{ColorPack, Light, LightObj, Object, Scene, Shape};
+use crate::ui::rows::{Field, Rows, coordinate, fraction};
+use crate::ui::{Out, icons};
+
+/// A light and its marker.
+pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut Out) {
+    title_field(ui, icons::LIGHT, Item::light(index), &before.name, out);
+    let mut light = before.clone();
+    let mut rows = Rows::new(ui);
+    rows.vector(
+        &coordinate("position", "Where it shines from, in world units"),
+        &mut light.position,
+    );
+    rows.number(
+        &fraction(
+            "intensity",
+            "Brightness, 0–1; it does not fall off with distance",
+            0.2,
+        ),
+        &mut light.intensity,
+    );
+    rows.toggle("on", "Whether it shines at all", &mut light.visible);
+    rows.heading("Marker");
+    let mut has_marker = light.marker.is_some();
+    rows.toggle(
+        "marker",
+        "A sphere that shows where the light is; casts no shadow",
+        &mut has_marker,
+    );
+    if has_marker != light.marker.is_some() {
+        let names = scene.color_packs.keys();
+        let pack = names
+            .clone()
+            .find(|name| *name == "light")
+            .or(scene.color_packs.keys().next());
+        light.marker = pack.filter(|_| has_marker).map(|pack| LightObj {
+            color_pack: pack.clone(),
+            ..LightObj::default()
+        });
+    }
+    if let Some(marker) = &mut light.marker {
+        rows.number(&radius(5.0), &mut marker.radius);
+        pack_choice(&mut rows, scene, &mut marker.color_pack);
+    }
+    if let Some(field) = rows.changed().filter(|_| light != *before) {
+        out.edit(Edit::Light(index, light, field));
+    }
+}
+
+fn radius(default: f64) -> Field {
+    Field {
+        name: "radius",
+        hint: "In world units, greater than 0",
+        unit: "",
+        default,
+        range: 1e-9..=1e12,
+        speed: None,
+    }
+}
+
+fn pack_choice(rows: &mut Rows, scene: &Scene, name: &mut String) {
+    let options = scene
+        .color_packs
+        .keys()
+        .map(|name| (name.clone(), name.clone()));
+    rows.choice(
+        "color pack",
+        "The material, shared by everything that names it",
+        name,
+        options,
+    );
+}
+
+/// An object: its shape and its pack.
+pub fn object(ui: &mut Ui, scene: &Scene, index: usize, before: &Object, out: &mut Out) {
+    title_field(
+        ui,
+        icons::of_shape(&before.shape),
+        Item::object(index),
+        &before.name,
+        out,
+    );
+    let mut object = before.clone();
+    let mut rows = Rows::new(ui);
+    rows.heading(before.shape.kind());
+    shape_rows(&mut rows, &mut object.shape);
+    rows.toggle(
+        "visible",
+        "An invisible object casts no shadow and no reflection",
+        &mut object.visible,
+    );
+    rows.heading("ColorPack");
+    pack_choice(&mut rows, scene, &mut object.color_pack);
+    if let Some(field) = rows.changed().filter(|_| object != *before) {
+        out.edit(Edit::Object(index, object, field));
+    }
+    let Some((place, name, value)) = scene.color_packs.get_full(&before.color_pack) else {
+        return;
+    };
+    pack(ui, place, value, out);
+    let users = scene.users_of_pack(name).len();
+    ui.horizontal(|ui| {
+        ui.weak(format!("used by {users}"));
+        let unique = ui.add_enabled(users > 1, egui::Button::new("Make unique"));
+        if unique
+            .on_hover_text("Give this object a color pack of its own")
+            .clicked()
+        {
+            out.edit(Edit::MakePackUnique(index));
+        }
+    });
+}
+
+fn shape_rows(rows: &mut Rows, shape: &mut Shape) {
+    match shape {
+        Shape::Sphere { center, radius: r } => {
+            rows.vector(
+                &coordinate("center", "The middle of the ball, in world units"),
+                center,
+            );
+            rows.number(&radius(50.0), r);
+        }
+        Shape::Plane { point, normal } => {
+            rows.vector(&coordinate("point", "Any point on the plane"), point);
+            rows.vector(
+                &coordinate(
+                    "normal",
+                    "Direction across the plane; its length does not matter",
+                ),
+                normal,
+            );
+        }
+        Shape::Triangle { a, b, c } => {
+            for (name, corner) in [("a", a), ("b", b), ("c", c)] {
+                rows.vector(
+                    &coordinate(name, "A corner; clockwise seen from outside"),
+                    corner,
+                );
+            }
+        }
+    }
+}
+
+/// The colours of a pack.
+pub fn pack(ui: &mut Ui, index: usize, before: &ColorPack, out: &mut Out) {
+    let mut pack = before.clone();
+    let mut rows = Rows::new(ui);
+    rows.color(
+        "ambient",
+        "Colour without any light, scaled by the ambient intensity",
+        &mut pack.ambient,
+    );
+    rows.color("diffuse", "Colour of matte reflection", &mut pack.diffuse);
+    rows.color(
+        "specular",
+        "Colour of the highlight, and of the mirror image",
+        &mut pack.specular,
+    );
+    rows.number(
+        &Field {
+            name: "phong",
+            hint: "Phong exponent: sharpness of the highlight. 0 is flat, 16 soft, 1000 a pinpoint",
+            unit: "",
+            default: 16.0,
+            range: 0.0..=1e7,
+            speed: None,
+        },
+        &mut pack.phong_exponent,
+    );
+    rows.toggle(
+        "reflective",
+        "Whether the surface mirrors the scene",
+        &mut pack.reflective,
+    );
+    if let Some(field) = rows.changed().filter(|_| pack != *before) {
+        out.edit(Edit::Pack(index, pack, field));
+    }
+}
+
+/// What uses a pack, each a way to it.
+pub fn used_by(ui: &mut Ui, scene: &Scene, name: &str, out: &mut Out) {
+    let mut rows = Rows::new(ui);
+    rows.heading("Used by");
+    let lights = scene.lights.iter().enumerate().filter(|(_, light)| {
+        light
+            .marker
+            .as_ref()
+            .is_some_and(|marker| marker.color_pack == name)
+    });
+    let lights = lights.map(|(index, light)| (icons::LIGHT, Item::light(index), &light.name));
+    let objects = scene
+        .objects
+        .iter()
+        .enumerate()
+        .filter(|(_, object)| object.color_pack == name);
+    let objects = objects.map(|(index, object)| {
+        (
+            icons::of_shape(&object.shape),
+            Item::object(index),
+            &object.name,
+        )
+    });
+    let users: Vec<_> = lights.chain(objects).collect();
+    if users.is_empty() {
+        ui.weak("Nothing yet – choose it in an object's ColorPack");
+    }
+    for (icon, item, name) in users {
+        let button = egui::Button::new((icons::text(icon), name))
+            .frame_when_inactive(false)
+            .truncate();
+        if ui
+            .add(button)
+            .accessible_name(format!("Go to {name}"))
+            .clicked()
+        {
+            out.select(Selection::Item(item));
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! The world and the still picture.
+
+use egui::Ui;
+
+use super::title;
+use crate::editor::Edit;
+use crate::scene::{MAX_REFLECTIONS, MAX_SIDE, Render, Scene};
+use crate::ui::rows::{Field, Rows, fraction};
+use crate::ui::{Out, icons};
+
+/// What belongs to the scene as a whole.
+pub fn show(ui: &mut Ui, scene: &Scene, out: &mut Out) {
+    title(ui, icons::WORLD, "World");
+    let mut ambient = scene.ambient_intensity;
+    let mut background = scene.background;
+    let mut markers = scene.light_visualization;
+    let mut rows = Rows::new(ui);
+    rows.number(
+        &fraction(
+            "ambient",
+            "Ambient intensity: how much of every ambient colour is seen without light, 0–1",
+            0.5,
+        ),
+        &mut ambient,
+    );
+    rows.color(
+        "background",
+        "Colour of a ray that hits nothing, 0–255",
+        &mut background,
+    );
+    rows.toggle(
+        "light markers",
+        "Light visualization: whether the markers of lights are seen (I on, U off)",
+        &mut markers,
+    );
+    if ambient != scene.ambient_intensity {
+        out.edit(Edit::Ambient(ambient));
+    }
+    if background != scene.background {
+        out.edit(Edit::Background(background));
+    }
+    if markers != scene.light_visualization {
+        out.edit(Edit::LightVisualization(markers));
+    }
+}
+
+/// Size and depth of the still picture.
+pub fn show_picture(ui: &mut Ui, scene: &Scene, out: &mut Out) {
+    title(ui, icons::IMAGE, "Picture");
+    let mut render = scene.render.clone();
+    let defaults = Render::default();
+    let mut rows = Rows::new(ui);
+    for (name, hint, default, limit, value) in [
+        (
+            "width",
+            "Width of the high-res picture in pixels",
+            defaults.width,
+            MAX_SIDE,
+            &mut render.width,
+        ),
+        (
+            "height",
+            "Height of the high-res picture in pixels",
+            defaults.height,
+            MAX_SIDE,
+            &mut render.height,
+        ),
+    ] {
+        whole(&mut rows, name, hint, " px", default, 1..=limit, value);
+    }
+    whole(
+        &mut rows,
+        "reflections",
+        "How often light may be mirrored on its way to the eye",
+        "",
+        defaults.reflection_limit,
+        0..=MAX_REFLECTIONS,
+        &mut render.reflection_limit,
+    );
+    let changed = rows.changed();
+    if let Some(field) = changed.filter(|_| render != scene.render) {
+        out.edit(Edit::Render(render, field));
+    }
+}
+
+/// A row for a whole number.
+fn whole(
+    rows: &mut Rows,
+    name: &'static str,
+    hint: &'static str,
+    unit: &'static str,
+    default: u32,
+    range: std::ops::RangeInclusive<u32>,
+    value: &mut u32,
+) {
+    let range = f64::from(*range.start())..=f64::from(*range.end());
+    let speed = Some(if *range.end() > 100.0 { 2.0 } else { 0.05 });
+    let mut real = f64::from(*value);
+    rows.number(
+        &Field {
+            name,
+            hint,
+            unit,
+            default: f64::from(default),
+            range,
+            speed,
+        },
+        &mut real,
+    );
+    *value = real.round() as u32;
+}
