@@ -2,15 +2,19 @@
 
 use std::process::ExitCode;
 
-use glint::cli::{Asked, picture_instead_of_window};
+use glint::cli::{Asked, fail, picture_instead_of_window};
+use glint::ui::NoWindow;
 use glint::{cli, ui};
 
 fn main() -> ExitCode {
     match cli::run(std::env::args_os()) {
         Asked::Done(code) => code,
-        Asked::Editor(scene) => match ui::run(scene.clone()) {
+        Asked::Editor { scene, screenshot } => match ui::run(scene.clone(), screenshot) {
             Ok(()) => ExitCode::SUCCESS,
-            Err(no_window) => picture_instead_of_window(scene.as_deref(), &no_window.to_string()),
+            Err(NoWindow::Unavailable(reason)) => {
+                picture_instead_of_window(scene.as_deref(), &reason)
+            }
+            Err(error) => fail(&error.to_string()),
         },
     }
 }

@@ -13,6 +13,8 @@ use clap::{Parser, Subcommand};
 
 pub use fallback::picture_instead_of_window;
 
+use crate::image::Format;
+
 /// Exit code when the work failed.
 const FAILED: u8 = 1;
 /// Exit code when the words or the file were wrong.
@@ -32,6 +34,9 @@ const NOT_YET: [&str; 5] = ["export", "plan", "chart", "stability", "job"];
 struct Words {
     /// The scene to open in the editor (RON)
     scene: Option<PathBuf>,
+    /// Write a picture of the window once it is complete (PNG or PPM), and quit
+    #[arg(long, value_name = "IMAGE")]
+    screenshot: Option<PathBuf>,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -47,8 +52,13 @@ enum Command {
 /// What the command line asked for.
 #[derive(Debug)]
 pub enum Asked {
-    /// Open the editor on a scene file, or on the demo.
-    Editor(Option<PathBuf>),
+    /// Open the editor.
+    Editor {
+        /// The scene file; the demo if there is none.
+        scene: Option<PathBuf>,
+        /// Where to write a picture of the window, which then closes.
+        screenshot: Option<PathBuf>,
+    },
     /// Nothing more: the command ran and ends with this code.
     Done(ExitCode),
 }
@@ -66,10 +76,6 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
     }
     match Words::try_parse_from(words) {
         Ok(Words {
-            command: None,
-            scene,
-        }) => Asked::Editor(scene),
-        Ok(Words {
             command: Some(Command::Render(words)),
             ..
         }) => Asked::Done(render::run(&words)),
@@ -77,6 +83,14 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
             command: Some(Command::Check(words)),
             ..
         }) => Asked::Done(check::run(&words)),
+        Ok(Words {
+            command: None,
+            scene,
+            screenshot,
+        }) => match screenshot.as_deref().map(Format::of_path) {
+            Some(Err(error)) => Asked::Done(refuse(&error.to_string())),
+            _ => Asked::Editor { scene, screenshot },
+        },
         Err(error) => {
             // Help and version are "errors" of exit code 0 that go to stdout.
             let _ = error.print();
@@ -105,7 +119,8 @@ fn refuse(error: &str) -> ExitCode {
     WRONG.into()
 }
 
-fn fail(error: &str) -> ExitCode {
+/// Says on stderr why the work failed, and gives the exit code for that.
+pub fn fail(error: &str) -> ExitCode {
     complain(error);
     FAILED.into()
 }

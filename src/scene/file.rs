@@ -18,7 +18,7 @@ const MAX_BYTES: u64 = 32 << 20;
 /// Deepest nesting of brackets; a scene needs five.
 const MAX_DEPTH: usize = 32;
 /// Most characters of a line that an error shows, so that a file on one line stays readable.
-const EXCERPT: usize = 100;
+const EXCERPT: usize = 64;
 
 /// A scene and the comment header of its file.
 #[derive(Clone, Debug, PartialEq)]
@@ -213,6 +213,10 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
+    if !folder.is_dir() {
+        let sentence = format!("the folder {} does not exist", folder.display());
+        return Err(io::Error::new(io::ErrorKind::NotFound, sentence));
+    }
     let mut beside = new_file_builder().tempfile_in(folder)?;
     beside.write_all(bytes)?;
     if let Some(existing) = existing {

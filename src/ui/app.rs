@@ -13,6 +13,7 @@ use super::flying::Flying;
 use super::menu::Layout;
 use super::outliner::Outliner;
 use super::pictures::Pictures;
+use super::screenshot::Screenshot;
 use super::theme::{GRID, INSPECTOR, OUTLINER, ROW, palette};
 use super::toasts::Toasts;
 use super::viewport::{Place, describe, fit};
@@ -34,6 +35,8 @@ pub struct Setup {
     pub dialogs: Box<dyn Dialogs>,
     /// Where unsaved work is kept; `None` keeps none.
     pub data_folder: Option<PathBuf>,
+    /// A picture to be made of the window, which then closes.
+    pub screenshot: Option<Screenshot>,
 }
 
 impl Setup {
@@ -43,6 +46,16 @@ impl Setup {
             scene,
             dialogs: Box::new(Native),
             data_folder: data_folder(),
+            screenshot: None,
+        }
+    }
+
+    /// A window that shows the scene, has its picture taken and closes.
+    pub fn for_screenshot(scene: Option<PathBuf>, screenshot: Screenshot) -> Self {
+        Self {
+            data_folder: None,
+            screenshot: Some(screenshot),
+            ..Self::native(scene)
         }
     }
 }
@@ -60,6 +73,7 @@ pub struct App {
     may_close: bool,
     title: String,
     autosave: Autosave,
+    screenshot: Option<Screenshot>,
 }
 
 impl App {
@@ -92,6 +106,7 @@ impl App {
             may_close: false,
             title: String::new(),
             autosave: Autosave::default(),
+            screenshot: setup.screenshot,
         };
         if let Some(path) = setup.scene {
             app.files.open(&mut app.editor, &path);
@@ -332,6 +347,12 @@ impl eframe::App for App {
         self.toasts.show(&ctx);
         if let Some((place, _)) = picture {
             self.pictures.submit(&self.editor, place.pixels);
+        }
+        if let Some(screenshot) = &mut self.screenshot
+            && screenshot.tick(&ctx, self.pictures.is_settled(&self.editor))
+        {
+            self.may_close = true;
+            ctx.send_viewport_cmd(ViewportCommand::Close);
         }
     }
 

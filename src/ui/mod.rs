@@ -14,6 +14,7 @@ mod menu;
 mod outliner;
 mod pictures;
 mod rows;
+mod screenshot;
 mod status;
 mod theme;
 mod toasts;

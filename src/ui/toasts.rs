@@ -8,6 +8,8 @@ use crate::editor::Message;
 
 /// Seconds that a message stays that is not an error.
 const LIFETIME: f64 = 5.0;
+/// Width of a message in points: the excerpt of a refused file fits in.
+const WIDTH: f32 = 560.0;
 /// Most messages on screen; older ones make room.
 const MOST: usize = 5;
 
@@ -89,21 +91,12 @@ fn draw(ui: &mut egui::Ui, message: &Message) -> bool {
         .inner_margin(Margin::same(10));
     frame
         .show(ui, |ui| {
-            ui.set_width(440.0);
+            ui.set_width(WIDTH);
             ui.horizontal_top(|ui| {
                 ui.label(icons::text(icon).color(color));
                 ui.vertical(|ui| {
                     ui.set_width(ui.available_width() - 2.0 * super::theme::ROW - 2.0 * GRID);
-                    ScrollArea::vertical().max_height(160.0).show(ui, |ui| {
-                        let text = RichText::new(&message.text).color(colors.text);
-                        // A refused file shows its line and a caret, which must stand under each other.
-                        let text = if message.text.contains('\n') {
-                            text.monospace()
-                        } else {
-                            text
-                        };
-                        ui.add(egui::Label::new(text).wrap().selectable(true));
-                    });
+                    body(ui, &message.text);
                 });
                 if icons::button(ui, icons::COPY, "Copy message").clicked() {
                     ui.copy_text(message.text.clone());
@@ -113,4 +106,20 @@ fn draw(ui: &mut egui::Ui, message: &Message) -> bool {
             .inner
         })
         .inner
+}
+
+/// The sentence, wrapped; below it, what must keep its columns, such as the line and the caret of
+/// a refused file.
+fn body(ui: &mut egui::Ui, text: &str) {
+    let (sentence, excerpt) = text.split_once('\n').unwrap_or((text, ""));
+    ui.add(egui::Label::new(sentence).wrap().selectable(true));
+    if !excerpt.is_empty() {
+        ScrollArea::horizontal().show(ui, |ui| {
+            ui.add(
+                egui::Label::new(RichText::new(excerpt).monospace())
+                    .extend()
+                    .selectable(true),
+            );
+        });
+    }
 }

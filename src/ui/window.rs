@@ -10,6 +10,8 @@ use eframe::NativeOptions;
 use egui::{IconData, ViewportBuilder};
 
 use super::app::{App, Setup};
+use super::screenshot::Screenshot;
+use crate::export::ExportError;
 
 /// Size of the window when it is first opened, in points.
 const SIZE: [f32; 2] = [1280.0, 800.0];
@@ -20,37 +22,53 @@ const APP_ID: &str = "glint";
 /// The icon, traced by Glint from `assets/icon.ron`.
 const ICON: &[u8] = include_bytes!("../../assets/icon.png");
 
-/// Why no window could be opened, in words for the user.
+/// Why the window did not do what it was opened for.
 #[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct NoWindow(String);
+pub enum NoWindow {
+    /// No window could be opened, for this reason.
+    #[error("{0}")]
+    Unavailable(String),
+    /// The picture of the window could not be written.
+    #[error(transparent)]
+    Screenshot(ExportError),
+}
 
-/// Opens the window on a scene file (or the demo) and stays until it is closed.
+/// Opens the window on a scene file (or the demo) and stays until it is closed, or until a
+/// picture of it is written to `screenshot`.
 ///
 /// # Errors
-/// [`NoWindow`] if there is no display, no OpenGL, or a system library is missing. The library
+/// [`NoWindow::Unavailable`] if there is no display, no OpenGL, or a system library is missing. The library
 /// calls below this report some of that by a panic, which is caught and explained here; a panic
 /// once the window is open passes.
-pub fn run(scene: Option<PathBuf>) -> Result<(), NoWindow> {
+pub fn run(scene: Option<PathBuf>, screenshot: Option<PathBuf>) -> Result<(), NoWindow> {
+    let (screenshot, outcome) = screenshot.map(Screenshot::new).unzip();
+    let persist_window = screenshot.is_none();
     let is_open = Arc::new(AtomicBool::new(false));
     let quiet = Quiet::until(Arc::clone(&is_open));
     let result = catch_unwind(AssertUnwindSafe(|| {
         let is_open = Arc::clone(&is_open);
+        let setup = match screenshot {
+            None => Setup::native(scene),
+            Some(screenshot) => Setup::for_screenshot(scene, screenshot),
+        };
         eframe::run_native(
             APP_ID,
-            options(),
+            options(persist_window),
             Box::new(move |cc| {
                 is_open.store(true, Ordering::Relaxed);
-                Ok(Box::new(App::new(cc, Setup::native(scene))?))
+                Ok(Box::new(App::new(cc, setup)?))
             }),
         )
     }));
     drop(quiet);
     match result {
-        Ok(Ok(())) => Ok(()),
-        Ok(Err(error)) => Err(NoWindow(one_line(&error.to_string()))),
+        Ok(Ok(())) => match outcome.map(|outcome| outcome.try_recv()) {
+            Some(Ok(Err(error))) => Err(NoWindow::Screenshot(error)),
+            _ => Ok(()),
+        },
+        Ok(Err(error)) => Err(NoWindow::Unavailable(in_words(&error.to_string()))),
         Err(panic) if is_open.load(Ordering::Relaxed) => std::panic::resume_unwind(panic),
-        Err(panic) => Err(NoWindow(one_line(&panic_text(panic.as_ref())))),
+        Err(panic) => Err(NoWindow::Unavailable(in_words(&panic_text(panic.as_ref())))),
     }
 }
 
@@ -59,7 +77,7 @@ pub fn data_folder() -> Option<PathBuf> {
     eframe::storage_dir(APP_ID)
 }
 
-fn options() -> NativeOptions {
+fn options(persist_window: bool) -> NativeOptions {
     let mut viewport = ViewportBuilder::default()
         .with_title("Glint")
         .with_app_id(APP_ID)
@@ -77,6 +95,7 @@ fn options() -> NativeOptions {
     }
     NativeOptions {
         viewport,
+        persist_window,
         ..NativeOptions::default()
     }
 }
@@ -112,10 +131,39 @@ fn panic_text(panic: &(dyn Any + Send)) -> String {
         .unwrap_or_else(|| "the window system failed".to_owned())
 }
 
-fn one_line(text: &str) -> String {
-    text.split_whitespace()
-        .collect::<Vec<_>>()
-        .join(" ")
+/// What the window library says, for people: one line, without the places in its source.
+fn in_words(text: &str) -> String {
+    if text.contains("WAYLAND_DISPLAY nor") {
+        return "there is no display".to_owned();
+    }
+    if text.contains("glutin") {
+        return "no OpenGL driver was found".to_owned();
+    }
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let line = line.rsplit(".rs:").next().unwrap_or_default();
+    line.trim_start_matches(|c: char| c.is_ascii_digit() || c == ':' || c == ' ')
         .trim_end_matches('.')
         .to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_words;
+
+    #[test]
+    fn reasons_are_readable() {
+        let x11 = "winit EventLoopError: os error at /a/b/winit/mod.rs:788: Failed to load one of xlib's shared libraries";
+        assert_eq!(
+            in_words(x11),
+            "Failed to load one of xlib's shared libraries"
+        );
+        assert_eq!(
+            in_words("Library libxkbcommon-x11.so could\n not be loaded."),
+            "Library libxkbcommon-x11.so could not be loaded"
+        );
+        assert_eq!(
+            in_words("Found no glutin configs matching the template: …"),
+            "no OpenGL driver was found"
+        );
+    }
 }
