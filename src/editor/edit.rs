@@ -303,13 +303,16 @@ fn delete(scene: &mut Scene, item: Item) -> Result<(), String> {
 }
 
 fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), String> {
-    let from = item.name(scene).unwrap_or_default().to_owned();
-    if from == to {
+    let Some(from) = item
+        .name(scene)
+        .map(str::to_owned)
+        .filter(|from| from != to)
+    else {
         return Ok(());
-    }
+    };
     match item.kind {
-        Kind::Object => scene.objects[item.index].name = to.to_owned(),
-        Kind::Light => scene.lights[item.index].name = to.to_owned(),
+        Kind::Object => to.clone_into(&mut scene.objects[item.index].name),
+        Kind::Light => to.clone_into(&mut scene.lights[item.index].name),
         Kind::Pack if scene.color_packs.contains_key(to) => {
             return Err(format!(
                 "There is another color pack named {to:?}; choose another name"

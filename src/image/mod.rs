@@ -81,11 +81,6 @@ pub fn render(scene: &Scene, picture: &Picture, watch: &Watch) -> Option<(Image,
 }
 
 /// Linear 0–1 to 0–255, rounded to nearest; there is no gamma in the model.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "clamped to 0–255.5, and NaN becomes 0"
-)]
 fn quantize(color: [f64; 3]) -> [u8; 4] {
     let [r, g, b] = color.map(|channel| (channel.clamp(0.0, 1.0) * 255.0 + 0.5) as u8);
     [r, g, b, 255]

@@ -19,11 +19,6 @@ pub enum Exponent {
 
 impl Exponent {
     /// Chooses the form for the exponent `p` ≥ 0.
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "checked to be a small whole number"
-    )]
     pub fn new(p: f64) -> Self {
         if p.fract() == 0.0 && p <= LARGEST_SQUARED {
             Self::Whole(p as u32)
@@ -88,7 +83,6 @@ mod tests {
         for p in [0.5, 1.0, 16.0, 100.5, 256.0, 257.0, 1e4, 1e5, 1e6] {
             assert!(ours(p) <= 0.5, "p = {p}: {} levels", ours(p));
         }
-        #[allow(clippy::cast_possible_truncation, reason = "the formula that fails")]
         let plain = worst_level(1e6, |n, h| n.dot(h).max(0.0).powf(1e6_f64 as f32));
         assert!(
             plain > 5.0,

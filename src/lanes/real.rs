@@ -56,10 +56,6 @@ macro_rules! real {
             const NAME: &'static str = $name;
 
             #[inline(always)]
-            #[allow(
-                clippy::cast_possible_truncation,
-                reason = "narrowing is what this does"
-            )]
             fn from_f64(value: f64) -> Self {
                 value as Self
             }

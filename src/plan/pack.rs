@@ -226,10 +226,6 @@ fn material_number(scene: &Scene, pack: &str) -> u32 {
     number(scene.color_packs.get_index_of(pack).unwrap_or_default())
 }
 
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "a file has far fewer than 2^32 packs"
-)]
 fn number(index: usize) -> u32 {
     index as u32
 }

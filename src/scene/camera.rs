@@ -49,7 +49,7 @@ pub struct Basis {
 const MIN_SINE: f64 = 1e-6;
 
 impl Camera {
-    /// w = -look_at, u = up × w, v = w × u, all of length 1.
+    /// w = -`look_at`, u = up × w, v = w × u, all of length 1.
     ///
     /// `None` if `look_at` or `up` has no direction or they are parallel.
     pub fn basis(&self) -> Option<Basis> {

@@ -22,10 +22,6 @@ pub mod number {
         clippy::trivially_copy_pass_by_ref,
         reason = "serde asks with a reference"
     )]
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "checked to be a small whole number"
-    )]
     pub fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
         let is_plain = value.fract() == 0.0 && value.abs() < LARGEST_PLAIN;
         if is_plain && (*value != 0.0 || value.is_sign_positive()) {

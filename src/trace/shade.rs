@@ -62,7 +62,8 @@ fn light_color<R: Real>(
         return dark;
     };
     let cosine = hit.normal.dot(l);
-    if !(cosine > R::ZERO) {
+    let faces_the_light = cosine > R::ZERO;
+    if !faces_the_light {
         return dark;
     }
     let path = hit.leave(plan, l);

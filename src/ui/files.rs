@@ -104,12 +104,11 @@ impl Files {
 
     /// Writes the document to its file, or asks for one.
     pub fn save(&mut self, ctx: &Context, editor: &mut Editor) -> Option<Outcome> {
-        match editor.path().map(Path::to_owned) {
-            Some(path) => self.answered(ctx, editor, &Ask::SaveScene, path),
-            None => {
-                self.ask(ctx, editor, Ask::SaveScene);
-                None
-            }
+        if let Some(path) = editor.path().map(Path::to_owned) {
+            self.answered(ctx, editor, &Ask::SaveScene, path)
+        } else {
+            self.ask(ctx, editor, Ask::SaveScene);
+            None
         }
     }
 

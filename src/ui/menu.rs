@@ -51,7 +51,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, recent: &[PathBuf], layout: &mut Layou
             ui.weak(concat!("Glint ", env!("CARGO_PKG_VERSION")));
         });
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            switches(ui, editor, out)
+            switches(ui, editor, out);
         });
     });
 }

@@ -243,6 +243,7 @@ fn row(ui: &mut Ui) -> Rect {
 }
 
 /// How an entry looks.
+#[derive(Clone, Copy)]
 struct Look {
     icon: MaterialIcon,
     is_bright: bool,

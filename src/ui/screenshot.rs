@@ -62,7 +62,7 @@ impl Screenshot {
         let pixels = image
             .pixels
             .iter()
-            .map(|color| color.to_srgba_unmultiplied())
+            .map(egui::Color32::to_srgba_unmultiplied)
             .collect();
         let written = save_image(
             &Image {

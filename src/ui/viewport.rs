@@ -73,7 +73,7 @@ impl Screen {
                 *place = Some(Shown {
                     texture: ctx.load_texture(name, image, SHARP),
                     frame,
-                })
+                });
             }
         }
     }

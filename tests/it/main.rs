@@ -1,5 +1,7 @@
 //! Tests of the program as a whole: real files, the real binary, a real window, a real peer.
 
+#![allow(clippy::expect_used, reason = "a test that cannot go on has failed")]
+
 mod cli;
 mod house;
 mod image_model;

@@ -5,7 +5,7 @@ use glint::scene::{
     Camera, ColorPack, Light, LightObj, Object, Projection, Render, Scene, Shape, check,
 };
 
-/// SplitMix64 (Steele, Lea and Flood 2014): a test must give the same scenes everywhere.
+/// `SplitMix64` (Steele, Lea and Flood 2014): a test must give the same scenes everywhere.
 pub struct Dice(pub u64);
 
 impl Dice {
@@ -59,9 +59,7 @@ pub fn scene(seed: u64) -> Scene {
             .insert(format!("pack {number}"), pack(dice, reflective));
     }
     add_objects(&mut scene, dice);
-    scene.lights = (0..1 + seed % 3)
-        .map(|number| light(dice, number))
-        .collect();
+    scene.lights = (0..=(seed % 3)).map(|number| light(dice, number)).collect();
     scene.camera = camera(dice, seed);
     assert_eq!(check(&scene), Ok(()));
     scene
@@ -143,7 +141,7 @@ fn camera(dice: &mut Dice, seed: u64) -> Camera {
         position,
         look_at: target - position,
         up: Vec3::new(dice.real(-0.3, 0.3), 1.0, 0.0),
-        projection: if seed % 2 == 0 {
+        projection: if seed.is_multiple_of(2) {
             Projection::Perspective
         } else {
             Projection::Orthographic

@@ -110,6 +110,7 @@ fn published_scenes_are_valid_and_saved_as_they_stand() {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table")]
 fn the_demo_has_every_number_of_the_report() {
     let demo = Scene::demo();
     let vector = |[x, y, z]: [f64; 3]| Vec3::new(x, y, z);

@@ -83,7 +83,7 @@ impl Desk {
         self.window.step();
         while !self.window.state().is_settled() {
             assert!(
-                start.elapsed() < Duration::from_secs(60),
+                start.elapsed() < Duration::from_mins(1),
                 "the picture never came"
             );
             std::thread::sleep(Duration::from_millis(2));

@@ -11,7 +11,7 @@ use glint::trace::Watch;
 use glint::worker::{Activity, Event, Frame, LiveJob, Pace, StillJob, Worker};
 
 /// A test that waits longer than this has lost.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 
 fn live(revision: u64, scene: &Arc<Scene>, side: u32) -> LiveJob {
     let picture = Picture::sized(side, side);

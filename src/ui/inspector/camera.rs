@@ -124,7 +124,7 @@ fn projection_rows(rows: &mut Rows, camera: &mut Camera) {
     }
 }
 
-/// Yaw, pitch and roll in degrees; a change rebuilds look_at and up from them.
+/// Yaw, pitch and roll in degrees; a change rebuilds `look_at` and up from them.
 fn angle_rows(rows: &mut Rows, before: Orientation, camera: &mut Camera) {
     let mut angles = before;
     let parts = [
