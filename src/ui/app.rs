@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use egui::{CentralPanel, Context, Frame, Margin, Panel, Ui, ViewportCommand};
+use egui::{CentralPanel, Context, Frame, Margin, Panel, Theme, Ui, ViewportCommand};
 
 use super::autosave::Autosave;
 use super::commands::{Command, is_enabled, pressed};
@@ -26,6 +26,8 @@ use crate::trace::PoolError;
 
 /// Where the list of recent files is kept between runs.
 const RECENT_KEY: &str = "recent files";
+/// Where the choice of the theme is kept between runs.
+const THEME_KEY: &str = "theme";
 
 /// What the program gives the window.
 pub struct Setup {
@@ -72,6 +74,7 @@ pub struct App {
     shortcuts_open: bool,
     may_close: bool,
     title: String,
+    theme: Theme,
     autosave: Autosave,
     screenshot: Option<Screenshot>,
 }
@@ -82,7 +85,10 @@ impl App {
     /// # Errors
     /// [`PoolError`] when the system starts no threads.
     pub fn new(cc: &eframe::CreationContext<'_>, setup: Setup) -> Result<Self, PoolError> {
-        theme::install(&cc.egui_ctx);
+        let chosen = cc
+            .storage
+            .and_then(|storage| eframe::get_value(storage, THEME_KEY));
+        theme::install(&cc.egui_ctx, chosen.unwrap_or(Theme::Dark));
         cc.egui_ctx.options_mut(|options| {
             options.quit_shortcuts.clear();
             options.zoom_with_keyboard = true;
@@ -105,6 +111,7 @@ impl App {
             shortcuts_open: false,
             may_close: false,
             title: String::new(),
+            theme: cc.egui_ctx.theme(),
             autosave: Autosave::default(),
             screenshot: setup.screenshot,
         };
@@ -310,13 +317,15 @@ impl eframe::App for App {
             self.follow(ctx, outcome);
         }
         self.autosave.tick(ctx, &mut self.editor);
+        self.theme = ctx.theme();
         self.show_title(ctx);
     }
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let mut out = Out::default();
         let keys_are_free = !self.files.is_asking() && !ui.text_edit_focused();
-        if keys_are_free {
+        // An open menu takes the keys; Escape closes it and nothing else.
+        if keys_are_free && !egui::Popup::is_any_open(ui.ctx()) {
             out.commands = pressed(ui);
         }
         let picture = self.show_panels(ui, &mut out);
@@ -358,6 +367,7 @@ impl eframe::App for App {
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         eframe::set_value(storage, RECENT_KEY, &self.files.recent);
+        eframe::set_value(storage, THEME_KEY, &self.theme);
     }
 
     fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {

@@ -92,13 +92,13 @@ fn of(theme: Theme) -> Palette {
     }
 }
 
-/// Gives the window its fonts and both its themes; the dark one is on until the user chooses.
-pub fn install(ctx: &Context) {
+/// Gives the window its fonts and both its themes, of which `chosen` is on.
+pub fn install(ctx: &Context, chosen: Theme) {
     egui_material_icons::initialize(ctx);
     for theme in [Theme::Dark, Theme::Light] {
         ctx.style_mut_of(theme, |style| restyle(style, theme));
     }
-    ctx.set_theme(Theme::Dark);
+    ctx.set_theme(chosen);
 }
 
 fn restyle(style: &mut Style, theme: Theme) {

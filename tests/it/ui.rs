@@ -580,6 +580,20 @@ fn dropped_files_open() {
 }
 
 #[test]
+fn escape_closes_an_open_menu_and_nothing_else() {
+    let mut desk = Desk::new();
+    desk.press(Modifiers::NONE, Key::L);
+    desk.window
+        .get_by_role_and_label(Role::Button, "File")
+        .click();
+    desk.settle();
+    assert!(desk.window.query_by_label("Save as…").is_some());
+    desk.press(Modifiers::NONE, Key::Escape);
+    assert!(desk.window.query_by_label("Save as…").is_none());
+    assert_eq!(desk.editor().mode, Mode::LowRes);
+}
+
+#[test]
 fn help_lists_every_key() {
     let mut desk = Desk::new();
     desk.press(Modifiers::NONE, Key::F1);
