@@ -89,7 +89,7 @@ struct Stats {
     trace_ms: f64,
     trace_ms_min: f64,
     rays: RayCounts,
-    lanes: &'static str,
+    lanes: String,
     threads: usize,
     width: usize,
     height: usize,
@@ -267,7 +267,7 @@ fn stats(image: &Image, costs: &[Cost], threads: usize) -> Stats {
     } else {
         f64::midpoint(millis[middle - 1], millis[middle])
     };
-    let Cost { rays, lanes, .. } = costs[0];
+    let Cost { rays, lanes, .. } = costs[0].clone();
     Stats {
         trace_ms: median,
         trace_ms_min: millis[0],

@@ -22,14 +22,14 @@ pub struct Image {
 }
 
 /// What a picture cost.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cost {
     /// Wall time, planning included.
     pub time: Duration,
     /// Rays traced.
     pub rays: Rays,
     /// The kernel's real type and width, see [`Tracer::lanes`].
-    pub lanes: &'static str,
+    pub lanes: String,
 }
 
 impl Image {

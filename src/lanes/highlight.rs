@@ -1,6 +1,6 @@
 //! The power of a Phong highlight, max(0, n·h)^p, without the rounding that a large p magnifies.
 
-use super::Real;
+use super::{Lane, Real};
 
 /// Largest whole exponent that is raised by repeated squaring; its relative error is below p·u.
 const LARGEST_SQUARED: f64 = 256.0;
@@ -27,20 +27,26 @@ impl Exponent {
         }
     }
 
-    /// max(0, n·h)^p, given n·h and w = |n - h|²/2 of unit vectors n and h.
-    #[inline]
-    pub fn power<R: Real>(self, n_dot_h: R, w: R) -> R {
+    /// max(0, n·h)^p, given n·h and w = |n - h|²/2 of unit vectors n and h. NaN counts as 0.
+    #[inline(always)]
+    pub fn power<L: Lane>(self, token: L::Token, n_dot_h: L, w: L) -> L {
+        let zero = L::splat(token, L::Real::ZERO);
         match self {
-            Self::Whole(p) => whole_power(n_dot_h.max(R::ZERO), p),
-            Self::Real(_) if n_dot_h <= R::ZERO => R::ZERO,
-            Self::Real(p) => R::from_f64(libm::exp(p * libm::log1p(-w.to_f64()))),
+            Self::Whole(p) => whole_power(token, n_dot_h.max(zero), p),
+            Self::Real(p) => L::from_fn(token, |lane| {
+                if n_dot_h.lane(lane) > L::Real::ZERO {
+                    L::Real::from_f64(libm::exp(p * libm::log1p(-w.lane(lane).to_f64())))
+                } else {
+                    L::Real::ZERO
+                }
+            }),
         }
     }
 }
 
-#[inline]
-fn whole_power<R: Real>(base: R, mut exponent: u32) -> R {
-    let (mut result, mut square) = (R::ONE, base);
+#[inline(always)]
+fn whole_power<L: Lane>(token: L::Token, base: L, mut exponent: u32) -> L {
+    let (mut result, mut square) = (L::splat(token, L::Real::ONE), base);
     while exponent > 0 {
         if exponent & 1 == 1 {
             result = result * square;
@@ -74,7 +80,7 @@ mod tests {
     fn ours(p: f64) -> f64 {
         worst_level(p, |n, h| {
             let d = n - h;
-            Exponent::new(p).power(n.dot(h), d.dot(d) * 0.5)
+            Exponent::new(p).power((), n.dot(h), d.dot(d) * 0.5)
         })
     }
 
@@ -92,9 +98,9 @@ mod tests {
 
     #[test]
     fn zero_is_flat_and_the_dark_side_is_dark() {
-        assert_eq!(Exponent::new(0.0).power(0.3_f32, 0.7), 1.0);
+        assert_eq!(Exponent::new(0.0).power((), 0.3_f32, 0.7), 1.0);
         for p in [16.0, 16.5, 1e4] {
-            assert_eq!(Exponent::new(p).power(-0.99_f32, 1.99), 0.0);
+            assert_eq!(Exponent::new(p).power((), -0.99_f32, 1.99), 0.0);
         }
     }
 }

@@ -1,25 +1,11 @@
 //! The real number of a kernel.
 
-use std::fmt::Debug;
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use super::Lane;
 
-/// A real number that kernels compute in: `f32` for speed, `f64` as the reference.
-///
-/// Only operations that IEEE 754 rounds correctly are offered, so results are the same everywhere.
-/// Comparisons are those of `PartialOrd`: a NaN compares false, and kernels are written so that it
-/// then means "no hit".
+/// A real number that kernels compute in: `f32` for speed, `f64` as the reference. By itself it is
+/// one lane.
 pub trait Real:
-    Copy
-    + Debug
-    + PartialOrd
-    + Send
-    + Sync
-    + 'static
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
+    Lane<Real = Self, Mask = bool, Token = ()> + PartialOrd + Send + Sync + 'static
 {
     /// Largest relative error of one rounding, `u` in error bounds (2⁻²⁴ for `f32`).
     const UNIT_ROUNDOFF: Self;
@@ -29,21 +15,13 @@ pub trait Real:
     const ZERO: Self;
     /// One.
     const ONE: Self;
-    /// What `--stats` calls this instance, for example `f32×1`.
+    /// Its name in Rust.
     const NAME: &'static str;
 
     /// The nearest representable number.
     fn from_f64(value: f64) -> Self;
     /// The same number in double precision (exact).
     fn to_f64(self) -> f64;
-    /// Square root, correctly rounded; NaN below zero.
-    fn sqrt(self) -> Self;
-    /// Distance from zero.
-    fn abs(self) -> Self;
-    /// The smaller of two numbers; the other one where one is NaN.
-    fn min(self, other: Self) -> Self;
-    /// The larger of two numbers; the other one where one is NaN.
-    fn max(self, other: Self) -> Self;
 }
 
 macro_rules! real {
@@ -63,25 +41,9 @@ macro_rules! real {
             fn to_f64(self) -> f64 {
                 self.into()
             }
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                self.sqrt()
-            }
-            #[inline(always)]
-            fn abs(self) -> Self {
-                self.abs()
-            }
-            #[inline(always)]
-            fn min(self, other: Self) -> Self {
-                self.min(other)
-            }
-            #[inline(always)]
-            fn max(self, other: Self) -> Self {
-                self.max(other)
-            }
         }
     };
 }
 
-real!(f32, "f32×1");
-real!(f64, "f64×1");
+real!(f32, "f32");
+real!(f64, "f64");

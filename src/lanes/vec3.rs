@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::Real;
+use super::{Lane, Real};
 
 /// Three real numbers in the order x, y, z (or red, green, blue).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,28 +22,42 @@ impl<R> Vec3<R> {
     }
 }
 
-impl<R: Real> Vec3<R> {
+impl<L: Lane> Vec3<L> {
+    /// The same vector in every lane.
+    #[inline(always)]
+    pub fn broadcast(token: L::Token, v: Vec3<L::Real>) -> Self {
+        Self::new(
+            L::splat(token, v.x),
+            L::splat(token, v.y),
+            L::splat(token, v.z),
+        )
+    }
+
     /// The same number three times.
     #[inline(always)]
-    pub fn splat(value: R) -> Self {
+    pub fn splat(value: L) -> Self {
         Self::new(value, value, value)
     }
 
-    /// Narrows (or copies) a double-precision vector.
+    /// The vector in one lane.
     #[inline(always)]
-    pub fn from_f64(v: Vec3<f64>) -> Self {
-        Self::new(R::from_f64(v.x), R::from_f64(v.y), R::from_f64(v.z))
+    pub fn lane(self, index: usize) -> Vec3<L::Real> {
+        Vec3::new(self.x.lane(index), self.y.lane(index), self.z.lane(index))
     }
 
-    /// The same vector in double precision (exact).
+    /// `yes` where the mask is set, `no` elsewhere.
     #[inline(always)]
-    pub fn to_f64(self) -> Vec3<f64> {
-        Vec3::new(self.x.to_f64(), self.y.to_f64(), self.z.to_f64())
+    pub fn select(mask: L::Mask, yes: Self, no: Self) -> Self {
+        Self::new(
+            L::select(mask, yes.x, no.x),
+            L::select(mask, yes.y, no.y),
+            L::select(mask, yes.z, no.z),
+        )
     }
 
     /// Scalar product.
     #[inline(always)]
-    pub fn dot(self, other: Self) -> R {
+    pub fn dot(self, other: Self) -> L {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
@@ -65,21 +79,8 @@ impl<R: Real> Vec3<R> {
 
     /// Euclidean length.
     #[inline(always)]
-    pub fn length(self) -> R {
+    pub fn length(self) -> L {
         self.dot(self).sqrt()
-    }
-
-    /// The vector of length 1 in this direction, or `None` where there is no direction (zero, NaN or infinite).
-    #[inline(always)]
-    pub fn unit(self) -> Option<Self> {
-        let length = self.length();
-        (length > R::ZERO && length < R::INFINITY).then(|| self * (R::ONE / length))
-    }
-
-    /// The largest magnitude among the components.
-    #[inline(always)]
-    pub fn max_abs(self) -> R {
-        self.x.abs().max(self.y.abs()).max(self.z.abs())
     }
 
     /// The smaller component of each pair.
@@ -102,20 +103,44 @@ impl<R: Real> Vec3<R> {
         )
     }
 
+    /// The largest magnitude among the components.
+    #[inline(always)]
+    pub fn max_abs(self) -> L {
+        self.x.abs().max(self.y.abs()).max(self.z.abs())
+    }
+
     /// Every component at least `floor` and at most `ceiling`; NaN becomes `floor`.
     #[inline(always)]
-    pub fn clamp(self, floor: R, ceiling: R) -> Self {
-        Self::new(
-            self.x.max(floor).min(ceiling),
-            self.y.max(floor).min(ceiling),
-            self.z.max(floor).min(ceiling),
-        )
+    pub fn clamp(self, floor: L, ceiling: L) -> Self {
+        let clamp = |x: L| x.max(floor).min(ceiling);
+        Self::new(clamp(self.x), clamp(self.y), clamp(self.z))
     }
 
     /// The components in order.
     #[inline(always)]
-    pub fn to_array(self) -> [R; 3] {
+    pub fn to_array(self) -> [L; 3] {
         [self.x, self.y, self.z]
+    }
+}
+
+impl<R: Real> Vec3<R> {
+    /// Narrows (or copies) a double-precision vector.
+    #[inline(always)]
+    pub fn from_f64(v: Vec3<f64>) -> Self {
+        Self::new(R::from_f64(v.x), R::from_f64(v.y), R::from_f64(v.z))
+    }
+
+    /// The same vector in double precision (exact).
+    #[inline(always)]
+    pub fn to_f64(self) -> Vec3<f64> {
+        Vec3::new(self.x.to_f64(), self.y.to_f64(), self.z.to_f64())
+    }
+
+    /// The vector of length 1 in this direction, or `None` where there is no direction (zero, NaN or infinite).
+    #[inline(always)]
+    pub fn unit(self) -> Option<Self> {
+        let length = self.length();
+        (length > R::ZERO && length < R::INFINITY).then(|| self * (R::ONE / length))
     }
 }
 
@@ -125,7 +150,7 @@ impl<R> From<[R; 3]> for Vec3<R> {
     }
 }
 
-impl<R: Real> Add for Vec3<R> {
+impl<L: Lane> Add for Vec3<L> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -133,7 +158,7 @@ impl<R: Real> Add for Vec3<R> {
     }
 }
 
-impl<R: Real> Sub for Vec3<R> {
+impl<L: Lane> Sub for Vec3<L> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -141,15 +166,15 @@ impl<R: Real> Sub for Vec3<R> {
     }
 }
 
-impl<R: Real> Mul<R> for Vec3<R> {
+impl<L: Lane> Mul<L> for Vec3<L> {
     type Output = Self;
     #[inline(always)]
-    fn mul(self, factor: R) -> Self {
+    fn mul(self, factor: L) -> Self {
         Self::new(self.x * factor, self.y * factor, self.z * factor)
     }
 }
 
-impl<R: Real> Neg for Vec3<R> {
+impl<L: Lane> Neg for Vec3<L> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {

@@ -5,17 +5,20 @@
 mod method;
 mod pack;
 mod precision;
+mod screen;
 mod view;
 
 pub use method::{Methods, RayOffset, SphereMethod, TriangleMethod};
 pub use pack::{Light, Material, Plan, Plane, Sphere, Surface, Triangle};
 pub use precision::{Precision, needs_double};
+pub use screen::{Extent, Screen};
 pub use view::View;
 
+use crate::lanes::Level;
 use crate::scene::{Projection, Scene};
 
 /// Which picture of a scene is asked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Picture {
     /// Width in pixels, ≥ 1.
     pub width: u32,
@@ -27,6 +30,8 @@ pub struct Picture {
     pub precision: Precision,
     /// The formulas of the kernel.
     pub methods: Methods,
+    /// The lanes of the kernel; the widest that there are if `None`.
+    pub level: Option<Level>,
 }
 
 impl Picture {
@@ -43,6 +48,7 @@ impl Picture {
             projection: None,
             precision: Precision::Auto,
             methods: Methods::default(),
+            level: None,
         }
     }
 }

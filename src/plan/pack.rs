@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::{Methods, Picture, View};
+use super::{Methods, Picture, Screen, View};
 use crate::lanes::{Exponent, Real, Vec3};
-use crate::scene::{ColorPack, LightObj, Scene, Shape};
+use crate::scene::{ColorPack, LightObj, Projection, Scene, Shape};
 
 /// A scene and a view of it, ready to be traced. Coordinates are relative to the scene's middle,
 /// so that single precision is spent on the scene and not on its distance from the origin.
@@ -30,6 +30,12 @@ pub struct Plan<R> {
     pub reflection_limit: u32,
     /// The formulas to trace with.
     pub methods: Methods,
+    /// Whether planes must be tested for shadows. What a perspective eye reaches, directly or in
+    /// mirrors, lies on its side of every plane, so a plane blocks a light for all points or none.
+    pub planes_cast: bool,
+    /// Where each sphere and triangle is in the picture; `None` where formulas are in use whose
+    /// failures must not be hidden.
+    pub screen: Option<Screen>,
 }
 
 /// A ball.
@@ -118,13 +124,42 @@ impl<R: Real> Plan<R> {
             background: linear(scene.background),
             reflection_limit: scene.render.reflection_limit,
             methods: picture.methods,
+            planes_cast: true,
+            screen: None,
         };
         plan.pack_objects(scene, centre);
         plan.casting_spheres = plan.spheres.len();
         if scene.light_visualization {
             plan.pack_markers(scene, centre);
         }
+        if picture.methods == Methods::default() {
+            plan.screen = Some(Screen::new(scene, picture));
+            plan.settle_planes(scene, picture, centre);
+        }
         plan
+    }
+
+    /// Drops the lights that a plane hides from everything the eye can reach, and with them the
+    /// need to test planes for shadows.
+    fn settle_planes(&mut self, scene: &Scene, picture: &Picture, centre: Vec3<f64>) {
+        let projection = picture.projection.unwrap_or(scene.camera.projection);
+        let eye = scene.camera.position - centre;
+        let side = |plane: &Plane<R>, point: Vec3<f64>| {
+            plane.normal.to_f64().dot(point) - plane.offset.to_f64()
+        };
+        let is_clear = self.planes.iter().all(|plane| side(plane, eye) != 0.0);
+        if projection == Projection::Orthographic || !is_clear {
+            return;
+        }
+        let planes = std::mem::take(&mut self.planes);
+        self.lights.retain(|light| {
+            let at = light.position.to_f64();
+            planes
+                .iter()
+                .all(|plane| side(plane, eye) * side(plane, at) > 0.0)
+        });
+        self.planes = planes;
+        self.planes_cast = false;
     }
 
     fn pack_objects(&mut self, scene: &Scene, centre: Vec3<f64>) {

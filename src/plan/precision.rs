@@ -21,6 +21,10 @@ const MAX_DISTANCE_PER_RADIUS: f64 = 5e3;
 /// Largest ratio of the scene's extent to its smallest feature in single precision.
 const MAX_EXTENT_PER_FEATURE: f64 = 1e5;
 
+/// Smallest height of the eye over a sphere, in radii, in single precision: below it, the distance
+/// to the ground right ahead has lost its digits.
+const MIN_HEIGHT_PER_RADIUS: f64 = 1e-3;
+
 /// Whether single precision would show in the picture.
 pub fn needs_double(scene: &Scene) -> bool {
     let Some((low, high)) = scene.bounds() else {
@@ -30,15 +34,26 @@ pub fn needs_double(scene: &Scene) -> bool {
     let eye = scene.camera.position;
     let extent = (high - low).length().max((eye - centre).length());
     let visible = scene.objects.iter().filter(|object| object.visible);
-    visible
-        .map(|object| &object.shape)
-        .any(|shape| match feature(shape) {
-            None => false,
-            Some((at, size)) => {
-                (eye - at).length() > MAX_DISTANCE_PER_RADIUS * size
-                    || extent > MAX_EXTENT_PER_FEATURE * size
+    visible.map(|object| &object.shape).any(|shape| {
+        is_grazed(shape, eye)
+            || match feature(shape) {
+                None => false,
+                Some((at, size)) => {
+                    (eye - at).length() > MAX_DISTANCE_PER_RADIUS * size
+                        || extent > MAX_EXTENT_PER_FEATURE * size
+                }
             }
-        })
+    })
+}
+
+/// Whether the eye is all but on a sphere.
+fn is_grazed(shape: &Shape, eye: Vec3<f64>) -> bool {
+    match *shape {
+        Shape::Sphere { center, radius } => {
+            ((eye - center).length() - radius).abs() < MIN_HEIGHT_PER_RADIUS * radius
+        }
+        Shape::Plane { .. } | Shape::Triangle { .. } => false,
+    }
 }
 
 /// Where a bounded shape is and how small its smallest measure.

@@ -1,7 +1,7 @@
 //! Primary rays: from a pixel to a ray.
 
 use super::Picture;
-use crate::lanes::{Real, Vec3};
+use crate::lanes::{Lane, Real, Vec3};
 use crate::scene::{Basis, Camera, Projection};
 
 /// The camera made ready: turns pixels into rays with unit directions.
@@ -48,18 +48,21 @@ impl<R: Real> View<R> {
         }
     }
 
-    /// Origin and unit direction of the ray through the place (x, y) of the picture, in pixels from
-    /// its left and upper edge. The centre of the first pixel is (½, ½).
-    #[inline]
-    pub fn ray(&self, x: R, y: R) -> (Vec3<R>, Vec3<R>) {
-        let across = (x - self.half.0) * self.pixel;
-        let upwards = (self.half.1 - y) * self.pixel;
-        let offset = self.u * across + self.v * upwards;
+    /// Origin and unit direction of the rays through the places (x, y) of the picture, in pixels
+    /// from its left and upper edge. The centre of the first pixel is (½, ½).
+    #[inline(always)]
+    pub fn rays<L: Lane<Real = R>>(&self, token: L::Token, x: L, y: L) -> (Vec3<L>, Vec3<L>) {
+        let number = |value| L::splat(token, value);
+        let vector = |v| Vec3::broadcast(token, v);
+        let across = (x - number(self.half.0)) * number(self.pixel);
+        let upwards = (number(self.half.1) - y) * number(self.pixel);
+        let offset: Vec3<L> = vector(self.u) * across + vector(self.v) * upwards;
+        let (origin, forward) = (vector(self.origin), vector(self.forward));
         match self.projection {
-            Projection::Orthographic => (self.origin + offset, self.forward),
+            Projection::Orthographic => (origin + offset, forward),
             Projection::Perspective => {
-                let direction = self.forward + offset;
-                (self.origin, direction * (R::ONE / direction.length()))
+                let direction = forward + offset;
+                (origin, direction * (number(R::ONE) / direction.length()))
             }
         }
     }
@@ -70,7 +73,7 @@ mod tests {
     use super::*;
 
     fn rays(picture: &Picture, camera: &Camera, x: f64, y: f64) -> (Vec3<f64>, Vec3<f64>) {
-        View::<f64>::new(camera, picture, Vec3::new(0.0, 0.0, 0.0)).ray(x, y)
+        View::<f64>::new(camera, picture, Vec3::new(0.0, 0.0, 0.0)).rays((), x, y)
     }
 
     #[test]

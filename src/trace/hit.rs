@@ -1,186 +1,270 @@
-//! The nearest hit among all primitives, and whether anything stands in a ray's way.
+//! The nearest hit among some primitives, and whether anything stands in a ray's way.
 
 use super::triangle::Shear;
 use super::{Ray, plane, sphere, triangle};
-use crate::lanes::{Real, Vec3};
+use crate::lanes::{Lane, Mask as _, Real, Vec3};
 use crate::plan::{Plan, RayOffset};
 
-/// Which primitive, by its place in the plan's list of its kind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Primitive {
-    /// No primitive.
-    Nothing,
-    /// A sphere.
-    Sphere(usize),
-    /// A plane.
-    Plane(usize),
-    /// A triangle.
-    Triangle(usize),
-}
-
-/// A ray and the primitive that it starts on, which it must not meet where it starts.
+/// The primitives that are worth testing, by their places in the plan's lists. Planes always are.
 #[derive(Clone, Copy, Debug)]
-pub struct Path<R> {
-    /// The ray.
-    pub ray: Ray<R>,
-    /// What it starts on.
-    pub start: Primitive,
+pub struct Among<'a> {
+    /// Places in [`Plan::spheres`].
+    pub spheres: &'a [u32],
+    /// Places in [`Plan::triangles`].
+    pub triangles: &'a [u32],
 }
 
-/// A hit, refined.
+/// Rays and the primitives that they start on, which they must not meet where they start.
 #[derive(Clone, Copy, Debug)]
-pub struct Hit<R> {
-    /// On the surface.
-    pub point: Vec3<R>,
-    /// Unit normal of the surface, on either side.
-    pub normal: Vec3<R>,
-    /// Index into [`Plan::materials`].
-    pub material: u32,
-    /// What was hit.
-    pub primitive: Primitive,
-    /// How far the point may be off along the normal: 0, or a few roundings where it matters.
-    pub slack: R,
+pub struct Paths<L> {
+    /// The rays.
+    pub rays: Ray<L>,
+    /// Numbers of the primitives, [`NOTHING`] for none; `None` if that is so for all.
+    pub start: Option<L>,
 }
 
-/// The nearest primitive along the path, or `None`.
-pub fn nearest<R: Real>(plan: &Plan<R>, path: &Path<R>) -> Option<Hit<R>> {
-    let ray = &path.ray;
-    let mut best = (R::INFINITY, Primitive::Nothing);
-    let mut offer = |t: R, primitive| {
-        if t < best.0 {
-            best = (t, primitive);
-        }
-    };
-    for (index, sphere) in plan.spheres.iter().enumerate() {
-        let primitive = Primitive::Sphere(index);
-        offer(sphere_distance(plan, path, sphere, primitive), primitive);
-    }
-    for (index, plane) in plan.planes.iter().enumerate() {
-        let primitive = Primitive::Plane(index);
-        if primitive != path.start {
-            offer(plane::intersect(ray, plane), primitive);
-        }
-    }
-    if !plan.triangles.is_empty() {
-        let shear = Shear::new(ray.direction);
-        for (index, triangle) in plan.triangles.iter().enumerate() {
-            let primitive = Primitive::Triangle(index);
-            if primitive != path.start {
-                let method = plan.methods.triangle;
-                offer(
-                    triangle::intersect(method, ray, &shear, triangle),
-                    primitive,
-                );
-            }
-        }
-    }
-    refine(plan, ray, best.0, best.1)
+/// The nearest primitives.
+#[derive(Clone, Copy, Debug)]
+pub struct Nearest<L> {
+    /// How far; infinity for nothing.
+    pub t: L,
+    /// Number of the primitive, see [`Numbers`]; [`NOTHING`] for nothing.
+    pub number: L,
 }
 
-/// Whether a primitive that casts shadows meets the path before `distance`.
-pub fn is_blocked<R: Real>(plan: &Plan<R>, path: &Path<R>, distance: R) -> bool {
-    let ray = &path.ray;
-    let casting = &plan.spheres[..plan.casting_spheres];
-    let by_sphere = casting.iter().enumerate().any(|(index, sphere)| {
-        sphere_distance(plan, path, sphere, Primitive::Sphere(index)) < distance
-    });
-    if by_sphere {
-        return true;
+/// The number of no primitive.
+pub const NOTHING: f64 = -1.0;
+
+/// One number for every primitive, exact in any real type: spheres, then planes, then triangles.
+#[derive(Clone, Copy, Debug)]
+pub struct Numbers {
+    planes: usize,
+    triangles: usize,
+}
+
+impl Numbers {
+    /// The numbers of a plan.
+    #[inline(always)]
+    pub fn of<R: Real>(plan: &Plan<R>) -> Self {
+        let planes = plan.spheres.len();
+        Self {
+            planes,
+            triangles: planes + plan.planes.len(),
+        }
     }
-    let by_plane = plan.planes.iter().enumerate().any(|(index, plane)| {
-        path.start != Primitive::Plane(index) && plane::intersect(ray, plane) < distance
-    });
-    if by_plane || plan.triangles.is_empty() {
-        return by_plane;
-    }
-    let shear = Shear::new(ray.direction);
-    plan.triangles.iter().enumerate().any(|(index, triangle)| {
-        path.start != Primitive::Triangle(index)
-            && triangle::intersect(plan.methods.triangle, ray, &shear, triangle) < distance
-    })
 }
 
 #[inline(always)]
-fn sphere_distance<R: Real>(
-    plan: &Plan<R>,
-    path: &Path<R>,
-    sphere: &crate::plan::Sphere<R>,
-    primitive: Primitive,
-) -> R {
-    if path.start == primitive {
-        sphere::leave(&path.ray, sphere)
-    } else {
-        sphere::intersect(plan.methods.sphere, &path.ray, sphere)
+fn real<R: Real>(number: usize) -> R {
+    R::from_f64(number as f64)
+}
+
+/// The nearest primitives along the paths.
+#[inline(always)]
+pub fn nearest<L: Lane>(
+    token: L::Token,
+    plan: &Plan<L::Real>,
+    among: Among,
+    paths: &Paths<L>,
+) -> Nearest<L> {
+    let numbers = Numbers::of(plan);
+    let infinity = L::splat(token, L::Real::INFINITY);
+    let nothing = L::splat(token, L::Real::from_f64(NOTHING));
+    let mut best = Nearest {
+        t: infinity,
+        number: nothing,
+    };
+    for &index in among.spheres {
+        let number = L::splat(token, real(index as usize));
+        let t = sphere_distance(token, plan, paths, index as usize, number);
+        offer(&mut best, t, number);
+    }
+    for (index, plane) in plan.planes.iter().enumerate() {
+        let number = L::splat(token, real(numbers.planes + index));
+        let t = plane::intersect(token, &paths.rays, plane);
+        offer(&mut best, without_start(token, paths, number, t), number);
+    }
+    if !among.triangles.is_empty() {
+        let shear = Shear::new(token, paths.rays.direction);
+        for &index in among.triangles {
+            let number = L::splat(token, real(numbers.triangles + index as usize));
+            let triangle = &plan.triangles[index as usize];
+            let t =
+                triangle::intersect(token, plan.methods.triangle, &paths.rays, &shear, triangle);
+            offer(&mut best, without_start(token, paths, number, t), number);
+        }
+    }
+    best
+}
+
+#[inline(always)]
+fn offer<L: Lane>(best: &mut Nearest<L>, t: L, number: L) {
+    let closer = t.less(best.t);
+    best.t = L::select(closer, t, best.t);
+    best.number = L::select(closer, number, best.number);
+}
+
+/// Where a primitive that casts shadows meets the paths before `distance`; looked for only where
+/// `wanted`.
+#[inline(always)]
+pub fn blocked<L: Lane>(
+    token: L::Token,
+    plan: &Plan<L::Real>,
+    among: Among,
+    paths: &Paths<L>,
+    distance: L,
+    wanted: L::Mask,
+) -> L::Mask {
+    let numbers = Numbers::of(plan);
+    let mut free = wanted;
+    for &index in among.spheres {
+        let number = L::splat(token, real(index as usize));
+        let t = sphere_distance(token, plan, paths, index as usize, number);
+        free = free & !t.less(distance);
+        if !free.any() {
+            return wanted;
+        }
+    }
+    if plan.planes_cast {
+        for (index, plane) in plan.planes.iter().enumerate() {
+            let number = L::splat(token, real(numbers.planes + index));
+            let t = plane::intersect(token, &paths.rays, plane);
+            free = free & !without_start(token, paths, number, t).less(distance);
+        }
+    }
+    if !among.triangles.is_empty() {
+        let shear = Shear::new(token, paths.rays.direction);
+        for &index in among.triangles {
+            let number = L::splat(token, real(numbers.triangles + index as usize));
+            let triangle = &plan.triangles[index as usize];
+            let t =
+                triangle::intersect(token, plan.methods.triangle, &paths.rays, &shear, triangle);
+            free = free & !without_start(token, paths, number, t).less(distance);
+            if !free.any() {
+                return wanted;
+            }
+        }
+    }
+    wanted & !free
+}
+
+#[inline(always)]
+fn sphere_distance<L: Lane>(
+    token: L::Token,
+    plan: &Plan<L::Real>,
+    paths: &Paths<L>,
+    index: usize,
+    number: L,
+) -> L {
+    let sphere = &plan.spheres[index];
+    let t = sphere::intersect(token, plan.methods.sphere, &paths.rays, sphere);
+    match paths.start {
+        None => t,
+        Some(start) => {
+            let own = start.same(number);
+            if own.any() {
+                L::select(own, sphere::leave(token, &paths.rays, sphere), t)
+            } else {
+                t
+            }
+        }
     }
 }
 
-fn refine<R: Real>(plan: &Plan<R>, ray: &Ray<R>, t: R, primitive: Primitive) -> Option<Hit<R>> {
-    Some(match primitive {
-        Primitive::Nothing => return None,
-        Primitive::Sphere(index) => {
-            let sphere = &plan.spheres[index];
-            let (point, normal) = sphere::refine(ray, sphere, t);
-            Hit {
-                point,
-                normal,
-                material: sphere.material,
-                primitive,
-                slack: R::ZERO,
-            }
-        }
-        Primitive::Plane(index) => {
-            let plane = &plan.planes[index];
-            let point = plane::refine(ray, plane, t);
-            Hit {
-                point,
-                normal: plane.normal,
-                material: plane.material,
-                primitive,
-                slack: R::ZERO,
-            }
-        }
-        Primitive::Triangle(index) => {
-            let triangle = &plan.triangles[index];
-            let point = triangle::refine(ray, triangle, t);
-            // The neighbours in a mesh meet the triangle at its edges: 4u·(|p| + |o| + t) is what
-            // the computation of the point can be off by.
-            let slack = if triangle.in_mesh {
-                let reach = point.max_abs() + ray.origin.max_abs() + t;
-                reach * (R::UNIT_ROUNDOFF * R::from_f64(4.0))
-            } else {
-                R::ZERO
-            };
-            Hit {
-                point,
-                normal: triangle.normal,
-                material: triangle.material,
-                primitive,
-                slack,
-            }
-        }
-    })
+/// A flat primitive is never met again by a ray that starts on it.
+#[inline(always)]
+fn without_start<L: Lane>(token: L::Token, paths: &Paths<L>, number: L, t: L) -> L {
+    match paths.start {
+        None => t,
+        Some(start) => L::select(start.same(number), L::splat(token, L::Real::INFINITY), t),
+    }
 }
 
-impl<R: Real> Hit<R> {
-    /// The path that leaves the hit in a unit direction.
-    pub fn leave(&self, plan: &Plan<R>, direction: Vec3<R>) -> Path<R> {
-        match plan.methods.offset {
-            RayOffset::Robust => {
-                let along = self.normal.dot(direction) >= R::ZERO;
-                let slack = if along { self.slack } else { -self.slack };
-                let origin = self.point + self.normal * slack;
-                Path {
-                    ray: Ray { origin, direction },
-                    start: self.primitive,
-                }
+/// Hits on one primitive, refined.
+#[derive(Clone, Copy, Debug)]
+pub struct Hit<L> {
+    /// On the surface.
+    pub point: Vec3<L>,
+    /// Unit normal of the surface, on either side.
+    pub normal: Vec3<L>,
+    /// Index into [`Plan::materials`].
+    pub material: u32,
+    /// Number of the primitive.
+    pub number: L,
+    /// How far the point may be off along the normal: 0, or a few roundings where it matters.
+    pub slack: Option<L>,
+}
+
+/// The hits at `t` on the primitive of this number.
+#[inline(always)]
+pub fn refine<L: Lane>(
+    token: L::Token,
+    plan: &Plan<L::Real>,
+    rays: &Ray<L>,
+    t: L,
+    number: L::Real,
+) -> Hit<L> {
+    let numbers = Numbers::of(plan);
+    let index = number.to_f64() as usize;
+    let number = L::splat(token, number);
+    if index < numbers.planes {
+        let sphere = &plan.spheres[index];
+        let (point, normal) = sphere::refine(token, rays, sphere, t);
+        return Hit {
+            point,
+            normal,
+            material: sphere.material,
+            number,
+            slack: None,
+        };
+    }
+    if index < numbers.triangles {
+        let plane = &plan.planes[index - numbers.planes];
+        let point = plane::refine(token, rays, plane, t);
+        let normal = Vec3::broadcast(token, plane.normal);
+        return Hit {
+            point,
+            normal,
+            material: plane.material,
+            number,
+            slack: None,
+        };
+    }
+    let triangle = &plan.triangles[index - numbers.triangles];
+    let point = triangle::refine(token, rays, triangle, t);
+    // The neighbours in a mesh meet the triangle at its edges: 4u·(|p| + |o| + t) is what the
+    // computation of the point can be off by.
+    let slack = triangle.in_mesh.then(|| {
+        let reach = point.max_abs() + rays.origin.max_abs() + t;
+        reach * L::splat(token, L::Real::UNIT_ROUNDOFF * L::Real::from_f64(4.0))
+    });
+    let normal = Vec3::broadcast(token, triangle.normal);
+    Hit {
+        point,
+        normal,
+        material: triangle.material,
+        number,
+        slack,
+    }
+}
+
+impl<L: Lane> Hit<L> {
+    /// The paths that leave the hits in unit directions on the side that the normal points to.
+    #[inline(always)]
+    pub fn leave(&self, token: L::Token, offset: RayOffset, direction: Vec3<L>) -> Paths<L> {
+        let (origin, start) = match (offset, self.slack) {
+            (RayOffset::Robust, None) => (self.point, Some(self.number)),
+            (RayOffset::Robust, Some(slack)) => {
+                (self.point + self.normal * slack, Some(self.number))
             }
-            RayOffset::Fixed(distance) => {
-                let origin = self.point + direction * R::from_f64(distance);
-                Path {
-                    ray: Ray { origin, direction },
-                    start: Primitive::Nothing,
-                }
+            (RayOffset::Fixed(distance), _) => {
+                let distance = L::splat(token, L::Real::from_f64(distance));
+                (self.point + direction * distance, None)
             }
+        };
+        Paths {
+            rays: Ray { origin, direction },
+            start,
         }
     }
 }

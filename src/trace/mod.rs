@@ -3,6 +3,7 @@
 //!
 //! A new primitive is a file here, a list in the plan and its lines in `hit.rs`.
 
+mod cull;
 mod hit;
 mod plane;
 mod shade;
@@ -16,21 +17,21 @@ use std::sync::atomic::{AtomicBool, AtomicU64};
 pub use threads::{PoolError, Threads};
 pub use tiles::{Grid, TILE, Tracer};
 
-use crate::lanes::{Real, Vec3};
+use crate::lanes::{Lane, Vec3};
 
-/// A half-line: origin and unit direction.
+/// Half-lines: origins and unit directions.
 #[derive(Clone, Copy, Debug)]
-pub struct Ray<R> {
-    /// Where it starts.
-    pub origin: Vec3<R>,
-    /// Where it goes; of length 1.
-    pub direction: Vec3<R>,
+pub struct Ray<L> {
+    /// Where they start.
+    pub origin: Vec3<L>,
+    /// Where they go; of length 1.
+    pub direction: Vec3<L>,
 }
 
-impl<R: Real> Ray<R> {
-    /// The point `t` along.
+impl<L: Lane> Ray<L> {
+    /// The points `t` along.
     #[inline(always)]
-    pub fn at(&self, t: R) -> Vec3<R> {
+    pub fn at(&self, t: L) -> Vec3<L> {
         self.origin + self.direction * t
     }
 }
@@ -50,6 +51,12 @@ impl Rays {
     /// All of them.
     pub fn total(self) -> u64 {
         self.camera + self.shadow + self.reflected
+    }
+}
+
+impl std::ops::AddAssign for Rays {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
     }
 }
 

@@ -1,22 +1,29 @@
 //! Ray against plane.
 
 use super::Ray;
-use crate::lanes::{Real, Vec3};
+use crate::lanes::{Lane, Real, Vec3};
 use crate::plan::Plane;
 
 /// t = (offset - n·o) / (n·d), or infinity if that is not in front. A ray along the plane divides
 /// by zero; the comparison then fails and the plane is rightly not seen edge-on.
 #[inline(always)]
-pub fn intersect<R: Real>(ray: &Ray<R>, plane: &Plane<R>) -> R {
-    let t = (plane.offset - plane.normal.dot(ray.origin)) / plane.normal.dot(ray.direction);
-    if t > R::ZERO { t } else { R::INFINITY }
+pub fn intersect<L: Lane>(token: L::Token, ray: &Ray<L>, plane: &Plane<L::Real>) -> L {
+    let normal = Vec3::broadcast(token, plane.normal);
+    let height = L::splat(token, plane.offset) - normal.dot(ray.origin);
+    let t = height / normal.dot(ray.direction);
+    L::select(
+        L::splat(token, L::Real::ZERO).less(t),
+        t,
+        L::splat(token, L::Real::INFINITY),
+    )
 }
 
 /// The hit at `t`, drawn onto the plane.
-#[inline]
-pub fn refine<R: Real>(ray: &Ray<R>, plane: &Plane<R>, t: R) -> Vec3<R> {
+#[inline(always)]
+pub fn refine<L: Lane>(token: L::Token, ray: &Ray<L>, plane: &Plane<L::Real>, t: L) -> Vec3<L> {
+    let normal = Vec3::broadcast(token, plane.normal);
     let point = ray.at(t);
-    point - plane.normal * (plane.normal.dot(point) - plane.offset)
+    point - normal * (normal.dot(point) - L::splat(token, plane.offset))
 }
 
 #[cfg(test)]
@@ -44,7 +51,7 @@ mod tests {
         for degrees in [45.0, 1.0, 0.01, 1e-4, 1e-5] {
             let ray = ray_at_degrees(degrees);
             let exact = 1.0 / -f64::from(ray.direction.y);
-            let error = (f64::from(intersect(&ray, &floor())) / exact - 1.0).abs();
+            let error = (f64::from(intersect((), &ray, &floor())) / exact - 1.0).abs();
             let u = f64::from(f32::UNIT_ROUNDOFF);
             assert!(
                 error <= 8.0 * u / degrees.to_radians().sin(),
@@ -55,12 +62,15 @@ mod tests {
 
     #[test]
     fn edge_on_and_behind_are_misses() {
-        assert_eq!(intersect(&ray_at_degrees(0.0), &floor()), f32::INFINITY);
-        assert_eq!(intersect(&ray_at_degrees(-30.0), &floor()), f32::INFINITY);
+        assert_eq!(intersect((), &ray_at_degrees(0.0), &floor()), f32::INFINITY);
+        assert_eq!(
+            intersect((), &ray_at_degrees(-30.0), &floor()),
+            f32::INFINITY
+        );
         let inside = Ray {
             origin: Vec3::splat(0.0),
             ..ray_at_degrees(0.0)
         };
-        assert_eq!(intersect(&inside, &floor()), f32::INFINITY, "0/0");
+        assert_eq!(intersect((), &inside, &floor()), f32::INFINITY, "0/0");
     }
 }

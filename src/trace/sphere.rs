@@ -1,25 +1,29 @@
 //! Ray against sphere.
 
 use super::Ray;
-use crate::lanes::{Real, Vec3};
+use crate::lanes::{Lane, Real, Vec3};
 use crate::plan::{Sphere, SphereMethod};
 
-/// Distances along the ray to where its line enters and leaves the sphere; `None` if it passes by.
-pub type Roots<R> = Option<(R, R)>;
+/// Distances along the ray to where its line enters and leaves a sphere; NaN if it passes by.
+type Roots<L> = (L, L);
 
 /// The smallest t > 0 at which the ray meets the sphere; infinity if it does not.
 #[inline(always)]
-pub fn intersect<R: Real>(method: SphereMethod, ray: &Ray<R>, sphere: &Sphere<R>) -> R {
-    let x = ray.origin - sphere.center;
-    let roots = match method {
-        SphereMethod::Stable => stable(x, ray.direction, sphere.radius),
-        SphereMethod::Classic => classic(x, ray.direction, sphere.radius),
+pub fn intersect<L: Lane>(
+    token: L::Token,
+    method: SphereMethod,
+    ray: &Ray<L>,
+    sphere: &Sphere<L::Real>,
+) -> L {
+    let x = ray.origin - Vec3::broadcast(token, sphere.center);
+    let radius = L::splat(token, sphere.radius);
+    let (near, far) = match method {
+        SphereMethod::Stable => stable(x, ray.direction, radius),
+        SphereMethod::Classic => classic(x, ray.direction, radius),
     };
-    match roots {
-        Some((near, _)) if near > R::ZERO => near,
-        Some((_, far)) if far > R::ZERO => far,
-        _ => R::INFINITY,
-    }
+    let zero = L::splat(token, L::Real::ZERO);
+    let behind = L::select(zero.less(far), far, L::splat(token, L::Real::INFINITY));
+    L::select(zero.less(near), near, behind)
 }
 
 /// disc = R² - |x + b·d|² with b = -d·x: the square of the ray's distance from the centre is not a
@@ -28,70 +32,49 @@ pub fn intersect<R: Real>(method: SphereMethod, ray: &Ray<R>, sphere: &Sphere<R>
 /// Haines, Günther and Akenine-Möller, "Precision improvements for ray/sphere intersection", Ray
 /// Tracing Gems (2019), ch. 7.
 #[inline(always)]
-pub fn stable<R: Real>(x: Vec3<R>, d: Vec3<R>, radius: R) -> Roots<R> {
+fn stable<L: Lane>(x: Vec3<L>, d: Vec3<L>, radius: L) -> Roots<L> {
     let b = -d.dot(x);
     let perpendicular = x + d * b;
-    let discriminant = radius * radius - perpendicular.dot(perpendicular);
-    if discriminant >= R::ZERO {
-        let half_chord = discriminant.sqrt();
-        Some((b - half_chord, b + half_chord))
-    } else {
-        None
-    }
+    let half_chord = (radius * radius - perpendicular.dot(perpendicular)).sqrt();
+    (b - half_chord, b + half_chord)
 }
 
 /// t = -d·x ± √((d·x)² - x·x + R²), the formula of Glint's ancestor. Needs |d| = 1; loses all
 /// digits of R² when the centre is more than 4096 radii away (single precision).
 #[inline(always)]
-pub fn classic<R: Real>(x: Vec3<R>, d: Vec3<R>, radius: R) -> Roots<R> {
+fn classic<L: Lane>(x: Vec3<L>, d: Vec3<L>, radius: L) -> Roots<L> {
     let dx = d.dot(x);
-    let discriminant = dx * dx - x.dot(x) + radius * radius;
-    if discriminant >= R::ZERO {
-        let half_chord = discriminant.sqrt();
-        Some((-dx - half_chord, -dx + half_chord))
-    } else {
-        None
-    }
+    let half_chord = (dx * dx - x.dot(x) + radius * radius).sqrt();
+    (-dx - half_chord, -dx + half_chord)
 }
 
 /// Where a ray that starts on the sphere meets it again: t = -2·d·(p - c), or infinity. The root
 /// at t = 0 is the start itself and never counts, however it is rounded.
 #[inline(always)]
-pub fn leave<R: Real>(ray: &Ray<R>, sphere: &Sphere<R>) -> R {
-    let t = ray.direction.dot(ray.origin - sphere.center) * (-(R::ONE + R::ONE));
-    if t > R::ZERO { t } else { R::INFINITY }
+pub fn leave<L: Lane>(token: L::Token, ray: &Ray<L>, sphere: &Sphere<L::Real>) -> L {
+    let outwards = ray.origin - Vec3::broadcast(token, sphere.center);
+    let half = -ray.direction.dot(outwards);
+    let zero = L::splat(token, L::Real::ZERO);
+    L::select(
+        zero.less(half),
+        half + half,
+        L::splat(token, L::Real::INFINITY),
+    )
 }
 
-/// The hit at `t`, recomputed in double precision and drawn onto the surface: point and outward
-/// unit normal.
-///
-/// c = x·x - R² is all that cancels close to a huge sphere; in double precision, with the root
-/// taken as c/q (Press et al., "Numerical Recipes", 5.6), the hit is exact to one rounding.
-#[inline]
-pub fn refine<R: Real>(ray: &Ray<R>, sphere: &Sphere<R>, t: R) -> (Vec3<R>, Vec3<R>) {
-    let (center, radius) = (sphere.center.to_f64(), sphere.radius.to_f64());
-    let x = ray.origin.to_f64() - center;
-    let d = ray.direction.to_f64();
-    let d = d * (1.0 / d.length());
-    let b = -d.dot(x);
-    let perpendicular = x + d * b;
-    let half_chord = (radius * radius - perpendicular.dot(perpendicular))
-        .max(0.0)
-        .sqrt();
-    let q = b + half_chord.copysign(b);
-    let other = (x.dot(x) - radius * radius) / q;
-    let rough = t.to_f64();
-    let t = if (other - rough).abs() < (q - rough).abs() {
-        other
-    } else {
-        q
-    };
-    let outwards = x + d * t;
-    let normal = outwards * (1.0 / outwards.length());
-    (
-        Vec3::from_f64(center + normal * radius),
-        Vec3::from_f64(normal),
-    )
+/// The hit at `t`, drawn onto the surface, p = c + (p - c)·R/|p - c|: point and outward unit
+/// normal. The point is then off by a few roundings of R, however far the ray has come.
+#[inline(always)]
+pub fn refine<L: Lane>(
+    token: L::Token,
+    ray: &Ray<L>,
+    sphere: &Sphere<L::Real>,
+    t: L,
+) -> (Vec3<L>, Vec3<L>) {
+    let center = Vec3::broadcast(token, sphere.center);
+    let outwards = ray.at(t) - center;
+    let normal = outwards * (L::splat(token, L::Real::ONE) / outwards.length());
+    (center + normal * L::splat(token, sphere.radius), normal)
 }
 
 #[cfg(test)]
@@ -143,7 +126,7 @@ mod tests {
             tries
                 .filter(|&(n, miss)| {
                     let (ray, sphere, _) = aimed(4096.0, miss, turns(n));
-                    intersect(method, &ray, &sphere).is_finite() != (miss < 1.0)
+                    intersect((), method, &ray, &sphere).is_finite() != (miss < 1.0)
                 })
                 .count()
         };
@@ -161,7 +144,7 @@ mod tests {
                 .map(|n| {
                     let miss = 0.99 * f64::from(n % 97) / 97.0;
                     let (ray, sphere, exact) = aimed(ratio, miss, turns(n));
-                    (f64::from(intersect(SphereMethod::Stable, &ray, &sphere)) - exact).abs()
+                    (f64::from(intersect((), SphereMethod::Stable, &ray, &sphere)) - exact).abs()
                 })
                 .collect();
             errors.sort_by(f64::total_cmp);
@@ -189,8 +172,8 @@ mod tests {
                 origin: Vec3::new(0.0, y, 0.0),
                 direction,
             };
-            let t = intersect(SphereMethod::Stable, &ray, &sphere);
-            let (point, normal) = refine(&ray, &sphere, t);
+            let t = intersect((), SphereMethod::Stable, &ray, &sphere);
+            let (point, normal) = refine((), &ray, &sphere, t);
             let on_surface = (point.to_f64().length() - radius).abs() / radius;
             assert!(
                 on_surface <= 4.0 * f64::from(f32::UNIT_ROUNDOFF),
@@ -212,7 +195,7 @@ mod tests {
             direction: Vec3::new(0.0, 0.0, 1.0),
         };
         for method in [SphereMethod::Stable, SphereMethod::Classic] {
-            assert_eq!(intersect(method, &ray, &sphere), f32::INFINITY);
+            assert_eq!(intersect((), method, &ray, &sphere), f32::INFINITY);
         }
     }
 
@@ -220,9 +203,9 @@ mod tests {
         #[test]
         fn a_refined_hit_lies_on_the_surface(ratio in 1.1..1e4_f64, miss in 0.0..0.95_f64, turn in prop::array::uniform3(0.0..6.0_f64)) {
             let (ray, sphere, _) = aimed(ratio, miss, turn);
-            let t = intersect(SphereMethod::Stable, &ray, &sphere);
+            let t = intersect((), SphereMethod::Stable, &ray, &sphere);
             prop_assert!(t.is_finite());
-            let (point, normal) = refine(&ray, &sphere, t);
+            let (point, normal) = refine((), &ray, &sphere, t);
             let off = ((point - sphere.center).to_f64().length() - 1.0).abs();
             prop_assert!(off <= 4.0 * f64::from(f32::UNIT_ROUNDOFF) * (1.0 + ratio), "{off:e}");
             prop_assert!(normal.dot(ray.direction) < 1e-3, "the entry faces the ray");
@@ -232,9 +215,9 @@ mod tests {
         fn from_the_wall_only_the_far_side_is_met(turn in prop::array::uniform3(0.0..6.0_f64), d in prop::array::uniform3(-1.0..1.0_f64)) {
             let Some(d) = Vec3::from(d).unit() else { return Ok(()) };
             let (ray, sphere, _) = aimed(3.0, 0.2, turn);
-            let (point, normal) = refine(&ray, &sphere, intersect(SphereMethod::Stable, &ray, &sphere));
+            let (point, normal) = refine((), &ray, &sphere, intersect((), SphereMethod::Stable, &ray, &sphere));
             let onwards = Ray { origin: point, direction: Vec3::from_f64(d) };
-            let t = leave(&onwards, &sphere);
+            let t = leave((), &onwards, &sphere);
             prop_assert_eq!(t.is_finite(), normal.dot(onwards.direction) < 0.0);
         }
     }

@@ -1,13 +1,16 @@
 //! The tile loop: which pixels are traced, by which thread, and when to stop.
 
+use std::ops::Range;
 use std::sync::atomic::Ordering;
 
 use rayon::iter::{IndexedParallelIterator as _, ParallelIterator as _};
 use rayon::slice::ParallelSliceMut as _;
 
-use super::shade::camera_color;
+use super::cull::{Axis, Bounds, Casters};
+use super::hit::{Nearest, Paths, nearest};
+use super::shade::{Surroundings, colors};
 use super::{Ray, Rays, Watch};
-use crate::lanes::{Real, Vec3};
+use crate::lanes::{Lane, Level, Vectored, Work};
 use crate::plan::{Picture, Plan, Precision, needs_double};
 use crate::scene::Scene;
 
@@ -46,6 +49,7 @@ impl Grid {
 pub struct Tracer {
     width: usize,
     height: usize,
+    level: Level,
     kernel: Kernel,
 }
 
@@ -68,9 +72,12 @@ impl Tracer {
         } else {
             Kernel::Single(Box::new(Plan::new(scene, picture)))
         };
+        let (width, height) = (picture.width as usize, picture.height as usize);
+        let level = picture.level.unwrap_or_else(Level::widest);
         Self {
-            width: picture.width as usize,
-            height: picture.height as usize,
+            width,
+            height,
+            level,
             kernel,
         }
     }
@@ -85,18 +92,18 @@ impl Tracer {
         self.height
     }
 
-    /// The real type and how many of it are computed in step, for example `f32×1`.
-    pub fn lanes(&self) -> &'static str {
+    /// The real type and how many of it are computed in step, for example `f32×16`.
+    pub fn lanes(&self) -> String {
         match self.kernel {
-            Kernel::Single(_) => f32::NAME,
-            Kernel::Double(_) => f64::NAME,
+            Kernel::Single(_) => self.level.lanes_of::<f32>(),
+            Kernel::Double(_) => self.level.lanes_of::<f64>(),
         }
     }
 
     /// Traces the pixels of `grid` into `pixels` (row by row from the top, `width × height`),
     /// on the threads of the current rayon pool. `store` turns linear colour (0–1) into a pixel.
     ///
-    /// The colours do not depend on the number of threads or on what was traced before.
+    /// The colours do not depend on the number of threads or lanes, or on what was traced before.
     /// `None` if `watch` said stop; some pixels are then still the old ones.
     pub fn pass<P: Send>(
         &self,
@@ -111,7 +118,7 @@ impl Tracer {
         }
     }
 
-    fn pass_of<R: Real, P: Send>(
+    fn pass_of<R: Vectored, P: Send>(
         &self,
         plan: &Plan<R>,
         pixels: &mut [P],
@@ -119,71 +126,212 @@ impl Tracer {
         watch: &Watch,
         store: impl Fn([f64; 3]) -> P + Sync,
     ) -> Option<Rays> {
+        let seen = Casters::all_seen(plan);
+        let casting = Casters::all(plan);
         let bands = pixels
             .par_chunks_mut(self.width * TILE)
             .with_max_len(1)
             .enumerate();
         bands
             .map(|(index, rows)| {
-                let mut rays = Rays::default();
-                for left in (0..self.width).step_by(TILE) {
-                    let columns = left..(left + TILE).min(self.width);
-                    self.tile(
-                        plan,
-                        rows,
-                        index * TILE,
-                        columns,
-                        grid,
-                        watch,
-                        &store,
-                        &mut rays,
-                    )?;
-                }
-                Some(rays)
+                let band = Band {
+                    plan,
+                    seen: &seen,
+                    casting: &casting,
+                    width: self.width,
+                    top: index * TILE,
+                    rows,
+                    grid,
+                    watch,
+                    store: &store,
+                };
+                self.level.run(band)
             })
             .try_reduce(Rays::default, |a, b| Some(a + b))
     }
+}
 
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "one call site, in the loop above"
-    )]
-    fn tile<R: Real, P>(
-        &self,
-        plan: &Plan<R>,
-        rows: &mut [P],
-        top: usize,
-        columns: std::ops::Range<usize>,
-        grid: Grid,
-        watch: &Watch,
-        store: &impl Fn([f64; 3]) -> P,
-        rays: &mut Rays,
-    ) -> Option<()> {
-        for (row, line) in rows.chunks_mut(self.width).enumerate() {
-            let y = top + row;
-            if !y.is_multiple_of(grid.step) {
-                continue;
-            }
-            if watch.stop.load(Ordering::Relaxed) {
-                return None;
-            }
-            let before = rays.camera;
-            for x in grid.row_pixels(y, columns.start, columns.end) {
-                line[x] = store(pixel_color(plan, x, y, rays).to_f64().to_array());
-            }
-            watch
-                .pixels
-                .fetch_add(rays.camera - before, Ordering::Relaxed);
+/// A row of tiles.
+struct Band<'a, R, P, F> {
+    plan: &'a Plan<R>,
+    /// Everything that can be seen.
+    seen: &'a Casters,
+    /// Everything that casts shadows.
+    casting: &'a Casters,
+    width: usize,
+    top: usize,
+    rows: &'a mut [P],
+    grid: Grid,
+    watch: &'a Watch,
+    store: &'a F,
+}
+
+/// Rays of pixels that are traced in step, and what they meet first.
+#[derive(Clone, Copy)]
+struct Packet<L: Lane> {
+    path: Ray<L>,
+    near: Nearest<L>,
+    active: L::Mask,
+    /// Place of its first pixel in the tile's list, and how many there are.
+    first: usize,
+    count: usize,
+}
+
+/// What tiles leave behind for the next one to use again.
+struct Scratch<L: Lane> {
+    in_band: Casters,
+    in_tile: Casters,
+    by_light: Vec<Casters>,
+    pixels: Vec<(usize, usize)>,
+    packets: Vec<Packet<L>>,
+}
+
+impl<R: Vectored, P, F: Fn([f64; 3]) -> P> Work<R> for Band<'_, R, P, F> {
+    type Output = Option<Rays>;
+
+    #[inline(always)]
+    fn run<L: Lane<Real = R>>(mut self, token: L::Token) -> Option<Rays> {
+        let height = self.rows.len() / self.width.max(1);
+        let mut scratch = Scratch::<L> {
+            in_band: Casters::default(),
+            in_tile: Casters::default(),
+            by_light: vec![Casters::default(); self.plan.lights.len()],
+            pixels: Vec::with_capacity(TILE * TILE),
+            packets: Vec::with_capacity(TILE * TILE / L::WIDTH),
+        };
+        let rows = self.top..self.top + height;
+        scratch
+            .in_band
+            .keep_seen(self.seen, self.plan.screen.as_ref(), &rows, Axis::Rows);
+        let mut rays = Rays::default();
+        for left in (0..self.width).step_by(TILE) {
+            let columns = left..(left + TILE).min(self.width);
+            self.tile(token, &mut scratch, &columns, height, &mut rays)?;
         }
-        Some(())
+        Some(rays)
     }
 }
 
-/// Colour at the centre of a pixel.
-fn pixel_color<R: Real>(plan: &Plan<R>, x: usize, y: usize, rays: &mut Rays) -> Vec3<R> {
-    let centre = |index: usize| R::from_f64(index as f64 + 0.5);
-    let (origin, direction) = plan.view.ray(centre(x), centre(y));
-    camera_color(plan, Ray { origin, direction }, rays)
+impl<R: Vectored, P, F: Fn([f64; 3]) -> P> Band<'_, R, P, F> {
+    /// First what every ray meets, then, knowing where that is, the light that falls on it.
+    #[inline(always)]
+    fn tile<L: Lane<Real = R>>(
+        &mut self,
+        token: L::Token,
+        scratch: &mut Scratch<L>,
+        columns: &Range<usize>,
+        height: usize,
+        rays: &mut Rays,
+    ) -> Option<()> {
+        scratch.pixels.clear();
+        for row in (0..height).filter(|row| (self.top + row).is_multiple_of(self.grid.step)) {
+            let wanted = self
+                .grid
+                .row_pixels(self.top + row, columns.start, columns.end);
+            scratch.pixels.extend(wanted.map(|x| (x, row)));
+        }
+        let Scratch {
+            in_band,
+            in_tile,
+            by_light,
+            pixels,
+            packets,
+        } = scratch;
+        in_tile.keep_seen(in_band, self.plan.screen.as_ref(), columns, Axis::Columns);
+        packets.clear();
+        let mut bounds = Bounds::new(token);
+        for first in (0..pixels.len()).step_by(L::WIDTH) {
+            packets.push(self.meet(token, pixels, first, in_tile, &mut bounds));
+        }
+        if self.plan.screen.is_some() {
+            let ball = bounds.ball();
+            for (casters, light) in by_light.iter_mut().zip(&self.plan.lights) {
+                match &ball {
+                    Some(ball) => {
+                        casters.keep_between(self.casting, self.plan, light.position, ball)
+                    }
+                    None => casters.clone_from(self.casting),
+                }
+            }
+        } else {
+            by_light.fill(self.casting.clone());
+        }
+        let around = Surroundings {
+            plan: self.plan,
+            casters: by_light,
+            everything: self.casting,
+            all: self.seen.among(),
+        };
+        for packet in packets.iter() {
+            if self.watch.stop.load(Ordering::Relaxed) {
+                return None;
+            }
+            self.paint(token, around, packet, pixels, rays);
+        }
+        Some(())
+    }
+
+    /// What the rays of up to `WIDTH` pixels meet first. Lanes without a pixel repeat the last one.
+    #[inline(always)]
+    fn meet<L: Lane<Real = R>>(
+        &self,
+        token: L::Token,
+        pixels: &[(usize, usize)],
+        first: usize,
+        in_tile: &Casters,
+        bounds: &mut Bounds<L>,
+    ) -> Packet<L> {
+        let count = (pixels.len() - first).min(L::WIDTH);
+        let pixel = |lane: usize| pixels[first + lane.min(count - 1)];
+        let centre = |index: usize| R::from_f64(index as f64 + 0.5);
+        let x = L::from_fn(token, |lane| centre(pixel(lane).0));
+        let y = L::from_fn(token, |lane| centre(self.top + pixel(lane).1));
+        let (origin, direction) = self.plan.view.rays(token, x, y);
+        let path = Ray { origin, direction };
+        let paths = Paths {
+            rays: path,
+            start: None,
+        };
+        let near = nearest(token, self.plan, in_tile.among(), &paths);
+        let infinity = L::splat(token, R::INFINITY);
+        bounds.add(near.t.less(infinity), path.at(near.t));
+        let lane_number = L::from_fn(token, |lane| R::from_f64(lane as f64));
+        let active = lane_number.less(L::splat(token, R::from_f64(count as f64)));
+        Packet {
+            path,
+            near,
+            active,
+            first,
+            count,
+        }
+    }
+
+    #[inline(always)]
+    fn paint<L: Lane<Real = R>>(
+        &mut self,
+        token: L::Token,
+        around: Surroundings<R>,
+        packet: &Packet<L>,
+        pixels: &[(usize, usize)],
+        rays: &mut Rays,
+    ) {
+        let Packet {
+            path,
+            near,
+            active,
+            first,
+            count,
+        } = packet;
+        let color = colors(token, around, path, *near, *active, 0, rays);
+        for lane in 0..*count {
+            let (x, row) = pixels[first + lane];
+            self.rows[row * self.width + x] = (self.store)(color.lane(lane).to_f64().to_array());
+        }
+        rays.camera += *count as u64;
+        self.watch
+            .pixels
+            .fetch_add(*count as u64, Ordering::Relaxed);
+    }
 }
 
 #[cfg(test)]

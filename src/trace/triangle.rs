@@ -1,66 +1,101 @@
 //! Ray against triangle. Both sides are hit.
 
 use super::Ray;
-use crate::lanes::{Real, Vec3};
+use crate::lanes::{Lane, Mask as _, Real, Vec3};
 use crate::plan::{Triangle, TriangleMethod};
 
 /// What the watertight test needs of a ray, computed once: the axis along which the direction is
 /// largest, turned to z, and the shear that lays the ray on it.
 #[derive(Clone, Copy, Debug)]
-pub struct Shear<R> {
-    axes: [usize; 3],
-    x: R,
-    y: R,
-    z: R,
+pub struct Shear<L: Lane> {
+    /// Where the axis is x, and where it is y.
+    is_x: L::Mask,
+    is_y: L::Mask,
+    /// The axis, where all lanes agree on it.
+    common: Option<Axis>,
+    x: L,
+    y: L,
+    z: L,
 }
 
-impl<R: Real> Shear<R> {
+#[derive(Clone, Copy, Debug)]
+enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+impl<L: Lane> Shear<L> {
     /// The shear of a direction (not zero).
-    #[inline]
-    pub fn new(direction: Vec3<R>) -> Self {
-        let d = direction.to_array();
-        let magnitude = d.map(R::abs);
-        let z = if magnitude[0] > magnitude[1] && magnitude[0] > magnitude[2] {
-            0
-        } else if magnitude[1] > magnitude[2] {
-            1
-        } else {
-            2
+    #[inline(always)]
+    pub fn new(token: L::Token, direction: Vec3<L>) -> Self {
+        let (x, y, z) = (direction.x.abs(), direction.y.abs(), direction.z.abs());
+        let is_x = y.less(x) & z.less(x);
+        let is_y = !is_x & z.less(y);
+        let one = L::splat(token, L::Real::ONE);
+        let mut shear = Self {
+            is_x,
+            is_y,
+            common: None,
+            x: one,
+            y: one,
+            z: one,
         };
-        let axes = [(z + 1) % 3, (z + 2) % 3, z];
-        let reciprocal = R::ONE / d[z];
+        let all = one.same(one).bits();
+        shear.common = match (is_x.bits(), is_y.bits()) {
+            (0, 0) => Some(Axis::Z),
+            (xs, _) if xs == all => Some(Axis::X),
+            (0, ys) if ys == all => Some(Axis::Y),
+            _ => None,
+        };
+        let [across, upwards, along] = shear.turned(direction);
+        let reciprocal = one / along;
         Self {
-            axes,
-            x: d[axes[0]] * reciprocal,
-            y: d[axes[1]] * reciprocal,
+            x: across * reciprocal,
+            y: upwards * reciprocal,
             z: reciprocal,
+            ..shear
+        }
+    }
+
+    /// The components in cyclic order, the axis last.
+    #[inline(always)]
+    fn turned(&self, v: Vec3<L>) -> [L; 3] {
+        match self.common {
+            Some(Axis::X) => [v.y, v.z, v.x],
+            Some(Axis::Y) => [v.z, v.x, v.y],
+            Some(Axis::Z) => [v.x, v.y, v.z],
+            None => {
+                let pick = |x, y, z| L::select(self.is_x, x, L::select(self.is_y, y, z));
+                [
+                    pick(v.y, v.z, v.x),
+                    pick(v.z, v.x, v.y),
+                    pick(v.x, v.y, v.z),
+                ]
+            }
         }
     }
 
     /// A corner relative to the ray's origin: sheared x and y, and its depth along the axis.
     #[inline(always)]
-    fn apply(&self, corner: Vec3<R>) -> [R; 3] {
-        let p = corner.to_array();
-        let depth = p[self.axes[2]];
-        [
-            p[self.axes[0]] - self.x * depth,
-            p[self.axes[1]] - self.y * depth,
-            depth,
-        ]
+    fn apply(&self, corner: Vec3<L>) -> [L; 3] {
+        let [x, y, depth] = self.turned(corner);
+        [x - self.x * depth, y - self.y * depth, depth]
     }
 }
 
 /// The t > 0 at which the ray meets the triangle; infinity if it does not.
 #[inline(always)]
-pub fn intersect<R: Real>(
+pub fn intersect<L: Lane>(
+    token: L::Token,
     method: TriangleMethod,
-    ray: &Ray<R>,
-    shear: &Shear<R>,
-    triangle: &Triangle<R>,
-) -> R {
+    ray: &Ray<L>,
+    shear: &Shear<L>,
+    triangle: &Triangle<L::Real>,
+) -> L {
     match method {
-        TriangleMethod::Watertight => watertight(ray, shear, triangle),
-        TriangleMethod::Edges => edges(ray, triangle),
+        TriangleMethod::Watertight => watertight(token, ray, shear, triangle),
+        TriangleMethod::Edges => edges(token, ray, triangle),
     }
 }
 
@@ -70,47 +105,59 @@ pub fn intersect<R: Real>(
 ///
 /// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
 #[inline(always)]
-pub fn watertight<R: Real>(ray: &Ray<R>, shear: &Shear<R>, triangle: &Triangle<R>) -> R {
+fn watertight<L: Lane>(
+    token: L::Token,
+    ray: &Ray<L>,
+    shear: &Shear<L>,
+    triangle: &Triangle<L::Real>,
+) -> L {
     let [a, b, c] = triangle
         .corners
-        .map(|corner| shear.apply(corner - ray.origin));
+        .map(|corner| shear.apply(Vec3::broadcast(token, corner) - ray.origin));
     let u = c[0] * b[1] - c[1] * b[0];
     let v = a[0] * c[1] - a[1] * c[0];
     let w = b[0] * a[1] - b[1] * a[0];
-    let none_negative = u >= R::ZERO && v >= R::ZERO && w >= R::ZERO;
-    let none_positive = u <= R::ZERO && v <= R::ZERO && w <= R::ZERO;
-    if !(none_negative || none_positive) {
-        return R::INFINITY;
+    let zero = L::splat(token, L::Real::ZERO);
+    let none_negative = zero.at_most(u) & zero.at_most(v) & zero.at_most(w);
+    let none_positive = u.at_most(zero) & v.at_most(zero) & w.at_most(zero);
+    let infinity = L::splat(token, L::Real::INFINITY);
+    let inside = none_negative | none_positive;
+    if !inside.any() {
+        return infinity;
     }
     // All three zero is a triangle seen edge-on: 0/0 fails the comparison.
     let t = (u * a[2] + v * b[2] + w * c[2]) * shear.z / (u + v + w);
-    if t > R::ZERO { t } else { R::INFINITY }
+    L::select(inside & zero.less(t), t, infinity)
 }
 
 /// The formula of Glint's ancestor: where the ray meets the plane, then, edge by edge in clockwise
 /// order, whether the cross product with the edge points away from the normal. Every rounding of
 /// the hit moves it across the edge differently for each neighbour.
 #[inline(always)]
-pub fn edges<R: Real>(ray: &Ray<R>, triangle: &Triangle<R>) -> R {
-    let n = triangle.normal;
-    let [a, b, c] = triangle.corners;
+fn edges<L: Lane>(token: L::Token, ray: &Ray<L>, triangle: &Triangle<L::Real>) -> L {
+    let n: Vec3<L> = Vec3::broadcast(token, triangle.normal);
+    let [a, b, c] = triangle
+        .corners
+        .map(|corner| Vec3::broadcast(token, corner));
     let t = (a - ray.origin).dot(n) / ray.direction.dot(n);
     let p = ray.at(t);
-    let inside = [(a, b), (b, c), (c, a)]
-        .iter()
-        .all(|&(from, to)| (to - from).cross(p - from).dot(n) <= R::ZERO);
-    if inside && t > R::ZERO {
-        t
-    } else {
-        R::INFINITY
-    }
+    let zero = L::splat(token, L::Real::ZERO);
+    let is_within = |from: Vec3<L>, to: Vec3<L>| (to - from).cross(p - from).dot(n).at_most(zero);
+    let inside = is_within(a, b) & is_within(b, c) & is_within(c, a);
+    L::select(inside & zero.less(t), t, L::splat(token, L::Real::INFINITY))
 }
 
 /// The hit at `t`, drawn onto the triangle's plane.
-#[inline]
-pub fn refine<R: Real>(ray: &Ray<R>, triangle: &Triangle<R>, t: R) -> Vec3<R> {
+#[inline(always)]
+pub fn refine<L: Lane>(
+    token: L::Token,
+    ray: &Ray<L>,
+    triangle: &Triangle<L::Real>,
+    t: L,
+) -> Vec3<L> {
+    let normal = Vec3::broadcast(token, triangle.normal);
     let point = ray.at(t);
-    point - triangle.normal * triangle.normal.dot(point - triangle.corners[0])
+    point - normal * normal.dot(point - Vec3::broadcast(token, triangle.corners[0]))
 }
 
 #[cfg(test)]
@@ -188,10 +235,10 @@ mod tests {
                     origin,
                     direction: Vec3::from_f64(target),
                 };
-                let shear = Shear::new(ray.direction);
+                let shear = Shear::new((), ray.direction);
                 !mesh
                     .iter()
-                    .any(|t| intersect(method, &ray, &shear, t).is_finite())
+                    .any(|t| intersect((), method, &ray, &shear, t).is_finite())
             })
             .count()
     }
@@ -238,7 +285,7 @@ mod tests {
             let ray = Ray { origin, direction };
             for method in [TriangleMethod::Watertight, TriangleMethod::Edges] {
                 assert_eq!(
-                    intersect(method, &ray, &Shear::new(direction), &t),
+                    intersect((), method, &ray, &Shear::new((), direction), &t),
                     f32::INFINITY
                 );
             }
@@ -258,12 +305,12 @@ mod tests {
             let direction = (target - origin).to_f64().unit();
             prop_assume!(direction.is_some_and(|d| d.dot(t.normal.to_f64()).abs() > 0.05));
             let ray = Ray { origin, direction: Vec3::from_f64(direction.expect("assumed")) };
-            let new = intersect(TriangleMethod::Watertight, &ray, &Shear::new(ray.direction), &t);
-            let old = intersect(TriangleMethod::Edges, &ray, &Shear::new(ray.direction), &t);
+            let new = intersect((), TriangleMethod::Watertight, &ray, &Shear::new((), ray.direction), &t);
+            let old = intersect((), TriangleMethod::Edges, &ray, &Shear::new((), ray.direction), &t);
             let exact = (target - origin).length();
             prop_assert!((new - exact).abs() < 1e-4 * (1.0 + exact), "{new} {exact}");
             prop_assert!((old - exact).abs() < 1e-4 * (1.0 + exact), "{old} {exact}");
-            let on_plane = (refine(&ray, &t, new) - a).dot(t.normal).abs();
+            let on_plane = (refine((), &ray, &t, new) - a).dot(t.normal).abs();
             prop_assert!(on_plane < 2e-6);
         }
     }

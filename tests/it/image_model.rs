@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use glint::image::{Image, render};
-use glint::lanes::Vec3;
+use glint::lanes::{Level, Vec3};
 use glint::plan::{Methods, Picture, Precision, RayOffset, SphereMethod, TriangleMethod};
 use glint::scene::{Projection, Scene, Shape};
 use glint::trace::{Grid, Rays, Threads, Tracer, Watch};
@@ -36,6 +36,33 @@ fn any_number_of_threads_gives_the_same_bytes() {
             })
             .into();
         assert_eq!(pictures.len(), 1);
+    }
+}
+
+#[test]
+fn any_lanes_give_the_same_bytes() {
+    let levels = Level::available();
+    assert!(levels.len() > 1, "a processor with vectors");
+    for scene in [
+        Scene::demo(),
+        random::scene(1),
+        random::scene(2),
+        random::scene(6),
+    ] {
+        for precision in [Precision::Single, Precision::Double] {
+            let at = |level| Picture {
+                precision,
+                level: Some(level),
+                ..Picture::sized(203, 131)
+            };
+            let single = picture(&scene, &at(Level::Single));
+            for (name, level) in &levels {
+                assert!(
+                    picture(&scene, &at(*level)) == single,
+                    "{name} {precision:?}"
+                );
+            }
+        }
     }
 }
 

@@ -1,0 +1,280 @@
+//! Lanes: several real numbers computed in step, one ray in each.
+
+use std::fmt::Debug;
+use std::marker::PhantomData;
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+use fearless_simd::{Select as _, Simd, SimdFloat, SimdMask};
+
+use super::Real;
+
+/// A row of real numbers of one type, computed in step.
+///
+/// Every operation is the correctly rounded one of IEEE 754 in every lane, so a lane's result does
+/// not depend on how many others there are. A comparison with NaN is false.
+pub trait Lane:
+    Copy
+    + Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// One number of the row.
+    type Real: Real;
+    /// One truth value per lane.
+    type Mask: Mask;
+    /// The proof that the processor has these lanes.
+    type Token: Copy;
+    /// How many lanes there are.
+    const WIDTH: usize;
+
+    /// The same number in every lane.
+    fn splat(token: Self::Token, value: Self::Real) -> Self;
+    /// `number(i)` in lane i.
+    fn from_fn(token: Self::Token, number: impl FnMut(usize) -> Self::Real) -> Self;
+    /// The number in one lane, `index` < [`Self::WIDTH`].
+    fn lane(self, index: usize) -> Self::Real;
+    /// Runs `work`, which must be `#[inline(always)]`, with the processor's instructions known to
+    /// the compiler: what a recursion needs, which cannot be inlined.
+    fn in_step<T>(token: Self::Token, work: impl FnOnce() -> T) -> T;
+    /// Square root; NaN below zero.
+    fn sqrt(self) -> Self;
+    /// Distance from zero.
+    fn abs(self) -> Self;
+    /// self < other.
+    fn less(self, other: Self) -> Self::Mask;
+    /// self ≤ other.
+    fn at_most(self, other: Self) -> Self::Mask;
+    /// self = other.
+    fn same(self, other: Self) -> Self::Mask;
+    /// `yes` where the mask is set, `no` elsewhere.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+
+    /// The smaller number; `other` where either is NaN.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self::select(self.less(other), self, other)
+    }
+
+    /// The larger number; `other` where either is NaN.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::select(other.less(self), self, other)
+    }
+}
+
+/// One truth value per lane.
+pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+    /// Bit i is lane i.
+    fn bits(self) -> u64;
+    /// Whether any lane is true.
+    fn any(self) -> bool;
+}
+
+macro_rules! single_lane {
+    ($type:ty) => {
+        impl Lane for $type {
+            type Real = Self;
+            type Mask = bool;
+            type Token = ();
+            const WIDTH: usize = 1;
+
+            #[inline(always)]
+            fn splat((): (), value: Self) -> Self {
+                value
+            }
+            #[inline(always)]
+            fn from_fn((): (), mut number: impl FnMut(usize) -> Self) -> Self {
+                number(0)
+            }
+            #[inline(always)]
+            fn lane(self, _: usize) -> Self {
+                self
+            }
+            #[inline(always)]
+            fn in_step<T>((): (), work: impl FnOnce() -> T) -> T {
+                work()
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                self.sqrt()
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                self.abs()
+            }
+            #[inline(always)]
+            fn less(self, other: Self) -> bool {
+                self < other
+            }
+            #[inline(always)]
+            fn at_most(self, other: Self) -> bool {
+                self <= other
+            }
+            #[inline(always)]
+            fn same(self, other: Self) -> bool {
+                self == other
+            }
+            #[inline(always)]
+            fn select(mask: bool, yes: Self, no: Self) -> Self {
+                if mask { yes } else { no }
+            }
+        }
+    };
+}
+
+single_lane!(f32);
+single_lane!(f64);
+
+impl Mask for bool {
+    #[inline(always)]
+    fn bits(self) -> u64 {
+        u64::from(self)
+    }
+    #[inline(always)]
+    fn any(self) -> bool {
+        self
+    }
+}
+
+/// The lanes of a vector register `V` of the processor kind `S`.
+#[derive(Clone, Copy, Debug)]
+pub struct Wide<S, V> {
+    vector: V,
+    processor: PhantomData<S>,
+}
+
+/// The truth values of a vector register.
+#[derive(Clone, Copy, Debug)]
+pub struct WideMask<S, M> {
+    mask: M,
+    processor: PhantomData<S>,
+}
+
+#[inline(always)]
+fn wide<S, V>(vector: V) -> Wide<S, V> {
+    Wide {
+        vector,
+        processor: PhantomData,
+    }
+}
+
+#[inline(always)]
+fn wide_mask<S, M>(mask: M) -> WideMask<S, M> {
+    WideMask {
+        mask,
+        processor: PhantomData,
+    }
+}
+
+macro_rules! wide_operation {
+    ($trait:ident, $method:ident) => {
+        impl<S: Simd, V: SimdFloat<S>> $trait for Wide<S, V> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                wide($trait::$method(self.vector, other.vector))
+            }
+        }
+    };
+}
+
+wide_operation!(Add, add);
+wide_operation!(Sub, sub);
+wide_operation!(Mul, mul);
+wide_operation!(Div, div);
+
+impl<S: Simd, V: SimdFloat<S>> Neg for Wide<S, V> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        wide(-self.vector)
+    }
+}
+
+impl<S: Simd, V: SimdFloat<S>> Lane for Wide<S, V>
+where
+    V::Element: Real,
+{
+    type Real = V::Element;
+    type Mask = WideMask<S, V::Mask>;
+    type Token = S;
+    const WIDTH: usize = V::LEN;
+
+    #[inline(always)]
+    fn splat(token: S, value: Self::Real) -> Self {
+        wide(V::splat(token, value))
+    }
+    #[inline(always)]
+    fn from_fn(token: S, number: impl FnMut(usize) -> Self::Real) -> Self {
+        wide(V::from_fn(token, number))
+    }
+    #[inline(always)]
+    fn lane(self, index: usize) -> Self::Real {
+        self.vector.as_slice()[index]
+    }
+    #[inline(always)]
+    fn in_step<T>(token: S, work: impl FnOnce() -> T) -> T {
+        token.vectorize(work)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        wide(self.vector.sqrt())
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        wide(self.vector.abs())
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> Self::Mask {
+        wide_mask(self.vector.simd_lt(other.vector))
+    }
+    #[inline(always)]
+    fn at_most(self, other: Self) -> Self::Mask {
+        wide_mask(self.vector.simd_le(other.vector))
+    }
+    #[inline(always)]
+    fn same(self, other: Self) -> Self::Mask {
+        wide_mask(self.vector.simd_eq(other.vector))
+    }
+    #[inline(always)]
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
+        wide(mask.mask.select(yes.vector, no.vector))
+    }
+}
+
+macro_rules! mask_operation {
+    ($trait:ident, $method:ident) => {
+        impl<S: Simd, M: SimdMask<S>> $trait for WideMask<S, M> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                wide_mask($trait::$method(self.mask, other.mask))
+            }
+        }
+    };
+}
+
+mask_operation!(BitAnd, bitand);
+mask_operation!(BitOr, bitor);
+
+impl<S: Simd, M: SimdMask<S>> Not for WideMask<S, M> {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        wide_mask(!self.mask)
+    }
+}
+
+impl<S: Simd, M: SimdMask<S>> Mask for WideMask<S, M> {
+    #[inline(always)]
+    fn bits(self) -> u64 {
+        self.mask.to_bitmask()
+    }
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.mask.any_true()
+    }
+}
