@@ -9,12 +9,18 @@ use glint::{cli, ui};
 fn main() -> ExitCode {
     match cli::run(std::env::args_os()) {
         Asked::Done(code) => code,
-        Asked::Editor { scene, screenshot } => match ui::run(scene.clone(), screenshot) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(NoWindow::Unavailable(reason)) => {
-                picture_instead_of_window(scene.as_deref(), &reason)
+        Asked::Editor { scene, screenshot } => {
+            let is_screenshot = screenshot.is_some();
+            match ui::run(scene.clone(), screenshot) {
+                Ok(()) => ExitCode::SUCCESS,
+                Err(NoWindow::Unavailable(reason)) if is_screenshot => {
+                    fail(&format!("no window: {reason}"))
+                }
+                Err(NoWindow::Unavailable(reason)) => {
+                    picture_instead_of_window(scene.as_deref(), &reason)
+                }
+                Err(error) => fail(&error.to_string()),
             }
-            Err(error) => fail(&error.to_string()),
-        },
+        }
     }
 }

@@ -54,6 +54,10 @@ pub struct RenderWords {
     /// Triangle formula
     #[arg(long, default_value = "watertight", value_parser = triangle)]
     triangle: TriangleMethod,
+    #[arg(long, hide = true, value_parser = not_yet)]
+    accelerator: Option<Never>,
+    #[arg(long, hide = true, value_parser = not_yet)]
+    frame: Option<Never>,
     /// Tracing threads [default: one per core]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: Option<u16>,
@@ -100,6 +104,14 @@ struct RayCounts {
     camera: u64,
     shadow: u64,
     reflected: u64,
+}
+
+/// The value of an option of a later version, of which there is none.
+#[derive(Clone, Copy, Debug)]
+enum Never {}
+
+fn not_yet(_: &str) -> Result<Never, String> {
+    Err("this option is not built yet; leave it out".to_owned())
 }
 
 /// How edges are smoothed: not at all, so far.

@@ -53,7 +53,7 @@ pub enum Edit {
     AddPack,
     /// Another name; whatever refers to a pack follows it.
     Rename(Item, String),
-    /// A copy behind the original.
+    /// A copy behind the original in its list, and beside it in the scene.
     Duplicate(Item),
     /// Away with it; a pack that is in use stays.
     Delete(Item),
@@ -262,11 +262,17 @@ fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
         Kind::Object => {
             let mut copy = scene.objects.get(index)?.clone();
             copy.name = free_object_name(scene, &copy.name);
+            copy.shape = copy.shape.moved(beside(scene, &copy.shape));
             scene.objects.insert(index + 1, copy);
         }
         Kind::Light => {
             let mut copy = scene.lights.get(index)?.clone();
             copy.name = free_light_name(scene, &copy.name);
+            let size = copy
+                .marker
+                .as_ref()
+                .map_or(1.0, |marker| marker.radius * 2.0);
+            copy.position.x += size;
             scene.lights.insert(index + 1, copy);
         }
         Kind::Pack => {
@@ -279,6 +285,22 @@ fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
         kind,
         index: index + 1,
     })
+}
+
+/// From a shape to where its copy stands: two things in one place would shadow each other.
+fn beside(scene: &Scene, shape: &Shape) -> Vec3<f64> {
+    match (shape.bounds(), shape) {
+        (Some((low, high)), _) => Vec3::new((high - low).max_abs(), 0.0, 0.0),
+        (None, Shape::Plane { normal, .. }) => {
+            let extent = scene
+                .bounds()
+                .map_or(1.0, |(low, high)| (high - low).length());
+            normal
+                .unit()
+                .map_or(Vec3::new(0.0, 0.0, 0.0), |n| n * (extent / 20.0))
+        }
+        (None, _) => Vec3::new(0.0, 0.0, 0.0),
+    }
 }
 
 fn delete(scene: &mut Scene, item: Item) -> Result<(), String> {

@@ -75,6 +75,8 @@ pub struct Editor {
     revision: u64,
     header: String,
     path: Option<PathBuf>,
+    /// What the document is called while it has no file.
+    name: &'static str,
     saved: Arc<Scene>,
     is_dirty: bool,
     history: History,
@@ -90,14 +92,11 @@ pub struct Editor {
 impl Editor {
     /// Opens the demo scene, as a new document.
     pub fn demo() -> Self {
-        let document = Document::from_text(DEMO_TEXT);
-        Self::new(
-            document.unwrap_or(Document {
-                header: String::new(),
-                scene: Scene::empty(),
-            }),
-            None,
-        )
+        let document = Document::from_text(DEMO_TEXT).unwrap_or_else(|_| Document::empty());
+        Self {
+            name: "demo",
+            ..Self::new(document, None)
+        }
     }
 
     fn new(document: Document, path: Option<PathBuf>) -> Self {
@@ -108,6 +107,7 @@ impl Editor {
             revision: 1,
             header: document.header,
             path,
+            name: "untitled",
             is_dirty: false,
             history: History::default(),
             flight: Flight::default(),
@@ -145,8 +145,7 @@ impl Editor {
                 .unwrap_or(path.as_os_str())
                 .to_string_lossy()
                 .into_owned(),
-            None if self.header.is_empty() => "untitled".to_owned(),
-            None => "demo".to_owned(),
+            None => self.name.to_owned(),
         }
     }
 
@@ -187,25 +186,12 @@ impl Editor {
 
     /// Starts a document from an empty scene.
     pub fn start_new(&mut self) {
-        self.replace(
-            Document {
-                header: String::new(),
-                scene: Scene::empty(),
-            },
-            None,
-        );
+        self.replace(Document::empty(), None);
     }
 
     /// Starts a document from the demo scene.
     pub fn start_demo(&mut self) {
-        let Self { scene, header, .. } = Self::demo();
-        self.replace(
-            Document {
-                header,
-                scene: Arc::unwrap_or_clone(scene),
-            },
-            None,
-        );
+        self.become_other(Self::demo());
     }
 
     /// Opens a file in place of the document; the document stays if that fails.
@@ -223,11 +209,7 @@ impl Editor {
     /// # Errors
     /// Why it could not be written; the document then still counts as changed.
     pub fn save(&mut self, path: &Path) -> Result<(), SceneError> {
-        let document = Document {
-            header: self.header.clone(),
-            scene: Scene::clone(&self.scene),
-        };
-        let backup = document.save(path)?;
+        let backup = self.document().save(path)?;
         self.path = Some(absolute(path));
         self.saved = Arc::clone(&self.scene);
         self.is_dirty = false;
@@ -241,12 +223,6 @@ impl Editor {
         Ok(())
     }
 
-    /// Gives the changes since the last save up: the document no longer counts as changed.
-    pub fn forget_changes(&mut self) {
-        self.saved = Arc::clone(&self.scene);
-        self.is_dirty = false;
-    }
-
     /// Takes up unsaved work that another run of the program left behind.
     pub fn recover(&mut self, document: Document, path: Option<PathBuf>) {
         self.replace(document, path);
@@ -255,12 +231,18 @@ impl Editor {
     }
 
     /// The text of the document as it would be saved.
-    pub fn to_text(&self) -> String {
+    ///
+    /// # Errors
+    /// [`SceneError::Unwritable`], for a scene that has no text.
+    pub fn to_text(&self) -> Result<String, SceneError> {
+        self.document().to_text()
+    }
+
+    fn document(&self) -> Document {
         Document {
             header: self.header.clone(),
             scene: Scene::clone(&self.scene),
         }
-        .to_text()
     }
 
     /// Tells the user something.
@@ -280,12 +262,17 @@ impl Editor {
     }
 
     fn replace(&mut self, document: Document, path: Option<PathBuf>) {
+        self.become_other(Self::new(document, path));
+    }
+
+    /// Takes another document's place; what is traced and what is said goes on.
+    fn become_other(&mut self, other: Self) {
         let revision = self.revision + 1;
         let messages = std::mem::take(&mut self.messages);
         *self = Self {
             revision,
             messages,
-            ..Self::new(document, path)
+            ..other
         };
     }
 

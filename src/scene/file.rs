@@ -46,6 +46,9 @@ pub enum SceneError {
         /// The most that is read.
         limit: u64,
     },
+    /// The scene cannot be put into words; no file was touched.
+    #[error("the scene cannot be written: {0}")]
+    Unwritable(ron::Error),
     /// The disk said no.
     #[error("cannot {verb} {path}: {source}", path = .path.display())]
     Disk {
@@ -151,8 +154,19 @@ impl Document {
         }
     }
 
+    /// An empty scene without a header.
+    pub fn empty() -> Self {
+        Self {
+            header: String::new(),
+            scene: Scene::empty(),
+        }
+    }
+
     /// The text of the file: the header, then the scene in the one form that Glint writes.
-    pub fn to_text(&self) -> String {
+    ///
+    /// # Errors
+    /// [`SceneError::Unwritable`]; no scene is known that has no text.
+    pub fn to_text(&self) -> Result<String, SceneError> {
         let config = PrettyConfig::new()
             .struct_names(true)
             .depth_limit(2)
@@ -160,8 +174,12 @@ impl Document {
             .compact_maps(false);
         let body = options()
             .to_string_pretty(&self.scene, config)
-            .unwrap_or_default();
-        format!("{}{body}\n", self.header)
+            .map_err(SceneError::Unwritable)?;
+        Ok(format!(
+            "{}{body}
+",
+            self.header
+        ))
     }
 
     /// Writes the scene to `path`, whole or not at all. If the file there has comments that the
@@ -170,6 +188,7 @@ impl Document {
     /// # Errors
     /// [`SceneError::Disk`]; the file at `path` is then untouched.
     pub fn save(&self, path: &Path) -> Result<Option<PathBuf>, SceneError> {
+        let text = self.to_text()?;
         let disk = |source| SceneError::Disk {
             verb: "write",
             path: path.to_owned(),
@@ -187,7 +206,7 @@ impl Document {
             })
             .transpose()
             .map_err(disk)?;
-        write_atomic(path, self.to_text().as_bytes()).map_err(disk)?;
+        write_atomic(path, text.as_bytes()).map_err(disk)?;
         Ok(backup)
     }
 }
@@ -199,7 +218,7 @@ impl Document {
 /// # Errors
 /// Whatever the system answers; the file at `path` is then untouched.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let target = behind_links(path);
     let existing = fs::metadata(&target).ok();
     if existing
         .as_ref()
@@ -228,6 +247,19 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
     // system's business.
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
     Ok(())
+}
+
+/// The file that a path means, links followed, whether or not it exists yet.
+fn behind_links(path: &Path) -> PathBuf {
+    let mut target = path.to_owned();
+    // A system follows no more than 40 links either.
+    for _ in 0..40 {
+        let Ok(next) = fs::read_link(&target) else {
+            break;
+        };
+        target = target.parent().unwrap_or(Path::new("")).join(next);
+    }
+    target
 }
 
 fn new_file_builder() -> tempfile::Builder<'static, 'static> {

@@ -132,7 +132,7 @@ mod tests {
         );
         let leftover = second.take_leftover(None).expect("left behind");
         assert_eq!(leftover.path.as_deref(), Some(Path::new("/a/b.ron")));
-        assert_eq!(leftover.document.to_text(), DEMO_TEXT);
+        assert_eq!(leftover.document.to_text().expect("text"), DEMO_TEXT);
         assert!(second.take_leftover(None).is_none(), "it is taken once");
     }
 

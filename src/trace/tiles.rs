@@ -248,7 +248,7 @@ impl<R: Vectored, P, F: Fn([f64; 3]) -> P> Band<'_, R, P, F> {
             for (casters, light) in by_light.iter_mut().zip(&self.plan.lights) {
                 match &ball {
                     Some(ball) => {
-                        casters.keep_between(self.casting, self.plan, light.position, ball)
+                        casters.keep_between(self.casting, self.plan, light.position, ball);
                     }
                     None => casters.clone_from(self.casting),
                 }

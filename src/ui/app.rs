@@ -22,7 +22,7 @@ use super::{Out, help, inspector, menu, status, theme};
 use crate::editor::{Action, Edit, Editor, Mode, Selection};
 use crate::image::Image;
 use crate::scene::Projection;
-use crate::trace::PoolError;
+use crate::worker::LaneError;
 
 /// Where the list of recent files is kept between runs.
 const RECENT_KEY: &str = "recent files";
@@ -72,6 +72,7 @@ pub struct App {
     flying: Flying,
     layout: Layout,
     shortcuts_open: bool,
+    keys_are_taken: bool,
     may_close: bool,
     title: String,
     theme: Theme,
@@ -83,8 +84,8 @@ impl App {
     /// Sets the window up: fonts, theme, lane, and the document.
     ///
     /// # Errors
-    /// [`PoolError`] when the system starts no threads.
-    pub fn new(cc: &eframe::CreationContext<'_>, setup: Setup) -> Result<Self, PoolError> {
+    /// [`LaneError`] when the system starts no threads.
+    pub fn new(cc: &eframe::CreationContext<'_>, setup: Setup) -> Result<Self, LaneError> {
         let chosen = cc
             .storage
             .and_then(|storage| eframe::get_value(storage, THEME_KEY));
@@ -109,6 +110,7 @@ impl App {
                 actual_size: false,
             },
             shortcuts_open: false,
+            keys_are_taken: false,
             may_close: false,
             title: String::new(),
             theme: cc.egui_ctx.theme(),
@@ -205,7 +207,10 @@ impl App {
                 self.files.ask(ctx, &self.editor, Ask::SaveImage);
                 None
             }
-            Command::Escape => self.escape(ctx),
+            Command::Escape => {
+                self.escape();
+                None
+            }
             Command::Shortcuts => {
                 self.shortcuts_open = !self.shortcuts_open;
                 None
@@ -239,7 +244,10 @@ impl App {
             Command::MarkersOn => Action::Edit(Edit::LightVisualization(true)),
             Command::MarkersOff => Action::Edit(Edit::LightVisualization(false)),
             on_item => match (on_item, editor.selection) {
-                (Command::Rename, Selection::Item(item)) => return self.outliner.rename(item),
+                (Command::Rename, Selection::Item(item)) => {
+                    self.layout.outliner = true;
+                    return self.outliner.rename(item);
+                }
                 (Command::Duplicate, Selection::Item(item)) => Action::Edit(Edit::Duplicate(item)),
                 (Command::Delete, Selection::Item(item)) => Action::Edit(Edit::Delete(item)),
                 (Command::MoveUp, Selection::Item(item)) => {
@@ -255,16 +263,15 @@ impl App {
     }
 
     /// Leaves the innermost mode; in none, asks to quit.
-    fn escape(&mut self, ctx: &Context) -> Option<Outcome> {
+    fn escape(&mut self) {
         if self.shortcuts_open {
             self.shortcuts_open = false;
         } else if self.editor.mode != Mode::Live {
             self.pictures.cancel_still();
             self.editor.apply(Action::Show(Mode::Live));
         } else {
-            return self.files.ask_to_quit(ctx, &mut self.editor);
+            self.files.ask_to_quit(&self.editor);
         }
-        None
     }
 
     fn follow(&mut self, ctx: &Context, outcome: Option<Outcome>) {
@@ -272,7 +279,12 @@ impl App {
             None => {}
             Some(Outcome::Quit) => {
                 self.may_close = true;
-                ctx.send_viewport_cmd(ViewportCommand::Close);
+                if self.pictures.is_saving() {
+                    self.editor
+                        .inform("Glint closes when the picture is written".to_owned());
+                } else {
+                    ctx.send_viewport_cmd(ViewportCommand::Close);
+                }
             }
             Some(Outcome::SaveImage(path)) => {
                 self.editor.apply(Action::Show(Mode::HighRes));
@@ -302,6 +314,9 @@ fn projected(editor: &Editor, projection: Projection) -> Action {
 impl eframe::App for App {
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
         self.pictures.poll(ctx, &mut self.editor);
+        if self.may_close && !self.pictures.is_saving() {
+            ctx.send_viewport_cmd(ViewportCommand::Close);
+        }
         let outcome = self.files.poll(ctx, &mut self.editor);
         self.follow(ctx, outcome);
         for file in ctx.input(|input| input.raw.dropped_files.clone()) {
@@ -309,8 +324,9 @@ impl eframe::App for App {
             let outcome = self.files.start(ctx, &mut self.editor, next);
             self.follow(ctx, outcome);
         }
-        if ctx.input(|input| input.viewport().close_requested()) && !self.may_close {
-            if self.editor.is_dirty() {
+        let is_closing = ctx.input(|input| input.viewport().close_requested());
+        if is_closing && !self.may_close {
+            if self.editor.is_dirty() || self.pictures.is_saving() {
                 ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             }
             let outcome = self.files.start(ctx, &mut self.editor, Next::Quit);
@@ -323,13 +339,15 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let mut out = Out::default();
-        let keys_are_free = !self.files.is_asking() && !ui.text_edit_focused();
-        // An open menu takes the keys; Escape closes it and nothing else.
-        if keys_are_free && !egui::Popup::is_any_open(ui.ctx()) {
-            out.commands = pressed(ui);
+        // What had the keys when this frame's were pressed: a field loses its focus to Escape, and a
+        // menu closes, before this is asked.
+        let keys_are_free = !self.keys_are_taken && !ui.text_edit_focused();
+        if keys_are_free {
+            out.commands = pressed(ui, self.flying.is_flying());
         }
         let picture = self.show_panels(ui, &mut out);
         if let Some((_, response)) = &picture
+            && self.editor.mode != Mode::HighRes
             && let Some(motion) = self
                 .flying
                 .step(ui, response, keys_are_free, self.editor.scene())
@@ -346,11 +364,12 @@ impl eframe::App for App {
         let outcome = self.files.show(ui, &mut self.editor);
         self.follow(&ctx, outcome);
         help::show(&ctx, &mut self.shortcuts_open);
-        let is_gesture =
-            ui.input(|input| input.pointer.any_down()) || self.flying.is_any_key_down(&ctx);
+        let is_gesture = ui.input(|input| input.pointer.any_down()) || self.flying.is_gesture(&ctx);
         if !is_gesture {
             self.editor.end_gesture();
         }
+        self.keys_are_taken =
+            ui.text_edit_focused() || egui::Popup::is_any_open(&ctx) || self.files.is_asking();
         let messages = std::mem::take(&mut self.editor.messages);
         self.toasts.push(&ctx, messages);
         self.toasts.show(&ctx);

@@ -66,7 +66,15 @@ impl Autosave {
             return;
         }
         self.tried = Some(Instant::now());
-        match recovery.keep(&editor.to_text(), editor.path()) {
+        let kept = editor
+            .to_text()
+            .map_err(|error| error.to_string())
+            .and_then(|text| {
+                recovery
+                    .keep(&text, editor.path())
+                    .map_err(|error| error.to_string())
+            });
+        match kept {
             Ok(()) => self.kept = Some((revision, Instant::now())),
             Err(error) => editor.complain(format!(
                 "Unsaved changes cannot be kept safe: {error}. Save your work and make room on the disk."

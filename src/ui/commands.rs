@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use egui::{Key, KeyboardShortcut, Modifiers, Ui};
+use egui::{Event, Key, KeyboardShortcut, Modifiers, Ui};
 
 use crate::editor::{Editor, Motion};
 
@@ -225,19 +225,40 @@ impl FlightKey {
     }
 }
 
-/// The commands whose keys were pressed in this frame. Nothing while a text is being edited.
-pub fn pressed(ui: &Ui) -> Vec<Command> {
-    if ui.text_edit_focused() {
-        return Vec::new();
-    }
-    let hit = |shortcut: &&Shortcut| {
-        ui.input_mut(|input| shortcut.keys.iter().any(|key| input.consume_shortcut(key)))
-    };
-    SHORTCUTS
-        .iter()
-        .filter(hit)
-        .map(|shortcut| shortcut.command.clone())
-        .collect()
+/// The commands whose keys were pressed in this frame. A key that repeats because it is held
+/// commands nothing more, but undo and redo; while keys fly the camera, none with Ctrl counts.
+pub fn pressed(ui: &Ui, is_flying: bool) -> Vec<Command> {
+    let mut pressed = Vec::new();
+    ui.input_mut(|input| {
+        input.events.retain(|event| {
+            let Event::Key {
+                key,
+                pressed: true,
+                repeat,
+                modifiers,
+                ..
+            } = event
+            else {
+                return true;
+            };
+            let is_meant = |keys: &KeyboardShortcut| {
+                keys.logical_key == *key
+                    && modifiers.matches_logically(keys.modifiers)
+                    && !(is_flying && keys.modifiers.command)
+            };
+            let Some(shortcut) = SHORTCUTS
+                .iter()
+                .find(|shortcut| shortcut.keys.iter().any(is_meant))
+            else {
+                return true;
+            };
+            if !repeat || matches!(shortcut.command, Command::Undo | Command::Redo) {
+                pressed.push(shortcut.command.clone());
+            }
+            false
+        });
+    });
+    pressed
 }
 
 /// The first key of a command, as menus show it.

@@ -34,6 +34,14 @@ impl Ask {
         !matches!(self, Self::OpenScene)
     }
 
+    /// The path, with the ending that such files have if it has none.
+    pub fn with_ending(&self, path: PathBuf) -> PathBuf {
+        match path.extension() {
+            Some(_) => path,
+            None => path.with_extension(self.endings()[0]),
+        }
+    }
+
     /// The endings that files of this kind have; the first is added where there is none.
     pub fn endings(&self) -> &'static [&'static str] {
         match self {

@@ -1,9 +1,9 @@
 //! From held keys and mouse moves to steps of a flight. Speeds are per second, whatever the frame
 //! rate.
 
-use egui::{Context, Key, PointerButton, Response, Ui};
+use egui::{Context, PointerButton, Response, Ui};
 
-use super::commands::FLIGHT;
+use super::commands::{FLIGHT, FlightKey};
 use crate::editor::Motion;
 use crate::scene::Scene;
 
@@ -21,15 +21,33 @@ const FAST: f64 = 4.0;
 const LONGEST_FRAME: f64 = 0.1;
 /// Seconds that the control key must be held by itself before it flies: it also starts shortcuts.
 const CTRL_DELAY: f64 = 0.2;
+/// Seconds without the wheel after which its next turn is a step of its own.
+const WHEEL_QUIET: f64 = 0.4;
 /// Scene extents per point of wheel movement.
 const WHEEL_EXTENTS: f64 = 0.0008;
 
 /// What the flight keys need to remember.
 #[derive(Debug, Default)]
 pub struct Flying {
-    /// When the control key was pressed; `None` if it is up or started a shortcut.
-    ctrl_since: Option<f64>,
-    ctrl_spent: bool,
+    ctrl: Ctrl,
+    /// Whether keys moved the camera in the last frame.
+    keys_fly: bool,
+    /// When the wheel last turned.
+    wheel_at: Option<f64>,
+}
+
+/// What the control key is being held for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Ctrl {
+    /// It is not held.
+    #[default]
+    Up,
+    /// Held by itself since this time: it may yet become either.
+    Waiting(f64),
+    /// Flying down.
+    Flying,
+    /// A shortcut.
+    Shortcut,
 }
 
 impl Flying {
@@ -55,7 +73,8 @@ impl Flying {
             1.0
         };
         let mut motion = held.times(speed * fast * seconds, TURN_SPEED * seconds);
-        if motion != Motion::default() {
+        self.keys_fly = held != Motion::default();
+        if self.keys_fly {
             ui.request_repaint();
         }
         if picture.dragged_by(PointerButton::Secondary) {
@@ -65,46 +84,61 @@ impl Flying {
         }
         if picture.hovered() {
             let wheel = f64::from(ui.input(|input| input.smooth_scroll_delta().y));
+            if wheel != 0.0 {
+                self.wheel_at = Some(ui.input(|input| input.time));
+            }
             motion.forward += wheel * WHEEL_EXTENTS / EXTENTS_PER_SECOND * speed * fast;
         }
         (motion != Motion::default()).then_some(motion)
     }
 
-    /// Whether a flight key is down: the gesture goes on.
-    pub fn is_any_key_down(&self, ctx: &Context) -> bool {
-        let is_down = |key: Key| ctx.input(|input| input.key_down(key));
-        self.ctrl_since.is_some() || FLIGHT.iter().filter_map(|flight| flight.key).any(is_down)
+    /// Whether keys move the camera: they are then no shortcuts.
+    pub fn is_flying(&self) -> bool {
+        self.keys_fly
+    }
+
+    /// Whether the flight goes on, as one step in the history.
+    pub fn is_gesture(&mut self, ctx: &Context) -> bool {
+        let is_down = |flight: &FlightKey| {
+            flight
+                .key
+                .is_some_and(|key| ctx.input(|input| input.key_down(key)))
+        };
+        let now = ctx.input(|input| input.time);
+        self.wheel_at = self.wheel_at.filter(|at| now - at < WHEEL_QUIET);
+        if self.wheel_at.is_some() {
+            ctx.request_repaint_after_secs(WHEEL_QUIET as f32);
+        }
+        self.wheel_at.is_some() || self.ctrl == Ctrl::Flying || FLIGHT.iter().any(is_down)
     }
 
     fn held(&mut self, ui: &Ui) -> Motion {
         let (ctrl, alt, now) =
             ui.input(|input| (input.modifiers.ctrl, input.modifiers.alt, input.time));
-        let other_key = ui.input(|input| !input.keys_down.is_empty());
-        self.ctrl_spent = ctrl && (self.ctrl_spent || (self.ctrl_since.is_none() && other_key));
-        self.ctrl_since = if ctrl && !self.ctrl_spent {
-            self.ctrl_since.or(Some(now))
-        } else {
-            None
+        let is_held = |flight: &&FlightKey| {
+            flight
+                .key
+                .is_some_and(|key| ui.input(|input| input.key_down(key)))
         };
-        let ctrl_flies = self
-            .ctrl_since
-            .is_some_and(|since| now - since >= CTRL_DELAY);
-        if ctrl && !ctrl_flies {
-            if other_key {
-                self.ctrl_spent = true;
-                self.ctrl_since = None;
-            }
+        let any_key = ui.input(|input| !input.keys_down.is_empty());
+        self.ctrl = match self.ctrl {
+            _ if !ctrl => Ctrl::Up,
+            Ctrl::Up if self.keys_fly => Ctrl::Flying,
+            Ctrl::Up | Ctrl::Waiting(_) if any_key => Ctrl::Shortcut,
+            Ctrl::Up => Ctrl::Waiting(now),
+            Ctrl::Waiting(since) if now - since >= CTRL_DELAY => Ctrl::Flying,
+            going_on => going_on,
+        };
+        if matches!(self.ctrl, Ctrl::Waiting(_)) {
             ui.request_repaint();
+        }
+        if alt || matches!(self.ctrl, Ctrl::Waiting(_) | Ctrl::Shortcut) {
             return Motion::default();
         }
-        if alt {
-            return Motion::default();
-        }
-        let is_held = |key: Option<Key>| match key {
-            Some(key) => ui.input(|input| input.key_down(key)),
-            None => ctrl_flies,
-        };
-        let held = FLIGHT.iter().filter(|flight| is_held(flight.key));
+        let down = FLIGHT
+            .iter()
+            .filter(|flight| flight.key.is_none() && self.ctrl == Ctrl::Flying);
+        let held = FLIGHT.iter().filter(is_held).chain(down);
         held.fold(Motion::default(), |sum, flight| sum.plus(&flight.motion))
     }
 }

@@ -1,6 +1,6 @@
 //! Help → Shortcuts: every key, from the tables that drive the window.
 
-use egui::{Context, Grid, RichText, Ui, Window};
+use egui::{Context, Grid, RichText, ScrollArea, Ui, Window};
 
 use super::commands::{FLIGHT, MOUSE, SHORTCUTS};
 use super::theme::{GRID, palette};
@@ -13,27 +13,32 @@ pub fn show(ctx: &Context, open: &mut bool) {
         .resizable(false)
         .anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0])
         .show(ctx, |ui| {
-            ui.horizontal_top(|ui| {
-                let commands = SHORTCUTS.iter().map(|shortcut| {
-                    let keys: Vec<String> = shortcut
-                        .keys
-                        .iter()
-                        .map(|key| ui.format_shortcut(key))
-                        .collect();
-                    (keys.join(", "), shortcut.what)
-                });
-                let commands: Vec<_> = commands.collect();
-                list(ui, "Commands", commands);
-                ui.add_space(3.0 * GRID);
-                ui.vertical(|ui| {
-                    let flight = FLIGHT.iter().map(|key| (key.name().to_owned(), key.what));
-                    list(ui, "Flying (hold)", flight.collect());
-                    ui.add_space(2.0 * GRID);
-                    let mouse = MOUSE.iter().map(|(name, what)| ((*name).to_owned(), *what));
-                    list(ui, "Mouse in the picture", mouse.collect());
-                });
+            let height = ctx.content_rect().height() - 12.0 * GRID;
+            ScrollArea::vertical().max_height(height).show(ui, |ui| {
+                ui.horizontal_top(lists);
             });
         });
+}
+
+fn lists(ui: &mut Ui) {
+    let commands = SHORTCUTS.iter().map(|shortcut| {
+        let keys: Vec<String> = shortcut
+            .keys
+            .iter()
+            .map(|key| ui.format_shortcut(key))
+            .collect();
+        (keys.join(", "), shortcut.what)
+    });
+    let commands: Vec<_> = commands.collect();
+    list(ui, "Commands", commands);
+    ui.add_space(3.0 * GRID);
+    ui.vertical(|ui| {
+        let flight = FLIGHT.iter().map(|key| (key.name().to_owned(), key.what));
+        list(ui, "Flying (hold)", flight.collect());
+        ui.add_space(2.0 * GRID);
+        let mouse = MOUSE.iter().map(|(name, what)| ((*name).to_owned(), *what));
+        list(ui, "Mouse in the picture", mouse.collect());
+    });
 }
 
 fn list(ui: &mut Ui, title: &str, keys: Vec<(String, &str)>) {
@@ -43,6 +48,7 @@ fn list(ui: &mut Ui, title: &str, keys: Vec<(String, &str)>) {
             .num_columns(2)
             .spacing([2.0 * GRID, GRID / 2.0])
             .show(ui, |ui| {
+                ui.spacing_mut().interact_size.y = 0.0;
                 for (key, what) in keys {
                     ui.label(
                         RichText::new(key)

@@ -13,6 +13,7 @@ mod inspector;
 mod menu;
 mod outliner;
 mod pictures;
+mod prompts;
 mod rows;
 mod screenshot;
 mod status;

@@ -2,7 +2,9 @@
 //! ten thousand objects cost no more than twenty.
 
 use egui::text::{CCursor, CCursorRange};
-use egui::{Button, Id, Key, Rect, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2};
+use egui::{
+    Align, Button, Id, Key, Layout, Rect, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2,
+};
 use egui_material_icons::MaterialIcon;
 
 use super::inspector::name_field;
@@ -30,6 +32,8 @@ enum Line {
 impl Outliner {
     /// Starts editing the name of an item in its row.
     pub fn rename(&mut self, item: Item) {
+        self.filter.clear();
+        self.folded.retain(|kind| *kind != item.kind);
         self.renaming = Some(item);
     }
 
@@ -148,7 +152,7 @@ impl Outliner {
         let scene = editor.scene();
         let Some(name) = item.name(scene) else { return };
         if self.renaming == Some(item) {
-            self.rename_row(ui, item, name, out);
+            self.rename_row(ui, scene, item, out);
             return;
         }
         let (icon, visible) = look(scene, item);
@@ -187,26 +191,35 @@ impl Outliner {
         }
     }
 
-    fn rename_row(&mut self, ui: &mut Ui, item: Item, name: &str, out: &mut Out) {
-        ui.allocate_ui(vec2(ui.available_width(), ROW), |ui| {
-            let id = Id::unique(("rename", item));
-            if !ui.memory(|memory| memory.has_focus(id)) {
-                ui.memory_mut(|memory| memory.request_focus(id));
-                select_all(ui, id, name);
-            }
-            let new = name_field(ui, "new name", id, name);
-            let is_left = ui.input(|input| {
-                input.key_pressed(Key::Enter)
-                    || input.key_pressed(Key::Escape)
-                    || input.pointer.any_click()
-            });
-            if let Some(new) = new {
-                out.edit(Edit::Rename(item, new));
-                self.renaming = None;
-            } else if is_left {
-                self.renaming = None;
-            }
-        });
+    fn rename_row(&mut self, ui: &mut Ui, scene: &Scene, item: Item, out: &mut Out) {
+        let rect = row(ui);
+        let name = item.name(scene).unwrap_or_default();
+        ui.scope_builder(
+            UiBuilder::new()
+                .max_rect(rect)
+                .layout(Layout::left_to_right(Align::Center)),
+            |ui| {
+                ui.add_space(GRID);
+                ui.label(icons::text(look(scene, item).0));
+                let id = Id::unique(("rename", item));
+                if !ui.memory(|memory| memory.has_focus(id)) {
+                    ui.memory_mut(|memory| memory.request_focus(id));
+                    select_all(ui, id, name);
+                }
+                let new = name_field(ui, "new name", id, name);
+                let is_left = ui.input(|input| {
+                    input.key_pressed(Key::Enter)
+                        || input.key_pressed(Key::Escape)
+                        || input.pointer.any_click()
+                });
+                if let Some(new) = new {
+                    out.edit(Edit::Rename(item, new));
+                    self.renaming = None;
+                } else if is_left {
+                    self.renaming = None;
+                }
+            },
+        );
     }
 }
 

@@ -7,8 +7,7 @@ use egui::Context;
 use super::viewport::{Screen, low_res};
 use crate::editor::{Editor, Mode};
 use crate::plan::Picture;
-use crate::trace::PoolError;
-use crate::worker::{Activity, Event, Frame, LiveJob, Pace, StillJob, Worker};
+use crate::worker::{Activity, Event, Frame, LaneError, LiveJob, Pace, StillJob, Worker};
 
 /// The lane and its pictures.
 pub struct Pictures {
@@ -23,8 +22,8 @@ impl Pictures {
     /// Starts the lane; it wakes the window.
     ///
     /// # Errors
-    /// [`PoolError`] when the system starts no threads.
-    pub fn new(ctx: &Context) -> Result<Self, PoolError> {
+    /// [`LaneError`] when the system starts no threads.
+    pub fn new(ctx: &Context) -> Result<Self, LaneError> {
         let wake = ctx.clone();
         let worker = Worker::new(None, move || wake.request_repaint())?;
         Ok(Self {
@@ -37,7 +36,7 @@ impl Pictures {
 
     /// Takes up what the lane has finished.
     pub fn poll(&mut self, ctx: &Context, editor: &mut Editor) {
-        if let Some(frame) = self.worker.take_frame() {
+        while let Some(frame) = self.worker.take_frame() {
             self.screen.take(ctx, frame);
         }
         for event in self.worker.take_events() {
@@ -51,6 +50,11 @@ impl Pictures {
     /// What the lane is doing.
     pub fn activity(&self) -> Activity {
         self.worker.activity()
+    }
+
+    /// Whether a picture is being written.
+    pub fn is_saving(&self) -> bool {
+        self.worker.is_saving()
     }
 
     /// The picture on screen.
@@ -78,6 +82,7 @@ impl Pictures {
 
     /// Asks for the still picture, and for a file of it.
     pub fn request_still(&mut self, editor: &Editor, save_to: Option<PathBuf>) {
+        // What is written is also looked at.
         self.still_requested = Some((editor.revision(), still_size(editor)));
         self.worker.request_still(StillJob {
             revision: editor.revision(),

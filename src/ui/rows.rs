@@ -4,7 +4,7 @@
 use std::cell::Cell;
 use std::ops::RangeInclusive;
 
-use egui::{Align, ComboBox, DragValue, Label, Layout, Response, RichText, Sense, Ui, vec2};
+use egui::{Align, ComboBox, DragValue, Key, Label, Layout, Response, RichText, Sense, Ui, vec2};
 
 use super::theme::{GRID, HEX, LABEL, ROW};
 use crate::lanes::Vec3;
@@ -84,22 +84,27 @@ impl<'u> Rows<'u> {
     /// A number.
     pub fn number(&mut self, field: &Field, value: &mut f64) {
         let before = *value;
-        row(self.ui, field, |ui, reset| {
-            if reset {
-                *value = field.default;
-            }
-            let width = ui.available_width();
-            drag(ui, field, field.name, value, width, None);
-        });
+        row(
+            self.ui,
+            field,
+            &format_number(field.default),
+            |ui, reset| {
+                if reset {
+                    *value = field.default;
+                }
+                let width = ui.available_width();
+                drag(ui, field, field.name, value, width, None);
+            },
+        );
         self.note(field.name, *value != before);
     }
 
     /// Three numbers in one row.
-    pub fn vector(&mut self, field: &Field, value: &mut Vec3<f64>) {
+    pub fn vector(&mut self, field: &Field, default: Vec3<f64>, value: &mut Vec3<f64>) {
         let before = *value;
-        row(self.ui, field, |ui, reset| {
+        row(self.ui, field, &format_vec3(default), |ui, reset| {
             if reset {
-                *value = Vec3::splat(field.default);
+                *value = default;
             }
             let pasted = Cell::new(None);
             let width = (ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0;
@@ -119,19 +124,25 @@ impl<'u> Rows<'u> {
     }
 
     /// A colour: a swatch that opens a picker, and its channels 0–255.
-    pub fn color(&mut self, name: &'static str, hint: &'static str, value: &mut Vec3<f64>) {
+    pub fn color(
+        &mut self,
+        name: &'static str,
+        hint: &'static str,
+        default: Vec3<f64>,
+        value: &mut Vec3<f64>,
+    ) {
         let before = *value;
         let field = Field {
             name,
             hint,
             unit: "",
-            default: 255.0,
+            default: 0.0,
             range: 0.0..=255.0,
             speed: Some(1.0),
         };
-        row(self.ui, &field, |ui, reset| {
+        row(self.ui, &field, &format_vec3(default), |ui, reset| {
             if reset {
-                *value = Vec3::splat(field.default);
+                *value = default;
             }
             ui.spacing_mut().interact_size.x = ROW;
             swatch(ui, name, value);
@@ -205,12 +216,10 @@ impl<'u> Rows<'u> {
 }
 
 /// A row whose label resets it.
-fn row(ui: &mut Ui, field: &Field, add: impl FnOnce(&mut Ui, bool)) {
+fn row(ui: &mut Ui, field: &Field, default: &str, add: impl FnOnce(&mut Ui, bool)) {
     let hint = format!(
-        "{}\nDouble-click: back to {}{}",
-        field.hint,
-        format_number(field.default),
-        field.unit
+        "{}\nDouble-click: back to {default}{}",
+        field.hint, field.unit
     );
     labelled(ui, field.name, &hint, |ui, label| {
         let reset = label.double_clicked();
@@ -276,10 +285,30 @@ fn drag(
         .add_sized([width.max(8.0), ROW], widget)
         .accessible_name(name);
     // Formatting rounds what is shown; only a change by hand may reach the scene.
-    if response.changed() && edited.is_finite() {
+    let is_cancelled = is_cancelled(ui, &response);
+    if response.changed() && edited.is_finite() && !is_cancelled {
         *value = edited.clamp(*field.range.start(), *field.range.end());
     }
     response.on_hover_text(field.hint);
+}
+
+fn format_vec3(v: Vec3<f64>) -> String {
+    v.to_array().map(format_number).join(", ")
+}
+
+/// Whether the field was left with Escape, which gives what was typed up. A field counts as left
+/// for two frames, and in the second the key is gone: the first is remembered.
+fn is_cancelled(ui: &Ui, response: &Response) -> bool {
+    if !response.lost_focus() {
+        return false;
+    }
+    let (id, now) = (response.id.with("cancelled"), ui.cumulative_frame_nr());
+    if ui.input(|input| input.key_pressed(Key::Escape)) {
+        ui.data_mut(|data| data.insert_temp(id, now));
+        return true;
+    }
+    ui.data(|data| data.get_temp::<u64>(id))
+        .is_some_and(|then| now <= then + 2)
 }
 
 /// The number with enough decimals to see what dragging changes, without a tail of digits.
@@ -324,7 +353,8 @@ fn hex(ui: &mut Ui, name: &str, value: &mut Vec3<f64>) {
     let response = ui
         .add_sized([HEX, ROW], widget)
         .accessible_name(format!("{name} hex"));
-    if response.changed() && edited != packed {
+    let is_cancelled = is_cancelled(ui, &response);
+    if response.changed() && edited != packed && !is_cancelled {
         let [_, r, g, b] = (edited as u32).to_be_bytes();
         *value = Vec3::new(f64::from(r), f64::from(g), f64::from(b));
     }

@@ -6,12 +6,16 @@ use egui::{Align, Layout, ProgressBar, RichText, Ui};
 
 use super::Out;
 use super::commands::Command;
+use super::theme::palette;
 use crate::worker::Activity;
 
 /// Time after which a running picture is worth showing that it runs.
 const PATIENCE: Duration = Duration::from_millis(100);
 /// Time after which the remaining time is shown.
 const FORECAST: Duration = Duration::from_secs(1);
+
+/// Height of what stands in the line: lower than the line, which must not jump.
+const BAR: f32 = 16.0;
 
 /// Shows the line.
 pub fn show(
@@ -45,8 +49,11 @@ pub fn show(
 
 fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut Out) {
     let share = done as f64 / total.max(1) as f64;
+    ui.spacing_mut().interact_size.y = BAR;
+    ui.spacing_mut().button_padding.y = 0.0;
+    let cancel = egui::Button::new(RichText::new("Cancel").small());
     if ui
-        .small_button("Cancel")
+        .add(cancel)
         .on_hover_text("Give the high-res picture up (Esc)")
         .clicked()
     {
@@ -60,11 +67,11 @@ fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut Out
     };
     // Never 100 % before it is done.
     let text = format!("High-res {:.0} %{left}", (share * 100.0).floor().min(99.0));
-    ui.add(
-        ProgressBar::new(share as f32)
-            .desired_width(180.0)
-            .text(text),
-    );
+    let text = RichText::new(text).small().color(palette(ui.ctx()).text);
+    let bar = ProgressBar::new(share as f32)
+        .desired_width(180.0)
+        .desired_height(BAR);
+    ui.add(bar.text(text));
     ui.request_repaint_after(Duration::from_millis(50));
 }
 

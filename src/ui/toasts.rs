@@ -91,7 +91,7 @@ fn draw(ui: &mut egui::Ui, message: &Message) -> bool {
         .inner_margin(Margin::same(10));
     frame
         .show(ui, |ui| {
-            ui.set_width(WIDTH);
+            ui.set_width(WIDTH.min(ui.ctx().content_rect().width() * 0.45));
             ui.horizontal_top(|ui| {
                 ui.label(icons::text(icon).color(color));
                 ui.vertical(|ui| {

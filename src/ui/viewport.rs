@@ -3,10 +3,12 @@
 use std::sync::Arc;
 
 use egui::{
-    Color32, ColorImage, Context, Painter, Pos2, Rect, Response, ScrollArea, Sense, TextureFilter,
-    TextureHandle, TextureOptions, TextureWrapMode, Ui, Vec2, pos2, vec2,
+    Color32, ColorImage, Context, Painter, Pos2, Rect, Response, ScrollArea, Sense, Stroke,
+    StrokeKind, TextureFilter, TextureHandle, TextureOptions, TextureWrapMode, Ui, Vec2, pos2,
+    vec2,
 };
 
+use super::theme::palette;
 use crate::scene::Scene;
 use crate::worker::Frame;
 
@@ -126,6 +128,10 @@ impl Screen {
         if let Some(shown) = shown {
             paint(ui.painter(), shown, place.rect);
         }
+        // A black sky must not run into the dark window.
+        let line = Stroke::new(1.0, palette(ui.ctx()).line);
+        ui.painter()
+            .rect_stroke(place.rect, 0, line, StrokeKind::Outside);
         response
     }
 }

@@ -15,17 +15,28 @@ enum Job {
     Still(StillJob),
 }
 
+/// How a job ended.
+enum Outcome {
+    /// There is nothing more to do for it.
+    Ended,
+    /// It was stopped on the way.
+    Stopped,
+}
+
 /// Works until told to quit. A panic in a job becomes an event, and the lane lives on.
 pub(super) fn run(shared: &Shared, threads: &Threads) {
     let mut budget = Budget::new();
     while let Some((job, watch)) = next_job(shared) {
         let outcome = catch_unwind(AssertUnwindSafe(|| {
-            threads.run(|| match job {
-                Job::Live(job) => live(shared, &job, &watch, &mut budget),
-                Job::Still(job) => still(shared, &job, &watch),
-            });
+            threads.run(|| match &job {
+                Job::Live(job) => {
+                    live(shared, job, &watch, &mut budget);
+                    Outcome::Ended
+                }
+                Job::Still(job) => still(shared, job, &watch),
+            })
         }));
-        finish(shared);
+        finish(shared, matches!(outcome, Ok(Outcome::Stopped)));
         if let Err(panic) = outcome {
             shared.tell(Event::Failed(format!(
                 "The tracer stopped with a fault of its own: {}. Your scene is untouched; change it or undo the last step to go on.",
@@ -36,7 +47,7 @@ pub(super) fn run(shared: &Shared, threads: &Threads) {
     }
 }
 
-/// Waits for work: the live view before the still picture.
+/// Waits for work: the live view, then the still picture to look at, then those to be written.
 fn next_job(shared: &Shared) -> Option<(Job, Arc<Watch>)> {
     let mut mailbox = lock(&shared.mailbox);
     loop {
@@ -44,7 +55,10 @@ fn next_job(shared: &Shared) -> Option<(Job, Arc<Watch>)> {
             return None;
         }
         let live = mailbox.live.take().map(Job::Live);
-        if let Some(job) = live.or_else(|| mailbox.still.take().map(Job::Still)) {
+        let job = live
+            .or_else(|| mailbox.still.take().map(Job::Still))
+            .or_else(|| mailbox.saves.pop_front().map(Job::Still));
+        if let Some(job) = job {
             let watch = Arc::new(Watch::default());
             mailbox.running = Some(Running {
                 job: match &job {
@@ -66,22 +80,17 @@ fn next_job(shared: &Shared) -> Option<(Job, Arc<Watch>)> {
 }
 
 /// Clears the running job. A still picture that is to be written, and was stopped for the sake of
-/// the live view, goes back into its slot.
-fn finish(shared: &Shared) {
+/// the live view, is the next again.
+fn finish(shared: &Shared, was_stopped: bool) {
     let mut mailbox = lock(&shared.mailbox);
-    let Some(running) = mailbox.running.take() else {
-        return;
-    };
-    let stopped = running
-        .watch
-        .stop
-        .load(std::sync::atomic::Ordering::Relaxed);
-    if let RunningJob::Still(still) = running.job
-        && stopped
+    if let Some(Running {
+        job: RunningJob::Still(still),
+        ..
+    }) = mailbox.running.take()
+        && was_stopped
         && still.save_to.is_some()
-        && mailbox.still.is_none()
     {
-        mailbox.still = Some(still);
+        mailbox.saves.push_front(still);
     }
 }
 
@@ -109,7 +118,7 @@ fn live(shared: &Shared, job: &LiveJob, watch: &Watch, budget: &mut Budget) {
         let Some(new) = image.trace(&tracer, grid, watch) else {
             return;
         };
-        rays = rays + new;
+        rays += new;
         if grid.step == first {
             budget.learn(new.camera, start.elapsed());
         }
@@ -135,9 +144,9 @@ fn live(shared: &Shared, job: &LiveJob, watch: &Watch, budget: &mut Budget) {
     }
 }
 
-fn still(shared: &Shared, job: &StillJob, watch: &Watch) {
+fn still(shared: &Shared, job: &StillJob, watch: &Watch) -> Outcome {
     let Some((image, cost)) = render(&job.scene, &job.picture, watch) else {
-        return;
+        return Outcome::Stopped;
     };
     let image = Arc::new(image);
     shared.publish(Frame {
@@ -154,24 +163,24 @@ fn still(shared: &Shared, job: &StillJob, watch: &Watch) {
             Err(error) => Event::Failed(error.to_string()),
         });
     }
+    Outcome::Ended
 }
 
 impl Shared {
-    /// Puts a picture into the slot, unless a newer revision's is already there.
+    /// Puts a picture into the slot of its kind, in place of one that was not taken yet.
     fn publish(&self, frame: Frame) {
         let mut news = lock(&self.news);
-        if news
-            .frame
-            .as_ref()
-            .is_none_or(|waiting| waiting.revision <= frame.revision)
-        {
-            news.frame = Some(frame);
-        }
+        let slot = if frame.is_still {
+            &mut news.still
+        } else {
+            &mut news.live
+        };
+        *slot = Some(frame);
         drop(news);
         (self.wake)();
     }
 
-    fn tell(&self, event: Event) {
+    pub(super) fn tell(&self, event: Event) {
         lock(&self.news).events.push(event);
         (self.wake)();
     }

@@ -6,6 +6,7 @@ mod budget;
 mod errand;
 mod lane;
 
+use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -102,6 +103,17 @@ pub enum Event {
     Failed(String),
 }
 
+/// The system started no threads for the lane.
+#[derive(Debug, thiserror::Error)]
+pub enum LaneError {
+    /// Not those that trace.
+    #[error(transparent)]
+    Pool(#[from] PoolError),
+    /// Not the lane itself.
+    #[error("cannot start the background lane: {0}")]
+    Thread(std::io::Error),
+}
+
 /// The handle on the lane. Dropping it ends the thread.
 #[derive(Debug)]
 pub struct Worker {
@@ -122,6 +134,8 @@ struct Shared {
 struct Mailbox {
     live: Option<LiveJob>,
     still: Option<StillJob>,
+    /// Pictures that are to be written, in order.
+    saves: VecDeque<StillJob>,
     running: Option<Running>,
     quit: bool,
 }
@@ -141,7 +155,8 @@ enum RunningJob {
 
 #[derive(Debug, Default)]
 struct News {
-    frame: Option<Frame>,
+    live: Option<Frame>,
+    still: Option<Frame>,
     events: Vec<Event>,
 }
 
@@ -156,11 +171,11 @@ impl Worker {
     /// frame and event.
     ///
     /// # Errors
-    /// [`PoolError`] when the system starts no threads.
+    /// [`LaneError`] when the system starts no threads.
     pub fn new(
         threads: Option<usize>,
         wake: impl Fn() + Send + Sync + 'static,
-    ) -> Result<Self, PoolError> {
+    ) -> Result<Self, LaneError> {
         let threads = Threads::new(threads)?;
         let shared = Arc::new(Shared {
             mailbox: Mutex::default(),
@@ -173,58 +188,88 @@ impl Worker {
             let shared = Arc::clone(&shared);
             move || lane::run(&shared, &threads)
         });
-        Ok(Self {
-            shared,
-            lane: lane.ok(),
-        })
+        let lane = Some(lane.map_err(LaneError::Thread)?);
+        Ok(Self { shared, lane })
     }
 
     /// Asks for a live picture in place of any that waits; finer passes over an older one end
-    /// within a few milliseconds. A still picture of an older revision is given up.
+    /// within a few milliseconds. A still picture of an older revision is given up, unless it is
+    /// to be written.
     pub fn submit(&self, job: LiveJob) {
         let mut mailbox = lock(&self.shared.mailbox);
-        let is_stale = |still: &StillJob| still.revision < job.revision && still.save_to.is_none();
-        mailbox.still.take_if(|still| is_stale(still));
+        mailbox.still.take_if(|still| still.revision < job.revision);
         mailbox.stop_running();
         mailbox.live = Some(job);
         drop(mailbox);
         self.shared.bell.notify_one();
     }
 
-    /// Asks for a still picture in place of any that waits or runs.
+    /// Asks for a still picture. One to look at takes the place of any other such; one to be
+    /// written waits its turn and is never given up.
     pub fn request_still(&self, job: StillJob) {
         let mut mailbox = lock(&self.shared.mailbox);
-        if matches!(
-            &mailbox.running,
-            Some(Running {
-                job: RunningJob::Still(_),
-                ..
-            })
-        ) {
-            mailbox.stop_running();
+        if job.save_to.is_some() {
+            mailbox.saves.push_back(job);
+        } else {
+            if matches!(
+                &mailbox.running,
+                Some(Running {
+                    job: RunningJob::Still(_),
+                    ..
+                })
+            ) {
+                mailbox.stop_running();
+            }
+            mailbox.still = Some(job);
         }
-        mailbox.still = Some(job);
         drop(mailbox);
         self.shared.bell.notify_one();
     }
 
-    /// Gives up the still picture, waiting or running.
+    /// Gives up every still picture, waiting or running. Those that were to be written are told of
+    /// as events.
     pub fn cancel_still(&self) {
         let mut mailbox = lock(&self.shared.mailbox);
         mailbox.still = None;
+        let mut given_up: Vec<PathBuf> = mailbox
+            .saves
+            .drain(..)
+            .filter_map(|job| job.save_to)
+            .collect();
         if let Some(Running {
             job: RunningJob::Still(still),
+            watch,
             ..
         }) = &mut mailbox.running
         {
-            still.save_to = None;
-            mailbox.stop_running();
+            watch.stop.store(true, Ordering::Relaxed);
+            given_up.extend(still.save_to.take());
+        }
+        drop(mailbox);
+        for path in given_up {
+            self.shared
+                .tell(Event::Failed(format!("{} was not written", path.display())));
         }
     }
 
-    /// The newest picture, if there is one that was not taken yet.
+    /// Whether a picture is being written, or waits for that.
+    pub fn is_saving(&self) -> bool {
+        let mailbox = lock(&self.shared.mailbox);
+        let running = mailbox.running.as_ref().map(|running| &running.job);
+        let is_running = matches!(
+            running,
+            Some(RunningJob::Still(StillJob {
+                save_to: Some(_),
+                ..
+            }))
+        );
+        is_running || !mailbox.saves.is_empty()
+    }
+
+    /// The newest live picture, then the newest still one, if there are any that were not taken yet.
     pub fn take_frame(&self) -> Option<Frame> {
-        lock(&self.shared.news).frame.take()
+        let mut news = lock(&self.shared.news);
+        news.live.take().or_else(|| news.still.take())
     }
 
     /// What happened since the last call, in order.
@@ -235,7 +280,8 @@ impl Worker {
     /// What the lane is doing, or is about to.
     pub fn activity(&self) -> Activity {
         let mailbox = lock(&self.shared.mailbox);
-        match (&mailbox.running, &mailbox.live, &mailbox.still) {
+        let still = mailbox.still.as_ref().or(mailbox.saves.front());
+        match (&mailbox.running, &mailbox.live, still) {
             (
                 Some(Running {
                     job: RunningJob::Live { revision },

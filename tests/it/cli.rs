@@ -126,7 +126,7 @@ fn the_camera_can_be_chosen() {
 #[test]
 fn wrong_words_and_wrong_files_exit_with_2() {
     let folder = folder();
-    let cases: [(&[&str], &str); 11] = [
+    let cases: [(&[&str], &str); 12] = [
         (&["render", DEMO], "--output <IMAGE>"),
         (
             &["render", DEMO, "-o", "a.jpg"],
@@ -155,7 +155,14 @@ fn wrong_words_and_wrong_files_exit_with_2() {
             ],
             "moller-trumbore is not built yet",
         ),
-        (&["render", DEMO, "-o", "a.png", "--frame", "3"], "--frame"),
+        (
+            &["render", DEMO, "-o", "a.png", "--frame", "3"],
+            "'--frame <FRAME>': this option is not built yet",
+        ),
+        (
+            &["render", DEMO, "-o", "a.png", "--accelerator", "bvh"],
+            "'--accelerator <ACCELERATOR>': this option is not built yet",
+        ),
         (
             &["render", BAD, "-o", "a.png"],
             "radius must be greater than 0, found 0",

@@ -77,7 +77,7 @@ fn nested_passes_end_in_the_same_bytes_with_no_ray_more() {
     let mut coarser = None;
     for step in [16, 8, 4, 2, 1] {
         let pass = nested.trace(&tracer, Grid { step, coarser }, &Watch::default());
-        traced = traced + pass.expect("not stopped");
+        traced += pass.expect("not stopped");
         coarser = Some(step);
     }
     assert_eq!(nested, whole);

@@ -33,6 +33,12 @@ impl Dialogs for Scripted {
     }
 }
 
+/// The control key as a keyboard sends it: on Linux it is also the command key.
+const CTRL: Modifiers = Modifiers {
+    ctrl: true,
+    ..Modifiers::COMMAND
+};
+
 struct Desk {
     window: Harness<'static, App>,
     folder: tempfile::TempDir,
@@ -633,7 +639,8 @@ fn a_scene_of_thousands_shows_only_the_rows_in_sight() {
         header: String::new(),
         scene,
     }
-    .to_text();
+    .to_text()
+    .expect("text");
     let desk = Desk::with(|_| Vec::new(), Some(&text));
     let rows = desk.window.query_all_by_label_contains("Ball").count();
     assert!((10..200).contains(&rows), "{rows}");
@@ -642,4 +649,157 @@ fn a_scene_of_thousands_shows_only_the_rows_in_sight() {
         picture.left() > 200.0 && picture.right() < 980.0,
         "{picture:?}: panels keep their width"
     );
+}
+
+#[test]
+fn escape_in_a_field_gives_up_what_was_typed_and_nothing_else() {
+    let mut desk = Desk::new();
+    desk.click("Sphere 1");
+    desk.window
+        .get_by_role_and_label(Role::SpinButton, "radius")
+        .click();
+    desk.settle();
+    desk.window.event(Event::Text("3".to_owned()));
+    desk.settle();
+    desk.press(Modifiers::NONE, Key::Escape);
+    assert_eq!(desk.scene(), &Scene::demo());
+    desk.press(Modifiers::NONE, Key::F2);
+    desk.window.event(Event::Text("q".to_owned()));
+    desk.settle();
+    desk.press(Modifiers::NONE, Key::Escape);
+    assert_eq!(desk.scene(), &Scene::demo());
+    desk.window.get_by_label("Filter").focus();
+    desk.settle();
+    desk.press(Modifiers::NONE, Key::Escape);
+    assert!(desk.window.query_by_label("Quit Glint?").is_none());
+}
+
+#[test]
+fn a_held_key_commands_once() {
+    let mut desk = Desk::new();
+    desk.click("Sphere 1");
+    for repeat in [false, true, true, true] {
+        desk.window
+            .event(Event::ModifiersChanged(Modifiers::COMMAND));
+        desk.window.event(Event::Key {
+            key: Key::D,
+            physical_key: None,
+            pressed: true,
+            repeat,
+            modifiers: Modifiers::COMMAND,
+        });
+        desk.window.step();
+    }
+    desk.window.key_up_modifiers(Modifiers::COMMAND, Key::D);
+    desk.window.event(Event::ModifiersChanged(Modifiers::NONE));
+    desk.settle();
+    assert_eq!(desk.scene().objects.len(), 10);
+    let Shape::Sphere { center, radius } = &desk.scene().objects[1].shape else {
+        panic!("a sphere")
+    };
+    assert_eq!(
+        (center.x, *radius),
+        (225.0, 50.0),
+        "the copy stands beside the original"
+    );
+}
+
+#[test]
+fn ctrl_flies_down_and_is_no_shortcut_in_flight() {
+    let mut desk = Desk::new();
+    let start = desk.scene().camera.position;
+    let frames = |desk: &mut Desk, count| (0..count).for_each(|_| desk.window.step());
+    desk.window.event(Event::ModifiersChanged(CTRL));
+    frames(&mut desk, 30);
+    desk.window.event(Event::ModifiersChanged(Modifiers::NONE));
+    desk.settle();
+    assert!(
+        desk.scene().camera.position.y < start.y - 5.0,
+        "by itself, after a moment"
+    );
+    let height = desk.scene().camera.position.y;
+    desk.window.key_down(Key::D);
+    frames(&mut desk, 5);
+    desk.window.event(Event::ModifiersChanged(CTRL));
+    desk.window.key_down_modifiers(CTRL, Key::D);
+    frames(&mut desk, 10);
+    desk.window.key_up(Key::D);
+    desk.window.event(Event::ModifiersChanged(Modifiers::NONE));
+    desk.settle();
+    assert_eq!(desk.scene().objects.len(), 9, "no duplicate");
+    assert!(
+        desk.scene().camera.position.y < height,
+        "down at once in flight"
+    );
+}
+
+#[test]
+fn a_turn_of_the_wheel_is_one_step_and_spares_the_still_picture() {
+    let mut desk = Desk::new();
+    let start = desk.scene().camera.clone();
+    let turn = |desk: &mut Desk| {
+        let middle = desk
+            .window
+            .get_all_by_role(Role::Image)
+            .next()
+            .expect("a picture")
+            .rect()
+            .center();
+        desk.window.hover_at(middle);
+        desk.window.step();
+        desk.window.event(Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Line,
+            delta: egui::vec2(0.0, 1.0),
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Wheel,
+            modifiers: Modifiers::NONE,
+        });
+        (0..40).for_each(|_| desk.window.step());
+        desk.settle();
+    };
+    turn(&mut desk);
+    assert_ne!(desk.scene().camera.position, start.position);
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(desk.scene().camera, start);
+    desk.press(Modifiers::NONE, Key::H);
+    turn(&mut desk);
+    assert_eq!(
+        (desk.editor().mode, &desk.scene().camera),
+        (Mode::HighRes, &start)
+    );
+}
+
+#[test]
+fn unsaved_changes_survive_a_cancelled_open() {
+    let mut desk = Desk::new();
+    desk.press(Modifiers::NONE, Key::O);
+    desk.press(Modifiers::COMMAND, Key::O);
+    desk.click("Don't save");
+    desk.window.get_by_label("Open scene");
+    desk.press(Modifiers::NONE, Key::Escape);
+    assert!(
+        desk.editor().is_dirty(),
+        "nothing took the document's place"
+    );
+}
+
+#[test]
+fn a_label_brings_the_default_back() {
+    let mut desk = Desk::new();
+    desk.window
+        .get_by_role_and_label(Role::Button, "Camera")
+        .click();
+    desk.settle();
+    desk.type_into("up x", "0.5, 0.5, 0.5");
+    let label = desk
+        .window
+        .get_by_role_and_label(Role::Label, "up")
+        .rect()
+        .center();
+    for _ in 0..2 {
+        desk.window.drag_at(label);
+        desk.window.drop_at(label);
+    }
+    desk.settle();
+    assert_eq!(desk.scene(), &Scene::demo());
 }

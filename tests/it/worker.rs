@@ -256,3 +256,26 @@ fn dropping_the_handle_ends_the_lane_soon() {
     drop(worker);
     assert!(start.elapsed() < Duration::from_secs(5));
 }
+
+#[test]
+fn pictures_to_be_saved_wait_for_each_other() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let worker = Worker::new(None, || {}).expect("a lane");
+    let slow = slow_scene();
+    let paths: Vec<_> = (0..3)
+        .map(|n| folder.path().join(format!("{n}.ppm")))
+        .collect();
+    for path in &paths {
+        worker.request_still(StillJob {
+            save_to: Some(path.clone()),
+            ..still(1, &slow, 200)
+        });
+    }
+    worker.submit(live(2, &Arc::new(Scene::demo()), 64));
+    worker.request_still(still(2, &Arc::new(Scene::demo()), 64));
+    assert!(worker.is_saving());
+    wait_until("rest", || worker.activity() == Activity::Idle);
+    let saved: Vec<Event> = paths.iter().cloned().map(Event::Saved).collect();
+    assert_eq!(worker.take_events(), saved);
+    assert!(!worker.is_saving() && paths.iter().all(|path| path.exists()));
+}

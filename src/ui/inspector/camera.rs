@@ -26,58 +26,28 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut Out) {
     let defaults = Camera::default();
     rows.vector(
         &coordinate("position", "Where the camera stands, in world units"),
+        defaults.position,
         &mut camera.position,
     );
     angle_rows(&mut rows, editor.orientation(), &mut camera);
     rows.heading("Vectors");
     rows.vector(
-        &Field {
-            default: 0.0,
-            ..coordinate("look_at", "Viewing direction; its length does not matter")
-        },
+        &coordinate("look_at", "Viewing direction; its length does not matter"),
+        defaults.look_at,
         &mut camera.look_at,
     );
     rows.vector(
         &coordinate("up", "Roughly upwards; must not be along look_at"),
+        defaults.up,
         &mut camera.up,
     );
-    let reset = ui.button("Reset to the demo's camera").clicked();
-    let field = rows_changed(reset, &mut camera, defaults, before);
-    if let Some(field) = field {
+    let changed = rows.changed();
+    if ui.button("Reset to the demo's camera").clicked() {
+        return out.edit(Edit::Camera(defaults, "reset"));
+    }
+    if let Some(field) = changed.filter(|_| camera != *before) {
         out.edit(Edit::Camera(camera, field));
     }
-}
-
-/// What the change of the camera is called, if it changed.
-fn rows_changed(
-    reset: bool,
-    camera: &mut Camera,
-    defaults: Camera,
-    before: &Camera,
-) -> Option<&'static str> {
-    if reset {
-        *camera = defaults;
-        return Some("reset");
-    }
-    let fields = [
-        (camera.position != before.position, "position"),
-        (camera.projection != before.projection, "projection"),
-        (
-            camera.projection_distance != before.projection_distance,
-            "projection distance",
-        ),
-        (
-            camera.orthographic_height != before.orthographic_height,
-            "orthographic height",
-        ),
-        (
-            camera.look_at != before.look_at || camera.up != before.up,
-            "direction",
-        ),
-    ];
-    fields
-        .into_iter()
-        .find_map(|(changed, name)| changed.then_some(name))
 }
 
 fn projection_rows(rows: &mut Rows, camera: &mut Camera) {

@@ -4,9 +4,12 @@ use egui::Ui;
 
 use super::title_field;
 use crate::editor::{Edit, Item, Selection};
+use crate::lanes::Vec3;
 use crate::scene::{ColorPack, Light, LightObj, Object, Scene, Shape};
 use crate::ui::rows::{Field, Rows, coordinate, fraction};
 use crate::ui::{Out, icons};
+
+const ORIGIN: Vec3<f64> = Vec3::new(0.0, 0.0, 0.0);
 
 /// A light and its marker.
 pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut Out) {
@@ -15,6 +18,7 @@ pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut
     let mut rows = Rows::new(ui);
     rows.vector(
         &coordinate("position", "Where it shines from, in world units"),
+        ORIGIN,
         &mut light.position,
     );
     rows.number(
@@ -122,17 +126,23 @@ fn shape_rows(rows: &mut Rows, shape: &mut Shape) {
         Shape::Sphere { center, radius: r } => {
             rows.vector(
                 &coordinate("center", "The middle of the ball, in world units"),
+                ORIGIN,
                 center,
             );
             rows.number(&radius(50.0), r);
         }
         Shape::Plane { point, normal } => {
-            rows.vector(&coordinate("point", "Any point on the plane"), point);
+            rows.vector(
+                &coordinate("point", "Any point on the plane"),
+                ORIGIN,
+                point,
+            );
             rows.vector(
                 &coordinate(
                     "normal",
                     "Direction across the plane; its length does not matter",
                 ),
+                Vec3::new(0.0, 1.0, 0.0),
                 normal,
             );
         }
@@ -140,6 +150,7 @@ fn shape_rows(rows: &mut Rows, shape: &mut Shape) {
             for (name, corner) in [("a", a), ("b", b), ("c", c)] {
                 rows.vector(
                     &coordinate(name, "A corner; clockwise seen from outside"),
+                    ORIGIN,
                     corner,
                 );
             }
@@ -150,16 +161,24 @@ fn shape_rows(rows: &mut Rows, shape: &mut Shape) {
 /// The colours of a pack.
 pub fn pack(ui: &mut Ui, index: usize, before: &ColorPack, out: &mut Out) {
     let mut pack = before.clone();
+    let defaults = ColorPack::default();
     let mut rows = Rows::new(ui);
     rows.color(
         "ambient",
         "Colour without any light, scaled by the ambient intensity",
+        defaults.ambient,
         &mut pack.ambient,
     );
-    rows.color("diffuse", "Colour of matte reflection", &mut pack.diffuse);
+    rows.color(
+        "diffuse",
+        "Colour of matte reflection",
+        defaults.diffuse,
+        &mut pack.diffuse,
+    );
     rows.color(
         "specular",
         "Colour of the highlight, and of the mirror image",
+        defaults.specular,
         &mut pack.specular,
     );
     rows.number(
