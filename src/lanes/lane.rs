@@ -34,6 +34,10 @@ pub trait Lane:
     fn splat(token: Self::Token, value: Self::Real) -> Self;
     /// `number(i)` in lane i.
     fn from_fn(token: Self::Token, number: impl FnMut(usize) -> Self::Real) -> Self;
+    /// The first [`Self::WIDTH`] numbers of a slice that has as many.
+    fn load(token: Self::Token, numbers: &[Self::Real]) -> Self;
+    /// Writes the lanes to the start of a slice that has room for them.
+    fn store(self, numbers: &mut [Self::Real]);
     /// The number in one lane, `index` < [`Self::WIDTH`].
     fn lane(self, index: usize) -> Self::Real;
     /// Runs `work`, which must be `#[inline(always)]`, with the processor's instructions known to
@@ -88,6 +92,14 @@ macro_rules! single_lane {
             #[inline(always)]
             fn from_fn((): (), mut number: impl FnMut(usize) -> Self) -> Self {
                 number(0)
+            }
+            #[inline(always)]
+            fn load((): (), numbers: &[Self]) -> Self {
+                numbers[0]
+            }
+            #[inline(always)]
+            fn store(self, numbers: &mut [Self]) {
+                numbers[0] = self;
             }
             #[inline(always)]
             fn lane(self, _: usize) -> Self {
@@ -210,6 +222,14 @@ where
     #[inline(always)]
     fn from_fn(token: S, number: impl FnMut(usize) -> Self::Real) -> Self {
         wide(V::from_fn(token, number))
+    }
+    #[inline(always)]
+    fn load(token: S, numbers: &[Self::Real]) -> Self {
+        wide(V::from_slice(token, &numbers[..V::LEN]))
+    }
+    #[inline(always)]
+    fn store(self, numbers: &mut [Self::Real]) {
+        self.vector.store_slice(&mut numbers[..V::LEN]);
     }
     #[inline(always)]
     fn lane(self, index: usize) -> Self::Real {

@@ -112,8 +112,7 @@ impl<L: Lane> Vec3<L> {
     /// Every component at least `floor` and at most `ceiling`; NaN becomes `floor`.
     #[inline(always)]
     pub fn clamp(self, floor: L, ceiling: L) -> Self {
-        let clamp = |x: L| x.max(floor).min(ceiling);
-        Self::new(clamp(self.x), clamp(self.y), clamp(self.z))
+        self.max(Self::splat(floor)).min(Self::splat(ceiling))
     }
 
     /// The components in order.

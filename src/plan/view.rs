@@ -52,17 +52,22 @@ impl<R: Real> View<R> {
     /// from its left and upper edge. The centre of the first pixel is (½, ½).
     #[inline(always)]
     pub fn rays<L: Lane<Real = R>>(&self, token: L::Token, x: L, y: L) -> (Vec3<L>, Vec3<L>) {
-        let number = |value| L::splat(token, value);
-        let vector = |v| Vec3::broadcast(token, v);
-        let across = (x - number(self.half.0)) * number(self.pixel);
-        let upwards = (number(self.half.1) - y) * number(self.pixel);
-        let offset: Vec3<L> = vector(self.u) * across + vector(self.v) * upwards;
-        let (origin, forward) = (vector(self.origin), vector(self.forward));
+        let (half_width, half_height) = self.half;
+        let pixel = L::splat(token, self.pixel);
+        let across = (x - L::splat(token, half_width)) * pixel;
+        let upwards = (L::splat(token, half_height) - y) * pixel;
+        let right: Vec3<L> = Vec3::broadcast(token, self.u) * across;
+        let offset = right + Vec3::broadcast(token, self.v) * upwards;
+        let origin = Vec3::broadcast(token, self.origin);
+        let forward = Vec3::broadcast(token, self.forward);
         match self.projection {
             Projection::Orthographic => (origin + offset, forward),
             Projection::Perspective => {
                 let direction = forward + offset;
-                (origin, direction * (number(R::ONE) / direction.length()))
+                (
+                    origin,
+                    direction * (L::splat(token, R::ONE) / direction.length()),
+                )
             }
         }
     }

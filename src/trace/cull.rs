@@ -208,7 +208,8 @@ impl Cone {
         let along = q.dot(self.axis);
         let height = (q.dot(q) - along * along).max(0.0).sqrt();
         let u = ((along + self.slope * height) / self.length).clamp(0.0, 1.0);
-        let gap = (along - u * self.length).hypot(height) - u * self.radius;
+        let beyond = along - u * self.length;
+        let gap = (beyond * beyond + height * height).sqrt() - u * self.radius;
         gap <= radius * (1.0 + CAUTION)
     }
 }

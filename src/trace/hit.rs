@@ -234,10 +234,12 @@ pub fn refine<L: Lane>(
     let point = triangle::refine(token, rays, triangle, t);
     // The neighbours in a mesh meet the triangle at its edges: 4u·(|p| + |o| + t) is what the
     // computation of the point can be off by.
-    let slack = triangle.in_mesh.then(|| {
+    let slack = if triangle.in_mesh {
         let reach = point.max_abs() + rays.origin.max_abs() + t;
-        reach * L::splat(token, L::Real::UNIT_ROUNDOFF * L::Real::from_f64(4.0))
-    });
+        Some(reach * L::splat(token, L::Real::UNIT_ROUNDOFF * L::Real::from_f64(4.0)))
+    } else {
+        None
+    };
     let normal = Vec3::broadcast(token, triangle.normal);
     Hit {
         point,

@@ -10,7 +10,7 @@ use super::cull::{Axis, Bounds, Casters};
 use super::hit::{Nearest, Paths, nearest};
 use super::shade::{Surroundings, colors};
 use super::{Ray, Rays, Watch};
-use crate::lanes::{Lane, Level, Vectored, Work};
+use crate::lanes::{Lane, Level, Real as _, Vectored, Work};
 use crate::plan::{Picture, Plan, Precision, needs_double};
 use crate::scene::Scene;
 
@@ -182,8 +182,51 @@ struct Scratch<L: Lane> {
     in_band: Casters,
     in_tile: Casters,
     by_light: Vec<Casters>,
+    /// Column, and row in the band, of each pixel of the tile.
     pixels: Vec<(usize, usize)>,
+    /// Centres of the pixels, and some more to fill the last packet.
+    x: Vec<L::Real>,
+    y: Vec<L::Real>,
     packets: Vec<Packet<L>>,
+    /// Red, green and blue of a packet.
+    colors: [Vec<L::Real>; 3],
+}
+
+impl<L: Lane> Scratch<L> {
+    fn new(lights: usize) -> Self {
+        let room = TILE * TILE + L::WIDTH;
+        let black = || vec![L::Real::ZERO; L::WIDTH];
+        Self {
+            in_band: Casters::default(),
+            in_tile: Casters::default(),
+            by_light: vec![Casters::default(); lights],
+            pixels: Vec::with_capacity(TILE * TILE),
+            x: Vec::with_capacity(room),
+            y: Vec::with_capacity(room),
+            packets: Vec::with_capacity(room / L::WIDTH),
+            colors: [black(), black(), black()],
+        }
+    }
+
+    /// Lists the pixels of a tile that a pass takes.
+    fn list(&mut self, grid: Grid, top: usize, height: usize, columns: &Range<usize>) {
+        self.pixels.clear();
+        self.x.clear();
+        self.y.clear();
+        let centre = |index: usize| L::Real::from_f64(index as f64 + 0.5);
+        for row in (0..height).filter(|row| (top + row).is_multiple_of(grid.step)) {
+            for column in grid.row_pixels(top + row, columns.start, columns.end) {
+                self.pixels.push((column, row));
+                self.x.push(centre(column));
+                self.y.push(centre(top + row));
+            }
+        }
+        if let (Some(&x), Some(&y)) = (self.x.last(), self.y.last()) {
+            let full = self.pixels.len().next_multiple_of(L::WIDTH);
+            self.x.resize(full, x);
+            self.y.resize(full, y);
+        }
+    }
 }
 
 impl<R: Vectored, P, F: Fn([f64; 3]) -> P> Work<R> for Band<'_, R, P, F> {
@@ -192,13 +235,7 @@ impl<R: Vectored, P, F: Fn([f64; 3]) -> P> Work<R> for Band<'_, R, P, F> {
     #[inline(always)]
     fn run<L: Lane<Real = R>>(mut self, token: L::Token) -> Option<Rays> {
         let height = self.rows.len() / self.width.max(1);
-        let mut scratch = Scratch::<L> {
-            in_band: Casters::default(),
-            in_tile: Casters::default(),
-            by_light: vec![Casters::default(); self.plan.lights.len()],
-            pixels: Vec::with_capacity(TILE * TILE),
-            packets: Vec::with_capacity(TILE * TILE / L::WIDTH),
-        };
+        let mut scratch = Scratch::<L>::new(self.plan.lights.len());
         let rows = self.top..self.top + height;
         scratch
             .in_band
@@ -223,25 +260,24 @@ impl<R: Vectored, P, F: Fn([f64; 3]) -> P> Band<'_, R, P, F> {
         height: usize,
         rays: &mut Rays,
     ) -> Option<()> {
-        scratch.pixels.clear();
-        for row in (0..height).filter(|row| (self.top + row).is_multiple_of(self.grid.step)) {
-            let wanted = self
-                .grid
-                .row_pixels(self.top + row, columns.start, columns.end);
-            scratch.pixels.extend(wanted.map(|x| (x, row)));
-        }
+        scratch.list(self.grid, self.top, height, columns);
         let Scratch {
             in_band,
             in_tile,
             by_light,
             pixels,
+            x,
+            y,
             packets,
+            colors,
         } = scratch;
         in_tile.keep_seen(in_band, self.plan.screen.as_ref(), columns, Axis::Columns);
         packets.clear();
         let mut bounds = Bounds::new(token);
         for first in (0..pixels.len()).step_by(L::WIDTH) {
-            packets.push(self.meet(token, pixels, first, in_tile, &mut bounds));
+            let centres = (L::load(token, &x[first..]), L::load(token, &y[first..]));
+            let count = (pixels.len() - first).min(L::WIDTH);
+            packets.push(self.meet(token, centres, first, count, in_tile, &mut bounds));
         }
         if self.plan.screen.is_some() {
             let ball = bounds.ball();
@@ -266,26 +302,26 @@ impl<R: Vectored, P, F: Fn([f64; 3]) -> P> Band<'_, R, P, F> {
             if self.watch.stop.load(Ordering::Relaxed) {
                 return None;
             }
-            self.paint(token, around, packet, pixels, rays);
+            self.paint(token, around, packet, pixels, colors, rays);
         }
+        self.watch
+            .pixels
+            .fetch_add(pixels.len() as u64, Ordering::Relaxed);
+        rays.camera += pixels.len() as u64;
         Some(())
     }
 
-    /// What the rays of up to `WIDTH` pixels meet first. Lanes without a pixel repeat the last one.
+    /// What the rays through these centres meet first. Lanes behind the first `count` have no pixel.
     #[inline(always)]
     fn meet<L: Lane<Real = R>>(
         &self,
         token: L::Token,
-        pixels: &[(usize, usize)],
+        (x, y): (L, L),
         first: usize,
+        count: usize,
         in_tile: &Casters,
         bounds: &mut Bounds<L>,
     ) -> Packet<L> {
-        let count = (pixels.len() - first).min(L::WIDTH);
-        let pixel = |lane: usize| pixels[first + lane.min(count - 1)];
-        let centre = |index: usize| R::from_f64(index as f64 + 0.5);
-        let x = L::from_fn(token, |lane| centre(pixel(lane).0));
-        let y = L::from_fn(token, |lane| centre(self.top + pixel(lane).1));
         let (origin, direction) = self.plan.view.rays(token, x, y);
         let path = Ray { origin, direction };
         let paths = Paths {
@@ -313,6 +349,7 @@ impl<R: Vectored, P, F: Fn([f64; 3]) -> P> Band<'_, R, P, F> {
         around: Surroundings<R>,
         packet: &Packet<L>,
         pixels: &[(usize, usize)],
+        [red, green, blue]: &mut [Vec<R>; 3],
         rays: &mut Rays,
     ) {
         let Packet {
@@ -323,14 +360,17 @@ impl<R: Vectored, P, F: Fn([f64; 3]) -> P> Band<'_, R, P, F> {
             count,
         } = packet;
         let color = colors(token, around, path, *near, *active, 0, rays);
-        for lane in 0..*count {
-            let (x, row) = pixels[first + lane];
-            self.rows[row * self.width + x] = (self.store)(color.lane(lane).to_f64().to_array());
+        color.x.store(red);
+        color.y.store(green);
+        color.z.store(blue);
+        for (lane, &(column, row)) in pixels[*first..first + count].iter().enumerate() {
+            let color = [
+                red[lane].to_f64(),
+                green[lane].to_f64(),
+                blue[lane].to_f64(),
+            ];
+            self.rows[row * self.width + column] = (self.store)(color);
         }
-        rays.camera += *count as u64;
-        self.watch
-            .pixels
-            .fetch_add(*count as u64, Ordering::Relaxed);
     }
 }
 

@@ -65,15 +65,18 @@ impl<L: Lane> Shear<L> {
             Some(Axis::X) => [v.y, v.z, v.x],
             Some(Axis::Y) => [v.z, v.x, v.y],
             Some(Axis::Z) => [v.x, v.y, v.z],
-            None => {
-                let pick = |x, y, z| L::select(self.is_x, x, L::select(self.is_y, y, z));
-                [
-                    pick(v.y, v.z, v.x),
-                    pick(v.z, v.x, v.y),
-                    pick(v.x, v.y, v.z),
-                ]
-            }
+            None => [
+                self.pick(v.y, v.z, v.x),
+                self.pick(v.z, v.x, v.y),
+                self.pick(v.x, v.y, v.z),
+            ],
         }
+    }
+
+    /// The number that belongs to each lane's axis.
+    #[inline(always)]
+    fn pick(&self, x: L, y: L, z: L) -> L {
+        L::select(self.is_x, x, L::select(self.is_y, y, z))
     }
 
     /// A corner relative to the ray's origin: sheared x and y, and its depth along the axis.
@@ -111,9 +114,11 @@ fn watertight<L: Lane>(
     shear: &Shear<L>,
     triangle: &Triangle<L::Real>,
 ) -> L {
-    let [a, b, c] = triangle
-        .corners
-        .map(|corner| shear.apply(Vec3::broadcast(token, corner) - ray.origin));
+    // Written out: what runs in a closure of the standard library does not know the lanes.
+    let [a, b, c] = triangle.corners;
+    let a = shear.apply(Vec3::broadcast(token, a) - ray.origin);
+    let b = shear.apply(Vec3::broadcast(token, b) - ray.origin);
+    let c = shear.apply(Vec3::broadcast(token, c) - ray.origin);
     let u = c[0] * b[1] - c[1] * b[0];
     let v = a[0] * c[1] - a[1] * c[0];
     let w = b[0] * a[1] - b[1] * a[0];
@@ -136,14 +141,18 @@ fn watertight<L: Lane>(
 #[inline(always)]
 fn edges<L: Lane>(token: L::Token, ray: &Ray<L>, triangle: &Triangle<L::Real>) -> L {
     let n: Vec3<L> = Vec3::broadcast(token, triangle.normal);
-    let [a, b, c] = triangle
-        .corners
-        .map(|corner| Vec3::broadcast(token, corner));
+    let [a, b, c] = triangle.corners;
+    let (a, b, c) = (
+        Vec3::broadcast(token, a),
+        Vec3::broadcast(token, b),
+        Vec3::broadcast(token, c),
+    );
     let t = (a - ray.origin).dot(n) / ray.direction.dot(n);
     let p = ray.at(t);
     let zero = L::splat(token, L::Real::ZERO);
-    let is_within = |from: Vec3<L>, to: Vec3<L>| (to - from).cross(p - from).dot(n).at_most(zero);
-    let inside = is_within(a, b) & is_within(b, c) & is_within(c, a);
+    let inside = (b - a).cross(p - a).dot(n).at_most(zero)
+        & (c - b).cross(p - b).dot(n).at_most(zero)
+        & (a - c).cross(p - c).dot(n).at_most(zero);
     L::select(inside & zero.less(t), t, L::splat(token, L::Real::INFINITY))
 }
 
