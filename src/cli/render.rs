@@ -15,6 +15,7 @@ use serde::Serialize;
 use super::{fail, refuse, say};
 use crate::export::save_image;
 use crate::image::{Cost, Format, Image, render};
+use crate::lanes::Level;
 use crate::plan::{Methods, Picture, Precision, RayOffset, SphereMethod, TriangleMethod};
 use crate::scene::{Document, MAX_SIDE, Projection, Scene};
 use crate::trace::{Threads, Watch};
@@ -54,6 +55,9 @@ pub struct RenderWords {
     /// Triangle formula
     #[arg(long, default_value = "watertight", value_parser = triangle)]
     triangle: TriangleMethod,
+    /// Lanes of the tracer; all give the same picture [default: the widest of this processor]
+    #[arg(long, value_name = "LEVEL", value_parser = lanes)]
+    lanes: Option<Level>,
     #[arg(long, hide = true, value_parser = not_yet)]
     accelerator: Option<Never>,
     #[arg(long, hide = true, value_parser = not_yet)]
@@ -104,6 +108,16 @@ struct RayCounts {
     camera: u64,
     shadow: u64,
     reflected: u64,
+}
+
+fn lanes(word: &str) -> Result<Level, String> {
+    Level::named(word).ok_or_else(|| {
+        let known: Vec<&str> = Level::available()
+            .into_iter()
+            .map(|(name, _)| name)
+            .collect();
+        format!("this processor has {}", known.join(", "))
+    })
 }
 
 /// The value of an option of a later version, of which there is none.
@@ -217,6 +231,7 @@ impl RenderWords {
                 triangle: self.triangle,
                 offset: self.offset,
             },
+            level: self.lanes,
             ..Picture::sized(width, height)
         }
     }

@@ -82,7 +82,8 @@ pub fn render(scene: &Scene, picture: &Picture, watch: &Watch) -> Option<(Image,
 
 /// Linear 0–1 to 0–255, rounded to nearest; there is no gamma in the model.
 fn quantize(color: [f64; 3]) -> [u8; 4] {
-    let [r, g, b] = color.map(|channel| (channel.clamp(0.0, 1.0) * 255.0 + 0.5) as u8);
+    // The cast takes the whole part, NaN as 0, and what is beyond 0–255 as 0 or 255.
+    let [r, g, b] = color.map(|channel| (channel * 255.0 + 0.5) as u8);
     [r, g, b, 255]
 }
 

@@ -1,0 +1,99 @@
+//! How fast pictures are: `cargo bench`. Machines differ and are busy, so compare rows of one run.
+//!
+//! `plain` is the yardstick: the image model as a student would write it (`plain.rs`).
+
+#![allow(
+    clippy::expect_used,
+    reason = "a benchmark that cannot go on has failed"
+)]
+
+mod plain;
+
+use divan::{Bencher, black_box};
+use glint::image::{Image, render};
+use glint::lanes::{Level, Vec3};
+use glint::plan::{Picture, Precision};
+use glint::scene::{Object, Scene, Shape};
+use glint::trace::{Threads, Watch};
+
+fn main() {
+    agree();
+    divan::main();
+}
+
+/// A yardstick that draws another picture measures nothing.
+fn agree() {
+    let scene = Scene::demo();
+    let plain = plain::render(&scene, 256, 256);
+    let (ours, _) =
+        render(&scene, &Picture::sized(256, 256), &Watch::default()).expect("not stopped");
+    let differ = plain.pixels.iter().zip(&ours.pixels);
+    let differ = differ
+        .filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 1))
+        .count();
+    assert!(
+        differ <= 65,
+        "{differ} of 65536 pixels differ by more than 1/255"
+    );
+}
+
+fn trace(bencher: Bencher, scene: &Scene, picture: Picture, threads: usize) {
+    let threads = Threads::new(Some(threads)).expect("threads");
+    let draw = || threads.run(|| render(scene, &picture, &Watch::default()));
+    bencher.bench_local(|| draw().expect("not stopped").0);
+}
+
+#[divan::bench(sample_count = 10)]
+fn demo_1024_plain(bencher: Bencher) {
+    let scene = Scene::demo();
+    bencher.bench_local(|| -> Image { plain::render(black_box(&scene), 1024, 1024) });
+}
+
+#[divan::bench(args = [1, 2], sample_count = 50)]
+fn demo_1024_threads(bencher: Bencher, threads: usize) {
+    trace(bencher, &Scene::demo(), Picture::sized(1024, 1024), threads);
+}
+
+#[divan::bench(args = [1, 2], sample_count = 50)]
+fn demo_1024_double_threads(bencher: Bencher, threads: usize) {
+    let picture = Picture {
+        precision: Precision::Double,
+        ..Picture::sized(1024, 1024)
+    };
+    trace(bencher, &Scene::demo(), picture, threads);
+}
+
+#[divan::bench(args = Level::available().into_iter().map(|(name, _)| name), sample_count = 20)]
+fn demo_1024_lanes(bencher: Bencher, name: &str) {
+    let picture = Picture {
+        level: Level::named(name),
+        ..Picture::sized(1024, 1024)
+    };
+    trace(bencher, &Scene::demo(), picture, 2);
+}
+
+#[divan::bench(sample_count = 20)]
+fn demo_3840_2160(bencher: Bencher) {
+    trace(bencher, &Scene::demo(), Picture::sized(3840, 2160), 2);
+}
+
+#[divan::bench(args = [10, 100, 1000, 10_000], sample_count = 10)]
+fn spheres_512(bencher: Bencher, count: u32) {
+    let mut scene = Scene::demo();
+    let side = f64::from(count).sqrt().ceil();
+    for n in 0..count {
+        let (column, row) = (f64::from(n) % side, (f64::from(n) / side).floor());
+        let place = |at: f64| 400.0 * (at + 0.5) / side;
+        let center = Vec3::new(place(column) - 25.0, 80.0 / side, 50.0 - place(row));
+        scene.objects.push(Object {
+            name: format!("Ball {n}"),
+            color_pack: "sphere 1".to_owned(),
+            shape: Shape::Sphere {
+                center,
+                radius: 80.0 / side,
+            },
+            visible: true,
+        });
+    }
+    trace(bencher, &scene, Picture::sized(512, 512), 2);
+}
