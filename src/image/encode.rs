@@ -82,6 +82,7 @@ mod tests {
     #[test]
     fn files_read_back_as_the_picture() {
         let mut image = Image::new(7, 3);
+        image.pixels.fill([0, 0, 0, 255]);
         image.pixels[4] = [1, 2, 250, 255];
         for format in [Format::Png, Format::Ppm] {
             let bytes = image.encode(format).expect("encodes");

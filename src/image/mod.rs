@@ -10,8 +10,9 @@ use crate::plan::Picture;
 use crate::scene::Scene;
 use crate::trace::{Grid, Rays, Tracer, Watch};
 
-/// An 8-bit picture: RGBA, alpha 255, row by row from the top.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// An 8-bit picture: RGBA, row by row from the top. Alpha is 255 where it was traced and says
+/// nothing else.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Image {
     /// Width in pixels.
     pub width: usize,
@@ -33,12 +34,13 @@ pub struct Cost {
 }
 
 impl Image {
-    /// A black picture.
+    /// A picture of which nothing is traced yet. The system hands out zeroed memory page by page as
+    /// it is first touched, so that this costs the tracing threads and not the caller.
     pub fn new(width: usize, height: usize) -> Self {
         Self {
             width,
             height,
-            pixels: vec![[0, 0, 0, 255]; width * height],
+            pixels: vec![[0; 4]; width * height],
         }
     }
 

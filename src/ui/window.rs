@@ -1,6 +1,5 @@
 //! Opening the window, and finding out why that is impossible.
 
-use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -12,6 +11,7 @@ use egui::{IconData, ViewportBuilder};
 use super::app::{App, Setup};
 use super::screenshot::Screenshot;
 use crate::export::ExportError;
+use crate::worker::panic_text;
 
 /// Size of the window when it is first opened, in points.
 const SIZE: [f32; 2] = [1280.0, 800.0];
@@ -68,7 +68,7 @@ pub fn run(scene: Option<PathBuf>, screenshot: Option<PathBuf>) -> Result<(), No
         },
         Ok(Err(error)) => Err(NoWindow::Unavailable(in_words(&error.to_string()))),
         Err(panic) if is_open.load(Ordering::Relaxed) => std::panic::resume_unwind(panic),
-        Err(panic) => Err(NoWindow::Unavailable(in_words(&panic_text(panic.as_ref())))),
+        Err(panic) => Err(NoWindow::Unavailable(in_words(panic_text(panic.as_ref())))),
     }
 }
 
@@ -123,12 +123,6 @@ impl Drop for Quiet {
         let usual = Arc::clone(&self.0);
         std::panic::set_hook(Box::new(move |info| usual(info)));
     }
-}
-
-fn panic_text(panic: &(dyn Any + Send)) -> String {
-    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
-    text.or_else(|| panic.downcast_ref::<String>().cloned())
-        .unwrap_or_else(|| "the window system failed".to_owned())
 }
 
 /// What the window library says, for people: one line, without the places in its source.

@@ -1,5 +1,6 @@
 //! One-off work off the caller's thread.
 
+use std::any::Any;
 use std::io;
 use std::sync::mpsc::{Receiver, channel};
 use std::thread::JoinHandle;
@@ -27,4 +28,11 @@ pub(super) fn spawn(
     std::thread::Builder::new()
         .name(name.to_owned())
         .spawn(work)
+}
+
+/// What a caught panic said.
+pub fn panic_text(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str))
+        .unwrap_or("no reason given")
 }

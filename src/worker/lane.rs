@@ -5,6 +5,7 @@ use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
 use super::budget::Budget;
+use super::errand::panic_text;
 use super::{Event, Frame, LiveJob, Pace, Running, RunningJob, Shared, StillJob, lock};
 use crate::export::save_image;
 use crate::image::{Cost, Image, render};
@@ -122,10 +123,17 @@ fn live(shared: &Shared, job: &LiveJob, watch: &Watch, budget: &mut Budget) {
         if grid.step == first {
             budget.learn(new.camera, start.elapsed());
         }
+        // The last pass leaves the picture itself: there is nothing to copy.
+        let is_last = grid.step == 1;
+        let shown = if is_last {
+            std::mem::take(&mut image)
+        } else {
+            image.thinned(grid.step)
+        };
         shared.publish(Frame {
             revision: job.revision,
-            image: Arc::new(image.thinned(grid.step)),
-            full_size: (image.width, image.height),
+            image: Arc::new(shown),
+            full_size: (tracer.width(), tracer.height()),
             step: grid.step,
             is_still: false,
             cost: Cost {
@@ -134,7 +142,7 @@ fn live(shared: &Shared, job: &LiveJob, watch: &Watch, budget: &mut Budget) {
                 lanes: tracer.lanes(),
             },
         });
-        if grid.step == 1 {
+        if is_last {
             return;
         }
         grid = Grid {
@@ -184,10 +192,4 @@ impl Shared {
         lock(&self.news).events.push(event);
         (self.wake)();
     }
-}
-
-fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {
-    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
-    text.or_else(|| panic.downcast_ref::<String>().cloned())
-        .unwrap_or_else(|| "no reason given".to_owned())
 }

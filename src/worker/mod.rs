@@ -13,7 +13,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-pub use errand::run_errand;
+pub use errand::{panic_text, run_errand};
 
 use crate::image::{Cost, Image};
 use crate::plan::Picture;
