@@ -113,18 +113,19 @@ impl<R: Real> Plan<R> {
         let centre = scene
             .bounds()
             .map_or(scene.camera.position, |(low, high)| low * 0.5 + high * 0.5);
+        let settled = settle_planes(scene, picture);
         let mut plan = Self {
             view: View::new(&scene.camera, picture, centre),
             spheres: Vec::new(),
             casting_spheres: 0,
             planes: Vec::new(),
             triangles: Vec::new(),
-            lights: pack_lights(scene, centre),
+            lights: pack_lights(scene, centre, settled.as_deref().unwrap_or_default()),
             materials: pack_materials(scene),
             background: linear(scene.background),
             reflection_limit: scene.render.reflection_limit,
             methods: picture.methods,
-            planes_cast: true,
+            planes_cast: settled.is_none(),
             screen: None,
         };
         plan.pack_objects(scene, centre);
@@ -134,32 +135,8 @@ impl<R: Real> Plan<R> {
         }
         if picture.methods == Methods::default() {
             plan.screen = Some(Screen::new(scene, picture));
-            plan.settle_planes(scene, picture, centre);
         }
         plan
-    }
-
-    /// Drops the lights that a plane hides from everything the eye can reach, and with them the
-    /// need to test planes for shadows.
-    fn settle_planes(&mut self, scene: &Scene, picture: &Picture, centre: Vec3<f64>) {
-        let projection = picture.projection.unwrap_or(scene.camera.projection);
-        let eye = scene.camera.position - centre;
-        let side = |plane: &Plane<R>, point: Vec3<f64>| {
-            plane.normal.to_f64().dot(point) - plane.offset.to_f64()
-        };
-        let is_clear = self.planes.iter().all(|plane| side(plane, eye) != 0.0);
-        if projection == Projection::Orthographic || !is_clear {
-            return;
-        }
-        let planes = std::mem::take(&mut self.planes);
-        self.lights.retain(|light| {
-            let at = light.position.to_f64();
-            planes
-                .iter()
-                .all(|plane| side(plane, eye) * side(plane, at) > 0.0)
-        });
-        self.planes = planes;
-        self.planes_cast = false;
     }
 
     fn pack_objects(&mut self, scene: &Scene, centre: Vec3<f64>) {
@@ -213,15 +190,69 @@ impl<R: Real> Plan<R> {
     }
 }
 
-fn pack_lights<R: Real>(scene: &Scene, centre: Vec3<f64>) -> Vec<Light<R>> {
+/// Lights that shine on what the eye can reach.
+fn pack_lights<R: Real>(scene: &Scene, centre: Vec3<f64>, walls: &[Wall]) -> Vec<Light<R>> {
     let shining = scene
         .lights
         .iter()
         .filter(|light| light.visible && light.intensity > 0.0);
     shining
+        .filter(|light| walls.iter().all(|wall| wall.side(light.position) >= 0.0))
         .map(|light| Light {
             position: Vec3::from_f64(light.position - centre),
             intensity: R::from_f64(light.intensity),
+        })
+        .collect()
+}
+
+/// A plane, its normal turned to the eye.
+struct Wall {
+    normal: Vec3<f64>,
+    point: Vec3<f64>,
+}
+
+/// Share of the coordinates within which a point counts as on a plane: what their own rounding
+/// may have moved it by.
+const ON_PLANE: f64 = 1e-12;
+
+impl Wall {
+    /// Above zero on the eye's side, below it behind the plane, zero on it.
+    fn side(&self, point: Vec3<f64>) -> f64 {
+        let height = self.normal.dot(point - self.point);
+        let rounding = ON_PLANE * (point.max_abs() + self.point.max_abs());
+        if height.abs() <= rounding {
+            0.0
+        } else {
+            height
+        }
+    }
+}
+
+/// The planes as walls that hide every light behind them from everything that the eye can reach,
+/// and block no other light; `None` where planes have to be tested ray by ray: for parallel rays,
+/// which start on both sides, for an eye on a plane, and for formulas whose failures shall show.
+fn settle_planes(scene: &Scene, picture: &Picture) -> Option<Vec<Wall>> {
+    let camera = &scene.camera;
+    let is_parallel = picture.projection.unwrap_or(camera.projection) == Projection::Orthographic;
+    if is_parallel || picture.methods != Methods::default() {
+        return None;
+    }
+    let visible = scene.objects.iter().filter(|object| object.visible);
+    let planes = visible.filter_map(|object| match object.shape {
+        Shape::Plane { point, normal } => Some(Wall {
+            normal: normal.unit()?,
+            point,
+        }),
+        Shape::Sphere { .. } | Shape::Triangle { .. } => None,
+    });
+    planes
+        .map(|plane| match plane.side(camera.position) {
+            0.0 => None,
+            side if side < 0.0 => Some(Wall {
+                normal: -plane.normal,
+                ..plane
+            }),
+            _ => Some(plane),
         })
         .collect()
 }
@@ -316,6 +347,27 @@ mod tests {
             .iter()
             .any(|m| m.surface.is_some_and(|s| s.mirror.is_some()));
         assert!(!mirrors, "without light there is nothing to mirror with");
+    }
+
+    #[test]
+    fn a_light_behind_a_plane_is_dropped_and_one_on_it_is_not() {
+        let mut scene = Scene::demo();
+        let lights = |scene: &Scene| (plan(scene).lights.len(), plan(scene).planes_cast);
+        assert_eq!(lights(&scene), (2, false));
+        scene.lights[0].position.y = -0.001;
+        assert_eq!(lights(&scene), (1, false));
+        scene.lights[0].position.y = 0.0;
+        assert_eq!(lights(&scene), (2, false));
+        scene.camera.position.y = 0.0;
+        assert_eq!(lights(&scene), (2, true));
+        scene.camera.position.y = -5.0;
+        assert_eq!(
+            lights(&scene),
+            (1, false),
+            "the one on the floor, seen from below"
+        );
+        scene.camera.projection = Projection::Orthographic;
+        assert_eq!(lights(&scene), (2, true));
     }
 
     #[test]
