@@ -73,7 +73,8 @@ pub struct App {
     layout: Layout,
     shortcuts_open: bool,
     keys_are_taken: bool,
-    may_close: bool,
+    /// The revision at which the user said that the window may close.
+    closing: Option<u64>,
     title: String,
     theme: Theme,
     autosave: Autosave,
@@ -111,7 +112,7 @@ impl App {
             },
             shortcuts_open: false,
             keys_are_taken: false,
-            may_close: false,
+            closing: None,
             title: String::new(),
             theme: cc.egui_ctx.theme(),
             autosave: Autosave::default(),
@@ -278,18 +279,29 @@ impl App {
         match outcome {
             None => {}
             Some(Outcome::Quit) => {
-                self.may_close = true;
+                self.closing = Some(self.editor.revision());
                 if self.pictures.is_saving() {
                     self.editor
                         .inform("Glint closes when the picture is written".to_owned());
-                } else {
-                    ctx.send_viewport_cmd(ViewportCommand::Close);
                 }
+                ctx.request_repaint();
             }
             Some(Outcome::SaveImage(path)) => {
                 self.editor.apply(Action::Show(Mode::HighRes));
                 self.pictures.request_still(&self.editor, Some(path));
             }
+        }
+    }
+
+    /// Closes the window once nothing is being written any more; an edit in the meantime keeps it
+    /// open.
+    fn close_if_meant(&mut self, ctx: &Context) {
+        match self.closing {
+            Some(revision) if revision != self.editor.revision() => self.closing = None,
+            Some(_) if !self.pictures.is_saving() => {
+                ctx.send_viewport_cmd(ViewportCommand::Close);
+            }
+            _ => {}
         }
     }
 
@@ -314,9 +326,7 @@ fn projected(editor: &Editor, projection: Projection) -> Action {
 impl eframe::App for App {
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
         self.pictures.poll(ctx, &mut self.editor);
-        if self.may_close && !self.pictures.is_saving() {
-            ctx.send_viewport_cmd(ViewportCommand::Close);
-        }
+        self.close_if_meant(ctx);
         let outcome = self.files.poll(ctx, &mut self.editor);
         self.follow(ctx, outcome);
         for file in ctx.input(|input| input.raw.dropped_files.clone()) {
@@ -325,10 +335,8 @@ impl eframe::App for App {
             self.follow(ctx, outcome);
         }
         let is_closing = ctx.input(|input| input.viewport().close_requested());
-        if is_closing && !self.may_close {
-            if self.editor.is_dirty() || self.pictures.is_saving() {
-                ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-            }
+        if is_closing && self.closing.is_none() {
+            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             let outcome = self.files.start(ctx, &mut self.editor, Next::Quit);
             self.follow(ctx, outcome);
         }
@@ -379,8 +387,7 @@ impl eframe::App for App {
         if let Some(screenshot) = &mut self.screenshot
             && screenshot.tick(&ctx, self.pictures.is_settled(&self.editor))
         {
-            self.may_close = true;
-            ctx.send_viewport_cmd(ViewportCommand::Close);
+            self.closing = Some(self.editor.revision());
         }
     }
 
