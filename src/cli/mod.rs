@@ -9,7 +9,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 
 pub use fallback::picture_instead_of_window;
 
@@ -74,6 +74,11 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
             "`glint {name}` is not built yet; this version has `glint`, `glint render` and `glint check`"
         )));
     }
+    if let Some(name) = unknown_command(&words) {
+        return Asked::Done(refuse(&format!(
+            "there is no command {name:?}; there are render and check, and `glint SCENE` opens the editor"
+        )));
+    }
     match Words::try_parse_from(words) {
         Ok(Words {
             command: Some(Command::Render(words)),
@@ -103,6 +108,17 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
     }
 }
 
+/// The first of several plain words, if it is no command: the editor takes one scene only.
+fn unknown_command(words: &[OsString]) -> Option<String> {
+    let is_plain = |word: &OsString| !word.to_string_lossy().starts_with('-');
+    let [_, first, second, ..] = words else {
+        return None;
+    };
+    let is_command = Words::command().find_subcommand(first).is_some() || first == "help";
+    (is_plain(first) && is_plain(second) && !is_command)
+        .then(|| first.to_string_lossy().into_owned())
+}
+
 /// One result line on stdout. A reader that went away is no fault of ours.
 fn say(line: &str) {
     use std::io::Write as _;
@@ -128,7 +144,6 @@ pub fn fail(error: &str) -> ExitCode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory as _;
 
     #[test]
     fn the_words_are_consistent() {

@@ -126,7 +126,7 @@ fn the_camera_can_be_chosen() {
 #[test]
 fn wrong_words_and_wrong_files_exit_with_2() {
     let folder = folder();
-    let cases: [(&[&str], &str); 12] = [
+    let cases: [(&[&str], &str); 13] = [
         (&["render", DEMO], "--output <IMAGE>"),
         (
             &["render", DEMO, "-o", "a.jpg"],
@@ -173,6 +173,10 @@ fn wrong_words_and_wrong_files_exit_with_2() {
         ),
         (&["chart", DEMO], "`glint chart` is not built yet"),
         (&["check"], "<SCENE>..."),
+        (
+            &["chek", DEMO],
+            "there is no command \"chek\"; there are render and check",
+        ),
     ];
     for (words, expected) in cases {
         let run = glint(folder.path(), words);
