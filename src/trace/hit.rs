@@ -3,7 +3,7 @@
 use super::triangle::Shear;
 use super::{Ray, plane, sphere, triangle};
 use crate::lanes::{Lane, Mask as _, Real, Vec3};
-use crate::plan::{Plan, RayOffset};
+use crate::plan::{Plan, Plane, RayOffset};
 
 /// The primitives that are worth testing, by their places in the plan's lists. Planes always are.
 #[derive(Clone, Copy, Debug)]
@@ -81,17 +81,18 @@ pub fn nearest<L: Lane>(
     }
     for (index, plane) in plan.planes.iter().enumerate() {
         let number = L::splat(token, real(numbers.planes + index));
-        let t = plane::intersect(token, &paths.rays, plane);
-        offer(&mut best, without_start(token, paths, number, t), number);
+        offer(
+            &mut best,
+            plane_distance(token, paths, plane, number),
+            number,
+        );
     }
     if !among.triangles.is_empty() {
         let shear = Shear::new(token, paths.rays.direction);
         for &index in among.triangles {
             let number = L::splat(token, real(numbers.triangles + index as usize));
-            let triangle = &plan.triangles[index as usize];
-            let t =
-                triangle::intersect(token, plan.methods.triangle, &paths.rays, &shear, triangle);
-            offer(&mut best, without_start(token, paths, number, t), number);
+            let t = triangle_distance(token, plan, paths, &shear, index as usize, number);
+            offer(&mut best, t, number);
         }
     }
     best
@@ -128,18 +129,16 @@ pub fn blocked<L: Lane>(
     if plan.planes_cast {
         for (index, plane) in plan.planes.iter().enumerate() {
             let number = L::splat(token, real(numbers.planes + index));
-            let t = plane::intersect(token, &paths.rays, plane);
-            free = free & !without_start(token, paths, number, t).less(distance);
+            let t = plane_distance(token, paths, plane, number);
+            free = free & !t.less(distance);
         }
     }
     if !among.triangles.is_empty() {
         let shear = Shear::new(token, paths.rays.direction);
         for &index in among.triangles {
             let number = L::splat(token, real(numbers.triangles + index as usize));
-            let triangle = &plan.triangles[index as usize];
-            let t =
-                triangle::intersect(token, plan.methods.triangle, &paths.rays, &shear, triangle);
-            free = free & !without_start(token, paths, number, t).less(distance);
+            let t = triangle_distance(token, plan, paths, &shear, index as usize, number);
+            free = free & !t.less(distance);
             if !free.any() {
                 return wanted;
             }
@@ -169,6 +168,31 @@ fn sphere_distance<L: Lane>(
             }
         }
     }
+}
+
+#[inline(always)]
+fn plane_distance<L: Lane>(
+    token: L::Token,
+    paths: &Paths<L>,
+    plane: &Plane<L::Real>,
+    number: L,
+) -> L {
+    let t = plane::intersect(token, &paths.rays, plane);
+    without_start(token, paths, number, t)
+}
+
+#[inline(always)]
+fn triangle_distance<L: Lane>(
+    token: L::Token,
+    plan: &Plan<L::Real>,
+    paths: &Paths<L>,
+    shear: &Shear<L>,
+    index: usize,
+    number: L,
+) -> L {
+    let triangle = &plan.triangles[index];
+    let t = triangle::intersect(token, plan.methods.triangle, &paths.rays, shear, triangle);
+    without_start(token, paths, number, t)
 }
 
 /// A flat primitive is never met again by a ray that starts on it.

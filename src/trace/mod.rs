@@ -74,7 +74,7 @@ impl std::ops::Add for Rays {
 /// What a running trace and its caller tell each other.
 #[derive(Debug, Default)]
 pub struct Watch {
-    /// Set by the caller to end the trace within one row of a tile.
+    /// Set by the caller to end the trace within a part of a tile.
     pub stop: AtomicBool,
     /// Pixels traced so far.
     pub pixels: AtomicU64,

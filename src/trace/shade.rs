@@ -14,7 +14,7 @@ use crate::plan::{Light, Plan, RayOffset, Surface};
 pub struct Surroundings<'a, R> {
     /// The plan.
     pub plan: &'a Plan<R>,
-    /// What may cast shadows here, by light.
+    /// What may cast shadows here, by light; empty where that is `everything`.
     pub casters: &'a [Casters],
     /// What may be met and cast shadows anywhere: for mirrored rays.
     pub everything: &'a Casters,

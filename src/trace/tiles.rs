@@ -279,22 +279,20 @@ impl<R: Vectored, P, F: Fn([f64; 3]) -> P> Band<'_, R, P, F> {
             let count = (pixels.len() - first).min(L::WIDTH);
             packets.push(self.meet(token, centres, first, count, in_tile, &mut bounds));
         }
-        if self.plan.screen.is_some() {
-            let ball = bounds.ball();
-            for (casters, light) in by_light.iter_mut().zip(&self.plan.lights) {
-                match &ball {
-                    Some(ball) => {
-                        casters.keep_between(self.casting, self.plan, light.position, ball);
-                    }
-                    None => casters.clone_from(self.casting),
+        // Where nothing may be left out, or nothing was hit, everything serves for every light.
+        let ball = bounds.ball().filter(|_| self.plan.screen.is_some());
+        let casters = match &ball {
+            None => &[],
+            Some(ball) => {
+                for (casters, light) in by_light.iter_mut().zip(&self.plan.lights) {
+                    casters.keep_between(self.casting, self.plan, light.position, ball);
                 }
+                &by_light[..]
             }
-        } else {
-            by_light.fill(self.casting.clone());
-        }
+        };
         let around = Surroundings {
             plan: self.plan,
-            casters: by_light,
+            casters,
             everything: self.casting,
             all: self.seen.among(),
         };

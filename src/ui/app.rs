@@ -354,14 +354,13 @@ impl eframe::App for App {
             out.commands = pressed(ui, self.flying.is_flying());
         }
         let picture = self.show_panels(ui, &mut out);
-        if let Some((_, response)) = &picture
-            && self.editor.mode != Mode::HighRes
-            && let Some(motion) = self
-                .flying
-                .step(ui, response, keys_are_free, self.editor.scene())
-        {
-            out.actions.push(Action::Fly(motion));
-        }
+        // The still picture is looked at, not flown through: it would be gone.
+        let flown = picture.as_ref().map(|(_, response)| response);
+        let flown = flown.filter(|_| self.editor.mode != Mode::HighRes);
+        let motion = self
+            .flying
+            .step(ui, flown, keys_are_free, self.editor.scene());
+        out.actions.extend(motion.map(Action::Fly));
         for action in out.actions {
             self.editor.apply(action);
         }

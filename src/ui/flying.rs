@@ -51,45 +51,57 @@ enum Ctrl {
 }
 
 impl Flying {
-    /// The step of this frame, if the camera moves. `picture` is the response of the picture area;
-    /// keys count only while `keys_are_free`.
+    /// The step of this frame, if the camera moves. Keys count only while `keys_are_free`, the
+    /// mouse only over `picture`, which is `None` where the picture is not to be flown through.
+    /// To be called in every frame, so that a key that is let go elsewhere is not missed.
     pub fn step(
         &mut self,
         ui: &Ui,
-        picture: &Response,
+        picture: Option<&Response>,
         keys_are_free: bool,
         scene: &Scene,
     ) -> Option<Motion> {
-        let speed = speed(scene);
-        let held = if keys_are_free {
+        let held = if keys_are_free && picture.is_some() {
             self.held(ui)
         } else {
+            self.ctrl = Ctrl::Up;
             Motion::default()
         };
-        let seconds = f64::from(ui.input(|input| input.stable_dt)).min(LONGEST_FRAME);
-        let fast = if ui.input(|input| input.modifiers.shift) {
-            FAST
-        } else {
-            1.0
-        };
-        let mut motion = held.times(speed * fast * seconds, TURN_SPEED * seconds);
         self.keys_fly = held != Motion::default();
         if self.keys_fly {
             ui.request_repaint();
         }
-        if picture.dragged_by(PointerButton::Secondary) {
+        let wheel = picture.map_or(0.0, |picture| self.wheel(ui, picture));
+        let mut motion = Motion::default();
+        if self.keys_fly || wheel != 0.0 {
+            let fast = if ui.input(|input| input.modifiers.shift) {
+                FAST
+            } else {
+                1.0
+            };
+            let speed = speed(scene) * fast;
+            let seconds = f64::from(ui.input(|input| input.stable_dt)).min(LONGEST_FRAME);
+            motion = held.times(speed * seconds, TURN_SPEED * seconds);
+            motion.forward += wheel * WHEEL_EXTENTS / EXTENTS_PER_SECOND * speed;
+        }
+        if let Some(picture) = picture.filter(|p| p.dragged_by(PointerButton::Secondary)) {
             let moved = picture.drag_motion();
             motion.yaw += f64::from(moved.x) * MOUSE_TURN;
             motion.pitch -= f64::from(moved.y) * MOUSE_TURN;
         }
-        if picture.hovered() {
-            let wheel = f64::from(ui.input(|input| input.smooth_scroll_delta().y));
-            if wheel != 0.0 {
-                self.wheel_at = Some(ui.input(|input| input.time));
-            }
-            motion.forward += wheel * WHEEL_EXTENTS / EXTENTS_PER_SECOND * speed * fast;
-        }
         (motion != Motion::default()).then_some(motion)
+    }
+
+    /// Points that the wheel turned over the picture.
+    fn wheel(&mut self, ui: &Ui, picture: &Response) -> f64 {
+        if !picture.hovered() {
+            return 0.0;
+        }
+        let wheel = f64::from(ui.input(|input| input.smooth_scroll_delta().y));
+        if wheel != 0.0 {
+            self.wheel_at = Some(ui.input(|input| input.time));
+        }
+        wheel
     }
 
     /// Whether keys move the camera: they are then no shortcuts.
@@ -99,27 +111,18 @@ impl Flying {
 
     /// Whether the flight goes on, as one step in the history.
     pub fn is_gesture(&mut self, ctx: &Context) -> bool {
-        let is_down = |flight: &FlightKey| {
-            flight
-                .key
-                .is_some_and(|key| ctx.input(|input| input.key_down(key)))
-        };
         let now = ctx.input(|input| input.time);
         self.wheel_at = self.wheel_at.filter(|at| now - at < WHEEL_QUIET);
         if self.wheel_at.is_some() {
             ctx.request_repaint_after_secs(WHEEL_QUIET as f32);
         }
-        self.wheel_at.is_some() || self.ctrl == Ctrl::Flying || FLIGHT.iter().any(is_down)
+        let any_down = FLIGHT.iter().any(|flight| is_down(ctx, flight));
+        self.wheel_at.is_some() || self.ctrl == Ctrl::Flying || any_down
     }
 
     fn held(&mut self, ui: &Ui) -> Motion {
         let (ctrl, alt, now) =
             ui.input(|input| (input.modifiers.ctrl, input.modifiers.alt, input.time));
-        let is_held = |flight: &&FlightKey| {
-            flight
-                .key
-                .is_some_and(|key| ui.input(|input| input.key_down(key)))
-        };
         let any_key = ui.input(|input| !input.keys_down.is_empty());
         self.ctrl = match self.ctrl {
             _ if !ctrl => Ctrl::Up,
@@ -135,12 +138,19 @@ impl Flying {
         if alt || matches!(self.ctrl, Ctrl::Waiting(_) | Ctrl::Shortcut) {
             return Motion::default();
         }
-        let down = FLIGHT
-            .iter()
-            .filter(|flight| flight.key.is_none() && self.ctrl == Ctrl::Flying);
-        let held = FLIGHT.iter().filter(is_held).chain(down);
+        let held = FLIGHT.iter().filter(|flight| match flight.key {
+            Some(_) => is_down(ui, flight),
+            None => self.ctrl == Ctrl::Flying,
+        });
         held.fold(Motion::default(), |sum, flight| sum.plus(&flight.motion))
     }
+}
+
+/// Whether the key is held; the control key is not asked here, it has two meanings.
+fn is_down(ctx: &Context, flight: &FlightKey) -> bool {
+    flight
+        .key
+        .is_some_and(|key| ctx.input(|input| input.key_down(key)))
 }
 
 /// Flying speed in world units per second.

@@ -111,7 +111,7 @@ impl Screen {
         Some(output.inner)
     }
 
-    /// Draws the still picture, or the newest live one, into its place.
+    /// Draws the still picture or the newest live one into its place.
     pub fn show(&self, ui: &mut Ui, place: Place, still: bool) -> Response {
         let response = ui.allocate_rect(place.rect, Sense::click_and_drag());
         let name = if still {
@@ -120,11 +120,7 @@ impl Screen {
             "Live view"
         };
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
-        let shown = if still {
-            self.still.as_ref().or(self.live.as_ref())
-        } else {
-            self.live.as_ref()
-        };
+        let shown = if still { &self.still } else { &self.live };
         if let Some(shown) = shown {
             paint(ui.painter(), shown, place.rect);
         }

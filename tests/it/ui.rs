@@ -741,6 +741,20 @@ fn ctrl_flies_down_and_is_no_shortcut_in_flight() {
 }
 
 #[test]
+fn shortcuts_work_after_flying_into_the_still_picture() {
+    let mut desk = Desk::new();
+    let start = desk.scene().camera.clone();
+    desk.window.key_down(Key::W);
+    (0..5).for_each(|_| desk.window.step());
+    desk.press(Modifiers::NONE, Key::H);
+    desk.window.key_up(Key::W);
+    desk.settle();
+    assert_eq!(desk.editor().mode, Mode::HighRes);
+    desk.press(CTRL, Key::Z);
+    assert_eq!(desk.scene().camera, start);
+}
+
+#[test]
 fn a_turn_of_the_wheel_is_one_step_and_spares_the_still_picture() {
     let mut desk = Desk::new();
     let start = desk.scene().camera.clone();
