@@ -256,11 +256,16 @@ fn trace(
     let result = run_errand("glint-render", {
         let watch = Arc::clone(&watch);
         move || {
-            let runs: Option<Vec<(Image, Cost)>> = (0..repeat)
-                .map(|_| threads.run(|| render(&scene, &picture, &watch)))
-                .collect();
-            let (images, costs): (Vec<_>, Vec<_>) = runs?.into_iter().unzip();
-            images.into_iter().next_back().map(|image| (image, costs))
+            let mut costs = Vec::new();
+            // Each picture is dropped for the next: they are all the same, and may be large.
+            let mut last = None;
+            for _ in 0..repeat {
+                drop(last.take());
+                let (image, cost) = threads.run(|| render(&scene, &picture, &watch))?;
+                last = Some(image);
+                costs.push(cost);
+            }
+            last.map(|image| (image, costs))
         }
     });
     let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {eta} left");
