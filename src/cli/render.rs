@@ -16,7 +16,9 @@ use super::{fail, refuse, say};
 use crate::export::save_image;
 use crate::image::{Cost, Format, Image, render};
 use crate::lanes::Level;
-use crate::plan::{Methods, Picture, Precision, RayOffset, SphereMethod, TriangleMethod};
+use crate::plan::{
+    MAX_GRID, Methods, Picture, Precision, RayOffset, Sampling, SphereMethod, TriangleMethod,
+};
 use crate::scene::{Document, MAX_SIDE, Projection, Scene};
 use crate::trace::{Threads, Watch};
 use crate::worker::run_errand;
@@ -40,9 +42,9 @@ pub struct RenderWords {
     /// Projection in place of the scene's own
     #[arg(long)]
     camera: Option<CameraWord>,
-    /// How edges are smoothed
-    #[arg(long, default_value = "none", value_parser = antialias)]
-    antialias: Antialias,
+    /// How edges are smoothed: none, adaptive, or grid:N for N×N samples in every pixel
+    #[arg(long, default_value = "adaptive", value_parser = antialias)]
+    antialias: Sampling,
     /// Real type of the tracer: auto takes f32 unless it would show
     #[arg(long, default_value = "auto")]
     precision: PrecisionWord,
@@ -128,18 +130,15 @@ fn not_yet(_: &str) -> Result<Never, String> {
     Err("this option is not built yet; leave it out".to_owned())
 }
 
-/// How edges are smoothed: not at all, so far.
-#[derive(Clone, Copy, Debug)]
-enum Antialias {
-    None,
-}
-
-fn antialias(word: &str) -> Result<Antialias, String> {
-    match word {
-        "none" => Ok(Antialias::None),
-        "adaptive" => Err("adaptive is not built yet; use none".to_owned()),
-        grid if grid.starts_with("grid:") => Err(format!("{grid} is not built yet; use none")),
-        _ => Err("expected none".to_owned()),
+fn antialias(word: &str) -> Result<Sampling, String> {
+    let side = word.strip_prefix("grid:").map(str::parse::<u32>);
+    match (word, side) {
+        ("none", _) => Ok(Sampling::Centres),
+        ("adaptive", _) => Ok(Sampling::Adaptive),
+        (_, Some(Ok(side @ 1..=MAX_GRID))) => Ok(Sampling::Grid(side)),
+        _ => Err(format!(
+            "expected none, adaptive, or grid: and a number from 1 to {MAX_GRID}, such as grid:4"
+        )),
     }
 }
 
@@ -181,7 +180,6 @@ pub fn run(words: &RenderWords) -> ExitCode {
         Ok(threads) => threads,
         Err(error) => return fail(&error.to_string()),
     };
-    let Antialias::None = words.antialias;
     let picture = words.picture(&scene);
     let count = threads.count();
     let Some((image, costs)) = trace(scene, picture, threads, words.repeat.get()) else {
@@ -231,6 +229,7 @@ impl RenderWords {
                 triangle: self.triangle,
                 offset: self.offset,
             },
+            sampling: self.antialias,
             level: self.lanes,
             ..Picture::sized(width, height)
         }

@@ -6,9 +6,10 @@ use std::time::{Duration, Instant};
 
 pub use encode::{Format, FormatError};
 
+use crate::lanes::Real;
 use crate::plan::Picture;
 use crate::scene::Scene;
-use crate::trace::{Grid, Rays, Tracer, Watch};
+use crate::trace::{Pass, Pixel, Rays, Tracer, Watch};
 
 /// An 8-bit picture: RGBA, row by row from the top. Alpha is 255 where it was traced and says
 /// nothing else.
@@ -44,9 +45,9 @@ impl Image {
         }
     }
 
-    /// Traces the pixels of `grid`; `None` if `watch` said stop.
-    pub fn trace(&mut self, tracer: &Tracer, grid: Grid, watch: &Watch) -> Option<Rays> {
-        tracer.pass(&mut self.pixels, grid, watch, quantize)
+    /// Traces the pixels of `pass`; `None` if `watch` said stop.
+    pub fn trace(&mut self, tracer: &Tracer, pass: Pass, watch: &Watch) -> Option<Rays> {
+        tracer.pass(&mut self.pixels, pass, watch)
     }
 
     /// The picture that a pass with this step has filled: every `step`-th pixel of every
@@ -71,7 +72,7 @@ pub fn render(scene: &Scene, picture: &Picture, watch: &Watch) -> Option<(Image,
     let start = Instant::now();
     let tracer = Tracer::new(scene, picture);
     let mut image = Image::new(tracer.width(), tracer.height());
-    let rays = image.trace(&tracer, Grid::ALL, watch)?;
+    let rays = image.trace(&tracer, Pass::Whole, watch)?;
     Some((
         image,
         Cost {
@@ -82,11 +83,18 @@ pub fn render(scene: &Scene, picture: &Picture, watch: &Watch) -> Option<(Image,
     ))
 }
 
-/// Linear 0–1 to 0–255, rounded to nearest; there is no gamma in the model.
-fn quantize(color: [f64; 3]) -> [u8; 4] {
-    // The cast takes the whole part, NaN as 0, and what is beyond 0–255 as 0 or 255.
-    let [r, g, b] = color.map(|channel| (channel * 255.0 + 0.5) as u8);
-    [r, g, b, 255]
+impl Pixel for [u8; 4] {
+    #[inline(always)]
+    fn of<R: Real>(red: R, green: R, blue: R) -> Self {
+        // One number, so that the compiler can do many pixels in step.
+        (level(red) | level(green) << 8 | level(blue) << 16 | 0xFF << 24).to_le_bytes()
+    }
+}
+
+/// Linear 0–1 to 0–255, rounded to nearest; there is no gamma in the model. NaN is 0.
+#[inline(always)]
+fn level<R: Real>(channel: R) -> u32 {
+    (channel.max(R::ZERO).min(R::ONE) * R::from_f64(255.0)).nearest()
 }
 
 #[cfg(test)]
@@ -95,10 +103,10 @@ mod tests {
 
     #[test]
     fn colours_are_rounded_to_nearest() {
-        assert_eq!(quantize([0.0, 0.5, 1.0]), [0, 128, 255, 255]);
-        assert_eq!(quantize([-1.0, 2.0, 1.49 / 255.0]), [0, 255, 1, 255]);
+        assert_eq!(<[u8; 4]>::of(0.0, 0.5, 1.0), [0, 128, 255, 255]);
+        assert_eq!(<[u8; 4]>::of(-1.0, 2.0, 1.49 / 255.0), [0, 255, 1, 255]);
         assert_eq!(
-            quantize([1.51 / 255.0, f64::NAN, 254.49 / 255.0]),
+            <[u8; 4]>::of(1.51 / 255.0, f64::NAN, 254.49 / 255.0),
             [2, 0, 254, 255]
         );
     }

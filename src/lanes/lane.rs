@@ -8,6 +8,9 @@ use fearless_simd::{Select as _, Simd, SimdFloat, SimdMask};
 
 use super::Real;
 
+/// Most lanes that any processor has.
+pub const MOST_LANES: usize = 16;
+
 /// A row of real numbers of one type, computed in step.
 ///
 /// Every operation is the correctly rounded one of IEEE 754 in every lane, so a lane's result does
@@ -55,6 +58,11 @@ pub trait Lane:
     fn same(self, other: Self) -> Self::Mask;
     /// `yes` where the mask is set, `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+
+    /// The smallest number of the row, none of which is NaN.
+    fn least(self) -> Self::Real;
+    /// The largest number of the row, none of which is NaN.
+    fn greatest(self) -> Self::Real;
 
     /// The smaller number; `other` where either is NaN.
     #[inline(always)]
@@ -128,6 +136,14 @@ macro_rules! single_lane {
             #[inline(always)]
             fn same(self, other: Self) -> bool {
                 self == other
+            }
+            #[inline(always)]
+            fn least(self) -> Self {
+                self
+            }
+            #[inline(always)]
+            fn greatest(self) -> Self {
+                self
             }
             #[inline(always)]
             fn select(mask: bool, yes: Self, no: Self) -> Self {
@@ -258,6 +274,14 @@ where
     #[inline(always)]
     fn same(self, other: Self) -> Self::Mask {
         wide_mask(self.vector.simd_eq(other.vector))
+    }
+    #[inline(always)]
+    fn least(self) -> Self::Real {
+        self.vector.reduce_min()
+    }
+    #[inline(always)]
+    fn greatest(self) -> Self::Real {
+        self.vector.reduce_max()
     }
     #[inline(always)]
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {

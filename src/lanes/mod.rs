@@ -11,7 +11,7 @@ mod real;
 mod vec3;
 
 pub use highlight::Exponent;
-pub use lane::{Lane, Mask};
+pub use lane::{Lane, MOST_LANES, Mask};
 pub use level::{Level, Vectored, Work};
 pub use real::Real;
 pub use vec3::Vec3;

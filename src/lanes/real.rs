@@ -5,7 +5,7 @@ use super::Lane;
 /// A real number that kernels compute in: `f32` for speed, `f64` as the reference. By itself it is
 /// one lane.
 pub trait Real:
-    Lane<Real = Self, Mask = bool, Token = ()> + PartialOrd + Send + Sync + 'static
+    Lane<Real = Self, Mask = bool, Token = ()> + Default + PartialOrd + Send + Sync + 'static
 {
     /// Largest relative error of one rounding, `u` in error bounds (2⁻²⁴ for `f32`).
     const UNIT_ROUNDOFF: Self;
@@ -22,6 +22,8 @@ pub trait Real:
     fn from_f64(value: f64) -> Self;
     /// The same number in double precision (exact).
     fn to_f64(self) -> f64;
+    /// The nearest whole number, of two the even one; for 0 ≤ self < 2²².
+    fn nearest(self) -> u32;
 }
 
 macro_rules! real {
@@ -40,6 +42,13 @@ macro_rules! real {
             #[inline(always)]
             fn to_f64(self) -> f64 {
                 self.into()
+            }
+            #[inline(always)]
+            fn nearest(self) -> u32 {
+                // So far from zero, the last bit of the mantissa is worth one. A cast would not be
+                // done for many numbers in step.
+                (self + (1_u64 << (<$type>::MANTISSA_DIGITS - 1)) as $type).to_bits() as u32
+                    & 0x7F_FFFF
             }
         }
     };

@@ -7,12 +7,14 @@ mod pack;
 mod precision;
 mod screen;
 mod view;
+mod volumes;
 
 pub use method::{Methods, RayOffset, SphereMethod, TriangleMethod};
 pub use pack::{Light, Material, Plan, Plane, Sphere, Surface, Triangle};
 pub use precision::{Precision, needs_double};
 pub use screen::{Extent, Screen};
 pub use view::View;
+pub use volumes::{Ball, Balls, GROUP, Volumes};
 
 use crate::lanes::Level;
 use crate::scene::{Projection, Scene};
@@ -30,6 +32,8 @@ pub struct Picture {
     pub precision: Precision,
     /// The formulas of the kernel.
     pub methods: Methods,
+    /// How edges are smoothed.
+    pub sampling: Sampling,
     /// The lanes of the kernel; the widest that there are if `None`.
     pub level: Option<Level>,
 }
@@ -48,7 +52,22 @@ impl Picture {
             projection: None,
             precision: Precision::Auto,
             methods: Methods::default(),
+            sampling: Sampling::Centres,
             level: None,
         }
     }
+}
+
+/// Largest number of samples along a side of a pixel.
+pub const MAX_GRID: u32 = 256;
+
+/// Where in its pixels a picture is sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sampling {
+    /// Once, in the middle: edges are jagged.
+    Centres,
+    /// So many times so many (at most [`MAX_GRID`]), evenly.
+    Grid(u32),
+    /// At the corners, and inside where those differ.
+    Adaptive,
 }

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::{Methods, Picture, Screen, View};
+use super::volumes::LARGEST_LIST;
+use super::{Ball, Methods, Picture, Screen, View, Volumes};
 use crate::lanes::{Exponent, Real, Vec3};
 use crate::scene::{ColorPack, LightObj, Projection, Scene, Shape};
 
@@ -36,6 +37,8 @@ pub struct Plan<R> {
     /// Where each sphere and triangle is in the picture; `None` where formulas are in use whose
     /// failures must not be hidden.
     pub screen: Option<Screen>,
+    /// Balls around the spheres, then the triangles.
+    pub volumes: Volumes<R>,
 }
 
 /// A ball.
@@ -70,6 +73,8 @@ pub struct Triangle<R> {
     /// Whether it shares a corner with another triangle. Its neighbours then shadow it at the seam
     /// unless secondary rays start a few roundings off the surface.
     pub in_mesh: bool,
+    /// Its smallest altitude.
+    pub thickness: R,
     /// Index into [`Plan::materials`].
     pub material: u32,
 }
@@ -127,6 +132,7 @@ impl<R: Real> Plan<R> {
             methods: picture.methods,
             planes_cast: settled.is_none(),
             screen: None,
+            volumes: Volumes::default(),
         };
         plan.pack_objects(scene, centre);
         plan.casting_spheres = plan.spheres.len();
@@ -135,6 +141,7 @@ impl<R: Real> Plan<R> {
         }
         if picture.methods == Methods::default() {
             plan.screen = Some(Screen::new(scene, picture));
+            plan.volumes = plan.bound();
         }
         plan
     }
@@ -167,11 +174,25 @@ impl<R: Real> Plan<R> {
                         corners: [a, b, c].map(|corner| Vec3::from_f64(corner - centre)),
                         normal: Vec3::from_f64(normal),
                         in_mesh: [a, b, c].iter().any(|p| corner_users[&bits(*p)] > 1),
+                        thickness: R::from_f64(thickness([a, b, c])),
                         material,
                     });
                 }
             }
         }
+    }
+
+    fn bound(&self) -> Volumes<R> {
+        let spheres = self.spheres.iter().map(|sphere| Ball {
+            center: sphere.center.to_f64(),
+            radius: sphere.radius.to_f64(),
+        });
+        let triangles = self
+            .triangles
+            .iter()
+            .map(|triangle| Ball::around_triangle(triangle.corners.map(Vec3::to_f64)));
+        let balls: Vec<Ball> = spheres.chain(triangles).collect();
+        Volumes::new(&balls, balls.len() > LARGEST_LIST)
     }
 
     fn pack_markers(&mut self, scene: &Scene, centre: Vec3<f64>) {
@@ -281,6 +302,13 @@ fn pack_surface<R: Real>(pack: &ColorPack, total_intensity: f64) -> Option<Surfa
         exponent: Exponent::new(pack.phong_exponent),
         mirror: mirrors.then(|| linear(pack.specular * total_intensity)),
     })
+}
+
+/// Twice the area over the longest side.
+fn thickness([a, b, c]: [Vec3<f64>; 3]) -> f64 {
+    let sides = [b - a, c - b, a - c].map(Vec3::length);
+    let longest = sides[0].max(sides[1]).max(sides[2]);
+    (b - a).cross(c - a).length() / longest
 }
 
 /// 0–255 to 0–1.

@@ -48,6 +48,14 @@ impl<R: Real> View<R> {
         }
     }
 
+    /// How wide a pixel is at the eye, and how much wider at distance 1, at most.
+    pub fn footprint(&self) -> (R, R) {
+        match self.projection {
+            Projection::Orthographic => (self.u.length() * self.pixel, R::ZERO),
+            Projection::Perspective => (R::ZERO, self.pixel / self.forward.length()),
+        }
+    }
+
     /// Origin and unit direction of the rays through the places (x, y) of the picture, in pixels
     /// from its left and upper edge. The centre of the first pixel is (½, ½).
     #[inline(always)]

@@ -1,46 +1,54 @@
-//! Leaving primitives out before a ray is touched: those beside a tile, and those that cannot cast
-//! a shadow into it. Whatever is left out would have been missed by every ray.
+//! Leaving primitives out before a ray is touched: those beside a tile, those that its mirrors
+//! cannot show, and those that cannot cast a shadow into it.
 
 use std::ops::Range;
 
-use super::hit::Among;
+use super::beam::{Beam, is_hidden};
+use super::sampling::Tile;
 use crate::lanes::{Lane, Real, Vec3};
-use crate::plan::{Extent, Plan, Screen};
+use crate::plan::{Ball, Extent, Plan, Screen};
 
-/// Share by which balls are taken larger than computed, for the rounding of the kernel.
-const CAUTION: f64 = 1e-3;
-
-/// Spheres and triangles that are worth testing.
+/// The primitives that are worth testing, by their places in the plan's lists.
 #[derive(Clone, Debug, Default)]
-pub struct Casters {
-    spheres: Vec<u32>,
-    triangles: Vec<u32>,
+pub struct Lists {
+    /// Places in [`Plan::spheres`].
+    pub spheres: Vec<u32>,
+    /// Places in [`Plan::planes`].
+    pub planes: Vec<u32>,
+    /// Places in [`Plan::triangles`].
+    pub triangles: Vec<u32>,
 }
 
-impl Casters {
-    /// Everything that casts shadows.
+/// Room to gather lists in, used again for every beam.
+#[derive(Debug, Default)]
+pub struct Room {
+    stack: Vec<(usize, usize)>,
+    met: Vec<u32>,
+}
+
+impl Lists {
+    /// Everything there is, markers included.
     pub fn all<R: Real>(plan: &Plan<R>) -> Self {
         Self {
-            spheres: count(plan.casting_spheres),
-            triangles: count(plan.triangles.len()),
-        }
-    }
-
-    /// Everything there is, markers included.
-    pub fn all_seen<R: Real>(plan: &Plan<R>) -> Self {
-        Self {
             spheres: count(plan.spheres.len()),
+            planes: count(plan.planes.len()),
             triangles: count(plan.triangles.len()),
         }
     }
 
-    /// The lists.
-    #[inline(always)]
-    pub fn among(&self) -> Among<'_> {
-        Among {
-            spheres: &self.spheres,
-            triangles: &self.triangles,
+    /// Everything that casts shadows.
+    pub fn all_casting<R: Real>(plan: &Plan<R>) -> Self {
+        let mut all = Self::all(plan);
+        all.spheres.truncate(plan.casting_spheres);
+        if !plan.planes_cast {
+            all.planes.clear();
         }
+        all
+    }
+
+    /// Whether there is nothing to test.
+    pub fn is_empty(&self) -> bool {
+        self.spheres.is_empty() && self.planes.is_empty() && self.triangles.is_empty()
     }
 
     /// Becomes those of `from` that a tile of these columns (or rows) can show.
@@ -64,24 +72,109 @@ impl Casters {
         keep(&mut self.triangles, &from.triangles, |index| {
             meets(&screen.triangles[index])
         });
+        self.planes.clone_from(&from.planes);
     }
 
-    /// Becomes those of `from` that can stand between a light and some point of a ball.
-    pub fn keep_between<R: Real>(
-        &mut self,
-        from: &Self,
-        plan: &Plan<R>,
-        light: Vec3<R>,
-        ball: &Ball,
-    ) {
-        let cone = Cone::new(light.to_f64(), ball);
-        keep(&mut self.spheres, &from.spheres, |index| {
-            let sphere = &plan.spheres[index];
-            cone.meets(sphere.center.to_f64(), sphere.radius.to_f64())
+    /// Leaves out the planes that the rays of a tile pass by or leave behind.
+    ///
+    /// Height over the plane and speed towards it change along a row or column by equal steps, so
+    /// that their signs at the corners are all that there are.
+    pub fn drop_unseen_planes<R: Real>(&mut self, plan: &Plan<R>, tile: &Tile) {
+        let edge = |index: usize| R::from_f64(index as f64);
+        let (left, right) = (edge(tile.columns.start), edge(tile.columns.end));
+        let (top, bottom) = (edge(tile.rows.start), edge(tile.rows.end));
+        let corners = [(left, top), (right, top), (left, bottom), (right, bottom)];
+        let corners = corners.map(|(x, y)| plan.view.rays((), x, y));
+        let little = R::from_f64(1e-5);
+        self.planes.retain(|&index| {
+            let plane = &plan.planes[index as usize];
+            corners.iter().any(|(origin, direction)| {
+                let height = plane.offset - plane.normal.dot(*origin);
+                let speed = plane.normal.dot(*direction);
+                let is_near = height.abs() <= little * (origin.max_abs() + plane.offset.abs());
+                is_near || speed.abs() <= little || (height > R::ZERO) == (speed > R::ZERO)
+            })
         });
-        keep(&mut self.triangles, &from.triangles, |index| {
-            let ball = Ball::around(plan.triangles[index].corners.map(Vec3::to_f64));
-            cone.meets(ball.center, ball.radius)
+    }
+
+    /// Becomes what rays of the beam can meet, markers included, but for a plane that all of them
+    /// start on.
+    #[inline(always)]
+    pub fn keep_met<L: Lane>(
+        &mut self,
+        token: L::Token,
+        plan: &Plan<L::Real>,
+        beam: &Beam<L::Real>,
+        start_plane: Option<usize>,
+        room: &mut Room,
+    ) {
+        beam.gather::<L>(token, &plan.volumes, &mut room.stack, &mut room.met);
+        self.sort_out(plan, &room.met, plan.spheres.len());
+        self.planes.clear();
+        for (index, plane) in plan.planes.iter().enumerate() {
+            if start_plane != Some(index) && beam.crosses(plane.normal, plane.offset) {
+                self.planes.push(index as u32);
+            }
+        }
+    }
+
+    /// Takes bounded primitives apart by kind, leaving out spheres from `spheres` on.
+    fn sort_out<R: Real>(&mut self, plan: &Plan<R>, bounded: &[u32], spheres: usize) {
+        self.spheres.clear();
+        self.triangles.clear();
+        for &member in bounded {
+            let index = member as usize;
+            if index < spheres {
+                self.spheres.push(member);
+            } else if index >= plan.spheres.len() {
+                self.triangles.push((index - plan.spheres.len()) as u32);
+            }
+        }
+    }
+}
+
+/// What can stand between a light and the hits of a tile.
+#[derive(Clone, Debug, Default)]
+pub struct Shadows {
+    /// What may block the light for some of them.
+    pub casters: Lists,
+    /// Whether one sphere blocks it for all of them.
+    pub is_umbra: bool,
+}
+
+impl Shadows {
+    /// Becomes what can stand between a light and some point of a ball, `footprint` around it
+    /// included.
+    #[inline(always)]
+    pub fn keep_between<L: Lane>(
+        &mut self,
+        token: L::Token,
+        plan: &Plan<L::Real>,
+        light: Vec3<L::Real>,
+        ball: &Ball,
+        footprint: L::Real,
+        room: &mut Room,
+    ) {
+        let from = light.to_f64();
+        let Some(beam) = Beam::to_ball(from, ball) else {
+            self.casters = Lists::all_casting(plan);
+            self.is_umbra = false;
+            return;
+        };
+        let beam = beam.widened(footprint, L::Real::ZERO);
+        beam.gather::<L>(token, &plan.volumes, &mut room.stack, &mut room.met);
+        self.casters.sort_out(plan, &room.met, plan.casting_spheres);
+        self.casters.planes.clear();
+        if plan.planes_cast {
+            self.casters.planes.extend(0..plan.planes.len() as u32);
+        }
+        self.is_umbra = self.casters.spheres.iter().any(|&index| {
+            let sphere = &plan.spheres[index as usize];
+            let sphere = Ball {
+                center: sphere.center.to_f64(),
+                radius: sphere.radius.to_f64(),
+            };
+            is_hidden(from, &sphere, ball)
         });
     }
 }
@@ -106,145 +199,4 @@ fn keep(list: &mut Vec<u32>, from: &[u32], is_wanted: impl Fn(usize) -> bool) {
             .copied()
             .filter(|&index| is_wanted(index as usize)),
     );
-}
-
-/// A ball around points.
-#[derive(Clone, Copy, Debug)]
-pub struct Ball {
-    center: Vec3<f64>,
-    radius: f64,
-}
-
-impl Ball {
-    fn around(points: [Vec3<f64>; 3]) -> Self {
-        let center = (points[0] + points[1] + points[2]) * (1.0 / 3.0);
-        let radius = points.map(|point| (point - center).length());
-        Self {
-            center,
-            radius: radius[0].max(radius[1]).max(radius[2]),
-        }
-    }
-}
-
-/// The box around the hits of a tile, lane by lane.
-#[derive(Clone, Copy, Debug)]
-pub struct Bounds<L> {
-    low: Vec3<L>,
-    high: Vec3<L>,
-}
-
-impl<L: Lane> Bounds<L> {
-    /// Around nothing.
-    #[inline(always)]
-    pub fn new(token: L::Token) -> Self {
-        let infinity = L::splat(token, L::Real::INFINITY);
-        Self {
-            low: Vec3::splat(infinity),
-            high: Vec3::splat(-infinity),
-        }
-    }
-
-    /// Takes the points in, where the mask is set.
-    #[inline(always)]
-    pub fn add(&mut self, mask: L::Mask, point: Vec3<L>) {
-        self.low = Vec3::select(mask, self.low.min(point), self.low);
-        self.high = Vec3::select(mask, self.high.max(point), self.high);
-    }
-
-    /// The ball around the box of all lanes; `None` if no point was taken in.
-    #[inline(always)]
-    pub fn ball(&self) -> Option<Ball> {
-        let (mut low, mut high) = (self.low.lane(0).to_f64(), self.high.lane(0).to_f64());
-        for lane in 1..L::WIDTH {
-            low = low.min(self.low.lane(lane).to_f64());
-            high = high.max(self.high.lane(lane).to_f64());
-        }
-        let radius = (high - low).length() * 0.5;
-        radius.is_finite().then(|| Ball {
-            center: (low + high) * 0.5,
-            radius,
-        })
-    }
-}
-
-/// All lines from a point to the points of a ball.
-struct Cone {
-    apex: Vec3<f64>,
-    axis: Vec3<f64>,
-    length: f64,
-    radius: f64,
-    /// Height over the axis to distance along it of the nearest line: r / √(D² - r²); infinite
-    /// inside the ball.
-    slope: f64,
-}
-
-impl Cone {
-    fn new(apex: Vec3<f64>, ball: &Ball) -> Self {
-        let towards = ball.center - apex;
-        let length = towards.length();
-        let radius = ball.radius * (1.0 + CAUTION) + length * CAUTION * CAUTION;
-        let square = length * length - radius * radius;
-        let slope = if square > 0.0 {
-            radius / square.sqrt()
-        } else {
-            f64::INFINITY
-        };
-        Self {
-            apex,
-            axis: towards * (1.0 / length),
-            length,
-            radius,
-            slope,
-        }
-    }
-
-    /// Whether a ball comes between: whether its distance from the hull of the apex and the ball,
-    /// min over u in [0, 1] of |q - u·A| - u·r, is at most its radius.
-    fn meets(&self, center: Vec3<f64>, radius: f64) -> bool {
-        if self.slope.is_infinite() {
-            return true;
-        }
-        let q = center - self.apex;
-        let along = q.dot(self.axis);
-        let height = (q.dot(q) - along * along).max(0.0).sqrt();
-        let u = ((along + self.slope * height) / self.length).clamp(0.0, 1.0);
-        let beyond = along - u * self.length;
-        let gap = (beyond * beyond + height * height).sqrt() - u * self.radius;
-        gap <= radius * (1.0 + CAUTION)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn vector(scale: f64) -> impl Strategy<Value = Vec3<f64>> {
-        prop::array::uniform3(-scale..scale).prop_map(Vec3::from)
-    }
-
-    proptest! {
-        #[test]
-        fn what_blocks_a_line_into_the_ball_is_kept(light in vector(10.0), center in vector(10.0), radius in 0.01..5.0_f64,
-                                                    inside in vector(1.0), at in 0.0..1.0_f64, off in vector(1.0), size in 0.01..3.0_f64) {
-            let ball = Ball { center, radius };
-            let target = center + inside * (radius / inside.length().max(1.0));
-            let on_line = light + (target - light) * at;
-            let blocker = on_line + off * (size * 0.999 / off.length().max(1.0));
-            prop_assert!(Cone::new(light, &ball).meets(blocker, size));
-        }
-    }
-
-    #[test]
-    fn what_is_far_aside_is_left_out() {
-        let ball = Ball {
-            center: Vec3::new(10.0, 0.0, 0.0),
-            radius: 1.0,
-        };
-        let cone = Cone::new(Vec3::new(0.0, 0.0, 0.0), &ball);
-        assert!(!cone.meets(Vec3::new(5.0, 3.0, 0.0), 1.0));
-        assert!(!cone.meets(Vec3::new(-3.0, 0.0, 0.0), 1.0));
-        assert!(!cone.meets(Vec3::new(14.0, 0.0, 0.0), 1.0));
-        assert!(cone.meets(Vec3::new(5.0, 1.4, 0.0), 1.0));
-    }
 }

@@ -1,26 +1,50 @@
 //! The nearest hit among some primitives, and whether anything stands in a ray's way.
 
+use super::cull::Lists;
 use super::triangle::Shear;
 use super::{Ray, plane, sphere, triangle};
 use crate::lanes::{Lane, Mask as _, Real, Vec3};
-use crate::plan::{Plan, Plane, RayOffset};
-
-/// The primitives that are worth testing, by their places in the plan's lists. Planes always are.
-#[derive(Clone, Copy, Debug)]
-pub struct Among<'a> {
-    /// Places in [`Plan::spheres`].
-    pub spheres: &'a [u32],
-    /// Places in [`Plan::triangles`].
-    pub triangles: &'a [u32],
-}
+use crate::plan::{Plan, RayOffset};
 
 /// Rays and the primitives that they start on, which they must not meet where they start.
 #[derive(Clone, Copy, Debug)]
 pub struct Paths<L> {
     /// The rays.
     pub rays: Ray<L>,
-    /// Numbers of the primitives, [`NOTHING`] for none; `None` if that is so for all.
-    pub start: Option<L>,
+    /// What they start on.
+    pub start: Start<L>,
+}
+
+/// The primitives that rays start on.
+#[derive(Clone, Copy, Debug)]
+pub enum Start<L> {
+    /// None.
+    Nowhere,
+    /// The one of this number, all of them.
+    On(usize),
+    /// Those of these numbers, [`NOTHING`] for none.
+    Each(L),
+}
+
+impl<L: Lane> Start<L> {
+    /// This where the mask is set, `other` elsewhere.
+    #[inline(always)]
+    pub fn over(self, token: L::Token, mask: L::Mask, other: Self) -> Self {
+        match (self, other) {
+            (Self::Nowhere, Self::Nowhere) => self,
+            (Self::On(this), Self::On(other)) if this == other => self,
+            _ => Self::Each(L::select(mask, self.numbers(token), other.numbers(token))),
+        }
+    }
+
+    #[inline(always)]
+    fn numbers(self, token: L::Token) -> L {
+        match self {
+            Self::Nowhere => L::splat(token, L::Real::from_f64(NOTHING)),
+            Self::On(number) => L::splat(token, real(number)),
+            Self::Each(numbers) => numbers,
+        }
+    }
 }
 
 /// The nearest primitives.
@@ -64,7 +88,7 @@ fn real<R: Real>(number: usize) -> R {
 pub fn nearest<L: Lane>(
     token: L::Token,
     plan: &Plan<L::Real>,
-    among: Among,
+    among: &Lists,
     paths: &Paths<L>,
 ) -> Nearest<L> {
     let numbers = Numbers::of(plan);
@@ -74,35 +98,31 @@ pub fn nearest<L: Lane>(
         t: infinity,
         number: nothing,
     };
-    for &index in among.spheres {
-        let number = L::splat(token, real(index as usize));
-        let t = sphere_distance(token, plan, paths, index as usize, number);
-        offer(&mut best, t, number);
+    for &index in &among.spheres {
+        let t = sphere_distance(token, plan, paths, index as usize);
+        offer(token, &mut best, t, index as usize);
     }
-    for (index, plane) in plan.planes.iter().enumerate() {
-        let number = L::splat(token, real(numbers.planes + index));
-        offer(
-            &mut best,
-            plane_distance(token, paths, plane, number),
-            number,
-        );
+    for &index in &among.planes {
+        let number = numbers.planes + index as usize;
+        let t = plane_distance(token, plan, paths, index as usize, number);
+        offer(token, &mut best, t, number);
     }
     if !among.triangles.is_empty() {
         let shear = Shear::new(token, paths.rays.direction);
-        for &index in among.triangles {
-            let number = L::splat(token, real(numbers.triangles + index as usize));
+        for &index in &among.triangles {
+            let number = numbers.triangles + index as usize;
             let t = triangle_distance(token, plan, paths, &shear, index as usize, number);
-            offer(&mut best, t, number);
+            offer(token, &mut best, t, number);
         }
     }
     best
 }
 
 #[inline(always)]
-fn offer<L: Lane>(best: &mut Nearest<L>, t: L, number: L) {
+fn offer<L: Lane>(token: L::Token, best: &mut Nearest<L>, t: L, number: usize) {
     let closer = t.less(best.t);
     best.t = L::select(closer, t, best.t);
-    best.number = L::select(closer, number, best.number);
+    best.number = L::select(closer, L::splat(token, real(number)), best.number);
 }
 
 /// Where a primitive that casts shadows meets the paths before `distance`; looked for only where
@@ -111,32 +131,29 @@ fn offer<L: Lane>(best: &mut Nearest<L>, t: L, number: L) {
 pub fn blocked<L: Lane>(
     token: L::Token,
     plan: &Plan<L::Real>,
-    among: Among,
+    among: &Lists,
     paths: &Paths<L>,
     distance: L,
     wanted: L::Mask,
 ) -> L::Mask {
     let numbers = Numbers::of(plan);
     let mut free = wanted;
-    for &index in among.spheres {
-        let number = L::splat(token, real(index as usize));
-        let t = sphere_distance(token, plan, paths, index as usize, number);
+    for &index in &among.spheres {
+        let t = sphere_distance(token, plan, paths, index as usize);
         free = free & !t.less(distance);
         if !free.any() {
             return wanted;
         }
     }
-    if plan.planes_cast {
-        for (index, plane) in plan.planes.iter().enumerate() {
-            let number = L::splat(token, real(numbers.planes + index));
-            let t = plane_distance(token, paths, plane, number);
-            free = free & !t.less(distance);
-        }
+    for &index in &among.planes {
+        let number = numbers.planes + index as usize;
+        let t = plane_distance(token, plan, paths, index as usize, number);
+        free = free & !t.less(distance);
     }
     if !among.triangles.is_empty() {
         let shear = Shear::new(token, paths.rays.direction);
-        for &index in among.triangles {
-            let number = L::splat(token, real(numbers.triangles + index as usize));
+        for &index in &among.triangles {
+            let number = numbers.triangles + index as usize;
             let t = triangle_distance(token, plan, paths, &shear, index as usize, number);
             free = free & !t.less(distance);
             if !free.any() {
@@ -153,14 +170,16 @@ fn sphere_distance<L: Lane>(
     plan: &Plan<L::Real>,
     paths: &Paths<L>,
     index: usize,
-    number: L,
 ) -> L {
     let sphere = &plan.spheres[index];
-    let t = sphere::intersect(token, plan.methods.sphere, &paths.rays, sphere);
     match paths.start {
-        None => t,
-        Some(start) => {
-            let own = start.same(number);
+        Start::On(start) if start == index => sphere::leave(token, &paths.rays, sphere),
+        Start::Nowhere | Start::On(_) => {
+            sphere::intersect(token, plan.methods.sphere, &paths.rays, sphere)
+        }
+        Start::Each(start) => {
+            let t = sphere::intersect(token, plan.methods.sphere, &paths.rays, sphere);
+            let own = start.same(L::splat(token, real(index)));
             if own.any() {
                 L::select(own, sphere::leave(token, &paths.rays, sphere), t)
             } else {
@@ -173,11 +192,12 @@ fn sphere_distance<L: Lane>(
 #[inline(always)]
 fn plane_distance<L: Lane>(
     token: L::Token,
+    plan: &Plan<L::Real>,
     paths: &Paths<L>,
-    plane: &Plane<L::Real>,
-    number: L,
+    index: usize,
+    number: usize,
 ) -> L {
-    let t = plane::intersect(token, &paths.rays, plane);
+    let t = plane::intersect(token, &paths.rays, &plan.planes[index]);
     without_start(token, paths, number, t)
 }
 
@@ -188,7 +208,7 @@ fn triangle_distance<L: Lane>(
     paths: &Paths<L>,
     shear: &Shear<L>,
     index: usize,
-    number: L,
+    number: usize,
 ) -> L {
     let triangle = &plan.triangles[index];
     let t = triangle::intersect(token, plan.methods.triangle, &paths.rays, shear, triangle);
@@ -197,16 +217,18 @@ fn triangle_distance<L: Lane>(
 
 /// A flat primitive is never met again by a ray that starts on it.
 #[inline(always)]
-fn without_start<L: Lane>(token: L::Token, paths: &Paths<L>, number: L, t: L) -> L {
+fn without_start<L: Lane>(token: L::Token, paths: &Paths<L>, number: usize, t: L) -> L {
+    let infinity = L::splat(token, L::Real::INFINITY);
     match paths.start {
-        None => t,
-        Some(start) => L::select(start.same(number), L::splat(token, L::Real::INFINITY), t),
+        Start::On(start) if start == number => infinity,
+        Start::Nowhere | Start::On(_) => t,
+        Start::Each(start) => L::select(start.same(L::splat(token, real(number))), infinity, t),
     }
 }
 
 /// Hits on one primitive, refined.
 #[derive(Clone, Copy, Debug)]
-pub struct Hit<L> {
+pub struct Hit<L: Lane> {
     /// On the surface.
     pub point: Vec3<L>,
     /// Unit normal of the surface, on either side.
@@ -214,7 +236,9 @@ pub struct Hit<L> {
     /// Index into [`Plan::materials`].
     pub material: u32,
     /// Number of the primitive.
-    pub number: L,
+    pub number: usize,
+    /// Radius of curvature of the surface; infinity if it is flat.
+    pub radius: L::Real,
     /// How far the point may be off along the normal: 0, or a few roundings where it matters.
     pub slack: Option<L>,
 }
@@ -229,8 +253,8 @@ pub fn refine<L: Lane>(
     number: L::Real,
 ) -> Hit<L> {
     let numbers = Numbers::of(plan);
-    let index = number.to_f64() as usize;
-    let number = L::splat(token, number);
+    let number = number.to_f64() as usize;
+    let index = number;
     if index < numbers.planes {
         let sphere = &plan.spheres[index];
         let (point, normal) = sphere::refine(token, rays, sphere, t);
@@ -239,6 +263,7 @@ pub fn refine<L: Lane>(
             normal,
             material: sphere.material,
             number,
+            radius: sphere.radius,
             slack: None,
         };
     }
@@ -251,6 +276,7 @@ pub fn refine<L: Lane>(
             normal,
             material: plane.material,
             number,
+            radius: L::Real::INFINITY,
             slack: None,
         };
     }
@@ -270,6 +296,7 @@ pub fn refine<L: Lane>(
         normal,
         material: triangle.material,
         number,
+        radius: L::Real::INFINITY,
         slack,
     }
 }
@@ -279,13 +306,13 @@ impl<L: Lane> Hit<L> {
     #[inline(always)]
     pub fn leave(&self, token: L::Token, offset: RayOffset, direction: Vec3<L>) -> Paths<L> {
         let (origin, start) = match (offset, self.slack) {
-            (RayOffset::Robust, None) => (self.point, Some(self.number)),
+            (RayOffset::Robust, None) => (self.point, Start::On(self.number)),
             (RayOffset::Robust, Some(slack)) => {
-                (self.point + self.normal * slack, Some(self.number))
+                (self.point + self.normal * slack, Start::On(self.number))
             }
             (RayOffset::Fixed(distance), _) => {
                 let distance = L::splat(token, L::Real::from_f64(distance));
-                (self.point + direction * distance, None)
+                (self.point + direction * distance, Start::Nowhere)
             }
         };
         Paths {

@@ -3,11 +3,16 @@
 //!
 //! A new primitive is a file here, a list in the plan and its lines in `hit.rs`.
 
+mod beam;
 mod cull;
 mod hit;
 mod plane;
+mod samples;
+mod sampling;
 mod shade;
 mod sphere;
+mod stage;
+mod thin;
 mod threads;
 mod tiles;
 mod triangle;
@@ -15,7 +20,7 @@ mod triangle;
 use std::sync::atomic::{AtomicBool, AtomicU64};
 
 pub use threads::{PoolError, Threads};
-pub use tiles::{Grid, TILE, Tracer};
+pub use tiles::{Grid, Pass, Pixel, TILE, Tracer};
 
 use crate::lanes::{Lane, Vec3};
 

@@ -62,6 +62,16 @@ pub fn leave<L: Lane>(token: L::Token, ray: &Ray<L>, sphere: &Sphere<L::Real>) -
     )
 }
 
+/// How far along its line a ray is nearest to the sphere's centre, and how far from the surface
+/// that is; below zero inside.
+#[inline(always)]
+pub fn beside<L: Lane>(token: L::Token, ray: &Ray<L>, sphere: &Sphere<L::Real>) -> (L, L) {
+    let x = ray.origin - Vec3::broadcast(token, sphere.center);
+    let along = -ray.direction.dot(x);
+    let distance = (x + ray.direction * along).length();
+    (along, distance - L::splat(token, sphere.radius))
+}
+
 /// The hit at `t`, drawn onto the surface, p = c + (p - c)·R/|p - c|: point and outward unit
 /// normal. The point is then off by a few roundings of R, however far the ray has come.
 #[inline(always)]
@@ -72,9 +82,15 @@ pub fn refine<L: Lane>(
     t: L,
 ) -> (Vec3<L>, Vec3<L>) {
     let center = Vec3::broadcast(token, sphere.center);
+    let radius = L::splat(token, sphere.radius);
     let outwards = ray.at(t) - center;
-    let normal = outwards * (L::splat(token, L::Real::ONE) / outwards.length());
-    (center + normal * L::splat(token, sphere.radius), normal)
+    // 1/|p - c| by one step of Newton's method from 1/R, which |p - c| all but is.
+    let per_radius = L::splat(token, L::Real::ONE / sphere.radius);
+    let near = outwards * per_radius;
+    let correction = L::splat(token, L::Real::from_f64(1.5))
+        - near.dot(near) * L::splat(token, L::Real::from_f64(0.5));
+    let normal = near * correction;
+    (center + normal * radius, normal)
 }
 
 #[cfg(test)]

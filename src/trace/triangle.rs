@@ -135,6 +135,43 @@ fn watertight<L: Lane>(
     L::select(inside & zero.less(t), t, infinity)
 }
 
+/// How far along a ray the nearest and the farthest corner are, and how far from the ray the
+/// triangle is at least; zero inside.
+#[inline(always)]
+pub fn beside<L: Lane>(
+    token: L::Token,
+    ray: &Ray<L>,
+    shear: &Shear<L>,
+    triangle: &Triangle<L::Real>,
+) -> (L, L, L) {
+    let [a, b, c] = triangle.corners;
+    let a = shear.apply(Vec3::broadcast(token, a) - ray.origin);
+    let b = shear.apply(Vec3::broadcast(token, b) - ray.origin);
+    let c = shear.apply(Vec3::broadcast(token, c) - ray.origin);
+    let (ab, bc, ca) = (left_of(a, b), left_of(b, c), left_of(c, a));
+    let zero = L::splat(token, L::Real::ZERO);
+    let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let (least, greatest) = (ab.min(bc).min(ca), ab.max(bc).max(ca));
+    // The corners may be in either order.
+    let either = L::select(zero.less(area), -least, greatest).max(zero);
+    // The shear lengthens what lies across the ray by up to √3.
+    let shortest = L::splat(token, L::Real::from_f64(1.0 / 3.0_f64.sqrt()));
+    let (near, far) = (a[2] * shear.z, b[2] * shear.z);
+    let last = c[2] * shear.z;
+    (
+        near.min(far).min(last),
+        near.max(far).max(last),
+        either * shortest,
+    )
+}
+
+/// Distance of the origin from the line through two points of the plane, above zero on its left.
+#[inline(always)]
+fn left_of<L: Lane>(from: [L; 3], to: [L; 3]) -> L {
+    let (x, y) = (to[0] - from[0], to[1] - from[1]);
+    (from[0] * y - from[1] * x) / (x * x + y * y).sqrt()
+}
+
 /// The formula of Glint's ancestor: where the ray meets the plane, then, edge by edge in clockwise
 /// order, whether the cross product with the edge points away from the normal. Every rounding of
 /// the hit moves it across the edge differently for each neighbour.
@@ -184,6 +221,7 @@ mod tests {
             corners: [a, b, c],
             normal: Vec3::from_f64(normal),
             in_mesh: true,
+            thickness: 1.0,
             material: 0,
         }
     }

@@ -9,7 +9,7 @@ use super::errand::panic_text;
 use super::{Event, Frame, LiveJob, Pace, Running, RunningJob, Shared, StillJob, lock};
 use crate::export::save_image;
 use crate::image::{Cost, Image, render};
-use crate::trace::{Grid, Rays, Threads, Tracer, Watch};
+use crate::trace::{Grid, Pass, Rays, Threads, Tracer, Watch};
 
 enum Job {
     Live(LiveJob),
@@ -116,7 +116,7 @@ fn live(shared: &Shared, job: &LiveJob, watch: &Watch, budget: &mut Budget) {
         } else {
             watch
         };
-        let Some(new) = image.trace(&tracer, grid, watch) else {
+        let Some(new) = image.trace(&tracer, Pass::Centres(grid), watch) else {
             return;
         };
         rays += new;

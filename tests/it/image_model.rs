@@ -6,7 +6,7 @@ use glint::image::{Image, render};
 use glint::lanes::{Level, Vec3};
 use glint::plan::{Methods, Picture, Precision, RayOffset, SphereMethod, TriangleMethod};
 use glint::scene::{Projection, Scene, Shape};
-use glint::trace::{Grid, Rays, Threads, Tracer, Watch};
+use glint::trace::{Grid, Pass, Rays, Threads, Tracer, Watch};
 
 use crate::random;
 
@@ -76,7 +76,11 @@ fn nested_passes_end_in_the_same_bytes_with_no_ray_more() {
     let mut traced = Rays::default();
     let mut coarser = None;
     for step in [16, 8, 4, 2, 1] {
-        let pass = nested.trace(&tracer, Grid { step, coarser }, &Watch::default());
+        let pass = nested.trace(
+            &tracer,
+            Pass::Centres(Grid { step, coarser }),
+            &Watch::default(),
+        );
         traced += pass.expect("not stopped");
         coarser = Some(step);
     }

@@ -1,0 +1,200 @@
+//! Balls around what a ray can meet, laid out so that several are tested in step.
+//!
+//! Few primitives are one flat list of balls. Many are sorted along a curve through space and
+//! bundled, [`GROUP`] by [`GROUP`], under larger balls, those again, and so on.
+
+use crate::lanes::{Real, Vec3};
+
+/// How many balls are tested together: as many as the widest processor has lanes.
+pub const GROUP: usize = 16;
+
+/// Above so many, testing the bundles costs less than testing every primitive's own ball.
+pub const LARGEST_LIST: usize = 128;
+
+/// A ball in double precision.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball {
+    /// Its middle.
+    pub center: Vec3<f64>,
+    /// ≥ 0.
+    pub radius: f64,
+}
+
+/// Balls, component by component, filled up to whole groups with balls that nothing meets.
+#[derive(Clone, Debug, Default)]
+pub struct Balls<R> {
+    /// Of the centres.
+    pub x: Vec<R>,
+    /// Of the centres.
+    pub y: Vec<R>,
+    /// Of the centres.
+    pub z: Vec<R>,
+    /// Minus infinity in a ball that nothing meets.
+    pub radius: Vec<R>,
+}
+
+/// The balls around bounded primitives, which are numbered from zero: spheres, then triangles.
+#[derive(Clone, Debug, Default)]
+pub struct Volumes<R> {
+    /// The primitives' own balls first; then, level by level, balls around [`GROUP`] of the level
+    /// before, up to a single group.
+    pub levels: Vec<Balls<R>>,
+    /// The primitive in each ball of the first level.
+    pub members: Vec<u32>,
+}
+
+impl<R: Real> Volumes<R> {
+    /// Bundles the balls if `bundled`; else lists them in their order.
+    pub fn new(balls: &[Ball], bundled: bool) -> Self {
+        let mut members: Vec<u32> = (0..balls.len() as u32).collect();
+        if bundled {
+            let keys = curve(balls);
+            members.sort_by_key(|&member| keys[member as usize]);
+        }
+        let mut level: Vec<Ball> = members.iter().map(|&m| balls[m as usize]).collect();
+        let mut levels = vec![Balls::of(&level)];
+        while bundled && level.len() > GROUP {
+            level = level.chunks(GROUP).map(Ball::around_balls).collect();
+            levels.push(Balls::of(&level));
+        }
+        Self { levels, members }
+    }
+
+    /// Whether there are bundles.
+    pub fn is_bundled(&self) -> bool {
+        self.levels.len() > 1
+    }
+}
+
+impl<R: Real> Balls<R> {
+    fn of(balls: &[Ball]) -> Self {
+        let full = balls.len().next_multiple_of(GROUP);
+        let column = |part: fn(&Ball) -> f64, filler: f64| {
+            let mut column: Vec<R> = balls.iter().map(|ball| R::from_f64(part(ball))).collect();
+            column.resize(full, R::from_f64(filler));
+            column
+        };
+        Self {
+            x: column(|ball| ball.center.x, 0.0),
+            y: column(|ball| ball.center.y, 0.0),
+            z: column(|ball| ball.center.z, 0.0),
+            radius: column(|ball| ball.radius, f64::NEG_INFINITY),
+        }
+    }
+}
+
+impl Ball {
+    /// The smallest ball around a triangle.
+    pub fn around_triangle([a, b, c]: [Vec3<f64>; 3]) -> Self {
+        let squares =
+            [(a, b, c), (b, c, a), (c, a, b)].map(|(p, q, r)| ((q - p).dot(q - p), p, q, r));
+        let longest = squares.iter().fold(
+            squares[0],
+            |best, &side| if side.0 > best.0 { side } else { best },
+        );
+        let (square, p, q, r) = longest;
+        let middle = (p + q) * 0.5;
+        if (r - middle).dot(r - middle) * 4.0 <= square {
+            return Self {
+                center: middle,
+                radius: square.sqrt() * 0.5,
+            };
+        }
+        // Acute: the circle through the corners. From p, with sides u and v and n = u × v, its
+        // centre is (|v|²(n × u) + |u|²(v × n)) / 2|n|².
+        let (u, v) = (q - p, r - p);
+        let n = u.cross(v);
+        let from_p = (n.cross(u) * v.dot(v) + v.cross(n) * u.dot(u)) * (0.5 / n.dot(n));
+        Self {
+            center: p + from_p,
+            radius: from_p.length(),
+        }
+    }
+
+    /// A ball around balls, of which there is at least one.
+    fn around_balls(balls: &[Self]) -> Self {
+        let (mut low, mut high) = (Vec3::splat(f64::INFINITY), Vec3::splat(f64::NEG_INFINITY));
+        for ball in balls {
+            let reach = Vec3::splat(ball.radius);
+            low = low.min(ball.center - reach);
+            high = high.max(ball.center + reach);
+        }
+        let center = low * 0.5 + high * 0.5;
+        let radius = balls
+            .iter()
+            .map(|ball| (ball.center - center).length() + ball.radius);
+        Self {
+            center,
+            radius: radius.fold(0.0, f64::max),
+        }
+    }
+}
+
+/// The place of each ball's centre on a curve that fills the box around them, neighbours in space
+/// mostly being neighbours on it (Morton 1966).
+fn curve(balls: &[Ball]) -> Vec<u64> {
+    let (mut low, mut high) = (Vec3::splat(f64::INFINITY), Vec3::splat(f64::NEG_INFINITY));
+    for ball in balls {
+        low = low.min(ball.center);
+        high = high.max(ball.center);
+    }
+    let side = (high - low).max_abs().max(f64::MIN_POSITIVE);
+    let last_cell = f64::from((1_u32 << CELL_BITS) - 1);
+    let place = |ball: &Ball| {
+        let cell = (ball.center - low) * (last_cell / side);
+        cell.to_array()
+            .iter()
+            .enumerate()
+            .fold(0, |key, (axis, part)| key | spread(*part as u64) << axis)
+    };
+    balls.iter().map(place).collect()
+}
+
+/// Bits of a cell's number along one axis.
+const CELL_BITS: u32 = 20;
+
+/// The bits of a cell's number with two zeros after each.
+fn spread(cell: u64) -> u64 {
+    (0..CELL_BITS).fold(0, |spread, bit| spread | (cell >> bit & 1) << (3 * bit))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn vector() -> impl Strategy<Value = Vec3<f64>> {
+        prop::array::uniform3(-50.0..50.0_f64).prop_map(Vec3::from)
+    }
+
+    proptest! {
+        #[test]
+        fn every_ball_lies_in_its_bundles(places in prop::collection::vec((vector(), 0.0..5.0_f64), 1..700)) {
+            let balls: Vec<Ball> = places.iter().map(|&(center, radius)| Ball { center, radius }).collect();
+            let volumes = Volumes::<f64>::new(&balls, true);
+            let mut members = volumes.members.clone();
+            members.sort_unstable();
+            prop_assert_eq!(members, (0..balls.len() as u32).collect::<Vec<_>>());
+            for (place, &member) in volumes.members.iter().enumerate() {
+                let own = balls[member as usize];
+                let mut place = place;
+                for level in &volumes.levels[1..] {
+                    place /= GROUP;
+                    let center = Vec3::new(level.x[place], level.y[place], level.z[place]);
+                    prop_assert!((own.center - center).length() + own.radius <= level.radius[place] * (1.0 + 1e-12));
+                }
+            }
+            prop_assert!(volumes.levels.last().is_some_and(|top| top.x.len() == GROUP));
+        }
+
+        #[test]
+        fn the_ball_of_a_triangle_is_tight(a in vector(), b in vector(), c in vector()) {
+            prop_assume!((b - a).cross(c - a).length() > 1e-3);
+            let ball = Ball::around_triangle([a, b, c]);
+            let reach = [a, b, c].map(|corner| (corner - ball.center).length());
+            let touching = reach.iter().filter(|r| (*r / ball.radius - 1.0).abs() < 1e-6).count();
+            prop_assert!(reach.iter().all(|r| *r <= ball.radius * (1.0 + 1e-9)), "{reach:?} {ball:?}");
+            prop_assert!(touching >= 2);
+        }
+    }
+}

@@ -1,0 +1,313 @@
+//! Bundles of rays, and what they can meet at all. Whatever a beam does not meet, no ray in it
+//! would have hit: leaving it out changes no pixel.
+
+use super::stage::Packet;
+use crate::lanes::{Lane, Mask as _, Real, Vec3};
+use crate::plan::{Ball, Balls, GROUP, Volumes};
+
+/// Share by which balls and angles are taken larger than computed, for the rounding of the kernel.
+const CAUTION: f64 = 1e-3;
+/// Share of a distance, for the same reason.
+const FAR_CAUTION: f64 = 1e-5;
+
+/// Rays that start within a ball and go in directions within a cone, up to some distance.
+#[derive(Clone, Copy, Debug)]
+pub struct Beam<R> {
+    origin: Vec3<R>,
+    /// Radius of the ball that the rays start in.
+    spread: R,
+    axis: Vec3<R>,
+    /// Of the angle between the axis and the outermost rays, which is below a right angle.
+    sine: R,
+    cosine: R,
+    /// How far the rays go.
+    reach: R,
+}
+
+impl<R: Real> Beam<R> {
+    /// From a point to all points of a ball; `None` where that is every direction.
+    pub fn to_ball(from: Vec3<f64>, ball: &Ball) -> Option<Self> {
+        let towards = ball.center - from;
+        let length = towards.length();
+        let radius = ball.radius * (1.0 + CAUTION) + length * FAR_CAUTION;
+        let sine = radius / length;
+        (sine < 1.0).then(|| Self {
+            origin: Vec3::from_f64(from),
+            spread: R::ZERO,
+            axis: Vec3::from_f64(towards * (1.0 / length)),
+            sine: R::from_f64(sine),
+            cosine: R::from_f64((1.0 - sine * sine).sqrt()),
+            reach: R::from_f64(length + radius),
+        })
+    }
+
+    /// From a ball, in directions that differ from `axis` by at most `chord` (the length of the
+    /// difference of unit vectors), endlessly; `None` where that is more than half of all.
+    pub fn from_ball(ball: &Ball, axis: Vec3<f64>, chord: f64) -> Option<Self> {
+        let chord = chord * (1.0 + CAUTION) + FAR_CAUTION;
+        let cosine = 1.0 - chord * chord * 0.5;
+        (cosine > 0.0).then(|| Self {
+            origin: Vec3::from_f64(ball.center),
+            spread: R::from_f64(ball.radius),
+            axis: Vec3::from_f64(axis),
+            sine: R::from_f64((1.0 - cosine * cosine).sqrt()),
+            cosine: R::from_f64(cosine),
+            reach: R::INFINITY,
+        })
+    }
+
+    /// The same rays with what is beside them: within this distance at their start, and so much
+    /// more for each step that they go.
+    #[must_use]
+    pub fn widened(self, by: R, spread: R) -> Self {
+        // sin(a + b) ≤ sin a + b, cos(a + b) ≥ cos a - b.
+        Self {
+            spread: self.spread + by,
+            sine: (self.sine + spread).min(R::ONE),
+            cosine: (self.cosine - spread).max(R::ZERO),
+            ..self
+        }
+    }
+
+    /// Whether rays can come to the side of a plane that is not theirs: `normal` · p = `offset`.
+    pub fn crosses(&self, normal: Vec3<R>, offset: R) -> bool {
+        let height = normal.dot(self.origin) - offset;
+        let slack = R::from_f64(FAR_CAUTION) * (self.origin.max_abs() + height.abs());
+        if height.abs() <= self.spread + slack {
+            return true;
+        }
+        let away = if height > R::ZERO { normal } else { -normal };
+        away.dot(self.axis) <= self.sine + R::from_f64(FAR_CAUTION)
+    }
+
+    /// Which of the balls from `first` on it meets: those whose distance from the cone is at most
+    /// both radii.
+    #[inline(always)]
+    fn meets<L: Lane<Real = R>>(&self, token: L::Token, balls: &Balls<R>, first: usize) -> u64 {
+        let center = Vec3::new(
+            L::load(token, &balls.x[first..]),
+            L::load(token, &balls.y[first..]),
+            L::load(token, &balls.z[first..]),
+        );
+        let axis = Vec3::broadcast(token, self.axis);
+        let q = center - Vec3::broadcast(token, self.origin);
+        let along = q.dot(axis);
+        let across = q - axis * along;
+        let height = across.length();
+        let radius = (L::load(token, &balls.radius[first..]) + L::splat(token, self.spread))
+            * L::splat(token, R::from_f64(1.0 + CAUTION));
+        let room = radius + (along.abs() + height) * L::splat(token, R::from_f64(FAR_CAUTION));
+        let outside = height * L::splat(token, self.cosine) - along * L::splat(token, self.sine);
+        let is_met = outside.at_most(room)
+            & (-room).at_most(along)
+            & along.at_most(L::splat(token, self.reach) + room);
+        is_met.bits()
+    }
+
+    /// Lists the members of `volumes` that it meets, in order; `stack` is room to work in.
+    #[inline(always)]
+    pub fn gather<L: Lane<Real = R>>(
+        &self,
+        token: L::Token,
+        volumes: &Volumes<R>,
+        stack: &mut Vec<(usize, usize)>,
+        met: &mut Vec<u32>,
+    ) {
+        met.clear();
+        stack.clear();
+        let top = volumes.levels.len() - 1;
+        for group in (0..volumes.levels[top].x.len() / GROUP).rev() {
+            stack.push((top, group));
+        }
+        while let Some((level, group)) = stack.pop() {
+            let from = group * GROUP;
+            for first in (from..from + GROUP).step_by(L::WIDTH) {
+                let mut bits = self.meets::<L>(token, &volumes.levels[level], first);
+                while bits != 0 {
+                    let place = first + bits.trailing_zeros() as usize;
+                    bits &= bits - 1;
+                    if level == 0 {
+                        met.push(volumes.members[place]);
+                    } else {
+                        stack.push((level - 1, place));
+                    }
+                }
+            }
+        }
+        // Bundles come in an order of their own; surfaces at the same distance must not care.
+        if volumes.is_bundled() {
+            met.sort_unstable();
+        }
+    }
+}
+
+/// Whether a ball lies wholly behind a sphere, seen from a light: nothing in it is lit.
+pub fn is_hidden(light: Vec3<f64>, sphere: &Ball, ball: &Ball) -> bool {
+    let towards = sphere.center - light;
+    let length = towards.length();
+    let sine = sphere.radius * (1.0 - CAUTION) / length;
+    if sine >= 1.0 {
+        return false;
+    }
+    let axis = towards * (1.0 / length);
+    let q = ball.center - light;
+    let along = q.dot(axis);
+    let height = (q - axis * along).length();
+    let radius = ball.radius * (1.0 + CAUTION) + along.abs() * FAR_CAUTION;
+    let cosine = (1.0 - sine * sine).sqrt();
+    along * sine - height * cosine >= radius && along - radius >= length
+}
+
+/// The box around points, lane by lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounds<L> {
+    low: Vec3<L>,
+    high: Vec3<L>,
+}
+
+impl<L: Lane> Bounds<L> {
+    /// Around nothing.
+    #[inline(always)]
+    pub fn new(token: L::Token) -> Self {
+        let infinity = L::splat(token, L::Real::INFINITY);
+        Self {
+            low: Vec3::splat(infinity),
+            high: Vec3::splat(-infinity),
+        }
+    }
+
+    /// Takes the points in, where the mask is set.
+    #[inline(always)]
+    pub fn add(&mut self, mask: L::Mask, point: Vec3<L>) {
+        self.low = Vec3::select(mask, self.low.min(point), self.low);
+        self.high = Vec3::select(mask, self.high.max(point), self.high);
+    }
+
+    /// The ball around the box of all lanes; `None` if no point was taken in.
+    #[inline(always)]
+    pub fn ball(&self) -> Option<Ball> {
+        let low = Vec3::new(self.low.x.least(), self.low.y.least(), self.low.z.least()).to_f64();
+        let high = Vec3::new(
+            self.high.x.greatest(),
+            self.high.y.greatest(),
+            self.high.z.greatest(),
+        )
+        .to_f64();
+        let radius = (high - low).length() * 0.5;
+        radius.is_finite().then(|| Ball {
+            center: (low + high) * 0.5,
+            radius,
+        })
+    }
+}
+
+/// The beam of the rays of packets; `None` if they go everywhere, or there are none.
+#[inline(always)]
+pub fn beam_around<L: Lane>(token: L::Token, packets: &[Packet<L>]) -> Option<Beam<L::Real>> {
+    let (mut origins, mut directions) = (Bounds::new(token), Bounds::new(token));
+    for packet in packets {
+        origins.add(packet.active, packet.rays.origin);
+        directions.add(packet.active, packet.rays.direction);
+    }
+    let axis = directions.ball()?.center.unit()?;
+    let shared = Vec3::broadcast(token, Vec3::from_f64(axis));
+    let mut chord = L::splat(token, L::Real::ZERO);
+    for packet in packets {
+        let off = packet.rays.direction - shared;
+        chord = L::select(packet.active, chord.max(off.dot(off)), chord);
+    }
+    Beam::from_ball(&origins.ball()?, axis, chord.greatest().to_f64().sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Ray;
+    use super::super::hit::Nearest;
+    use super::*;
+    use proptest::prelude::*;
+
+    fn vector(scale: f64) -> impl Strategy<Value = Vec3<f64>> {
+        prop::array::uniform3(-scale..scale).prop_map(Vec3::from)
+    }
+
+    /// A point of the ball: `inside` is drawn into it.
+    fn within(ball: &Ball, inside: Vec3<f64>) -> Vec3<f64> {
+        ball.center + inside * (ball.radius / inside.length().max(1.0))
+    }
+
+    fn is_met(beam: Option<Beam<f64>>, ball: Ball) -> bool {
+        beam.is_none_or(|beam| {
+            beam.meets::<f64>((), &Volumes::new(&[ball], false).levels[0], 0) != 0
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn what_blocks_a_line_into_the_ball_is_met(light in vector(10.0), center in vector(10.0), radius in 0.01..5.0_f64,
+                                                   inside in vector(1.0), at in 0.0..1.0_f64, off in vector(1.0), size in 0.01..3.0_f64) {
+            let ball = Ball { center, radius };
+            let on_line = light + (within(&ball, inside) - light) * at;
+            let blocker = Ball { center: on_line + off * (size * 0.999 / off.length().max(1.0)), radius: size };
+            prop_assert!(is_met(Beam::to_ball(light, &ball), blocker));
+        }
+
+        #[test]
+        fn what_a_ray_of_a_beam_hits_is_met(origins in prop::collection::vec(vector(3.0), 1..5), axis in vector(1.0), turns in prop::collection::vec(vector(0.5), 5),
+                                            pick in 0..5_usize, at in 0.0..20.0_f64, off in vector(1.0), size in 0.01..3.0_f64) {
+            let rays: Vec<Ray<f64>> = origins.iter().zip(&turns)
+                .filter_map(|(&origin, &turn)| Some(Ray { origin, direction: (axis + turn).unit()? })).collect();
+            prop_assume!(!rays.is_empty());
+            let near = Nearest { t: 0.0, number: 0.0 };
+            let packets: Vec<Packet<f64>> = rays.iter().map(|&rays| Packet { rays, active: true, near, color: axis }).collect();
+            let beam = beam_around((), &packets);
+            let on_ray = rays[pick % rays.len()].at(at);
+            let ball = Ball { center: on_ray + off * (size * 0.999 / off.length().max(1.0)), radius: size };
+            prop_assert!(is_met(beam, ball));
+        }
+
+        #[test]
+        fn what_is_hidden_is_in_shadow(light in vector(5.0), center in vector(5.0), radius in 0.1..3.0_f64, beyond in 1.0..4.0_f64,
+                                       aside in vector(1.0), size in 0.0..0.5_f64, inside in vector(1.0)) {
+            let place = light + (center - light) * beyond + aside * (radius * beyond);
+            let (sphere, ball) = (Ball { center, radius }, Ball { center: place, radius: size * radius });
+            prop_assume!(is_hidden(light, &sphere, &ball));
+            let point = within(&ball, inside);
+            let to_light = (light - point).unit().expect("apart");
+            let along = (center - point).dot(to_light);
+            let beside = (center - point - to_light * along).length();
+            prop_assert!(beside < radius && along > 0.0 && along < (light - point).length());
+        }
+
+        #[test]
+        fn a_plane_that_a_ray_meets_is_crossed(origin in vector(3.0), axis in vector(1.0), turn in vector(0.3), normal in vector(1.0), offset in -4.0..4.0_f64) {
+            let (Some(axis), Some(direction), Some(normal)) = (axis.unit(), (axis + turn).unit(), normal.unit()) else { return Ok(()) };
+            let ball = Ball { center: origin, radius: 0.1 };
+            let Some(beam) = Beam::<f64>::from_ball(&ball, axis, (direction - axis).length()) else { return Ok(()) };
+            let t = (offset - normal.dot(origin)) / normal.dot(direction);
+            prop_assume!(t > 0.0 && t.is_finite());
+            prop_assert!(beam.crosses(normal, offset));
+        }
+    }
+
+    #[test]
+    fn what_is_far_aside_is_left_out() {
+        let at = |x: f64, y: f64, radius: f64| Ball {
+            center: Vec3::new(x, y, 0.0),
+            radius,
+        };
+        let light = Vec3::new(0.0, 0.0, 0.0);
+        let beam = Beam::to_ball(light, &at(10.0, 0.0, 1.0));
+        assert!(!is_met(beam, at(5.0, 3.0, 1.0)));
+        assert!(!is_met(beam, at(-3.0, 0.0, 1.0)));
+        assert!(!is_met(beam, at(14.0, 0.0, 1.0)));
+        assert!(is_met(beam, at(5.0, 1.4, 1.0)));
+        assert!(is_hidden(light, &at(5.0, 0.0, 2.0), &at(10.0, 0.5, 1.0)));
+        assert!(!is_hidden(light, &at(5.0, 0.0, 2.0), &at(10.0, 3.5, 1.0)));
+        let up = Beam::<f64>::from_ball(&at(0.0, 1.0, 0.1), Vec3::new(0.0, 1.0, 0.0), 0.1)
+            .expect("narrow");
+        assert!(
+            !up.crosses(Vec3::new(0.0, 1.0, 0.0), 0.0),
+            "a beam upwards never meets the floor"
+        );
+    }
+}

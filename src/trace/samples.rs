@@ -1,0 +1,85 @@
+//! What goes into the tracing of a tile, and what comes out of it, one number per sample in each
+//! column.
+
+use crate::lanes::Real;
+
+/// Places in the picture to be traced, in pixels from its left and upper edge; filled up to whole
+/// packets.
+#[derive(Clone, Debug, Default)]
+pub struct Samples<R> {
+    /// Columns.
+    pub x: Vec<R>,
+    /// Rows.
+    pub y: Vec<R>,
+    /// How many are wanted.
+    pub count: usize,
+}
+
+/// What was seen at each sample, and some more at the end.
+#[derive(Clone, Debug, Default)]
+pub struct Traced<R> {
+    /// How many samples there are.
+    pub count: usize,
+    /// Linear red, 0–1.
+    pub red: Vec<R>,
+    /// Linear green.
+    pub green: Vec<R>,
+    /// Linear blue.
+    pub blue: Vec<R>,
+    /// Equal where the same things were hit and lit, directly and in mirrors. Only with edges.
+    pub signature: Vec<u32>,
+    /// How many pixels away the next thing is that may slip between samples. Only with edges.
+    pub near: Vec<R>,
+}
+
+impl<R: Real> Samples<R> {
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.x.clear();
+        self.y.clear();
+        self.count = 0;
+    }
+
+    /// Adds a place.
+    #[inline(always)]
+    pub fn push(&mut self, x: R, y: R) {
+        self.x.push(x);
+        self.y.push(y);
+    }
+
+    /// Adds places in one row.
+    #[inline(always)]
+    pub fn push_row(&mut self, columns: &[R], y: R) {
+        self.x.extend_from_slice(columns);
+        self.y.extend(std::iter::repeat_n(y, columns.len()));
+    }
+
+    /// Counts the places, and fills the last packet up.
+    #[inline(always)]
+    pub fn seal(&mut self, lanes: usize) {
+        self.count = self.x.len();
+        if let (Some(&x), Some(&y)) = (self.x.last(), self.y.last()) {
+            let full = self.count.next_multiple_of(lanes);
+            self.x.resize(full, x);
+            self.y.resize(full, y);
+        }
+    }
+}
+
+impl<R: Real> Traced<R> {
+    /// Red, green and blue.
+    pub fn channels(&self) -> [&[R]; 3] {
+        [&self.red, &self.green, &self.blue]
+    }
+
+    /// Makes room for so many samples, `length` with those that fill the last packet up.
+    pub fn resize(&mut self, count: usize, length: usize, edges: bool) {
+        self.count = count;
+        for column in [&mut self.red, &mut self.green, &mut self.blue] {
+            column.resize(length, R::ZERO);
+        }
+        let marked = if edges { length } else { 0 };
+        self.near.resize(marked, R::ZERO);
+        self.signature.resize(marked, 0);
+    }
+}

@@ -1,0 +1,370 @@
+//! Which places of a pixel are traced, and how their colours become the pixel's.
+
+use std::ops::Range;
+
+use super::cull::Lists;
+use super::samples::{Samples, Traced};
+use super::stage::Engine;
+use crate::lanes::{Lane, Real};
+
+/// How often a pixel is halved where there is an edge: to an eighth.
+const DEPTH: u32 = 3;
+/// How often where something thinner than two pixels is: to a sixteenth.
+const THIN_DEPTH: u32 = 4;
+/// Steps of the finest grid in a pixel.
+const FINEST: usize = 1 << THIN_DEPTH;
+/// Difference of the corners of a cell, summed over the channels, above which it is halved.
+const CONTRAST: f64 = 0.1;
+/// The same where the corners see different things: four levels of 255, which nobody sees.
+const EDGE_CONTRAST: f64 = 4.0 / 255.0;
+/// A thing can be in a cell without being nearer than this to a corner, in sides of the cell: half
+/// its diagonal, and a little for the rounding.
+const NEAR: f64 = 0.75;
+
+/// A rectangle of pixels.
+#[derive(Clone, Debug)]
+pub struct Tile {
+    /// From left to right.
+    pub columns: Range<usize>,
+    /// From top to bottom.
+    pub rows: Range<usize>,
+}
+
+/// Red, green and blue of the pixels of a tile, row by row.
+#[derive(Debug, Default)]
+pub struct Colors<R> {
+    channels: [Vec<R>; 3],
+}
+
+/// What sampling leaves behind for the next tile to use again.
+pub struct Sampler<L: Lane> {
+    /// Places of the samples of a row.
+    columns: Vec<L::Real>,
+    samples: Samples<L::Real>,
+    traced: Traced<L::Real>,
+    mesh: Mesh<L::Real>,
+    cells: Vec<Cell>,
+    split: Vec<Cell>,
+}
+
+/// Samples on the finest grid of a tile that are shared by the cells around them.
+#[derive(Debug)]
+struct Mesh<R> {
+    /// Points from one row of the grid to the next.
+    stride: usize,
+    /// 1 + the place of each point's sample, 0 where there is none.
+    places: Vec<u32>,
+    /// The points that have a sample, in order of their samples.
+    points: Vec<u32>,
+    colors: [Vec<R>; 3],
+    signature: Vec<u32>,
+    near: Vec<R>,
+}
+
+/// A square between samples: its upper left corner on the finest grid, and its side.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    x: u16,
+    y: u16,
+    side: u16,
+}
+
+impl Tile {
+    fn width(&self) -> usize {
+        self.columns.len()
+    }
+
+    fn pixels(&self) -> usize {
+        self.columns.len() * self.rows.len()
+    }
+}
+
+impl<R: Real> Colors<R> {
+    /// Red, green and blue.
+    pub fn channels(&self) -> [&[R]; 3] {
+        self.channels.each_ref().map(Vec::as_slice)
+    }
+
+    fn clear(&mut self, pixels: usize) {
+        for channel in &mut self.channels {
+            channel.clear();
+            channel.resize(pixels, R::ZERO);
+        }
+    }
+}
+
+impl<L: Lane> Sampler<L> {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        Self {
+            columns: Vec::new(),
+            samples: Samples::default(),
+            traced: Traced::default(),
+            mesh: Mesh {
+                stride: 0,
+                places: Vec::new(),
+                points: Vec::new(),
+                colors: [Vec::new(), Vec::new(), Vec::new()],
+                signature: Vec::new(),
+                near: Vec::new(),
+            },
+            cells: Vec::new(),
+            split: Vec::new(),
+        }
+    }
+
+    /// The colours at the centres of these pixels (column, row), in their order, and some more.
+    #[inline(always)]
+    pub fn centres(
+        &mut self,
+        token: L::Token,
+        engine: &mut Engine<L>,
+        seen: &Lists,
+        pixels: impl Iterator<Item = (usize, usize)>,
+    ) -> &Traced<L::Real> {
+        let centre = |index: usize| L::Real::from_f64(index as f64 + 0.5);
+        self.samples.clear();
+        for (column, row) in pixels {
+            self.samples.push(centre(column), centre(row));
+        }
+        self.samples.seal(L::WIDTH);
+        engine.trace(token, &self.samples, seen, false, &mut self.traced);
+        &self.traced
+    }
+
+    /// The colours of all pixels of a tile at (`x`, `y`) in each, from its upper left corner, row by
+    /// row, and some more.
+    #[inline(always)]
+    pub fn all(
+        &mut self,
+        token: L::Token,
+        engine: &mut Engine<L>,
+        seen: &Lists,
+        tile: &Tile,
+        (x, y): (f64, f64),
+    ) -> &Traced<L::Real> {
+        let place = |index: usize, off: f64| L::Real::from_f64(index as f64 + off);
+        self.samples.clear();
+        self.columns.clear();
+        self.columns
+            .extend(tile.columns.clone().map(|column| place(column, x)));
+        for row in tile.rows.clone() {
+            self.samples.push_row(&self.columns, place(row, y));
+        }
+        self.samples.seal(L::WIDTH);
+        engine.trace(token, &self.samples, seen, false, &mut self.traced);
+        &self.traced
+    }
+
+    /// The means of `side × side` samples in each pixel, each in the middle of its part.
+    #[inline(always)]
+    pub fn grid(
+        &mut self,
+        token: L::Token,
+        engine: &mut Engine<L>,
+        seen: &Lists,
+        tile: &Tile,
+        side: u32,
+        colors: &mut Colors<L::Real>,
+    ) {
+        colors.clear(tile.pixels());
+        let share = L::Real::from_f64(1.0 / f64::from(side * side));
+        let middle = |part: u32| (f64::from(part) + 0.5) / f64::from(side);
+        for part in 0..side * side {
+            let place = (middle(part % side), middle(part / side));
+            let traced = self.all(token, engine, seen, tile, place);
+            for (sum, new) in colors.channels.iter_mut().zip(traced.channels()) {
+                for (sum, new) in sum.iter_mut().zip(new) {
+                    *sum = *sum + *new * share;
+                }
+            }
+        }
+    }
+
+    /// The means of pixels that are halved as long as their corners differ; corners are shared.
+    ///
+    /// Whitted, "An improved illumination model for shaded display", CACM 23(6), 1980; here with
+    /// the things that were hit and lit, beside the colours, to tell the corners apart.
+    #[inline(always)]
+    pub fn adaptive(
+        &mut self,
+        token: L::Token,
+        engine: &mut Engine<L>,
+        seen: &Lists,
+        tile: &Tile,
+        colors: &mut Colors<L::Real>,
+    ) {
+        colors.clear(tile.pixels());
+        self.mesh.start(tile);
+        self.cells.clear();
+        for row in 0..tile.rows.len() {
+            for column in 0..tile.width() {
+                self.cells.push(Cell {
+                    x: (column * FINEST) as u16,
+                    y: (row * FINEST) as u16,
+                    side: FINEST as u16,
+                });
+            }
+        }
+        for row in 0..=tile.rows.len() {
+            for column in 0..=tile.width() {
+                self.mesh.want(column * FINEST, row * FINEST);
+            }
+        }
+        for depth in 0..=THIN_DEPTH {
+            self.mesh.sample(
+                token,
+                engine,
+                seen,
+                tile,
+                &mut self.samples,
+                &mut self.traced,
+            );
+            self.split.clear();
+            for &cell in &self.cells {
+                let corners = self.mesh.corners(cell);
+                if self.mesh.is_split(cell, corners, depth) {
+                    self.split.push(cell);
+                } else {
+                    let pixel = cell.y as usize / FINEST * tile.width() + cell.x as usize / FINEST;
+                    self.mesh.pour(cell, corners, pixel, colors);
+                }
+            }
+            if self.split.is_empty() {
+                break;
+            }
+            self.cells.clear();
+            for &cell in &self.split {
+                self.mesh.halve(cell, &mut self.cells);
+            }
+        }
+    }
+}
+
+impl<R: Real> Mesh<R> {
+    /// Forgets the tile before.
+    fn start(&mut self, tile: &Tile) {
+        for &point in &self.points {
+            self.places[point as usize] = 0;
+        }
+        self.points.clear();
+        for channel in &mut self.colors {
+            channel.clear();
+        }
+        self.signature.clear();
+        self.near.clear();
+        self.stride = tile.width() * FINEST + 1;
+        let points = self.stride * (tile.rows.len() * FINEST + 1);
+        if self.places.len() < points {
+            self.places.resize(points, 0);
+        }
+    }
+
+    /// Makes sure that there will be a sample at a point of the grid.
+    #[inline(always)]
+    fn want(&mut self, x: usize, y: usize) {
+        let point = y * self.stride + x;
+        if self.places[point] == 0 {
+            self.points.push(point as u32);
+            self.places[point] = self.points.len() as u32;
+        }
+    }
+
+    /// Traces the samples that are wanted and not there yet.
+    #[inline(always)]
+    fn sample<L: Lane<Real = R>>(
+        &mut self,
+        token: L::Token,
+        engine: &mut Engine<L>,
+        seen: &Lists,
+        tile: &Tile,
+        samples: &mut Samples<R>,
+        traced: &mut Traced<R>,
+    ) {
+        samples.clear();
+        let step = 1.0 / FINEST as f64;
+        for &point in &self.points[self.signature.len()..] {
+            let (x, y) = (point as usize % self.stride, point as usize / self.stride);
+            samples.push(
+                R::from_f64(tile.columns.start as f64 + x as f64 * step),
+                R::from_f64(tile.rows.start as f64 + y as f64 * step),
+            );
+        }
+        samples.seal(L::WIDTH);
+        engine.trace(token, samples, seen, true, traced);
+        let new = [&traced.red, &traced.green, &traced.blue];
+        for (all, new) in self.colors.iter_mut().zip(new) {
+            all.extend_from_slice(&new[..samples.count]);
+        }
+        self.signature
+            .extend_from_slice(&traced.signature[..samples.count]);
+        self.near.extend_from_slice(&traced.near[..samples.count]);
+    }
+
+    /// The samples at the corners of a cell.
+    #[inline(always)]
+    fn corners(&self, cell: Cell) -> [usize; 4] {
+        let Cell { x, y, side } = cell;
+        let at = |x: u16, y: u16| self.places[y as usize * self.stride + x as usize] as usize - 1;
+        [
+            at(x, y),
+            at(x + side, y),
+            at(x, y + side),
+            at(x + side, y + side),
+        ]
+    }
+
+    /// Whether the inside of a cell must be looked at.
+    #[inline(always)]
+    fn is_split(&self, cell: Cell, corners: [usize; 4], depth: u32) -> bool {
+        let reach = R::from_f64(NEAR / FINEST as f64 * f64::from(cell.side));
+        if depth < THIN_DEPTH && corners.iter().any(|&corner| self.near[corner] < reach) {
+            return true;
+        }
+        if depth >= DEPTH {
+            return false;
+        }
+        let mut contrast = R::ZERO;
+        for channel in &self.colors {
+            let [a, b, c, d] = corners.map(|corner| channel[corner]);
+            contrast = contrast + (a.max(b).max(c.max(d)) - a.min(b).min(c.min(d)));
+        }
+        let first = self.signature[corners[0]];
+        let is_same = corners
+            .iter()
+            .all(|&corner| self.signature[corner] == first);
+        contrast > R::from_f64(if is_same { CONTRAST } else { EDGE_CONTRAST })
+    }
+
+    /// Adds the mean of a cell's corners to its pixel, by its area.
+    #[inline(always)]
+    fn pour(&self, cell: Cell, corners: [usize; 4], pixel: usize, colors: &mut Colors<R>) {
+        let side = f64::from(cell.side) / FINEST as f64;
+        let share = R::from_f64(side * side / 4.0);
+        for (sum, channel) in colors.channels.iter_mut().zip(&self.colors) {
+            let [a, b, c, d] = corners.map(|corner| channel[corner]);
+            sum[pixel] = sum[pixel] + ((a + b) + (c + d)) * share;
+        }
+    }
+
+    /// Puts the four quarters of a cell into `cells`, and wants their corners.
+    #[inline(always)]
+    fn halve(&mut self, cell: Cell, cells: &mut Vec<Cell>) {
+        let side = cell.side / 2;
+        for (right, down) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            cells.push(Cell {
+                x: cell.x + right * side,
+                y: cell.y + down * side,
+                side,
+            });
+        }
+        for down in 0..3 {
+            for right in 0..3 {
+                self.want(
+                    (cell.x + right * side) as usize,
+                    (cell.y + down * side) as usize,
+                );
+            }
+        }
+    }
+}
