@@ -56,6 +56,12 @@ impl<R: Real> View<R> {
         }
     }
 
+    /// How wide a pixel is within this distance of a point, at most.
+    pub fn width_at(&self, point: Vec3<R>, reach: R) -> R {
+        let (width, spread) = self.footprint();
+        width + spread * ((point - self.origin).length() + reach)
+    }
+
     /// Origin and unit direction of the rays through the places (x, y) of the picture, in pixels
     /// from its left and upper edge. The centre of the first pixel is (½, ½).
     #[inline(always)]

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::beam::{Beam, is_hidden};
 use super::sampling::Tile;
+use super::thin::SLIPPING;
 use crate::lanes::{Lane, Real, Vec3};
 use crate::plan::{Ball, Extent, Plan, Screen};
 
@@ -46,6 +47,13 @@ impl Lists {
         all
     }
 
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.spheres.clear();
+        self.planes.clear();
+        self.triangles.clear();
+    }
+
     /// Whether there is nothing to test.
     pub fn is_empty(&self) -> bool {
         self.spheres.is_empty() && self.planes.is_empty() && self.triangles.is_empty()
@@ -73,6 +81,26 @@ impl Lists {
             meets(&screen.triangles[index])
         });
         self.planes.clone_from(&from.planes);
+    }
+
+    /// Becomes those of `from` that are narrower than the width at their farthest point.
+    pub fn keep_narrow<R: Real>(
+        &mut self,
+        from: &Self,
+        plan: &Plan<R>,
+        width: impl Fn(Vec3<R>, R) -> R,
+    ) {
+        self.planes.clear();
+        keep(&mut self.spheres, &from.spheres, |index| {
+            let sphere = &plan.spheres[index];
+            sphere.radius + sphere.radius < width(sphere.center, sphere.radius)
+        });
+        keep(&mut self.triangles, &from.triangles, |index| {
+            let triangle = &plan.triangles[index];
+            let [a, b, c] = triangle.corners;
+            let reach = (b - a).length().max((c - a).length());
+            triangle.thickness < width(a, reach)
+        });
     }
 
     /// Leaves out the planes that the rays of a tile pass by or leave behind.
@@ -138,6 +166,8 @@ impl Lists {
 pub struct Shadows {
     /// What may block the light for some of them.
     pub casters: Lists,
+    /// Those of them whose shadows may slip between samples.
+    pub thin: Lists,
     /// Whether one sphere blocks it for all of them.
     pub is_umbra: bool,
 }
@@ -156,8 +186,10 @@ impl Shadows {
         room: &mut Room,
     ) {
         let from = light.to_f64();
+        let slipping = footprint * L::Real::from_f64(SLIPPING);
         let Some(beam) = Beam::to_ball(from, ball) else {
             self.casters = Lists::all_casting(plan);
+            self.thin.keep_narrow(&self.casters, plan, |_, _| slipping);
             self.is_umbra = false;
             return;
         };
@@ -168,6 +200,7 @@ impl Shadows {
         if plan.planes_cast {
             self.casters.planes.extend(0..plan.planes.len() as u32);
         }
+        self.thin.keep_narrow(&self.casters, plan, |_, _| slipping);
         self.is_umbra = self.casters.spheres.iter().any(|&index| {
             let sphere = &plan.spheres[index as usize];
             let sphere = Ball {

@@ -9,14 +9,17 @@ use crate::lanes::{Lane, Real};
 
 /// How often a pixel is halved where there is an edge: to an eighth.
 const DEPTH: u32 = 3;
-/// How often where something thinner than two pixels is: to a sixteenth.
-const THIN_DEPTH: u32 = 4;
+/// How often where something thinner than two pixels is, or a strong edge: to a sixteenth.
+const FINEST_DEPTH: u32 = 4;
 /// Steps of the finest grid in a pixel.
-const FINEST: usize = 1 << THIN_DEPTH;
+const FINEST: usize = 1 << FINEST_DEPTH;
 /// Difference of the corners of a cell, summed over the channels, above which it is halved.
 const CONTRAST: f64 = 0.1;
+/// The same from [`DEPTH`] on: an edge along the finest cells may move by half of one, and must not
+/// show that.
+const STRONG_CONTRAST: f64 = 0.6;
 /// The same where the corners see different things: four levels of 255, which nobody sees.
-const EDGE_CONTRAST: f64 = 4.0 / 255.0;
+pub const EDGE_CONTRAST: f64 = 4.0 / 255.0;
 /// A thing can be in a cell without being nearer than this to a corner, in sides of the cell: half
 /// its diagonal, and a little for the rounding.
 const NEAR: f64 = 0.75;
@@ -42,6 +45,8 @@ pub struct Sampler<L: Lane> {
     columns: Vec<L::Real>,
     samples: Samples<L::Real>,
     traced: Traced<L::Real>,
+    /// Of the pixels of a row.
+    contrast: Vec<L::Real>,
     mesh: Mesh<L::Real>,
     cells: Vec<Cell>,
     split: Vec<Cell>,
@@ -100,6 +105,7 @@ impl<L: Lane> Sampler<L> {
             columns: Vec::new(),
             samples: Samples::default(),
             traced: Traced::default(),
+            contrast: Vec::new(),
             mesh: Mesh {
                 stride: 0,
                 places: Vec::new(),
@@ -194,24 +200,30 @@ impl<L: Lane> Sampler<L> {
         tile: &Tile,
         colors: &mut Colors<L::Real>,
     ) {
+        let corners = (tile.columns.start..=tile.columns.end, tile.rows.clone());
+        self.samples.clear();
+        self.columns.clear();
+        let place = |index: usize| L::Real::from_f64(index as f64);
+        self.columns.extend(corners.0.map(place));
+        for row in corners.1.start..=corners.1.end {
+            self.samples.push_row(&self.columns, place(row));
+        }
+        self.samples.seal(L::WIDTH);
+        engine.trace(token, &self.samples, seen, true, &mut self.traced);
         colors.clear(tile.pixels());
-        self.mesh.start(tile);
-        self.cells.clear();
+        self.split.clear();
         for row in 0..tile.rows.len() {
-            for column in 0..tile.width() {
-                self.cells.push(Cell {
-                    x: (column * FINEST) as u16,
-                    y: (row * FINEST) as u16,
-                    side: FINEST as u16,
-                });
-            }
+            self.judge_row(tile, row, colors);
         }
-        for row in 0..=tile.rows.len() {
-            for column in 0..=tile.width() {
-                self.mesh.want(column * FINEST, row * FINEST);
-            }
+        if self.split.is_empty() {
+            return;
         }
-        for depth in 0..=THIN_DEPTH {
+        self.mesh.start(tile, &self.traced);
+        for depth in 1..=FINEST_DEPTH {
+            self.cells.clear();
+            for &cell in &self.split {
+                self.mesh.halve(cell, &mut self.cells);
+            }
             self.mesh.sample(
                 token,
                 engine,
@@ -233,31 +245,107 @@ impl<L: Lane> Sampler<L> {
             if self.split.is_empty() {
                 break;
             }
-            self.cells.clear();
-            for &cell in &self.split {
-                self.mesh.halve(cell, &mut self.cells);
+        }
+    }
+
+    /// The pixels of a row by their corners alone, and which of them must be looked into. Most
+    /// pictures are smooth nearly everywhere, so this is what their smoothing costs.
+    #[inline(always)]
+    fn judge_row(&mut self, tile: &Tile, row: usize, colors: &mut Colors<L::Real>) {
+        let width = tile.width();
+        let upper = row * (width + 1)..(row + 1) * (width + 1);
+        let lower = upper.end..upper.end + width + 1;
+        let quarter = L::Real::from_f64(0.25);
+        let first = row * width;
+        self.contrast.clear();
+        self.contrast.resize(width, L::Real::ZERO);
+        for (sums, traced) in colors.channels.iter_mut().zip(self.traced.channels()) {
+            let sums = &mut sums[first..first + width];
+            let (upper, lower) = (&traced[upper.clone()], &traced[lower.clone()]);
+            let corners = upper
+                .iter()
+                .zip(&upper[1..])
+                .zip(lower.iter().zip(&lower[1..]));
+            for ((sum, contrast), ((&a, &b), (&c, &d))) in
+                sums.iter_mut().zip(&mut self.contrast).zip(corners)
+            {
+                *sum = ((a + b) + (c + d)) * quarter;
+                *contrast = *contrast + range(a, b, c, d);
+            }
+        }
+        let reach = L::Real::from_f64(NEAR);
+        let marks = |index: usize| (self.traced.signature[index], self.traced.near[index]);
+        for column in 0..width {
+            let places = [
+                upper.start + column,
+                upper.start + column + 1,
+                lower.start + column,
+                lower.start + column + 1,
+            ];
+            let [a, b, c, d] = places.map(marks);
+            let is_same = (a.0 == b.0) & (a.0 == c.0) & (a.0 == d.0);
+            let is_near = (a.1 < reach) | (b.1 < reach) | (c.1 < reach) | (d.1 < reach);
+            if wants_more(self.contrast[column], is_same, is_near) {
+                self.split.push(Cell {
+                    x: (column * FINEST) as u16,
+                    y: (row * FINEST) as u16,
+                    side: FINEST as u16,
+                });
+                for channel in &mut colors.channels {
+                    channel[first + column] = L::Real::ZERO;
+                }
             }
         }
     }
 }
 
+/// The largest difference of four numbers.
+#[inline(always)]
+fn range<R: Real>(a: R, b: R, c: R, d: R) -> R {
+    a.max(b).max(c.max(d)) - a.min(b).min(c.min(d))
+}
+
+/// Whether the inside of a cell must be looked at, by the contrast of its corners, whether they see
+/// the same, and whether something thin is near.
+#[inline(always)]
+fn wants_more<R: Real>(contrast: R, is_same: bool, is_near: bool) -> bool {
+    // Corners that see the same say nothing of what passes between them.
+    is_near & is_same | (contrast > R::from_f64(if is_same { CONTRAST } else { EDGE_CONTRAST }))
+}
+
 impl<R: Real> Mesh<R> {
-    /// Forgets the tile before.
-    fn start(&mut self, tile: &Tile) {
+    /// Forgets the tile before, and starts with the corners of the pixels.
+    fn start(&mut self, tile: &Tile, corners: &Traced<R>) {
         for &point in &self.points {
             self.places[point as usize] = 0;
         }
         self.points.clear();
-        for channel in &mut self.colors {
-            channel.clear();
-        }
-        self.signature.clear();
-        self.near.clear();
         self.stride = tile.width() * FINEST + 1;
         let points = self.stride * (tile.rows.len() * FINEST + 1);
         if self.places.len() < points {
             self.places.resize(points, 0);
         }
+        for row in 0..=tile.rows.len() {
+            for column in 0..=tile.width() {
+                self.want(column * FINEST, row * FINEST);
+            }
+        }
+        for channel in &mut self.colors {
+            channel.clear();
+        }
+        self.signature.clear();
+        self.near.clear();
+        self.take(corners);
+    }
+
+    /// Adds what was seen at the points that were wanted last.
+    fn take(&mut self, traced: &Traced<R>) {
+        for (all, new) in self.colors.iter_mut().zip(traced.channels()) {
+            all.extend_from_slice(&new[..traced.count]);
+        }
+        self.signature
+            .extend_from_slice(&traced.signature[..traced.count]);
+        self.near.extend_from_slice(&traced.near[..traced.count]);
     }
 
     /// Makes sure that there will be a sample at a point of the grid.
@@ -292,13 +380,7 @@ impl<R: Real> Mesh<R> {
         }
         samples.seal(L::WIDTH);
         engine.trace(token, samples, seen, true, traced);
-        let new = [&traced.red, &traced.green, &traced.blue];
-        for (all, new) in self.colors.iter_mut().zip(new) {
-            all.extend_from_slice(&new[..samples.count]);
-        }
-        self.signature
-            .extend_from_slice(&traced.signature[..samples.count]);
-        self.near.extend_from_slice(&traced.near[..samples.count]);
+        self.take(traced);
     }
 
     /// The samples at the corners of a cell.
@@ -317,23 +399,22 @@ impl<R: Real> Mesh<R> {
     /// Whether the inside of a cell must be looked at.
     #[inline(always)]
     fn is_split(&self, cell: Cell, corners: [usize; 4], depth: u32) -> bool {
-        let reach = R::from_f64(NEAR / FINEST as f64 * f64::from(cell.side));
-        if depth < THIN_DEPTH && corners.iter().any(|&corner| self.near[corner] < reach) {
-            return true;
-        }
-        if depth >= DEPTH {
-            return false;
-        }
-        let mut contrast = R::ZERO;
-        for channel in &self.colors {
-            let [a, b, c, d] = corners.map(|corner| channel[corner]);
-            contrast = contrast + (a.max(b).max(c.max(d)) - a.min(b).min(c.min(d)));
-        }
         let first = self.signature[corners[0]];
         let is_same = corners
             .iter()
             .all(|&corner| self.signature[corner] == first);
-        contrast > R::from_f64(if is_same { CONTRAST } else { EDGE_CONTRAST })
+        let reach = R::from_f64(NEAR / FINEST as f64 * f64::from(cell.side));
+        let is_near = corners.iter().any(|&corner| self.near[corner] < reach);
+        let mut contrast = R::ZERO;
+        for channel in &self.colors {
+            let [a, b, c, d] = corners.map(|corner| channel[corner]);
+            contrast = contrast + range(a, b, c, d);
+        }
+        if depth < DEPTH {
+            wants_more(contrast, is_same, is_near)
+        } else {
+            depth < FINEST_DEPTH && (is_near || contrast > R::from_f64(STRONG_CONTRAST))
+        }
     }
 
     /// Adds the mean of a cell's corners to its pixel, by its area.

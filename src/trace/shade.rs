@@ -5,6 +5,7 @@
 
 use super::cull::{Lists, Shadows};
 use super::hit::{Hit, NOTHING, Paths, Start, blocked, refine};
+use super::sampling::EDGE_CONTRAST;
 use super::stage::{Mark, Packet, Trail};
 use super::thin::{Footprint, thin_distance};
 use super::{Ray, Rays};
@@ -46,7 +47,7 @@ struct Spot<'a, L: Lane> {
 }
 
 impl<L: Lane> Painter<'_, L> {
-    /// Colours what the packet has met, among `seen`, and marks it if a mark is wanted. Gives the
+    /// Colours what the packet has met, and marks it if a mark is wanted, by what is `thin`. Gives the
     /// rays that mirrors send on.
     #[inline(always)]
     pub fn paint(
@@ -54,7 +55,7 @@ impl<L: Lane> Painter<'_, L> {
         packet: &mut Packet<L>,
         start: Start<L>,
         mut mark: Option<&mut Mark<L>>,
-        seen: &Lists,
+        thin: &Lists,
         shadows: &[Shadows],
         rays: &mut Rays,
     ) -> Option<Mirrored<L>> {
@@ -65,7 +66,7 @@ impl<L: Lane> Painter<'_, L> {
                 rays: packet.rays,
                 start,
             };
-            mark.near = thin_distance(token, plan, seen, &paths, mark.trail, packet.near.t);
+            mark.near = thin_distance(token, plan, thin, &paths, mark.trail, packet.near.t);
         }
         let nothing = L::splat(token, L::Real::from_f64(NOTHING));
         let mut left = (nothing.less(packet.near.number) & packet.active).bits();
@@ -165,8 +166,13 @@ impl<L: Lane> Painter<'_, L> {
             };
             if let Some((mark, footprint)) = &mut mark {
                 let trail = footprint.shadow(token);
-                let near = thin_distance(token, plan, &shadows.casters, &paths, trail, reach);
-                mark.near = L::select(facing, near.min(mark.near), mark.near);
+                let near = thin_distance(token, plan, &shadows.thin, &paths, trail, reach);
+                // Of light that nobody sees, the shadow is not seen either.
+                let diffuse = spot.surface.diffuse;
+                let brightest = (diffuse.x + diffuse.y + diffuse.z) * light.intensity;
+                let visible = L::splat(token, L::Real::from_f64(EDGE_CONTRAST))
+                    .less(cosine * L::splat(token, brightest));
+                mark.near = L::select(facing & visible, near.min(mark.near), mark.near);
             }
             if shadows.is_umbra {
                 return dark;

@@ -6,7 +6,7 @@ use super::cull::{Lists, Room, Shadows};
 use super::hit::{NOTHING, Nearest, Paths, Start, nearest};
 use super::samples::{Samples, Traced};
 use super::shade::Painter;
-use super::thin::LARGEST_STRETCH;
+use super::thin::{LARGEST_STRETCH, SLIPPING};
 use super::{Ray, Rays};
 use crate::lanes::{Lane, MOST_LANES, Mask as _, Real, Vec3};
 use crate::plan::Plan;
@@ -63,6 +63,8 @@ struct Stage<L: Lane> {
     /// One for each packet, with edges.
     marks: Vec<Mark<L>>,
     seen: Lists,
+    /// Those of them that may slip between samples.
+    thin: Lists,
     shadows: Vec<Shadows>,
     signatures: Vec<[u32; MOST_LANES]>,
 }
@@ -154,6 +156,7 @@ impl<'a, L: Lane> Engine<'a, L> {
         while self.stages.len() <= depth {
             let shadows = Shadows {
                 casters: Lists::all_casting(self.plan),
+                thin: Lists::default(),
                 is_umbra: false,
             };
             self.stages.push(Stage {
@@ -161,6 +164,7 @@ impl<'a, L: Lane> Engine<'a, L> {
                 links: Vec::new(),
                 marks: Vec::new(),
                 seen: Lists::default(),
+                thin: Lists::default(),
                 shadows: vec![shadows; self.plan.lights.len()],
                 signatures: Vec::new(),
             });
@@ -261,8 +265,9 @@ impl<L: Lane> Stage<L> {
             let hit = packet.near.t.less(infinity) & packet.active;
             bounds.add(hit, rays.at(packet.near.t));
         }
+        self.find_thin(plan);
         let Some(ball) = bounds.ball() else {
-            return false;
+            return !self.thin.is_empty();
         };
         if plan.screen.is_some() {
             // Room for what passes beside the rays to the lights, closer than a pixel.
@@ -272,6 +277,21 @@ impl<L: Lane> Stage<L> {
             }
         }
         true
+    }
+
+    /// Finds what the rays can meet, or just miss, between samples; nothing without edges.
+    fn find_thin(&mut self, plan: &Plan<L::Real>) {
+        if self.marks.is_empty() {
+            self.thin.clear();
+        } else if self.links.is_empty() {
+            let slipping = L::Real::from_f64(SLIPPING);
+            self.thin.keep_narrow(&self.seen, plan, |center, radius| {
+                plan.view.width_at(center, radius) * slipping
+            });
+        } else {
+            // How far mirrored rays have come is for each of them to say.
+            self.thin.clone_from(&self.seen);
+        }
     }
 
     /// The widest pixel at what was hit; zero without edges.

@@ -7,11 +7,11 @@ use super::hit::{Paths, Start};
 use super::stage::Trail;
 use super::triangle::Shear;
 use super::{sphere, triangle};
-use crate::lanes::{Lane, Mask as _, Real};
+use crate::lanes::{Lane, Real};
 use crate::plan::Plan;
 
 /// Widest thing, in pixels, that may slip between samples.
-const SLIPPING: f64 = 2.0;
+pub const SLIPPING: f64 = 2.0;
 /// Cosine below which a surface seen at a grazing angle does not stretch a pixel any further: what
 /// [`LARGEST_STRETCH`] promises.
 const GRAZING: f64 = 0.25;
@@ -82,8 +82,8 @@ impl<L: Lane> Footprint<L> {
     }
 }
 
-/// How many pixels away from the paths the nearest of the narrow primitives in the lists is, before
-/// `reach`; infinity for none.
+/// How many pixels away from the paths the nearest of the primitives in the lists is that are
+/// narrower there than [`SLIPPING`] pixels, before `reach`; infinity for none.
 #[inline(always)]
 pub fn thin_distance<L: Lane>(
     token: L::Token,
@@ -96,13 +96,10 @@ pub fn thin_distance<L: Lane>(
     let slipping = L::splat(token, L::Real::from_f64(SLIPPING));
     let zero = L::splat(token, L::Real::ZERO);
     let mut best = L::splat(token, L::Real::INFINITY);
-    let widest = trail.width + trail.spread * reach;
     for &index in &among.spheres {
         let sphere = &plan.spheres[index as usize];
         let size = L::splat(token, sphere.radius + sphere.radius);
-        if !size.less(widest * slipping).any()
-            || matches!(paths.start, Start::On(start) if start == index as usize)
-        {
+        if matches!(paths.start, Start::On(start) if start == index as usize) {
             continue;
         }
         let (along, beside) = sphere::beside(token, &paths.rays, sphere);
@@ -117,9 +114,6 @@ pub fn thin_distance<L: Lane>(
     for &index in &among.triangles {
         let triangle = &plan.triangles[index as usize];
         let size = L::splat(token, triangle.thickness);
-        if !size.less(widest * slipping).any() {
-            continue;
-        }
         let (from, to, beside) = triangle::beside(token, &paths.rays, &shear, triangle);
         let width = trail.width + trail.spread * to;
         let thin = size.less(width * slipping) & zero.less(to) & from.less(reach + width);
@@ -128,13 +122,10 @@ pub fn thin_distance<L: Lane>(
     best
 }
 
-/// `beside / width`, not below zero, where the mask is set; infinity elsewhere.
+/// `beside / width` where the mask is set; infinity elsewhere, and inside, where a sample sees the
+/// thing itself.
 #[inline(always)]
 fn pixels<L: Lane>(token: L::Token, mask: L::Mask, beside: L, width: L) -> L {
-    let zero = L::splat(token, L::Real::ZERO);
-    L::select(
-        mask,
-        (beside / width).max(zero),
-        L::splat(token, L::Real::INFINITY),
-    )
+    let outside = mask & L::splat(token, L::Real::ZERO).less(beside);
+    L::select(outside, beside / width, L::splat(token, L::Real::INFINITY))
 }
