@@ -69,6 +69,11 @@ impl<R: Real> Beam<R> {
         }
     }
 
+    /// How far a point within this distance of `center` is from where the rays start, at most.
+    pub fn distance(&self, center: Vec3<R>, radius: R) -> R {
+        (center - self.origin).length() + radius + self.spread
+    }
+
     /// Whether rays can come to the side of a plane that is not theirs: `normal` · p = `offset`.
     pub fn crosses(&self, normal: Vec3<R>, offset: R) -> bool {
         let height = normal.dot(self.origin) - offset;

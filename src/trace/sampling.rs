@@ -33,10 +33,12 @@ pub struct Tile {
     pub rows: Range<usize>,
 }
 
-/// Red, green and blue of the pixels of a tile, row by row.
+/// Linear red, green and blue of the pixels of a tile, row by row.
 #[derive(Debug, Default)]
 pub struct Colors<R> {
     channels: [Vec<R>; 3],
+    /// Places from one row to the next.
+    pub stride: usize,
 }
 
 /// What sampling leaves behind for the next tile to use again.
@@ -45,8 +47,9 @@ pub struct Sampler<L: Lane> {
     columns: Vec<L::Real>,
     samples: Samples<L::Real>,
     traced: Traced<L::Real>,
-    /// Of the pixels of a row.
+    /// Of the pixels of a tile.
     contrast: Vec<L::Real>,
+    wanting: Vec<bool>,
     mesh: Mesh<L::Real>,
     cells: Vec<Cell>,
     split: Vec<Cell>,
@@ -78,10 +81,6 @@ impl Tile {
     fn width(&self) -> usize {
         self.columns.len()
     }
-
-    fn pixels(&self) -> usize {
-        self.columns.len() * self.rows.len()
-    }
 }
 
 impl<R: Real> Colors<R> {
@@ -90,10 +89,11 @@ impl<R: Real> Colors<R> {
         self.channels.each_ref().map(Vec::as_slice)
     }
 
-    fn clear(&mut self, pixels: usize) {
+    fn clear(&mut self, stride: usize, length: usize) {
+        self.stride = stride;
         for channel in &mut self.channels {
             channel.clear();
-            channel.resize(pixels, R::ZERO);
+            channel.resize(length, R::ZERO);
         }
     }
 }
@@ -106,6 +106,7 @@ impl<L: Lane> Sampler<L> {
             samples: Samples::default(),
             traced: Traced::default(),
             contrast: Vec::new(),
+            wanting: Vec::new(),
             mesh: Mesh {
                 stride: 0,
                 places: Vec::new(),
@@ -173,7 +174,7 @@ impl<L: Lane> Sampler<L> {
         side: u32,
         colors: &mut Colors<L::Real>,
     ) {
-        colors.clear(tile.pixels());
+        colors.clear(tile.width(), tile.width() * tile.rows.len());
         let share = L::Real::from_f64(1.0 / f64::from(side * side));
         let middle = |part: u32| (f64::from(part) + 0.5) / f64::from(side);
         for part in 0..side * side {
@@ -210,11 +211,7 @@ impl<L: Lane> Sampler<L> {
         }
         self.samples.seal(L::WIDTH);
         engine.trace(token, &self.samples, seen, true, &mut self.traced);
-        colors.clear(tile.pixels());
-        self.split.clear();
-        for row in 0..tile.rows.len() {
-            self.judge_row(tile, row, colors);
-        }
+        self.judge(tile, colors);
         if self.split.is_empty() {
             return;
         }
@@ -238,7 +235,7 @@ impl<L: Lane> Sampler<L> {
                 if self.mesh.is_split(cell, corners, depth) {
                     self.split.push(cell);
                 } else {
-                    let pixel = cell.y as usize / FINEST * tile.width() + cell.x as usize / FINEST;
+                    let pixel = cell.y as usize / FINEST * colors.stride + cell.x as usize / FINEST;
                     self.mesh.pour(cell, corners, pixel, colors);
                 }
             }
@@ -248,55 +245,65 @@ impl<L: Lane> Sampler<L> {
         }
     }
 
-    /// The pixels of a row by their corners alone, and which of them must be looked into. Most
-    /// pictures are smooth nearly everywhere, so this is what their smoothing costs.
+    /// The pixels by their corners alone, and which of them must be looked into. Most pictures are
+    /// smooth nearly everywhere, so this is what their smoothing costs: one loop over the whole tile,
+    /// with a pixel at the end of each row that is none.
     #[inline(always)]
-    fn judge_row(&mut self, tile: &Tile, row: usize, colors: &mut Colors<L::Real>) {
-        let width = tile.width();
-        let upper = row * (width + 1)..(row + 1) * (width + 1);
-        let lower = upper.end..upper.end + width + 1;
-        let quarter = L::Real::from_f64(0.25);
-        let first = row * width;
+    fn judge(&mut self, tile: &Tile, colors: &mut Colors<L::Real>) {
+        let stride = tile.width() + 1;
+        let length = stride * tile.rows.len() - 1;
+        colors.clear(stride, length);
         self.contrast.clear();
-        self.contrast.resize(width, L::Real::ZERO);
-        for (sums, traced) in colors.channels.iter_mut().zip(self.traced.channels()) {
-            let sums = &mut sums[first..first + width];
-            let (upper, lower) = (&traced[upper.clone()], &traced[lower.clone()]);
-            let corners = upper
-                .iter()
-                .zip(&upper[1..])
-                .zip(lower.iter().zip(&lower[1..]));
-            for ((sum, contrast), ((&a, &b), (&c, &d))) in
-                sums.iter_mut().zip(&mut self.contrast).zip(corners)
+        self.contrast.resize(length, L::Real::ZERO);
+        let quarter = L::Real::from_f64(0.25);
+        for (means, traced) in colors.channels.iter_mut().zip(self.traced.channels()) {
+            let corners = corners_of(traced, stride, length);
+            for ((mean, contrast), ((&a, &b), (&c, &d))) in
+                means.iter_mut().zip(&mut self.contrast).zip(corners)
             {
-                *sum = ((a + b) + (c + d)) * quarter;
+                *mean = ((a + b) + (c + d)) * quarter;
                 *contrast = *contrast + range(a, b, c, d);
             }
         }
+        self.wanting.clear();
+        let signatures = corners_of(&self.traced.signature, stride, length);
+        for (((&a, &b), (&c, &d)), &contrast) in signatures.zip(&self.contrast) {
+            let is_same = ((a ^ b) | (a ^ c) | (a ^ d)) == 0;
+            self.wanting.push(wants_more(contrast, is_same, false));
+        }
         let reach = L::Real::from_f64(NEAR);
-        let marks = |index: usize| (self.traced.signature[index], self.traced.near[index]);
-        for column in 0..width {
-            let places = [
-                upper.start + column,
-                upper.start + column + 1,
-                lower.start + column,
-                lower.start + column + 1,
-            ];
-            let [a, b, c, d] = places.map(marks);
-            let is_same = (a.0 == b.0) & (a.0 == c.0) & (a.0 == d.0);
-            let is_near = (a.1 < reach) | (b.1 < reach) | (c.1 < reach) | (d.1 < reach);
-            if wants_more(self.contrast[column], is_same, is_near) {
-                self.split.push(Cell {
-                    x: (column * FINEST) as u16,
-                    y: (row * FINEST) as u16,
-                    side: FINEST as u16,
-                });
-                for channel in &mut colors.channels {
-                    channel[first + column] = L::Real::ZERO;
+        let nears = corners_of(&self.traced.near, stride, length);
+        for (((&a, &b), (&c, &d)), wanting) in nears.zip(&mut self.wanting) {
+            *wanting |= a.min(b).min(c.min(d)) < reach;
+        }
+        self.split.clear();
+        for row in 0..tile.rows.len() {
+            for column in 0..tile.width() {
+                if self.wanting[row * stride + column] {
+                    self.split.push(Cell {
+                        x: (column * FINEST) as u16,
+                        y: (row * FINEST) as u16,
+                        side: FINEST as u16,
+                    });
+                    for channel in &mut colors.channels {
+                        channel[row * stride + column] = L::Real::ZERO;
+                    }
                 }
             }
         }
     }
+}
+
+/// The corners of cells: upper left and right, lower left and right.
+#[inline(always)]
+fn corners_of<T>(
+    values: &[T],
+    stride: usize,
+    cells: usize,
+) -> impl Iterator<Item = ((&T, &T), (&T, &T))> {
+    let at = |from: usize| &values[from..from + cells];
+    let upper = at(0).iter().zip(at(1));
+    upper.zip(at(stride).iter().zip(at(stride + 1)))
 }
 
 /// The largest difference of four numbers.

@@ -279,7 +279,8 @@ impl<L: Lane> Stage<L> {
         true
     }
 
-    /// Finds what the rays can meet, or just miss, between samples; nothing without edges.
+    /// Finds what rays from the camera can meet, or just miss, between samples; nothing without
+    /// edges. For mirrored rays, [`Self::aim`] knows.
     fn find_thin(&mut self, plan: &Plan<L::Real>) {
         if self.marks.is_empty() {
             self.thin.clear();
@@ -288,9 +289,6 @@ impl<L: Lane> Stage<L> {
             self.thin.keep_narrow(&self.seen, plan, |center, radius| {
                 plan.view.width_at(center, radius) * slipping
             });
-        } else {
-            // How far mirrored rays have come is for each of them to say.
-            self.thin.clone_from(&self.seen);
         }
     }
 
@@ -346,6 +344,7 @@ impl<L: Lane> Stage<L> {
         };
         let Some(beam) = beam else {
             self.seen = Lists::all(plan);
+            self.thin.clone_from(&self.seen);
             return;
         };
         // Room for what passes beside the rays, closer than a pixel.
@@ -357,9 +356,16 @@ impl<L: Lane> Stage<L> {
             width = L::select(packet.active, width.max(mark.trail.width), width);
             spread = L::select(packet.active, spread.max(mark.trail.spread), spread);
         }
-        let beam = beam.widened(width.greatest(), spread.greatest());
+        let (width, spread) = (width.greatest(), spread.greatest());
+        let beam = beam.widened(width, spread);
         self.seen
             .keep_met::<L>(token, plan, &beam, self.start_plane(plan), room);
+        if !self.marks.is_empty() {
+            let slipping = L::Real::from_f64(SLIPPING);
+            self.thin.keep_narrow(&self.seen, plan, |center, radius| {
+                (width + spread * beam.distance(center, radius)) * slipping
+            });
+        }
     }
 
     /// The plane that all rays start on, if they all start on one.

@@ -221,7 +221,7 @@ impl<R: Vectored, P: Pixel> Work<R> for Band<'_, R, P> {
             match self.sampling {
                 Sampling::Centres if self.grid == Grid::ALL => {
                     let traced = sampler.all(token, &mut engine, &in_tile, &tile, (0.5, 0.5));
-                    self.fill(&tile, traced.channels());
+                    self.fill(&tile, tile.columns.len(), traced.channels());
                 }
                 Sampling::Centres => {
                     let traced =
@@ -230,11 +230,11 @@ impl<R: Vectored, P: Pixel> Work<R> for Band<'_, R, P> {
                 }
                 Sampling::Grid(side) => {
                     sampler.grid(token, &mut engine, &in_tile, &tile, side, &mut colors);
-                    self.fill(&tile, colors.channels());
+                    self.fill(&tile, colors.stride, colors.channels());
                 }
                 Sampling::Adaptive => {
                     sampler.adaptive(token, &mut engine, &in_tile, &tile, &mut colors);
-                    self.fill(&tile, colors.channels());
+                    self.fill(&tile, colors.stride, colors.channels());
                 }
             }
         }
@@ -243,14 +243,14 @@ impl<R: Vectored, P: Pixel> Work<R> for Band<'_, R, P> {
 }
 
 impl<R: Vectored, P: Pixel> Band<'_, R, P> {
-    /// Writes the colours of a whole tile.
+    /// Writes the colours of a whole tile, `stride` apart from row to row.
     #[inline(always)]
-    fn fill(&mut self, tile: &Tile, [red, green, blue]: [&[R]; 3]) {
+    fn fill(&mut self, tile: &Tile, stride: usize, [red, green, blue]: [&[R]; 3]) {
         let width = tile.columns.len();
         for row in 0..tile.rows.len() {
             let from = row * self.width + tile.columns.start;
             let pixels = &mut self.pixels[from..from + width];
-            let part = row * width..(row + 1) * width;
+            let part = row * stride..row * stride + width;
             let channels = red[part.clone()]
                 .iter()
                 .zip(&green[part.clone()])

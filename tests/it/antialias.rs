@@ -72,8 +72,15 @@ fn quality(scene: &Scene, picture: &Picture) -> Quality {
 fn probe() {
     for side in [128, 256, 512] {
         for projection in [Projection::Perspective, Projection::Orthographic] {
-            let picture = Picture { sampling: Sampling::Adaptive, projection: Some(projection), ..Picture::sized(side, side) };
-            println!("Adap {side} {projection:?} {:?}", quality(&Scene::demo(), &picture));
+            let picture = Picture {
+                sampling: Sampling::Adaptive,
+                projection: Some(projection),
+                ..Picture::sized(side, side)
+            };
+            println!(
+                "Adap {side} {projection:?} {:?}",
+                quality(&Scene::demo(), &picture)
+            );
         }
     }
 }
