@@ -12,7 +12,7 @@ mod plain;
 use divan::{Bencher, black_box};
 use glint::image::{Image, render};
 use glint::lanes::{Level, Vec3};
-use glint::plan::{Picture, Precision};
+use glint::plan::{Picture, Precision, Sampling};
 use glint::scene::{Object, Scene, Shape};
 use glint::trace::{Threads, Watch};
 
@@ -67,6 +67,19 @@ fn demo_1024_double_threads(bencher: Bencher, threads: usize) {
 fn demo_1024_lanes(bencher: Bencher, name: &str) {
     let picture = Picture {
         level: Level::named(name),
+        ..Picture::sized(1024, 1024)
+    };
+    trace(bencher, &Scene::demo(), picture, 2);
+}
+
+/// With clean edges: adaptive, and the plain grid that costs about as many rays per edge pixel.
+#[divan::bench(args = ["adaptive", "grid 4"], sample_count = 20)]
+fn demo_1024_antialias(bencher: Bencher, sampling: &str) {
+    let picture = Picture {
+        sampling: match sampling {
+            "adaptive" => Sampling::Adaptive,
+            _ => Sampling::Grid(4),
+        },
         ..Picture::sized(1024, 1024)
     };
     trace(bencher, &Scene::demo(), picture, 2);

@@ -3,6 +3,7 @@
 
 mod check;
 mod fallback;
+mod plan;
 mod render;
 
 use std::ffi::OsString;
@@ -21,7 +22,7 @@ const FAILED: u8 = 1;
 const WRONG: u8 = 2;
 
 /// Commands of later versions, so that asking for one is answered by name.
-const NOT_YET: [&str; 5] = ["export", "plan", "chart", "stability", "job"];
+const NOT_YET: [&str; 4] = ["export", "chart", "stability", "job"];
 
 #[derive(Debug, Parser)]
 #[command(
@@ -47,6 +48,8 @@ enum Command {
     Render(render::RenderWords),
     /// Validate scene files
     Check(check::CheckWords),
+    /// Say what a scene needs of the tracer, and why
+    Plan(plan::PlanWords),
 }
 
 /// What the command line asked for.
@@ -71,12 +74,12 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
         .find(|name| words.get(1).is_some_and(|word| word == **name))
     {
         return Asked::Done(refuse(&format!(
-            "`glint {name}` is not built yet; this version has `glint`, `glint render` and `glint check`"
+            "`glint {name}` is not built yet; this version has `glint`, `glint render`, `glint check` and `glint plan`"
         )));
     }
     if let Some(name) = unknown_command(&words) {
         return Asked::Done(refuse(&format!(
-            "there is no command {name:?}; there are render and check, and `glint SCENE` opens the editor"
+            "there is no command {name:?}; there are render, check and plan, and `glint SCENE` opens the editor"
         )));
     }
     match Words::try_parse_from(words) {
@@ -88,6 +91,10 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
             command: Some(Command::Check(words)),
             ..
         }) => Asked::Done(check::run(&words)),
+        Ok(Words {
+            command: Some(Command::Plan(words)),
+            ..
+        }) => Asked::Done(plan::run(&words)),
         Ok(Words {
             command: None,
             scene,

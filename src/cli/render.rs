@@ -17,7 +17,8 @@ use crate::export::save_image;
 use crate::image::{Cost, Format, Image, render};
 use crate::lanes::Level;
 use crate::plan::{
-    MAX_GRID, Methods, Picture, Precision, RayOffset, Sampling, SphereMethod, TriangleMethod,
+    Accelerator, MAX_GRID, Methods, Picture, Precision, RayOffset, Sampling, SphereMethod,
+    TriangleMethod,
 };
 use crate::scene::{Document, MAX_SIDE, Projection, Scene};
 use crate::trace::{Threads, Watch};
@@ -60,8 +61,9 @@ pub struct RenderWords {
     /// Lanes of the tracer; all give the same picture [default: the widest of this processor]
     #[arg(long, value_name = "LEVEL", value_parser = lanes)]
     lanes: Option<Level>,
-    #[arg(long, hide = true, value_parser = not_yet)]
-    accelerator: Option<Never>,
+    /// How primitives are found: auto takes bundles (bvh) where there are many
+    #[arg(long, default_value = "auto")]
+    accelerator: AcceleratorWord,
     #[arg(long, hide = true, value_parser = not_yet)]
     frame: Option<Never>,
     /// Tracing threads [default: one per core]
@@ -92,6 +94,13 @@ enum PrecisionWord {
 enum SphereWord {
     Stable,
     Classic,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum AcceleratorWord {
+    Auto,
+    List,
+    Bvh,
 }
 
 #[derive(Serialize)]
@@ -230,6 +239,11 @@ impl RenderWords {
                 offset: self.offset,
             },
             sampling: self.antialias,
+            accelerator: match self.accelerator {
+                AcceleratorWord::Auto => Accelerator::Auto,
+                AcceleratorWord::List => Accelerator::List,
+                AcceleratorWord::Bvh => Accelerator::Bundles,
+            },
             level: self.lanes,
             ..Picture::sized(width, height)
         }

@@ -3,13 +3,16 @@
 //! picture cannot show. No names, no file.
 
 mod method;
+mod needs;
 mod pack;
 mod precision;
 mod screen;
 mod view;
 mod volumes;
+mod walls;
 
 pub use method::{Methods, RayOffset, SphereMethod, TriangleMethod};
+pub use needs::{Need, needs};
 pub use pack::{Light, Material, Plan, Plane, Sphere, Surface, Triangle};
 pub use precision::{Precision, needs_double};
 pub use screen::{Extent, Screen};
@@ -34,17 +37,24 @@ pub struct Picture {
     pub methods: Methods,
     /// How edges are smoothed.
     pub sampling: Sampling,
+    /// How primitives are found.
+    pub accelerator: Accelerator,
+    /// Whether parts of the model that the scene does not need are left out.
+    pub model: Model,
     /// The lanes of the kernel; the widest that there are if `None`.
     pub level: Option<Level>,
 }
 
 impl Picture {
-    /// The still picture that the scene itself asks for.
+    /// The still picture that the scene itself asks for, with clean edges.
     pub fn still(scene: &Scene) -> Self {
-        Self::sized(scene.render.width, scene.render.height)
+        Self {
+            sampling: Sampling::Adaptive,
+            ..Self::sized(scene.render.width, scene.render.height)
+        }
     }
 
-    /// A picture of another size, everything else as the scene asks.
+    /// A quick picture of another size, sampled at the pixels' centres.
     pub fn sized(width: u32, height: u32) -> Self {
         Self {
             width,
@@ -53,9 +63,33 @@ impl Picture {
             precision: Precision::Auto,
             methods: Methods::default(),
             sampling: Sampling::Centres,
+            accelerator: Accelerator::Auto,
+            model: Model::Needed,
             level: None,
         }
     }
+}
+
+/// How the primitives that a beam of rays can meet are found. All show the same picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Accelerator {
+    /// A list, or bundles where there are many.
+    #[default]
+    Auto,
+    /// One by one.
+    List,
+    /// Bundles within bundles.
+    Bundles,
+}
+
+/// How much of the image model is computed. Both show the same picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Model {
+    /// What the scene needs.
+    #[default]
+    Needed,
+    /// Everything, needed or not: what the rules of the plan are measured against.
+    Everything,
 }
 
 /// Largest number of samples along a side of a pixel.

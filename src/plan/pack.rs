@@ -3,9 +3,10 @@
 use std::collections::HashMap;
 
 use super::volumes::LARGEST_LIST;
-use super::{Ball, Methods, Picture, Screen, View, Volumes};
+use super::walls::{Wall, settle_planes};
+use super::{Accelerator, Ball, Methods, Model, Picture, Screen, View, Volumes};
 use crate::lanes::{Exponent, Real, Vec3};
-use crate::scene::{ColorPack, LightObj, Projection, Scene, Shape};
+use crate::scene::{ColorPack, LightObj, Scene, Shape};
 
 /// A scene and a view of it, ready to be traced. Coordinates are relative to the scene's middle,
 /// so that single precision is spent on the scene and not on its distance from the origin.
@@ -34,6 +35,8 @@ pub struct Plan<R> {
     /// Whether planes must be tested for shadows. What a perspective eye reaches, directly or in
     /// mirrors, lies on its side of every plane, so a plane blocks a light for all points or none.
     pub planes_cast: bool,
+    /// Whether shadow rays are traced even where a surface faces away from the light.
+    pub shadows_behind: bool,
     /// Where each sphere and triangle is in the picture; `None` where formulas are in use whose
     /// failures must not be hidden.
     pub screen: Option<Screen>,
@@ -118,19 +121,20 @@ impl<R: Real> Plan<R> {
         let centre = scene
             .bounds()
             .map_or(scene.camera.position, |(low, high)| low * 0.5 + high * 0.5);
-        let settled = settle_planes(scene, picture);
+        let (settled, model) = (settle_planes(scene, picture), picture.model);
         let mut plan = Self {
             view: View::new(&scene.camera, picture, centre),
             spheres: Vec::new(),
             casting_spheres: 0,
             planes: Vec::new(),
             triangles: Vec::new(),
-            lights: pack_lights(scene, centre, settled.as_deref().unwrap_or_default()),
-            materials: pack_materials(scene),
+            lights: pack_lights(scene, centre, settled.as_deref().unwrap_or_default(), model),
+            materials: pack_materials(scene, model),
             background: linear(scene.background),
             reflection_limit: scene.render.reflection_limit,
             methods: picture.methods,
             planes_cast: settled.is_none(),
+            shadows_behind: model == Model::Everything,
             screen: None,
             volumes: Volumes::default(),
         };
@@ -139,9 +143,9 @@ impl<R: Real> Plan<R> {
         if scene.light_visualization {
             plan.pack_markers(scene, centre);
         }
-        if picture.methods == Methods::default() {
+        if picture.methods == Methods::default() && model == Model::Needed {
             plan.screen = Some(Screen::new(scene, picture));
-            plan.volumes = plan.bound();
+            plan.volumes = plan.bound(picture.accelerator);
         }
         plan
     }
@@ -182,7 +186,7 @@ impl<R: Real> Plan<R> {
         }
     }
 
-    fn bound(&self) -> Volumes<R> {
+    fn bound(&self, accelerator: Accelerator) -> Volumes<R> {
         let spheres = self.spheres.iter().map(|sphere| Ball {
             center: sphere.center.to_f64(),
             radius: sphere.radius.to_f64(),
@@ -192,7 +196,12 @@ impl<R: Real> Plan<R> {
             .iter()
             .map(|triangle| Ball::around_triangle(triangle.corners.map(Vec3::to_f64)));
         let balls: Vec<Ball> = spheres.chain(triangles).collect();
-        Volumes::new(&balls, balls.len() > LARGEST_LIST)
+        let bundled = match accelerator {
+            Accelerator::Auto => balls.len() > LARGEST_LIST,
+            Accelerator::List => false,
+            Accelerator::Bundles => true,
+        };
+        Volumes::new(&balls, bundled)
     }
 
     fn pack_markers(&mut self, scene: &Scene, centre: Vec3<f64>) {
@@ -212,11 +221,17 @@ impl<R: Real> Plan<R> {
 }
 
 /// Lights that shine on what the eye can reach.
-fn pack_lights<R: Real>(scene: &Scene, centre: Vec3<f64>, walls: &[Wall]) -> Vec<Light<R>> {
+fn pack_lights<R: Real>(
+    scene: &Scene,
+    centre: Vec3<f64>,
+    walls: &[Wall],
+    model: Model,
+) -> Vec<Light<R>> {
+    let all = model == Model::Everything;
     let shining = scene
         .lights
         .iter()
-        .filter(|light| light.visible && light.intensity > 0.0);
+        .filter(|light| light.visible && (all || light.intensity > 0.0));
     shining
         .filter(|light| walls.iter().all(|wall| wall.side(light.position) >= 0.0))
         .map(|light| Light {
@@ -226,65 +241,13 @@ fn pack_lights<R: Real>(scene: &Scene, centre: Vec3<f64>, walls: &[Wall]) -> Vec
         .collect()
 }
 
-/// A plane, its normal turned to the eye.
-struct Wall {
-    normal: Vec3<f64>,
-    point: Vec3<f64>,
-}
-
-/// Share of the coordinates within which a point counts as on a plane: what their own rounding
-/// may have moved it by.
-const ON_PLANE: f64 = 1e-12;
-
-impl Wall {
-    /// Above zero on the eye's side, below it behind the plane, zero on it.
-    fn side(&self, point: Vec3<f64>) -> f64 {
-        let height = self.normal.dot(point - self.point);
-        let rounding = ON_PLANE * (point.max_abs() + self.point.max_abs());
-        if height.abs() <= rounding {
-            0.0
-        } else {
-            height
-        }
-    }
-}
-
-/// The planes as walls that hide every light behind them from everything that the eye can reach,
-/// and block no other light; `None` where planes have to be tested ray by ray: for parallel rays,
-/// which start on both sides, for an eye on a plane, and for formulas whose failures shall show.
-fn settle_planes(scene: &Scene, picture: &Picture) -> Option<Vec<Wall>> {
-    let camera = &scene.camera;
-    let is_parallel = picture.projection.unwrap_or(camera.projection) == Projection::Orthographic;
-    if is_parallel || picture.methods != Methods::default() {
-        return None;
-    }
-    let visible = scene.objects.iter().filter(|object| object.visible);
-    let planes = visible.filter_map(|object| match object.shape {
-        Shape::Plane { point, normal } => Some(Wall {
-            normal: normal.unit()?,
-            point,
-        }),
-        Shape::Sphere { .. } | Shape::Triangle { .. } => None,
-    });
-    planes
-        .map(|plane| match plane.side(camera.position) {
-            0.0 => None,
-            side if side < 0.0 => Some(Wall {
-                normal: -plane.normal,
-                ..plane
-            }),
-            _ => Some(plane),
-        })
-        .collect()
-}
-
 /// One material per pack, then one per pack as a marker wears it.
-fn pack_materials<R: Real>(scene: &Scene) -> Vec<Material<R>> {
+fn pack_materials<R: Real>(scene: &Scene, model: Model) -> Vec<Material<R>> {
     let lights = scene.lights.iter().filter(|light| light.visible);
     let total_intensity: f64 = lights.map(|light| light.intensity).sum();
     let lit = scene.color_packs.values().map(|pack| Material {
         base: linear(pack.ambient * scene.ambient_intensity),
-        surface: pack_surface(pack, total_intensity),
+        surface: pack_surface(pack, total_intensity, model),
     });
     let markers = scene.color_packs.values().map(|pack| Material {
         base: linear(pack.ambient),
@@ -293,10 +256,15 @@ fn pack_materials<R: Real>(scene: &Scene) -> Vec<Material<R>> {
     lit.chain(markers).collect()
 }
 
-fn pack_surface<R: Real>(pack: &ColorPack, total_intensity: f64) -> Option<Surface<R>> {
+fn pack_surface<R: Real>(
+    pack: &ColorPack,
+    total_intensity: f64,
+    model: Model,
+) -> Option<Surface<R>> {
+    let all = model == Model::Everything;
     let shines = pack.specular.max_abs() > 0.0;
-    let mirrors = pack.reflective && shines && total_intensity > 0.0;
-    (shines || pack.diffuse.max_abs() > 0.0).then(|| Surface {
+    let mirrors = pack.reflective && (all || shines && total_intensity > 0.0);
+    (all || shines || pack.diffuse.max_abs() > 0.0).then(|| Surface {
         diffuse: linear(pack.diffuse),
         specular: linear(pack.specular),
         exponent: Exponent::new(pack.phong_exponent),
@@ -345,6 +313,7 @@ fn bits(point: Vec3<f64>) -> [u64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Projection;
 
     fn plan(scene: &Scene) -> Plan<f32> {
         Plan::new(scene, &Picture::sized(64, 64))

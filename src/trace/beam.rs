@@ -1,7 +1,7 @@
 //! Bundles of rays, and what they can meet at all. Whatever a beam does not meet, no ray in it
 //! would have hit: leaving it out changes no pixel.
 
-use super::stage::Packet;
+use super::packet::Packet;
 use crate::lanes::{Lane, Mask as _, Real, Vec3};
 use crate::plan::{Ball, Balls, GROUP, Volumes};
 

@@ -6,6 +6,8 @@
 mod beam;
 mod cull;
 mod hit;
+mod mesh;
+mod packet;
 mod plane;
 mod samples;
 mod sampling;

@@ -5,8 +5,8 @@
 
 use super::cull::{Lists, Shadows};
 use super::hit::{Hit, NOTHING, Paths, Start, blocked, refine};
-use super::sampling::EDGE_CONTRAST;
-use super::stage::{Mark, Packet, Trail};
+use super::mesh::EDGE_CONTRAST;
+use super::packet::{Mark, Packet, Trail};
 use super::thin::{Footprint, thin_distance};
 use super::{Ray, Rays};
 use crate::lanes::{Lane, Mask as _, Real, Vec3};
@@ -151,13 +151,18 @@ impl<L: Lane> Painter<'_, L> {
         // A light in the surface has no direction: NaN is not above zero, and it adds nothing.
         let l = to_light * (one / distance);
         let cosine = hit.normal.dot(l);
-        let facing = spot.here & zero.less(cosine);
+        let lit_side = spot.here & zero.less(cosine);
+        let facing = if plan.shadows_behind {
+            spot.here
+        } else {
+            lit_side
+        };
         if !facing.any() {
             return dark;
         }
         rays.shadow += u64::from(facing.bits().count_ones());
         let mut mark = mark.zip(spot.footprint.as_ref());
-        let mut lit = facing;
+        let mut lit = lit_side;
         if !shadows.casters.is_empty() {
             let paths = hit.leave(token, plan.methods.offset, l);
             let reach = match plan.methods.offset {
@@ -177,7 +182,7 @@ impl<L: Lane> Painter<'_, L> {
             if shadows.is_umbra {
                 return dark;
             }
-            lit = lit & !blocked(token, plan, &shadows.casters, &paths, reach, lit);
+            lit = lit & !blocked(token, plan, &shadows.casters, &paths, reach, facing);
             if !lit.any() {
                 return dark;
             }

@@ -3,57 +3,14 @@
 
 use super::beam::{Bounds, beam_around};
 use super::cull::{Lists, Room, Shadows};
-use super::hit::{NOTHING, Nearest, Paths, Start, nearest};
+use super::hit::{Paths, Start, nearest};
+use super::packet::{Link, Mark, Packet, Trail};
 use super::samples::{Samples, Traced};
 use super::shade::Painter;
 use super::thin::{LARGEST_STRETCH, SLIPPING};
 use super::{Ray, Rays};
 use crate::lanes::{Lane, MOST_LANES, Mask as _, Real, Vec3};
 use crate::plan::Plan;
-
-/// Rays that are traced in step, what they meet and what they bring back.
-#[derive(Clone, Copy)]
-pub struct Packet<L: Lane> {
-    /// The rays.
-    pub rays: Ray<L>,
-    /// Where there is a ray.
-    pub active: L::Mask,
-    /// What they meet first.
-    pub near: Nearest<L>,
-    /// Linear colours, 0–1.
-    pub color: Vec3<L>,
-}
-
-/// Where mirrored rays come from.
-#[derive(Clone, Copy)]
-struct Link<L: Lane> {
-    /// Place of the packet in the stage before.
-    parent: usize,
-    /// What they start on.
-    start: Start<L>,
-    /// What their colours are multiplied by.
-    filter: Vec3<L>,
-}
-
-/// How wide a pixel is: where the rays start, and how much wider at distance 1.
-#[derive(Clone, Copy, Debug)]
-pub struct Trail<L> {
-    /// Scene units.
-    pub width: L,
-    /// Scene units per scene unit.
-    pub spread: L,
-}
-
-/// What samples know of their surroundings.
-#[derive(Clone, Copy, Debug)]
-pub struct Mark<L> {
-    /// How wide a pixel is along the rays.
-    pub trail: Trail<L>,
-    /// The sum of 2ⁱ over the lights i that shine on what was hit.
-    pub lit: L,
-    /// How many pixels away the next thing is that may slip between samples; infinity for none.
-    pub near: L,
-}
 
 /// One bounce: its packets, and what they can meet.
 struct Stage<L: Lane> {
@@ -201,34 +158,6 @@ impl<'a, L: Lane> Engine<'a, L> {
             stage
                 .marks
                 .resize(stage.packets.len(), Mark::new(token, trail));
-        }
-    }
-}
-
-impl<L: Lane> Packet<L> {
-    /// Rays that have met nothing yet.
-    #[inline(always)]
-    fn new(token: L::Token, plan: &Plan<L::Real>, rays: Ray<L>, active: L::Mask) -> Self {
-        Self {
-            rays,
-            active,
-            near: Nearest {
-                t: L::splat(token, L::Real::INFINITY),
-                number: L::splat(token, L::Real::from_f64(NOTHING)),
-            },
-            color: Vec3::broadcast(token, plan.background),
-        }
-    }
-}
-
-impl<L: Lane> Mark<L> {
-    /// Of rays that have met nothing yet.
-    #[inline(always)]
-    fn new(token: L::Token, trail: Trail<L>) -> Self {
-        Self {
-            trail,
-            lit: L::splat(token, L::Real::ZERO),
-            near: L::splat(token, L::Real::INFINITY),
         }
     }
 }

@@ -4,7 +4,7 @@
 
 use super::cull::Lists;
 use super::hit::{Paths, Start};
-use super::stage::Trail;
+use super::packet::Trail;
 use super::triangle::Shear;
 use super::{sphere, triangle};
 use crate::lanes::{Lane, Real};

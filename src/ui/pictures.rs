@@ -6,7 +6,7 @@ use egui::Context;
 
 use super::viewport::{Screen, low_res};
 use crate::editor::{Editor, Mode};
-use crate::plan::Picture;
+use crate::plan::{Picture, Sampling};
 use crate::worker::{Activity, Event, Frame, LaneError, LiveJob, Pace, StillJob, Worker};
 
 /// The lane and its pictures.
@@ -120,7 +120,13 @@ impl Pictures {
         self.worker.submit(LiveJob {
             revision,
             scene: editor.scene().clone(),
-            picture: Picture::sized(size.0, size.1),
+            picture: Picture {
+                sampling: match pace {
+                    Pace::Whole => Sampling::Centres,
+                    Pace::Progressive => Sampling::Adaptive,
+                },
+                ..Picture::sized(size.0, size.1)
+            },
             pace,
         });
     }

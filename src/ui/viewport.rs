@@ -9,6 +9,7 @@ use egui::{
 };
 
 use super::theme::palette;
+use crate::plan::Sampling;
 use crate::scene::Scene;
 use crate::worker::Frame;
 
@@ -189,12 +190,16 @@ pub fn describe(frame: &Frame, scene: &Arc<Scene>) -> String {
     } else {
         format!("{thin}×{low} of {width}×{height}")
     };
-    let camera = frame.cost.rays.camera.max(1) as f64;
-    let per_pixel = frame.cost.rays.total() as f64 / camera;
+    let pixels = frame.image.pixels.len().max(1) as f64;
+    let per_pixel = frame.cost.rays.total() as f64 / pixels;
+    let edges = match frame.sampling {
+        Sampling::Centres => "",
+        Sampling::Grid(_) | Sampling::Adaptive => " · smooth",
+    };
     let bounces = scene.render.reflection_limit;
     let objects = scene.objects.iter().filter(|object| object.visible).count();
     format!(
-        "{size} · {:.1} ms · {per_pixel:.1} rays/px · {} · {bounces} bounce{} · {objects} object{}",
+        "{size}{edges} · {:.1} ms · {per_pixel:.1} rays/px · {} · {bounces} bounce{} · {objects} object{}",
         frame.cost.time.as_secs_f64() * 1e3,
         frame.cost.lanes,
         if bounces == 1 { "" } else { "s" },

@@ -9,6 +9,7 @@ use super::errand::panic_text;
 use super::{Event, Frame, LiveJob, Pace, Running, RunningJob, Shared, StillJob, lock};
 use crate::export::save_image;
 use crate::image::{Cost, Image, render};
+use crate::plan::Sampling;
 use crate::trace::{Grid, Pass, Rays, Threads, Tracer, Watch};
 
 enum Job {
@@ -96,7 +97,8 @@ fn finish(shared: &Shared, was_stopped: bool) {
 }
 
 /// A coarse pass that always completes, so that there is always something new to show; then finer
-/// ones until a newer job comes. Every pixel is traced once.
+/// ones until a newer job comes, and clean edges last. Every pixel's centre is traced once. When
+/// clean edges fit into the frame budget, they come at once.
 fn live(shared: &Shared, job: &LiveJob, watch: &Watch, budget: &mut Budget) {
     let start = Instant::now();
     let tracer = Tracer::new(&job.scene, &job.picture);
@@ -106,6 +108,29 @@ fn live(shared: &Shared, job: &LiveJob, watch: &Watch, budget: &mut Budget) {
         Pace::Whole => 1,
     };
     let mut rays = Rays::default();
+    let publish = |image: Image, step: usize, rays: Rays, sampling: Sampling| {
+        shared.publish(Frame {
+            revision: job.revision,
+            image: Arc::new(image),
+            full_size: (tracer.width(), tracer.height()),
+            step,
+            sampling,
+            is_still: false,
+            cost: Cost {
+                time: start.elapsed(),
+                rays,
+                lanes: tracer.lanes(),
+            },
+        });
+    };
+    let sampling = job.picture.sampling;
+    if first == 1 && sampling != Sampling::Centres && budget.affords_smooth(image.pixels.len()) {
+        let Some(rays) = image.trace(&tracer, Pass::Whole, &shared.first_pass) else {
+            return;
+        };
+        budget.learn_smooth(image.pixels.len(), start.elapsed());
+        return publish(image, 1, rays, sampling);
+    }
     let mut grid = Grid {
         step: first,
         coarser: None,
@@ -123,32 +148,26 @@ fn live(shared: &Shared, job: &LiveJob, watch: &Watch, budget: &mut Budget) {
         if grid.step == first {
             budget.learn(new.camera, start.elapsed());
         }
-        // The last pass leaves the picture itself: there is nothing to copy.
-        let is_last = grid.step == 1;
-        let shown = if is_last {
-            std::mem::take(&mut image)
-        } else {
-            image.thinned(grid.step)
-        };
-        shared.publish(Frame {
-            revision: job.revision,
-            image: Arc::new(shown),
-            full_size: (tracer.width(), tracer.height()),
-            step: grid.step,
-            is_still: false,
-            cost: Cost {
-                time: start.elapsed(),
-                rays,
-                lanes: tracer.lanes(),
-            },
-        });
-        if is_last {
-            return;
+        if grid.step == 1 {
+            break;
         }
+        publish(image.thinned(grid.step), grid.step, rays, Sampling::Centres);
         grid = Grid {
             step: grid.step / 2,
             coarser: Some(grid.step),
         };
+    }
+    // The picture itself: there is nothing to copy.
+    let size = (image.width, image.height);
+    publish(std::mem::take(&mut image), 1, rays, Sampling::Centres);
+    if sampling == Sampling::Centres {
+        return;
+    }
+    let begin = Instant::now();
+    let mut image = Image::new(size.0, size.1);
+    if let Some(new) = image.trace(&tracer, Pass::Whole, watch) {
+        budget.learn_smooth(image.pixels.len(), begin.elapsed());
+        publish(image, 1, new, sampling);
     }
 }
 
@@ -162,6 +181,7 @@ fn still(shared: &Shared, job: &StillJob, watch: &Watch) -> Outcome {
         full_size: (image.width, image.height),
         image: Arc::clone(&image),
         step: 1,
+        sampling: job.picture.sampling,
         is_still: true,
         cost,
     });

@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 pub use errand::{panic_text, run_errand};
 
 use crate::image::{Cost, Image};
-use crate::plan::Picture;
+use crate::plan::{Picture, Sampling};
 use crate::scene::Scene;
 use crate::trace::{PoolError, Threads, Watch};
 
@@ -67,6 +67,8 @@ pub struct Frame {
     pub full_size: (usize, usize),
     /// 1 in a finished picture.
     pub step: usize,
+    /// How its edges are smoothed.
+    pub sampling: Sampling,
     /// Whether this is the still picture and not the live view.
     pub is_still: bool,
     /// What it cost so far.

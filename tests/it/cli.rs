@@ -137,12 +137,12 @@ fn wrong_words_and_wrong_files_exit_with_2() {
             "0 is not in 1..=16384",
         ),
         (
-            &["render", DEMO, "-o", "a.png", "--antialias", "adaptive"],
-            "adaptive is not built yet; use none",
+            &["render", DEMO, "-o", "a.png", "--antialias", "contrast"],
+            "expected none, adaptive, or grid:",
         ),
         (
-            &["render", DEMO, "-o", "a.png", "--antialias", "grid:4"],
-            "grid:4 is not built yet; use none",
+            &["render", DEMO, "-o", "a.png", "--antialias", "grid:0"],
+            "expected none, adaptive, or grid:",
         ),
         (
             &[
@@ -160,8 +160,8 @@ fn wrong_words_and_wrong_files_exit_with_2() {
             "'--frame <FRAME>': this option is not built yet",
         ),
         (
-            &["render", DEMO, "-o", "a.png", "--accelerator", "bvh"],
-            "'--accelerator <ACCELERATOR>': this option is not built yet",
+            &["render", DEMO, "-o", "a.png", "--accelerator", "octree"],
+            "possible values: auto, list, bvh",
         ),
         (
             &["render", BAD, "-o", "a.png"],
@@ -175,7 +175,7 @@ fn wrong_words_and_wrong_files_exit_with_2() {
         (&["check"], "<SCENE>..."),
         (
             &["chek", DEMO],
-            "there is no command \"chek\"; there are render and check",
+            "there is no command \"chek\"; there are render, check and plan",
         ),
     ];
     for (words, expected) in cases {
@@ -229,6 +229,32 @@ fn check_answers_for_every_file() {
         "{complaint}"
     );
     assert!(complaint.trim_end().ends_with('^'), "{complaint}");
+}
+
+#[test]
+fn plan_says_what_a_scene_needs() {
+    let run = glint(folder().path(), &["plan", DEMO]);
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    let said = text(&run.stdout);
+    for expected in [
+        "single precision",
+        "reflected rays, up to 1 bounce",
+        "shadow rays to 2 of 2 lights",
+        "1 plane never tested for shadows",
+    ] {
+        assert!(said.contains(expected), "{said}");
+    }
+    let run = glint(folder().path(), &["plan", DEMO, "--json"]);
+    let json: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    let needs = json.as_array().expect("an array");
+    assert_eq!(needs.len(), 9);
+    assert!(needs.iter().all(|need| {
+        ["rule", "what", "why", "saves"]
+            .iter()
+            .all(|key| need[key].is_string())
+    }));
+    let run = glint(folder().path(), &["plan", BAD]);
+    assert_eq!(run.status.code(), Some(2));
 }
 
 #[test]

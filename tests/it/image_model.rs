@@ -4,8 +4,10 @@ use std::collections::HashSet;
 
 use glint::image::{Image, render};
 use glint::lanes::{Level, Vec3};
-use glint::plan::{Methods, Picture, Precision, RayOffset, SphereMethod, TriangleMethod};
-use glint::scene::{Projection, Scene, Shape};
+use glint::plan::{
+    Accelerator, Methods, Picture, Precision, RayOffset, Sampling, SphereMethod, TriangleMethod,
+};
+use glint::scene::{Object, Projection, Scene, Shape};
 use glint::trace::{Grid, Pass, Rays, Threads, Tracer, Watch};
 
 use crate::random;
@@ -19,6 +21,8 @@ fn small(scene: &Scene) -> Image {
     picture(scene, &Picture::sized(160, 120)).0
 }
 
+const SAMPLINGS: [Sampling; 3] = [Sampling::Centres, Sampling::Grid(2), Sampling::Adaptive];
+
 /// The colour in the middle of a picture.
 fn middle(scene: &Scene) -> [u8; 3] {
     let image = picture(scene, &Picture::sized(31, 31)).0;
@@ -29,10 +33,18 @@ fn middle(scene: &Scene) -> [u8; 3] {
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
     for scene in [Scene::demo(), random::scene(3), random::scene(4)] {
-        let pictures: HashSet<Vec<[u8; 4]>> = [1, 2, 7]
+        let pictures: HashSet<[Vec<[u8; 4]>; 3]> = [1, 2, 7]
             .map(|count| {
                 let threads = Threads::new(Some(count)).expect("threads");
-                threads.run(|| picture(&scene, &Picture::sized(201, 133)).0.pixels)
+                threads.run(|| {
+                    SAMPLINGS.map(|sampling| {
+                        let wanted = Picture {
+                            sampling,
+                            ..Picture::sized(201, 133)
+                        };
+                        picture(&scene, &wanted).0.pixels
+                    })
+                })
             })
             .into();
         assert_eq!(pictures.len(), 1);
@@ -49,9 +61,14 @@ fn any_lanes_give_the_same_bytes() {
         random::scene(2),
         random::scene(6),
     ] {
-        for precision in [Precision::Single, Precision::Double] {
+        let precisions = [Precision::Single, Precision::Double];
+        for (precision, sampling) in precisions
+            .into_iter()
+            .flat_map(|p| SAMPLINGS.map(|s| (p, s)))
+        {
             let at = |level| Picture {
                 precision,
+                sampling,
                 level: Some(level),
                 ..Picture::sized(203, 131)
             };
@@ -59,7 +76,7 @@ fn any_lanes_give_the_same_bytes() {
             for (name, level) in &levels {
                 assert!(
                     picture(&scene, &at(*level)) == single,
-                    "{name} {precision:?}"
+                    "{name} {precision:?} {sampling:?}"
                 );
             }
         }
@@ -388,4 +405,36 @@ fn rays_are_traced_only_where_they_can_show() {
             reflected: 0
         }
     );
+}
+
+#[test]
+fn bundles_show_what_a_list_shows() {
+    let mut crowd = random::scene(5);
+    for n in 0..300 {
+        let place = |speed: f64| (f64::from(n) * speed).sin() * 70.0;
+        crowd.objects.push(Object {
+            name: format!("Speck {n}"),
+            color_pack: "pack 0".to_owned(),
+            shape: Shape::Sphere {
+                center: Vec3::new(place(1.7), place(2.3), place(3.1)),
+                radius: 2.5,
+            },
+            visible: true,
+        });
+    }
+    for scene in [Scene::demo(), crowd] {
+        for sampling in SAMPLINGS {
+            let with = |accelerator| {
+                let wanted = Picture {
+                    accelerator,
+                    sampling,
+                    ..Picture::sized(160, 120)
+                };
+                picture(&scene, &wanted)
+            };
+            let list = with(Accelerator::List);
+            assert!(list == with(Accelerator::Bundles), "{sampling:?}");
+            assert!(list == with(Accelerator::Auto), "{sampling:?}");
+        }
+    }
 }

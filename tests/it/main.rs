@@ -6,6 +6,7 @@ mod antialias;
 mod cli;
 mod house;
 mod image_model;
+mod needs;
 mod povray;
 mod random;
 mod scenes;

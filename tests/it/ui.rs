@@ -11,7 +11,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use glint::editor::{Editor, Mode};
 use glint::image::{Image, render};
-use glint::plan::Picture;
+use glint::plan::{Picture, Sampling};
 use glint::scene::{Document, Projection, Scene, Shape};
 use glint::trace::Watch;
 use glint::ui::{App, Ask, Command, Dialogs, FLIGHT, SHORTCUTS, Setup};
@@ -191,8 +191,11 @@ fn the_window_opens_on_the_demo_and_shows_its_picture() {
     let desk = Desk::new();
     assert_eq!(desk.scene(), &Scene::demo());
     let shown = desk.picture();
-    let size = Picture::sized(shown.width as u32, shown.height as u32);
-    let direct = render(desk.scene(), &size, &Watch::default())
+    let smooth = Picture {
+        sampling: Sampling::Adaptive,
+        ..Picture::sized(shown.width as u32, shown.height as u32)
+    };
+    let direct = render(desk.scene(), &smooth, &Watch::default())
         .expect("not stopped")
         .0;
     assert!(
@@ -814,4 +817,14 @@ fn a_label_brings_the_default_back() {
     desk.type_into("up x", "0.5, 0.5, 0.5");
     desk.double_click("up");
     assert_eq!(desk.scene(), &Scene::demo());
+}
+
+#[test]
+fn the_inspector_says_what_the_scene_needs() {
+    let mut desk = Desk::new();
+    desk.window.get_by_label("Needs").click();
+    desk.settle();
+    desk.window.get_by_label("reflected rays, up to 1 bounce");
+    desk.window
+        .get_by_label("because everything the camera can reach is on its side of every plane");
 }

@@ -2,6 +2,7 @@
 
 mod camera;
 mod items;
+mod needs;
 mod world;
 
 use egui::{Align2, Id, RichText, ScrollArea, TextEdit, Ui};
@@ -47,6 +48,8 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut Out) {
                 }
             }
         }
+        ui.add_space(GRID);
+        needs::show(ui, editor);
         ui.add_space(GRID);
     });
 }

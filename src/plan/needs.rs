@@ -1,0 +1,283 @@
+//! What a picture of a scene needs, and why: the plan in words, one line for each of its rules.
+
+use serde::Serialize;
+
+use super::volumes::LARGEST_LIST;
+use super::{Material, Picture, Plan, Precision, Sampling, needs_double};
+use crate::lanes::Exponent;
+use crate::scene::{Object, Scene};
+
+/// One decision of the plan.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Need {
+    /// Its name, for programs.
+    pub rule: &'static str,
+    /// What was decided.
+    pub what: String,
+    /// What in the scene decided it.
+    pub why: String,
+    /// What that spares.
+    pub saves: String,
+}
+
+/// The decisions of the plan for `picture` of `scene`, which must pass [`crate::scene::check`].
+pub fn needs(scene: &Scene, picture: &Picture) -> Vec<Need> {
+    let plan = Plan::<f64>::new(scene, picture);
+    vec![
+        precision(scene, picture),
+        reflections(scene, &plan),
+        shadows(scene, &plan),
+        planes(&plan),
+        markers(scene, &plan),
+        hidden(scene),
+        accelerator(&plan),
+        highlights(&plan),
+        edges(picture),
+    ]
+}
+
+fn need(rule: &'static str, what: impl Into<String>, why: impl Into<String>, saves: &str) -> Need {
+    Need {
+        rule,
+        what: what.into(),
+        why: why.into(),
+        saves: saves.to_owned(),
+    }
+}
+
+fn count(number: usize, one: &str) -> String {
+    format!("{number} {one}{}", if number == 1 { "" } else { "s" })
+}
+
+fn precision(scene: &Scene, picture: &Picture) -> Need {
+    let rule = "precision";
+    let double = "double precision";
+    match picture.precision {
+        Precision::Single => need(rule, "single precision", "it was asked for", "nothing more"),
+        Precision::Double => need(rule, double, "it was asked for", "nothing"),
+        Precision::Auto if needs_double(scene) => need(
+            rule,
+            double,
+            "something is too far, too small or too close for single precision",
+            "nothing: the picture would show the rounding",
+        ),
+        Precision::Auto => need(
+            rule,
+            "single precision",
+            "nothing is farther than 5,000 of its radii or smaller than 1/100,000 of the scene",
+            "a third of the time",
+        ),
+    }
+}
+
+fn reflections(scene: &Scene, plan: &Plan<f64>) -> Need {
+    let rule = "reflections";
+    let visible = || scene.objects.iter().filter(|object| object.visible);
+    let is_mirror = |object: &&Object| {
+        let place = scene.color_packs.get_index_of(&object.color_pack);
+        let surface = place.and_then(|place| plan.materials[place].surface.as_ref());
+        surface.is_some_and(|surface| surface.mirror.is_some())
+    };
+    let mirrors = visible().filter(is_mirror).count();
+    let limit = scene.render.reflection_limit;
+    let none = |why: &str| {
+        need(
+            rule,
+            "no reflected rays",
+            why,
+            "a ray and its shadow rays per hit on a mirror",
+        )
+    };
+    if mirrors == 0 {
+        none("no visible object reflects anything")
+    } else if limit == 0 {
+        none("the reflection limit is 0")
+    } else {
+        need(
+            rule,
+            format!("reflected rays, up to {}", count(limit as usize, "bounce")),
+            format!(
+                "{} reflect{}",
+                count(mirrors, "visible object"),
+                if mirrors == 1 { "s" } else { "" }
+            ),
+            "one ray per hit serves all lights",
+        )
+    }
+}
+
+fn shadows(scene: &Scene, plan: &Plan<f64>) -> Need {
+    let (used, all) = (plan.lights.len(), scene.lights.len());
+    let why = if used == all {
+        "every light shines on something that the camera can reach"
+    } else {
+        "the others are hidden, have no intensity or are behind a plane"
+    };
+    need(
+        "shadows",
+        format!(
+            "shadow rays to {used} of {}, from surfaces that face them",
+            count(all, "light")
+        ),
+        why,
+        "about a fifth of all rays: those from surfaces that face away",
+    )
+}
+
+fn planes(plan: &Plan<f64>) -> Need {
+    let rule = "planes";
+    match (plan.planes.len(), plan.planes_cast) {
+        (0, _) => need(
+            rule,
+            "no planes",
+            "there are none in the scene",
+            "their test for every ray",
+        ),
+        (number, true) => need(
+            rule,
+            format!("{} tested for shadows", count(number, "plane")),
+            "parallel rays start on both sides of a plane, or the camera is on one",
+            "nothing",
+        ),
+        (number, false) => need(
+            rule,
+            format!("{} never tested for shadows", count(number, "plane")),
+            "everything the camera can reach is on its side of every plane",
+            "a test per plane and shadow ray",
+        ),
+    }
+}
+
+fn markers(scene: &Scene, plan: &Plan<f64>) -> Need {
+    let rule = "markers";
+    let drawn = plan.spheres.len() - plan.casting_spheres;
+    let made = scene
+        .lights
+        .iter()
+        .filter(|light| light.marker.is_some())
+        .count();
+    if drawn > 0 {
+        let what = format!("{} drawn, in no shadow test", count(drawn, "light marker"));
+        need(
+            rule,
+            what,
+            "light markers are switched on",
+            "a test per marker and shadow ray",
+        )
+    } else if made > 0 {
+        let what = format!("{} left out", count(made, "light marker"));
+        need(
+            rule,
+            what,
+            "they are switched off, or their lights are hidden",
+            "a test per marker and ray",
+        )
+    } else {
+        need(rule, "no light markers", "no light has one", "nothing")
+    }
+}
+
+fn hidden(scene: &Scene) -> Need {
+    let hidden = scene
+        .objects
+        .iter()
+        .filter(|object| !object.visible)
+        .count();
+    if hidden == 0 {
+        need("hidden", "every object", "none is hidden", "nothing")
+    } else {
+        let what = format!("{} left out", count(hidden, "object"));
+        need(
+            "hidden",
+            what,
+            "hidden in the outliner",
+            "their tests for every ray",
+        )
+    }
+}
+
+fn accelerator(plan: &Plan<f64>) -> Need {
+    let rule = "accelerator";
+    let bounded = plan.spheres.len() + plan.triangles.len();
+    if plan.screen.is_none() {
+        let why = "formulas that are known to fail were asked for, and shall show it";
+        return need(rule, "every primitive for every ray", why, "nothing");
+    }
+    let what = count(bounded, "bounded primitive");
+    if plan.volumes.is_bundled() {
+        need(
+            rule,
+            format!("{what} in bundles of bundles"),
+            format!("more than {LARGEST_LIST} are too many to test one by one for every tile"),
+            "time that grows with what a tile can see, not with the scene",
+        )
+    } else {
+        need(
+            rule,
+            format!("{what} in a flat list, cut down for every tile"),
+            format!("up to {LARGEST_LIST} are tested faster than a tree is walked"),
+            "building a tree on every edit",
+        )
+    }
+}
+
+fn highlights(plan: &Plan<f64>) -> Need {
+    let rule = "highlights";
+    let surfaces = plan
+        .materials
+        .iter()
+        .filter_map(|Material { surface, .. }| surface.as_ref());
+    let exponents: Vec<Exponent> = surfaces.map(|surface| surface.exponent).collect();
+    if exponents
+        .iter()
+        .any(|exponent| matches!(exponent, Exponent::Large(_)))
+    {
+        need(
+            rule,
+            "exp(p·log1p(-w)) for large Phong exponents",
+            "an exponent is above 256, which would magnify the rounding of n·h",
+            "up to 43 levels of error at an exponent of 1,000,000",
+        )
+    } else if exponents
+        .iter()
+        .any(|exponent| matches!(exponent, Exponent::Mixed(..)))
+    {
+        need(
+            rule,
+            "squaring, and a logarithm for fractions",
+            "an exponent is not whole",
+            "nothing",
+        )
+    } else {
+        need(
+            rule,
+            "repeated squaring",
+            "every Phong exponent is a whole number up to 256",
+            "a logarithm and an exponential per light",
+        )
+    }
+}
+
+fn edges(picture: &Picture) -> Need {
+    let rule = "edges";
+    match picture.sampling {
+        Sampling::Centres => need(
+            rule,
+            "one ray per pixel",
+            "no smoothing was asked for",
+            "all further rays",
+        ),
+        Sampling::Grid(side) => need(
+            rule,
+            format!("{side}×{side} rays per pixel"),
+            "a grid was asked for",
+            "nothing",
+        ),
+        Sampling::Adaptive => need(
+            rule,
+            "more rays only where corners differ or something thin is near",
+            "elsewhere a pixel is the mean of its corners",
+            "more than nine tenths of the rays of a grid of equal error",
+        ),
+    }
+}

@@ -1,0 +1,59 @@
+//! Planes that settle once for all points which lights they hide.
+
+use super::{Methods, Model, Picture};
+use crate::lanes::Vec3;
+use crate::scene::{Projection, Scene, Shape};
+
+/// A plane, its normal turned to the eye.
+pub struct Wall {
+    /// Of length 1.
+    normal: Vec3<f64>,
+    /// Any of its points.
+    point: Vec3<f64>,
+}
+
+/// Share of the coordinates within which a point counts as on a plane: what their own rounding
+/// may have moved it by.
+const ON_PLANE: f64 = 1e-12;
+
+impl Wall {
+    /// Above zero on the eye's side, below it behind the plane, zero on it.
+    pub fn side(&self, point: Vec3<f64>) -> f64 {
+        let height = self.normal.dot(point - self.point);
+        let rounding = ON_PLANE * (point.max_abs() + self.point.max_abs());
+        if height.abs() <= rounding {
+            0.0
+        } else {
+            height
+        }
+    }
+}
+
+/// The planes as walls that hide every light behind them from everything that the eye can reach,
+/// and block no other light; `None` where planes have to be tested ray by ray: for parallel rays,
+/// which start on both sides, for an eye on a plane, and for formulas whose failures shall show.
+pub fn settle_planes(scene: &Scene, picture: &Picture) -> Option<Vec<Wall>> {
+    let camera = &scene.camera;
+    let is_parallel = picture.projection.unwrap_or(camera.projection) == Projection::Orthographic;
+    if is_parallel || picture.methods != Methods::default() || picture.model == Model::Everything {
+        return None;
+    }
+    let visible = scene.objects.iter().filter(|object| object.visible);
+    let planes = visible.filter_map(|object| match object.shape {
+        Shape::Plane { point, normal } => Some(Wall {
+            normal: normal.unit()?,
+            point,
+        }),
+        Shape::Sphere { .. } | Shape::Triangle { .. } => None,
+    });
+    planes
+        .map(|plane| match plane.side(camera.position) {
+            0.0 => None,
+            side if side < 0.0 => Some(Wall {
+                normal: -plane.normal,
+                ..plane
+            }),
+            _ => Some(plane),
+        })
+        .collect()
+}

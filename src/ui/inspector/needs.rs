@@ -1,0 +1,44 @@
+//! What the scene needs of the tracer, and why.
+
+use std::sync::Arc;
+
+use egui::{CollapsingHeader, Id, RichText, Ui};
+
+use crate::editor::Editor;
+use crate::plan::{Need, Picture, needs};
+use crate::ui::theme::GRID;
+
+/// The lines of the plan, made when the section is opened and on every edit while it is.
+pub fn show(ui: &mut Ui, editor: &Editor) {
+    let header = CollapsingHeader::new("Needs").id_salt("needs");
+    let response = header.show(ui, |ui| {
+        for need in lines(ui, editor).iter() {
+            ui.add_space(GRID / 2.0);
+            ui.label(&need.what)
+                .on_hover_text(format!("Spares {}.", need.saves));
+            ui.label(
+                RichText::new(format!("because {}", need.why))
+                    .small()
+                    .weak(),
+            );
+        }
+    });
+    response
+        .header_response
+        .on_hover_text("What the tracer computes for this scene, what it leaves out, and why");
+}
+
+fn lines(ui: &Ui, editor: &Editor) -> Arc<Vec<Need>> {
+    let id = Id::unique("needs of the scene");
+    let revision = editor.revision();
+    let known = ui.data(|data| data.get_temp::<(u64, Arc<Vec<Need>>)>(id));
+    match known {
+        Some((of, lines)) if of == revision => lines,
+        _ => {
+            let scene = editor.scene();
+            let lines = Arc::new(needs(scene, &Picture::still(scene)));
+            ui.data_mut(|data| data.insert_temp(id, (revision, Arc::clone(&lines))));
+            lines
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! No more than the scene needs: each rule of the plan leaves the picture as it is, spares what it
+//! says, and stops where it must.
+
+use glint::image::{Image, render};
+use glint::lanes::Vec3;
+use glint::plan::{Model, Picture, Plan, needs};
+use glint::scene::{Object, Scene, Shape};
+use glint::trace::{Rays, Watch};
+
+use crate::random;
+
+fn picture(scene: &Scene, model: Model) -> (Image, Rays) {
+    let wanted = Picture {
+        model,
+        ..Picture::sized(160, 120)
+    };
+    let (image, cost) = render(scene, &wanted, &Watch::default()).expect("not stopped");
+    (image, cost.rays)
+}
+
+/// What the plan says of one rule.
+fn said(scene: &Scene, rule: &str) -> String {
+    let needs = needs(scene, &Picture::still(scene));
+    let need = needs.into_iter().find(|need| need.rule == rule);
+    need.expect("a known rule").what
+}
+
+/// The demo with a change.
+fn demo(change: impl Fn(&mut Scene)) -> Scene {
+    let mut scene = Scene::demo();
+    change(&mut scene);
+    scene
+}
+
+#[test]
+fn what_is_left_out_is_not_missed() {
+    let scenes = (0..12).map(random::scene).chain([
+        Scene::demo(),
+        demo(|scene| scene.lights[0].intensity = 0.0),
+        demo(|scene| scene.lights[1].position = Vec3::new(100.0, -20.0, -50.0)),
+        demo(|scene| {
+            scene
+                .color_packs
+                .values_mut()
+                .for_each(|pack| pack.specular = Vec3::new(0.0, 0.0, 0.0));
+        }),
+    ]);
+    for (index, scene) in scenes.enumerate() {
+        let (needed, few) = picture(&scene, Model::Needed);
+        let (everything, many) = picture(&scene, Model::Everything);
+        let differ = needed
+            .pixels
+            .iter()
+            .zip(&everything.pixels)
+            .filter(|(a, b)| a != b)
+            .count();
+        assert_eq!(differ, 0, "scene {index}");
+        assert!(
+            few.shadow < many.shadow && few.reflected <= many.reflected,
+            "{few:?} {many:?}"
+        );
+    }
+}
+
+#[test]
+fn surfaces_that_face_away_cast_no_shadow_rays() {
+    let scene = demo(|scene| scene.light_visualization = false);
+    let (_, few) = picture(&scene, Model::Needed);
+    let (_, many) = picture(&scene, Model::Everything);
+    let spared = 1.0 - few.total() as f64 / many.total() as f64;
+    assert!((0.02..0.3).contains(&spared), "{spared}");
+    assert_eq!(few.reflected, many.reflected);
+}
+
+#[test]
+fn a_dark_or_hidden_light_costs_no_ray() {
+    let bright = picture(&Scene::demo(), Model::Needed).1;
+    let dark = demo(|scene| scene.lights[0].intensity = 0.0);
+    let below = demo(|scene| scene.lights[0].position = Vec3::new(100.0, -20.0, -50.0));
+    for scene in [&dark, &below] {
+        let rays = picture(scene, Model::Needed).1;
+        assert!(rays.shadow < bright.shadow * 2 / 3, "{rays:?} {bright:?}");
+        assert!(said(scene, "shadows").starts_with("shadow rays to 1 of 2 lights"));
+    }
+}
+
+#[test]
+fn without_mirrors_nothing_is_reflected_and_one_brings_it_back() {
+    let matte = demo(|scene| {
+        scene
+            .color_packs
+            .values_mut()
+            .for_each(|pack| pack.reflective = false);
+    });
+    assert_eq!(picture(&matte, Model::Needed).1.reflected, 0);
+    assert_eq!(said(&matte, "reflections"), "no reflected rays");
+    let black = demo(|scene| {
+        for pack in scene.color_packs.values_mut() {
+            pack.specular = Vec3::new(0.0, 0.0, 0.0);
+        }
+    });
+    assert_eq!(picture(&black, Model::Needed).1.reflected, 0);
+    assert!(picture(&black, Model::Everything).1.reflected > 0);
+    let flat = demo(|scene| scene.render.reflection_limit = 0);
+    assert_eq!(said(&flat, "reflections"), "no reflected rays");
+    let one = demo(|scene| {
+        scene
+            .color_packs
+            .values_mut()
+            .for_each(|pack| pack.reflective = false);
+        scene.color_packs["sphere 1"].reflective = true;
+    });
+    assert!(picture(&one, Model::Needed).1.reflected > 0);
+    assert!(said(&one, "reflections").starts_with("reflected rays"));
+}
+
+#[test]
+fn bundles_begin_where_a_list_is_too_long() {
+    let crowd = |count: usize| {
+        let mut scene = Scene::empty();
+        let pack = scene.color_packs.keys().next().expect("a pack").clone();
+        for n in 0..count {
+            scene.objects.push(Object {
+                name: format!("Ball {n}"),
+                color_pack: pack.clone(),
+                shape: Shape::Sphere {
+                    center: Vec3::new(n as f64, 0.0, -50.0),
+                    radius: 0.4,
+                },
+                visible: true,
+            });
+        }
+        scene.light_visualization = false;
+        Plan::<f32>::new(&scene, &Picture::sized(64, 64))
+            .volumes
+            .is_bundled()
+    };
+    assert!(!crowd(128));
+    assert!(crowd(129));
+}
+
+#[test]
+fn large_exponents_are_told() {
+    let with = |p: f64| demo(|scene| scene.color_packs["plane"].phong_exponent = p);
+    assert_eq!(said(&with(256.0), "highlights"), "repeated squaring");
+    assert!(said(&with(257.0), "highlights").contains("log1p"));
+    assert!(said(&with(16.5), "highlights").contains("fractions"));
+}
