@@ -1,6 +1,6 @@
 //! Where things are in the picture: rectangles of pixels, never too small.
 
-use super::Picture;
+use super::{Picture, Sampling};
 use crate::lanes::Vec3;
 use crate::scene::{Basis, Projection, Scene, Shape};
 
@@ -24,6 +24,9 @@ pub struct Screen {
 
 /// Pixels added on every side for the rounding of the kernel.
 const MARGIN: f64 = 1.0;
+/// The same where rays also look beside themselves: a pixel, as wide as in the middle of the
+/// picture, where the picture's rays are closest to each other.
+const SMOOTH_MARGIN: f64 = 4.0;
 /// What may be anywhere.
 const ANYWHERE: Extent = Extent {
     from: f32::NEG_INFINITY,
@@ -45,6 +48,7 @@ struct Projector {
     /// Pixels per unit of (distance across / depth), or per world unit.
     scale: f64,
     half: (f64, f64),
+    margin: f64,
 }
 
 impl Screen {
@@ -95,6 +99,10 @@ impl Projector {
             projection,
             scale,
             half,
+            margin: match picture.sampling {
+                Sampling::Adaptive => SMOOTH_MARGIN,
+                Sampling::Centres | Sampling::Grid(_) => MARGIN,
+            },
         })
     }
 
@@ -139,9 +147,16 @@ impl Projector {
         (self.columns(range(0)), self.rows(range(1)))
     }
 
+    fn extent(&self, from: f64, to: f64) -> Extent {
+        Extent {
+            from: (from - self.margin).floor() as f32,
+            to: (to + self.margin).ceil() as f32,
+        }
+    }
+
     fn columns(&self, range: Option<(f64, f64)>) -> Extent {
         range.map_or(ANYWHERE, |(from, to)| {
-            extent(
+            self.extent(
                 self.half.0 + from * self.scale,
                 self.half.0 + to * self.scale,
             )
@@ -150,18 +165,11 @@ impl Projector {
 
     fn rows(&self, range: Option<(f64, f64)>) -> Extent {
         range.map_or(ANYWHERE, |(from, to)| {
-            extent(
+            self.extent(
                 self.half.1 - to * self.scale,
                 self.half.1 - from * self.scale,
             )
         })
-    }
-}
-
-fn extent(from: f64, to: f64) -> Extent {
-    Extent {
-        from: (from - MARGIN).floor() as f32,
-        to: (to + MARGIN).ceil() as f32,
     }
 }
 

@@ -37,6 +37,12 @@ impl<L: Lane> Start<L> {
         }
     }
 
+    /// Where it is the primitive of this number.
+    #[inline(always)]
+    pub fn is(self, token: L::Token, number: usize) -> L::Mask {
+        self.numbers(token).same(L::splat(token, real(number)))
+    }
+
     #[inline(always)]
     fn numbers(self, token: L::Token) -> L {
         match self {

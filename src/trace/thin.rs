@@ -99,12 +99,13 @@ pub fn thin_distance<L: Lane>(
     for &index in &among.spheres {
         let sphere = &plan.spheres[index as usize];
         let size = L::splat(token, sphere.radius + sphere.radius);
-        if matches!(paths.start, Start::On(start) if start == index as usize) {
-            continue;
-        }
         let (along, beside) = sphere::beside(token, &paths.rays, sphere);
         let width = trail.width + trail.spread * along;
         let thin = size.less(width * slipping) & zero.less(along) & along.less(reach + size);
+        let thin = match paths.start {
+            Start::Nowhere => thin,
+            start => thin & !start.is(token, index as usize),
+        };
         best = best.min(pixels(token, thin, beside, width));
     }
     if among.triangles.is_empty() {

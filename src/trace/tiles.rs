@@ -282,6 +282,37 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    impl Pixel for [u64; 3] {
+        fn of<R: Real>(red: R, green: R, blue: R) -> Self {
+            [red, green, blue].map(|channel| channel.to_f64().to_bits())
+        }
+    }
+
+    #[test]
+    fn tiles_of_any_size_give_the_same_bits() {
+        let mut scene = Scene::demo();
+        scene.render.reflection_limit = 3;
+        for sampling in [Sampling::Centres, Sampling::Grid(2), Sampling::Adaptive] {
+            let pictures = [16, 8, 5, 32, 200].map(|tile| {
+                let picture = Picture {
+                    sampling,
+                    ..Picture::sized(171, 93)
+                };
+                let tracer = Tracer {
+                    tile,
+                    ..Tracer::new(&scene, &picture)
+                };
+                let mut pixels = vec![[0_u64; 3]; 171 * 93];
+                let rays = tracer.pass(&mut pixels, Pass::Whole, &Watch::default());
+                assert!(rays.is_some());
+                pixels
+            });
+            for other in &pictures[1..] {
+                assert!(*other == pictures[0], "{sampling:?}");
+            }
+        }
+    }
+
     proptest! {
         #[test]
         fn nested_passes_take_every_pixel_once(width in 1..70_usize, height in 1..40_usize, levels in 0..5_u32) {

@@ -79,6 +79,24 @@ impl<L: Lane> Shear<L> {
         L::select(self.is_x, x, L::select(self.is_y, y, z))
     }
 
+    /// Which way an edge between two sheared corners turns around the ray, and the square of its
+    /// distance from the ray.
+    #[inline(always)]
+    fn edge_beside(&self, token: L::Token, from: [L; 3], to: [L; 3]) -> (L, L) {
+        let (zero, one) = (
+            L::splat(token, L::Real::ZERO),
+            L::splat(token, L::Real::ONE),
+        );
+        let (x, y) = (to[0] - from[0], to[1] - from[1]);
+        let share = -(from[0] * x + from[1] * y) / (x * x + y * y);
+        let share = share.max(zero).min(one);
+        let (x_near, y_near) = (from[0] + x * share, from[1] + y * share);
+        // The sheared plane is not across the ray: without the part along it.
+        let along = (x_near * self.x + y_near * self.y) / self.z;
+        let square = x_near * x_near + y_near * y_near - along * along;
+        (from[0] * y - from[1] * x, square)
+    }
+
     /// A corner relative to the ray's origin: sheared x and y, and its depth along the axis.
     #[inline(always)]
     fn apply(&self, corner: Vec3<L>) -> [L; 3] {
@@ -136,7 +154,7 @@ fn watertight<L: Lane>(
 }
 
 /// How far along a ray the nearest and the farthest corner are, and how far from the ray the
-/// triangle is at least; zero inside.
+/// triangle is; zero inside.
 #[inline(always)]
 pub fn beside<L: Lane>(
     token: L::Token,
@@ -148,28 +166,22 @@ pub fn beside<L: Lane>(
     let a = shear.apply(Vec3::broadcast(token, a) - ray.origin);
     let b = shear.apply(Vec3::broadcast(token, b) - ray.origin);
     let c = shear.apply(Vec3::broadcast(token, c) - ray.origin);
-    let (ab, bc, ca) = (left_of(a, b), left_of(b, c), left_of(c, a));
+    let (ab, bc, ca) = (
+        shear.edge_beside(token, a, b),
+        shear.edge_beside(token, b, c),
+        shear.edge_beside(token, c, a),
+    );
     let zero = L::splat(token, L::Real::ZERO);
-    let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    let (least, greatest) = (ab.min(bc).min(ca), ab.max(bc).max(ca));
-    // The corners may be in either order.
-    let either = L::select(zero.less(area), -least, greatest).max(zero);
-    // The shear lengthens what lies across the ray by up to √3.
-    let shortest = L::splat(token, L::Real::from_f64(1.0 / 3.0_f64.sqrt()));
-    let (near, far) = (a[2] * shear.z, b[2] * shear.z);
-    let last = c[2] * shear.z;
+    // Inside, all edges turn the same way around the ray.
+    let turns = (ab.0.min(bc.0).min(ca.0), ab.0.max(bc.0).max(ca.0));
+    let inside = zero.less(turns.0) | turns.1.less(zero);
+    let nearest = ab.1.min(bc.1).min(ca.1).max(zero).sqrt();
+    let (t, u, v) = (a[2] * shear.z, b[2] * shear.z, c[2] * shear.z);
     (
-        near.min(far).min(last),
-        near.max(far).max(last),
-        either * shortest,
+        t.min(u).min(v),
+        t.max(u).max(v),
+        L::select(inside, zero, nearest),
     )
-}
-
-/// Distance of the origin from the line through two points of the plane, above zero on its left.
-#[inline(always)]
-fn left_of<L: Lane>(from: [L; 3], to: [L; 3]) -> L {
-    let (x, y) = (to[0] - from[0], to[1] - from[1]);
-    (from[0] * y - from[1] * x) / (x * x + y * y).sqrt()
 }
 
 /// The formula of Glint's ancestor: where the ray meets the plane, then, edge by edge in clockwise
