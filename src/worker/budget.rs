@@ -75,6 +75,11 @@ impl Budget {
         self.smooth_nanos_per_pixel = time.as_nanos() as f64 / pixels.max(1) as f64;
     }
 
+    /// Clean edges do not fit until they are seen to.
+    pub fn forget_smooth(&mut self) {
+        self.smooth_nanos_per_pixel = 0.0;
+    }
+
     /// The finest step whose picture is expected to take this share of the budget.
     fn finest_step(&self, width: usize, height: usize, share: f64) -> usize {
         let budget = BUDGET.as_nanos() as f64 * share;
@@ -128,6 +133,8 @@ mod tests {
         budget.learn_smooth(SIDE * SIDE, BUDGET / 2);
         assert!(budget.affords_smooth(SIDE * SIDE));
         assert!(!budget.affords_smooth(2 * SIDE * SIDE));
+        budget.forget_smooth();
+        assert!(!budget.affords_smooth(1));
     }
 
     #[test]

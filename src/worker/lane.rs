@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::budget::Budget;
 use super::errand::panic_text;
@@ -108,7 +108,7 @@ fn live(shared: &Shared, job: &LiveJob, watch: &Watch, budget: &mut Budget) {
         Pace::Whole => 1,
     };
     let mut rays = Rays::default();
-    let publish = |image: Image, step: usize, rays: Rays, sampling: Sampling| {
+    let publish = |image: Image, step: usize, rays: Rays, sampling: Sampling, time: Duration| {
         shared.publish(Frame {
             revision: job.revision,
             image: Arc::new(image),
@@ -117,7 +117,7 @@ fn live(shared: &Shared, job: &LiveJob, watch: &Watch, budget: &mut Budget) {
             sampling,
             is_still: false,
             cost: Cost {
-                time: start.elapsed(),
+                time,
                 rays,
                 lanes: tracer.lanes(),
             },
@@ -125,11 +125,13 @@ fn live(shared: &Shared, job: &LiveJob, watch: &Watch, budget: &mut Budget) {
     };
     let sampling = job.picture.sampling;
     if first == 1 && sampling != Sampling::Centres && budget.affords_smooth(image.pixels.len()) {
-        let Some(rays) = image.trace(&tracer, Pass::Whole, &shared.first_pass) else {
-            return;
+        let Some(rays) = image.trace(&tracer, Pass::Whole, watch) else {
+            // The scene has become too heavy, or the hand too fast, for clean edges at once.
+            return budget.forget_smooth();
         };
-        budget.learn_smooth(image.pixels.len(), start.elapsed());
-        return publish(image, 1, rays, sampling);
+        let time = start.elapsed();
+        budget.learn_smooth(image.pixels.len(), time);
+        return publish(image, 1, rays, sampling, time);
     }
     let mut grid = Grid {
         step: first,
@@ -151,23 +153,24 @@ fn live(shared: &Shared, job: &LiveJob, watch: &Watch, budget: &mut Budget) {
         if grid.step == 1 {
             break;
         }
-        publish(image.thinned(grid.step), grid.step, rays, Sampling::Centres);
+        let thin = image.thinned(grid.step);
+        publish(thin, grid.step, rays, Sampling::Centres, start.elapsed());
         grid = Grid {
             step: grid.step / 2,
             coarser: Some(grid.step),
         };
     }
-    // The picture itself: there is nothing to copy.
     let size = (image.width, image.height);
-    publish(std::mem::take(&mut image), 1, rays, Sampling::Centres);
+    publish(image, 1, rays, Sampling::Centres, start.elapsed());
     if sampling == Sampling::Centres {
         return;
     }
     let begin = Instant::now();
     let mut image = Image::new(size.0, size.1);
     if let Some(new) = image.trace(&tracer, Pass::Whole, watch) {
-        budget.learn_smooth(image.pixels.len(), begin.elapsed());
-        publish(image, 1, new, sampling);
+        let time = begin.elapsed();
+        budget.learn_smooth(image.pixels.len(), time);
+        publish(image, 1, new, sampling, time);
     }
 }
 

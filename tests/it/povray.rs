@@ -157,7 +157,7 @@ fn by_povray(scene: &Scene, folder: &Path) -> Image {
 fn by_glint(scene: &Scene, methods: Methods) -> Image {
     let picture = Picture {
         methods,
-        ..Picture::still(scene)
+        ..Picture::sized(scene.render.width, scene.render.height)
     };
     render(scene, &picture, &Watch::default())
         .expect("not stopped")
