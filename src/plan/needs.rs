@@ -65,7 +65,7 @@ fn precision(scene: &Scene, picture: &Picture) -> Need {
             rule,
             "single precision",
             "nothing is farther than 5,000 of its radii or smaller than 1/100,000 of the scene",
-            "a third of the time",
+            "about two fifths of the time",
         ),
     }
 }
