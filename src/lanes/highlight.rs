@@ -125,7 +125,7 @@ fn artanh<L: Lane>(token: L::Token, z: L) -> L {
     sum * z
 }
 
-/// exp(x) = exp(x/2⁶)^(2⁶) for x ≤ 0 by ten terms of Taylor's series; relative error below 2⁷u for
+/// exp(x) = exp(x/2⁶)^(2⁶) for x ≤ 0 by the terms up to y¹¹ of Taylor's series; relative error below 2⁷u for
 /// x ≥ -20, absolute error below 10⁻¹² for any.
 #[inline(always)]
 fn exponential<L: Lane>(token: L::Token, x: L) -> L {

@@ -20,6 +20,7 @@ pub struct Tile {
 /// Linear red, green and blue of the pixels of a tile, row by row.
 #[derive(Debug, Default)]
 pub struct Colors<R> {
+    /// 0–1.
     pub channels: [Vec<R>; 3],
     /// Places from one row to the next.
     pub stride: usize,
@@ -106,17 +107,22 @@ impl<L: Lane> Sampler<L> {
         tile: &Tile,
         (x, y): (f64, f64),
     ) -> &Traced<L::Real> {
+        self.lay_out(tile.columns.clone(), tile.rows.clone(), (x, y));
+        engine.trace(token, &self.samples, seen, false, &mut self.traced);
+        &self.traced
+    }
+
+    /// Lays out a sample at (`x`, `y`) in each pixel, row by row.
+    #[inline(always)]
+    fn lay_out(&mut self, columns: Range<usize>, rows: Range<usize>, (x, y): (f64, f64)) {
         let place = |index: usize, off: f64| L::Real::from_f64(index as f64 + off);
         self.samples.clear();
         self.columns.clear();
-        self.columns
-            .extend(tile.columns.clone().map(|column| place(column, x)));
-        for row in tile.rows.clone() {
+        self.columns.extend(columns.map(|column| place(column, x)));
+        for row in rows {
             self.samples.push_row(&self.columns, place(row, y));
         }
         self.samples.seal(L::WIDTH);
-        engine.trace(token, &self.samples, seen, false, &mut self.traced);
-        &self.traced
     }
 
     /// The means of `side × side` samples in each pixel, each in the middle of its part.
@@ -157,15 +163,9 @@ impl<L: Lane> Sampler<L> {
         tile: &Tile,
         colors: &mut Colors<L::Real>,
     ) {
-        let corners = (tile.columns.start..=tile.columns.end, tile.rows.clone());
-        self.samples.clear();
-        self.columns.clear();
-        let place = |index: usize| L::Real::from_f64(index as f64);
-        self.columns.extend(corners.0.map(place));
-        for row in corners.1.start..=corners.1.end {
-            self.samples.push_row(&self.columns, place(row));
-        }
-        self.samples.seal(L::WIDTH);
+        let columns = tile.columns.start..tile.columns.end + 1;
+        let rows = tile.rows.start..tile.rows.end + 1;
+        self.lay_out(columns, rows, (0.0, 0.0));
         engine.trace(token, &self.samples, seen, true, &mut self.traced);
         self.judge(tile, colors);
         if self.split.is_empty() {

@@ -241,7 +241,7 @@ impl<L: Lane> Stage<L> {
             let start = self.start_of(place);
             let mark = self.marks.get_mut(place);
             let packet = &mut self.packets[place];
-            let mirrored = painter.paint(packet, start, mark, &self.seen, &self.shadows, rays);
+            let mirrored = painter.paint(packet, start, mark, &self.thin, &self.shadows, rays);
             let Some(mirrored) = mirrored else {
                 continue;
             };
