@@ -7,6 +7,7 @@ mod needs;
 mod pack;
 mod precision;
 mod screen;
+mod solids;
 mod view;
 mod volumes;
 mod walls;

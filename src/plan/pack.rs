@@ -2,11 +2,12 @@
 
 use std::collections::HashMap;
 
+use super::solids::Solids;
 use super::volumes::LARGEST_LIST;
 use super::walls::{Wall, settle_planes};
 use super::{Accelerator, Ball, Methods, Model, Picture, Screen, View, Volumes};
 use crate::lanes::{Exponent, Real, Vec3};
-use crate::scene::{ColorPack, LightObj, Scene, Shape};
+use crate::scene::{ColorPack, LightObj, Projection, Scene, Shape};
 
 /// A scene and a view of it, ready to be traced. Coordinates are relative to the scene's middle,
 /// so that single precision is spent on the scene and not on its distance from the origin.
@@ -42,6 +43,8 @@ pub struct Plan<R> {
     pub screen: Option<Screen>,
     /// Balls around the spheres, then the triangles.
     pub volumes: Volumes<R>,
+    /// For each triangle, whether no camera ray needs it; empty where they all may.
+    pub unseen_faces: Vec<bool>,
 }
 
 /// A ball.
@@ -83,12 +86,14 @@ pub struct Triangle<R> {
 }
 
 /// A point light.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Light<R> {
     /// Where it shines from.
     pub position: Vec3<R>,
     /// > 0.
     pub intensity: R,
+    /// For each triangle, whether another one casts all of its shadow; empty where none is known.
+    pub idle_faces: Vec<bool>,
 }
 
 /// A material with everything multiplied in that is the same for all its points. Colours are 0–1.
@@ -137,6 +142,7 @@ impl<R: Real> Plan<R> {
             shadows_behind: model == Model::Everything,
             screen: None,
             volumes: Volumes::default(),
+            unseen_faces: Vec::new(),
         };
         plan.pack_objects(scene, centre);
         plan.casting_spheres = plan.spheres.len();
@@ -146,6 +152,7 @@ impl<R: Real> Plan<R> {
         if picture.methods == Methods::default() && model == Model::Needed {
             plan.screen = Some(Screen::new(scene, picture));
             plan.volumes = plan.bound(picture.accelerator);
+            plan.drop_far_faces(scene, picture, centre);
         }
         plan
     }
@@ -183,6 +190,19 @@ impl<R: Real> Plan<R> {
                     });
                 }
             }
+        }
+    }
+
+    /// Finds the faces of solids that camera rays, and shadow rays to each light, can do without.
+    fn drop_far_faces(&mut self, scene: &Scene, picture: &Picture, centre: Vec3<f64>) {
+        let triangles = self.triangles.iter();
+        let solids = Solids::among(triangles.map(|t| t.corners.map(Vec3::to_f64)).collect());
+        let projection = picture.projection.unwrap_or(scene.camera.projection);
+        if projection == Projection::Perspective {
+            self.unseen_faces = solids.turned_away(scene.camera.position - centre);
+        }
+        for light in &mut self.lights {
+            light.idle_faces = solids.turned_away(light.position.to_f64());
         }
     }
 
@@ -237,6 +257,7 @@ fn pack_lights<R: Real>(
         .map(|light| Light {
             position: Vec3::from_f64(light.position - centre),
             intensity: R::from_f64(light.intensity),
+            idle_faces: Vec::new(),
         })
         .collect()
 }
@@ -313,7 +334,6 @@ fn bits(point: Vec3<f64>) -> [u64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Projection;
 
     fn plan(scene: &Scene) -> Plan<f32> {
         Plan::new(scene, &Picture::sized(64, 64))

@@ -7,7 +7,7 @@ use super::beam::{Beam, is_hidden};
 use super::sampling::Tile;
 use super::thin::SLIPPING;
 use crate::lanes::{Lane, Real, Vec3};
-use crate::plan::{Ball, Extent, Plan, Screen};
+use crate::plan::{Ball, Extent, Light, Plan, Screen};
 
 /// The primitives that are worth testing, by their places in the plan's lists.
 #[derive(Clone, Debug, Default)]
@@ -35,6 +35,14 @@ impl Lists {
             planes: count(plan.planes.len()),
             triangles: count(plan.triangles.len()),
         }
+    }
+
+    /// Everything that camera rays may meet first.
+    pub fn all_seen<R: Real>(plan: &Plan<R>) -> Self {
+        let mut all = Self::all(plan);
+        all.triangles
+            .retain(|&index| !is_set(&plan.unseen_faces, index));
+        all
     }
 
     /// Everything that casts shadows.
@@ -137,7 +145,7 @@ impl Lists {
         room: &mut Room,
     ) {
         beam.gather::<L>(token, &plan.volumes, &mut room.stack, &mut room.met);
-        self.sort_out(plan, &room.met, plan.spheres.len());
+        self.sort_out(plan, &room.met, plan.spheres.len(), &[]);
         self.planes.clear();
         for (index, plane) in plan.planes.iter().enumerate() {
             if start_plane != Some(index) && beam.crosses(plane.normal, plane.offset) {
@@ -146,8 +154,15 @@ impl Lists {
         }
     }
 
-    /// Takes bounded primitives apart by kind, leaving out spheres from `spheres` on.
-    fn sort_out<R: Real>(&mut self, plan: &Plan<R>, bounded: &[u32], spheres: usize) {
+    /// Takes bounded primitives apart by kind, leaving out spheres from `spheres` on and triangles
+    /// that are `idle`.
+    fn sort_out<R: Real>(
+        &mut self,
+        plan: &Plan<R>,
+        bounded: &[u32],
+        spheres: usize,
+        idle: &[bool],
+    ) {
         self.spheres.clear();
         self.triangles.clear();
         for &member in bounded {
@@ -155,7 +170,10 @@ impl Lists {
             if index < spheres {
                 self.spheres.push(member);
             } else if index >= plan.spheres.len() {
-                self.triangles.push((index - plan.spheres.len()) as u32);
+                let triangle = (index - plan.spheres.len()) as u32;
+                if !is_set(idle, triangle) {
+                    self.triangles.push(triangle);
+                }
             }
         }
     }
@@ -180,12 +198,12 @@ impl Shadows {
         &mut self,
         token: L::Token,
         plan: &Plan<L::Real>,
-        light: Vec3<L::Real>,
+        light: &Light<L::Real>,
         ball: &Ball,
         footprint: L::Real,
         room: &mut Room,
     ) {
-        let from = light.to_f64();
+        let from = light.position.to_f64();
         let slipping = footprint * L::Real::from_f64(SLIPPING);
         let Some(beam) = Beam::to_ball(from, ball) else {
             self.casters = Lists::all_casting(plan);
@@ -195,7 +213,8 @@ impl Shadows {
         };
         let beam = beam.widened(footprint, L::Real::ZERO);
         beam.gather::<L>(token, &plan.volumes, &mut room.stack, &mut room.met);
-        self.casters.sort_out(plan, &room.met, plan.casting_spheres);
+        self.casters
+            .sort_out(plan, &room.met, plan.casting_spheres, &light.idle_faces);
         self.casters.planes.clear();
         if plan.planes_cast {
             self.casters.planes.extend(0..plan.planes.len() as u32);
@@ -219,6 +238,10 @@ pub enum Axis {
     Columns,
     /// From top to bottom.
     Rows,
+}
+
+fn is_set(flags: &[bool], index: u32) -> bool {
+    flags.get(index as usize) == Some(&true)
 }
 
 fn count(length: usize) -> Vec<u32> {

@@ -1,7 +1,7 @@
 //! What goes into the tracing of a tile, and what comes out of it, one number per sample in each
 //! column.
 
-use crate::lanes::Real;
+use crate::lanes::{Real, Vec3};
 
 /// Places in the picture to be traced, in pixels from its left and upper edge; filled up to whole
 /// packets.
@@ -47,11 +47,19 @@ impl<R: Real> Samples<R> {
         self.y.push(y);
     }
 
-    /// Adds places in one row.
+    /// Becomes all crossings of columns with rows, row by row.
     #[inline(always)]
-    pub fn push_row(&mut self, columns: &[R], y: R) {
-        self.x.extend_from_slice(columns);
-        self.y.extend(std::iter::repeat_n(y, columns.len()));
+    pub fn cross(&mut self, columns: &[R], rows: impl ExactSizeIterator<Item = R>) {
+        let (width, height) = (columns.len(), rows.len());
+        self.x.resize(width * height, R::ZERO);
+        self.y.resize(width * height, R::ZERO);
+        let across = self.x.chunks_exact_mut(width);
+        let down = self.y.chunks_exact_mut(width);
+        for ((xs, ys), row) in across.zip(down).zip(rows) {
+            for ((x, y), &column) in xs.iter_mut().zip(ys).zip(columns) {
+                (*x, *y) = (column, row);
+            }
+        }
     }
 
     /// Counts the places, and fills the last packet up.
@@ -70,6 +78,16 @@ impl<R: Real> Traced<R> {
     /// Red, green and blue.
     pub fn channels(&self) -> [&[R]; 3] {
         [&self.red, &self.green, &self.blue]
+    }
+
+    /// Becomes so many views of nothing but this colour.
+    pub fn fill(&mut self, count: usize, length: usize, edges: bool, color: Vec3<R>) {
+        self.resize(count, length, edges);
+        self.red.fill(color.x);
+        self.green.fill(color.y);
+        self.blue.fill(color.z);
+        self.near.fill(R::INFINITY);
+        self.signature.fill(0);
     }
 
     /// Makes room for so many samples, `length` with those that fill the last packet up.

@@ -116,12 +116,10 @@ impl<L: Lane> Sampler<L> {
     #[inline(always)]
     fn lay_out(&mut self, columns: Range<usize>, rows: Range<usize>, (x, y): (f64, f64)) {
         let place = |index: usize, off: f64| L::Real::from_f64(index as f64 + off);
-        self.samples.clear();
         self.columns.clear();
         self.columns.extend(columns.map(|column| place(column, x)));
-        for row in rows {
-            self.samples.push_row(&self.columns, place(row, y));
-        }
+        self.samples
+            .cross(&self.columns, rows.map(|row| place(row, y)));
         self.samples.seal(L::WIDTH);
     }
 

@@ -73,7 +73,13 @@ impl<'a, L: Lane> Engine<'a, L> {
         edges: bool,
         traced: &mut Traced<L::Real>,
     ) {
-        traced.resize(samples.count, samples.x.len(), edges);
+        let (count, length) = (samples.count, samples.x.len());
+        if seen.is_empty() {
+            self.rays.camera += count as u64;
+            let background = clamped((), self.plan.background);
+            return traced.fill(count, length, edges, background);
+        }
+        traced.resize(count, length, edges);
         self.start(token, samples, seen, edges);
         let mut depth = 0;
         loop {
@@ -202,7 +208,7 @@ impl<L: Lane> Stage<L> {
             // Room for what passes beside the rays to the lights, closer than a pixel.
             let footprint = self.widest(token) * L::Real::from_f64(LARGEST_STRETCH);
             for (shadows, light) in self.shadows.iter_mut().zip(&plan.lights) {
-                shadows.keep_between::<L>(token, plan, light.position, &ball, footprint, room);
+                shadows.keep_between::<L>(token, plan, light, &ball, footprint, room);
             }
         }
         true

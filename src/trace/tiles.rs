@@ -151,7 +151,7 @@ impl Tracer {
         pass: Pass,
         watch: &Watch,
     ) -> Option<Rays> {
-        let seen = Lists::all(plan);
+        let seen = Lists::all_seen(plan);
         let (grid, sampling) = match pass {
             Pass::Whole => (Grid::ALL, self.sampling),
             Pass::Centres(grid) => (grid, Sampling::Centres),

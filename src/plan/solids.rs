@@ -1,0 +1,181 @@
+//! Closed convex solids made of triangles: seen from outside, the faces that are turned away are
+//! behind others, and need no test.
+
+use std::collections::HashMap;
+
+use crate::lanes::Vec3;
+
+/// Most faces of a solid: its corners are held against each of its faces.
+const MOST_FACES: usize = 256;
+/// Share of a solid's size by which a point must be before or behind a face to count as such: more
+/// than single precision can shift a ray.
+const MARGIN: f64 = 1e-5;
+
+/// Triangles with corners that are clockwise seen from outside, and the solids that they make.
+#[derive(Clone, Debug, Default)]
+pub struct Solids {
+    triangles: Vec<[Vec3<f64>; 3]>,
+    /// For each solid its faces, by their places in the list.
+    solids: Vec<Vec<usize>>,
+}
+
+type Corner = [u64; 3];
+
+impl Solids {
+    /// Finds the closed convex solids among the triangles.
+    pub fn among(triangles: Vec<[Vec3<f64>; 3]>) -> Self {
+        let mut parts = parts(&triangles);
+        parts.retain(|faces| {
+            faces.len() <= MOST_FACES
+                && is_closed(&triangles, faces)
+                && is_convex(&triangles, faces)
+        });
+        Self {
+            triangles,
+            solids: parts,
+        }
+    }
+
+    /// For each triangle, whether no ray that comes from `point`, or arrives there, has to be
+    /// tested for it: it belongs to a solid, the point is outside, and a face that is turned
+    /// towards the point is hit as well.
+    pub fn turned_away(&self, point: Vec3<f64>) -> Vec<bool> {
+        let mut is_away = vec![false; self.triangles.len()];
+        for faces in &self.solids {
+            let heights = faces.iter().map(|&face| {
+                let (normal, offset, margin) = self.face(face);
+                let height = normal.dot(point) - offset;
+                (face, height, margin + MARGIN * height.abs())
+            });
+            if heights.clone().any(|(_, height, margin)| height > margin) {
+                for (face, height, margin) in heights {
+                    is_away[face] = height < -margin;
+                }
+            }
+        }
+        is_away
+    }
+
+    /// Unit normal outwards, distance from the origin along it, and what counts as on the face.
+    fn face(&self, face: usize) -> (Vec3<f64>, f64, f64) {
+        plane(&self.triangles[face])
+    }
+}
+
+fn plane([a, b, c]: &[Vec3<f64>; 3]) -> (Vec3<f64>, f64, f64) {
+    let across = (*c - *a).cross(*b - *a);
+    let normal = across.unit().unwrap_or(across);
+    let size = (*b - *a).length() + (*c - *a).length() + a.max_abs();
+    (normal, normal.dot(*a), MARGIN * size)
+}
+
+fn corner(point: Vec3<f64>) -> Corner {
+    // Adding zero makes one zero of the two.
+    point.to_array().map(|part| (part + 0.0).to_bits())
+}
+
+/// Triangles that hang together by common corners.
+fn parts(triangles: &[[Vec3<f64>; 3]]) -> Vec<Vec<usize>> {
+    // Each triangle points to one of its part; the last of the chain names the part.
+    let mut chain: Vec<usize> = (0..triangles.len()).collect();
+    let mut users: HashMap<Corner, usize> = HashMap::new();
+    for (index, corners) in triangles.iter().enumerate() {
+        for point in corners {
+            let user = *users.entry(corner(*point)).or_insert(index);
+            let (a, b) = (last(&mut chain, index), last(&mut chain, user));
+            chain[a] = b;
+        }
+    }
+    let mut parts: HashMap<usize, Vec<usize>> = HashMap::new();
+    for index in 0..triangles.len() {
+        parts
+            .entry(last(&mut chain, index))
+            .or_default()
+            .push(index);
+    }
+    parts.into_values().collect()
+}
+
+fn last(chain: &mut [usize], mut index: usize) -> usize {
+    while chain[index] != index {
+        chain[index] = chain[chain[index]];
+        index = chain[index];
+    }
+    index
+}
+
+/// Whether every edge is passed once in each direction.
+fn is_closed(triangles: &[[Vec3<f64>; 3]], faces: &[usize]) -> bool {
+    let mut edges: HashMap<(Corner, Corner), u32> = HashMap::new();
+    for &face in faces {
+        let [a, b, c] = triangles[face].map(corner);
+        for edge in [(a, b), (b, c), (c, a)] {
+            *edges.entry(edge).or_default() += 1;
+        }
+    }
+    edges
+        .iter()
+        .all(|(&(from, to), &count)| count == 1 && edges.contains_key(&(to, from)))
+}
+
+/// Whether every corner is on or behind every face.
+fn is_convex(triangles: &[[Vec3<f64>; 3]], faces: &[usize]) -> bool {
+    faces.iter().all(|&face| {
+        let (normal, offset, margin) = plane(&triangles[face]);
+        let corners = faces.iter().flat_map(|&other| triangles[other]);
+        normal != Vec3::splat(0.0)
+            && corners
+                .map(|point| normal.dot(point) - offset)
+                .all(|height| height <= margin * 1e-3)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Scene, Shape};
+
+    /// The demo's pyramid.
+    fn pyramid() -> Vec<[Vec3<f64>; 3]> {
+        let scene = Scene::demo();
+        let shapes = scene.objects.iter().map(|object| &object.shape);
+        shapes
+            .filter_map(|shape| match *shape {
+                Shape::Triangle { a, b, c } => Some([a, b, c]),
+                _ => None,
+            })
+            .collect()
+    }
+
+    fn away(triangles: Vec<[Vec3<f64>; 3]>, point: Vec3<f64>) -> usize {
+        let away = Solids::among(triangles).turned_away(point);
+        away.into_iter().filter(|away| *away).count()
+    }
+
+    #[test]
+    fn from_outside_the_far_faces_are_left_out() {
+        assert_eq!(away(pyramid(), Vec3::new(200.0, 20.0, 1000.0)), 5);
+        assert_eq!(away(pyramid(), Vec3::new(200.0, 1000.0, -100.0)), 2);
+        assert_eq!(away(pyramid(), Vec3::new(200.0, 20.0, -100.0)), 0, "inside");
+    }
+
+    #[test]
+    fn what_is_open_inside_out_or_dented_is_no_solid() {
+        let outside = Vec3::new(200.0, 20.0, 1000.0);
+        for missing in 0..6 {
+            let mut open = pyramid();
+            open.remove(missing);
+            assert_eq!(away(open, outside), 0);
+        }
+        let turned = pyramid().into_iter().map(|[a, b, c]| [a, c, b]);
+        assert_eq!(away(turned.collect(), outside), 0);
+        let apex = Vec3::new(200.0, 55.0, -100.0);
+        let low = Vec3::new(200.0, -5.0, -100.0);
+        let dented = pyramid().into_iter();
+        let dented = dented.map(|corners| corners.map(|p| if p == apex { low } else { p }));
+        assert_eq!(away(dented.collect(), outside), 0);
+        let mut doubled = pyramid();
+        doubled.extend(pyramid());
+        assert_eq!(away(doubled, outside), 0);
+    }
+}
