@@ -10,7 +10,7 @@
 mod plain;
 
 use divan::{Bencher, black_box};
-use glint::image::{Image, render};
+use glint::image::{Image, render, render_into};
 use glint::lanes::{Level, Vec3};
 use glint::plan::{Picture, Precision, Sampling};
 use glint::scene::{Object, Scene, Shape};
@@ -39,8 +39,12 @@ fn agree() {
 
 fn trace(bencher: Bencher, scene: &Scene, picture: Picture, threads: usize) {
     let threads = Threads::new(Some(threads)).expect("threads");
-    let draw = || threads.run(|| render(scene, &picture, &Watch::default()));
-    bencher.bench_local(|| draw().expect("not stopped").0);
+    // Over the last picture, as the window does.
+    let mut image = Image::default();
+    bencher.bench_local(|| {
+        let watch = Watch::default();
+        threads.run(|| render_into(&mut image, scene, &picture, &watch))
+    });
 }
 
 #[divan::bench(sample_count = 10)]

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use super::{fail, refuse, say};
 use crate::export::save_image;
-use crate::image::{Cost, Format, Image, render};
+use crate::image::{Cost, Format, Image, render_into};
 use crate::lanes::Level;
 use crate::plan::{
     Accelerator, MAX_GRID, Methods, Picture, Precision, RayOffset, Sampling, SphereMethod,
@@ -270,15 +270,13 @@ fn trace(
         let watch = Arc::clone(&watch);
         move || {
             let mut costs = Vec::new();
-            // Each picture is dropped for the next: they are all the same, and may be large.
-            let mut last = None;
+            // They are all the same, and may be large.
+            let mut image = Image::default();
             for _ in 0..repeat {
-                drop(last.take());
-                let (image, cost) = threads.run(|| render(&scene, &picture, &watch))?;
-                last = Some(image);
+                let cost = threads.run(|| render_into(&mut image, &scene, &picture, &watch))?;
                 costs.push(cost);
             }
-            last.map(|image| (image, costs))
+            Some((image, costs))
         }
     });
     let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {eta} left");

@@ -45,6 +45,13 @@ impl Image {
         }
     }
 
+    /// Makes room for another size. What the pixels show afterwards means nothing; memory that is
+    /// there is kept, which saves the system handing out every page anew.
+    pub fn resize(&mut self, width: usize, height: usize) {
+        (self.width, self.height) = (width, height);
+        self.pixels.resize(width * height, [0; 4]);
+    }
+
     /// Traces the pixels of `pass`; `None` if `watch` said stop.
     pub fn trace(&mut self, tracer: &Tracer, pass: Pass, watch: &Watch) -> Option<Rays> {
         tracer.pass(&mut self.pixels, pass, watch)
@@ -69,18 +76,27 @@ impl Image {
 /// Traces a whole picture on the current rayon pool: the one way from a scene to pixels.
 /// `None` if `watch` said stop.
 pub fn render(scene: &Scene, picture: &Picture, watch: &Watch) -> Option<(Image, Cost)> {
+    let mut image = Image::new(picture.width as usize, picture.height as usize);
+    let cost = render_into(&mut image, scene, picture, watch)?;
+    Some((image, cost))
+}
+
+/// [`render`] over an older picture, whose memory it takes.
+pub fn render_into(
+    image: &mut Image,
+    scene: &Scene,
+    picture: &Picture,
+    watch: &Watch,
+) -> Option<Cost> {
     let start = Instant::now();
     let tracer = Tracer::new(scene, picture);
-    let mut image = Image::new(tracer.width(), tracer.height());
+    image.resize(tracer.width(), tracer.height());
     let rays = image.trace(&tracer, Pass::Whole, watch)?;
-    Some((
-        image,
-        Cost {
-            time: start.elapsed(),
-            rays,
-            lanes: tracer.lanes(),
-        },
-    ))
+    Some(Cost {
+        time: start.elapsed(),
+        rays,
+        lanes: tracer.lanes(),
+    })
 }
 
 impl Pixel for [u8; 4] {

@@ -19,6 +19,7 @@ mod screenshot;
 mod status;
 mod theme;
 mod toasts;
+mod upload;
 mod viewport;
 mod window;
 

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use egui::{
-    Color32, ColorImage, Context, Painter, Pos2, Rect, Response, ScrollArea, Sense, Stroke,
-    StrokeKind, TextureFilter, TextureHandle, TextureOptions, TextureWrapMode, Ui, Vec2, pos2,
-    vec2,
+    Color32, Context, Painter, Pos2, Rect, Response, ScrollArea, Sense, Stroke, StrokeKind,
+    TextureFilter, TextureHandle, TextureOptions, TextureWrapMode, Ui, Vec2, pos2, vec2,
 };
 
 use super::theme::palette;
+use super::upload::{changes, piece, whole};
 use crate::plan::Sampling;
 use crate::scene::Scene;
 use crate::worker::Frame;
@@ -56,12 +56,6 @@ impl Screen {
         {
             return;
         }
-        let pixels = frame
-            .image
-            .pixels
-            .iter()
-            .map(|&[r, g, b, _]| Color32::from_rgb(r, g, b));
-        let image = ColorImage::new([frame.image.width, frame.image.height], pixels.collect());
         let name = if frame.is_still {
             "still picture"
         } else {
@@ -69,12 +63,22 @@ impl Screen {
         };
         match place {
             Some(shown) => {
-                shown.texture.set(image, SHARP);
+                match changes(&shown.frame.image, &frame.image) {
+                    None => shown.texture.set(whole(&frame.image), SHARP),
+                    Some(parts) => {
+                        for part in parts {
+                            let place = [part.columns.start, part.rows.start];
+                            shown
+                                .texture
+                                .set_partial(place, piece(&frame.image, &part), SHARP);
+                        }
+                    }
+                }
                 shown.frame = frame;
             }
             None => {
                 *place = Some(Shown {
-                    texture: ctx.load_texture(name, image, SHARP),
+                    texture: ctx.load_texture(name, whole(&frame.image), SHARP),
                     frame,
                 });
             }

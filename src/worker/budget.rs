@@ -20,8 +20,6 @@ const NEWEST: f64 = 0.35;
 #[derive(Clone, Debug)]
 pub struct Budget {
     nanos_per_pixel: f64,
-    /// With clean edges; 0 if that is not known.
-    smooth_nanos_per_pixel: f64,
     step: usize,
     spare: u32,
 }
@@ -31,7 +29,6 @@ impl Budget {
     pub fn new() -> Self {
         Self {
             nanos_per_pixel: 0.0,
-            smooth_nanos_per_pixel: 0.0,
             step: 8,
             spare: 0,
         }
@@ -62,22 +59,6 @@ impl Budget {
             0.0 => nanos,
             old => old + (nanos - old) * NEWEST,
         };
-    }
-
-    /// Whether a picture of so many pixels with clean edges fits well into the budget.
-    pub fn affords_smooth(&self, pixels: usize) -> bool {
-        let expected = pixels as f64 * self.smooth_nanos_per_pixel;
-        expected > 0.0 && expected <= BUDGET.as_nanos() as f64 * SPARE_SHARE
-    }
-
-    /// Learns from a picture with clean edges.
-    pub fn learn_smooth(&mut self, pixels: usize, time: Duration) {
-        self.smooth_nanos_per_pixel = time.as_nanos() as f64 / pixels.max(1) as f64;
-    }
-
-    /// Clean edges do not fit until they are seen to.
-    pub fn forget_smooth(&mut self) {
-        self.smooth_nanos_per_pixel = 0.0;
     }
 
     /// The finest step whose picture is expected to take this share of the budget.
@@ -124,17 +105,6 @@ mod tests {
             "a small picture has nothing to save"
         );
         assert_eq!(budget.choose(4096, 100), COARSEST);
-    }
-
-    #[test]
-    fn clean_edges_come_at_once_when_they_are_known_to_fit() {
-        let mut budget = Budget::new();
-        assert!(!budget.affords_smooth(1), "nothing is known yet");
-        budget.learn_smooth(SIDE * SIDE, BUDGET / 2);
-        assert!(budget.affords_smooth(SIDE * SIDE));
-        assert!(!budget.affords_smooth(2 * SIDE * SIDE));
-        budget.forget_smooth();
-        assert!(!budget.affords_smooth(1));
     }
 
     #[test]

@@ -2,9 +2,10 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::budget::Budget;
+use super::easel::Easel;
 use super::errand::panic_text;
 use super::{Event, Frame, LiveJob, Pace, Running, RunningJob, Shared, StillJob, lock};
 use crate::export::save_image;
@@ -28,11 +29,19 @@ enum Outcome {
 /// Works until told to quit. A panic in a job becomes an event, and the lane lives on.
 pub(super) fn run(shared: &Shared, threads: &Threads) {
     let mut budget = Budget::new();
+    let mut easel = Easel::default();
     while let Some((job, watch)) = next_job(shared) {
         let outcome = catch_unwind(AssertUnwindSafe(|| {
             threads.run(|| match &job {
                 Job::Live(job) => {
-                    live(shared, job, &watch, &mut budget);
+                    let start = Instant::now();
+                    let mut live = Live {
+                        shared,
+                        job,
+                        tracer: Tracer::new(&job.scene, &job.picture),
+                        easel: &mut easel,
+                    };
+                    live.run(&watch, &mut budget, start);
                     Outcome::Ended
                 }
                 Job::Still(job) => still(shared, job, &watch),
@@ -96,81 +105,96 @@ fn finish(shared: &Shared, was_stopped: bool) {
     }
 }
 
-/// A coarse pass that always completes, so that there is always something new to show; then finer
-/// ones until a newer job comes, and clean edges last. Every pixel's centre is traced once. When
-/// clean edges fit into the frame budget, they come at once.
-fn live(shared: &Shared, job: &LiveJob, watch: &Watch, budget: &mut Budget) {
-    let start = Instant::now();
-    let tracer = Tracer::new(&job.scene, &job.picture);
-    let mut image = Image::new(tracer.width(), tracer.height());
-    let first = match job.pace {
-        Pace::Progressive => budget.choose(image.width, image.height),
-        Pace::Whole => 1,
-    };
-    let mut rays = Rays::default();
-    let publish = |image: Image, step: usize, rays: Rays, sampling: Sampling, time: Duration| {
-        shared.publish(Frame {
-            revision: job.revision,
-            image: Arc::new(image),
-            full_size: (tracer.width(), tracer.height()),
+/// A live picture on its way: a coarse pass that always completes, so that there is always
+/// something new to show; then finer ones until a newer job comes, and clean edges last.
+struct Live<'a> {
+    shared: &'a Shared,
+    job: &'a LiveJob,
+    tracer: Tracer,
+    easel: &'a mut Easel,
+}
+
+impl Live<'_> {
+    fn run(&mut self, watch: &Watch, budget: &mut Budget, start: Instant) {
+        if self.trace_centres(watch, budget, start).is_some()
+            && self.job.picture.sampling != Sampling::Centres
+        {
+            self.smooth(watch);
+        }
+    }
+
+    /// Traces every pixel's centre once; `None` if it was stopped.
+    fn trace_centres(&mut self, watch: &Watch, budget: &mut Budget, start: Instant) -> Option<()> {
+        let mut image = self.canvas();
+        let first = match self.job.pace {
+            Pace::Progressive => budget.choose(image.width, image.height),
+            Pace::Whole => 1,
+        };
+        let mut rays = Rays::default();
+        let mut grid = Grid {
+            step: first,
+            coarser: None,
+        };
+        loop {
+            let is_first = grid.step == first;
+            let watch = if is_first {
+                &self.shared.first_pass
+            } else {
+                watch
+            };
+            let new = image.trace(&self.tracer, Pass::Centres(grid), watch)?;
+            rays += new;
+            if is_first {
+                budget.learn(new.camera, start.elapsed());
+            }
+            if grid.step == 1 {
+                break;
+            }
+            let thin = image.thinned(grid.step);
+            self.publish(thin, grid.step, rays, Sampling::Centres, start);
+            grid = Grid {
+                step: grid.step / 2,
+                coarser: Some(grid.step),
+            };
+        }
+        self.publish(image, 1, rays, Sampling::Centres, start);
+        Some(())
+    }
+
+    fn smooth(&mut self, watch: &Watch) {
+        let start = Instant::now();
+        let mut image = self.canvas();
+        if let Some(rays) = image.trace(&self.tracer, Pass::Whole, watch) {
+            self.publish(image, 1, rays, self.job.picture.sampling, start);
+        }
+    }
+
+    fn canvas(&mut self) -> Image {
+        self.easel.canvas(self.tracer.width(), self.tracer.height())
+    }
+
+    fn publish(
+        &mut self,
+        image: Image,
+        step: usize,
+        rays: Rays,
+        sampling: Sampling,
+        start: Instant,
+    ) {
+        let time = start.elapsed();
+        self.shared.publish(Frame {
+            revision: self.job.revision,
+            image: self.easel.hand_out(image),
+            full_size: (self.tracer.width(), self.tracer.height()),
             step,
             sampling,
             is_still: false,
             cost: Cost {
                 time,
                 rays,
-                lanes: tracer.lanes(),
+                lanes: self.tracer.lanes(),
             },
         });
-    };
-    let sampling = job.picture.sampling;
-    if first == 1 && sampling != Sampling::Centres && budget.affords_smooth(image.pixels.len()) {
-        let Some(rays) = image.trace(&tracer, Pass::Whole, watch) else {
-            // The scene has become too heavy, or the hand too fast, for clean edges at once.
-            return budget.forget_smooth();
-        };
-        let time = start.elapsed();
-        budget.learn_smooth(image.pixels.len(), time);
-        return publish(image, 1, rays, sampling, time);
-    }
-    let mut grid = Grid {
-        step: first,
-        coarser: None,
-    };
-    loop {
-        let watch = if grid.step == first {
-            &shared.first_pass
-        } else {
-            watch
-        };
-        let Some(new) = image.trace(&tracer, Pass::Centres(grid), watch) else {
-            return;
-        };
-        rays += new;
-        if grid.step == first {
-            budget.learn(new.camera, start.elapsed());
-        }
-        if grid.step == 1 {
-            break;
-        }
-        let thin = image.thinned(grid.step);
-        publish(thin, grid.step, rays, Sampling::Centres, start.elapsed());
-        grid = Grid {
-            step: grid.step / 2,
-            coarser: Some(grid.step),
-        };
-    }
-    let size = (image.width, image.height);
-    publish(image, 1, rays, Sampling::Centres, start.elapsed());
-    if sampling == Sampling::Centres {
-        return;
-    }
-    let begin = Instant::now();
-    let mut image = Image::new(size.0, size.1);
-    if let Some(new) = image.trace(&tracer, Pass::Whole, watch) {
-        let time = begin.elapsed();
-        budget.learn_smooth(image.pixels.len(), time);
-        publish(image, 1, new, sampling, time);
     }
 }
 

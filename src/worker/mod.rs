@@ -3,6 +3,7 @@
 //! about windows: `wake` is called whenever there is something to look at.
 
 mod budget;
+mod easel;
 mod errand;
 mod lane;
 

@@ -1,0 +1,180 @@
+//! How soon an edit is seen, and what it costs the window's thread: `cargo bench --bench editor`.
+//!
+//! Everything runs without a display: the lane is the real one, the window is driven headlessly and
+//! its shapes are cut into triangles as for a graphics card.
+
+#![allow(
+    clippy::expect_used,
+    reason = "a benchmark that cannot go on has failed"
+)]
+
+use std::cell::{Cell, RefCell};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant};
+
+use divan::Bencher;
+use egui::{Event, PointerButton, pos2};
+use egui_kittest::Harness;
+use glint::image::{Image, render_into};
+use glint::plan::{Picture, Sampling};
+use glint::scene::Scene;
+use glint::trace::{Threads, Watch};
+use glint::ui::{App, Setup};
+use glint::worker::{Frame, LiveJob, Pace, Worker};
+
+fn main() {
+    divan::main();
+}
+
+const SIDE: u32 = 1024;
+
+/// What `published` has to be held against: the same picture without the lane.
+#[divan::bench(sample_count = 100, sample_size = 1)]
+fn plain_frame(bencher: Bencher) {
+    let threads = Threads::new(None).expect("threads");
+    let (scene, picture) = (Scene::demo(), Picture::sized(SIDE, SIDE));
+    let mut image = Image::default();
+    bencher.bench_local(|| {
+        threads.run(|| render_into(&mut image, &scene, &picture, &Watch::default()))
+    });
+}
+
+/// From an edit of the demo to its picture in full resolution, through the lane, while the clean
+/// edges of the one before are being traced.
+#[divan::bench(sample_count = 100, sample_size = 1)]
+fn published(bencher: Bencher) {
+    let (sender, woken) = channel();
+    let worker = Worker::new(None, move || {
+        // The receiver is gone when the last frame comes: nobody waits for it.
+        let _ = sender.send(());
+    })
+    .expect("a lane");
+    let revision = Cell::new(0);
+    let submit = || {
+        revision.set(revision.get() + 1);
+        let mut scene = Scene::demo();
+        scene.camera.position.x += revision.get() as f64 * 0.01;
+        worker.submit(LiveJob {
+            revision: revision.get(),
+            scene: Arc::new(scene),
+            picture: Picture {
+                sampling: Sampling::Adaptive,
+                ..Picture::sized(SIDE, SIDE)
+            },
+            pace: Pace::Progressive,
+        });
+    };
+    // The lane learns how fine the first picture may be.
+    for _ in 0..20 {
+        submit();
+        wait(&worker, &woken, revision.get());
+    }
+    let between = || std::thread::sleep(Duration::from_millis(8));
+    bencher.with_inputs(between).bench_local_values(|()| {
+        submit();
+        let frame = wait(&worker, &woken, revision.get());
+        assert_eq!(
+            frame.sampling,
+            Sampling::Centres,
+            "the plain picture comes first"
+        );
+    });
+}
+
+/// The first frame in full resolution of this revision.
+fn wait(worker: &Worker, woken: &Receiver<()>, revision: u64) -> Frame {
+    loop {
+        woken.recv().expect("the lane lives");
+        if let Some(frame) = worker.take_frame()
+            && frame.revision == revision
+            && frame.step == 1
+        {
+            return frame;
+        }
+    }
+}
+
+/// One frame of the window while the camera is being turned with the mouse: a new picture is taken
+/// up and sent on, everything is laid out, the next picture is asked for.
+#[divan::bench(sample_count = 100, sample_size = 1)]
+fn window_while_dragging(bencher: Bencher) {
+    let desk = RefCell::new(Desk::new());
+    desk.borrow_mut().press();
+    bencher
+        .with_inputs(|| desk.borrow_mut().drag())
+        .bench_local_values(|()| desk.borrow_mut().frame());
+}
+
+/// One frame of the window in which nothing has happened.
+#[divan::bench(sample_count = 100, sample_size = 1)]
+fn window_at_rest(bencher: Bencher) {
+    let mut desk = Desk::new();
+    bencher.bench_local(|| desk.frame());
+}
+
+struct Desk {
+    window: Harness<'static, App>,
+    x: f32,
+    revision: u64,
+}
+
+impl Desk {
+    fn new() -> Self {
+        let setup = Setup {
+            data_folder: None,
+            ..Setup::native(None)
+        };
+        let window = Harness::builder()
+            .with_size([1680.0, 1120.0])
+            .build_eframe(|cc| App::new(cc, setup).expect("a lane"));
+        let mut desk = Self {
+            window,
+            x: 800.0,
+            revision: 0,
+        };
+        let start = Instant::now();
+        while !desk.window.state().is_settled() {
+            assert!(start.elapsed() < Duration::from_mins(1), "no picture");
+            desk.window.step();
+        }
+        let picture = desk.window.state().shown_picture().expect("a picture");
+        let side = SIDE as usize;
+        assert!(
+            picture.width >= side && picture.height >= side,
+            "a small picture"
+        );
+        desk
+    }
+
+    fn press(&mut self) {
+        let pos = pos2(self.x, 500.0);
+        self.window.event(Event::PointerMoved(pos));
+        self.window.event(Event::PointerButton {
+            pos,
+            button: PointerButton::Secondary,
+            pressed: true,
+            modifiers: egui::Modifiers::NONE,
+        });
+        self.window.step();
+        self.window
+            .event(Event::PointerMoved(pos2(self.x + 9.0, 500.0)));
+        self.window.step();
+    }
+
+    /// Moves the mouse, when the picture of the last move is there.
+    fn drag(&mut self) {
+        std::thread::sleep(Duration::from_millis(40));
+        self.x = if self.x > 900.0 { 700.0 } else { self.x + 1.0 };
+        let revision = self.window.state().editor().revision();
+        assert!(revision > self.revision, "nothing has moved");
+        self.revision = revision;
+        self.window.event(Event::PointerMoved(pos2(self.x, 500.0)));
+    }
+
+    fn frame(&mut self) -> usize {
+        self.window.step();
+        let shapes = self.window.output().shapes.clone();
+        self.window.ctx.tessellate(shapes, 1.0).len()
+    }
+}

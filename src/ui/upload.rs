@@ -1,0 +1,140 @@
+//! What of a picture has to go to the graphics card: only what has changed.
+
+use std::ops::Range;
+
+use egui::{Color32, ColorImage};
+
+use crate::image::Image;
+
+/// Side of the squares that are compared, in pixels.
+const SIDE: usize = 64;
+/// Share of the picture from which on it is sent whole: one large upload is cheaper than many.
+const MOSTLY: f64 = 0.5;
+
+/// A part of a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// Columns of pixels.
+    pub columns: Range<usize>,
+    /// Rows of pixels.
+    pub rows: Range<usize>,
+}
+
+/// The parts in which `new` differs from `old`; `None` where it is best sent whole: it has another
+/// size, or has mostly changed.
+pub fn changes(old: &Image, new: &Image) -> Option<Vec<Part>> {
+    if (old.width, old.height) != (new.width, new.height) {
+        return None;
+    }
+    let most = (new.pixels.len() as f64 * MOSTLY) as usize;
+    let mut parts: Vec<Part> = Vec::new();
+    let mut changed = 0;
+    for top in (0..new.height).step_by(SIDE) {
+        let rows = top..(top + SIDE).min(new.height);
+        for left in (0..new.width).step_by(SIDE) {
+            let columns = left..(left + SIDE).min(new.width);
+            if !differ(old, new, &columns, &rows) {
+                continue;
+            }
+            changed += columns.len() * rows.len();
+            if changed > most {
+                return None;
+            }
+            match parts.last_mut() {
+                Some(last) if last.rows == rows && last.columns.end == left => {
+                    last.columns.end = columns.end;
+                }
+                _ => parts.push(Part {
+                    columns,
+                    rows: rows.clone(),
+                }),
+            }
+        }
+    }
+    Some(parts)
+}
+
+fn differ(old: &Image, new: &Image, columns: &Range<usize>, rows: &Range<usize>) -> bool {
+    rows.clone().any(|row| {
+        let range = row * new.width + columns.start..row * new.width + columns.end;
+        old.pixels[range.clone()] != new.pixels[range]
+    })
+}
+
+/// The whole picture as the graphics card wants it.
+pub fn whole(image: &Image) -> ColorImage {
+    let pixels = image.pixels.iter().copied().map(color);
+    ColorImage::new([image.width, image.height], pixels.collect())
+}
+
+/// A part of the picture as the graphics card wants it.
+pub fn piece(image: &Image, part: &Part) -> ColorImage {
+    let rows = part.rows.clone();
+    let pixels = rows.flat_map(|row| {
+        let start = row * image.width;
+        image.pixels[start + part.columns.start..start + part.columns.end]
+            .iter()
+            .copied()
+            .map(color)
+    });
+    ColorImage::new([part.columns.len(), part.rows.len()], pixels.collect())
+}
+
+fn color([red, green, blue, _]: [u8; 4]) -> Color32 {
+    Color32::from_rgb(red, green, blue)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn another_size_is_sent_whole_and_the_same_picture_not_at_all() {
+        let old = Image::new(300, 200);
+        assert_eq!(changes(&old, &Image::new(200, 300)), None);
+        assert_eq!(changes(&old, &old), Some(Vec::new()));
+        let mut new = old.clone();
+        new.pixels.fill([1; 4]);
+        assert_eq!(changes(&old, &new), None);
+    }
+
+    #[test]
+    fn neighbours_go_together() {
+        let old = Image::new(300, 200);
+        let mut new = old.clone();
+        for column in 60..70 {
+            new.pixels[199 * 300 + column] = [9; 4];
+        }
+        let part = Part {
+            columns: 0..128,
+            rows: 192..200,
+        };
+        assert_eq!(changes(&old, &new), Some(vec![part]));
+    }
+
+    proptest! {
+        #[test]
+        fn the_old_picture_with_the_changes_is_the_new_one(size in (1..200_usize, 1..200_usize),
+                                                           spots in prop::collection::vec((0.0..1.0_f64, 1..=255_u8), 0..6)) {
+            let old = Image::new(size.0, size.1);
+            let mut new = old.clone();
+            for (place, shade) in spots {
+                let place = (place * new.pixels.len() as f64) as usize;
+                new.pixels[place] = [shade; 4];
+            }
+            let mut card = whole(&old);
+            match changes(&old, &new) {
+                None => card = whole(&new),
+                Some(parts) => for part in parts {
+                    let piece = piece(&new, &part);
+                    for (row, pixels) in part.rows.clone().zip(piece.pixels.chunks(piece.size[0])) {
+                        let start = row * size.0 + part.columns.start;
+                        card.pixels[start..start + pixels.len()].copy_from_slice(pixels);
+                    }
+                }
+            }
+            prop_assert_eq!(card.pixels, whole(&new).pixels);
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! The memory of live pictures: those that nobody looks at any more are painted over.
+
+use std::sync::Arc;
+
+use crate::image::Image;
+
+/// One on screen, one on its way there, one being painted.
+const MOST: usize = 3;
+
+/// The live pictures of late.
+#[derive(Debug, Default)]
+pub struct Easel {
+    handed_out: Vec<Arc<Image>>,
+}
+
+impl Easel {
+    /// A picture of this size to be painted; what it shows until then means nothing.
+    pub fn canvas(&mut self, width: usize, height: usize) -> Image {
+        let free = self
+            .handed_out
+            .iter()
+            .position(|image| Arc::strong_count(image) == 1);
+        let old = free.and_then(|place| Arc::into_inner(self.handed_out.swap_remove(place)));
+        let mut image = old.unwrap_or_default();
+        image.resize(width, height);
+        image
+    }
+
+    /// Hands a picture out, to come back when the last of its viewers has dropped it.
+    pub fn hand_out(&mut self, image: Image) -> Arc<Image> {
+        let image = Arc::new(image);
+        if self.handed_out.len() == MOST {
+            self.handed_out.remove(0);
+        }
+        self.handed_out.push(Arc::clone(&image));
+        image
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_is_painted_over_when_nobody_looks_at_it() {
+        let mut easel = Easel::default();
+        let first = easel.canvas(30, 20);
+        let memory = first.pixels.as_ptr();
+        let shown = easel.hand_out(first);
+        let second = easel.canvas(30, 20);
+        assert_ne!(second.pixels.as_ptr(), memory, "the first is looked at");
+        drop(shown);
+        let third = easel.canvas(20, 20);
+        assert_eq!(third.pixels.as_ptr(), memory);
+        assert_eq!(third.pixels.len(), 400);
+        let keep: Vec<_> = (0..9).map(|_| easel.hand_out(Image::new(1, 1))).collect();
+        assert_eq!(easel.handed_out.len(), MOST, "{}", keep.len());
+    }
+}
