@@ -245,8 +245,10 @@ pub struct Hit<L: Lane> {
     pub number: usize,
     /// Radius of curvature of the surface; infinity if it is flat.
     pub radius: L::Real,
-    /// How far the point may be off along the normal: 0, or a few roundings where it matters.
-    pub slack: Option<L>,
+    /// How far the point may be off along the normal: 0, or a few roundings where it matters. A
+    /// number even where there is none: the compiler multiplies with it in either case, and what it
+    /// would find in its place may be a number so small that the processor stumbles over it.
+    pub slack: L,
 }
 
 /// The hits at `t` on the primitive of this number.
@@ -270,7 +272,7 @@ pub fn refine<L: Lane>(
             material: sphere.material,
             number,
             radius: sphere.radius,
-            slack: None,
+            slack: L::splat(token, L::Real::ZERO),
         };
     }
     if index < numbers.triangles {
@@ -283,7 +285,7 @@ pub fn refine<L: Lane>(
             material: plane.material,
             number,
             radius: L::Real::INFINITY,
-            slack: None,
+            slack: L::splat(token, L::Real::ZERO),
         };
     }
     let triangle = &plan.triangles[index - numbers.triangles];
@@ -292,9 +294,9 @@ pub fn refine<L: Lane>(
     // computation of the point can be off by.
     let slack = if triangle.in_mesh {
         let reach = point.max_abs() + rays.origin.max_abs() + t;
-        Some(reach * L::splat(token, L::Real::UNIT_ROUNDOFF * L::Real::from_f64(4.0)))
+        reach * L::splat(token, L::Real::UNIT_ROUNDOFF * L::Real::from_f64(4.0))
     } else {
-        None
+        L::splat(token, L::Real::ZERO)
     };
     let normal = Vec3::broadcast(token, triangle.normal);
     Hit {
@@ -311,12 +313,12 @@ impl<L: Lane> Hit<L> {
     /// The paths that leave the hits in unit directions on the side that the normal points to.
     #[inline(always)]
     pub fn leave(&self, token: L::Token, offset: RayOffset, direction: Vec3<L>) -> Paths<L> {
-        let (origin, start) = match (offset, self.slack) {
-            (RayOffset::Robust, None) => (self.point, Start::On(self.number)),
-            (RayOffset::Robust, Some(slack)) => {
-                (self.point + self.normal * slack, Start::On(self.number))
-            }
-            (RayOffset::Fixed(distance), _) => {
+        let (origin, start) = match offset {
+            RayOffset::Robust => (
+                self.point + self.normal * self.slack,
+                Start::On(self.number),
+            ),
+            RayOffset::Fixed(distance) => {
                 let distance = L::splat(token, L::Real::from_f64(distance));
                 (self.point + direction * distance, Start::Nowhere)
             }

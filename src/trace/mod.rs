@@ -22,7 +22,7 @@ mod triangle;
 use std::sync::atomic::{AtomicBool, AtomicU64};
 
 pub use threads::{PoolError, Threads};
-pub use tiles::{Grid, Pass, Pixel, TILE, Tracer};
+pub use tiles::{Grid, Pass, Pixel, Tracer};
 
 use crate::lanes::{Lane, Vec3};
 

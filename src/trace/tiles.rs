@@ -15,9 +15,13 @@ use crate::lanes::{Lane, Level, Real, Vectored, Work};
 use crate::plan::{Picture, Plan, Precision, Sampling, needs_double};
 use crate::scene::Scene;
 
-/// Side of a tile in pixels. Small enough that the primitives of a tile stay in the cache and that
-/// threads end together, large enough that the bookkeeping does not show.
-pub const TILE: usize = 16;
+/// Side of a tile in pixels where there is little to see. Large enough that the bookkeeping does not
+/// show, small enough that the rays of a tile stay in the cache and that threads end together.
+const LARGE_TILE: usize = 32;
+/// Side of a tile where there is much to see: it sees less of it.
+const SMALL_TILE: usize = 16;
+/// With fewer pixels than this for each sphere and triangle, there is much to see.
+const PIXELS_PER_PRIMITIVE: u64 = 16_384;
 
 /// What a colour becomes in a picture.
 pub trait Pixel: Send {
@@ -91,6 +95,20 @@ enum Kernel {
     Double(Box<Plan<f64>>),
 }
 
+impl Kernel {
+    fn tile_side(&self, pixels: u64) -> usize {
+        let primitives = match self {
+            Self::Single(plan) => plan.spheres.len() + plan.triangles.len(),
+            Self::Double(plan) => plan.spheres.len() + plan.triangles.len(),
+        };
+        if primitives as u64 * PIXELS_PER_PRIMITIVE <= pixels {
+            LARGE_TILE
+        } else {
+            SMALL_TILE
+        }
+    }
+}
+
 impl Tracer {
     /// Plans `picture` of `scene`, which must pass [`crate::scene::check`].
     pub fn new(scene: &Scene, picture: &Picture) -> Self {
@@ -107,7 +125,7 @@ impl Tracer {
         Self {
             width: picture.width as usize,
             height: picture.height as usize,
-            tile: TILE,
+            tile: kernel.tile_side(u64::from(picture.width) * u64::from(picture.height)),
             sampling: picture.sampling,
             level: picture.level.unwrap_or_else(Level::widest),
             kernel,
@@ -321,8 +339,8 @@ mod tests {
             for level in (0..=levels).rev() {
                 let grid = Grid { step: 1 << level, coarser };
                 for y in (0..height).filter(|y| y % grid.step == 0) {
-                    for left in (0..width).step_by(TILE) {
-                        for x in grid.row_pixels(y, left, (left + TILE).min(width)) {
+                    for left in (0..width).step_by(SMALL_TILE) {
+                        for x in grid.row_pixels(y, left, (left + SMALL_TILE).min(width)) {
                             taken[y * width + x] += 1;
                         }
                     }
