@@ -67,7 +67,7 @@ fn demo_1024_double_threads(bencher: Bencher, threads: usize) {
     trace(bencher, &Scene::demo(), picture, threads);
 }
 
-#[divan::bench(args = Level::available().into_iter().map(|(name, _)| name), sample_count = 20)]
+#[divan::bench(args = Level::available().into_iter().map(|level| level.name), sample_count = 20)]
 fn demo_1024_lanes(bencher: Bencher, name: &str) {
     let picture = Picture {
         level: Level::named(name),

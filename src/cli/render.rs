@@ -125,7 +125,7 @@ fn lanes(word: &str) -> Result<Level, String> {
     Level::named(word).ok_or_else(|| {
         let known: Vec<&str> = Level::available()
             .into_iter()
-            .map(|(name, _)| name)
+            .map(|level| level.name)
             .collect();
         format!("this processor has {}", known.join(", "))
     })

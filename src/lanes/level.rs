@@ -1,17 +1,17 @@
 //! Which lanes the processor has, found out at run time.
 
-use fearless_simd::{Simd, dispatch};
+use fearless_simd::{Simd, dispatch, f32x16, f64x8};
 
 use super::lane::Wide;
 use super::{Lane, Real};
 
-/// A kind of processor, from one lane at a time to the widest vectors.
+/// A kind of processor.
 #[derive(Clone, Copy, Debug)]
-pub enum Level {
-    /// One number at a time, everywhere.
-    Single,
-    /// Vectors.
-    Vectors(fearless_simd::Level),
+pub struct Level {
+    /// What `--lanes` calls it.
+    pub name: &'static str,
+    /// `None` for one number at a time.
+    vectors: Option<fearless_simd::Level>,
 }
 
 /// Something to be done with lanes of any width.
@@ -23,93 +23,85 @@ pub trait Work<R: Real> {
     fn run<L: Lane<Real = R>>(self, token: L::Token) -> Self::Output;
 }
 
-/// A real number that vectors exist of.
+/// A real number that vectors exist of. All processors compute as many in step as the widest
+/// register that any of them has: what a processor does in several instructions is still handled
+/// as one packet, which is faster by an eighth to a quarter than packets of its own width.
 pub trait Vectored: Real {
+    /// How many are computed in step.
+    const IN_STEP: usize;
     /// Does the work with vectors of this number.
     fn in_vectors<S: Simd, W: Work<Self>>(simd: S, work: W) -> W::Output;
-    /// How many of this number a vector has.
-    fn width<S: Simd>(simd: S) -> usize;
 }
 
-impl Vectored for f32 {
-    #[inline(always)]
-    fn in_vectors<S: Simd, W: Work<Self>>(simd: S, work: W) -> W::Output {
-        work.run::<Wide<S, S::f32s>>(simd)
-    }
-    fn width<S: Simd>(_: S) -> usize {
-        Wide::<S, S::f32s>::WIDTH
-    }
+macro_rules! vectored {
+    ($type:ty, $vector:ident, $width:literal) => {
+        impl Vectored for $type {
+            const IN_STEP: usize = $width;
+            #[inline(always)]
+            fn in_vectors<S: Simd, W: Work<Self>>(simd: S, work: W) -> W::Output {
+                work.run::<Wide<S, $vector<S>>>(simd)
+            }
+        }
+    };
 }
 
-impl Vectored for f64 {
-    #[inline(always)]
-    fn in_vectors<S: Simd, W: Work<Self>>(simd: S, work: W) -> W::Output {
-        work.run::<Wide<S, S::f64s>>(simd)
-    }
-    fn width<S: Simd>(_: S) -> usize {
-        Wide::<S, S::f64s>::WIDTH
-    }
-}
+vectored!(f32, f32x16, 16);
+vectored!(f64, f64x8, 8);
 
 impl Level {
     /// The widest vectors of this processor.
     pub fn widest() -> Self {
-        Self::Vectors(fearless_simd::Level::new())
+        Self::available().pop().unwrap_or(Self::SINGLE)
     }
 
-    /// Every level that this processor has, narrowest first, with its name.
-    pub fn available() -> Vec<(&'static str, Self)> {
-        let mut levels = vec![("single", Self::Single)];
-        let widest = fearless_simd::Level::new();
+    /// One number at a time: everywhere.
+    pub const SINGLE: Self = Self {
+        name: "single",
+        vectors: None,
+    };
+
+    /// Every level that this processor has, narrowest first.
+    pub fn available() -> Vec<Self> {
+        use fearless_simd::Level as Vectors;
+        let has = Vectors::new();
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        {
-            let narrower = [
-                ("sse2", widest.as_sse2().map(fearless_simd::Level::Sse2)),
-                (
-                    "sse4.2",
-                    widest.as_sse4_2().map(fearless_simd::Level::Sse4_2),
-                ),
-                ("avx2", widest.as_avx2().map(fearless_simd::Level::Avx2)),
-                (
-                    "avx512",
-                    widest.as_avx512().map(fearless_simd::Level::Avx512),
-                ),
-            ];
-            let found = narrower
-                .into_iter()
-                .filter_map(|(name, level)| Some((name, level?)));
-            levels.extend(found.map(|(name, level)| (name, Self::Vectors(level))));
-        }
+        let found = [
+            ("sse2", has.as_sse2().map(Vectors::Sse2)),
+            ("sse4.2", has.as_sse4_2().map(Vectors::Sse4_2)),
+            ("avx2", has.as_avx2().map(Vectors::Avx2)),
+            ("avx512", has.as_avx512().map(Vectors::Avx512)),
+        ];
         #[cfg(target_arch = "aarch64")]
-        if let Some(neon) = widest.as_neon() {
-            levels.push(("neon", Self::Vectors(fearless_simd::Level::Neon(neon))));
-        }
-        let _ = widest;
-        levels
+        let found = [("neon", has.as_neon().map(Vectors::Neon))];
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
+        let found = [("vectors", Some(has))];
+        let found = found.into_iter().filter_map(|(name, vectors)| {
+            Some(Self {
+                name,
+                vectors: Some(vectors?),
+            })
+        });
+        std::iter::once(Self::SINGLE).chain(found).collect()
     }
 
     /// The level of this name, if this processor has it.
     pub fn named(name: &str) -> Option<Self> {
         Self::available()
             .into_iter()
-            .find(|(known, _)| *known == name)
-            .map(|(_, level)| level)
+            .find(|level| level.name == name)
     }
 
     /// Does the work at this level.
     pub fn run<R: Vectored, W: Work<R>>(self, work: W) -> W::Output {
-        match self {
-            Self::Single => work.run::<R>(()),
-            Self::Vectors(level) => dispatch!(level, simd => R::in_vectors(simd, work)),
+        match self.vectors {
+            None => work.run::<R>(()),
+            Some(level) => dispatch!(level, simd => R::in_vectors(simd, work)),
         }
     }
 
-    /// What `--stats` calls the lanes of this number, for example `f32×16`.
+    /// What `--stats` calls the lanes of this number, for example `f32×16 avx2`.
     pub fn lanes_of<R: Vectored>(self) -> String {
-        let width = match self {
-            Self::Single => 1,
-            Self::Vectors(level) => dispatch!(level, simd => R::width(simd)),
-        };
-        format!("{}×{width}", R::NAME)
+        let width = self.vectors.map_or(1, |_| R::IN_STEP);
+        format!("{}×{width} {}", R::NAME, self.name)
     }
 }

@@ -142,7 +142,7 @@ impl Tracer {
         self.height
     }
 
-    /// The real type and how many of it are computed in step, for example `f32×16`.
+    /// The real type and how many of it are computed in step, for example `f32×16 avx2`.
     pub fn lanes(&self) -> String {
         match self.kernel {
             Kernel::Single(_) => self.level.lanes_of::<f32>(),

@@ -72,11 +72,12 @@ fn any_lanes_give_the_same_bytes() {
                 level: Some(level),
                 ..Picture::sized(203, 131)
             };
-            let single = picture(&scene, &at(Level::Single));
-            for (name, level) in &levels {
+            let single = picture(&scene, &at(Level::SINGLE));
+            for level in &levels {
                 assert!(
                     picture(&scene, &at(*level)) == single,
-                    "{name} {precision:?} {sampling:?}"
+                    "{} {precision:?} {sampling:?}",
+                    level.name
                 );
             }
         }
