@@ -30,6 +30,7 @@ pub fn needs(scene: &Scene, picture: &Picture) -> Vec<Need> {
         planes(&plan),
         markers(scene, &plan),
         hidden(scene),
+        faces(&plan),
         accelerator(&plan),
         highlights(&plan),
         edges(picture),
@@ -194,6 +195,31 @@ fn hidden(scene: &Scene) -> Need {
             "their tests for every ray",
         )
     }
+}
+
+fn faces(plan: &Plan<f64>) -> Need {
+    let rule = "faces";
+    let all = plan.triangles.len();
+    let set = |flags: &[bool]| flags.iter().filter(|flag| **flag).count();
+    let unseen = set(&plan.unseen_faces);
+    let idle: usize = plan.lights.iter().map(|light| set(&light.idle_faces)).sum();
+    if unseen + idle == 0 {
+        return need(
+            rule,
+            format!("both sides of {}", count(all, "triangle")),
+            "none belongs to a closed convex solid with the camera or a light outside",
+            "nothing",
+        );
+    }
+    need(
+        rule,
+        format!(
+            "{unseen} of {} left out for the camera, {idle} for the lights",
+            count(all, "triangle")
+        ),
+        "they are the far sides of closed convex solids",
+        "a test per triangle and ray: 6 to 9 % of the demo's time",
+    )
 }
 
 fn accelerator(plan: &Plan<f64>) -> Need {

@@ -140,6 +140,32 @@ fn bundles_begin_where_a_list_is_too_long() {
 }
 
 #[test]
+fn far_faces_of_solids_are_left_out_and_of_open_meshes_are_not() {
+    let left_out = |scene: &Scene| {
+        let plan = Plan::<f32>::new(scene, &Picture::sized(64, 64));
+        let eye = plan.unseen_faces.iter().filter(|away| **away).count();
+        let lights = plan.lights.iter().flat_map(|light| &light.idle_faces);
+        (eye, lights.filter(|away| **away).count())
+    };
+    let closed = Scene::demo();
+    let (eye, lights) = left_out(&closed);
+    assert!(eye >= 3 && lights >= 4, "{eye} {lights}");
+    assert!(said(&closed, "faces").contains("left out"));
+    let open = demo(|scene| scene.objects[2].visible = false);
+    assert_eq!(left_out(&open), (0, 0));
+    assert!(said(&open, "faces").starts_with("both sides"));
+    let inside = demo(|scene| scene.camera.position = Vec3::new(200.0, 20.0, -100.0));
+    assert_eq!(left_out(&inside).0, 0);
+    for scene in [closed, open, inside] {
+        let (needed, everything) = (
+            picture(&scene, Model::Needed).0,
+            picture(&scene, Model::Everything).0,
+        );
+        assert!(needed == everything);
+    }
+}
+
+#[test]
 fn large_exponents_are_told() {
     let with = |p: f64| demo(|scene| scene.color_packs["plane"].phong_exponent = p);
     assert_eq!(said(&with(256.0), "highlights"), "repeated squaring");
