@@ -59,7 +59,7 @@ fn published(bencher: Bencher) {
             revision: revision.get(),
             scene: Arc::new(scene),
             picture: Picture {
-                sampling: Sampling::Adaptive,
+                sampling: Sampling::ADAPTIVE,
                 ..Picture::sized(SIDE, SIDE)
             },
             pace: Pace::Progressive,

@@ -81,7 +81,7 @@ fn demo_1024_lanes(bencher: Bencher, name: &str) {
 fn demo_1024_antialias(bencher: Bencher, sampling: &str) {
     let picture = Picture {
         sampling: match sampling {
-            "adaptive" => Sampling::Adaptive,
+            "adaptive" => Sampling::ADAPTIVE,
             _ => Sampling::Grid(4),
         },
         ..Picture::sized(1024, 1024)

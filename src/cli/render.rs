@@ -16,11 +16,11 @@ use super::{fail, refuse, say};
 use crate::export::save_image;
 use crate::image::{Cost, Format, Image, render_into};
 use crate::lanes::Level;
-use crate::plan::{
-    Accelerator, MAX_GRID, Methods, Picture, Precision, RayOffset, Sampling, SphereMethod,
-    TriangleMethod,
+use crate::plan::Picture;
+use crate::scene::{
+    Accelerator, Choice as _, Document, HighlightMethod, MAX_SIDE, Precision, Projection,
+    RayOffset, Render, Sampling, Scene, SphereMethod, TriangleMethod,
 };
-use crate::scene::{Document, MAX_SIDE, Projection, Scene};
 use crate::trace::{Threads, Watch};
 use crate::worker::run_errand;
 
@@ -43,27 +43,31 @@ pub struct RenderWords {
     /// Projection in place of the scene's own
     #[arg(long)]
     camera: Option<CameraWord>,
-    /// How edges are smoothed: none, adaptive, or grid:N for N×N samples in every pixel
-    #[arg(long, default_value = "adaptive", value_parser = antialias)]
-    antialias: Sampling,
-    /// Real type of the tracer: auto takes f32 unless it would show
-    #[arg(long, default_value = "auto")]
-    precision: PrecisionWord,
-    /// Where shadow and reflection rays start: robust, or fixed:DISTANCE along the ray
-    #[arg(long, default_value = "robust", value_parser = offset)]
-    offset: RayOffset,
-    /// Sphere formula
-    #[arg(long, default_value = "stable")]
-    sphere: SphereWord,
-    /// Triangle formula
-    #[arg(long, default_value = "watertight", value_parser = triangle)]
-    triangle: TriangleMethod,
+    /// How edges are smoothed: none, adaptive, or grid:N for N×N samples in every pixel [default: the
+    /// scene's own, as for all that follow]
+    #[arg(long, value_parser = Sampling::parse)]
+    antialias: Option<Sampling>,
+    /// Real type of the tracer: auto takes f32 unless it would show, f32, f64
+    #[arg(long, value_parser = Precision::parse)]
+    precision: Option<Precision>,
+    /// Where shadow and reflection rays start: robust, fixed:DISTANCE, relative:SHARE, wachter-binder
+    #[arg(long, value_parser = RayOffset::parse)]
+    offset: Option<RayOffset>,
+    /// Sphere formula: stable, classic
+    #[arg(long, value_parser = SphereMethod::parse)]
+    sphere: Option<SphereMethod>,
+    /// Triangle formula: watertight, edges, moller-trumbore, edge-planes
+    #[arg(long, value_parser = TriangleMethod::parse)]
+    triangle: Option<TriangleMethod>,
+    /// Highlight formula: auto, pow, log1p
+    #[arg(long, value_parser = HighlightMethod::parse)]
+    specular: Option<HighlightMethod>,
+    /// How primitives are found: auto takes bundles (bvh) where there are many, list, bvh
+    #[arg(long, value_parser = Accelerator::parse)]
+    accelerator: Option<Accelerator>,
     /// Lanes of the tracer; all give the same picture [default: the widest of this processor]
     #[arg(long, value_name = "LEVEL", value_parser = lanes)]
     lanes: Option<Level>,
-    /// How primitives are found: auto takes bundles (bvh) where there are many
-    #[arg(long, default_value = "auto")]
-    accelerator: AcceleratorWord,
     #[arg(long, hide = true, value_parser = not_yet)]
     frame: Option<Never>,
     /// Tracing threads [default: one per core]
@@ -81,26 +85,6 @@ pub struct RenderWords {
 enum CameraWord {
     Perspective,
     Orthographic,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum PrecisionWord {
-    Auto,
-    F32,
-    F64,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum SphereWord {
-    Stable,
-    Classic,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum AcceleratorWord {
-    Auto,
-    List,
-    Bvh,
 }
 
 #[derive(Serialize)]
@@ -139,49 +123,13 @@ fn not_yet(_: &str) -> Result<Never, String> {
     Err("this option is not built yet; leave it out".to_owned())
 }
 
-fn antialias(word: &str) -> Result<Sampling, String> {
-    let side = word.strip_prefix("grid:").map(str::parse::<u32>);
-    match (word, side) {
-        ("none", _) => Ok(Sampling::Centres),
-        ("adaptive", _) => Ok(Sampling::Adaptive),
-        (_, Some(Ok(side @ 1..=MAX_GRID))) => Ok(Sampling::Grid(side)),
-        _ => Err(format!(
-            "expected none, adaptive, or grid: and a number from 1 to {MAX_GRID}, such as grid:4"
-        )),
-    }
-}
-
-fn offset(word: &str) -> Result<RayOffset, String> {
-    if word == "robust" {
-        return Ok(RayOffset::Robust);
-    }
-    let distance = word
-        .strip_prefix("fixed:")
-        .and_then(|number| number.parse::<f64>().ok());
-    match distance.filter(|d| d.is_finite() && *d >= 0.0) {
-        Some(distance) => Ok(RayOffset::Fixed(distance)),
-        None => Err("expected robust, or fixed: and a distance ≥ 0, such as fixed:0.1".to_owned()),
-    }
-}
-
-fn triangle(word: &str) -> Result<TriangleMethod, String> {
-    match word {
-        "watertight" => Ok(TriangleMethod::Watertight),
-        "edges" => Ok(TriangleMethod::Edges),
-        "moller-trumbore" => {
-            Err("moller-trumbore is not built yet; use watertight or edges".to_owned())
-        }
-        _ => Err("expected watertight or edges".to_owned()),
-    }
-}
-
 /// Traces and writes the picture, then prints what was asked for.
 pub fn run(words: &RenderWords) -> ExitCode {
     // A name that cannot be written is known before the first ray.
     if let Some(Err(error)) = words.output.as_deref().map(Format::of_path) {
         return refuse(&error.to_string());
     }
-    let scene = match Document::load(&words.scene) {
+    let mut scene = match Document::load(&words.scene) {
         Ok(document) => document.scene,
         Err(error) => return refuse(&error.to_string()),
     };
@@ -189,6 +137,7 @@ pub fn run(words: &RenderWords) -> ExitCode {
         Ok(threads) => threads,
         Err(error) => return fail(&error.to_string()),
     };
+    words.adjust(&mut scene.render);
     let picture = words.picture(&scene);
     let count = threads.count();
     let Some((image, costs)) = trace(scene, picture, threads, words.repeat.get()) else {
@@ -212,6 +161,17 @@ pub fn run(words: &RenderWords) -> ExitCode {
 }
 
 impl RenderWords {
+    /// Puts what was asked for in place of the scene's own.
+    fn adjust(&self, render: &mut Render) {
+        render.antialias = self.antialias.unwrap_or(render.antialias);
+        render.precision = self.precision.unwrap_or(render.precision);
+        render.offset = self.offset.unwrap_or(render.offset);
+        render.sphere = self.sphere.unwrap_or(render.sphere);
+        render.triangle = self.triangle.unwrap_or(render.triangle);
+        render.specular = self.specular.unwrap_or(render.specular);
+        render.accelerator = self.accelerator.unwrap_or(render.accelerator);
+    }
+
     fn picture(&self, scene: &Scene) -> Picture {
         let own = (scene.render.width, scene.render.height);
         let (width, height) = match (self.width, self.height) {
@@ -225,27 +185,8 @@ impl RenderWords {
                 CameraWord::Perspective => Projection::Perspective,
                 CameraWord::Orthographic => Projection::Orthographic,
             }),
-            precision: match self.precision {
-                PrecisionWord::Auto => Precision::Auto,
-                PrecisionWord::F32 => Precision::Single,
-                PrecisionWord::F64 => Precision::Double,
-            },
-            methods: Methods {
-                sphere: match self.sphere {
-                    SphereWord::Stable => SphereMethod::Stable,
-                    SphereWord::Classic => SphereMethod::Classic,
-                },
-                triangle: self.triangle,
-                offset: self.offset,
-            },
-            sampling: self.antialias,
-            accelerator: match self.accelerator {
-                AcceleratorWord::Auto => Accelerator::Auto,
-                AcceleratorWord::List => Accelerator::List,
-                AcceleratorWord::Bvh => Accelerator::Bundles,
-            },
             level: self.lanes,
-            ..Picture::sized(width, height)
+            ..Picture::of(scene, width, height)
         }
     }
 }

@@ -365,16 +365,15 @@ fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), String> {
 
 fn move_item(scene: &mut Scene, item: Item, to: usize) -> Item {
     let Item { kind, index } = item;
-    let last = match kind {
+    let count = match kind {
         Kind::Object => scene.objects.len(),
         Kind::Light => scene.lights.len(),
         Kind::Pack => scene.color_packs.len(),
-    }
-    .saturating_sub(1);
-    if index > last {
+    };
+    if index >= count {
         return item;
     }
-    let to = to.min(last);
+    let to = to.min(count - 1);
     match kind {
         Kind::Object => {
             let object = scene.objects.remove(index);

@@ -87,6 +87,16 @@ fn a_unique_pack_leaves_the_others_alone() {
 }
 
 #[test]
+fn what_is_not_there_does_not_move() {
+    let mut editor = Editor::demo();
+    for _ in 0..2 {
+        editor.apply(Action::Edit(Edit::Delete(Item::light(0))));
+    }
+    editor.apply(Action::Edit(Edit::Move(Item::light(0), 0)));
+    assert!(editor.scene().lights.is_empty());
+}
+
+#[test]
 fn high_res_ends_with_the_next_change() {
     let mut editor = Editor::demo();
     editor.apply(Action::Show(Mode::HighRes));

@@ -31,7 +31,14 @@ impl Exponent {
     pub fn new(p: f64) -> Self {
         if p > LARGEST_SQUARED {
             Self::Large(p)
-        } else if p.fract() == 0.0 {
+        } else {
+            Self::power(p)
+        }
+    }
+
+    /// The plain power, whatever p: at 10⁶ it is off by 43 levels in single precision.
+    pub fn power(p: f64) -> Self {
+        if p.fract() == 0.0 {
             Self::Whole(p as u32)
         } else {
             Self::Mixed(p as u32, p.fract())

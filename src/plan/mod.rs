@@ -2,7 +2,7 @@
 //! rebased around the scene's middle and narrowed to the kernel's real type, without what the
 //! picture cannot show. No names, no file.
 
-mod method;
+mod materials;
 mod needs;
 mod pack;
 mod precision;
@@ -12,15 +12,19 @@ mod view;
 mod volumes;
 mod walls;
 
-pub use method::{Methods, RayOffset, SphereMethod, TriangleMethod};
+pub use materials::{Material, Surface};
 pub use needs::{Need, needs};
-pub use pack::{Light, Material, Plan, Plane, Sphere, Surface, Triangle};
-pub use precision::{Precision, needs_double};
+pub use pack::{Departure, Light, Plan, Plane, Sphere, Triangle};
+pub use precision::needs_double;
 pub use screen::{Extent, Screen};
 pub use view::View;
 pub use volumes::{Ball, Balls, GROUP, Volumes};
 
 use crate::lanes::Level;
+pub use crate::scene::{
+    Accelerator, HighlightMethod, MAX_GRID, MAX_HALVINGS, Methods, Precision, RayOffset, Sampling,
+    SphereMethod, TriangleMethod,
+};
 use crate::scene::{Projection, Scene};
 
 /// Which picture of a scene is asked for.
@@ -47,11 +51,20 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// The still picture that the scene itself asks for, with clean edges.
+    /// The still picture that the scene itself asks for.
     pub fn still(scene: &Scene) -> Self {
+        Self::of(scene, scene.render.width, scene.render.height)
+    }
+
+    /// The picture that the scene itself asks for, in another size.
+    pub fn of(scene: &Scene, width: u32, height: u32) -> Self {
+        let render = &scene.render;
         Self {
-            sampling: Sampling::Adaptive,
-            ..Self::sized(scene.render.width, scene.render.height)
+            precision: render.precision,
+            methods: render.methods(),
+            sampling: render.antialias,
+            accelerator: render.accelerator,
+            ..Self::sized(width, height)
         }
     }
 
@@ -71,18 +84,6 @@ impl Picture {
     }
 }
 
-/// How the primitives that a beam of rays can meet are found. All show the same picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Accelerator {
-    /// A list, or bundles where there are many.
-    #[default]
-    Auto,
-    /// One by one.
-    List,
-    /// Bundles within bundles.
-    Bundles,
-}
-
 /// How much of the image model is computed. Both show the same picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Model {
@@ -91,18 +92,4 @@ pub enum Model {
     Needed,
     /// Everything, needed or not: what the rules of the plan are measured against.
     Everything,
-}
-
-/// Largest number of samples along a side of a pixel.
-pub const MAX_GRID: u32 = 256;
-
-/// Where in its pixels a picture is sampled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sampling {
-    /// Once, in the middle: edges are jagged.
-    Centres,
-    /// So many times so many (at most [`MAX_GRID`]), evenly.
-    Grid(u32),
-    /// At the corners, and inside where those differ.
-    Adaptive,
 }

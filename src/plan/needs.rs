@@ -299,7 +299,7 @@ fn edges(picture: &Picture) -> Need {
             "a grid was asked for",
             "nothing",
         ),
-        Sampling::Adaptive => need(
+        Sampling::Adaptive { .. } => need(
             rule,
             "more rays only where corners differ or something thin is near",
             "elsewhere a pixel is the mean of its corners",

@@ -2,12 +2,16 @@
 
 use std::collections::HashMap;
 
+use super::materials::{Material, linear, pack_materials};
 use super::solids::Solids;
 use super::volumes::LARGEST_LIST;
 use super::walls::{Wall, settle_planes};
-use super::{Accelerator, Ball, Methods, Model, Picture, Screen, View, Volumes};
-use crate::lanes::{Exponent, Real, Vec3};
-use crate::scene::{ColorPack, LightObj, Projection, Scene, Shape};
+use super::{
+    Accelerator, Ball, Methods, Model, Picture, RayOffset, Screen, SphereMethod, TriangleMethod,
+    View, Volumes,
+};
+use crate::lanes::{Real, Vec3};
+use crate::scene::{LightObj, Projection, Scene, Shape};
 
 /// A scene and a view of it, ready to be traced. Coordinates are relative to the scene's middle,
 /// so that single precision is spent on the scene and not on its distance from the origin.
@@ -33,6 +37,8 @@ pub struct Plan<R> {
     pub reflection_limit: u32,
     /// The formulas to trace with.
     pub methods: Methods,
+    /// Where shadow and reflection rays start.
+    pub departure: Departure<R>,
     /// Whether planes must be tested for shadows. What a perspective eye reaches, directly or in
     /// mirrors, lies on its side of every plane, so a plane blocks a light for all points or none.
     pub planes_cast: bool,
@@ -45,6 +51,17 @@ pub struct Plan<R> {
     pub volumes: Volumes<R>,
     /// For each triangle, whether no camera ray needs it; empty where they all may.
     pub unseen_faces: Vec<bool>,
+}
+
+/// [`RayOffset`] with its lengths in the scene's units.
+#[derive(Clone, Copy, Debug)]
+pub enum Departure<R> {
+    /// At the hit, ignoring the own primitive.
+    AtHit,
+    /// So far along the new ray.
+    Along(R),
+    /// 256 roundings along the normal.
+    Roundings,
 }
 
 /// A ball.
@@ -96,30 +113,6 @@ pub struct Light<R> {
     pub idle_faces: Vec<bool>,
 }
 
-/// A material with everything multiplied in that is the same for all its points. Colours are 0–1.
-#[derive(Clone, Copy, Debug)]
-pub struct Material<R> {
-    /// What is seen without any light: ambient intensity · ambient, or the full ambient colour of a
-    /// marker.
-    pub base: Vec3<R>,
-    /// How lights and mirrored things add to it; `None` for markers and for packs that are black
-    /// in both.
-    pub surface: Option<Surface<R>>,
-}
-
-/// The part of a material that answers to light.
-#[derive(Clone, Copy, Debug)]
-pub struct Surface<R> {
-    /// Matte colour.
-    pub diffuse: Vec3<R>,
-    /// Highlight colour.
-    pub specular: Vec3<R>,
-    /// Sharpness of the highlight.
-    pub exponent: Exponent,
-    /// (Σ intensities) · specular, the filter of the mirror image; `None` where there is none.
-    pub mirror: Option<Vec3<R>>,
-}
-
 impl<R: Real> Plan<R> {
     /// Packs what `picture` of `scene` can show. The scene must pass [`crate::scene::check`].
     pub fn new(scene: &Scene, picture: &Picture) -> Self {
@@ -134,10 +127,11 @@ impl<R: Real> Plan<R> {
             planes: Vec::new(),
             triangles: Vec::new(),
             lights: pack_lights(scene, centre, settled.as_deref().unwrap_or_default(), model),
-            materials: pack_materials(scene, model),
+            materials: pack_materials(scene, picture),
             background: linear(scene.background),
             reflection_limit: scene.render.reflection_limit,
             methods: picture.methods,
+            departure: departure(scene, picture.methods.offset),
             planes_cast: settled.is_none(),
             shadows_behind: model == Model::Everything,
             screen: None,
@@ -149,10 +143,15 @@ impl<R: Real> Plan<R> {
         if scene.light_visualization {
             plan.pack_markers(scene, centre);
         }
-        if picture.methods == Methods::default() && model == Model::Needed {
+        // The classic formula hits spheres where they are not: that must show.
+        if picture.methods.sphere == SphereMethod::Stable && model == Model::Needed {
             plan.screen = Some(Screen::new(scene, picture));
             plan.volumes = plan.bound(picture.accelerator);
-            plan.drop_far_faces(scene, picture, centre);
+            // What leaks through a face must not find that those behind it were left out.
+            let is_tight = picture.methods.triangle == TriangleMethod::Watertight;
+            if is_tight && picture.methods.offset == RayOffset::Robust {
+                plan.drop_far_faces(scene, picture, centre);
+            }
         }
         plan
     }
@@ -240,6 +239,21 @@ impl<R: Real> Plan<R> {
     }
 }
 
+fn departure<R: Real>(scene: &Scene, offset: RayOffset) -> Departure<R> {
+    let along = |distance| Departure::Along(R::from_f64(distance));
+    match offset {
+        RayOffset::Robust => Departure::AtHit,
+        RayOffset::Fixed(distance) => along(distance),
+        RayOffset::Relative(share) => {
+            let diagonal = scene
+                .bounds()
+                .map_or(1.0, |(low, high)| (high - low).length());
+            along(share * diagonal)
+        }
+        RayOffset::WachterBinder => Departure::Roundings,
+    }
+}
+
 /// Lights that shine on what the eye can reach.
 fn pack_lights<R: Real>(
     scene: &Scene,
@@ -262,47 +276,11 @@ fn pack_lights<R: Real>(
         .collect()
 }
 
-/// One material per pack, then one per pack as a marker wears it.
-fn pack_materials<R: Real>(scene: &Scene, model: Model) -> Vec<Material<R>> {
-    let lights = scene.lights.iter().filter(|light| light.visible);
-    let total_intensity: f64 = lights.map(|light| light.intensity).sum();
-    let lit = scene.color_packs.values().map(|pack| Material {
-        base: linear(pack.ambient * scene.ambient_intensity),
-        surface: pack_surface(pack, total_intensity, model),
-    });
-    let markers = scene.color_packs.values().map(|pack| Material {
-        base: linear(pack.ambient),
-        surface: None,
-    });
-    lit.chain(markers).collect()
-}
-
-fn pack_surface<R: Real>(
-    pack: &ColorPack,
-    total_intensity: f64,
-    model: Model,
-) -> Option<Surface<R>> {
-    let all = model == Model::Everything;
-    let shines = pack.specular.max_abs() > 0.0;
-    let mirrors = pack.reflective && (all || shines && total_intensity > 0.0);
-    (all || shines || pack.diffuse.max_abs() > 0.0).then(|| Surface {
-        diffuse: linear(pack.diffuse),
-        specular: linear(pack.specular),
-        exponent: Exponent::new(pack.phong_exponent),
-        mirror: mirrors.then(|| linear(pack.specular * total_intensity)),
-    })
-}
-
 /// Twice the area over the longest side.
 fn thickness([a, b, c]: [Vec3<f64>; 3]) -> f64 {
     let sides = [b - a, c - b, a - c].map(Vec3::length);
     let longest = sides[0].max(sides[1]).max(sides[2]);
     (b - a).cross(c - a).length() / longest
-}
-
-/// 0–255 to 0–1.
-fn linear<R: Real>(color: Vec3<f64>) -> Vec3<R> {
-    Vec3::from_f64(color * (1.0 / 255.0))
 }
 
 fn material_number(scene: &Scene, pack: &str) -> u32 {

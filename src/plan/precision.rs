@@ -3,18 +3,6 @@
 use crate::lanes::Vec3;
 use crate::scene::{Scene, Shape};
 
-/// What was asked of the kernel's real type.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Precision {
-    /// Single, unless [`needs_double`].
-    #[default]
-    Auto,
-    /// Single precision.
-    Single,
-    /// Double precision, the reference.
-    Double,
-}
-
 /// Largest ratio of a sphere's distance to its radius in single precision: the perpendicular
 /// discriminant is then off by at most 3.2·u·ρ ≈ 1/1000 of the radius.
 const MAX_DISTANCE_PER_RADIUS: f64 = 5e3;

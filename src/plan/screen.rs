@@ -100,7 +100,7 @@ impl Projector {
             scale,
             half,
             margin: match picture.sampling {
-                Sampling::Adaptive => SMOOTH_MARGIN,
+                Sampling::Adaptive { .. } => SMOOTH_MARGIN,
                 Sampling::Centres | Sampling::Grid(_) => MARGIN,
             },
         })

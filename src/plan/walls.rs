@@ -1,6 +1,6 @@
 //! Planes that settle once for all points which lights they hide.
 
-use super::{Methods, Model, Picture};
+use super::{Model, Picture, RayOffset, SphereMethod};
 use crate::lanes::Vec3;
 use crate::scene::{Projection, Scene, Shape};
 
@@ -35,7 +35,11 @@ impl Wall {
 pub fn settle_planes(scene: &Scene, picture: &Picture) -> Option<Vec<Wall>> {
     let camera = &scene.camera;
     let is_parallel = picture.projection.unwrap_or(camera.projection) == Projection::Orthographic;
-    if is_parallel || picture.methods != Methods::default() || picture.model == Model::Everything {
+    if is_parallel
+        || picture.methods.offset != RayOffset::Robust
+        || picture.methods.sphere != SphereMethod::Stable
+        || picture.model == Model::Everything
+    {
         return None;
     }
     let visible = scene.objects.iter().filter(|object| object.visible);

@@ -11,6 +11,7 @@ mod locate;
 mod notation;
 mod recovery;
 mod shape;
+mod tracing;
 mod words;
 
 use indexmap::IndexMap;
@@ -23,6 +24,10 @@ pub use locate::Step;
 pub use notation::{format_number, parse_vec3};
 pub use recovery::{Leftover, Recovery};
 pub use shape::Shape;
+pub use tracing::{
+    Accelerator, Choice, HighlightMethod, MAX_GRID, MAX_HALVINGS, Methods, Precision, RayOffset,
+    Sampling, SphereMethod, TriangleMethod, Way,
+};
 
 use crate::lanes::Vec3;
 
@@ -134,8 +139,9 @@ pub struct LightObj {
     pub color_pack: String,
 }
 
-/// How the still picture is made.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// How the picture is made. What it is traced with is written to the file only where it differs from
+/// the default, which is what the scene needs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Render {
     /// Width in pixels, 1–[`MAX_SIDE`].
@@ -144,6 +150,39 @@ pub struct Render {
     pub height: u32,
     /// How often light may be mirrored on its way to the eye, 0–[`MAX_REFLECTIONS`].
     pub reflection_limit: u32,
+    /// How edges are smoothed.
+    #[serde(with = "notation::word", skip_serializing_if = "notation::is_default")]
+    pub antialias: Sampling,
+    /// The real type of the kernel.
+    #[serde(with = "notation::word", skip_serializing_if = "notation::is_default")]
+    pub precision: Precision,
+    /// Ray against sphere.
+    #[serde(with = "notation::word", skip_serializing_if = "notation::is_default")]
+    pub sphere: SphereMethod,
+    /// Ray against triangle.
+    #[serde(with = "notation::word", skip_serializing_if = "notation::is_default")]
+    pub triangle: TriangleMethod,
+    /// Where shadow and reflection rays start.
+    #[serde(with = "notation::word", skip_serializing_if = "notation::is_default")]
+    pub offset: RayOffset,
+    /// The power of a highlight.
+    #[serde(with = "notation::word", skip_serializing_if = "notation::is_default")]
+    pub specular: HighlightMethod,
+    /// How primitives are found.
+    #[serde(with = "notation::word", skip_serializing_if = "notation::is_default")]
+    pub accelerator: Accelerator,
+}
+
+impl Render {
+    /// The formulas.
+    pub fn methods(&self) -> Methods {
+        Methods {
+            sphere: self.sphere,
+            triangle: self.triangle,
+            offset: self.offset,
+            highlight: self.specular,
+        }
+    }
 }
 
 /// The flight of the camera. Keys come with the timeline; until then the list must be empty.
@@ -257,6 +296,13 @@ impl Default for Render {
             width: 1024,
             height: 1024,
             reflection_limit: 1,
+            antialias: Sampling::default(),
+            precision: Precision::default(),
+            sphere: SphereMethod::default(),
+            triangle: TriangleMethod::default(),
+            offset: RayOffset::default(),
+            specular: HighlightMethod::default(),
+            accelerator: Accelerator::default(),
         }
     }
 }

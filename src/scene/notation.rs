@@ -37,6 +37,33 @@ pub mod number {
     }
 }
 
+/// A choice by its word.
+pub mod word {
+    use super::{Deserialize, Deserializer, Error, Serializer};
+    use crate::scene::Choice;
+
+    /// Writes the word.
+    pub fn serialize<T: Choice, S: Serializer>(
+        value: &T,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&value.word())
+    }
+
+    /// Reads a word.
+    pub fn deserialize<'de, T: Choice, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<T, D::Error> {
+        let word = String::deserialize(deserializer)?;
+        T::parse(&word).map_err(|expected| D::Error::custom(format!("{expected}; found {word:?}")))
+    }
+}
+
+/// Whether a value need not be written.
+pub fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
 /// The shortest text that reads back as `value`, without `.0` on whole numbers.
 pub fn format_number(value: f64) -> String {
     format!("{value}")

@@ -4,7 +4,7 @@ use super::cull::Lists;
 use super::triangle::Shear;
 use super::{Ray, plane, sphere, triangle};
 use crate::lanes::{Lane, Mask as _, Real, Vec3};
-use crate::plan::{Plan, RayOffset};
+use crate::plan::{Departure, Plan};
 
 /// Rays and the primitives that they start on, which they must not meet where they start.
 #[derive(Clone, Copy, Debug)]
@@ -309,19 +309,48 @@ pub fn refine<L: Lane>(
     }
 }
 
+/// 256 roundings of each coordinate in the direction of the normal, and 1/65536 of a unit near zero.
+///
+/// Wächter and Binder, "A fast and robust method for avoiding self-intersection", Ray Tracing Gems
+/// (2019), ch. 6; with 2u·|p| in place of the step to the next number, which is at most twice that.
+#[inline(always)]
+fn roundings_along<L: Lane>(token: L::Token, point: Vec3<L>, normal: Vec3<L>) -> Vec3<L> {
+    let roundings = L::splat(
+        token,
+        L::Real::UNIT_ROUNDOFF * L::Real::from_f64(2.0 * 256.0),
+    );
+    let near = L::splat(token, L::Real::from_f64(1.0 / 32.0));
+    let least = L::splat(token, L::Real::from_f64(1.0 / 65536.0));
+    let (x, y, z) = (point.x.abs(), point.y.abs(), point.z.abs());
+    Vec3::new(
+        normal.x * L::select(x.less(near), least, x * roundings),
+        normal.y * L::select(y.less(near), least, y * roundings),
+        normal.z * L::select(z.less(near), least, z * roundings),
+    )
+}
+
 impl<L: Lane> Hit<L> {
     /// The paths that leave the hits in unit directions on the side that the normal points to.
     #[inline(always)]
-    pub fn leave(&self, token: L::Token, offset: RayOffset, direction: Vec3<L>) -> Paths<L> {
-        let (origin, start) = match offset {
-            RayOffset::Robust => (
+    pub fn leave(
+        &self,
+        token: L::Token,
+        departure: Departure<L::Real>,
+        direction: Vec3<L>,
+    ) -> Paths<L> {
+        let (origin, start) = match departure {
+            Departure::AtHit => (
                 self.point + self.normal * self.slack,
                 Start::On(self.number),
             ),
-            RayOffset::Fixed(distance) => {
-                let distance = L::splat(token, L::Real::from_f64(distance));
+            Departure::Along(distance) => {
+                let distance = L::splat(token, distance);
                 (self.point + direction * distance, Start::Nowhere)
             }
+            Departure::Roundings => (
+                self.point + roundings_along(token, self.point, self.normal),
+                Start::Nowhere,
+            ),
         };
         Paths {
             rays: Ray { origin, direction },

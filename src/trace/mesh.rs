@@ -5,16 +5,13 @@ use super::samples::{Samples, Traced};
 use super::sampling::{Colors, Tile};
 use super::stage::Engine;
 use crate::lanes::{Lane, Real};
+use crate::plan::MAX_HALVINGS;
 
-/// How often a pixel is halved where there is an edge: to an eighth.
-const DEPTH: u32 = 3;
-/// How often where something thinner than two pixels is, or a strong edge: to a sixteenth.
-pub const FINEST_DEPTH: u32 = 4;
-/// Steps of the finest grid in a pixel.
-pub const FINEST: usize = 1 << FINEST_DEPTH;
-/// Difference of the corners of a cell, summed over the channels, above which it is halved.
-const CONTRAST: f64 = 0.1;
-/// The same from [`DEPTH`] on: an edge along the finest cells may move by half of one, and must not
+/// Steps of the finest grid in a pixel: where something thinner than two pixels is, or a strong edge,
+/// it is halved once more than elsewhere.
+pub const FINEST: usize = 1 << (MAX_HALVINGS + 1);
+/// Difference of the corners of a cell, summed over the channels, above which it is halved the last
+/// time: an edge along the finest cells may move by half of one, and must not
 /// show that.
 const STRONG_CONTRAST: f64 = 0.6;
 /// The same where the corners see different things: four levels of 255, which nobody sees.
@@ -54,12 +51,45 @@ pub fn range<R: Real>(a: R, b: R, c: R, d: R) -> R {
     a.max(b).max(c.max(d)) - a.min(b).min(c.min(d))
 }
 
-/// Whether the inside of a cell must be looked at, by the contrast of its corners, whether they see
-/// the same, and whether something thin is near.
-#[inline(always)]
-pub fn wants_more<R: Real>(contrast: R, is_same: bool, is_near: bool) -> bool {
-    // Corners that see the same say nothing of what passes between them.
-    is_near & is_same | (contrast > R::from_f64(if is_same { CONTRAST } else { EDGE_CONTRAST }))
+/// When cells are halved.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits<R> {
+    /// Difference of the corners of a cell, summed over the channels, above which it is halved.
+    contrast: R,
+    /// The same where they see different things.
+    edge_contrast: R,
+    /// How often a pixel is halved, not counting the last time.
+    depth: u32,
+}
+
+impl<R: Real> Limits<R> {
+    /// With these limits for cells whose corners see the same.
+    pub fn new(contrast: f64, depth: u32) -> Self {
+        Self {
+            contrast: R::from_f64(contrast),
+            edge_contrast: R::from_f64(contrast.min(EDGE_CONTRAST)),
+            depth: depth.min(MAX_HALVINGS),
+        }
+    }
+
+    /// How often a pixel is halved at most.
+    pub fn finest_depth(self) -> u32 {
+        self.depth + 1
+    }
+
+    /// Whether the inside of a cell must be looked at, by the contrast of its corners, whether they
+    /// see the same, and whether something thin is near.
+    #[inline(always)]
+    pub fn want_more(self, contrast: R, is_same: bool, is_near: bool) -> bool {
+        let limit = if is_same {
+            self.contrast
+        } else {
+            self.edge_contrast
+        };
+        let differs = contrast > limit;
+        // Corners that see the same say nothing of what passes between them.
+        (is_near & is_same) | differs
+    }
 }
 
 impl<R: Real> Mesh<R> {
@@ -159,7 +189,7 @@ impl<R: Real> Mesh<R> {
 
     /// Whether the inside of a cell must be looked at.
     #[inline(always)]
-    pub fn is_split(&self, cell: Cell, corners: [usize; 4], depth: u32) -> bool {
+    pub fn is_split(&self, cell: Cell, corners: [usize; 4], depth: u32, limits: Limits<R>) -> bool {
         let first = self.signature[corners[0]];
         let is_same = corners
             .iter()
@@ -171,10 +201,10 @@ impl<R: Real> Mesh<R> {
             let [a, b, c, d] = corners.map(|corner| channel[corner]);
             contrast = contrast + range(a, b, c, d);
         }
-        if depth < DEPTH {
-            wants_more(contrast, is_same, is_near)
+        if depth < limits.depth {
+            limits.want_more(contrast, is_same, is_near)
         } else {
-            depth < FINEST_DEPTH && (is_near || contrast > R::from_f64(STRONG_CONTRAST))
+            depth < limits.finest_depth() && (is_near || contrast > R::from_f64(STRONG_CONTRAST))
         }
     }
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::cull::Lists;
-use super::mesh::{Cell, FINEST, FINEST_DEPTH, Mesh, NEAR, range, wants_more};
+use super::mesh::{Cell, FINEST, Limits, Mesh, NEAR, range};
 use super::samples::{Samples, Traced};
 use super::stage::Engine;
 use crate::lanes::{Lane, Real};
@@ -159,18 +159,19 @@ impl<L: Lane> Sampler<L> {
         engine: &mut Engine<L>,
         seen: &Lists,
         tile: &Tile,
+        limits: Limits<L::Real>,
         colors: &mut Colors<L::Real>,
     ) {
         let columns = tile.columns.start..tile.columns.end + 1;
         let rows = tile.rows.start..tile.rows.end + 1;
         self.lay_out(columns, rows, (0.0, 0.0));
         engine.trace(token, &self.samples, seen, true, &mut self.traced);
-        self.judge(tile, colors);
+        self.judge(tile, limits, colors);
         if self.split.is_empty() {
             return;
         }
         self.mesh.start(tile, &self.traced);
-        for depth in 1..=FINEST_DEPTH {
+        for depth in 1..=limits.finest_depth() {
             self.cells.clear();
             for &cell in &self.split {
                 self.mesh.halve(cell, &mut self.cells);
@@ -186,7 +187,7 @@ impl<L: Lane> Sampler<L> {
             self.split.clear();
             for &cell in &self.cells {
                 let corners = self.mesh.corners(cell);
-                if self.mesh.is_split(cell, corners, depth) {
+                if self.mesh.is_split(cell, corners, depth, limits) {
                     self.split.push(cell);
                 } else {
                     let pixel = cell.y as usize / FINEST * colors.stride + cell.x as usize / FINEST;
@@ -203,7 +204,7 @@ impl<L: Lane> Sampler<L> {
     /// smooth nearly everywhere, so this is what their smoothing costs: one loop over the whole tile,
     /// with a pixel at the end of each row that is none.
     #[inline(always)]
-    fn judge(&mut self, tile: &Tile, colors: &mut Colors<L::Real>) {
+    fn judge(&mut self, tile: &Tile, limits: Limits<L::Real>, colors: &mut Colors<L::Real>) {
         let stride = tile.width() + 1;
         let length = stride * tile.rows.len() - 1;
         colors.clear(stride, length);
@@ -223,7 +224,8 @@ impl<L: Lane> Sampler<L> {
         let signatures = corners_of(&self.traced.signature, stride, length);
         for (((&a, &b), (&c, &d)), &contrast) in signatures.zip(&self.contrast) {
             let is_same = ((a ^ b) | (a ^ c) | (a ^ d)) == 0;
-            self.wanting.push(wants_more(contrast, is_same, false));
+            self.wanting
+                .push(limits.want_more(contrast, is_same, false));
         }
         let reach = L::Real::from_f64(NEAR);
         let nears = corners_of(&self.traced.near, stride, length);

@@ -10,7 +10,7 @@ use super::packet::{Mark, Packet, Trail};
 use super::thin::{Footprint, thin_distance};
 use super::{Ray, Rays};
 use crate::lanes::{Lane, Mask as _, Real, Vec3};
-use crate::plan::{Light, Plan, RayOffset, Surface};
+use crate::plan::{Departure, Light, Plan, Surface};
 
 /// How packets are painted.
 pub struct Painter<'a, L: Lane> {
@@ -120,9 +120,7 @@ impl<L: Lane> Painter<'_, L> {
     fn mirror(&self, spot: &Spot<L>, filter: Vec3<L::Real>) -> Mirrored<L> {
         let along = spot.view.dot(spot.hit.normal);
         let direction = spot.view - spot.hit.normal * (along + along);
-        let paths = spot
-            .hit
-            .leave(self.token, self.plan.methods.offset, direction);
+        let paths = spot.hit.leave(self.token, self.plan.departure, direction);
         Mirrored {
             where_: spot.here,
             filter: Vec3::broadcast(self.token, filter),
@@ -164,10 +162,10 @@ impl<L: Lane> Painter<'_, L> {
         let mut mark = mark.zip(spot.footprint.as_ref());
         let mut lit = lit_side;
         if !shadows.casters.is_empty() {
-            let paths = hit.leave(token, plan.methods.offset, l);
-            let reach = match plan.methods.offset {
-                RayOffset::Robust => distance,
-                RayOffset::Fixed(start) => distance - L::splat(token, L::Real::from_f64(start)),
+            let paths = hit.leave(token, plan.departure, l);
+            let reach = match plan.departure {
+                Departure::AtHit | Departure::Roundings => distance,
+                Departure::Along(start) => distance - L::splat(token, start),
             };
             if let Some((mark, footprint)) = &mut mark {
                 let trail = footprint.shadow(token);

@@ -7,6 +7,7 @@ use rayon::iter::{IndexedParallelIterator as _, ParallelIterator as _};
 use rayon::slice::ParallelSliceMut as _;
 
 use super::cull::{Axis, Lists};
+use super::mesh::Limits;
 use super::samples::Traced;
 use super::sampling::{Colors, Sampler, Tile};
 use super::stage::Engine;
@@ -250,8 +251,9 @@ impl<R: Vectored, P: Pixel> Work<R> for Band<'_, R, P> {
                     sampler.grid(token, &mut engine, &in_tile, &tile, side, &mut colors);
                     self.fill(&tile, colors.stride, colors.channels());
                 }
-                Sampling::Adaptive => {
-                    sampler.adaptive(token, &mut engine, &in_tile, &tile, &mut colors);
+                Sampling::Adaptive { contrast, depth } => {
+                    let limits = Limits::new(contrast, depth);
+                    sampler.adaptive(token, &mut engine, &in_tile, &tile, limits, &mut colors);
                     self.fill(&tile, colors.stride, colors.channels());
                 }
             }
@@ -310,7 +312,7 @@ mod tests {
     fn tiles_of_any_size_give_the_same_bits() {
         let mut scene = Scene::demo();
         scene.render.reflection_limit = 3;
-        for sampling in [Sampling::Centres, Sampling::Grid(2), Sampling::Adaptive] {
+        for sampling in [Sampling::Centres, Sampling::Grid(2), Sampling::ADAPTIVE] {
             let pictures = [16, 8, 5, 32, 200].map(|tile| {
                 let picture = Picture {
                     sampling,

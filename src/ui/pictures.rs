@@ -123,9 +123,9 @@ impl Pictures {
             picture: Picture {
                 sampling: match pace {
                     Pace::Whole => Sampling::Centres,
-                    Pace::Progressive => Sampling::Adaptive,
+                    Pace::Progressive => editor.scene().render.antialias,
                 },
-                ..Picture::sized(size.0, size.1)
+                ..Picture::of(editor.scene(), size.0, size.1)
             },
             pace,
         });

@@ -198,7 +198,7 @@ pub fn describe(frame: &Frame, scene: &Arc<Scene>) -> String {
     let per_pixel = frame.cost.rays.total() as f64 / pixels;
     let edges = match frame.sampling {
         Sampling::Centres => "",
-        Sampling::Grid(_) | Sampling::Adaptive => " · smooth",
+        Sampling::Grid(_) | Sampling::Adaptive { .. } => " · smooth",
     };
     let bounces = scene.render.reflection_limit;
     let objects = scene.objects.iter().filter(|object| object.visible).count();

@@ -92,7 +92,7 @@ fn published() -> [Scene; 2] {
 #[test]
 fn the_demo_has_clean_edges_for_few_rays() {
     for scene in published() {
-        let got = quality(&scene, &picture(Sampling::Adaptive));
+        let got = quality(&scene, &picture(Sampling::ADAPTIVE));
         assert!(
             got.psnr >= EIGHT_BITS && got.worst.0 <= INVISIBLE && got.rays <= 4.0,
             "{got:?}"
@@ -159,7 +159,7 @@ fn poles() -> Scene {
 
 #[test]
 fn what_is_narrower_than_a_pixel_does_not_slip_through() {
-    let got = quality(&poles(), &picture(Sampling::Adaptive));
+    let got = quality(&poles(), &picture(Sampling::ADAPTIVE));
     assert!(
         got.psnr >= EIGHT_BITS && got.worst.0 <= INVISIBLE,
         "{got:?}"
@@ -177,7 +177,7 @@ fn a_highlight_smaller_than_a_pixel_is_found() {
         light.intensity = 1.0;
         light.marker = None;
     }
-    let got = quality(&scene, &picture(Sampling::Adaptive));
+    let got = quality(&scene, &picture(Sampling::ADAPTIVE));
     assert!(
         got.psnr >= EIGHT_BITS && got.worst.0 <= INVISIBLE,
         "{got:?}"

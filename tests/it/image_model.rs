@@ -5,9 +5,10 @@ use std::collections::HashSet;
 use glint::image::{Image, render};
 use glint::lanes::{Level, Vec3};
 use glint::plan::{
-    Accelerator, Methods, Picture, Precision, RayOffset, Sampling, SphereMethod, TriangleMethod,
+    Accelerator, HighlightMethod, Methods, Picture, Precision, RayOffset, Sampling, SphereMethod,
+    TriangleMethod,
 };
-use glint::scene::{Object, Projection, Scene, Shape};
+use glint::scene::{Choice as _, Object, Projection, Scene, Shape};
 use glint::trace::{Grid, Pass, Rays, Threads, Tracer, Watch};
 
 use crate::random;
@@ -21,7 +22,7 @@ fn small(scene: &Scene) -> Image {
     picture(scene, &Picture::sized(160, 120)).0
 }
 
-const SAMPLINGS: [Sampling; 3] = [Sampling::Centres, Sampling::Grid(2), Sampling::Adaptive];
+const SAMPLINGS: [Sampling; 3] = [Sampling::Centres, Sampling::Grid(2), Sampling::ADAPTIVE];
 
 /// The colour in the middle of a picture.
 fn middle(scene: &Scene) -> [u8; 3] {
@@ -161,6 +162,7 @@ fn the_classic_formulas_show_the_same_where_they_work() {
         sphere: SphereMethod::Classic,
         triangle: TriangleMethod::Edges,
         offset: RayOffset::Fixed(0.1),
+        highlight: HighlightMethod::Power,
     };
     let classic = picture(
         &scene,
@@ -175,6 +177,71 @@ fn the_classic_formulas_show_the_same_where_they_work() {
         .filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 2))
         .count();
     assert!(differ <= 100, "{differ} of 19200");
+}
+
+/// Every formula in the lists draws the demo, where all of them work.
+#[test]
+fn every_formula_draws_the_demo() {
+    let scene = Scene::demo();
+    let robust = small(&scene);
+    let changes = changed_one_at_a_time();
+    assert_eq!(changes.len(), 1 + 3 + 3 + 2);
+    for (word, methods) in changes {
+        let wanted = Picture {
+            methods,
+            ..Picture::sized(160, 120)
+        };
+        let other = picture(&scene, &wanted).0;
+        let differ = robust.pixels.iter().zip(&other.pixels);
+        let differ = differ
+            .filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 2))
+            .count();
+        assert!(differ <= 60, "{word}: {differ} of 19200");
+    }
+}
+
+/// The default formulas with one of them replaced, for all that there are.
+fn changed_one_at_a_time() -> Vec<(String, Methods)> {
+    let default = Methods::default();
+    let spheres = SphereMethod::ALL[1..].iter().map(|way| {
+        (
+            way.word,
+            Methods {
+                sphere: way.value,
+                ..default
+            },
+        )
+    });
+    let triangles = TriangleMethod::ALL[1..].iter().map(|way| {
+        (
+            way.word,
+            Methods {
+                triangle: way.value,
+                ..default
+            },
+        )
+    });
+    let offsets = RayOffset::ALL[1..].iter().map(|way| {
+        (
+            way.word,
+            Methods {
+                offset: way.value,
+                ..default
+            },
+        )
+    });
+    let highlights = HighlightMethod::ALL[1..].iter().map(|way| {
+        (
+            way.word,
+            Methods {
+                highlight: way.value,
+                ..default
+            },
+        )
+    });
+    let all = spheres.chain(triangles).chain(offsets).chain(highlights);
+    all.map(|(word, methods)| (word.to_owned(), methods))
+        .collect()
 }
 
 /// The demo scaled and moved as a whole.

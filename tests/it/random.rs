@@ -48,6 +48,7 @@ pub fn scene(seed: u64) -> Scene {
         width: 256,
         height: 192,
         reflection_limit: 1,
+        ..Render::default()
     };
     scene
         .color_packs

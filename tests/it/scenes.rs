@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use glint::lanes::Vec3;
-use glint::scene::{Document, Scene, SceneError, Shape, check};
+use glint::plan::Picture;
+use glint::scene::{Document, RayOffset, Sampling, Scene, SceneError, Shape, check};
 use proptest::prelude::*;
 
 fn files_in(folder: &str) -> Vec<PathBuf> {
@@ -54,6 +55,33 @@ fn a_refusal_shows_the_line_and_points_at_the_place() {
     let error = Document::from_text(text).expect_err("refused").to_string();
     let expected = "scene:3:24: ambient_intensity must be between 0 and 1, found 7\n 3 |     ambient_intensity: 7,\n   |                        ^";
     assert_eq!(error, expected);
+}
+
+#[test]
+fn what_it_is_traced_with_is_kept_and_the_default_is_not_written() {
+    let text = "Scene(version: 1, objects: [], render: Render(antialias: \"grid:3\", precision: \"f64\", sphere: \"classic\", triangle: \"edge-planes\", offset: \"relative:0.01\", specular: \"log1p\", accelerator: \"bvh\"))";
+    let document = Document::from_text(text).expect("a scene");
+    let written = document.to_text().expect("writable");
+    assert_eq!(Document::from_text(&written).expect("a scene"), document);
+    for word in [
+        "grid:3",
+        "f64",
+        "classic",
+        "edge-planes",
+        "relative:0.01",
+        "log1p",
+        "bvh",
+    ] {
+        assert!(
+            written.contains(&format!("\"{word}\"")),
+            "{word} in {written}"
+        );
+    }
+    let picture = Picture::still(&document.scene);
+    assert_eq!(picture.methods.offset, RayOffset::Relative(0.01));
+    assert_eq!(picture.sampling, Sampling::Grid(3));
+    let plain = Document::empty().to_text().expect("writable");
+    assert!(!plain.contains("antialias") && !plain.contains("offset"));
 }
 
 #[test]

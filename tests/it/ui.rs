@@ -192,7 +192,7 @@ fn the_window_opens_on_the_demo_and_shows_its_picture() {
     assert_eq!(desk.scene(), &Scene::demo());
     let shown = desk.picture();
     let smooth = Picture {
-        sampling: Sampling::Adaptive,
+        sampling: Sampling::ADAPTIVE,
         ..Picture::sized(shown.width as u32, shown.height as u32)
     };
     let direct = render(desk.scene(), &smooth, &Watch::default())

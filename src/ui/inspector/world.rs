@@ -5,7 +5,7 @@ use egui::Ui;
 use super::title;
 use crate::editor::Edit;
 use crate::lanes::Vec3;
-use crate::scene::{MAX_REFLECTIONS, MAX_SIDE, Render, Scene};
+use crate::scene::{Choice, MAX_REFLECTIONS, MAX_SIDE, Render, Scene};
 use crate::ui::rows::{Field, Rows, fraction};
 use crate::ui::{Out, icons};
 
@@ -79,10 +79,70 @@ pub fn show_picture(ui: &mut Ui, scene: &Scene, out: &mut Out) {
         0..=MAX_REFLECTIONS,
         &mut render.reflection_limit,
     );
+    rows.heading("Traced with");
+    formula(
+        &mut rows,
+        "antialias",
+        "How edges are smoothed",
+        &mut render.antialias,
+    );
+    formula(
+        &mut rows,
+        "precision",
+        "The real type of the tracer",
+        &mut render.precision,
+    );
+    formula(
+        &mut rows,
+        "sphere",
+        "Ray against sphere",
+        &mut render.sphere,
+    );
+    formula(
+        &mut rows,
+        "triangle",
+        "Ray against triangle",
+        &mut render.triangle,
+    );
+    formula(
+        &mut rows,
+        "offset",
+        "Where shadow and reflection rays start",
+        &mut render.offset,
+    );
+    formula(
+        &mut rows,
+        "specular",
+        "The power of a highlight",
+        &mut render.specular,
+    );
+    formula(
+        &mut rows,
+        "accelerator",
+        "How primitives are found",
+        &mut render.accelerator,
+    );
     let changed = rows.changed();
     if let Some(field) = changed.filter(|_| render != scene.render) {
         out.edit(Edit::Render(render, field));
     }
+}
+
+/// A row for a choice between ways of doing a step.
+fn formula<T: Choice>(rows: &mut Rows, name: &'static str, hint: &str, value: &mut T) {
+    let ways = T::ALL.iter().map(|way| (way.value, way.word.to_owned()));
+    let mut options: Vec<(T, String)> = ways.collect();
+    if options.iter().all(|(option, _)| option != value) {
+        options.push((*value, value.word()));
+    }
+    let lines = T::ALL.iter();
+    let lines = lines.map(|way| format!("\n{}: {} ({})", way.word, way.what, way.source));
+    rows.choice(
+        name,
+        &format!("{hint}{}", lines.collect::<String>()),
+        value,
+        options,
+    );
 }
 
 /// A row for a whole number.

@@ -1,0 +1,69 @@
+//! Colour packs, made ready for shading.
+
+use super::{HighlightMethod, Model, Picture};
+use crate::lanes::{Exponent, Real, Vec3};
+use crate::scene::{ColorPack, Scene};
+
+/// A material with everything multiplied in that is the same for all its points. Colours are 0–1.
+#[derive(Clone, Copy, Debug)]
+pub struct Material<R> {
+    /// What is seen without any light: ambient intensity · ambient, or the full ambient colour of a
+    /// marker.
+    pub base: Vec3<R>,
+    /// How lights and mirrored things add to it; `None` for markers and for packs that are black
+    /// in both.
+    pub surface: Option<Surface<R>>,
+}
+
+/// The part of a material that answers to light.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface<R> {
+    /// Matte colour.
+    pub diffuse: Vec3<R>,
+    /// Highlight colour.
+    pub specular: Vec3<R>,
+    /// Sharpness of the highlight.
+    pub exponent: Exponent,
+    /// (Σ intensities) · specular, the filter of the mirror image; `None` where there is none.
+    pub mirror: Option<Vec3<R>>,
+}
+
+/// One material per pack, then one per pack as a marker wears it.
+pub fn pack_materials<R: Real>(scene: &Scene, picture: &Picture) -> Vec<Material<R>> {
+    let lights = scene.lights.iter().filter(|light| light.visible);
+    let total_intensity: f64 = lights.map(|light| light.intensity).sum();
+    let lit = scene.color_packs.values().map(|pack| Material {
+        base: linear(pack.ambient * scene.ambient_intensity),
+        surface: pack_surface(pack, total_intensity, picture),
+    });
+    let markers = scene.color_packs.values().map(|pack| Material {
+        base: linear(pack.ambient),
+        surface: None,
+    });
+    lit.chain(markers).collect()
+}
+
+fn pack_surface<R: Real>(
+    pack: &ColorPack,
+    total_intensity: f64,
+    picture: &Picture,
+) -> Option<Surface<R>> {
+    let all = picture.model == Model::Everything;
+    let shines = pack.specular.max_abs() > 0.0;
+    let mirrors = pack.reflective && (all || shines && total_intensity > 0.0);
+    (all || shines || pack.diffuse.max_abs() > 0.0).then(|| Surface {
+        diffuse: linear(pack.diffuse),
+        specular: linear(pack.specular),
+        exponent: match picture.methods.highlight {
+            HighlightMethod::Auto => Exponent::new(pack.phong_exponent),
+            HighlightMethod::Power => Exponent::power(pack.phong_exponent),
+            HighlightMethod::Log1p => Exponent::Large(pack.phong_exponent),
+        },
+        mirror: mirrors.then(|| linear(pack.specular * total_intensity)),
+    })
+}
+
+/// 0–255 to 0–1.
+pub fn linear<R: Real>(color: Vec3<f64>) -> Vec3<R> {
+    Vec3::from_f64(color * (1.0 / 255.0))
+}

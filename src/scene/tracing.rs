@@ -1,0 +1,427 @@
+//! How a picture is traced, where that is not left to the plan: one type for each step that has
+//! competing ways, with one line for each way. Command line, scene file, window and lab read the same
+//! lists. The default of each is the robust one; others are kept to match old pictures and to show
+//! where they fail.
+
+use std::fmt::Debug;
+
+/// A choice between ways of doing one step.
+pub trait Choice: Copy + PartialEq + Debug + Sized + 'static {
+    /// Every way, the default first; those with a number in them with a usual one.
+    const ALL: &'static [Way<Self>];
+
+    /// What the command line and the file call it.
+    fn word(self) -> String {
+        let way = Self::ALL.iter().find(|way| way.value == self);
+        way.map_or(String::new(), |way| way.word.to_owned())
+    }
+
+    /// The way of this word.
+    ///
+    /// # Errors
+    /// A sentence with the words that there are.
+    fn parse(word: &str) -> Result<Self, String> {
+        let way = Self::ALL.iter().find(|way| way.word == word);
+        way.map(|way| way.value).ok_or_else(|| {
+            let words: Vec<&str> = Self::ALL.iter().map(|way| way.word).collect();
+            format!("expected {}", words.join(", "))
+        })
+    }
+}
+
+/// A way of doing a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Way<T> {
+    /// The choice.
+    pub value: T,
+    /// What the command line and the file call it.
+    pub word: &'static str,
+    /// What it does.
+    pub what: &'static str,
+    /// Where it comes from.
+    pub source: &'static str,
+}
+
+const fn way<T>(value: T, word: &'static str, what: &'static str, source: &'static str) -> Way<T> {
+    Way {
+        value,
+        word,
+        what,
+        source,
+    }
+}
+
+const SEED: &str = "the program that Glint grew from";
+
+/// The real type of the kernel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// Single, unless the scene needs double.
+    #[default]
+    Auto,
+    /// Single precision.
+    Single,
+    /// Double precision, the reference.
+    Double,
+}
+
+impl Choice for Precision {
+    const ALL: &'static [Way<Self>] = &[
+        way(
+            Self::Auto,
+            "auto",
+            "f32 unless it would show",
+            "Glint's plan",
+        ),
+        way(Self::Single, "f32", "single precision", "IEEE 754"),
+        way(Self::Double, "f64", "double precision", "IEEE 754"),
+    ];
+}
+
+/// Ray against sphere.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SphereMethod {
+    /// The discriminant from the perpendicular: error grows with distance / radius.
+    #[default]
+    Stable,
+    /// (d·x)² - x·x + R²: error grows with (distance / radius)².
+    Classic,
+}
+
+impl Choice for SphereMethod {
+    const ALL: &'static [Way<Self>] = &[
+        way(
+            Self::Stable,
+            "stable",
+            "discriminant from the perpendicular: error grows with distance / radius",
+            "Haines, Günther and Akenine-Möller, Ray Tracing Gems, 2019, ch. 7",
+        ),
+        way(
+            Self::Classic,
+            "classic",
+            "(d·x)² - x·x + R²: error grows with the square of distance / radius",
+            SEED,
+        ),
+    ];
+}
+
+/// Ray against triangle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TriangleMethod {
+    /// Neighbours agree on their shared edge: nothing leaks through a mesh.
+    #[default]
+    Watertight,
+    /// The plane's hit, then one cross product per edge: leaks along edges.
+    Edges,
+    /// Barycentric coordinates by Cramer's rule: leaks along edges.
+    MollerTrumbore,
+    /// Planes through the origin and each edge: agrees along edges, leaks at corners.
+    EdgePlanes,
+}
+
+impl Choice for TriangleMethod {
+    const ALL: &'static [Way<Self>] = &[
+        way(
+            Self::Watertight,
+            "watertight",
+            "shear, then 2D edge functions: nothing leaks between neighbours",
+            "Woop, Benthin and Wald, JCGT 2(1), 2013",
+        ),
+        way(
+            Self::Edges,
+            "edges",
+            "hit of the plane, then a cross product per edge: leaks along edges",
+            SEED,
+        ),
+        way(
+            Self::MollerTrumbore,
+            "moller-trumbore",
+            "barycentric coordinates by Cramer's rule: leaks along edges",
+            "Möller and Trumbore, Journal of Graphics Tools 2(1), 1997",
+        ),
+        way(
+            Self::EdgePlanes,
+            "edge-planes",
+            "planes through the ray's origin and each edge: leaks at corners",
+            "Plücker; Davidovič et al., Graphics Interface 2012",
+        ),
+    ];
+}
+
+/// Where shadow and reflection rays start, so that a surface does not shadow itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum RayOffset {
+    /// At the refined hit, ignoring the own primitive; a few roundings off it if it belongs to a
+    /// mesh. Has no length in it and so works at every scale.
+    #[default]
+    Robust,
+    /// This many world units along the new ray.
+    Fixed(f64),
+    /// This share of the scene's diagonal along the new ray.
+    Relative(f64),
+    /// 256 roundings of the hit's coordinates along the normal.
+    WachterBinder,
+}
+
+impl Choice for RayOffset {
+    const ALL: &'static [Way<Self>] = &[
+        way(
+            Self::Robust,
+            "robust",
+            "at the hit, which the own primitive does not shadow; a few roundings off in a mesh",
+            "Glint",
+        ),
+        way(
+            Self::Fixed(0.1),
+            "fixed:0.1",
+            "so many world units along the new ray: fits scenes of one size",
+            SEED,
+        ),
+        way(
+            Self::Relative(1e-4),
+            "relative:0.0001",
+            "such a share of the scene's diagonal along the new ray",
+            "common practice",
+        ),
+        way(
+            Self::WachterBinder,
+            "wachter-binder",
+            "256 roundings of the hit's coordinates along the normal",
+            "Wächter and Binder, Ray Tracing Gems, 2019, ch. 6",
+        ),
+    ];
+
+    fn word(self) -> String {
+        match self {
+            Self::Robust => "robust".to_owned(),
+            Self::Fixed(distance) => format!("fixed:{distance}"),
+            Self::Relative(share) => format!("relative:{share}"),
+            Self::WachterBinder => "wachter-binder".to_owned(),
+        }
+    }
+
+    fn parse(word: &str) -> Result<Self, String> {
+        let length = |number: &str| {
+            let number = number.parse::<f64>().ok();
+            number.filter(|d| d.is_finite() && *d >= 0.0)
+        };
+        let found = match word.split_once(':') {
+            None if word == "robust" => Some(Self::Robust),
+            None if word == "wachter-binder" => Some(Self::WachterBinder),
+            Some(("fixed", number)) => length(number).map(Self::Fixed),
+            Some(("relative", number)) => length(number).map(Self::Relative),
+            _ => None,
+        };
+        found.ok_or_else(|| {
+            "expected robust, wachter-binder, fixed: and a distance ≥ 0 such as fixed:0.1, or relative: and a share of the scene such as relative:0.0001".to_owned()
+        })
+    }
+}
+
+/// The power of a highlight.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum HighlightMethod {
+    /// The plain power for small exponents, the other form for large ones.
+    #[default]
+    Auto,
+    /// (n·h)^p: error grows with p.
+    Power,
+    /// exp(p·log1p(-|n - h|²/2)).
+    Log1p,
+}
+
+impl Choice for HighlightMethod {
+    const ALL: &'static [Way<Self>] = &[
+        way(
+            Self::Auto,
+            "auto",
+            "the power up to 256, exp and log1p above",
+            "Glint's plan",
+        ),
+        way(Self::Power, "pow", "(n·h)^p: error grows with p", SEED),
+        way(
+            Self::Log1p,
+            "log1p",
+            "exp(p·log1p(-|n - h|²/2)): keeps what 1 - n·h has lost",
+            "Glint, after Kahan's log1p",
+        ),
+    ];
+}
+
+/// How the primitives that a beam of rays can meet are found. All show the same picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Accelerator {
+    /// A list, or bundles where there are many.
+    #[default]
+    Auto,
+    /// One by one.
+    List,
+    /// Bundles within bundles.
+    Bundles,
+}
+
+impl Choice for Accelerator {
+    const ALL: &'static [Way<Self>] = &[
+        way(
+            Self::Auto,
+            "auto",
+            "a list up to 128 spheres and triangles, bundles above",
+            "Glint's plan",
+        ),
+        way(Self::List, "list", "each by each, per tile", "Glint"),
+        way(
+            Self::Bundles,
+            "bvh",
+            "bundles of 16 along a Morton curve",
+            "Wald, Boulos and Shirley, TOG 26(1), 2007, in kind",
+        ),
+    ];
+}
+
+/// Largest number of samples along a side of a pixel.
+pub const MAX_GRID: u32 = 256;
+/// How often a pixel can be halved, not counting the last time at strong edges.
+pub const MAX_HALVINGS: u32 = 3;
+
+/// Where in its pixels a picture is sampled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sampling {
+    /// Once, in the middle: edges are jagged.
+    Centres,
+    /// So many times so many (at most [`MAX_GRID`]), evenly.
+    Grid(u32),
+    /// At the corners, and inside where those differ.
+    Adaptive {
+        /// Difference of the corners, summed over the channels, from which on they differ.
+        contrast: f64,
+        /// How often a pixel is halved, at most [`MAX_HALVINGS`]; at strong edges once more.
+        depth: u32,
+    },
+}
+
+impl Sampling {
+    /// The usual adaptive sampling.
+    pub const ADAPTIVE: Self = Self::Adaptive {
+        contrast: 0.1,
+        depth: MAX_HALVINGS,
+    };
+}
+
+impl Default for Sampling {
+    fn default() -> Self {
+        Self::ADAPTIVE
+    }
+}
+
+impl Choice for Sampling {
+    const ALL: &'static [Way<Self>] = &[
+        way(
+            Self::ADAPTIVE,
+            "adaptive",
+            "corners, and more where they see different things",
+            "Whitted, CACM 23(6), 1980",
+        ),
+        way(Self::Centres, "none", "one ray per pixel", SEED),
+        way(
+            Self::Grid(4),
+            "grid:4",
+            "so many times so many rays in every pixel",
+            "common practice",
+        ),
+    ];
+
+    fn word(self) -> String {
+        match self {
+            Self::Centres => "none".to_owned(),
+            Self::Grid(side) => format!("grid:{side}"),
+            Self::ADAPTIVE => "adaptive".to_owned(),
+            Self::Adaptive { contrast, depth } => format!("adaptive:{contrast}:{depth}"),
+        }
+    }
+
+    fn parse(word: &str) -> Result<Self, String> {
+        let mut parts = word.split(':');
+        let found = match (parts.next(), parts.next(), parts.next(), parts.next()) {
+            (Some("none"), None, ..) => Some(Self::Centres),
+            (Some("adaptive"), None, ..) => Some(Self::ADAPTIVE),
+            (Some("grid"), Some(side), None, _) => {
+                let side = side.parse().ok();
+                side.filter(|side| (1..=MAX_GRID).contains(side))
+                    .map(Self::Grid)
+            }
+            (Some("adaptive"), Some(contrast), Some(depth), None) => {
+                let contrast = contrast.parse().ok().filter(|c| (0.0..=3.0).contains(c));
+                let depth = depth.parse().ok().filter(|depth| *depth <= MAX_HALVINGS);
+                contrast
+                    .zip(depth)
+                    .map(|(contrast, depth)| Self::Adaptive { contrast, depth })
+            }
+            _ => None,
+        };
+        found.ok_or_else(|| {
+            format!(
+                "expected none, adaptive, grid: and a number from 1 to {MAX_GRID} such as grid:4, or adaptive:CONTRAST:DEPTH such as adaptive:0.1:{MAX_HALVINGS}"
+            )
+        })
+    }
+}
+
+/// One choice per step that has competing formulas.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Methods {
+    /// Ray against sphere.
+    pub sphere: SphereMethod,
+    /// Ray against triangle.
+    pub triangle: TriangleMethod,
+    /// Where shadow and reflection rays start.
+    pub offset: RayOffset,
+    /// The power of a highlight.
+    pub highlight: HighlightMethod,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words_are_read_back<T: Choice + Default>() {
+        assert_eq!(T::ALL[0].value, T::default());
+        for way in T::ALL {
+            assert_eq!(way.value.word(), way.word);
+            assert_eq!(T::parse(way.word), Ok(way.value));
+            assert!(!way.what.is_empty() && !way.source.is_empty());
+        }
+        for wrong in [
+            "",
+            "nonsense",
+            "fixed:-1",
+            "fixed:",
+            "grid:0",
+            "grid:257",
+            "adaptive:9:1",
+            "adaptive:0.1:4",
+            "none:1",
+        ] {
+            let error = T::parse(wrong).expect_err("nonsense");
+            assert!(error.starts_with("expected "), "{error}");
+        }
+    }
+
+    #[test]
+    fn every_word_is_read_back() {
+        words_are_read_back::<Precision>();
+        words_are_read_back::<SphereMethod>();
+        words_are_read_back::<TriangleMethod>();
+        words_are_read_back::<RayOffset>();
+        words_are_read_back::<HighlightMethod>();
+        words_are_read_back::<Accelerator>();
+        words_are_read_back::<Sampling>();
+        assert_eq!(
+            Sampling::parse("adaptive:0.3:2").map(Sampling::word),
+            Ok("adaptive:0.3:2".to_owned())
+        );
+        assert_eq!(
+            RayOffset::parse("relative:0.5").map(RayOffset::word),
+            Ok("relative:0.5".to_owned())
+        );
+    }
+}
