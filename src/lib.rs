@@ -7,7 +7,7 @@
 //!       │ submit(revision, scene, picture)                  │
 //!     worker (the background lane; newest wins) ◄ · · · · · ┘
 //!       │
-//!  scene ─► plan ─► trace ─► image ─► export
+//!  scene ─► plan ─► trace ─► image ─► export      lab (ways of tracing ► time, error)
 //!                     ▲
 //!               lanes ┘
 //! ```
@@ -34,6 +34,8 @@ pub mod plan;
 pub mod trace;
 
 pub mod image;
+
+pub mod lab;
 
 pub mod export;
 

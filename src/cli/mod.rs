@@ -1,6 +1,7 @@
 //! The command line: parses words, prints lines. Results go to stdout, errors to stderr; the exit
 //! code is 0 for done, 1 for failed work, 2 for wrong words or a wrong file.
 
+mod chart;
 mod check;
 mod fallback;
 mod plan;
@@ -22,7 +23,7 @@ const FAILED: u8 = 1;
 const WRONG: u8 = 2;
 
 /// Commands of later versions, so that asking for one is answered by name.
-const NOT_YET: [&str; 4] = ["export", "chart", "stability", "job"];
+const NOT_YET: [&str; 3] = ["export", "stability", "job"];
 
 #[derive(Debug, Parser)]
 #[command(
@@ -50,6 +51,8 @@ enum Command {
     Check(check::CheckWords),
     /// Say what a scene needs of the tracer, and why
     Plan(plan::PlanWords),
+    /// Chart time against error for every way of tracing a scene
+    Chart(chart::ChartWords),
 }
 
 /// What the command line asked for.
@@ -74,12 +77,12 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
         .find(|name| words.get(1).is_some_and(|word| word == **name))
     {
         return Asked::Done(refuse(&format!(
-            "`glint {name}` is not built yet; this version has `glint`, `glint render`, `glint check` and `glint plan`"
+            "`glint {name}` is not built yet; this version has `glint`, `glint render`, `glint check`, `glint plan` and `glint chart`"
         )));
     }
     if let Some(name) = unknown_command(&words) {
         return Asked::Done(refuse(&format!(
-            "there is no command {name:?}; there are render, check and plan, and `glint SCENE` opens the editor"
+            "there is no command {name:?}; there are render, check, plan and chart, and `glint SCENE` opens the editor"
         )));
     }
     match Words::try_parse_from(words) {
@@ -95,6 +98,10 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
             command: Some(Command::Plan(words)),
             ..
         }) => Asked::Done(plan::run(&words)),
+        Ok(Words {
+            command: Some(Command::Chart(words)),
+            ..
+        }) => Asked::Done(chart::run(&words)),
         Ok(Words {
             command: None,
             scene,

@@ -164,11 +164,11 @@ fn wrong_words_and_wrong_files_exit_with_2() {
             &["render", "missing.ron", "-o", "a.png"],
             "cannot read missing.ron",
         ),
-        (&["chart", DEMO], "`glint chart` is not built yet"),
+        (&["stability", DEMO], "`glint stability` is not built yet"),
         (&["check"], "<SCENE>..."),
         (
             &["chek", DEMO],
-            "there is no command \"chek\"; there are render, check and plan",
+            "there is no command \"chek\"; there are render, check, plan and chart",
         ),
     ];
     for (words, expected) in cases {
@@ -292,4 +292,42 @@ fn without_a_display_the_editor_ends_in_a_picture() {
         "{}",
         text(&bad.stderr)
     );
+}
+
+#[test]
+fn chart_prints_the_front_and_writes_every_figure() {
+    let folder = folder();
+    let words = [
+        "chart", DEMO, "--side", "16", "--csv", "c.csv", "--within", "0.01",
+    ];
+    let run = glint(folder.path(), &words);
+    assert!(run.status.success(), "{run:?}");
+    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    assert!(
+        said.contains("the seed's way") && said.contains("16×16; reference: f64"),
+        "{said}"
+    );
+    assert!(said.lines().any(|line| line.starts_with("* ")), "{said}");
+    assert!(
+        said.lines()
+            .last()
+            .is_some_and(|line| line.starts_with("take ")),
+        "{said}"
+    );
+    let csv = std::fs::read_to_string(folder.path().join("c.csv")).expect("a file");
+    let mut lines = csv.lines();
+    let columns = lines.next().expect("a head").split(',').count();
+    let dots: Vec<&str> = lines.collect();
+    assert!(dots.len() > 30, "{}", dots.len());
+    for dot in dots {
+        // Texts are in quotation marks and may hold commas.
+        let plain: String = dot.split('"').step_by(2).collect();
+        assert_eq!(plain.split(',').count(), columns, "{dot}");
+        assert!(dot.contains("f32×") || dot.contains("f64×"), "{dot}");
+    }
+    let run = glint(
+        folder.path(),
+        &["chart", DEMO, "--side", "8", "--budget", "0.0000001"],
+    );
+    assert!(String::from_utf8_lossy(&run.stdout).contains("nothing measured is within that"));
 }

@@ -1,0 +1,115 @@
+//! `glint chart`: what every way of tracing a scene costs, and how far it is off.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::{fail, refuse, say};
+use crate::lab::{Study, cheapest_within, csv, table};
+use crate::scene::{Document, Scene, write_atomic};
+use crate::trace::{Threads, Watch};
+
+/// Steps of the progress bar.
+const BAR: u64 = 1000;
+
+#[derive(Debug, Args)]
+pub struct ChartWords {
+    /// The scene file (RON)
+    scene: PathBuf,
+    /// Longer side of the pictures that are compared, in pixels
+    #[arg(long, default_value = "256", value_parser = clap::value_parser!(u32).range(8..=2048))]
+    side: u32,
+    /// Write all figures to this file
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Name the cheapest way whose RMSE (linear, 0–1) is at most this
+    #[arg(long, value_name = "RMSE")]
+    within: Option<f64>,
+    /// Name the best way that takes at most so many milliseconds
+    #[arg(long, value_name = "MS")]
+    budget: Option<f64>,
+    /// Tracing threads [default: one per core]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    threads: Option<u16>,
+}
+
+/// Measures, prints the table, and writes what was asked for.
+pub fn run(words: &ChartWords) -> ExitCode {
+    let scene = match Document::load(&words.scene) {
+        Ok(document) => document.scene,
+        Err(error) => return refuse(&error.to_string()),
+    };
+    let threads = match Threads::new(words.threads.map(usize::from)) {
+        Ok(threads) => threads,
+        Err(error) => return fail(&error.to_string()),
+    };
+    let (width, height) = size(&scene, words.side);
+    let mut study = Study::new(Arc::new(scene), width, height);
+    measure(&mut study, &threads);
+    say(table(&study).trim_end());
+    if words.within.is_some() || words.budget.is_some() {
+        say(&advice(&study, words.within, words.budget));
+    }
+    let text = csv(&study, &machine(), threads.count());
+    match &words.csv {
+        Some(path) => match write_atomic(path, text.as_bytes()) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => fail(&format!("cannot write {}: {error}", path.display())),
+        },
+        None => ExitCode::SUCCESS,
+    }
+}
+
+/// The scene's aspect with this longer side.
+fn size(scene: &Scene, side: u32) -> (u32, u32) {
+    let (width, height) = (scene.render.width, scene.render.height);
+    let scale = f64::from(side) / f64::from(width.max(height));
+    let scaled = |side: u32| ((f64::from(side) * scale).round() as u32).max(1);
+    (scaled(width), scaled(height))
+}
+
+fn measure(study: &mut Study, threads: &Threads) {
+    // Draws to stderr, and only where that is a terminal.
+    let bar = ProgressBar::new(BAR);
+    let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {eta} left");
+    if let Ok(style) = style {
+        bar.set_style(style);
+    }
+    let watch = Watch::default();
+    while threads.run(|| study.step(&watch)) {
+        bar.set_position((study.progress() * BAR as f64) as u64);
+    }
+    bar.finish_and_clear();
+}
+
+/// Which dot to take.
+fn advice(study: &Study, within: Option<f64>, budget: Option<f64>) -> String {
+    let costs = study.costs();
+    let budget = budget.unwrap_or(f64::INFINITY);
+    let best = if let Some(error) = within {
+        cheapest_within(&costs, error, budget)
+    } else {
+        // The best within a time is the cheapest within an error on the chart turned over.
+        let turned: Vec<(f64, f64)> = costs.iter().map(|&(ms, error)| (error, ms)).collect();
+        cheapest_within(&turned, budget, f64::INFINITY)
+    };
+    best.map_or_else(
+        || "nothing measured is within that".to_owned(),
+        |place| {
+            let candidate = &study.dots[place].candidate;
+            format!("take {}: {}", candidate.name, candidate.words())
+        },
+    )
+}
+
+/// The processor's name where the system tells it, and its kind.
+fn machine() -> String {
+    let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let line = told.lines().find(|line| line.starts_with("model name"));
+    let name = line.and_then(|line| line.split_once(':'));
+    let name = name.map_or("unknown processor", |(_, name)| name.trim());
+    format!("{name}, {}", std::env::consts::ARCH)
+}

@@ -1,0 +1,215 @@
+//! Which ways of tracing a picture are compared.
+
+use crate::plan::{Model, Picture};
+use crate::scene::{
+    Accelerator, Choice, HighlightMethod, MAX_REFLECTIONS, Precision, RayOffset, Render, Sampling,
+    Scene, SphereMethod, TriangleMethod,
+};
+
+/// One way of tracing a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// What it is called in the chart.
+    pub name: String,
+    /// Its settings. Width and height are those of the finished picture.
+    pub render: Render,
+    /// Whether parts of the model that the scene does not need are left out.
+    pub model: Model,
+    /// The picture is traced with so many times fewer pixels along each side, and scaled up.
+    pub upscale: u32,
+}
+
+/// Sides of the plain grids.
+const GRIDS: [u32; 7] = [2, 3, 4, 6, 8, 12, 16];
+/// Contrasts and depths of the adaptive samplings beside the usual one.
+const ADAPTIVE: [(f64, u32); 5] = [(0.3, 1), (0.1, 1), (0.3, 3), (0.1, 2), (0.03, 3)];
+
+/// The ways of tracing `scene`, in `width × height` pixels: the plan's choice first, the scene's own
+/// settings if they differ, the way of the program that Glint grew from, what differs from the plan
+/// in one thing, and the ladder of samplings.
+pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
+    let plan = Candidate {
+        name: "the plan".to_owned(),
+        render: Render {
+            width,
+            height,
+            reflection_limit: scene.render.reflection_limit,
+            ..Render::default()
+        },
+        model: Model::Needed,
+        upscale: 1,
+    };
+    let mut all = vec![plan.clone()];
+    let own = Render {
+        width,
+        height,
+        ..scene.render.clone()
+    };
+    if own != plan.render {
+        all.push(Candidate {
+            name: "this scene".to_owned(),
+            render: own,
+            ..plan.clone()
+        });
+    }
+    all.push(Candidate {
+        name: "the seed's way".to_owned(),
+        render: Render {
+            antialias: Sampling::Centres,
+            precision: Precision::Single,
+            sphere: SphereMethod::Classic,
+            triangle: TriangleMethod::Edges,
+            offset: RayOffset::Fixed(0.1),
+            specular: HighlightMethod::Power,
+            ..plan.render.clone()
+        },
+        model: Model::Everything,
+        upscale: 1,
+    });
+    let mut change = |name: String, change: &dyn Fn(&mut Render)| {
+        let mut candidate = plan.clone();
+        candidate.name = name;
+        change(&mut candidate.render);
+        all.push(candidate);
+    };
+    neighbours::<Precision>("", &mut change, |render, value| render.precision = value);
+    neighbours::<SphereMethod>("sphere ", &mut change, |render, value| {
+        render.sphere = value;
+    });
+    neighbours::<TriangleMethod>("", &mut change, |render, value| render.triangle = value);
+    neighbours::<RayOffset>("offset ", &mut change, |render, value| {
+        render.offset = value;
+    });
+    neighbours::<HighlightMethod>("highlight ", &mut change, |render, value| {
+        render.specular = value;
+    });
+    neighbours::<Accelerator>("", &mut change, |render, value| {
+        render.accelerator = value;
+    });
+    let limit = scene.render.reflection_limit;
+    if limit > 0 {
+        change(bounces(limit - 1), &|render| {
+            render.reflection_limit = limit - 1;
+        });
+    }
+    if limit < MAX_REFLECTIONS {
+        change(bounces(limit + 1), &|render| {
+            render.reflection_limit = limit + 1;
+        });
+    }
+    let ladder = std::iter::once(Sampling::Centres)
+        .chain(GRIDS.map(Sampling::Grid))
+        .chain(ADAPTIVE.map(|(contrast, depth)| Sampling::Adaptive { contrast, depth }));
+    for sampling in ladder {
+        change(sampling.word(), &|render| render.antialias = sampling);
+    }
+    change("none, f64".to_owned(), &|render| {
+        render.antialias = Sampling::Centres;
+        render.precision = Precision::Double;
+    });
+    for upscale in [2, 4] {
+        all.push(Candidate {
+            name: format!("1/{upscale} size"),
+            upscale,
+            ..plan.clone()
+        });
+    }
+    all
+}
+
+fn bounces(limit: u32) -> String {
+    format!("{limit} bounce{}", if limit == 1 { "" } else { "s" })
+}
+
+/// All ways of one step but the plan's.
+fn neighbours<T: Choice>(
+    prefix: &str,
+    change: &mut impl FnMut(String, &dyn Fn(&mut Render)),
+    set: impl Fn(&mut Render, T),
+) {
+    for way in &T::ALL[1..] {
+        change(format!("{prefix}{}", way.word), &|render| {
+            set(render, way.value);
+        });
+    }
+}
+
+impl Candidate {
+    /// What is traced, before it is scaled up.
+    pub fn picture(&self, scene: &Scene) -> Picture {
+        let side = |side: u32| side.div_ceil(self.upscale);
+        let (width, height) = (side(self.render.width), side(self.render.height));
+        Picture {
+            model: self.model,
+            ..Picture::of(&self.scene(scene), width, height)
+        }
+    }
+
+    /// The scene with the candidate's settings.
+    pub fn scene(&self, scene: &Scene) -> Scene {
+        Scene {
+            render: self.render.clone(),
+            ..scene.clone()
+        }
+    }
+
+    /// Its settings in the words of the command line.
+    pub fn words(&self) -> String {
+        let render = &self.render;
+        let mut words = vec![
+            render.antialias.word(),
+            render.precision.word(),
+            render.sphere.word(),
+            render.triangle.word(),
+            render.offset.word(),
+            format!("specular {}", render.specular.word()),
+            format!("accelerator {}", render.accelerator.word()),
+            bounces(render.reflection_limit),
+        ];
+        if self.model == Model::Everything {
+            words.push("nothing left out".to_owned());
+        }
+        if self.upscale > 1 {
+            words.push(format!("1/{} size, scaled up", self.upscale));
+        }
+        words.join(", ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::check;
+
+    #[test]
+    fn every_way_of_every_list_is_compared_once() {
+        let scene = Scene::demo();
+        let all = candidates(&scene, 64, 64);
+        let ways = Precision::ALL.len()
+            + SphereMethod::ALL.len()
+            + TriangleMethod::ALL.len()
+            + RayOffset::ALL.len()
+            + HighlightMethod::ALL.len()
+            + Accelerator::ALL.len()
+            - 6;
+        assert_eq!(
+            all.len(),
+            2 + ways + 2 + 1 + GRIDS.len() + ADAPTIVE.len() + 1 + 2
+        );
+        let mut names: Vec<&str> = all.iter().map(|c| c.name.as_str()).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), all.len(), "{names:?}");
+        for candidate in &all {
+            assert_eq!(
+                check(&candidate.scene(&scene)),
+                Ok(()),
+                "{}",
+                candidate.name
+            );
+        }
+        let mut other = scene.clone();
+        other.render.sphere = SphereMethod::Classic;
+        assert_eq!(candidates(&other, 64, 64)[1].name, "this scene");
+    }
+}

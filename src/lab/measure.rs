@@ -1,0 +1,155 @@
+//! How far a picture is off.
+
+use crate::image::Image;
+use crate::lanes::Real;
+use crate::trace::{Pass, Pixel, Rays, Tracer, Watch};
+
+/// The error that rounding to 8 bits leaves in the best of pictures: 1 / (255·√12), as a root mean
+/// square of linear colours from 0 to 1.
+pub const EIGHT_BIT_FLOOR: f64 = 1.0 / (255.0 * 3.464_101_615_137_754_4);
+
+/// A channel that is off by more than this can be seen.
+const VISIBLE: f32 = 4.0 / 255.0;
+
+/// Linear red, green and blue, 0–1, before they become 8 bits.
+pub type Light = [f32; 3];
+
+impl Pixel for Light {
+    fn of<R: Real>(red: R, green: R, blue: R) -> Self {
+        [red, green, blue].map(|channel| channel.to_f64() as f32)
+    }
+}
+
+/// How far a picture is off, over all channels of all pixels; colours are linear, 0–1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Failing {
+    /// Root of the mean square.
+    pub rmse: f64,
+    /// The worst channel.
+    pub max: f64,
+    /// Share of pixels with a channel that is off by more than 4/255.
+    pub visible: f64,
+}
+
+impl Failing {
+    /// Peak signal to noise in decibels: -20·log₁₀(RMSE); infinity for equal pictures.
+    pub fn psnr(self) -> f64 {
+        -20.0 * self.rmse.log10()
+    }
+}
+
+/// How far `picture` is off `truth`, which is as large.
+pub fn difference(picture: &[Light], truth: &[Light]) -> Failing {
+    let (mut squares, mut max, mut visible) = (0.0, 0.0_f32, 0_usize);
+    for (a, b) in picture.iter().zip(truth) {
+        let mut worst = 0.0_f32;
+        for channel in 0..3 {
+            let off = (a[channel] - b[channel]).abs();
+            squares += f64::from(off) * f64::from(off);
+            worst = worst.max(off);
+        }
+        max = max.max(worst);
+        visible += usize::from(worst > VISIBLE);
+    }
+    let pixels = truth.len().max(1) as f64;
+    Failing {
+        rmse: (squares / (3.0 * pixels)).sqrt(),
+        max: f64::from(max),
+        visible: visible as f64 / pixels,
+    }
+}
+
+/// Traces a picture as linear light on the current rayon pool; `None` if `watch` said stop.
+pub fn trace_light(tracer: &Tracer, watch: &Watch) -> Option<(Vec<Light>, Rays)> {
+    let mut pixels = vec![[0.0; 3]; tracer.width() * tracer.height()];
+    let rays = tracer.pass(&mut pixels, Pass::Whole, watch)?;
+    Some((pixels, rays))
+}
+
+/// A picture in another size: between the centres of its pixels, colours change evenly.
+pub fn scaled(from: &[Light], (width, height): (usize, usize), to: (usize, usize)) -> Vec<Light> {
+    if (width, height) == to {
+        return from.to_vec();
+    }
+    let place = |at: usize, count: usize, of: usize| {
+        let at = (at as f32 + 0.5) * of as f32 / count as f32 - 0.5;
+        let at = at.clamp(0.0, (of - 1) as f32);
+        let first = at.floor() as usize;
+        (first, (first + 1).min(of - 1), at.fract())
+    };
+    let mix = |a: Light, b: Light, share: f32| {
+        let mut mixed = a;
+        for (mixed, b) in mixed.iter_mut().zip(b) {
+            *mixed += (b - *mixed) * share;
+        }
+        mixed
+    };
+    let mut pixels = Vec::with_capacity(to.0 * to.1);
+    for row in 0..to.1 {
+        let (top, bottom, down) = place(row, to.1, height);
+        for column in 0..to.0 {
+            let (left, right, across) = place(column, to.0, width);
+            let at = |x: usize, y: usize| from[y * width + x];
+            let upper = mix(at(left, top), at(right, top), across);
+            let lower = mix(at(left, bottom), at(right, bottom), across);
+            pixels.push(mix(upper, lower, down));
+        }
+    }
+    pixels
+}
+
+/// Linear light as an 8-bit picture.
+pub fn eight_bits(light: &[Light], width: usize, height: usize) -> Image {
+    Image {
+        width,
+        height,
+        pixels: light
+            .iter()
+            .map(|&[red, green, blue]| Pixel::of(red, green, blue))
+            .collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_is_what_it_says() {
+        let truth = vec![[0.5; 3]; 4];
+        let mut picture = truth.clone();
+        assert_eq!(difference(&picture, &truth), Failing::default());
+        assert_eq!(difference(&picture, &truth).psnr(), f64::INFINITY);
+        picture[1][2] = 0.75;
+        let off = difference(&picture, &truth);
+        assert!((off.rmse - (0.0625_f64 / 12.0).sqrt()).abs() < 1e-9);
+        assert_eq!((off.max, off.visible), (0.25, 0.25));
+    }
+
+    #[test]
+    fn rounding_to_eight_bits_costs_the_floor() {
+        let light: Vec<Light> = (0..100_000)
+            .map(|n| [0.0, 1.0, 2.0].map(|c| ((n as f32) * 0.618_034 + c * 0.37).fract()))
+            .collect();
+        let image = eight_bits(&light, 1000, 100);
+        let back: Vec<Light> = image
+            .pixels
+            .iter()
+            .map(|&[r, g, b, _]| [r, g, b].map(|level| f32::from(level) / 255.0))
+            .collect();
+        let off = difference(&back, &light).rmse;
+        assert!((off / EIGHT_BIT_FLOOR - 1.0).abs() < 0.01, "{off}");
+    }
+
+    #[test]
+    fn a_slope_stays_one_when_it_is_scaled() {
+        let from: Vec<Light> = (0..8 * 4).map(|n| [(n % 8) as f32, 1.0, 0.0]).collect();
+        let to = scaled(&from, (8, 4), (16, 8));
+        assert_eq!(to.len(), 128);
+        for (n, pixel) in to.iter().enumerate() {
+            let expected = ((n % 16) as f32 / 2.0 - 0.25).clamp(0.0, 7.0);
+            assert!((pixel[0] - expected).abs() < 1e-5 && pixel[1] == 1.0);
+        }
+        assert_eq!(scaled(&from, (8, 4), (8, 4)), from);
+    }
+}

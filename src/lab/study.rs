@@ -1,0 +1,300 @@
+//! A study: all candidates of a scene, measured step by step, so that other work can go first.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use super::candidates::{Candidate, candidates};
+use super::measure::{Failing, Light, difference, eight_bits, scaled, trace_light};
+use crate::image::{Image, render_into};
+use crate::plan::Picture;
+use crate::scene::{Precision, Sampling, Scene};
+use crate::trace::{Tracer, Watch};
+
+/// Samples along each side of a pixel of the reference, and of a second one with samples in other
+/// places, which tells how far the first is off.
+const TRUTH_GRIDS: [u32; 2] = [64, 61];
+/// Timed runs of each candidate, not counting the one that warms up.
+const ROUNDS: usize = 9;
+/// A candidate that takes longer than this is run less often.
+const SLOW: Duration = Duration::from_millis(250);
+/// Timed runs of such.
+const SLOW_ROUNDS: usize = 3;
+
+/// One measured way of tracing.
+#[derive(Clone, Debug)]
+pub struct Dot {
+    /// The way.
+    pub candidate: Candidate,
+    /// What its picture is off; `None` until it is measured.
+    pub failing: Option<Failing>,
+    /// Rays per pixel of the finished picture, all kinds together.
+    pub rays_per_pixel: f64,
+    /// Milliseconds of each timed run.
+    pub times: Vec<f64>,
+    /// The picture.
+    pub picture: Option<Arc<Image>>,
+    /// Real type and width of its kernel.
+    pub lanes: String,
+}
+
+/// The time of a dot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Timing {
+    /// Milliseconds; the middle of all runs.
+    pub median: f64,
+    /// Distance of the quartiles, as a share of the median.
+    pub spread: f64,
+    /// How many runs there were.
+    pub runs: usize,
+}
+
+/// What the errors are measured against.
+#[derive(Clone, Debug)]
+pub struct Yardstick {
+    /// How far it is off itself: what two references with samples in other places differ by,
+    /// over √2.
+    pub rmse: f64,
+    /// The picture.
+    pub picture: Arc<Image>,
+}
+
+/// The measuring of a scene.
+#[derive(Debug)]
+pub struct Study {
+    scene: Arc<Scene>,
+    size: (u32, u32),
+    truth: Vec<Light>,
+    /// There once the reference is.
+    pub yardstick: Option<Yardstick>,
+    /// One for each candidate.
+    pub dots: Vec<Dot>,
+    spent: Duration,
+    timed: usize,
+}
+
+impl Study {
+    /// Nothing measured yet; pictures will be `width × height`.
+    pub fn new(scene: Arc<Scene>, width: u32, height: u32) -> Self {
+        let dots = candidates(&scene, width, height)
+            .into_iter()
+            .map(|candidate| Dot {
+                candidate,
+                failing: None,
+                rays_per_pixel: 0.0,
+                times: Vec::new(),
+                picture: None,
+                lanes: String::new(),
+            });
+        Self {
+            dots: dots.collect(),
+            scene,
+            size: (width, height),
+            truth: Vec::new(),
+            yardstick: None,
+            spent: Duration::ZERO,
+            timed: 0,
+        }
+    }
+
+    /// The scene that is measured.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// Width and height of the pictures.
+    pub fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    /// Does the next piece of work on the current rayon pool: a reference, a picture, or a timed run.
+    /// `false` when all is done. A piece that `watch` has stopped is done again the next time.
+    pub fn step(&mut self, watch: &Watch) -> bool {
+        let start = Instant::now();
+        let is_more = if self.yardstick.is_none() {
+            self.find_truth(watch);
+            true
+        } else if let Some(place) = self.dots.iter().position(|dot| dot.failing.is_none()) {
+            self.look_at(place, watch);
+            true
+        } else {
+            self.time_next(watch)
+        };
+        self.spent += start.elapsed();
+        is_more
+    }
+
+    /// Share of the work that is done, 0–1, by the number of its pieces.
+    pub fn progress(&self) -> f64 {
+        let seen = self.dots.iter().filter(|dot| dot.failing.is_some()).count();
+        let truth = if self.yardstick.is_some() {
+            2
+        } else {
+            usize::from(!self.truth.is_empty())
+        };
+        let wanted: usize = self.dots.iter().map(Dot::rounds).sum();
+        let runs: usize = self.dots.iter().map(|dot| dot.times.len()).sum();
+        // References take as long as a good part of the rest.
+        let (done, all) = (10 * truth + seen + runs, 20 + self.dots.len() + wanted);
+        done as f64 / all as f64
+    }
+
+    /// How long the rest will take; `None` at the start.
+    pub fn remaining(&self) -> Option<Duration> {
+        let done = self.progress();
+        (done > 0.0).then(|| self.spent.mul_f64((1.0 - done) / done))
+    }
+
+    fn find_truth(&mut self, watch: &Watch) {
+        let is_second = !self.truth.is_empty();
+        let picture = Picture {
+            precision: Precision::Double,
+            sampling: Sampling::Grid(TRUTH_GRIDS[usize::from(is_second)]),
+            ..Picture::sized(self.size.0, self.size.1)
+        };
+        let Some((light, _)) = trace_light(&Tracer::new(&self.scene, &picture), watch) else {
+            return;
+        };
+        if is_second {
+            let rmse = difference(&light, &self.truth).rmse / 2.0_f64.sqrt();
+            let (width, height) = (self.size.0 as usize, self.size.1 as usize);
+            self.yardstick = Some(Yardstick {
+                rmse,
+                picture: Arc::new(eight_bits(&self.truth, width, height)),
+            });
+        } else {
+            self.truth = light;
+        }
+    }
+
+    fn look_at(&mut self, place: usize, watch: &Watch) {
+        let candidate = &self.dots[place].candidate;
+        let picture = candidate.picture(&self.scene);
+        let tracer = Tracer::new(&candidate.scene(&self.scene), &picture);
+        let Some((light, rays)) = trace_light(&tracer, watch) else {
+            return;
+        };
+        let size = (self.size.0 as usize, self.size.1 as usize);
+        let light = scaled(&light, (tracer.width(), tracer.height()), size);
+        let dot = &mut self.dots[place];
+        dot.failing = Some(difference(&light, &self.truth));
+        dot.rays_per_pixel = rays.total() as f64 / (size.0 * size.1) as f64;
+        dot.picture = Some(Arc::new(eight_bits(&light, size.0, size.1)));
+        dot.lanes = tracer.lanes();
+    }
+
+    /// One run of the candidate that has had the fewest, in turn, so that what disturbs the machine
+    /// for a while disturbs all of them.
+    fn time_next(&mut self, watch: &Watch) -> bool {
+        let waiting = |dot: &&mut Dot| dot.times.len() < dot.rounds();
+        let Some(dot) = self
+            .dots
+            .iter_mut()
+            .filter(waiting)
+            .min_by_key(|dot| dot.times.len())
+        else {
+            return false;
+        };
+        // The first run of all finds cold caches and sleeping threads.
+        let runs = if self.timed == 0 { 2 } else { 1 };
+        for _ in 0..runs {
+            let start = Instant::now();
+            if draw(&dot.candidate, &self.scene, watch).is_none() {
+                return true;
+            }
+            self.timed += 1;
+            if self.timed > 1 {
+                dot.times.push(start.elapsed().as_secs_f64() * 1e3);
+            }
+        }
+        true
+    }
+}
+
+/// The finished picture, as the user would get it.
+fn draw(candidate: &Candidate, scene: &Scene, watch: &Watch) -> Option<Image> {
+    let (scene, picture) = (candidate.scene(scene), candidate.picture(scene));
+    let mut image = Image::default();
+    if candidate.upscale == 1 {
+        render_into(&mut image, &scene, &picture, watch)?;
+        return Some(image);
+    }
+    let tracer = Tracer::new(&scene, &picture);
+    let (light, _) = trace_light(&tracer, watch)?;
+    let size = (scene.render.width as usize, scene.render.height as usize);
+    let light = scaled(&light, (tracer.width(), tracer.height()), size);
+    Some(eight_bits(&light, size.0, size.1))
+}
+
+impl Dot {
+    /// How often it is to be timed.
+    fn rounds(&self) -> usize {
+        let slow = SLOW.as_secs_f64() * 1e3;
+        if self.times.first().is_some_and(|&time| time > slow) {
+            SLOW_ROUNDS
+        } else {
+            ROUNDS
+        }
+    }
+
+    /// Its time, once there is one.
+    pub fn timing(&self) -> Option<Timing> {
+        let mut times = self.times.clone();
+        times.sort_by(f64::total_cmp);
+        let at = |share: f64| times.get(((times.len() as f64 - 1.0) * share).round() as usize);
+        let (median, low, high) = (*at(0.5)?, *at(0.25)?, *at(0.75)?);
+        Some(Timing {
+            median,
+            spread: (high - low) / median,
+            runs: times.len(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_study_measures_everything_and_its_truth_is_no_method() {
+        let scene = Arc::new(Scene::demo());
+        let mut study = Study::new(Arc::clone(&scene), 24, 18);
+        let watch = Watch::default();
+        let mut last = 0.0;
+        while study.step(&watch) {
+            let done = study.progress();
+            assert!(done >= last && done <= 1.0);
+            last = done;
+        }
+        assert_eq!(study.progress(), 1.0);
+        let truth = study.yardstick.as_ref().expect("a reference");
+        assert!(truth.rmse > 0.0 && truth.rmse < 3e-4, "{:e}", truth.rmse);
+        for dot in &study.dots {
+            let failing = dot.failing.expect("measured");
+            assert!(
+                failing.rmse > 0.0,
+                "{} is its own reference",
+                dot.candidate.name
+            );
+            assert!(dot.timing().expect("timed").runs >= SLOW_ROUNDS);
+            assert!(dot.rays_per_pixel > 0.0);
+        }
+        let rmse = |name: &str| {
+            let dot = study.dots.iter().find(|dot| dot.candidate.name == name);
+            dot.and_then(|dot| dot.failing).expect("measured").rmse
+        };
+        assert!(rmse("the plan") < rmse("none") / 3.0);
+        assert!(rmse("grid:8") < rmse("grid:2"));
+        assert!(rmse("0 bounces") > 10.0 * rmse("the plan"));
+    }
+
+    #[test]
+    fn a_stopped_piece_is_done_again() {
+        let mut study = Study::new(Arc::new(Scene::demo()), 16, 16);
+        let stopped = Watch::default();
+        stopped
+            .stop
+            .store(true, std::sync::atomic::Ordering::Relaxed);
+        assert!(study.step(&stopped) && study.progress() == 0.0);
+        assert!(study.step(&Watch::default()) && study.progress() > 0.0);
+    }
+}

@@ -1,0 +1,102 @@
+//! A study as text.
+
+use std::fmt::Write as _;
+
+use super::front::front;
+use super::study::{Dot, Study};
+
+/// A spread above this makes a time doubtful.
+pub const DOUBTFUL: f64 = 0.2;
+
+impl Study {
+    /// Milliseconds and RMSE of each dot, as far as they are known; NaN elsewhere.
+    pub fn costs(&self) -> Vec<(f64, f64)> {
+        let cost = |dot: &Dot| dot.timing().map_or(f64::NAN, |timing| timing.median);
+        let error = |dot: &Dot| dot.failing.map_or(f64::NAN, |failing| failing.rmse);
+        self.dots
+            .iter()
+            .map(|dot| (cost(dot), error(dot)))
+            .collect()
+    }
+}
+
+/// The dots by time, for people; those on the front are marked.
+pub fn table(study: &Study) -> String {
+    let costs = study.costs();
+    let front = front(&costs);
+    let mut order: Vec<usize> = (0..study.dots.len()).collect();
+    order.sort_by(|&a, &b| costs[a].0.total_cmp(&costs[b].0));
+    let mut text = format!(
+        "  {:<22} {:>9} {:>7} {:>9} {:>10} {:>7} {:>7} {:>8}\n",
+        "way", "ms", "spread", "rays/px", "RMSE", "dB", "max", "> 4/255"
+    );
+    for place in order {
+        let dot = &study.dots[place];
+        let (Some(timing), Some(failing)) = (dot.timing(), dot.failing) else {
+            continue;
+        };
+        let mark = if front.contains(&place) { '*' } else { ' ' };
+        let doubt = if timing.spread > DOUBTFUL { "?" } else { "" };
+        let _ = writeln!(
+            text,
+            "{mark} {:<22} {:>9.3} {:>7} {:>9.2} {:>10.2e} {:>7.1} {:>7.4} {:>7.3}%",
+            dot.candidate.name,
+            timing.median,
+            format!("{:.0}%{doubt}", timing.spread * 100.0),
+            dot.rays_per_pixel,
+            failing.rmse,
+            failing.psnr(),
+            failing.max,
+            failing.visible * 100.0,
+        );
+    }
+    let (width, height) = study.size();
+    if let Some(truth) = &study.yardstick {
+        let _ = writeln!(
+            text,
+            "{width}×{height}; reference: f64, 64×64 samples per pixel, itself off by {:.1e}; 8 bits cannot show less than {:.1e}",
+            truth.rmse,
+            super::EIGHT_BIT_FLOOR
+        );
+    }
+    text.push_str("* nothing is both faster and closer   ? the runs differ by more than a fifth\n");
+    text
+}
+
+/// All figures of a study as comma-separated values, one line for each dot.
+pub fn csv(study: &Study, machine: &str, threads: usize) -> String {
+    let front = front(&study.costs());
+    let reference = study
+        .yardstick
+        .as_ref()
+        .map_or(f64::NAN, |truth| truth.rmse);
+    let (width, height) = study.size();
+    let mut text = "name,settings,width,height,median_ms,spread,runs,rays_per_pixel,rmse,psnr_db,max,visible_share,on_front,reference_rmse,lanes,threads,machine\n".to_owned();
+    for (place, dot) in study.dots.iter().enumerate() {
+        let (Some(timing), Some(failing)) = (dot.timing(), dot.failing) else {
+            continue;
+        };
+        let _ = writeln!(
+            text,
+            "{},{},{width},{height},{:.4},{:.3},{},{:.4},{:e},{:.2},{},{},{},{reference:e},{},{threads},{}",
+            quoted(&dot.candidate.name),
+            quoted(&dot.candidate.words()),
+            timing.median,
+            timing.spread,
+            timing.runs,
+            dot.rays_per_pixel,
+            failing.rmse,
+            failing.psnr(),
+            failing.max,
+            failing.visible,
+            front.contains(&place),
+            quoted(&dot.lanes),
+            quoted(machine),
+        );
+    }
+    text
+}
+
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('"', "\"\""))
+}
