@@ -13,6 +13,10 @@ use crate::trace::{Tracer, Watch};
 /// Samples along each side of a pixel of the reference, and of a second one with samples in other
 /// places, which tells how far the first is off.
 const TRUTH_GRIDS: [u32; 2] = [64, 61];
+/// A reference is traced in so many pieces, between which more urgent work can go first.
+const TRUTH_PIECES: usize = 32;
+/// What the references count for in the progress, in timed runs.
+const TRUTH_WORTH: f64 = 100.0;
 /// Timed runs of each candidate, not counting the one that warms up.
 const ROUNDS: usize = 9;
 /// A candidate that takes longer than this is run less often.
@@ -58,12 +62,13 @@ pub struct Yardstick {
     pub picture: Arc<Image>,
 }
 
-/// The measuring of a scene.
-#[derive(Debug)]
+/// The measuring of a scene. Pictures are shared between copies.
+#[derive(Clone, Debug)]
 pub struct Study {
     scene: Arc<Scene>,
     size: (u32, u32),
-    truth: Vec<Light>,
+    /// The reference and the second one, as many rows as are traced.
+    truths: [Arc<Vec<Light>>; 2],
     /// There once the reference is.
     pub yardstick: Option<Yardstick>,
     /// One for each candidate.
@@ -89,7 +94,7 @@ impl Study {
             dots: dots.collect(),
             scene,
             size: (width, height),
-            truth: Vec::new(),
+            truths: Default::default(),
             yardstick: None,
             spent: Duration::ZERO,
             timed: 0,
@@ -106,7 +111,8 @@ impl Study {
         self.size
     }
 
-    /// Does the next piece of work on the current rayon pool: a reference, a picture, or a timed run.
+    /// Does the next piece of work on the current rayon pool: rows of a reference, a picture, or a timed
+    /// run.
     /// `false` when all is done. A piece that `watch` has stopped is done again the next time.
     pub fn step(&mut self, watch: &Watch) -> bool {
         let start = Instant::now();
@@ -126,16 +132,14 @@ impl Study {
     /// Share of the work that is done, 0–1, by the number of its pieces.
     pub fn progress(&self) -> f64 {
         let seen = self.dots.iter().filter(|dot| dot.failing.is_some()).count();
-        let truth = if self.yardstick.is_some() {
-            2
-        } else {
-            usize::from(!self.truth.is_empty())
-        };
+        let pixels = (self.size.0 * self.size.1) as usize;
+        let traced: usize = self.truths.iter().map(|truth| truth.len()).sum();
+        // References take as long as a good part of the rest.
+        let truth = TRUTH_WORTH * traced as f64 / (2 * pixels) as f64;
         let wanted: usize = self.dots.iter().map(Dot::rounds).sum();
         let runs: usize = self.dots.iter().map(|dot| dot.times.len()).sum();
-        // References take as long as a good part of the rest.
-        let (done, all) = (10 * truth + seen + runs, 20 + self.dots.len() + wanted);
-        done as f64 / all as f64
+        let (done, all) = (seen + runs, self.dots.len() + wanted);
+        (truth + done as f64) / (TRUTH_WORTH + all as f64)
     }
 
     /// How long the rest will take; `None` at the start.
@@ -144,25 +148,32 @@ impl Study {
         (done > 0.0).then(|| self.spent.mul_f64((1.0 - done) / done))
     }
 
+    /// A few rows of a reference, or what the two differ by when both are there.
     fn find_truth(&mut self, watch: &Watch) {
-        let is_second = !self.truth.is_empty();
-        let picture = Picture {
-            precision: Precision::Double,
-            sampling: Sampling::Grid(TRUTH_GRIDS[usize::from(is_second)]),
-            ..Picture::sized(self.size.0, self.size.1)
-        };
-        let Some((light, _)) = trace_light(&Tracer::new(&self.scene, &picture), watch) else {
-            return;
-        };
-        if is_second {
-            let rmse = difference(&light, &self.truth).rmse / 2.0_f64.sqrt();
-            let (width, height) = (self.size.0 as usize, self.size.1 as usize);
+        let (width, height) = (self.size.0 as usize, self.size.1 as usize);
+        let unfinished = self
+            .truths
+            .iter()
+            .position(|truth| truth.len() < width * height);
+        let Some(place) = unfinished else {
+            let rmse = difference(&self.truths[1], &self.truths[0]).rmse / 2.0_f64.sqrt();
             self.yardstick = Some(Yardstick {
                 rmse,
-                picture: Arc::new(eight_bits(&self.truth, width, height)),
+                picture: Arc::new(eight_bits(&self.truths[0], width, height)),
             });
-        } else {
-            self.truth = light;
+            return;
+        };
+        let picture = Picture {
+            precision: Precision::Double,
+            sampling: Sampling::Grid(TRUTH_GRIDS[place]),
+            ..Picture::sized(self.size.0, self.size.1)
+        };
+        let first = self.truths[place].len() / width;
+        let rows = height.div_ceil(TRUTH_PIECES).min(height - first);
+        let mut light = vec![[0.0; 3]; rows * width];
+        let tracer = Tracer::new(&self.scene, &picture);
+        if tracer.rows(&mut light, first, watch).is_some() {
+            Arc::make_mut(&mut self.truths[place]).extend(light);
         }
     }
 
@@ -176,7 +187,7 @@ impl Study {
         let size = (self.size.0 as usize, self.size.1 as usize);
         let light = scaled(&light, (tracer.width(), tracer.height()), size);
         let dot = &mut self.dots[place];
-        dot.failing = Some(difference(&light, &self.truth));
+        dot.failing = Some(difference(&light, &self.truths[0]));
         dot.rays_per_pixel = rays.total() as f64 / (size.0 * size.1) as f64;
         dot.picture = Some(Arc::new(eight_bits(&light, size.0, size.1)));
         dot.lanes = tracer.lanes();

@@ -157,9 +157,24 @@ impl Tracer {
     /// The colours do not depend on the number of threads or lanes, or on what was traced before.
     /// `None` if `watch` said stop; some pixels are then still the old ones.
     pub fn pass<P: Pixel>(&self, pixels: &mut [P], pass: Pass, watch: &Watch) -> Option<Rays> {
+        self.trace_rows(pixels, 0, pass, watch)
+    }
+
+    /// Traces whole rows of the picture, from `first` on, into `pixels`; see [`Self::pass`].
+    pub fn rows<P: Pixel>(&self, pixels: &mut [P], first: usize, watch: &Watch) -> Option<Rays> {
+        self.trace_rows(pixels, first, Pass::Whole, watch)
+    }
+
+    fn trace_rows<P: Pixel>(
+        &self,
+        pixels: &mut [P],
+        first: usize,
+        pass: Pass,
+        watch: &Watch,
+    ) -> Option<Rays> {
         match &self.kernel {
-            Kernel::Single(plan) => self.pass_of(plan, pixels, pass, watch),
-            Kernel::Double(plan) => self.pass_of(plan, pixels, pass, watch),
+            Kernel::Single(plan) => self.pass_of(plan, pixels, first, pass, watch),
+            Kernel::Double(plan) => self.pass_of(plan, pixels, first, pass, watch),
         }
     }
 
@@ -167,6 +182,7 @@ impl Tracer {
         &self,
         plan: &Plan<R>,
         pixels: &mut [P],
+        first: usize,
         pass: Pass,
         watch: &Watch,
     ) -> Option<Rays> {
@@ -181,7 +197,7 @@ impl Tracer {
             .enumerate();
         bands
             .map(|(index, pixels)| {
-                let top = index * self.tile;
+                let top = first + index * self.tile;
                 let band = Band {
                     plan,
                     seen: &seen,

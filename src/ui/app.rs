@@ -10,11 +10,12 @@ use super::commands::{Command, is_enabled, pressed};
 use super::dialogs::{Ask, Dialogs, Native};
 use super::files::{Files, Next, Outcome};
 use super::flying::Flying;
+use super::lab::Lab;
 use super::menu::Layout;
 use super::outliner::Outliner;
 use super::pictures::Pictures;
 use super::screenshot::Screenshot;
-use super::theme::{GRID, INSPECTOR, OUTLINER, ROW, palette};
+use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, palette};
 use super::toasts::Toasts;
 use super::viewport::{Place, describe, fit};
 use super::window::data_folder;
@@ -68,6 +69,7 @@ pub struct App {
     pictures: Pictures,
     files: Files,
     outliner: Outliner,
+    lab: Lab,
     toasts: Toasts,
     flying: Flying,
     layout: Layout,
@@ -103,6 +105,7 @@ impl App {
             pictures: Pictures::new(&cc.egui_ctx)?,
             files: Files::new(setup.dialogs, recent.unwrap_or_default()),
             outliner: Outliner::default(),
+            lab: Lab::default(),
             toasts: Toasts::default(),
             flying: Flying::default(),
             layout: Layout {
@@ -151,6 +154,16 @@ impl App {
             let kept = self.autosave.kept_since();
             status::show(ui, &text, &self.pictures.activity(), kept, out);
         });
+        if self.lab.is_open {
+            let panel = Panel::bottom("lab").frame(side).resizable(true);
+            let shown = panel
+                .default_size(LAB)
+                .size_range(160.0..=600.0)
+                .show(ui, |ui| self.lab.show(ui, &self.editor, out));
+            if let Some(wish) = shown.inner {
+                self.pictures.fulfil(wish);
+            }
+        }
         if self.layout.outliner {
             Panel::left("outliner")
                 .frame(side)
@@ -176,13 +189,16 @@ impl App {
             .inner
     }
 
-    fn show_picture(&self, ui: &mut Ui) -> Option<(Place, egui::Response)> {
+    fn show_picture(&mut self, ui: &mut Ui) -> Option<(Place, egui::Response)> {
         let area = ui.max_rect();
         let place = fit(
             area.shrink(GRID),
             self.editor.scene(),
             ui.pixels_per_point(),
         );
+        if let Some(response) = self.lab.show_picture(ui, place) {
+            return Some((place, response));
+        }
         let is_still = self.pictures.shown_still(&self.editor).is_some();
         let response = if is_still && self.layout.actual_size {
             self.pictures.screen.show_still_at_actual_size(ui)?
@@ -210,6 +226,10 @@ impl App {
             }
             Command::Escape => {
                 self.escape();
+                None
+            }
+            Command::Lab => {
+                self.lab.is_open = !self.lab.is_open;
                 None
             }
             Command::Shortcuts => {
@@ -267,6 +287,8 @@ impl App {
     fn escape(&mut self) {
         if self.shortcuts_open {
             self.shortcuts_open = false;
+        } else if self.lab.leave() {
+            // The live view is back.
         } else if self.editor.mode != Mode::Live {
             self.pictures.cancel_still();
             self.editor.apply(Action::Show(Mode::Live));
@@ -326,6 +348,9 @@ fn projected(editor: &Editor, projection: Projection) -> Action {
 impl eframe::App for App {
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
         self.pictures.poll(ctx, &mut self.editor);
+        if let Some(study) = self.pictures.take_study() {
+            self.lab.take(study);
+        }
         self.close_if_meant(ctx);
         let outcome = self.files.poll(ctx, &mut self.editor);
         self.follow(ctx, outcome);
@@ -354,9 +379,10 @@ impl eframe::App for App {
             out.commands = pressed(ui, self.flying.is_flying());
         }
         let picture = self.show_panels(ui, &mut out);
-        // The still picture is looked at, not flown through: it would be gone.
+        // Still pictures are looked at, not flown through: they would be gone.
         let flown = picture.as_ref().map(|(_, response)| response);
-        let flown = flown.filter(|_| self.editor.mode != Mode::HighRes);
+        let is_still = self.editor.mode == Mode::HighRes || self.lab.is_looking();
+        let flown = flown.filter(|_| !is_still);
         let motion = self
             .flying
             .step(ui, flown, keys_are_free, self.editor.scene());

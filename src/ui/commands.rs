@@ -58,6 +58,8 @@ pub enum Command {
     MarkersOff,
     /// Leave the current mode; in none, quit.
     Escape,
+    /// Show or hide the lab.
+    Lab,
     /// Show or hide the list of shortcuts.
     Shortcuts,
 }
@@ -98,6 +100,7 @@ macro_rules! keys {
 /// Every command key. Of two keys that differ in a modifier, the one with more comes first.
 pub const SHORTCUTS: &[Shortcut] = keys! {
     HighRes [plain(Key::H)] "High-res picture",
+    Lab [ctrl(Key::L)] "Show or hide the lab",
     LowRes [plain(Key::L)] "Low-res live view (64 pixels)",
     Orthographic [plain(Key::O), plain(Key::Num0)] "Orthographic projection",
     Perspective [plain(Key::P)] "Perspective projection",

@@ -135,6 +135,7 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut Out) {
     ui.checkbox(&mut layout.actual_size, "High-res at actual size");
     ui.checkbox(&mut layout.outliner, "Outliner");
     ui.checkbox(&mut layout.inspector, "Inspector");
+    entry(ui, "Lab", Command::Lab, true, out);
     ui.separator();
     theme_choice(ui);
 }

@@ -10,6 +10,7 @@ mod flying;
 mod help;
 mod icons;
 mod inspector;
+mod lab;
 mod menu;
 mod outliner;
 mod pictures;

@@ -4,8 +4,10 @@ use std::path::PathBuf;
 
 use egui::Context;
 
+use super::lab::Wish;
 use super::viewport::{Screen, low_res};
 use crate::editor::{Editor, Mode};
+use crate::lab::Study;
 use crate::plan::{Picture, Sampling};
 use crate::worker::{Activity, Event, Frame, LaneError, LiveJob, Pace, StillJob, Worker};
 
@@ -45,6 +47,19 @@ impl Pictures {
                 Event::Failed(reason) => editor.complain(reason),
             }
         }
+    }
+
+    /// Passes a wish of the lab on to the lane.
+    pub fn fulfil(&self, wish: Wish) {
+        match wish {
+            Wish::Measure(study) => self.worker.measure(*study),
+            Wish::Stop => self.worker.stop_measuring(),
+        }
+    }
+
+    /// What the lane has measured since the last call.
+    pub fn take_study(&self) -> Option<Study> {
+        self.worker.take_study()
     }
 
     /// What the lane is doing.

@@ -16,6 +16,8 @@ pub const LABEL: f32 = 80.0;
 pub const OUTLINER: f32 = 224.0;
 /// Width of the inspector; it does not follow its content.
 pub const INSPECTOR: f32 = 320.0;
+/// Height of the lab when it is first shown.
+pub const LAB: f32 = 280.0;
 /// Width of a colour as `#RRGGBB`.
 pub const HEX: f32 = 60.0;
 /// Size of plain text.

@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::budget::Budget;
 use super::easel::Easel;
@@ -10,12 +10,17 @@ use super::errand::panic_text;
 use super::{Event, Frame, LiveJob, Pace, Running, RunningJob, Shared, StillJob, lock};
 use crate::export::save_image;
 use crate::image::{Cost, Image, render};
+use crate::lab::Study;
 use crate::plan::Sampling;
 use crate::trace::{Grid, Pass, Rays, Threads, Tracer, Watch};
+
+/// Time between two reports of a study.
+const NEWS: Duration = Duration::from_millis(250);
 
 enum Job {
     Live(LiveJob),
     Still(StillJob),
+    Lab(Box<Study>),
 }
 
 /// How a job ended.
@@ -30,9 +35,10 @@ enum Outcome {
 pub(super) fn run(shared: &Shared, threads: &Threads) {
     let mut budget = Budget::new();
     let mut easel = Easel::default();
-    while let Some((job, watch)) = next_job(shared) {
+    let mut woken = Instant::now();
+    while let Some((mut job, watch)) = next_job(shared) {
         let outcome = catch_unwind(AssertUnwindSafe(|| {
-            threads.run(|| match &job {
+            threads.run(|| match &mut job {
                 Job::Live(job) => {
                     let start = Instant::now();
                     let mut live = Live {
@@ -45,9 +51,28 @@ pub(super) fn run(shared: &Shared, threads: &Threads) {
                     Outcome::Ended
                 }
                 Job::Still(job) => still(shared, job, &watch),
+                Job::Lab(study) => {
+                    if study.step(&watch) {
+                        Outcome::Stopped
+                    } else {
+                        Outcome::Ended
+                    }
+                }
             })
         }));
-        finish(shared, matches!(outcome, Ok(Outcome::Stopped)));
+        match job {
+            Job::Lab(study) => {
+                let is_done = finish_piece(shared, *study, outcome.as_ref().ok());
+                // Drawing the window would disturb what is being timed.
+                if !is_done && woken.elapsed() < NEWS {
+                    continue;
+                }
+                woken = Instant::now();
+            }
+            Job::Live(_) | Job::Still(_) => {
+                finish(shared, matches!(outcome, Ok(Outcome::Stopped)));
+            }
+        }
         if let Err(panic) = outcome {
             shared.tell(Event::Failed(format!(
                 "The tracer stopped with a fault of its own: {}. Your scene is untouched; change it or undo the last step to go on.",
@@ -68,7 +93,8 @@ fn next_job(shared: &Shared) -> Option<(Job, Arc<Watch>)> {
         let live = mailbox.live.take().map(Job::Live);
         let job = live
             .or_else(|| mailbox.still.take().map(Job::Still))
-            .or_else(|| mailbox.saves.pop_front().map(Job::Still));
+            .or_else(|| mailbox.saves.pop_front().map(Job::Still))
+            .or_else(|| mailbox.study.take().map(|study| Job::Lab(Box::new(study))));
         if let Some(job) = job {
             let watch = Arc::new(Watch::default());
             mailbox.running = Some(Running {
@@ -77,6 +103,7 @@ fn next_job(shared: &Shared) -> Option<(Job, Arc<Watch>)> {
                         revision: live.revision,
                     },
                     Job::Still(still) => RunningJob::Still(still.clone()),
+                    Job::Lab(_) => RunningJob::Lab,
                 },
                 watch: Arc::clone(&watch),
                 started: Instant::now(),
@@ -103,6 +130,29 @@ fn finish(shared: &Shared, was_stopped: bool) {
     {
         mailbox.saves.push_front(still);
     }
+}
+
+/// Publishes what a piece of a study has found, and puts the study back if there is more of it to do.
+/// One whose piece failed is given up, and so is one that is not wanted any more. Whether there is
+/// nothing left to do.
+fn finish_piece(shared: &Shared, study: Study, outcome: Option<&Outcome>) -> bool {
+    let mut mailbox = lock(&shared.mailbox);
+    let is_wanted = matches!(
+        mailbox.running.take(),
+        Some(Running {
+            job: RunningJob::Lab,
+            ..
+        })
+    );
+    let Some(outcome) = outcome.filter(|_| is_wanted) else {
+        return true;
+    };
+    lock(&shared.news).study = Some(study.clone());
+    let is_done = matches!(outcome, Outcome::Ended);
+    if !is_done {
+        mailbox.study = Some(study);
+    }
+    is_done
 }
 
 /// A live picture on its way: a coarse pass that always completes, so that there is always

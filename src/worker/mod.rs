@@ -17,6 +17,7 @@ use std::time::{Duration, Instant};
 pub use errand::{panic_text, run_errand};
 
 use crate::image::{Cost, Image};
+use crate::lab::Study;
 use crate::plan::{Picture, Sampling};
 use crate::scene::Scene;
 use crate::trace::{PoolError, Threads, Watch};
@@ -79,7 +80,7 @@ pub struct Frame {
 /// What the lane is doing.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Activity {
-    /// Nothing.
+    /// Nothing that anybody waits for; perhaps measuring.
     Idle,
     /// Tracing the live view of a revision.
     Live {
@@ -139,6 +140,8 @@ struct Mailbox {
     still: Option<StillJob>,
     /// Pictures that are to be written, in order.
     saves: VecDeque<StillJob>,
+    /// The study that is being measured when there is nothing else to do.
+    study: Option<Study>,
     running: Option<Running>,
     quit: bool,
 }
@@ -152,14 +155,21 @@ struct Running {
 
 #[derive(Debug)]
 enum RunningJob {
-    Live { revision: u64 },
+    Live {
+        revision: u64,
+    },
     Still(StillJob),
+    /// A piece of the study.
+    Lab,
+    /// A piece of a study that was given up.
+    GivenUp,
 }
 
 #[derive(Debug, Default)]
 struct News {
     live: Option<Frame>,
     still: Option<Frame>,
+    study: Option<Study>,
     events: Vec<Event>,
 }
 
@@ -211,6 +221,13 @@ impl Worker {
     /// written waits its turn and is never given up.
     pub fn request_still(&self, job: StillJob) {
         let mut mailbox = lock(&self.shared.mailbox);
+        if let Some(Running {
+            job: RunningJob::Lab,
+            ..
+        }) = mailbox.running
+        {
+            mailbox.stop_running();
+        }
         if job.save_to.is_some() {
             mailbox.saves.push_back(job);
         } else {
@@ -255,6 +272,38 @@ impl Worker {
         }
     }
 
+    /// Measures a study, in place of any other, whenever there is nothing more urgent.
+    pub fn measure(&self, study: Study) {
+        self.replace_study(Some(study));
+        self.shared.bell.notify_one();
+    }
+
+    /// Gives the study up.
+    pub fn stop_measuring(&self) {
+        self.replace_study(None);
+    }
+
+    fn replace_study(&self, study: Option<Study>) {
+        let mut mailbox = lock(&self.shared.mailbox);
+        mailbox.study = study;
+        if let Some(Running {
+            job: job @ RunningJob::Lab,
+            watch,
+            ..
+        }) = &mut mailbox.running
+        {
+            watch.stop.store(true, Ordering::Relaxed);
+            // What comes back from it is not wanted any more.
+            *job = RunningJob::GivenUp;
+        }
+        lock(&self.shared.news).study = None;
+    }
+
+    /// The study as far as it is measured, if it has got on since the last call.
+    pub fn take_study(&self) -> Option<Study> {
+        lock(&self.shared.news).study.take()
+    }
+
     /// Whether a picture is being written, or waits for that.
     pub fn is_saving(&self) -> bool {
         let mailbox = lock(&self.shared.mailbox);
@@ -284,26 +333,23 @@ impl Worker {
     pub fn activity(&self) -> Activity {
         let mailbox = lock(&self.shared.mailbox);
         let still = mailbox.still.as_ref().or(mailbox.saves.front());
-        match (&mailbox.running, &mailbox.live, still) {
-            (
-                Some(Running {
-                    job: RunningJob::Live { revision },
-                    ..
-                }),
-                ..,
-            ) => Activity::Live {
+        let running = mailbox.running.as_ref();
+        match (running.map(|running| &running.job), &mailbox.live, still) {
+            (Some(RunningJob::Live { revision }), ..) => Activity::Live {
                 revision: *revision,
             },
-            (Some(running), ..) => running.still_activity(),
-            (None, Some(live), _) => Activity::Live {
+            (Some(RunningJob::Still(_)), ..) => {
+                running.map_or(Activity::Idle, Running::still_activity)
+            }
+            (_, Some(live), _) => Activity::Live {
                 revision: live.revision,
             },
-            (None, None, Some(still)) => Activity::Still {
+            (_, None, Some(still)) => Activity::Still {
                 done: 0,
                 total: pixels(&still.picture),
                 elapsed: Duration::ZERO,
             },
-            (None, None, None) => Activity::Idle,
+            (_, None, None) => Activity::Idle,
         }
     }
 }
@@ -335,7 +381,7 @@ impl Running {
     fn still_activity(&self) -> Activity {
         let total = match &self.job {
             RunningJob::Still(still) => pixels(&still.picture),
-            RunningJob::Live { .. } => 0,
+            RunningJob::Live { .. } | RunningJob::Lab | RunningJob::GivenUp => 0,
         };
         let done = self.watch.pixels.load(Ordering::Relaxed);
         Activity::Still {

@@ -828,3 +828,50 @@ fn the_inspector_says_what_the_scene_needs() {
     desk.window
         .get_by_label("because everything the camera can reach is on its side of every plane");
 }
+
+#[test]
+fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
+    let mut desk = Desk::new();
+    let before = desk.scene().clone();
+    desk.press(CTRL, Key::L);
+    desk.click("Measure");
+    let start = Instant::now();
+    while desk.window.query_by_label("Cancel measuring").is_some() {
+        assert!(start.elapsed() < Duration::from_mins(2), "never measured");
+        std::thread::sleep(Duration::from_millis(50));
+        desk.window.step();
+    }
+    assert!(
+        desk.window.query_by_label("Use this").is_none(),
+        "no dot is chosen"
+    );
+    // Of all ways, plain adaptive sampling or one of its neighbours is the cheapest within 8 bits.
+    desk.click("Cheapest within");
+    desk.window.get_by_label("Lab picture");
+    assert!(desk.window.query_by_label("stale").is_none());
+    desk.click("×64");
+    let steps = desk.editor().undo_label().map(str::to_owned);
+    desk.click("Use this");
+    assert_eq!(steps, None);
+    assert_eq!(
+        desk.editor().undo_label(),
+        Some("Render: settings from the lab")
+    );
+    let sampling = desk.scene().render.antialias;
+    assert!(
+        matches!(sampling, Sampling::Adaptive { .. }),
+        "{sampling:?}"
+    );
+    assert!(
+        desk.window.query_by_label("stale").is_none(),
+        "settings are what is compared"
+    );
+    desk.press(Modifiers::NONE, Key::Escape);
+    assert!(desk.window.query_by_label("Lab picture").is_none());
+    desk.press(CTRL, Key::Z);
+    assert_eq!(*desk.scene(), before);
+    desk.press(Modifiers::NONE, Key::O);
+    desk.window.get_by_label("stale");
+    desk.press(CTRL, Key::L);
+    assert!(desk.window.query_by_label("Measure").is_none());
+}

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glint::image::render;
+use glint::lab::Study;
 use glint::lanes::Vec3;
 use glint::plan::Picture;
 use glint::scene::{Object, Scene, Shape};
@@ -278,4 +279,39 @@ fn pictures_to_be_saved_wait_for_each_other() {
     let saved: Vec<Event> = paths.iter().cloned().map(Event::Saved).collect();
     assert_eq!(worker.take_events(), saved);
     assert!(!worker.is_saving() && paths.iter().all(|path| path.exists()));
+}
+
+#[test]
+fn a_study_goes_on_under_the_live_view_and_can_be_given_up() {
+    let worker = Worker::new(Some(2), || {}).expect("a lane");
+    let scene = Arc::new(Scene::demo());
+    worker.measure(Study::new(Arc::clone(&scene), 48, 48));
+    let mut revision = 0;
+    let mut last = 0.0;
+    let mut measured = None;
+    wait_until("the study's end", || {
+        // An edit in the middle of a piece is served first, and the piece is done again.
+        revision += 1;
+        worker.submit(live(revision, &scene, 32));
+        wait_for(&worker, |frame| {
+            frame.revision == revision && frame.step == 1
+        });
+        std::thread::sleep(Duration::from_millis(100));
+        if let Some(study) = worker.take_study() {
+            assert!(study.progress() >= last);
+            last = study.progress();
+            measured = Some(study);
+        }
+        last == 1.0
+    });
+    let study = measured.expect("a study");
+    assert!(revision > 3 && study.dots.iter().all(|dot| dot.timing().is_some()));
+    worker.measure(Study::new(scene, 96, 96));
+    wait_until("a first piece", || worker.take_study().is_some());
+    worker.stop_measuring();
+    wait_until("the end of the running piece", || {
+        worker.activity() == Activity::Idle
+    });
+    std::thread::sleep(Duration::from_millis(50));
+    assert!(worker.take_study().is_none(), "it was given up");
 }

@@ -1,0 +1,167 @@
+//! A dot looked at: its picture, the reference, or what lies between them.
+
+use egui::{Color32, Context, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, pos2};
+
+use super::super::upload::whole;
+use super::super::viewport::Place;
+use crate::image::Image;
+
+/// What of a dot is shown in place of the live view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Face {
+    /// Its picture.
+    Picture,
+    /// What it should be.
+    Reference,
+    /// How far each channel is off, so many times enlarged.
+    Off(u32),
+    /// The same with its sign, around middle grey.
+    Signed(u32),
+}
+
+/// The faces that can be chosen.
+pub const FACES: [(Face, &str, &str); 7] = [
+    (Face::Picture, "A", "The picture of the dot"),
+    (
+        Face::Reference,
+        "B",
+        "The reference; hold B to see it for a moment",
+    ),
+    (Face::Off(1), "|A-B|", "How far each channel is off"),
+    (
+        Face::Off(8),
+        "×8",
+        "How far each channel is off, eight times enlarged",
+    ),
+    (
+        Face::Off(64),
+        "×64",
+        "How far each channel is off, 64 times enlarged",
+    ),
+    (
+        Face::Signed(8),
+        "±8",
+        "Too bright is above grey, too dark below; eight times enlarged",
+    ),
+    (
+        Face::Signed(64),
+        "±64",
+        "Too bright is above grey, too dark below; 64 times enlarged",
+    ),
+];
+
+/// The picture of a face.
+pub fn compose(picture: &Image, reference: &Image, face: Face) -> Image {
+    let channel = |a: u8, b: u8| {
+        let off = i64::from(a) - i64::from(b);
+        let shown = match face {
+            Face::Picture => i64::from(a),
+            Face::Reference => i64::from(b),
+            Face::Off(gain) => off.abs() * i64::from(gain),
+            Face::Signed(gain) => 128 + off * i64::from(gain) / 2,
+        };
+        shown.clamp(0, 255) as u8
+    };
+    let pixels = picture.pixels.iter().zip(&reference.pixels);
+    Image {
+        pixels: pixels
+            .map(|(a, b)| {
+                let [red, green, blue] = [0, 1, 2].map(|c| channel(a[c], b[c]));
+                [red, green, blue, 255]
+            })
+            .collect(),
+        ..*picture
+    }
+}
+
+/// A face on the graphics card.
+#[derive(Default)]
+pub struct Look {
+    texture: Option<TextureHandle>,
+    /// The dot, the face, and the study it is of.
+    shown: Option<(usize, Face, u64)>,
+}
+
+impl Look {
+    /// Draws a face into the place of the live view. Under the pointer, it tells the pixel.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        place: Place,
+        (dot, face, study): (usize, Face, u64),
+        (picture, reference): (&Image, &Image),
+    ) -> Response {
+        self.upload(ui.ctx(), (dot, face, study), picture, reference);
+        let response = ui.allocate_rect(place.rect, Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Lab picture"));
+        if let Some(texture) = &self.texture {
+            let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            ui.painter()
+                .image(texture.id(), place.rect, all, Color32::WHITE);
+        }
+        if let Some(pointer) = response.hover_pos() {
+            let text = pixel(
+                picture,
+                reference,
+                (pointer - place.rect.min) / place.rect.size(),
+            );
+            return response.on_hover_text_at_pointer(text);
+        }
+        response
+    }
+
+    fn upload(
+        &mut self,
+        ctx: &Context,
+        key: (usize, Face, u64),
+        picture: &Image,
+        reference: &Image,
+    ) {
+        if self.shown == Some(key) {
+            return;
+        }
+        let image = whole(&compose(picture, reference, key.1));
+        match &mut self.texture {
+            Some(texture) => texture.set(image, TextureOptions::NEAREST),
+            None => {
+                self.texture =
+                    Some(ctx.load_texture("lab picture", image, TextureOptions::NEAREST));
+            }
+        }
+        self.shown = Some(key);
+    }
+}
+
+/// What a pixel is and should be, `at` shares of the picture.
+fn pixel(picture: &Image, reference: &Image, at: egui::Vec2) -> String {
+    let place = |share: f32, count: usize| ((share * count as f32) as usize).min(count - 1);
+    let (x, y) = (place(at.x, picture.width), place(at.y, picture.height));
+    let [a, b] = [picture, reference].map(|image| image.pixels[y * image.width + x]);
+    let off = [0, 1, 2].map(|c| i32::from(a[c]) - i32::from(b[c]));
+    format!(
+        "pixel {x}, {y}\nA {} {} {}\nB {} {} {}\nA-B {:+} {:+} {:+}",
+        a[0], a[1], a[2], b[0], b[1], b[2], off[0], off[1], off[2]
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faces_show_what_they_say() {
+        let one = |pixel: [u8; 4]| Image {
+            width: 1,
+            height: 1,
+            pixels: vec![pixel],
+        };
+        let (a, b) = (one([10, 200, 30, 255]), one([12, 100, 30, 255]));
+        let shown = |face| compose(&a, &b, face).pixels[0];
+        assert_eq!(shown(Face::Picture), [10, 200, 30, 255]);
+        assert_eq!(shown(Face::Reference), [12, 100, 30, 255]);
+        assert_eq!(shown(Face::Off(1)), [2, 100, 0, 255]);
+        assert_eq!(shown(Face::Off(8)), [16, 255, 0, 255]);
+        assert_eq!(shown(Face::Signed(8)), [120, 255, 128, 255]);
+        assert!(pixel(&a, &b, egui::vec2(0.9, 0.9)).ends_with("A-B -2 +100 +0"));
+    }
+}

@@ -1,0 +1,370 @@
+//! The lab: time against error of every way of tracing the open scene, each a dot that can be looked
+//! at and adopted.
+
+mod chart;
+mod look;
+
+use std::sync::Arc;
+
+use egui::{Button, DragValue, Key, Response, RichText, Ui};
+
+use self::chart::{Chart, Spot};
+use self::look::{FACES, Face, Look};
+use super::Out;
+use super::theme::{GRID, palette};
+use super::viewport::Place;
+use crate::editor::{Edit, Editor};
+use crate::lab::{DOUBTFUL, Dot, EIGHT_BIT_FLOOR, Study, cheapest_within};
+use crate::plan::Model;
+use crate::scene::{Animation, Render, Scene};
+
+/// Longer side of the pictures that are measured, in pixels.
+const SIDE: f64 = 256.0;
+/// Width of the column that tells of a dot.
+const DETAILS: f32 = 300.0;
+
+/// What the lab asks of the lane.
+pub enum Wish {
+    /// Measure this.
+    Measure(Box<Study>),
+    /// Give the measuring up.
+    Stop,
+}
+
+/// What the axis to the right measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cost {
+    Time,
+    Rays,
+}
+
+/// What the axis upwards measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Error {
+    Rmse,
+    Max,
+    Visible,
+}
+
+/// The lab's state.
+pub struct Lab {
+    /// Whether it is shown.
+    pub is_open: bool,
+    study: Option<Box<Study>>,
+    /// Whether the lane is at it.
+    is_running: bool,
+    /// Counts the studies.
+    number: u64,
+    cost: Cost,
+    error: Error,
+    chosen: Option<usize>,
+    face: Face,
+    look: Look,
+    /// The bounds for the cheapest dot: RMSE and milliseconds.
+    bounds: (f64, f64),
+}
+
+impl Default for Lab {
+    fn default() -> Self {
+        Self {
+            is_open: false,
+            study: None,
+            is_running: false,
+            number: 0,
+            cost: Cost::Time,
+            error: Error::Rmse,
+            chosen: None,
+            face: Face::Picture,
+            look: Look::default(),
+            bounds: (EIGHT_BIT_FLOOR, 100.0),
+        }
+    }
+}
+
+impl Lab {
+    /// Takes up what the lane has measured.
+    pub fn take(&mut self, study: Study) {
+        if self.is_running {
+            self.is_running = study.progress() < 1.0;
+            self.study = Some(Box::new(study));
+        }
+    }
+
+    /// Whether a dot is looked at in place of the live view.
+    pub fn is_looking(&self) -> bool {
+        self.is_open && self.chosen.is_some()
+    }
+
+    /// Leaves the dot that is looked at; whether there was one.
+    pub fn leave(&mut self) -> bool {
+        self.is_open && self.chosen.take().is_some()
+    }
+
+    /// Shows the panel.
+    pub fn show(&mut self, ui: &mut Ui, editor: &Editor, out: &mut Out) -> Option<Wish> {
+        ui.add_space(GRID / 2.0);
+        let wish = ui.horizontal(|ui| self.show_head(ui, editor)).inner;
+        ui.horizontal_top(|ui| {
+            let width = (ui.available_width() - DETAILS - GRID).max(120.0);
+            let size = egui::vec2(width, ui.available_height());
+            ui.allocate_ui(size, |ui| {
+                if let Some(chosen) = self.chart().show(ui) {
+                    self.chosen = Some(chosen);
+                }
+            });
+            ui.vertical(|ui| self.show_details(ui, editor, out));
+        });
+        wish
+    }
+
+    fn show_head(&mut self, ui: &mut Ui, editor: &Editor) -> Option<Wish> {
+        let mut wish = None;
+        if self.is_running {
+            let done = self.study.as_ref().map_or(0.0, |study| study.progress());
+            if ui.button("Cancel measuring").clicked() {
+                self.is_running = false;
+                wish = Some(Wish::Stop);
+            }
+            let left = self.study.as_ref().and_then(|study| study.remaining());
+            let left = left.map_or(String::new(), |left| {
+                format!(", {:.0} s left", left.as_secs_f64().ceil())
+            });
+            ui.label(format!("{:.0} %{left}", (done * 100.0).floor()));
+        } else if ui
+            .button("Measure")
+            .on_hover_text("Trace the scene in every way there is, and compare: a few seconds")
+            .clicked()
+        {
+            let study = Box::new(study_of(editor.scene()));
+            self.study = Some(study.clone());
+            self.chosen = None;
+            self.number += 1;
+            self.is_running = true;
+            wish = Some(Wish::Measure(study));
+        }
+        ui.separator();
+        for (cost, name, hint) in [
+            (
+                Cost::Time,
+                "time",
+                "Milliseconds per picture: the median of interleaved runs",
+            ),
+            (
+                Cost::Rays,
+                "rays",
+                "Rays per pixel: the same on every machine",
+            ),
+        ] {
+            ui.selectable_value(&mut self.cost, cost, name)
+                .on_hover_text(hint);
+        }
+        ui.separator();
+        for (error, name, hint) in [
+            (
+                Error::Rmse,
+                "RMSE",
+                "Root of the mean square of the error, linear, 0–1",
+            ),
+            (Error::Max, "worst", "The worst channel of all pixels, 0–1"),
+            (
+                Error::Visible,
+                "visible",
+                "Share of the pixels that are off by more than 4/255",
+            ),
+        ] {
+            ui.selectable_value(&mut self.error, error, name)
+                .on_hover_text(hint);
+        }
+        ui.separator();
+        self.show_bounds(ui);
+        if self.is_stale(editor) {
+            let hint = "The scene has changed since; measure again";
+            ui.colored_label(palette(ui.ctx()).accent, "stale")
+                .on_hover_text(hint);
+        }
+        wish
+    }
+
+    fn show_bounds(&mut self, ui: &mut Ui) {
+        let pick = ui.add_enabled(self.study.is_some(), Button::new("Cheapest within"));
+        let hint = "Choose the fastest dot whose RMSE and time are within these";
+        let is_asked = pick.on_hover_text(hint).clicked();
+        let rmse = DragValue::new(&mut self.bounds.0)
+            .speed(1e-5)
+            .range(1e-6..=1.0);
+        ui.add(rmse.max_decimals(5)).accessible_name("RMSE at most");
+        let time = DragValue::new(&mut self.bounds.1)
+            .speed(0.1)
+            .range(0.01..=1e5);
+        ui.add(time.suffix(" ms")).accessible_name("time at most");
+        if is_asked && let Some(study) = &self.study {
+            self.chosen = cheapest_within(&study.costs(), self.bounds.0, self.bounds.1);
+        }
+    }
+
+    fn show_details(&mut self, ui: &mut Ui, editor: &Editor, out: &mut Out) {
+        ui.set_width(DETAILS - GRID);
+        let chosen = self
+            .chosen
+            .and_then(|place| self.study.as_ref()?.dots.get(place));
+        let Some(dot) = chosen else {
+            ui.weak(match &self.study {
+                None => "Measure the scene to see what each way of tracing it costs, and how far it is off.",
+                Some(_) => "Click a dot to look at its picture.",
+            });
+            return;
+        };
+        ui.label(RichText::new(&dot.candidate.name).strong());
+        ui.weak(dot.candidate.words());
+        ui.add_space(GRID / 2.0);
+        ui.label(RichText::new(figures(dot)).monospace());
+        ui.add_space(GRID / 2.0);
+        ui.horizontal(|ui| {
+            for (face, name, hint) in FACES {
+                ui.selectable_value(&mut self.face, face, name)
+                    .on_hover_text(hint);
+            }
+        });
+        let obstacle = match &dot.candidate {
+            candidate if candidate.upscale > 1 => {
+                Some("A scene is never traced smaller than it is")
+            }
+            candidate if candidate.model == Model::Everything => Some(
+                "A scene cannot ask for what it does not need; its formulas are used without that",
+            ),
+            _ => None,
+        };
+        let is_possible = dot.candidate.upscale == 1;
+        let adopt = ui.add_enabled(is_possible, Button::new("Use this"));
+        let hint = obstacle.unwrap_or("Trace the scene with these settings (one undo step)");
+        let adopt = adopt.on_hover_text(hint).on_disabled_hover_text(hint);
+        if adopt.clicked() {
+            let own = &editor.scene().render;
+            let render = Render {
+                width: own.width,
+                height: own.height,
+                ..dot.candidate.render.clone()
+            };
+            out.edit(Edit::Render(render, "settings from the lab"));
+        }
+    }
+
+    /// Draws what is looked at into the place of the live view; `None` if nothing is.
+    pub fn show_picture(&mut self, ui: &mut Ui, place: Place) -> Option<Response> {
+        let place_of_dot = self.chosen.filter(|_| self.is_open)?;
+        let study = self.study.as_ref()?;
+        let picture = study.dots.get(place_of_dot)?.picture.as_ref()?;
+        let reference = &study.yardstick.as_ref()?.picture;
+        let is_flipped = !ui.text_edit_focused() && ui.input(|input| input.key_down(Key::B));
+        let face = if is_flipped {
+            Face::Reference
+        } else {
+            self.face
+        };
+        let key = (place_of_dot, face, self.number);
+        Some(self.look.show(ui, place, key, (picture, reference)))
+    }
+
+    /// Whether the scene is not any more what was measured. Settings do not count: they are what is
+    /// compared.
+    fn is_stale(&self, editor: &Editor) -> bool {
+        let bare = |scene: &Scene| Scene {
+            render: Render {
+                reflection_limit: scene.render.reflection_limit,
+                ..Render::default()
+            },
+            animation: Animation::default(),
+            ..scene.clone()
+        };
+        self.study.as_ref().is_some_and(|study| {
+            !Arc::ptr_eq(study.scene(), editor.scene())
+                && bare(study.scene()) != bare(editor.scene())
+        })
+    }
+
+    fn chart(&self) -> Chart {
+        let dots = self.study.as_ref().map_or(&[][..], |study| &study.dots);
+        let error = |dot: &Dot| {
+            dot.failing.map_or(f64::NAN, |failing| match self.error {
+                Error::Rmse => failing.rmse,
+                Error::Max => failing.max,
+                Error::Visible => failing.visible,
+            })
+        };
+        let cost = |dot: &Dot| match self.cost {
+            Cost::Time => dot.timing().map_or(f64::NAN, |timing| timing.median),
+            Cost::Rays => dot.rays_per_pixel,
+        };
+        let spots = dots.iter().map(|dot| Spot {
+            name: dot.candidate.name.clone(),
+            cost: cost(dot),
+            // A logarithm has no zero.
+            error: Some(error(dot))
+                .filter(|error| *error != 0.0)
+                .unwrap_or(f64::NAN),
+            words: format!("{}\n{}", dot.candidate.words(), figures(dot)),
+            is_doubtful: self.cost == Cost::Time
+                && dot.timing().is_some_and(|timing| timing.spread > DOUBTFUL),
+        });
+        let truth = self
+            .study
+            .as_ref()
+            .and_then(|study| study.yardstick.as_ref());
+        let levels = match (self.error, truth) {
+            (Error::Rmse, Some(truth)) => vec![
+                ("8 bits show no less", EIGHT_BIT_FLOOR),
+                ("the reference's own error", truth.rmse),
+            ],
+            _ => Vec::new(),
+        };
+        Chart {
+            cost: match self.cost {
+                Cost::Time => "ms per picture",
+                Cost::Rays => "rays per pixel",
+            },
+            error: match self.error {
+                Error::Rmse => "RMSE",
+                Error::Max => "worst",
+                Error::Visible => "share > 4/255",
+            },
+            spots: spots.collect(),
+            levels,
+            chosen: self.chosen,
+        }
+    }
+}
+
+/// A study of the scene in a size that takes seconds.
+fn study_of(scene: &Arc<Scene>) -> Study {
+    let (width, height) = (scene.render.width, scene.render.height);
+    let scale = SIDE / f64::from(width.max(height));
+    let side = |side: u32| ((f64::from(side) * scale).round() as u32).max(1);
+    Study::new(Arc::clone(scene), side(width), side(height))
+}
+
+/// The numbers of a dot, one in each line.
+fn figures(dot: &Dot) -> String {
+    let time = dot.timing().map_or("not timed yet".to_owned(), |timing| {
+        let doubt = if timing.spread > DOUBTFUL {
+            " (doubtful)"
+        } else {
+            ""
+        };
+        let spread = timing.spread * 100.0;
+        format!(
+            "{:.3} ms ± {spread:.0} %{doubt}, {} runs",
+            timing.median, timing.runs
+        )
+    });
+    let Some(failing) = dot.failing else {
+        return time;
+    };
+    format!(
+        "{time}\n{:.2} rays/px\nRMSE {:.2e}, {:.1} dB\nworst {:.4}, {:.3} % > 4/255",
+        dot.rays_per_pixel,
+        failing.rmse,
+        failing.psnr(),
+        failing.max,
+        failing.visible * 100.0,
+    )
+}
