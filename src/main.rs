@@ -3,12 +3,17 @@
 use std::process::ExitCode;
 
 use glint::cli::{Asked, fail, picture_instead_of_window};
+use glint::export::save_image;
 use glint::ui::NoWindow;
 use glint::{cli, ui};
 
 fn main() -> ExitCode {
     match cli::run(std::env::args_os()) {
         Asked::Done(code) => code,
+        Asked::Chart { study, path } => match save_image(&ui::chart_picture(&study), &path) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => fail(&error.to_string()),
+        },
         Asked::Editor { scene, screenshot } => {
             let is_screenshot = screenshot.is_some();
             match ui::run(scene.clone(), screenshot) {

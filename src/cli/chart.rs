@@ -7,7 +7,8 @@ use std::sync::Arc;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{fail, refuse, say};
+use super::{Asked, fail, refuse, say};
+use crate::image::Format;
 use crate::lab::{Study, cheapest_within, csv, table};
 use crate::scene::{Document, Scene, write_atomic};
 use crate::trace::{Threads, Watch};
@@ -25,6 +26,9 @@ pub struct ChartWords {
     /// Write all figures to this file
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
+    /// Draw the chart into this picture (PNG or PPM)
+    #[arg(long, value_name = "IMAGE")]
+    png: Option<PathBuf>,
     /// Name the cheapest way whose RMSE (linear, 0–1) is at most this
     #[arg(long, value_name = "RMSE")]
     within: Option<f64>,
@@ -36,15 +40,19 @@ pub struct ChartWords {
     threads: Option<u16>,
 }
 
-/// Measures, prints the table, and writes what was asked for.
-pub fn run(words: &ChartWords) -> ExitCode {
+/// Measures, prints the table, and writes what was asked for. The picture is left to whoever can draw.
+pub fn run(words: &ChartWords) -> Asked {
+    // A name that cannot be written is known before the first ray.
+    if let Some(Err(error)) = words.png.as_deref().map(Format::of_path) {
+        return Asked::Done(refuse(&error.to_string()));
+    }
     let scene = match Document::load(&words.scene) {
         Ok(document) => document.scene,
-        Err(error) => return refuse(&error.to_string()),
+        Err(error) => return Asked::Done(refuse(&error.to_string())),
     };
     let threads = match Threads::new(words.threads.map(usize::from)) {
         Ok(threads) => threads,
-        Err(error) => return fail(&error.to_string()),
+        Err(error) => return Asked::Done(fail(&error.to_string())),
     };
     let (width, height) = size(&scene, words.side);
     let mut study = Study::new(Arc::new(scene), width, height);
@@ -53,13 +61,18 @@ pub fn run(words: &ChartWords) -> ExitCode {
     if words.within.is_some() || words.budget.is_some() {
         say(&advice(&study, words.within, words.budget));
     }
-    let text = csv(&study, &machine(), threads.count());
-    match &words.csv {
-        Some(path) => match write_atomic(path, text.as_bytes()) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(error) => fail(&format!("cannot write {}: {error}", path.display())),
+    if let Some(path) = &words.csv {
+        let text = csv(&study, &machine(), threads.count());
+        if let Err(error) = write_atomic(path, text.as_bytes()) {
+            return Asked::Done(fail(&format!("cannot write {}: {error}", path.display())));
+        }
+    }
+    match &words.png {
+        Some(path) => Asked::Chart {
+            study: Box::new(study),
+            path: path.clone(),
         },
-        None => ExitCode::SUCCESS,
+        None => Asked::Done(ExitCode::SUCCESS),
     }
 }
 

@@ -16,6 +16,7 @@ use clap::{CommandFactory as _, Parser, Subcommand};
 pub use fallback::picture_instead_of_window;
 
 use crate::image::Format;
+use crate::lab::Study;
 
 /// Exit code when the work failed.
 const FAILED: u8 = 1;
@@ -65,6 +66,13 @@ pub enum Asked {
         /// Where to write a picture of the window, which then closes.
         screenshot: Option<PathBuf>,
     },
+    /// Draw the chart of a study into this file.
+    Chart {
+        /// The study.
+        study: Box<Study>,
+        /// The picture file; its ending is known to be good.
+        path: PathBuf,
+    },
     /// Nothing more: the command ran and ends with this code.
     Done(ExitCode),
 }
@@ -101,7 +109,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
         Ok(Words {
             command: Some(Command::Chart(words)),
             ..
-        }) => Asked::Done(chart::run(&words)),
+        }) => chart::run(&words),
         Ok(Words {
             command: None,
             scene,

@@ -15,6 +15,7 @@ mod menu;
 mod outliner;
 mod pictures;
 mod prompts;
+mod raster;
 mod rows;
 mod screenshot;
 mod status;
@@ -27,6 +28,7 @@ mod window;
 pub use app::{App, Setup};
 pub use commands::{Command, FLIGHT, SHORTCUTS};
 pub use dialogs::{Ask, Dialogs};
+pub use lab::chart_picture;
 pub use window::{NoWindow, run};
 
 use crate::editor::{Action, Edit, Selection};

@@ -298,7 +298,7 @@ fn without_a_display_the_editor_ends_in_a_picture() {
 fn chart_prints_the_front_and_writes_every_figure() {
     let folder = folder();
     let words = [
-        "chart", DEMO, "--side", "16", "--csv", "c.csv", "--within", "0.01",
+        "chart", DEMO, "--side", "16", "--csv", "c.csv", "--png", "c.png", "--within", "0.01",
     ];
     let run = glint(folder.path(), &words);
     assert!(run.status.success(), "{run:?}");
@@ -314,6 +314,11 @@ fn chart_prints_the_front_and_writes_every_figure() {
             .is_some_and(|line| line.starts_with("take ")),
         "{said}"
     );
+    let chart = image::open(folder.path().join("c.png")).expect("a picture");
+    assert_eq!((chart.width(), chart.height()), (1600, 960));
+    let accent = image::Rgba([0xF2, 0xB1, 0x34, 255]);
+    let front = chart.to_rgba8().pixels().filter(|p| **p == accent).count();
+    assert!(front > 300, "{front} pixels of the front");
     let csv = std::fs::read_to_string(folder.path().join("c.csv")).expect("a file");
     let mut lines = csv.lines();
     let columns = lines.next().expect("a head").split(',').count();

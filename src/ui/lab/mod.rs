@@ -11,15 +11,19 @@ use egui::{Button, DragValue, Key, Response, RichText, Ui};
 use self::chart::{Chart, Spot};
 use self::look::{FACES, Face, Look};
 use super::Out;
+use super::raster::draw;
 use super::theme::{GRID, palette};
 use super::viewport::Place;
 use crate::editor::{Edit, Editor};
+use crate::image::Image;
 use crate::lab::{DOUBTFUL, Dot, EIGHT_BIT_FLOOR, Study, cheapest_within};
 use crate::plan::Model;
 use crate::scene::{Animation, Render, Scene};
 
 /// Longer side of the pictures that are measured, in pixels.
 const SIDE: f64 = 256.0;
+/// Size of a picture of the chart, in points.
+const PICTURE: (u32, u32) = (800, 480);
 /// Width of the column that tells of a dot.
 const DETAILS: f32 = 300.0;
 
@@ -283,54 +287,67 @@ impl Lab {
     }
 
     fn chart(&self) -> Chart {
-        let dots = self.study.as_ref().map_or(&[][..], |study| &study.dots);
-        let error = |dot: &Dot| {
-            dot.failing.map_or(f64::NAN, |failing| match self.error {
-                Error::Rmse => failing.rmse,
-                Error::Max => failing.max,
-                Error::Visible => failing.visible,
-            })
-        };
-        let cost = |dot: &Dot| match self.cost {
-            Cost::Time => dot.timing().map_or(f64::NAN, |timing| timing.median),
-            Cost::Rays => dot.rays_per_pixel,
-        };
-        let spots = dots.iter().map(|dot| Spot {
-            name: dot.candidate.name.clone(),
-            cost: cost(dot),
-            // A logarithm has no zero.
-            error: Some(error(dot))
-                .filter(|error| *error != 0.0)
-                .unwrap_or(f64::NAN),
-            words: format!("{}\n{}", dot.candidate.words(), figures(dot)),
-            is_doubtful: self.cost == Cost::Time
-                && dot.timing().is_some_and(|timing| timing.spread > DOUBTFUL),
+        let axes = (self.cost, self.error);
+        chart(self.study.as_deref(), axes, self.chosen)
+    }
+}
+
+/// A picture of the chart of time and RMSE, as the window would draw it.
+pub fn chart_picture(study: &Study) -> Image {
+    let chart = chart(Some(study), (Cost::Time, Error::Rmse), None);
+    draw(PICTURE.0, PICTURE.1, 2.0, |ui| {
+        egui::Frame::new().inner_margin(2.0 * GRID).show(ui, |ui| {
+            chart.show(ui);
         });
-        let truth = self
-            .study
-            .as_ref()
-            .and_then(|study| study.yardstick.as_ref());
-        let levels = match (self.error, truth) {
-            (Error::Rmse, Some(truth)) => vec![
-                ("8 bits show no less", EIGHT_BIT_FLOOR),
-                ("the reference's own error", truth.rmse),
-            ],
-            _ => Vec::new(),
-        };
-        Chart {
-            cost: match self.cost {
-                Cost::Time => "ms per picture",
-                Cost::Rays => "rays per pixel",
-            },
-            error: match self.error {
-                Error::Rmse => "RMSE",
-                Error::Max => "worst",
-                Error::Visible => "share > 4/255",
-            },
-            spots: spots.collect(),
-            levels,
-            chosen: self.chosen,
-        }
+    })
+}
+
+/// The dots of a study, as far as they are measured.
+fn chart(study: Option<&Study>, axes: (Cost, Error), chosen: Option<usize>) -> Chart {
+    let dots = study.map_or(&[][..], |study| &study.dots);
+    let error = |dot: &Dot| {
+        dot.failing.map_or(f64::NAN, |failing| match axes.1 {
+            Error::Rmse => failing.rmse,
+            Error::Max => failing.max,
+            Error::Visible => failing.visible,
+        })
+    };
+    let cost = |dot: &Dot| match axes.0 {
+        Cost::Time => dot.timing().map_or(f64::NAN, |timing| timing.median),
+        Cost::Rays => dot.rays_per_pixel,
+    };
+    let spots = dots.iter().map(|dot| Spot {
+        name: dot.candidate.name.clone(),
+        cost: cost(dot),
+        // A logarithm has no zero.
+        error: Some(error(dot))
+            .filter(|error| *error != 0.0)
+            .unwrap_or(f64::NAN),
+        words: format!("{}\n{}", dot.candidate.words(), figures(dot)),
+        is_doubtful: axes.0 == Cost::Time
+            && dot.timing().is_some_and(|timing| timing.spread > DOUBTFUL),
+    });
+    let truth = study.and_then(|study| study.yardstick.as_ref());
+    let levels = match (axes.1, truth) {
+        (Error::Rmse, Some(truth)) => vec![
+            ("8 bits show no less", EIGHT_BIT_FLOOR),
+            ("the reference's own error", truth.rmse),
+        ],
+        _ => Vec::new(),
+    };
+    Chart {
+        cost: match axes.0 {
+            Cost::Time => "ms per picture",
+            Cost::Rays => "rays per pixel",
+        },
+        error: match axes.1 {
+            Error::Rmse => "RMSE",
+            Error::Max => "worst",
+            Error::Visible => "share > 4/255",
+        },
+        spots: spots.collect(),
+        levels,
+        chosen,
     }
 }
 

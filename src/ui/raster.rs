@@ -1,0 +1,186 @@
+//! Widgets drawn without a window and without a graphics card, into a picture.
+
+use std::collections::HashMap;
+
+use egui::epaint::{ClippedPrimitive, ImageData, Mesh, Primitive, Vertex};
+use egui::{Color32, ColorImage, Context, Pos2, RawInput, Rect, TextureId, Theme, Ui, vec2};
+
+use super::theme::{install, palette};
+use crate::image::Image;
+
+/// Frames that layouts take to settle.
+const FRAMES: usize = 4;
+
+/// Draws what `show` puts into a window of `width × height` points, each of them `scale` pixels
+/// wide, in the dark theme.
+pub fn draw(width: u32, height: u32, scale: f32, mut show: impl FnMut(&mut Ui)) -> Image {
+    let ctx = Context::default();
+    install(&ctx, Theme::Dark);
+    let size = vec2(width as f32, height as f32);
+    let mut textures = HashMap::new();
+    let mut primitives = Vec::new();
+    for _ in 0..FRAMES {
+        ctx.set_pixels_per_point(scale);
+        let input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, size)),
+            ..RawInput::default()
+        };
+        let mut output = ctx.run_ui(input, &mut show);
+        for (id, deltas) in output.textures_delta.set.drain() {
+            for delta in deltas {
+                take(&mut textures, id, &delta.image, delta.pos);
+            }
+        }
+        output.textures_delta.free.clear();
+        primitives = ctx.tessellate(output.shapes, scale);
+    }
+    let pixels = size * scale;
+    let mut canvas =
+        ColorImage::filled([pixels.x as usize, pixels.y as usize], palette(&ctx).panel);
+    for ClippedPrimitive {
+        clip_rect,
+        primitive,
+    } in &primitives
+    {
+        if let Primitive::Mesh(mesh) = primitive
+            && let Some(texture) = textures.get(&mesh.texture_id)
+        {
+            fill(&mut canvas, mesh, *clip_rect, texture, scale);
+        }
+    }
+    Image {
+        width: canvas.size[0],
+        height: canvas.size[1],
+        pixels: canvas
+            .pixels
+            .iter()
+            .map(|color| {
+                let [red, green, blue, _] = color.to_array();
+                [red, green, blue, 255]
+            })
+            .collect(),
+    }
+}
+
+fn take(
+    textures: &mut HashMap<TextureId, ColorImage>,
+    id: TextureId,
+    image: &ImageData,
+    place: Option<[usize; 2]>,
+) {
+    let ImageData::Color(part) = image;
+    let (Some([left, top]), Some(whole)) = (place, textures.get_mut(&id)) else {
+        textures.insert(id, ColorImage::clone(part));
+        return;
+    };
+    let stride = whole.size[0];
+    for (row, pixels) in part.pixels.chunks(part.size[0]).enumerate() {
+        let start = (top + row) * stride + left;
+        whole.pixels[start..start + pixels.len()].copy_from_slice(pixels);
+    }
+}
+
+fn fill(canvas: &mut ColorImage, mesh: &Mesh, clip: Rect, texture: &ColorImage, scale: f32) {
+    let clip = Rect::from_min_max(
+        (clip.min.to_vec2() * scale).round().to_pos2(),
+        (clip.max.to_vec2() * scale).round().to_pos2(),
+    );
+    for corners in mesh.indices.chunks_exact(3) {
+        let at = |corner: usize| mesh.vertices[corners[corner] as usize];
+        fill_triangle(canvas, [at(0), at(1), at(2)], clip, texture, scale);
+    }
+}
+
+/// Colours the pixels whose centres are in a triangle.
+fn fill_triangle(
+    canvas: &mut ColorImage,
+    corners: [Vertex; 3],
+    clip: Rect,
+    texture: &ColorImage,
+    scale: f32,
+) {
+    let [a, b, c] = corners.map(|corner| corner.pos.to_vec2() * scale);
+    let doubled = |p: egui::Vec2, q: egui::Vec2, r: egui::Vec2| {
+        (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x)
+    };
+    let area = doubled(a, b, c);
+    if area == 0.0 {
+        return;
+    }
+    let [width, height] = canvas.size;
+    let range = |low: f32, high: f32, from: f32, to: f32, most: usize| {
+        let first = (low.max(from) - 0.5).ceil().max(0.0) as usize;
+        first..((high.min(to) + 0.5).ceil().max(0.0) as usize).min(most)
+    };
+    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    for y in range(low.y, high.y, clip.min.y, clip.max.y, height) {
+        for x in range(low.x, high.x, clip.min.x, clip.max.x, width) {
+            let p = vec2(x as f32 + 0.5, y as f32 + 0.5);
+            if !clip.contains(p.to_pos2()) {
+                continue;
+            }
+            let shares = [doubled(p, b, c), doubled(a, p, c), doubled(a, b, p)];
+            let shares = shares.map(|share| share / area);
+            // A pixel on the edge of two triangles belongs to one of them.
+            let edges = [(b, c), (c, a), (a, b)];
+            let inside = shares.iter().zip(edges).all(|(&share, (from, to))| {
+                let (from, to) = if area > 0.0 { (from, to) } else { (to, from) };
+                let is_upper_left = to.y < from.y || (to.y == from.y && to.x > from.x);
+                share > 0.0 || (share == 0.0 && is_upper_left)
+            });
+            if inside {
+                let color = mixed(corners, shares, texture);
+                let below = &mut canvas.pixels[y * width + x];
+                *below = over(color, *below);
+            }
+        }
+    }
+}
+
+/// The vertices' colour times the texture's, premultiplied, 0–1.
+fn mixed(corners: [Vertex; 3], shares: [f32; 3], texture: &ColorImage) -> [f32; 4] {
+    let mut color = [0.0; 4];
+    let mut place = egui::Vec2::ZERO;
+    for (corner, share) in corners.iter().zip(shares) {
+        for (sum, part) in color.iter_mut().zip(corner.color.to_array()) {
+            *sum += f32::from(part) / 255.0 * share;
+        }
+        place += corner.uv.to_vec2() * share;
+    }
+    let texel = bilinear(texture, place);
+    [0, 1, 2, 3].map(|channel| color[channel] * texel[channel])
+}
+
+fn bilinear(texture: &ColorImage, place: egui::Vec2) -> [f32; 4] {
+    let [width, height] = texture.size;
+    let (x, y) = (place.x * width as f32 - 0.5, place.y * height as f32 - 0.5);
+    let at = |x: f32, y: f32| {
+        let column = (x.max(0.0) as usize).min(width - 1);
+        let row = (y.max(0.0) as usize).min(height - 1);
+        texture.pixels[row * width + column].to_array()
+    };
+    let (left, top) = (x.floor(), y.floor());
+    let (right, down) = (x - left, y - top);
+    let corners = [
+        (at(left, top), (1.0 - right) * (1.0 - down)),
+        (at(left + 1.0, top), right * (1.0 - down)),
+        (at(left, top + 1.0), (1.0 - right) * down),
+        (at(left + 1.0, top + 1.0), right * down),
+    ];
+    [0, 1, 2, 3].map(|channel| {
+        let parts = corners.iter();
+        parts
+            .map(|(texel, share)| f32::from(texel[channel]) / 255.0 * share)
+            .sum()
+    })
+}
+
+/// A premultiplied colour over an opaque one.
+fn over(color: [f32; 4], below: Color32) -> Color32 {
+    let rest = 1.0 - color[3];
+    let [red, green, blue, _] = below.to_array();
+    let mix = |channel: usize, below: u8| {
+        (color[channel] * 255.0 + f32::from(below) * rest).round() as u8
+    };
+    Color32::from_rgb(mix(0, red), mix(1, green), mix(2, blue))
+}
