@@ -6,6 +6,7 @@ mod check;
 mod fallback;
 mod plan;
 mod render;
+mod stability;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -24,7 +25,7 @@ const FAILED: u8 = 1;
 const WRONG: u8 = 2;
 
 /// Commands of later versions, so that asking for one is answered by name.
-const NOT_YET: [&str; 3] = ["export", "stability", "job"];
+const NOT_YET: [&str; 2] = ["export", "job"];
 
 #[derive(Debug, Parser)]
 #[command(
@@ -54,6 +55,8 @@ enum Command {
     Plan(plan::PlanWords),
     /// Chart time against error for every way of tracing a scene
     Chart(chart::ChartWords),
+    /// Say how often every formula fails, and where most
+    Stability(stability::StabilityWords),
 }
 
 /// What the command line asked for.
@@ -85,12 +88,12 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
         .find(|name| words.get(1).is_some_and(|word| word == **name))
     {
         return Asked::Done(refuse(&format!(
-            "`glint {name}` is not built yet; this version has `glint`, `glint render`, `glint check`, `glint plan` and `glint chart`"
+            "`glint {name}` is not built yet; this version has `glint`, `glint render`, `glint check`, `glint plan`, `glint chart` and `glint stability`"
         )));
     }
     if let Some(name) = unknown_command(&words) {
         return Asked::Done(refuse(&format!(
-            "there is no command {name:?}; there are render, check, plan and chart, and `glint SCENE` opens the editor"
+            "there is no command {name:?}; there are render, check, plan, chart and stability, and `glint SCENE` opens the editor"
         )));
     }
     match Words::try_parse_from(words) {
@@ -110,6 +113,10 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
             command: Some(Command::Chart(words)),
             ..
         }) => chart::run(&words),
+        Ok(Words {
+            command: Some(Command::Stability(words)),
+            ..
+        }) => Asked::Done(stability::run(&words)),
         Ok(Words {
             command: None,
             scene,

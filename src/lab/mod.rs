@@ -6,6 +6,7 @@
 mod candidates;
 mod front;
 mod measure;
+pub mod stability;
 mod study;
 mod table;
 

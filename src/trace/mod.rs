@@ -9,6 +9,7 @@ mod hit;
 mod mesh;
 mod packet;
 mod plane;
+pub mod probe;
 mod samples;
 mod sampling;
 mod shade;

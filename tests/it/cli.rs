@@ -164,11 +164,11 @@ fn wrong_words_and_wrong_files_exit_with_2() {
             &["render", "missing.ron", "-o", "a.png"],
             "cannot read missing.ron",
         ),
-        (&["stability", DEMO], "`glint stability` is not built yet"),
+        (&["export", DEMO], "`glint export` is not built yet"),
         (&["check"], "<SCENE>..."),
         (
             &["chek", DEMO],
-            "there is no command \"chek\"; there are render, check, plan and chart",
+            "there is no command \"chek\"; there are render, check, plan, chart and stability",
         ),
     ];
     for (words, expected) in cases {
@@ -335,4 +335,36 @@ fn chart_prints_the_front_and_writes_every_figure() {
         &["chart", DEMO, "--side", "8", "--budget", "0.0000001"],
     );
     assert!(String::from_utf8_lossy(&run.stdout).contains("nothing measured is within that"));
+}
+
+#[test]
+fn stability_tells_the_robust_from_the_rest() {
+    let folder = folder();
+    let run = glint(folder.path(), &["stability", "--csv", "s.csv"]);
+    assert!(run.status.success(), "{run:?}");
+    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    for line in said
+        .lines()
+        .filter(|line| line.starts_with("* ") && line.contains('%'))
+    {
+        assert!(line.ends_with("nowhere"), "{line}");
+    }
+    for weak in [
+        "classic",
+        "edges",
+        "moller-trumbore",
+        "edge-planes",
+        "fixed:0.1",
+        "pow",
+    ] {
+        let line = said.lines().find(|line| line.contains(weak));
+        assert!(
+            line.is_some_and(|line| line.contains("% at ")),
+            "{weak} in {said}"
+        );
+    }
+    let csv = std::fs::read_to_string(folder.path().join("s.csv")).expect("a file");
+    let columns = csv.lines().next().expect("a head").split(',').count();
+    assert!(csv.lines().count() > 800);
+    assert!(csv.lines().all(|line| line.split(',').count() == columns));
 }

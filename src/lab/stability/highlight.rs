@@ -1,0 +1,65 @@
+//! Highlights of growing sharpness.
+
+use super::{Axis, Map, Tries, scattered};
+use crate::lanes::{Exponent, Vec3};
+use crate::scene::{Choice as _, HighlightMethod};
+
+const EXPONENTS: [f64; 7] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
+/// Tries in each cell for a first look.
+const TRIES: u64 = 400;
+/// A highlight may be off by this, of 1: half a level of 255.
+const HALF_LEVEL: f64 = 0.5 / 255.0;
+
+/// One map for each method: off by more than half a level.
+pub fn maps(effort: u32) -> Vec<Map> {
+    let ways = HighlightMethod::ALL.iter();
+    // exp and log1p are right everywhere; there is nothing to see.
+    let ways = ways.filter(|way| way.value != HighlightMethod::Log1p);
+    ways.map(|way| {
+        let across = Axis {
+            name: "exponent",
+            values: EXPONENTS.to_vec(),
+        };
+        let up = Axis {
+            name: "highlight",
+            values: vec![1.0],
+        };
+        Map::measure(
+            ("highlight", "off by more than half a level of 255"),
+            (way.word.to_owned(), way.value == HighlightMethod::default()),
+            (across, up),
+            |p, _| {
+                let tries = (0..TRIES * u64::from(effort)).filter_map(|n| fails(way.value, n, p));
+                Tries::count(tries)
+            },
+        )
+    })
+    .collect()
+}
+
+fn fails(method: HighlightMethod, number: u64, p: f64) -> Option<bool> {
+    let exponent = match method {
+        HighlightMethod::Auto => Exponent::new(p),
+        HighlightMethod::Power => Exponent::power(p),
+        HighlightMethod::Log1p => Exponent::Large(p),
+    };
+    let random = |stream| scattered(number, stream) * 2.0 - 1.0;
+    let normal = Vec3::new(random(0), random(1), random(2)).unit()?;
+    let aside = normal
+        .cross(Vec3::new(random(3), random(4), random(5)))
+        .unit()?;
+    // Within the highlight: where it has fallen to e^-3 at most.
+    let off = (6.0 / p).sqrt().min(1.0) * scattered(number, 6);
+    let half = normal + aside * off;
+    let (normal, half) = (Vec3::<f32>::from_f64(normal), Vec3::<f32>::from_f64(half));
+    let found = f64::from(exponent.highlight((), normal, half));
+    // The truth belongs to the rounded numbers, made unit vectors exactly.
+    let (n, h) = (normal.to_f64().unit()?, half.to_f64().unit()?);
+    let w = (n - h).dot(n - h) / 2.0;
+    let truth = if n.dot(h) > 0.0 {
+        (p * (-w).ln_1p()).exp()
+    } else {
+        0.0
+    };
+    Some((found - truth).abs() > HALF_LEVEL)
+}

@@ -1,0 +1,60 @@
+//! Rays that meet a plane at grazing angles.
+
+use super::{Axis, Map, Tries, scales, scattered};
+use crate::lanes::{Real as _, Vec3};
+use crate::plan::Plane;
+use crate::trace::Ray;
+use crate::trace::probe::meet_plane;
+
+/// Angles between ray and plane, in degrees.
+const ANGLES: [f64; 6] = [45.0, 10.0, 1.0, 0.1, 0.01, 0.001];
+/// Tries in each cell for a first look.
+const TRIES: u64 = 200;
+
+/// The one formula: off by more than the rounding of the ray must cost, 8u / sin(angle).
+pub fn map(effort: u32) -> Map {
+    let across = Axis {
+        name: "degrees",
+        values: ANGLES.to_vec(),
+    };
+    Map::measure(
+        ("plane", "distance off by more than 8u / sin(angle)"),
+        ("plane".to_owned(), true),
+        (across, scales()),
+        |angle, scale| {
+            let tries = (0..TRIES * u64::from(effort)).filter_map(|n| fails(n, angle, scale));
+            Tries::count(tries)
+        },
+    )
+}
+
+fn fails(number: u64, angle: f64, scale: f64) -> Option<bool> {
+    let random = |stream| scattered(number, stream) * 2.0 - 1.0;
+    let normal = Vec3::new(random(0), random(1), random(2)).unit()?;
+    let along = normal
+        .cross(Vec3::new(random(3), random(4), random(5)))
+        .unit()?;
+    let (sine, cosine) = angle.to_radians().sin_cos();
+    let direction = along * cosine - normal * sine;
+    let plane = Plane {
+        normal: Vec3::<f32>::from_f64(normal),
+        offset: (-scale * (1.0 + scattered(number, 6))) as f32,
+        material: 0,
+    };
+    let ray = Ray {
+        origin: Vec3::<f32>::from_f64(along * (scale * random(7))),
+        direction: Vec3::from_f64(direction),
+    };
+    let found = f64::from(meet_plane(&ray, &plane));
+    let (n, o, d) = (
+        plane.normal.to_f64(),
+        ray.origin.to_f64(),
+        ray.direction.to_f64(),
+    );
+    let truth = (f64::from(plane.offset) - n.dot(o)) / n.dot(d);
+    // A ray that its own rounding has turned away from the plane was never to meet it.
+    (truth > 0.0).then(|| {
+        let allowed = 8.0 * f64::from(f32::UNIT_ROUNDOFF) / sine;
+        (found - truth).abs() > allowed * truth.abs() * 2.0
+    })
+}

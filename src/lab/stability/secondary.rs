@@ -1,0 +1,145 @@
+//! Shadow rays that hit the surface that they start on, or miss what stands close to it: pictures of
+//! a ball and a card on a floor, at every scale and place.
+
+use super::{Map, Tries, places, scales};
+use crate::lanes::Vec3;
+use crate::plan::Picture;
+use crate::scene::{
+    Camera, Choice as _, ColorPack, Light, Methods, Object, Precision, RayOffset, Sampling, Scene,
+    Shape,
+};
+use crate::trace::{Pass, Tracer, Watch};
+
+/// Side of the pictures in pixels.
+const SIDE: u32 = 48;
+/// Below this, a lit pixel counts as dark: its light comes in along the surface.
+const GRAZING: f32 = 0.03;
+
+/// Farther than anything is: rays that start there meet nothing.
+const BEYOND: f64 = 1e6;
+
+/// Two maps for each way: lit points that are dark (acne), and points in shadow that are lit (leak).
+/// Pixels beside an edge of a shadow or of a thing are not tried.
+pub fn maps() -> Vec<Map> {
+    let at_home = scene(0.0, 1.0);
+    let truth = lit(&at_home, RayOffset::Robust, Precision::Double);
+    let facing = lit(&at_home, RayOffset::Fixed(BEYOND), Precision::Double);
+    let inner = |place: &usize| is_inner(&truth, *place) && is_inner(&facing, *place);
+    let inner: Vec<usize> = (0..truth.len()).filter(inner).collect();
+    let (bright, shadowed): (Vec<usize>, Vec<usize>) = inner
+        .into_iter()
+        .filter(|&place| facing[place])
+        .partition(|&place| truth[place]);
+    let map = |subject, failure, offset: RayOffset, word: &str, tried: &[usize]| {
+        Map::measure(
+            (subject, failure),
+            (word.to_owned(), offset == RayOffset::default()),
+            (places(), scales()),
+            |away, scale| {
+                let got = lit(&scene(away, scale), offset, Precision::Single);
+                Tries::count(tried.iter().map(|&place| got[place] != truth[place]))
+            },
+        )
+    };
+    let acne = RayOffset::ALL.iter().map(|way| {
+        let failure = "lit point that is dark";
+        map("shadow acne", failure, way.value, way.word, &bright)
+    });
+    let leak = RayOffset::ALL.iter().map(|way| {
+        let failure = "point in shadow that is lit";
+        map("shadow leak", failure, way.value, way.word, &shadowed)
+    });
+    acne.chain(leak).collect()
+}
+
+/// Which pixels are lit.
+fn lit(scene: &Scene, offset: RayOffset, precision: Precision) -> Vec<bool> {
+    let picture = Picture {
+        methods: Methods {
+            offset,
+            ..Methods::default()
+        },
+        precision,
+        sampling: Sampling::Centres,
+        ..Picture::sized(SIDE, SIDE)
+    };
+    let mut pixels = vec![[0.0_f32; 3]; (SIDE * SIDE) as usize];
+    // Nobody stops it.
+    let _ = Tracer::new(scene, &picture).pass(&mut pixels, Pass::Whole, &Watch::default());
+    pixels.iter().map(|pixel| pixel[0] > GRAZING).collect()
+}
+
+/// Whether the pixels around are as lit as this one.
+fn is_inner(lit: &[bool], place: usize) -> bool {
+    let side = SIDE as usize;
+    let (x, y) = (place % side, place / side);
+    if x == 0 || y == 0 || x == side - 1 || y == side - 1 {
+        return false;
+    }
+    let rows = [place - side, place, place + side];
+    rows.iter()
+        .all(|row| (row - 1..=row + 1).all(|near| lit[near] == lit[place]))
+}
+
+/// A floor, a ball on it, a thin card beside it, and one light; so large, so many sizes away.
+fn scene(away: f64, scale: f64) -> Scene {
+    let place =
+        |x: f64, y: f64, z: f64| (Vec3::new(x, y, z) + Vec3::new(0.6, -0.64, 0.48) * away) * scale;
+    let mut scene = Scene::empty();
+    let white = Vec3::splat(255.0);
+    let black = Vec3::splat(0.0);
+    let chalk = ColorPack {
+        ambient: black,
+        diffuse: white,
+        specular: black,
+        reflective: false,
+        ..ColorPack::default()
+    };
+    scene.color_packs.insert("chalk".to_owned(), chalk);
+    scene.background = black;
+    let object = |name: &str, shape| Object {
+        name: name.to_owned(),
+        color_pack: "chalk".to_owned(),
+        shape,
+        visible: true,
+    };
+    scene.objects = vec![
+        object(
+            "Floor",
+            Shape::Plane {
+                point: place(0.0, 0.0, 0.0),
+                normal: Vec3::new(0.0, 1.0, 0.0),
+            },
+        ),
+        object(
+            "Ball",
+            Shape::Sphere {
+                center: place(0.0, 0.5, 0.0),
+                radius: 0.5 * scale,
+            },
+        ),
+        object(
+            "Card",
+            Shape::Triangle {
+                a: place(0.7, 0.0, 0.1),
+                b: place(0.9, 0.8, -0.1),
+                c: place(1.1, 0.0, -0.3),
+            },
+        ),
+    ];
+    scene.lights = vec![Light {
+        name: "Light".to_owned(),
+        position: place(1.6, 1.9, 1.3),
+        intensity: 1.0,
+        visible: true,
+        marker: None,
+    }];
+    scene.camera = Camera {
+        position: place(0.4, 1.3, 2.6),
+        look_at: Vec3::new(0.0, -0.4, -1.0),
+        up: Vec3::new(0.0, 1.0, 0.0),
+        projection_distance: 1.0,
+        ..Camera::default()
+    };
+    scene
+}

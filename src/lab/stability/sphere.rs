@@ -1,0 +1,65 @@
+//! Rays past spheres far away.
+
+use super::{Axis, Map, Tries, scales, scattered};
+use crate::lanes::Vec3;
+use crate::plan::{Sphere, SphereMethod};
+use crate::scene::Choice as _;
+use crate::trace::Ray;
+use crate::trace::probe::meet_sphere;
+
+/// Distances in radii; beyond, the ray's own numbers are too coarse for the sphere.
+const DISTANCES: [f64; 7] = [3.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
+/// Tries in each cell for a first look.
+const TRIES: u64 = 400;
+
+/// One map for each method: hits where the ray passes by, misses where it does not. Rays within a
+/// tenth of a radius of the edge are not tried.
+pub fn maps(effort: u32) -> Vec<Map> {
+    let ways = SphereMethod::ALL.iter();
+    ways.map(|way| {
+        let across = Axis {
+            name: "radii away",
+            values: DISTANCES.to_vec(),
+        };
+        Map::measure(
+            (
+                "sphere",
+                "hit where it passes by or missed where it does not",
+            ),
+            (way.word.to_owned(), way.value == SphereMethod::default()),
+            (across, scales()),
+            |distance, scale| {
+                let tries =
+                    (0..TRIES * u64::from(effort)).map(|n| fails(way.value, n, distance, scale));
+                Tries::count(tries)
+            },
+        )
+    })
+    .collect()
+}
+
+fn fails(method: SphereMethod, number: u64, distance: f64, scale: f64) -> bool {
+    let turn = |stream| scattered(number, stream) * std::f64::consts::TAU;
+    let (a, b, c) = (turn(0), turn(1), turn(2));
+    let towards = Vec3::new(a.cos() * b.cos(), b.sin(), a.sin() * b.cos());
+    let Some(aside) = towards.cross(Vec3::new(c.cos(), 0.3, c.sin())).unit() else {
+        return false;
+    };
+    let is_hit = number.is_multiple_of(2);
+    let beside = if is_hit {
+        0.9
+    } else {
+        1.1 + scattered(number, 3)
+    } * if is_hit { scattered(number, 4) } else { 1.0 };
+    let center = (towards * distance + aside * beside) * scale;
+    let sphere = Sphere {
+        center: Vec3::<f32>::from_f64(center),
+        radius: scale as f32,
+        material: 0,
+    };
+    let ray = Ray {
+        origin: Vec3::splat(0.0),
+        direction: Vec3::from_f64(towards),
+    };
+    meet_sphere(method, &ray, &sphere).is_finite() != is_hit
+}

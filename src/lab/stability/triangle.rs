@@ -1,0 +1,106 @@
+//! Rays from inside a closed mesh, aimed at its edges and corners: each must hit something.
+
+use super::{Map, Tries, places, scales, scattered};
+use crate::lanes::Vec3;
+use crate::plan::{Triangle, TriangleMethod};
+use crate::scene::Choice as _;
+use crate::trace::Ray;
+use crate::trace::probe::meet_triangle;
+
+/// Tries in each cell for a first look.
+const TRIES: u64 = 300;
+/// Which way the mesh is away from the origin.
+const AWAY: Vec3<f64> = Vec3::new(0.6, -0.64, 0.48);
+/// A place inside, off the middle.
+const INSIDE: Vec3<f64> = Vec3::new(0.11, -0.07, 0.05);
+
+/// One map for each method.
+pub fn maps(effort: u32) -> Vec<Map> {
+    let ball = ball();
+    let ways = TriangleMethod::ALL.iter();
+    ways.map(|way| {
+        Map::measure(
+            (
+                "triangle",
+                "ray from inside a closed mesh that meets nothing",
+            ),
+            (way.word.to_owned(), way.value == TriangleMethod::default()),
+            (places(), scales()),
+            |away, scale| {
+                let mesh: Vec<Triangle<f32>> =
+                    ball.iter().map(|&face| placed(face, away, scale)).collect();
+                let origin = Vec3::<f32>::from_f64((INSIDE + AWAY * away) * scale);
+                let tries = (0..TRIES * u64::from(effort))
+                    .filter_map(|n| leaks(way.value, &mesh, origin, n));
+                Tries::count(tries)
+            },
+        )
+    })
+    .collect()
+}
+
+/// Whether the ray leaks; `None` for a target that has no direction.
+fn leaks(
+    method: TriangleMethod,
+    mesh: &[Triangle<f32>],
+    origin: Vec3<f32>,
+    number: u64,
+) -> Option<bool> {
+    let [a, b, _] = mesh[number as usize % mesh.len()].corners;
+    // Every other ray aims at a corner, the rest at places along edges.
+    let along = if number.is_multiple_of(2) {
+        0.0
+    } else {
+        scattered(number, 0) as f32
+    };
+    let direction = (a + (b - a) * along - origin).to_f64().unit()?;
+    let ray = Ray {
+        origin,
+        direction: Vec3::from_f64(direction),
+    };
+    let is_hit = |face: &Triangle<f32>| meet_triangle(method, &ray, face).is_finite();
+    Some(!mesh.iter().any(is_hit))
+}
+
+fn placed(corners: [Vec3<f64>; 3], away: f64, scale: f64) -> Triangle<f32> {
+    let place = |corner: Vec3<f64>| Vec3::<f32>::from_f64((corner + AWAY * away) * scale);
+    let [a, b, c] = corners.map(place);
+    let normal = (c - a).to_f64().cross((b - a).to_f64());
+    Triangle {
+        corners: [a, b, c],
+        normal: Vec3::from_f64(normal.unit().unwrap_or(normal)),
+        in_mesh: true,
+        thickness: 1.0,
+        material: 0,
+    }
+}
+
+/// An octahedron whose faces are split twice and moved onto the ball around them.
+fn ball() -> Vec<[Vec3<f64>; 3]> {
+    let onto = |v: Vec3<f64>| v * (1.0 / v.length());
+    let mut faces = Vec::new();
+    for x in [-1.0, 1.0] {
+        for y in [-1.0, 1.0] {
+            for z in [-1.0, 1.0] {
+                // Turned, so that no edge lies along an axis.
+                let turn = |v: Vec3<f64>| {
+                    let (x, y) = (0.8 * v.x - 0.6 * v.y, 0.6 * v.x + 0.8 * v.y);
+                    Vec3::new(x, y * 0.96 - v.z * 0.28, y * 0.28 + v.z * 0.96)
+                };
+                faces.push([
+                    turn(Vec3::new(x, 0.0, 0.0)),
+                    turn(Vec3::new(0.0, y, 0.0)),
+                    turn(Vec3::new(0.0, 0.0, z)),
+                ]);
+            }
+        }
+    }
+    for _ in 0..2 {
+        let split = faces.iter().flat_map(|&[a, b, c]| {
+            let (ab, bc, ca) = (onto(a + b), onto(b + c), onto(c + a));
+            [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        });
+        faces = split.collect();
+    }
+    faces
+}
