@@ -1,19 +1,19 @@
 //! Glint's program: the command line, or else the window.
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use glint::cli::{Asked, fail, picture_instead_of_window};
 use glint::export::save_image;
+use glint::image::Image;
 use glint::ui::NoWindow;
 use glint::{cli, ui};
 
 fn main() -> ExitCode {
     match cli::run(std::env::args_os()) {
         Asked::Done(code) => code,
-        Asked::Chart { study, path } => match save_image(&ui::chart_picture(&study), &path) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(error) => fail(&error.to_string()),
-        },
+        Asked::Chart { study, path } => save(&ui::chart_picture(&study), &path),
+        Asked::Stability { maps, path } => save(&ui::stability_picture(&maps), &path),
         Asked::Editor { scene, screenshot } => {
             let is_screenshot = screenshot.is_some();
             match ui::run(scene.clone(), screenshot) {
@@ -27,5 +27,12 @@ fn main() -> ExitCode {
                 Err(error) => fail(&error.to_string()),
             }
         }
+    }
+}
+
+fn save(picture: &Image, path: &Path) -> ExitCode {
+    match save_image(picture, path) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => fail(&error.to_string()),
     }
 }

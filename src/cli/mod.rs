@@ -18,6 +18,7 @@ pub use fallback::picture_instead_of_window;
 
 use crate::image::Format;
 use crate::lab::Study;
+use crate::lab::stability::Map;
 
 /// Exit code when the work failed.
 const FAILED: u8 = 1;
@@ -76,6 +77,13 @@ pub enum Asked {
         /// The picture file; its ending is known to be good.
         path: PathBuf,
     },
+    /// Draw these maps into this file.
+    Stability {
+        /// The maps.
+        maps: Vec<Map>,
+        /// The picture file; its ending is known to be good.
+        path: PathBuf,
+    },
     /// Nothing more: the command ran and ends with this code.
     Done(ExitCode),
 }
@@ -116,7 +124,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
         Ok(Words {
             command: Some(Command::Stability(words)),
             ..
-        }) => Asked::Done(stability::run(&words)),
+        }) => stability::run(&words),
         Ok(Words {
             command: None,
             scene,

@@ -6,7 +6,8 @@ use std::process::ExitCode;
 
 use clap::Args;
 
-use super::{fail, say};
+use super::{Asked, fail, refuse, say};
+use crate::image::Format;
 use crate::lab::stability::{cells_csv, maps, summary};
 use crate::scene::write_atomic;
 
@@ -15,20 +16,28 @@ pub struct StabilityWords {
     /// Write every cell of every map to this file
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
+    /// Draw the maps into this picture (PNG or PPM)
+    #[arg(long, value_name = "IMAGE")]
+    png: Option<PathBuf>,
     /// Try so many times more rays than for a first look
     #[arg(long, default_value = "1")]
     effort: NonZeroU32,
 }
 
-/// Tries, prints the summary, and writes what was asked for.
-pub fn run(words: &StabilityWords) -> ExitCode {
+/// Tries, prints the summary, and writes what was asked for. The picture is left to whoever can draw.
+pub fn run(words: &StabilityWords) -> Asked {
+    if let Some(Err(error)) = words.png.as_deref().map(Format::of_path) {
+        return Asked::Done(refuse(&error.to_string()));
+    }
     let maps = maps(words.effort.get());
     say(summary(&maps).trim_end());
-    match &words.csv {
-        Some(path) => match write_atomic(path, cells_csv(&maps).as_bytes()) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(error) => fail(&format!("cannot write {}: {error}", path.display())),
-        },
-        None => ExitCode::SUCCESS,
+    if let Some(path) = &words.csv
+        && let Err(error) = write_atomic(path, cells_csv(&maps).as_bytes())
+    {
+        return Asked::Done(fail(&format!("cannot write {}: {error}", path.display())));
+    }
+    match words.png.clone() {
+        Some(path) => Asked::Stability { maps, path },
+        None => Asked::Done(ExitCode::SUCCESS),
     }
 }

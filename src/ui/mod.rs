@@ -28,7 +28,7 @@ mod window;
 pub use app::{App, Setup};
 pub use commands::{Command, FLIGHT, SHORTCUTS};
 pub use dialogs::{Ask, Dialogs};
-pub use lab::chart_picture;
+pub use lab::{chart_picture, stability_picture};
 pub use window::{NoWindow, run};
 
 use crate::editor::{Action, Edit, Selection};

@@ -340,7 +340,10 @@ fn chart_prints_the_front_and_writes_every_figure() {
 #[test]
 fn stability_tells_the_robust_from_the_rest() {
     let folder = folder();
-    let run = glint(folder.path(), &["stability", "--csv", "s.csv"]);
+    let run = glint(
+        folder.path(),
+        &["stability", "--csv", "s.csv", "--png", "s.png"],
+    );
     assert!(run.status.success(), "{run:?}");
     let said = String::from_utf8_lossy(&run.stdout).into_owned();
     for line in said
@@ -363,6 +366,8 @@ fn stability_tells_the_robust_from_the_rest() {
             "{weak} in {said}"
         );
     }
+    let maps = image::open(folder.path().join("s.png")).expect("a picture");
+    assert!(maps.width() >= 2000 && maps.height() >= 1000);
     let csv = std::fs::read_to_string(folder.path().join("s.csv")).expect("a file");
     let columns = csv.lines().next().expect("a head").split(',').count();
     assert!(csv.lines().count() > 800);

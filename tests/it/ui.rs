@@ -12,7 +12,7 @@ use egui_kittest::kittest::Queryable as _;
 use glint::editor::{Editor, Mode};
 use glint::image::{Image, render};
 use glint::plan::{Picture, Sampling};
-use glint::scene::{Document, Projection, Scene, Shape};
+use glint::scene::{Choice as _, Document, Projection, Scene, Shape};
 use glint::trace::Watch;
 use glint::ui::{App, Ask, Command, Dialogs, FLIGHT, SHORTCUTS, Setup};
 
@@ -874,4 +874,44 @@ fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
     desk.window.get_by_label("stale");
     desk.press(CTRL, Key::L);
     assert!(desk.window.query_by_label("Measure").is_none());
+}
+
+#[test]
+fn the_lab_shows_where_formulas_break_and_warns_of_those_in_use() {
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/demo.ron"));
+    let text = text.expect("the demo").replace(
+        "reflection_limit: 1",
+        "reflection_limit: 1, triangle: \"edges\"",
+    );
+    let mut desk = Desk::with(|_| Vec::new(), Some(&text));
+    assert_eq!(desk.scene().render.triangle.word(), "edges");
+    desk.press(CTRL, Key::L);
+    desk.click("Stability");
+    let start = Instant::now();
+    while desk
+        .window
+        .query_all_by_label_contains("stable")
+        .next()
+        .is_none()
+    {
+        assert!(start.elapsed() < Duration::from_mins(1), "no maps");
+        std::thread::sleep(Duration::from_millis(20));
+        desk.window.step();
+    }
+    desk.window
+        .get_by_label("The frame is where your scene stands.");
+    let row = |desk: &Desk, words: &str| {
+        let rows = desk.window.query_all_by_label_contains(words);
+        rows.last().map(|row| row.rect().center())
+    };
+    for (method, warned) in [("edges", true), ("watertight", false)] {
+        let at = row(&desk, method).expect("a row");
+        desk.window.drag_at(at);
+        desk.window.drop_at(at);
+        desk.settle();
+        let mut warnings = desk
+            .window
+            .query_all_by_label_contains("Your scene uses this");
+        assert_eq!(warnings.next().is_some(), warned, "{method}");
+    }
 }

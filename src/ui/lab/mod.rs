@@ -2,14 +2,19 @@
 //! at and adopted.
 
 mod chart;
+mod heat;
 mod look;
+mod stability;
 
 use std::sync::Arc;
 
 use egui::{Button, DragValue, Key, Response, RichText, Ui};
 
+pub use self::stability::stability_picture;
+
 use self::chart::{Chart, Spot};
 use self::look::{FACES, Face, Look};
+use self::stability::Stability;
 use super::Out;
 use super::raster::draw;
 use super::theme::{GRID, palette};
@@ -66,6 +71,9 @@ pub struct Lab {
     look: Look,
     /// The bounds for the cheapest dot: RMSE and milliseconds.
     bounds: (f64, f64),
+    /// Whether the maps are shown in place of the chart.
+    shows_maps: bool,
+    stability: Stability,
 }
 
 impl Default for Lab {
@@ -81,6 +89,8 @@ impl Default for Lab {
             face: Face::Picture,
             look: Look::default(),
             bounds: (EIGHT_BIT_FLOOR, 100.0),
+            shows_maps: false,
+            stability: Stability::default(),
         }
     }
 }
@@ -108,6 +118,10 @@ impl Lab {
     pub fn show(&mut self, ui: &mut Ui, editor: &Editor, out: &mut Out) -> Option<Wish> {
         ui.add_space(GRID / 2.0);
         let wish = ui.horizontal(|ui| self.show_head(ui, editor)).inner;
+        if self.shows_maps {
+            self.stability.show(ui, editor.scene());
+            return wish;
+        }
         ui.horizontal_top(|ui| {
             let width = (ui.available_width() - DETAILS - GRID).max(120.0);
             let size = egui::vec2(width, ui.available_height());
@@ -122,6 +136,25 @@ impl Lab {
     }
 
     fn show_head(&mut self, ui: &mut Ui, editor: &Editor) -> Option<Wish> {
+        for (maps, name, hint) in [
+            (
+                false,
+                "Chart",
+                "Time against error of every way of tracing the scene",
+            ),
+            (
+                true,
+                "Stability",
+                "Where formulas break, and where the scene stands",
+            ),
+        ] {
+            ui.selectable_value(&mut self.shows_maps, maps, name)
+                .on_hover_text(hint);
+        }
+        ui.separator();
+        if self.shows_maps {
+            return None;
+        }
         let mut wish = None;
         if self.is_running {
             let done = self.study.as_ref().map_or(0.0, |study| study.progress());

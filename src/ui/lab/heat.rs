@@ -1,0 +1,192 @@
+//! A failure map as coloured squares.
+
+use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+
+use super::super::theme::{GRID, palette};
+use crate::lab::stability::{Axis, Map, Tries};
+
+/// Rates from this on have a colour of their own; below, one step of colour for each decade.
+const LOWEST: f64 = 1e-4;
+/// Room for the numbers on the left and below.
+const MARGIN: (f32, f32) = (40.0, 30.0);
+/// Size of the numbers.
+const SMALL: f32 = 10.0;
+
+/// Draws a map into `size`, with a ring where a scene stands.
+pub fn show(ui: &mut Ui, map: &Map, size: egui::Vec2, marker: Option<(f64, f64)>) {
+    let (area, response) = ui.allocate_exact_size(size, Sense::hover());
+    let colors = palette(ui.ctx());
+    let squares = Rect::from_min_max(
+        pos2(area.left() + MARGIN.0, area.top()),
+        pos2(area.right(), area.bottom() - MARGIN.1),
+    );
+    let (columns, rows) = (map.across.values.len(), map.up.values.len());
+    let cell = vec2(
+        squares.width() / columns as f32,
+        squares.height() / rows as f32,
+    );
+    let square = |place: usize| {
+        let (column, row) = (place % columns, place / columns);
+        let corner = pos2(
+            squares.left() + column as f32 * cell.x,
+            squares.bottom() - (row + 1) as f32 * cell.y,
+        );
+        Rect::from_min_size(corner, cell)
+    };
+    let painter = ui.painter();
+    for (place, tries) in map.cells.iter().enumerate() {
+        painter.rect_filled(square(place).shrink(0.5), 1, shade(*tries, ui));
+    }
+    let font = FontId::proportional(SMALL);
+    let write = |at: Pos2, anchor: Align2, text: String| {
+        painter.text(at, anchor, text, font.clone(), colors.muted);
+    };
+    for (column, value) in map.across.values.iter().enumerate() {
+        let x = squares.left() + (column as f32 + 0.5) * cell.x;
+        let text = number(*value);
+        write(pos2(x, squares.bottom() + 2.0), Align2::CENTER_TOP, text);
+    }
+    if rows > 1 {
+        for (row, value) in map.up.values.iter().enumerate() {
+            let y = squares.bottom() - (row as f32 + 0.5) * cell.y;
+            let text = number(*value);
+            write(
+                pos2(squares.left() - GRID / 2.0, y),
+                Align2::RIGHT_CENTER,
+                text,
+            );
+        }
+    }
+    let below = pos2(squares.center().x, area.bottom());
+    let names = if rows > 1 {
+        format!("{}   (upwards: {})", map.across.name, map.up.name)
+    } else {
+        map.across.name.to_owned()
+    };
+    write(below, Align2::CENTER_BOTTOM, names);
+    if let Some((x, y)) = marker {
+        let place = nearest(&map.up, y) * columns + nearest(&map.across, x);
+        let ring = Stroke::new(2.0, colors.text);
+        painter.rect_stroke(square(place), 2, ring, StrokeKind::Inside);
+    }
+    if let Some(pointer) = response.hover_pos() {
+        let under = (0..map.cells.len()).find(|&place| square(place).contains(pointer));
+        if let Some(place) = under {
+            response.on_hover_text_at_pointer(describe(map, place));
+        }
+    }
+}
+
+/// Whether a method fails within one step of where a scene stands.
+pub fn is_near_failing(map: &Map, (x, y): (f64, f64)) -> bool {
+    let columns = map.across.values.len();
+    let (column, row) = (nearest(&map.across, x), nearest(&map.up, y));
+    map.cells.iter().enumerate().any(|(place, tries)| {
+        let beside = (place % columns).abs_diff(column) <= 1;
+        beside && (place / columns).abs_diff(row) <= 1 && tries.failures > 0
+    })
+}
+
+/// The mark of an axis that is nearest to a value, by decades.
+fn nearest(axis: &Axis, value: f64) -> usize {
+    let away = |mark: f64| {
+        if mark == 0.0 || value == 0.0 {
+            // Nothing is a decade away from zero: it stands for all that is below the next mark.
+            let above = axis.values.iter().find(|mark| **mark > 0.0);
+            let is_below = above.is_some_and(|above| value < above * 0.3);
+            return if (mark == 0.0) == is_below {
+                0.0
+            } else {
+                f64::INFINITY
+            };
+        }
+        (mark.log10() - value.abs().log10()).abs()
+    };
+    let marks = axis.values.iter().enumerate();
+    let nearest = marks.min_by(|a, b| away(*a.1).total_cmp(&away(*b.1)));
+    nearest.map_or(0, |(place, _)| place)
+}
+
+/// Nothing failed, and one colour from yellow to red for each decade of the rate.
+fn shade(tries: Tries, ui: &Ui) -> Color32 {
+    let colors = palette(ui.ctx());
+    if tries.tries == 0 {
+        return colors.window;
+    }
+    if tries.failures == 0 {
+        return colors.raised;
+    }
+    let decades = -LOWEST.log10();
+    let heat = (1.0 + tries.rate().max(LOWEST).log10() / decades).clamp(0.0, 1.0) as f32;
+    colors.accent.lerp_to_gamma(colors.error, heat)
+}
+
+fn describe(map: &Map, place: usize) -> String {
+    let columns = map.across.values.len();
+    let cell = map.cells[place];
+    let place = format!(
+        "{} {}, {} {}",
+        map.across.name,
+        number(map.across.values[place % columns]),
+        map.up.name,
+        number(map.up.values[place / columns]),
+    );
+    if cell.failures == 0 {
+        return format!(
+            "{place}\nnone of {} failed: below {:.1e} with 95 %",
+            cell.tries,
+            cell.bound()
+        );
+    }
+    format!(
+        "{place}\n{} of {} failed: {:.3} %, below {:.3} % with 95 %",
+        cell.failures,
+        cell.tries,
+        cell.rate() * 100.0,
+        cell.bound() * 100.0
+    )
+}
+
+fn number(value: f64) -> String {
+    if value == 0.0 || (1e-2..1e3).contains(&value) {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_stands_at_the_nearest_mark() {
+        let axis = Axis {
+            name: "away",
+            values: vec![0.0, 1.0, 10.0, 100.0],
+        };
+        let places = [0.0, 0.1, 0.9, 4.0, 31.0, 33.0, 1e9].map(|value| nearest(&axis, value));
+        assert_eq!(places, [0, 0, 1, 2, 2, 3, 3]);
+        let only = |place: usize| Map {
+            subject: "",
+            method: String::new(),
+            is_default: true,
+            failure: "",
+            across: axis.clone(),
+            up: Axis {
+                name: "one",
+                values: vec![1.0],
+            },
+            cells: (0..4)
+                .map(|at| Tries {
+                    tries: 10,
+                    failures: u64::from(at == place),
+                })
+                .collect(),
+        };
+        assert!(is_near_failing(&only(2), (1.0, 1.0)));
+        assert!(!is_near_failing(&only(3), (1.0, 1.0)));
+        assert!(describe(&only(3), 3).contains("1 of 10 failed"));
+        assert!(describe(&only(3), 0).contains("none of 10 failed: below 3.0e-1"));
+    }
+}
