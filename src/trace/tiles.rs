@@ -349,6 +349,31 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_picture_in_pieces_has_the_same_bits() {
+        let scene = Scene::demo();
+        for sampling in [Sampling::Grid(2), Sampling::ADAPTIVE] {
+            let picture = Picture {
+                sampling,
+                ..Picture::sized(83, 61)
+            };
+            let (tracer, watch) = (Tracer::new(&scene, &picture), Watch::default());
+            let mut whole = vec![[0_u64; 3]; 83 * 61];
+            let rays = tracer.pass(&mut whole, Pass::Whole, &watch);
+            let mut pieces = Vec::new();
+            let mut sum = Rays::default();
+            for first in (0..61).step_by(7) {
+                let mut piece = vec![[0_u64; 3]; 83 * (61 - first).min(7)];
+                sum += tracer.rows(&mut piece, first, &watch).expect("not stopped");
+                pieces.extend(piece);
+            }
+            assert!(pieces == whole, "{sampling:?}");
+            if sampling == Sampling::Grid(2) {
+                assert_eq!(Some(sum), rays);
+            }
+        }
+    }
+
     proptest! {
         #[test]
         fn nested_passes_take_every_pixel_once(width in 1..70_usize, height in 1..40_usize, levels in 0..5_u32) {

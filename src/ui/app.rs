@@ -348,9 +348,8 @@ fn projected(editor: &Editor, projection: Projection) -> Action {
 impl eframe::App for App {
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
         self.pictures.poll(ctx, &mut self.editor);
-        if let Some(study) = self.pictures.take_study() {
-            self.lab.take(study);
-        }
+        let is_measuring = self.pictures.is_measuring();
+        self.lab.follow(is_measuring, self.pictures.take_study());
         self.close_if_meant(ctx);
         let outcome = self.files.poll(ctx, &mut self.editor);
         self.follow(ctx, outcome);

@@ -57,6 +57,11 @@ impl Pictures {
         }
     }
 
+    /// Whether the lane is measuring, or will be.
+    pub fn is_measuring(&self) -> bool {
+        self.worker.is_measuring()
+    }
+
     /// What the lane has measured since the last call.
     pub fn take_study(&self) -> Option<Study> {
         self.worker.take_study()

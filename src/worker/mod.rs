@@ -299,6 +299,14 @@ impl Worker {
         lock(&self.shared.news).study = None;
     }
 
+    /// Whether a study is being measured, or waits for that. What it has found by the time this is
+    /// false can be taken.
+    pub fn is_measuring(&self) -> bool {
+        let mailbox = lock(&self.shared.mailbox);
+        let running = mailbox.running.as_ref().map(|running| &running.job);
+        mailbox.study.is_some() || matches!(running, Some(RunningJob::Lab))
+    }
+
     /// The study as far as it is measured, if it has got on since the last call.
     pub fn take_study(&self) -> Option<Study> {
         lock(&self.shared.news).study.take()

@@ -96,11 +96,11 @@ impl Default for Lab {
 }
 
 impl Lab {
-    /// Takes up what the lane has measured.
-    pub fn take(&mut self, study: Study) {
+    /// Takes up what the lane has measured, and whether it was still at it just before.
+    pub fn follow(&mut self, is_measuring: bool, news: Option<Study>) {
         if self.is_running {
-            self.is_running = study.progress() < 1.0;
-            self.study = Some(Box::new(study));
+            self.study = news.map(Box::new).or(self.study.take());
+            self.is_running = is_measuring;
         }
     }
 
