@@ -10,7 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::{Asked, fail, refuse, say};
 use crate::image::Format;
 use crate::lab::{Study, cheapest_within, csv, table};
-use crate::scene::{Document, Scene, write_atomic};
+use crate::scene::{Document, write_atomic};
 use crate::trace::{Threads, Watch};
 
 /// Steps of the progress bar.
@@ -54,8 +54,7 @@ pub fn run(words: &ChartWords) -> Asked {
         Ok(threads) => threads,
         Err(error) => return Asked::Done(fail(&error.to_string())),
     };
-    let (width, height) = size(&scene, words.side);
-    let mut study = Study::new(Arc::new(scene), width, height);
+    let mut study = Study::of_side(Arc::new(scene), words.side);
     measure(&mut study, &threads);
     say(table(&study).trim_end());
     if words.within.is_some() || words.budget.is_some() {
@@ -74,14 +73,6 @@ pub fn run(words: &ChartWords) -> Asked {
         },
         None => Asked::Done(ExitCode::SUCCESS),
     }
-}
-
-/// The scene's aspect with this longer side.
-fn size(scene: &Scene, side: u32) -> (u32, u32) {
-    let (width, height) = (scene.render.width, scene.render.height);
-    let scale = f64::from(side) / f64::from(width.max(height));
-    let scaled = |side: u32| ((f64::from(side) * scale).round() as u32).max(1);
-    (scaled(width), scaled(height))
 }
 
 fn measure(study: &mut Study, threads: &Threads) {

@@ -78,6 +78,14 @@ pub struct Study {
 }
 
 impl Study {
+    /// Nothing measured yet; pictures will have the scene's aspect, and a longer side of `side` pixels.
+    pub fn of_side(scene: Arc<Scene>, side: u32) -> Self {
+        let (width, height) = (scene.render.width, scene.render.height);
+        let scale = f64::from(side) / f64::from(width.max(height));
+        let scaled = |side: u32| ((f64::from(side) * scale).round() as u32).max(1);
+        Self::new(scene, scaled(width), scaled(height))
+    }
+
     /// Nothing measured yet; pictures will be `width × height`.
     pub fn new(scene: Arc<Scene>, width: u32, height: u32) -> Self {
         let dots = candidates(&scene, width, height)

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::materials::{Material, linear, pack_materials};
-use super::solids::Solids;
+use super::solids::{Corner, Solids, corner};
 use super::volumes::LARGEST_LIST;
 use super::walls::{Wall, settle_planes};
 use super::{
@@ -183,7 +183,7 @@ impl<R: Real> Plan<R> {
                     self.triangles.push(Triangle {
                         corners: [a, b, c].map(|corner| Vec3::from_f64(corner - centre)),
                         normal: Vec3::from_f64(normal),
-                        in_mesh: [a, b, c].iter().any(|p| corner_users[&bits(*p)] > 1),
+                        in_mesh: [a, b, c].iter().any(|p| corner_users[&corner(*p)] > 1),
                         thickness: R::from_f64(thickness([a, b, c])),
                         material,
                     });
@@ -292,21 +292,16 @@ fn number(index: usize) -> u32 {
 }
 
 /// How many visible triangles meet at each corner.
-fn count_corner_users(scene: &Scene) -> HashMap<[u64; 3], usize> {
+fn count_corner_users(scene: &Scene) -> HashMap<Corner, usize> {
     let mut users = HashMap::new();
     for object in scene.objects.iter().filter(|object| object.visible) {
         if let Shape::Triangle { a, b, c } = object.shape {
-            for corner in [a, b, c] {
-                *users.entry(bits(corner)).or_insert(0) += 1;
+            for point in [a, b, c] {
+                *users.entry(corner(point)).or_insert(0) += 1;
             }
         }
     }
     users
-}
-
-fn bits(point: Vec3<f64>) -> [u64; 3] {
-    // Adding zero makes one zero of the two.
-    point.to_array().map(|part| (part + 0.0).to_bits())
 }
 
 #[cfg(test)]

@@ -19,7 +19,8 @@ pub struct Solids {
     solids: Vec<Vec<usize>>,
 }
 
-type Corner = [u64; 3];
+/// The bits of a corner's coordinates.
+pub type Corner = [u64; 3];
 
 impl Solids {
     /// Finds the closed convex solids among the triangles.
@@ -43,7 +44,7 @@ impl Solids {
         let mut is_away = vec![false; self.triangles.len()];
         for faces in &self.solids {
             let heights = faces.iter().map(|&face| {
-                let (normal, offset, margin) = self.face(face);
+                let (normal, offset, margin) = plane(&self.triangles[face]);
                 let height = normal.dot(point) - offset;
                 (face, height, margin + MARGIN * height.abs())
             });
@@ -55,13 +56,9 @@ impl Solids {
         }
         is_away
     }
-
-    /// Unit normal outwards, distance from the origin along it, and what counts as on the face.
-    fn face(&self, face: usize) -> (Vec3<f64>, f64, f64) {
-        plane(&self.triangles[face])
-    }
 }
 
+/// Unit normal outwards, distance from the origin along it, and what counts as on the face.
 fn plane([a, b, c]: &[Vec3<f64>; 3]) -> (Vec3<f64>, f64, f64) {
     let across = (*c - *a).cross(*b - *a);
     let normal = across.unit().unwrap_or(across);
@@ -69,7 +66,8 @@ fn plane([a, b, c]: &[Vec3<f64>; 3]) -> (Vec3<f64>, f64, f64) {
     (normal, normal.dot(*a), MARGIN * size)
 }
 
-fn corner(point: Vec3<f64>) -> Corner {
+/// A corner as a key: corners are one where their coordinates are equal.
+pub fn corner(point: Vec3<f64>) -> Corner {
     // Adding zero makes one zero of the two.
     point.to_array().map(|part| (part + 0.0).to_bits())
 }

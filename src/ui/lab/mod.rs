@@ -25,8 +25,8 @@ use crate::lab::{DOUBTFUL, Dot, EIGHT_BIT_FLOOR, Study, cheapest_within};
 use crate::plan::Model;
 use crate::scene::{Animation, Render, Scene};
 
-/// Longer side of the pictures that are measured, in pixels.
-const SIDE: f64 = 256.0;
+/// Longer side of the pictures that are measured, in pixels: a study then takes seconds.
+const SIDE: u32 = 256;
 /// Size of a picture of the chart, in points.
 const PICTURE: (u32, u32) = (800, 480);
 /// Width of the column that tells of a dot.
@@ -172,7 +172,7 @@ impl Lab {
             .on_hover_text("Trace the scene in every way there is, and compare: a few seconds")
             .clicked()
         {
-            let study = Box::new(study_of(editor.scene()));
+            let study = Box::new(Study::of_side(Arc::clone(editor.scene()), SIDE));
             self.study = Some(study.clone());
             self.chosen = None;
             self.number += 1;
@@ -382,14 +382,6 @@ fn chart(study: Option<&Study>, axes: (Cost, Error), chosen: Option<usize>) -> C
         levels,
         chosen,
     }
-}
-
-/// A study of the scene in a size that takes seconds.
-fn study_of(scene: &Arc<Scene>) -> Study {
-    let (width, height) = (scene.render.width, scene.render.height);
-    let scale = SIDE / f64::from(width.max(height));
-    let side = |side: u32| ((f64::from(side) * scale).round() as u32).max(1);
-    Study::new(Arc::clone(scene), side(width), side(height))
 }
 
 /// The numbers of a dot, one in each line.
