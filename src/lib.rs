@@ -29,6 +29,8 @@ pub mod lanes;
 
 pub mod scene;
 
+pub mod animate;
+
 pub mod plan;
 
 pub mod trace;

@@ -11,10 +11,10 @@ use std::sync::Arc;
 
 pub use edit::{Edit, Item, Kind};
 use fly::Flight;
-pub use fly::{Motion, Orientation};
+pub use fly::Motion;
 use history::{History, Snapshot};
 
-use crate::scene::{DEMO_TEXT, Document, Scene, SceneError, check};
+use crate::scene::{DEMO_TEXT, Document, Orientation, Scene, SceneError, check};
 
 /// What the inspector shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -45,6 +45,16 @@ pub struct Basis {
     pub w: Vec3<f64>,
 }
 
+/// A camera, ready to be asked where in its picture things are.
+#[derive(Clone, Copy, Debug)]
+pub struct Framing {
+    basis: Basis,
+    position: Vec3<f64>,
+    projection: Projection,
+    projection_distance: f64,
+    orthographic_height: f64,
+}
+
 /// Smallest sine of the angle between `look_at` and `up` that still defines a basis.
 const MIN_SINE: f64 = 1e-6;
 
@@ -63,9 +73,64 @@ impl Camera {
         Some(Basis { u, v, w })
     }
 
+    /// Where things are in the picture. `None` without a basis.
+    pub fn framing(&self) -> Option<Framing> {
+        Some(Framing {
+            basis: self.basis()?,
+            position: self.position,
+            projection: self.projection,
+            projection_distance: self.projection_distance,
+            orthographic_height: self.orthographic_height,
+        })
+    }
+
     /// Vertical field of view in radians (perspective): 2·atan(½ / projection distance).
     pub fn field_of_view_radians(&self) -> f64 {
         2.0 * (0.5 / self.projection_distance).atan()
+    }
+}
+
+impl Framing {
+    /// Place of a point in the picture, in image heights from its middle, y up; `None` behind the
+    /// eye (perspective) or the view window (orthographic).
+    pub fn project(&self, point: Vec3<f64>) -> Option<[f64; 2]> {
+        self.place(point - self.position, self.orthographic_height)
+    }
+
+    /// Place of what is endlessly far away in a direction; `None` behind, and where rays run side by
+    /// side: all of them end in one place there.
+    pub fn project_direction(&self, direction: Vec3<f64>) -> Option<[f64; 2]> {
+        match self.projection {
+            Projection::Perspective => self.place(direction, 1.0),
+            Projection::Orthographic => None,
+        }
+    }
+
+    fn place(&self, arm: Vec3<f64>, height: f64) -> Option<[f64; 2]> {
+        let Basis { u, v, w } = self.basis;
+        let depth = -w.dot(arm);
+        let scale = match self.projection {
+            Projection::Perspective => self.projection_distance / depth,
+            Projection::Orthographic => 1.0 / height,
+        };
+        let place = [u.dot(arm) * scale, v.dot(arm) * scale];
+        (depth > 0.0 && place.iter().all(|part| part.is_finite())).then_some(place)
+    }
+
+    /// Origin and unit direction of the ray through a place in the picture, in image heights from
+    /// its middle, y up.
+    pub fn ray(&self, [x, y]: [f64; 2]) -> (Vec3<f64>, Vec3<f64>) {
+        let Basis { u, v, w } = self.basis;
+        match self.projection {
+            Projection::Perspective => {
+                let direction = u * x + v * y - w * self.projection_distance;
+                (self.position, direction * (1.0 / direction.length()))
+            }
+            Projection::Orthographic => {
+                let height = self.orthographic_height;
+                (self.position + u * (x * height) + v * (y * height), -w)
+            }
+        }
     }
 }
 
@@ -101,6 +166,25 @@ mod tests {
                     prop_assert!((a.dot(b) - expected).abs() < 1e-9);
                 }
                 prop_assert!((u.cross(v) - w).length() < 1e-9, "right-handed");
+            }
+        }
+    }
+
+    #[test]
+    fn what_a_ray_meets_is_seen_where_the_ray_went() {
+        for projection in [Projection::Perspective, Projection::Orthographic] {
+            let camera = Camera {
+                projection,
+                ..Camera::default()
+            };
+            let framing = camera.framing().expect("a basis");
+            for place in [[0.0, 0.0], [0.4, -0.3], [-0.5, 0.5]] {
+                let (origin, direction) = framing.ray(place);
+                let [x, y] = framing
+                    .project(origin + direction * 70.0)
+                    .expect("in front");
+                assert!((x - place[0]).hypot(y - place[1]) < 1e-12, "{projection:?}");
+                assert_eq!(framing.project(origin - direction * 70.0), None);
             }
         }
     }

@@ -167,17 +167,12 @@ impl Document {
     /// # Errors
     /// [`SceneError::Unwritable`]; no scene is known that has no text.
     pub fn to_text(&self) -> Result<String, SceneError> {
-        let config = PrettyConfig::new()
-            .struct_names(true)
-            .depth_limit(2)
-            .new_line("\n")
-            .compact_maps(false);
-        let body = options()
-            .to_string_pretty(&self.scene, config)
-            .map_err(SceneError::Unwritable)?;
+        let scene = pretty(&self.scene)?;
+        // The animation's lists are as long as the scene's: it is laid out like one, and put last.
+        let animation = pretty(&self.scene.animation)?.replace('\n', "\n    ");
+        let scene = scene.strip_suffix(')').unwrap_or(&scene);
         Ok(format!(
-            "{}{body}
-",
+            "{}{scene}    animation: {animation},\n)\n",
             self.header
         ))
     }
@@ -209,6 +204,17 @@ impl Document {
         write_atomic(path, text.as_bytes()).map_err(disk)?;
         Ok(backup)
     }
+}
+
+/// One item of a list in each line. Texts have their line breaks escaped.
+fn pretty(value: &impl serde::Serialize) -> Result<String, SceneError> {
+    let config = PrettyConfig::new()
+        .struct_names(true)
+        .depth_limit(2)
+        .new_line("\n")
+        .compact_maps(false);
+    let text = options().to_string_pretty(value, config);
+    text.map_err(SceneError::Unwritable)
 }
 
 /// Writes `bytes` to `path` so that a reader finds either the old file or the new one, whole: they

@@ -4,11 +4,13 @@
 //! a row in the inspector. Colours are 0–255, lengths are world units, angles appear nowhere: the
 //! camera stores direction vectors, as in the program that Glint grew from.
 
+mod animation;
 mod camera;
 mod check;
 mod file;
 mod locate;
 mod notation;
+mod orientation;
 mod recovery;
 mod shape;
 mod tracing;
@@ -17,11 +19,15 @@ mod words;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
-pub use camera::{Basis, Camera, Projection};
+pub use animation::{
+    Animation, Easing, Interpolation, Key, Lens, MAX_SECONDS, Sample, Take, Target, Track, Value,
+};
+pub use camera::{Basis, Camera, Framing, Projection};
 pub use check::{Problem, check};
 pub use file::{Document, SceneError, write_atomic};
 pub use locate::Step;
 pub use notation::{format_number, parse_vec3};
+pub use orientation::Orientation;
 pub use recovery::{Leftover, Recovery};
 pub use shape::Shape;
 pub use tracing::{
@@ -72,8 +78,8 @@ pub struct Scene {
     /// How the picture is made.
     #[serde(default)]
     pub render: Render,
-    /// The flight of the camera.
-    #[serde(default)]
+    /// What moves, and when. Written with a layout of its own, one key in a line.
+    #[serde(default, skip_serializing)]
     pub animation: Animation,
 }
 
@@ -185,22 +191,6 @@ impl Render {
     }
 }
 
-/// The flight of the camera. Keys come with the timeline; until then the list must be empty.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Animation {
-    /// Frames per second of playing time, 1–240.
-    #[serde(with = "notation::number")]
-    pub frames_per_second: f64,
-    /// Key frames: none exist yet.
-    #[serde(deserialize_with = "notation::no_keys")]
-    pub keys: Vec<Key>,
-}
-
-/// A key frame, of which there is no kind yet.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub enum Key {}
-
 impl Scene {
     /// The demo scene: two spheres, a tetrahedron and a mirror under two lights.
     ///
@@ -303,15 +293,6 @@ impl Default for Render {
             offset: RayOffset::default(),
             specular: HighlightMethod::default(),
             accelerator: Accelerator::default(),
-        }
-    }
-}
-
-impl Default for Animation {
-    fn default() -> Self {
-        Self {
-            frames_per_second: 14.0,
-            keys: Vec::new(),
         }
     }
 }

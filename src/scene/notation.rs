@@ -4,10 +4,10 @@
 use std::fmt;
 
 use indexmap::IndexMap;
-use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use serde::ser::{Serialize, SerializeTuple, Serializer};
 
-use super::{ColorPack, Key};
+use super::ColorPack;
 use crate::lanes::Vec3;
 
 /// Whole numbers below this are written without a decimal point; every one of them is exact in `f64`.
@@ -105,28 +105,6 @@ impl<'de> Deserialize<'de> for Vec3<f64> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         <[f64; 3]>::deserialize(deserializer).map(Self::from)
     }
-}
-
-/// Reads the list of key frames, which must be empty.
-pub fn no_keys<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Key>, D::Error> {
-    struct NoKeys;
-    impl<'de> Visitor<'de> for NoKeys {
-        type Value = Vec<Key>;
-
-        fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-            f.write_str("an empty list")
-        }
-
-        fn visit_seq<A: SeqAccess<'de>>(self, mut keys: A) -> Result<Self::Value, A::Error> {
-            match keys.next_element::<IgnoredAny>()? {
-                None => Ok(Vec::new()),
-                Some(_) => Err(A::Error::custom(
-                    "this version of Glint has no timeline yet, so `keys` must be empty",
-                )),
-            }
-        }
-    }
-    deserializer.deserialize_seq(NoKeys)
 }
 
 /// Reads the map of colour packs, refusing a name that comes twice.

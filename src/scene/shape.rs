@@ -77,6 +77,15 @@ impl Shape {
         }
     }
 
+    /// Where it is: the middle of a sphere, the point of a plane, the first corner of a triangle.
+    pub fn position(&self) -> Vec3<f64> {
+        match *self {
+            Self::Sphere { center, .. } => center,
+            Self::Plane { point, .. } => point,
+            Self::Triangle { a, .. } => a,
+        }
+    }
+
     /// The same shape, moved.
     #[must_use]
     pub fn moved(&self, by: Vec3<f64>) -> Self {

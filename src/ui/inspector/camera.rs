@@ -3,8 +3,8 @@
 use egui::Ui;
 
 use super::title;
-use crate::editor::{Edit, Editor, Orientation};
-use crate::scene::{Camera, Projection};
+use crate::editor::{Edit, Editor};
+use crate::scene::{Camera, Orientation, Projection};
 use crate::ui::rows::{Field, Rows, coordinate};
 use crate::ui::{Out, icons};
 

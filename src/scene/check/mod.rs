@@ -1,6 +1,8 @@
 //! Whether a scene means something: the checks that a file passes before it is loaded and an edit
 //! before it is applied. Every refusal names the field, what it must be and what it is.
 
+mod animation;
+
 use std::collections::HashSet;
 
 use super::locate::Step;
@@ -47,10 +49,7 @@ pub fn check(scene: &Scene) -> Result<(), Problem> {
     check_objects(&root.field("objects"), scene)?;
     check_lights(&root.field("lights"), scene)?;
     check_render(&root.field("render"), &scene.render)?;
-    let fps = scene.animation.frames_per_second;
-    root.field("animation")
-        .field("frames_per_second")
-        .within(fps, 1.0, 240.0)
+    animation::check_animation(&root.field("animation"), scene)
 }
 
 fn check_version(root: &At, version: u32) -> Check {

@@ -1,0 +1,134 @@
+//! Ready-made flights around or along what is selected.
+
+use std::f64::consts::TAU;
+
+use crate::lanes::Vec3;
+use crate::scene::{Camera, Interpolation, Key, Orientation};
+
+/// Keys of a round that is drawn by splines. A centripetal spline leaves a circle through so many
+/// points by 1/9000 of its radius.
+const ROUND_KEYS: usize = 24;
+/// How much longer than deep the ellipse and the eight are.
+const OBLONG: f64 = 1.6;
+/// How far dolly and crane go, in shares of the distance to the target.
+const TRAVEL: f64 = 0.5;
+
+/// A flight that starts from the camera as it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preset {
+    /// Once around the target, always looking at it: an exact circle.
+    Turntable,
+    /// Straight towards the target.
+    Dolly,
+    /// Straight up, looking at the target.
+    Crane,
+    /// Around the target on an ellipse.
+    Ellipse,
+    /// An eight that crosses above the target, looking at it.
+    FigureEight,
+}
+
+impl Preset {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Turntable,
+        Self::Dolly,
+        Self::Crane,
+        Self::Ellipse,
+        Self::FigureEight,
+    ];
+
+    /// Name, and what it does.
+    pub fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Turntable => (
+                "Turntable",
+                "Once around the selection on an exact circle, always looking at it",
+            ),
+            Self::Dolly => ("Dolly", "Straight towards the selection, half of the way"),
+            Self::Crane => ("Crane", "Straight up, looking at the selection"),
+            Self::Ellipse => ("Ellipse", "Around the selection on an ellipse"),
+            Self::FigureEight => ("Figure eight", "An eight in front of the selection"),
+        }
+    }
+
+    /// Keys for a flight of so many seconds from `camera` around or towards `target`.
+    pub fn keys(self, camera: &Camera, target: Vec3<f64>, seconds: f64) -> Vec<Key<Camera>> {
+        let arm = camera.position - target;
+        match self {
+            Self::Turntable => {
+                let place = |share: f64| target + turned(arm, share * TAU);
+                let mut keys = looking(camera, target, 4, seconds, place);
+                for key in &mut keys {
+                    key.interpolation = Interpolation::Orbit { around: target };
+                }
+                keys
+            }
+            Self::Dolly => looking(camera, target, 1, seconds, |share| {
+                target + arm * (1.0 - TRAVEL * share)
+            }),
+            Self::Crane => {
+                let rise = arm.length() * TRAVEL;
+                looking(camera, target, 6, seconds, |share| {
+                    camera.position + Vec3::new(0.0, rise * share, 0.0)
+                })
+            }
+            Self::Ellipse => looking(camera, target, ROUND_KEYS, seconds, |share| {
+                let (sine, cosine) = (share * TAU).sin_cos();
+                let aside = turned(Vec3::new(arm.x, 0.0, arm.z), TAU / 4.0);
+                target + Vec3::new(arm.x * cosine, arm.y, arm.z * cosine) + aside * (OBLONG * sine)
+            }),
+            Self::FigureEight => looking(camera, target, ROUND_KEYS, seconds, |share| {
+                // Gerono's lemniscate, in front of the target.
+                let (sine, cosine) = (share * TAU).sin_cos();
+                let aside = turned(Vec3::new(arm.x, 0.0, arm.z), TAU / 4.0);
+                camera.position + aside * (0.5 * OBLONG * sine) - arm * (0.25 * sine * cosine)
+            }),
+        }
+    }
+}
+
+/// Turned about the vertical axis by an angle in radians.
+fn turned(v: Vec3<f64>, angle: f64) -> Vec3<f64> {
+    let (sine, cosine) = angle.sin_cos();
+    Vec3::new(v.x * cosine - v.z * sine, v.y, v.x * sine + v.z * cosine)
+}
+
+/// Keys at even times on a way, looking at the target. A way that returns ends where it began, bit
+/// by bit.
+fn looking(
+    camera: &Camera,
+    target: Vec3<f64>,
+    segments: usize,
+    seconds: f64,
+    place: impl Fn(f64) -> Vec3<f64>,
+) -> Vec<Key<Camera>> {
+    let extent = (camera.position - target).length();
+    let key = |n: usize| {
+        let share = n as f64 / segments as f64;
+        let mut position = place(share);
+        if (position - place(0.0)).length() <= extent * 1e-9 {
+            position = place(0.0);
+        }
+        let facing = Camera {
+            look_at: target - position,
+            up: Vec3::new(0.0, 1.0, 0.0),
+            position,
+            ..camera.clone()
+        };
+        let level = Orientation {
+            roll: 0.0,
+            ..Orientation::of(&facing)
+        };
+        // On top of the target there is no direction to it: the camera's own stays.
+        let value = match facing.basis() {
+            Some(_) => level.apply(&facing),
+            None => Camera {
+                position,
+                ..camera.clone()
+            },
+        };
+        Key::new(seconds * share, value)
+    };
+    (0..=segments).map(key).collect()
+}

@@ -1,0 +1,202 @@
+//! Other timing for the same way: all of it works on keys and gives new ones.
+
+use super::{CameraPath, motion_between};
+use crate::scene::{Camera, Interpolation, Key, MAX_SECONDS, Orientation};
+
+/// Steps within a segment in which its length is measured.
+const STEPS: usize = 16;
+/// Closest that two keys may be after a pause was taken out, in seconds.
+const CLOSEST: f64 = 1.0 / 240.0;
+/// A segment with less than this share of the flight's mean speed is a pause.
+const PAUSE_SHARE: f64 = 0.05;
+/// World lengths that a turn of one radian counts as, in shares of the way's length.
+const TURN_SHARE: f64 = 0.2;
+
+/// Another timing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Retime {
+    /// As long as this, in seconds.
+    Stretch(f64),
+    /// As far in each second as in any other; as long as before.
+    ConstantSpeed,
+    /// Without the stretches in which nothing moves.
+    TrimPauses,
+    /// Each key between its ends nearer to the middle of its neighbours.
+    Smooth,
+}
+
+impl Retime {
+    /// The keys with the new timing. Cuts stay cuts.
+    pub fn apply(self, keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
+        if keys.len() < 2 {
+            return keys.to_vec();
+        }
+        match self {
+            Self::Stretch(seconds) => stretched(keys, seconds),
+            Self::ConstantSpeed => constant_speed(keys),
+            Self::TrimPauses => trimmed(keys),
+            Self::Smooth => smoothed(keys),
+        }
+    }
+}
+
+fn stretched(keys: &[Key<Camera>], seconds: f64) -> Vec<Key<Camera>> {
+    let (start, end) = (keys[0].time, keys[keys.len() - 1].time);
+    let scale = seconds.clamp(CLOSEST, MAX_SECONDS - start) / (end - start);
+    let later = |key: &Key<Camera>| Key {
+        time: start + (key.time - start) * scale,
+        ..key.clone()
+    };
+    keys.iter().map(later).collect()
+}
+
+/// Length of each segment: of its curve, where it is one, and of its turns. What is cut has none.
+fn lengths(keys: &[Key<Camera>]) -> Vec<f64> {
+    let path = CameraPath::new(keys);
+    let segment = |pair: &[Key<Camera>]| {
+        let mut sum = super::Motion::default();
+        if pair[0].interpolation == Interpolation::Hold {
+            return sum;
+        }
+        let step = (pair[1].time - pair[0].time) / STEPS as f64;
+        let at = |n: usize| path.at(pair[0].time + step * n as f64);
+        for n in 0..STEPS {
+            if let (Some(from), Some(to)) = (at(n), at(n + 1)) {
+                let motion = motion_between(&from, &to);
+                sum.distance += motion.distance;
+                sum.turn += motion.turn;
+            }
+        }
+        sum
+    };
+    let motions: Vec<super::Motion> = keys.windows(2).map(segment).collect();
+    let way: f64 = motions.iter().map(|motion| motion.distance).sum();
+    // A camera that only turns has its turns alone.
+    let radian = if way > 0.0 { way * TURN_SHARE } else { 1.0 };
+    let length = |motion: &super::Motion| motion.distance.max(motion.turn.to_radians() * radian);
+    motions.iter().map(length).collect()
+}
+
+fn constant_speed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
+    let lengths = lengths(keys);
+    let held: f64 = keys
+        .windows(2)
+        .filter(|pair| pair[0].interpolation == Interpolation::Hold)
+        .map(|pair| pair[1].time - pair[0].time)
+        .sum();
+    let (start, end) = (keys[0].time, keys[keys.len() - 1].time);
+    let seconds_per_length = (end - start - held) / lengths.iter().sum::<f64>();
+    if !seconds_per_length.is_finite() {
+        return keys.to_vec();
+    }
+    let step = |i: usize| {
+        if keys[i].interpolation == Interpolation::Hold {
+            keys[i + 1].time - keys[i].time
+        } else {
+            (lengths[i] * seconds_per_length).max(CLOSEST)
+        }
+    };
+    let retimed = with_steps(keys, step);
+    // What the shortest steps were given is taken from all.
+    stretched(&retimed, end - start)
+}
+
+/// Stretches, as places of segments, in which next to nothing moves.
+fn pauses(keys: &[Key<Camera>]) -> Vec<bool> {
+    let lengths = lengths(keys);
+    let seconds = |i: usize| keys[i + 1].time - keys[i].time;
+    let all: f64 = (0..lengths.len()).map(seconds).sum();
+    let mean = lengths.iter().sum::<f64>() / all;
+    let is_pause = |i: usize| {
+        let is_cut = keys[i].interpolation == Interpolation::Hold;
+        !is_cut && lengths[i] / seconds(i) <= mean * PAUSE_SHARE
+    };
+    (0..lengths.len()).map(is_pause).collect()
+}
+
+/// Seconds in which next to nothing moves.
+pub fn paused_seconds(keys: &[Key<Camera>]) -> f64 {
+    if keys.len() < 2 {
+        return 0.0;
+    }
+    let pairs = pauses(keys).into_iter().zip(keys.windows(2));
+    pairs
+        .filter(|(is_pause, _)| *is_pause)
+        .map(|(_, pair)| pair[1].time - pair[0].time)
+        .sum()
+}
+
+fn trimmed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
+    let pauses = pauses(keys);
+    if pauses.iter().all(|is_pause| *is_pause) {
+        // A flight that is all pause would vanish.
+        return keys.to_vec();
+    }
+    let step = |i: usize| {
+        if pauses[i] {
+            0.0
+        } else {
+            keys[i + 1].time - keys[i].time
+        }
+    };
+    let mut kept: Vec<Key<Camera>> = Vec::new();
+    for (place, key) in with_steps(keys, step).into_iter().enumerate() {
+        // Of keys that fall together, the one after the pause goes on.
+        if place > 0 && pauses[place - 1] {
+            kept.pop();
+        }
+        kept.push(key);
+    }
+    kept
+}
+
+/// The keys with other times between them.
+fn with_steps(keys: &[Key<Camera>], step: impl Fn(usize) -> f64) -> Vec<Key<Camera>> {
+    let mut time = keys[0].time;
+    let mut later = Vec::new();
+    for (place, key) in keys.iter().enumerate() {
+        later.push(Key {
+            time,
+            ..key.clone()
+        });
+        if place + 1 < keys.len() {
+            time += step(place);
+        }
+    }
+    later
+}
+
+fn smoothed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
+    let mut smooth = keys.to_vec();
+    for i in 1..keys.len() - 1 {
+        let is_cut = |key: &Key<Camera>| key.interpolation == Interpolation::Hold;
+        if is_cut(&keys[i - 1]) || is_cut(&keys[i]) {
+            continue;
+        }
+        let (before, here, after) = (&keys[i - 1].value, &keys[i].value, &keys[i + 1].value);
+        // Halfway between the key and the place that a straight flight would have at its time.
+        let share = (keys[i].time - keys[i - 1].time) / (keys[i + 1].time - keys[i - 1].time);
+        let straight = |a: f64, b: f64, c: f64| (b + a + (c - a) * share) / 2.0;
+        let angles = [before, here, after].map(Orientation::of);
+        let middle = angles[1];
+        let near = |angle: f64, to: f64| {
+            to + (angle - to + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)
+                - std::f64::consts::PI
+        };
+        let turn = |of: fn(&Orientation) -> f64| {
+            let here = of(&middle);
+            straight(near(of(&angles[0]), here), here, near(of(&angles[2]), here))
+        };
+        let turned = Orientation {
+            yaw: turn(|angles| angles.yaw),
+            pitch: turn(|angles| angles.pitch),
+            roll: turn(|angles| angles.roll),
+        };
+        let place = before.position + (after.position - before.position) * share;
+        smooth[i].value = turned.apply(&Camera {
+            position: (here.position + place) * 0.5,
+            ..here.clone()
+        });
+    }
+    smooth
+}

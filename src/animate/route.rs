@@ -1,0 +1,168 @@
+//! A curve in space through points, by length.
+
+use super::Closing;
+use crate::lanes::Vec3;
+
+/// Pieces of a segment whose lengths are kept.
+const PIECES: usize = 16;
+
+/// A centripetal Catmull–Rom spline, the only one of its family without cusps and loops within a
+/// segment. Points that follow each other in the same place count once.
+///
+/// Yuksel, Schaefer and Keyser, "Parameterization and applications of Catmull–Rom curves",
+/// Computer-Aided Design 43, 2011.
+#[derive(Clone, Debug)]
+pub struct Route {
+    segments: Vec<Segment>,
+    /// Length up to each of the given points, in world units.
+    reached: Vec<f64>,
+}
+
+/// A cubic from one point to the next, with its lengths.
+#[derive(Clone, Debug)]
+struct Segment {
+    ends: [Vec3<f64>; 2],
+    /// Directions at the ends, per run of the whole segment.
+    tangents: [Vec3<f64>; 2],
+    /// Length before it.
+    start: f64,
+    /// Length from its start to the end of each piece, from 0.
+    lengths: [f64; PIECES + 1],
+}
+
+impl Route {
+    /// A curve through `points`; at least one.
+    pub fn new(points: &[Vec3<f64>], closing: Closing) -> Self {
+        let mut stops: Vec<Vec3<f64>> = Vec::new();
+        let mut places = Vec::new();
+        for &point in points {
+            // A distance that is too small to be squared is none.
+            if stops
+                .last()
+                .is_none_or(|last| (point - *last).length() > 0.0)
+            {
+                stops.push(point);
+            }
+            places.push(stops.len() - 1);
+        }
+        let last = stops.len() - 1;
+        let is_closed = closing == Closing::Closed && last > 1 && stops[0] == stops[last];
+        let mut start = 0.0;
+        let mut segments: Vec<Segment> = Vec::new();
+        for i in 0..last {
+            let (from, to) = (stops[i], stops[i + 1]);
+            let before = match i {
+                0 if is_closed => stops[last - 1],
+                0 => from * 2.0 - to,
+                _ => stops[i - 1],
+            };
+            let after = match i + 2 {
+                next if next <= last => stops[next],
+                _ if is_closed => stops[1],
+                _ => to * 2.0 - from,
+            };
+            let segment = Segment::new([before, from, to, after], start);
+            start += segment.length();
+            segments.push(segment);
+        }
+        let ends = segments
+            .iter()
+            .map(|segment| segment.start + segment.length());
+        let stops: Vec<f64> = std::iter::once(0.0).chain(ends).collect();
+        let reached = places.into_iter().map(|place| stops[place]).collect();
+        Self { segments, reached }
+    }
+
+    /// Length up to each of the points, in world units.
+    pub fn reached(&self) -> &[f64] {
+        &self.reached
+    }
+
+    /// The place after a length; `None` for a route of one point.
+    pub fn at(&self, length: f64) -> Option<Vec3<f64>> {
+        let after = self
+            .segments
+            .partition_point(|segment| segment.start <= length);
+        let segment = self.segments.get(after.saturating_sub(1))?;
+        Some(segment.at(segment.share((length - segment.start).max(0.0))))
+    }
+}
+
+impl Segment {
+    fn new([before, from, to, after]: [Vec3<f64>; 4], start: f64) -> Self {
+        // Knots are apart by the roots of the distances.
+        let knot = |a: Vec3<f64>, b: Vec3<f64>| (b - a).length().sqrt();
+        let (left, here, right) = (knot(before, from), knot(from, to), knot(to, after));
+        let slope = |a: Vec3<f64>, b: Vec3<f64>, c: Vec3<f64>, ab: f64, bc: f64| {
+            (b - a) * (1.0 / ab) - (c - a) * (1.0 / (ab + bc)) + (c - b) * (1.0 / bc)
+        };
+        let mut segment = Self {
+            ends: [from, to],
+            tangents: [
+                slope(before, from, to, left, here) * here,
+                slope(from, to, after, here, right) * here,
+            ],
+            start,
+            lengths: [0.0; PIECES + 1],
+        };
+        for piece in 0..PIECES {
+            let (from, to) = (share_of(piece), share_of(piece + 1));
+            segment.lengths[piece + 1] = segment.lengths[piece] + segment.between(from, to);
+        }
+        segment
+    }
+
+    fn length(&self) -> f64 {
+        self.lengths[PIECES]
+    }
+
+    /// The place at a share (0–1) of the parameter: Hermite's cubic.
+    fn at(&self, share: f64) -> Vec3<f64> {
+        let [from, to] = self.ends;
+        if share >= 1.0 {
+            return to;
+        }
+        let rest = 1.0 - share;
+        let bend = self.tangents[0] * rest - self.tangents[1] * share;
+        from + (to - from) * (share * share * (3.0 - 2.0 * share)) + bend * (share * rest)
+    }
+
+    fn speed(&self, share: f64) -> f64 {
+        let [from, to] = self.ends;
+        let [out, into] = self.tangents;
+        let direct = (to - from) * (6.0 * share * (1.0 - share));
+        let out = out * (1.0 + share * (3.0 * share - 4.0));
+        (direct + out + into * (share * (3.0 * share - 2.0))).length()
+    }
+
+    /// Length between two shares, by Gauss's rule with three places.
+    fn between(&self, from: f64, to: f64) -> f64 {
+        let (half, middle) = ((to - from) / 2.0, f64::midpoint(from, to));
+        let off = half * 0.6_f64.sqrt();
+        let outer = self.speed(middle - off) + self.speed(middle + off);
+        half * (5.0 * outer + 8.0 * self.speed(middle)) / 9.0
+    }
+
+    /// The share of the parameter at which this length is reached.
+    fn share(&self, length: f64) -> f64 {
+        if length >= self.length() {
+            return 1.0;
+        }
+        let piece = self.lengths.partition_point(|&reached| reached <= length) - 1;
+        let (start, end) = (self.lengths[piece], self.lengths[piece + 1]);
+        let (low, high) = (share_of(piece), share_of(piece + 1));
+        let mut share = low + (high - low) * (length - start) / (end - start);
+        for _ in 0..3 {
+            let speed = self.speed(share);
+            if speed > 0.0 {
+                let missing = length - start - self.between(low, share);
+                share = (share + missing / speed).clamp(low, high);
+            }
+        }
+        share
+    }
+}
+
+fn share_of(piece: usize) -> f64 {
+    piece as f64 / PIECES as f64
+}

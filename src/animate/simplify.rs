@@ -1,0 +1,160 @@
+//! From a take of hundreds of samples to few keys that show nearly the same.
+
+use std::collections::BTreeSet;
+
+use super::CameraPath;
+use crate::lanes::Vec3;
+use crate::scene::{Camera, Interpolation, Key, Take};
+
+/// Keys to both sides whose removal a key feels: a smooth segment is shaped by its neighbours.
+const REACH: usize = 3;
+
+/// A place in a picture and what is seen there: by how much it moves tells how far off another
+/// camera is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// In the picture, in image heights from its middle, y up.
+    pub at: [f64; 2],
+    /// The point of the scene, in world units; for the sky, the direction.
+    pub what: Vec3<f64>,
+    /// Whether nothing is there but sky.
+    pub is_sky: bool,
+}
+
+/// Few keys in place of a take.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simplified {
+    /// The keys, at times of samples.
+    pub keys: Vec<Key<Camera>>,
+    /// How far off the picture is at most at a sample, in image heights.
+    pub worst: f64,
+}
+
+/// How far, in image heights, what was seen at known places is off through another camera.
+/// Infinite where it is behind that.
+pub fn deviation(camera: &Camera, seen: &[Seen]) -> f64 {
+    let Some(framing) = camera.framing() else {
+        return f64::INFINITY;
+    };
+    let off = seen.iter().map(|seen| {
+        let place = if seen.is_sky {
+            framing.project_direction(seen.what)
+        } else {
+            framing.project(seen.what)
+        };
+        let apart = |[x, y]: [f64; 2]| (x - seen.at[0]).hypot(y - seen.at[1]);
+        place.map_or(f64::INFINITY, apart)
+    });
+    off.fold(0.0, f64::max)
+}
+
+/// Keys at as few samples as it takes to be nowhere off by more than `tolerance` image heights.
+/// `seen` holds what each sample saw.
+pub fn simplify(take: &Take, seen: &[Vec<Seen>], tolerance: f64) -> Simplified {
+    let search = Search {
+        take,
+        seen,
+        tolerance,
+        cuts: cuts(take),
+    };
+    let mut chosen = search.refined();
+    search.prune(&mut chosen);
+    let keys = search.keys(chosen.iter().copied());
+    let path = CameraPath::new(&keys);
+    let worst = (0..take.samples.len())
+        .map(|sample| search.off(&path, sample))
+        .fold(0.0, f64::max);
+    Simplified { keys, worst }
+}
+
+struct Search<'t> {
+    take: &'t Take,
+    seen: &'t [Vec<Seen>],
+    tolerance: f64,
+    /// Last samples before the projection changes.
+    cuts: BTreeSet<usize>,
+}
+
+/// The samples after which rays suddenly spread, or run side by side.
+fn cuts(take: &Take) -> BTreeSet<usize> {
+    let changes = take.lenses.windows(2).filter_map(|pair| {
+        let is_cut = pair[0].projection != pair[1].projection;
+        is_cut.then(|| pair[1].from - 1)
+    });
+    changes.collect()
+}
+
+impl Search<'_> {
+    fn keys(&self, chosen: impl Iterator<Item = usize>) -> Vec<Key<Camera>> {
+        let key = |sample: usize| {
+            let camera = self.take.camera(sample)?;
+            let mut key = Key::new(self.take.samples[sample].0, camera);
+            if self.cuts.contains(&sample) {
+                key.interpolation = Interpolation::Hold;
+            }
+            Some(key)
+        };
+        chosen.filter_map(key).collect()
+    }
+
+    fn off(&self, path: &CameraPath, sample: usize) -> f64 {
+        let camera = path.at(self.take.samples[sample].0);
+        let seen = self.seen.get(sample).map_or(&[][..], Vec::as_slice);
+        camera.map_or(f64::INFINITY, |camera| deviation(&camera, seen))
+    }
+
+    /// The sample in a range that is off the most, if one is off too far.
+    fn worst(&self, path: &CameraPath, samples: impl Iterator<Item = usize>) -> Option<usize> {
+        let off = samples.map(|sample| (sample, self.off(path, sample)));
+        let worst = off.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (worst.1 > self.tolerance).then_some(worst.0)
+    }
+
+    /// Starts from the ends and adds the worst sample of each stretch until none is off too far.
+    fn refined(&self) -> BTreeSet<usize> {
+        let last = self.take.samples.len().saturating_sub(1);
+        let ends = [0, last].into_iter();
+        let cuts = self.cuts.iter().flat_map(|&cut| [cut, cut + 1]);
+        let mut chosen: BTreeSet<usize> = ends.chain(cuts).collect();
+        loop {
+            let places: Vec<usize> = chosen.iter().copied().collect();
+            let path = CameraPath::new(&self.keys(places.iter().copied()));
+            let stretches = places.windows(2);
+            let worst: Vec<usize> = stretches
+                .filter_map(|ends| self.worst(&path, ends[0] + 1..ends[1]))
+                .collect();
+            if worst.is_empty() {
+                return chosen;
+            }
+            chosen.extend(worst);
+        }
+    }
+
+    /// Takes keys away again that later ones made needless.
+    fn prune(&self, chosen: &mut BTreeSet<usize>) {
+        let inner: Vec<usize> = chosen.iter().copied().collect();
+        let inner = inner.get(1..inner.len().saturating_sub(1)).unwrap_or(&[]);
+        for &sample in inner {
+            if self.cuts.contains(&sample) || (sample > 0 && self.cuts.contains(&(sample - 1))) {
+                continue;
+            }
+            let mut around: Vec<usize> = chosen
+                .range(..sample)
+                .rev()
+                .take(REACH + 1)
+                .copied()
+                .collect();
+            around.reverse();
+            let before = around.len();
+            around.extend(chosen.range(sample + 1..).take(REACH + 1));
+            let path = CameraPath::new(&self.keys(around.iter().copied()));
+            // The outermost stretches are shaped by keys that are not in the window.
+            let first = around[usize::from(before > REACH)];
+            let is_cut_off = around.len() - before > REACH;
+            let last = around[around.len() - 1 - usize::from(is_cut_off)];
+            if self.worst(&path, first..=last).is_none() {
+                chosen.remove(&sample);
+            }
+        }
+    }
+}

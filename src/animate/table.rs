@@ -1,0 +1,137 @@
+//! Paths as text of their own: RON for Glint, a table of numbers for everything else.
+
+use std::fmt::Write as _;
+
+use crate::lanes::Vec3;
+use crate::scene::{Camera, Key, Orientation, Projection, format_number};
+
+const HEAD: &str = "time,x,y,z,yaw,pitch,roll,projection,projection_distance,orthographic_height";
+
+/// Why a text is no path.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {what}")]
+pub struct TableError {
+    /// Line, from 1.
+    pub line: usize,
+    /// What is wrong and what was expected.
+    pub what: String,
+}
+
+/// A path as comma-separated values, one line for each camera: seconds, world units, degrees.
+pub fn to_table<'c>(cameras: impl IntoIterator<Item = (f64, &'c Camera)>) -> String {
+    let mut text = format!("{HEAD}\n");
+    for (time, camera) in cameras {
+        let Orientation { yaw, pitch, roll } = Orientation::of(camera);
+        let [x, y, z] = camera.position.to_array();
+        let degrees = [yaw, pitch, roll].map(f64::to_degrees);
+        let numbers = [time, x, y, z, degrees[0], degrees[1], degrees[2]];
+        let numbers = numbers.map(format_number).join(",");
+        let _ = writeln!(
+            text,
+            "{numbers},{:?},{},{}",
+            camera.projection, camera.projection_distance, camera.orthographic_height
+        );
+    }
+    text
+}
+
+/// Keys from such a table. Its first line names the columns, in any order; `time`, `x`, `y` and `z`
+/// must be there, what is missing is taken from `like`.
+///
+/// # Errors
+/// [`TableError`], with the line.
+pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableError> {
+    let fail = |line: usize, what: String| TableError { line, what };
+    let mut lines = text
+        .lines()
+        .enumerate()
+        .map(|(place, line)| (place + 1, line));
+    let lines = lines.by_ref();
+    let (_, head) = lines
+        .next()
+        .ok_or_else(|| fail(1, format!("the file is empty; expected {HEAD}")))?;
+    let names: Vec<&str> = head
+        .trim_start_matches('\u{feff}')
+        .split(',')
+        .map(str::trim)
+        .collect();
+    if let Some(missing) = ["time", "x", "y", "z"]
+        .iter()
+        .find(|name| !names.contains(*name))
+    {
+        return Err(fail(
+            1,
+            format!("there is no column {missing}; expected {HEAD}"),
+        ));
+    }
+    let mut keys = Vec::new();
+    for (line, text) in lines.filter(|(_, text)| !text.trim().is_empty()) {
+        let cells: Vec<&str> = text.split(',').map(str::trim).collect();
+        let cell = |name: &str| {
+            let column = names.iter().position(|other| *other == name)?;
+            cells.get(column).copied().filter(|cell| !cell.is_empty())
+        };
+        let number = |name: &'static str, default: f64| match cell(name) {
+            None if ["time", "x", "y", "z"].contains(&name) => {
+                Err(fail(line, format!("{name} is missing")))
+            }
+            None => Ok(default),
+            Some(cell) => match cell.parse::<f64>() {
+                Ok(number) if number.is_finite() => Ok(number),
+                _ => Err(fail(
+                    line,
+                    format!("{name} must be a number, found {cell:?}"),
+                )),
+            },
+        };
+        let own = Orientation::of(like);
+        let angle = |name, own: f64| number(name, own.to_degrees()).map(f64::to_radians);
+        let angles = Orientation {
+            yaw: angle("yaw", own.yaw)?,
+            pitch: angle("pitch", own.pitch)?,
+            roll: angle("roll", own.roll)?,
+        };
+        let projection = match cell("projection") {
+            None => like.projection,
+            Some("Perspective") => Projection::Perspective,
+            Some("Orthographic") => Projection::Orthographic,
+            Some(other) => {
+                let expected = "projection must be Perspective or Orthographic";
+                return Err(fail(line, format!("{expected}, found {other:?}")));
+            }
+        };
+        let camera = Camera {
+            position: Vec3::new(number("x", 0.0)?, number("y", 0.0)?, number("z", 0.0)?),
+            projection,
+            projection_distance: number("projection_distance", like.projection_distance)?,
+            orthographic_height: number("orthographic_height", like.orthographic_height)?,
+            ..like.clone()
+        };
+        keys.push(Key::new(number("time", 0.0)?, angles.apply(&camera)));
+    }
+    Ok(keys)
+}
+
+/// A path as RON: the list of keys as the scene file has it, one key in a line.
+///
+/// # Errors
+/// What the writer says; no path is known that has no text.
+pub fn to_text(keys: &[Key<Camera>]) -> Result<String, ron::Error> {
+    let config = ron::ser::PrettyConfig::new()
+        .struct_names(true)
+        .depth_limit(1)
+        .new_line("\n");
+    let text = ron::ser::to_string_pretty(keys, config)?;
+    Ok(text + "\n")
+}
+
+/// Keys from such a text.
+///
+/// # Errors
+/// [`TableError`], with the line.
+pub fn from_text(text: &str) -> Result<Vec<Key<Camera>>, TableError> {
+    ron::from_str(text).map_err(|error| TableError {
+        line: error.span.start.line,
+        what: error.code.to_string(),
+    })
+}

@@ -1,0 +1,404 @@
+//! The flight of the camera and what else moves, as the file stores it: keys on a line of time.
+
+use std::sync::Arc;
+
+use serde::de::{Error, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::notation;
+use super::{Camera, Light, Orientation, Projection, Scene};
+use crate::lanes::Vec3;
+
+/// Longest animation, in seconds: a day.
+pub const MAX_SECONDS: f64 = 86_400.0;
+/// Most keys of one kind.
+pub const MAX_KEYS: usize = 100_000;
+
+/// Everything that moves.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Animation {
+    /// Frames per second of playing time, 1–240. The curves do not depend on it.
+    #[serde(with = "notation::number")]
+    pub frames_per_second: f64,
+    /// Where the camera is at which time, in order of time.
+    pub keys: Vec<Key<Camera>>,
+    /// What else moves.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub tracks: Vec<Track>,
+    /// The flight as it was recorded; the keys were made from it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub take: Option<Arc<Take>>,
+}
+
+/// A value at a time, and how to go on from there.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename = "Key")]
+pub struct Key<T> {
+    /// Seconds from the start of the animation, 0–[`MAX_SECONDS`].
+    #[serde(with = "notation::number")]
+    pub time: f64,
+    /// What holds at that time.
+    pub value: T,
+    /// The way to the next key.
+    #[serde(default, skip_serializing_if = "notation::is_default")]
+    pub interpolation: Interpolation,
+    /// The pace on that way.
+    #[serde(default, skip_serializing_if = "notation::is_default")]
+    pub easing: Easing,
+}
+
+/// The way from one key to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Interpolation {
+    /// Through the keys in a curve, without overshooting them.
+    #[default]
+    Smooth,
+    /// Straight, at constant speed.
+    Linear,
+    /// Stays, then jumps: a cut.
+    Hold,
+    /// On an arc around the vertical axis through a point (cameras and positions).
+    Orbit {
+        /// A point on the axis.
+        around: Vec3<f64>,
+    },
+}
+
+/// The pace between two keys.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Easing {
+    /// As the interpolation has it.
+    #[default]
+    Even,
+    /// Starts slowly.
+    In,
+    /// Ends slowly.
+    Out,
+    /// Starts and ends slowly.
+    InOut,
+}
+
+/// Keys for one number or point of the scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Track {
+    /// What moves.
+    pub target: Target,
+    /// In order of time.
+    pub keys: Vec<Key<Value>>,
+}
+
+/// What a track can move.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Target {
+    /// [`Scene::ambient_intensity`].
+    AmbientIntensity,
+    /// Brightness of the named light.
+    LightIntensity(String),
+    /// Place of the named light.
+    LightPosition(String),
+    /// Place of the named object, see [`super::Shape::position`].
+    ObjectPosition(String),
+}
+
+/// What a key of a track holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// For intensities.
+    Number(f64),
+    /// For positions, in world units.
+    Point(Vec3<f64>),
+}
+
+/// A recorded flight: what the camera did, at the times when it was seen doing it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Take {
+    /// In order of time.
+    pub samples: Vec<Sample>,
+    /// The camera's other properties, from the sample where they begin to hold.
+    pub lenses: Vec<Lens>,
+}
+
+/// One moment of a take: time in seconds, position, and yaw, pitch and roll in radians.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sample(
+    #[serde(with = "notation::number")] pub f64,
+    pub Vec3<f64>,
+    #[serde(with = "notation::number")] pub f64,
+    #[serde(with = "notation::number")] pub f64,
+    #[serde(with = "notation::number")] pub f64,
+);
+
+/// What of the camera is not its place and its direction.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Lens {
+    /// Place of the first sample that it belongs to, from 0.
+    pub from: usize,
+    /// As in [`Camera`].
+    pub projection: Projection,
+    /// As in [`Camera`].
+    #[serde(with = "notation::number")]
+    pub projection_distance: f64,
+    /// As in [`Camera`].
+    #[serde(with = "notation::number")]
+    pub orthographic_height: f64,
+}
+
+impl Default for Animation {
+    fn default() -> Self {
+        Self {
+            frames_per_second: 14.0,
+            keys: Vec::new(),
+            tracks: Vec::new(),
+            take: None,
+        }
+    }
+}
+
+impl Animation {
+    /// Whether nothing moves.
+    pub fn is_still(&self) -> bool {
+        self.keys.is_empty() && self.tracks.is_empty()
+    }
+
+    /// Time of the last key, in seconds; 0 without keys.
+    pub fn duration(&self) -> f64 {
+        let last = self.keys.last().map_or(0.0, |key| key.time);
+        let tracks = self.tracks.iter().filter_map(|track| track.keys.last());
+        tracks.map(|key| key.time).fold(last, f64::max)
+    }
+
+    /// Number of frames: one at the start and one every 1/fps seconds, up to the last key.
+    pub fn frame_count(&self) -> u64 {
+        // A last key within a millionth of a frame's time is meant to be on it.
+        (self.duration() * self.frames_per_second + 1e-6).floor() as u64 + 1
+    }
+
+    /// Time of a frame in seconds; frames are counted from 1.
+    pub fn time_of(&self, frame: u64) -> f64 {
+        frame.saturating_sub(1) as f64 / self.frames_per_second
+    }
+
+    /// The frame that is on show at a time, counted from 1.
+    pub fn frame_at(&self, time: f64) -> u64 {
+        (time.max(0.0) * self.frames_per_second + 1e-6).floor() as u64 + 1
+    }
+}
+
+impl<T> Key<T> {
+    /// A key with the default way and pace.
+    pub fn new(time: f64, value: T) -> Self {
+        Self {
+            time,
+            value,
+            interpolation: Interpolation::default(),
+            easing: Easing::default(),
+        }
+    }
+}
+
+impl Interpolation {
+    /// What it is called in lists.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Smooth => "smooth",
+            Self::Linear => "linear",
+            Self::Hold => "hold",
+            Self::Orbit { .. } => "orbit",
+        }
+    }
+}
+
+impl Easing {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Even, Self::In, Self::Out, Self::InOut];
+
+    /// What it is called in lists.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Even => "even",
+            Self::In => "slow start",
+            Self::Out => "slow end",
+            Self::InOut => "slow start and end",
+        }
+    }
+}
+
+impl Target {
+    /// The value in a scene; `None` if the scene has no such light or object.
+    pub fn get(&self, scene: &Scene) -> Option<Value> {
+        let light = |name: &String| scene.lights.iter().find(|light| light.name == *name);
+        Some(match self {
+            Self::AmbientIntensity => Value::Number(scene.ambient_intensity),
+            Self::LightIntensity(name) => Value::Number(light(name)?.intensity),
+            Self::LightPosition(name) => Value::Point(light(name)?.position),
+            Self::ObjectPosition(name) => {
+                let object = scene.objects.iter().find(|object| object.name == *name)?;
+                Value::Point(object.shape.position())
+            }
+        })
+    }
+
+    /// Puts a value into a scene; one of the wrong kind, or for what is not there, changes nothing.
+    pub fn set(&self, scene: &mut Scene, value: Value) {
+        match (self, value) {
+            (Self::AmbientIntensity, Value::Number(number)) => scene.ambient_intensity = number,
+            (Self::LightIntensity(name), Value::Number(number)) => {
+                if let Some(light) = light(scene, name) {
+                    light.intensity = number;
+                }
+            }
+            (Self::LightPosition(name), Value::Point(point)) => {
+                if let Some(light) = light(scene, name) {
+                    light.position = point;
+                }
+            }
+            (Self::ObjectPosition(name), Value::Point(point)) => {
+                let mut objects = scene.objects.iter_mut();
+                if let Some(object) = objects.find(|object| object.name == *name) {
+                    object.shape = object.shape.moved(point - object.shape.position());
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// The light or object that it moves.
+    pub fn owner(&self) -> Option<&str> {
+        match self {
+            Self::AmbientIntensity => None,
+            Self::LightIntensity(name) | Self::LightPosition(name) | Self::ObjectPosition(name) => {
+                Some(name)
+            }
+        }
+    }
+
+    /// The same, of a light or object with another name.
+    #[must_use]
+    pub fn renamed(&self, to: &str) -> Self {
+        let to = to.to_owned();
+        match self {
+            Self::AmbientIntensity => Self::AmbientIntensity,
+            Self::LightIntensity(_) => Self::LightIntensity(to),
+            Self::LightPosition(_) => Self::LightPosition(to),
+            Self::ObjectPosition(_) => Self::ObjectPosition(to),
+        }
+    }
+
+    /// What it is called: the thing and its property.
+    pub fn name(&self) -> String {
+        match self {
+            Self::AmbientIntensity => "Ambient intensity".to_owned(),
+            Self::LightIntensity(name) => format!("{name}: intensity"),
+            Self::LightPosition(name) | Self::ObjectPosition(name) => format!("{name}: position"),
+        }
+    }
+}
+
+impl Take {
+    /// The camera of a sample; `None` if there is no such sample.
+    pub fn camera(&self, place: usize) -> Option<Camera> {
+        let &Sample(_, position, yaw, pitch, roll) = self.samples.get(place)?;
+        let lens = self.lenses.iter().rev().find(|lens| lens.from <= place)?;
+        let (look_at, up) = Orientation { yaw, pitch, roll }.vectors();
+        Some(Camera {
+            position,
+            look_at,
+            up,
+            projection: lens.projection,
+            projection_distance: lens.projection_distance,
+            orthographic_height: lens.orthographic_height,
+        })
+    }
+
+    /// Adds a moment. What is kept is rounded: time to a tenth of a millisecond, lengths to nine
+    /// digits, angles to a ten-millionth of a radian. A moment that is no later than the one before
+    /// is not kept.
+    pub fn push(&mut self, time: f64, camera: &Camera, angles: Orientation) {
+        let time = (time * 1e4).round() / 1e4;
+        if self.samples.last().is_some_and(|last| last.0 >= time) {
+            return;
+        }
+        let lens = Lens {
+            from: self.samples.len(),
+            projection: camera.projection,
+            projection_distance: camera.projection_distance,
+            orthographic_height: camera.orthographic_height,
+        };
+        let from = self.lenses.last().map_or(usize::MAX, |last| last.from);
+        if self.lenses.last() != Some(&Lens { from, ..lens }) {
+            self.lenses.push(lens);
+        }
+        let angle = |radians: f64| (radians * 1e7).round() / 1e7;
+        let position = Vec3::from(camera.position.to_array().map(nine_digits));
+        self.samples.push(Sample(
+            time,
+            position,
+            angle(angles.yaw),
+            angle(angles.pitch),
+            angle(angles.roll),
+        ));
+    }
+}
+
+fn light<'s>(scene: &'s mut Scene, name: &str) -> Option<&'s mut Light> {
+    scene.lights.iter_mut().find(|light| light.name == name)
+}
+
+fn nine_digits(value: f64) -> f64 {
+    format!("{value:.8e}").parse().unwrap_or(value)
+}
+
+impl Serialize for Value {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Number(number) => notation::number::serialize(number, serializer),
+            Self::Point(point) => point.serialize(serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Value {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(NumberOrPoint)
+    }
+}
+
+struct NumberOrPoint;
+
+impl<'de> Visitor<'de> for NumberOrPoint {
+    type Value = Value;
+
+    fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str("a number or a point such as (1, 2, 3)")
+    }
+
+    fn visit_f64<E: Error>(self, number: f64) -> Result<Value, E> {
+        Ok(Value::Number(number))
+    }
+
+    fn visit_i64<E: Error>(self, number: i64) -> Result<Value, E> {
+        Ok(Value::Number(number as f64))
+    }
+
+    fn visit_u64<E: Error>(self, number: u64) -> Result<Value, E> {
+        Ok(Value::Number(number as f64))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut parts: A) -> Result<Value, A::Error> {
+        let mut point = [0.0; 3];
+        for (place, part) in point.iter_mut().enumerate() {
+            *part = parts
+                .next_element()?
+                .ok_or_else(|| A::Error::invalid_length(place, &self))?;
+        }
+        match parts.next_element::<f64>()? {
+            Some(_) => Err(A::Error::invalid_length(4, &self)),
+            None => Ok(Value::Point(Vec3::from(point))),
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! Whether an animation means something.
+
+use super::super::animation::MAX_KEYS;
+use super::super::{Animation, Interpolation, Key, Lens, MAX_SECONDS, Take, Target, Track, Value};
+use super::{At, Check, PROJECTION_DISTANCES, Scene, check_camera};
+use crate::scene::notation::format_number;
+
+/// Least time between two keys, in seconds: slopes between them are still numbers.
+const MIN_GAP: f64 = 0.999_999e-6;
+
+pub(super) fn check_animation(at: &At, scene: &Scene) -> Check {
+    let animation: &Animation = &scene.animation;
+    at.field("frames_per_second")
+        .within(animation.frames_per_second, 1.0, 240.0)?;
+    let here = at.field("keys");
+    check_keys(&here, &animation.keys)?;
+    for (index, key) in animation.keys.iter().enumerate() {
+        check_camera(&here.index(index).field("value"), &key.value)?;
+    }
+    let here = at.field("tracks");
+    for (index, track) in animation.tracks.iter().enumerate() {
+        let at = here.index(index);
+        if animation.tracks[..index]
+            .iter()
+            .any(|other| other.target == track.target)
+        {
+            let name = track.target.name();
+            return at
+                .field("target")
+                .refuse(format!("there is another track for {name:?}"));
+        }
+        check_track(&at, scene, track)?;
+    }
+    match &animation.take {
+        Some(take) => check_take(&at.field("take"), take),
+        None => Ok(()),
+    }
+}
+
+fn check_keys<T>(at: &At, keys: &[Key<T>]) -> Check {
+    if keys.len() > MAX_KEYS {
+        return at.refuse(format!("there may be at most {MAX_KEYS} keys"));
+    }
+    let mut last: Option<f64> = None;
+    for (index, key) in keys.iter().enumerate() {
+        let at = at.index(index);
+        let time = at.field("time");
+        time.within(key.time, 0.0, MAX_SECONDS)?;
+        if let Some(last) = last.filter(|last| key.time - last < MIN_GAP) {
+            return time.refuse(format!(
+                "keys must be in order of time, at least a microsecond apart: {} does not come after {}",
+                format_number(key.time),
+                format_number(last)
+            ));
+        }
+        last = Some(key.time);
+        if let Interpolation::Orbit { around } = key.interpolation {
+            at.field("interpolation").field("around").point(around)?;
+        }
+    }
+    Ok(())
+}
+
+fn check_track(at: &At, scene: &Scene, track: &Track) -> Check {
+    let Some(sample) = track.target.get(scene) else {
+        let owner = track.target.owner().unwrap_or_default();
+        let kind = match track.target {
+            Target::ObjectPosition(_) => "object",
+            _ => "light",
+        };
+        return at
+            .field("target")
+            .refuse(format!("there is no {kind} named {owner:?}"));
+    };
+    let at = at.field("keys");
+    if track.keys.is_empty() {
+        return at.refuse("a track needs at least one key".to_owned());
+    }
+    check_keys(&at, &track.keys)?;
+    for (index, key) in track.keys.iter().enumerate() {
+        let at = at.index(index).field("value");
+        match (key.value, sample) {
+            (Value::Number(number), Value::Number(_)) => at.within(number, 0.0, 1.0)?,
+            (Value::Point(point), Value::Point(_)) => at.point(point)?,
+            (_, Value::Number(_)) => {
+                return at.refuse("an intensity is one number, 0–1".to_owned());
+            }
+            (_, Value::Point(_)) => {
+                return at.refuse("a position is three numbers such as (1, 2, 3)".to_owned());
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_take(at: &At, take: &Take) -> Check {
+    let here = at.field("samples");
+    if take.samples.is_empty() || take.samples.len() > MAX_KEYS {
+        return here.refuse(format!("a take has between 1 and {MAX_KEYS} samples"));
+    }
+    let mut last = -1.0;
+    for (index, sample) in take.samples.iter().enumerate() {
+        let at = here.index(index);
+        at.index(0).within(sample.0, 0.0, MAX_SECONDS)?;
+        if sample.0 <= last {
+            return at
+                .index(0)
+                .refuse("samples must be in order of time".to_owned());
+        }
+        last = sample.0;
+        at.index(1).point(sample.1)?;
+        at.finite(&[sample.2, sample.3, sample.4])?;
+    }
+    let here = at.field("lenses");
+    let mut next = 0;
+    for (index, lens) in take.lenses.iter().enumerate() {
+        let at = here.index(index);
+        if (index == 0 && lens.from != 0) || lens.from < next {
+            return at
+                .field("from")
+                .refuse("lenses start at sample 0 and are in order".to_owned());
+        }
+        next = lens.from + 1;
+        check_lens(&at, lens)?;
+    }
+    if take.lenses.is_empty() {
+        return here.refuse("a take needs a lens for its first sample".to_owned());
+    }
+    Ok(())
+}
+
+fn check_lens(at: &At, lens: &Lens) -> Check {
+    let (nearest, farthest) = PROJECTION_DISTANCES;
+    at.field("projection_distance")
+        .within(lens.projection_distance, nearest, farthest)?;
+    at.field("orthographic_height")
+        .positive(lens.orthographic_height)
+}

@@ -1,0 +1,118 @@
+//! The camera's angles: what flights and paths reckon with, in place of vectors.
+
+use std::f64::consts::{PI, TAU};
+
+use super::{Basis, Camera};
+use crate::lanes::Vec3;
+
+/// Steepest pitch: short of straight up, where yaw would lose its meaning.
+const MAX_PITCH: f64 = 89.9 * PI / 180.0;
+
+/// The angles of a camera in radians: R = Yaw · Pitch · Roll applied to a camera that looks along
+/// -z with +y up, with the matrices of the program that Glint grew from (roll first).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Orientation {
+    /// Turn to the right about the world's y axis, from -π to π.
+    pub yaw: f64,
+    /// Upward tilt, from -π/2 to π/2 (the ancestor's angle b, negated).
+    pub pitch: f64,
+    /// Lean to the right about the viewing direction, from -π to π.
+    pub roll: f64,
+}
+
+impl Orientation {
+    /// The angles of a camera's basis.
+    pub fn of(camera: &Camera) -> Self {
+        let Some(Basis { u, v, w }) = camera.basis() else {
+            return Self::default();
+        };
+        let look = -w;
+        let level = look.x.hypot(look.z);
+        let pitch = look.y.atan2(level);
+        if level > 1e-9 {
+            // With yaw and pitch taken away, u and v are turned by the roll alone.
+            let yaw = look.x.atan2(-look.z);
+            let flat = Vec3::new(yaw.cos(), 0.0, yaw.sin());
+            let roll = (-flat.dot(v)).atan2(flat.dot(u));
+            return Self {
+                yaw,
+                pitch,
+                roll: -roll,
+            };
+        }
+        // Straight up or down, yaw and roll are one: call it yaw.
+        Self {
+            yaw: u.z.atan2(u.x),
+            pitch,
+            roll: 0.0,
+        }
+    }
+
+    /// Viewing direction and up vector, both of length 1 and at right angles.
+    pub fn vectors(self) -> (Vec3<f64>, Vec3<f64>) {
+        let Self { yaw, pitch, roll } = self;
+        let look = Vec3::new(
+            yaw.sin() * pitch.cos(),
+            pitch.sin(),
+            -yaw.cos() * pitch.cos(),
+        );
+        let level_up = Vec3::new(
+            -yaw.sin() * pitch.sin(),
+            pitch.cos(),
+            yaw.cos() * pitch.sin(),
+        );
+        let right = Vec3::new(yaw.cos(), 0.0, yaw.sin());
+        (look, level_up * roll.cos() + right * roll.sin())
+    }
+
+    /// The camera with these angles in place of its own.
+    pub fn apply(self, camera: &Camera) -> Camera {
+        let (look_at, up) = self.vectors();
+        Camera {
+            look_at,
+            up,
+            ..camera.clone()
+        }
+    }
+
+    /// Turned to the right and upwards by so many radians; short of straight up and down.
+    #[must_use]
+    pub fn turned(self, yaw: f64, pitch: f64) -> Self {
+        Self {
+            yaw: (self.yaw + yaw + PI).rem_euclid(TAU) - PI,
+            pitch: (self.pitch + pitch).clamp(-MAX_PITCH, MAX_PITCH),
+            ..self
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn the_published_camera_has_the_published_angles() {
+        let camera = Camera {
+            look_at: Vec3::new(-0.25, -0.70, -0.67),
+            up: Vec3::new(-0.25, 0.71, -0.65),
+            ..Camera::default()
+        };
+        let angles = Orientation::of(&camera);
+        // sin b = 0.70 (its pitch, downwards) and sin c = -0.35 are what its report shows.
+        assert!((angles.pitch.sin() + 0.70).abs() < 0.01, "{angles:?}");
+        assert!((angles.yaw.sin() + 0.35).abs() < 0.01, "{angles:?}");
+        assert!(angles.roll.abs() < 0.02, "{angles:?}");
+    }
+
+    proptest! {
+        #[test]
+        fn angles_and_vectors_are_each_other(yaw in -3.1..3.1_f64, pitch in -1.56..1.56_f64, roll in -3.1..3.1_f64) {
+            let angles = Orientation { yaw, pitch, roll };
+            let back = Orientation::of(&angles.apply(&Camera::default()));
+            prop_assert!((back.yaw - yaw).abs() < 1e-9);
+            prop_assert!((back.pitch - pitch).abs() < 1e-9);
+            prop_assert!((back.roll - roll).abs() < 1e-9, "{} {}", back.roll, roll);
+        }
+    }
+}
