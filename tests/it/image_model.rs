@@ -276,12 +276,12 @@ fn placed(scale: f64, by: Vec3<f64>) -> Scene {
     scene
 }
 
-fn changed_ppm(scale: f64, by: Vec3<f64>, methods: Methods) -> usize {
+fn changed_ppm(scale: f64, by: Vec3<f64>, methods: Methods, precision: Precision) -> usize {
     let at = |scene: &Scene, methods| {
         picture(
             scene,
             &Picture {
-                precision: Precision::Single,
+                precision,
                 methods,
                 ..Picture::sized(320, 320)
             },
@@ -302,23 +302,25 @@ fn changed_ppm(scale: f64, by: Vec3<f64>, methods: Methods) -> usize {
 #[test]
 fn no_scale_and_no_place_changes_the_picture() {
     let here = Vec3::new(0.0, 0.0, 0.0);
+    let (single, double) = (Precision::Single, Precision::Double);
     for scale in [1e-4, 1e-2, 1e2, 1e4, 1e6] {
-        let ppm = changed_ppm(scale, here, Methods::default());
+        let ppm = changed_ppm(scale, here, Methods::default(), single);
         assert!(ppm <= 500, "scale {scale}: {ppm} ppm");
+        let ppm = changed_ppm(scale, here, Methods::default(), double);
+        assert_eq!(ppm, 0, "double precision at scale {scale}");
     }
-    for distance in [1e3, 1e5, 1e7] {
-        let ppm = changed_ppm(
-            1.0,
-            Vec3::new(distance, -distance, distance),
-            Methods::default(),
-        );
-        assert!(ppm <= 500, "{distance} away: {ppm} ppm");
+    let (low, high) = Scene::demo().bounds().expect("a size");
+    let size = (high - low).length();
+    let aside = Vec3::new(0.6, -0.64, 0.48);
+    for sizes in [1.0, 1e2, 1e3, 1e4, 1e5] {
+        let ppm = changed_ppm(1.0, aside * (size * sizes), Methods::default(), single);
+        assert!(ppm <= 500, "{sizes} sizes away: {ppm} ppm");
     }
     let fixed = Methods {
         offset: RayOffset::Fixed(0.1),
         ..Methods::default()
     };
-    let ppm = changed_ppm(1e-4, here, fixed);
+    let ppm = changed_ppm(1e-4, here, fixed, single);
     assert!(
         ppm > 10_000,
         "a fixed offset must fail in a tiny scene, or this test has no power: {ppm}"

@@ -7,6 +7,7 @@ mod cli;
 mod house;
 mod image_model;
 mod needs;
+mod numerics;
 mod povray;
 mod random;
 mod scenes;

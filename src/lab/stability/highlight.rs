@@ -12,29 +12,29 @@ const HALF_LEVEL: f64 = 0.5 / 255.0;
 
 /// One map for each method: off by more than half a level.
 pub fn maps(effort: u32) -> Vec<Map> {
-    let ways = HighlightMethod::ALL.iter();
-    // exp and log1p are right everywhere; there is nothing to see.
-    let ways = ways.filter(|way| way.value != HighlightMethod::Log1p);
-    ways.map(|way| {
-        let across = Axis {
-            name: "exponent",
-            values: EXPONENTS.to_vec(),
-        };
-        let up = Axis {
-            name: "highlight",
-            values: vec![1.0],
-        };
-        Map::measure(
-            ("highlight", "off by more than half a level of 255"),
-            (way.word.to_owned(), way.value == HighlightMethod::default()),
-            (across, up),
-            |p, _| {
-                let tries = (0..TRIES * u64::from(effort)).filter_map(|n| fails(way.value, n, p));
-                Tries::count(tries)
-            },
-        )
-    })
-    .collect()
+    HighlightMethod::ALL
+        .iter()
+        .map(|way| {
+            let across = Axis {
+                name: "exponent",
+                values: EXPONENTS.to_vec(),
+            };
+            let up = Axis {
+                name: "highlight",
+                values: vec![1.0],
+            };
+            Map::measure(
+                ("highlight", "off by more than half a level of 255"),
+                (way.word.to_owned(), way.value == HighlightMethod::default()),
+                (across, up),
+                |p, _| {
+                    let tries =
+                        (0..TRIES * u64::from(effort)).filter_map(|n| fails(way.value, n, p));
+                    Tries::count(tries)
+                },
+            )
+        })
+        .collect()
 }
 
 fn fails(method: HighlightMethod, number: u64, p: f64) -> Option<bool> {

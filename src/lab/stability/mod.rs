@@ -1,7 +1,9 @@
 //! Where formulas break: the rate at which each method fails, over the scale of a scene, its
 //! distance from the origin, and whatever else it is sensitive to.
 
+mod camera;
 mod highlight;
+mod keys;
 mod plane;
 mod secondary;
 mod sphere;
@@ -141,13 +143,15 @@ pub fn maps(effort: u32) -> Vec<Map> {
     maps.extend(secondary::maps());
     maps.extend(highlight::maps(effort));
     maps.push(plane::map(effort));
+    maps.extend(camera::maps(effort));
+    maps.extend(keys::maps(effort));
     maps
 }
 
 /// One line for each method: how often it fails, and where most.
 pub fn summary(maps: &[Map]) -> String {
     let mut text = format!(
-        "  {:<12} {:<16} {:>10} {:>11} {:>11}  {}\n",
+        "  {:<18} {:<21} {:>10} {:>11} {:>11}  {}\n",
         "tried", "method", "tries", "failures", "95 % below", "worst"
     );
     for map in maps {
@@ -164,7 +168,7 @@ pub fn summary(maps: &[Map]) -> String {
         });
         let _ = writeln!(
             text,
-            "{mark} {:<12} {:<16} {:>10} {:>10.4}% {:>10.4}%  {worst}",
+            "{mark} {:<18} {:<21} {:>10} {:>10.4}% {:>10.4}%  {worst}",
             map.subject,
             map.method,
             total.tries,
@@ -251,9 +255,13 @@ mod tests {
 
     /// Methods that are no default and yet fail nowhere in these maps: rebasing takes the distance
     /// from the origin away, and with it what they would fail at.
-    const FLAWLESS: [(&str, &str); 2] = [
+    const FLAWLESS: [(&str, &str); 5] = [
         ("shadow acne", "relative:0.0001"),
         ("shadow leak", "relative:0.0001"),
+        ("mesh acne", "relative:0.0001"),
+        ("mesh leak", "relative:0.0001"),
+        // Right everywhere, and slower than what is chosen for small exponents.
+        ("highlight", "log1p"),
     ];
 
     #[test]
@@ -299,6 +307,14 @@ mod tests {
         assert_eq!(rate("shadow leak", "fixed:0.1", 0.0, 1e2), 0.0);
         assert!(rate("shadow acne", "fixed:0.1", 0.0, 1e7) > 0.05);
         assert_eq!(rate("shadow acne", "fixed:0.1", 0.0, 1.0), 0.0);
+        assert!(rate("mesh leak", "fixed:0.1", 0.0, 1e-2) > 0.9);
+        assert!(rate("camera at the pole", "fixed-up f32", 0.0, 1.0) > 0.4);
+        assert!(rate("camera after turns", "matrix-steps f32", 1e6, 1.0) == 1.0);
+        assert!(rate("path between keys", "uniform", 1e2, 1.0) > 0.4);
+        for weak in ["straight f32", "acos-slerp f32"] {
+            assert!(rate("turn between keys", weak, 180.0, 1.0) > 0.4, "{weak}");
+            assert_eq!(rate("turn between keys", weak, 1.0, 1.0), 0.0, "{weak}");
+        }
         assert!(rate("highlight", "pow", 1e6, 1.0) > 0.5);
         assert_eq!(rate("highlight", "pow", 1e3, 1.0), 0.0);
     }

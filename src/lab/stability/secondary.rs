@@ -1,5 +1,5 @@
 //! Shadow rays that hit the surface that they start on, or miss what stands close to it: pictures of
-//! a ball and a card on a floor, at every scale and place.
+//! a ball and a card on a floor, at every scale and place; the ball a sphere, or a mesh.
 
 use super::{Map, Tries, places, scales};
 use crate::lanes::Vec3;
@@ -18,10 +18,23 @@ const GRAZING: f32 = 0.03;
 /// Farther than anything is: rays that start there meet nothing.
 const BEYOND: f64 = 1e6;
 
-/// Two maps for each way: lit points that are dark (acne), and points in shadow that are lit (leak).
-/// Pixels beside an edge of a shadow or of a thing are not tried.
+/// What the ball is made of.
+#[derive(Clone, Copy, PartialEq)]
+enum Ball {
+    Sphere,
+    Mesh,
+}
+
+/// Two maps for each way and ball: lit points that are dark (acne), and points in shadow that are
+/// lit (leak). Pixels beside an edge of a shadow or of a thing are not tried.
 pub fn maps() -> Vec<Map> {
-    let at_home = scene(0.0, 1.0);
+    let mut maps = maps_of(Ball::Sphere, ["shadow acne", "shadow leak"]);
+    maps.extend(maps_of(Ball::Mesh, ["mesh acne", "mesh leak"]));
+    maps
+}
+
+fn maps_of(ball: Ball, [acne, leak]: [&'static str; 2]) -> Vec<Map> {
+    let at_home = scene(ball, 0.0, 1.0);
     let truth = lit(&at_home, RayOffset::Robust, Precision::Double);
     let facing = lit(&at_home, RayOffset::Fixed(BEYOND), Precision::Double);
     let inner = |place: &usize| is_inner(&truth, *place) && is_inner(&facing, *place);
@@ -36,18 +49,18 @@ pub fn maps() -> Vec<Map> {
             (word.to_owned(), offset == RayOffset::default()),
             (places(), scales()),
             |away, scale| {
-                let got = lit(&scene(away, scale), offset, Precision::Single);
+                let got = lit(&scene(ball, away, scale), offset, Precision::Single);
                 Tries::count(tried.iter().map(|&place| got[place] != truth[place]))
             },
         )
     };
     let acne = RayOffset::ALL.iter().map(|way| {
         let failure = "lit point that is dark";
-        map("shadow acne", failure, way.value, way.word, &bright)
+        map(acne, failure, way.value, way.word, &bright)
     });
     let leak = RayOffset::ALL.iter().map(|way| {
         let failure = "point in shadow that is lit";
-        map("shadow leak", failure, way.value, way.word, &shadowed)
+        map(leak, failure, way.value, way.word, &shadowed)
     });
     acne.chain(leak).collect()
 }
@@ -82,7 +95,7 @@ fn is_inner(lit: &[bool], place: usize) -> bool {
 }
 
 /// A floor, a ball on it, a thin card beside it, and one light; so large, so many sizes away.
-fn scene(away: f64, scale: f64) -> Scene {
+fn scene(ball: Ball, away: f64, scale: f64) -> Scene {
     let place =
         |x: f64, y: f64, z: f64| (Vec3::new(x, y, z) + Vec3::new(0.6, -0.64, 0.48) * away) * scale;
     let mut scene = Scene::empty();
@@ -112,13 +125,6 @@ fn scene(away: f64, scale: f64) -> Scene {
             },
         ),
         object(
-            "Ball",
-            Shape::Sphere {
-                center: place(0.0, 0.5, 0.0),
-                radius: 0.5 * scale,
-            },
-        ),
-        object(
             "Card",
             Shape::Triangle {
                 a: place(0.7, 0.0, 0.1),
@@ -127,6 +133,25 @@ fn scene(away: f64, scale: f64) -> Scene {
             },
         ),
     ];
+    match ball {
+        Ball::Sphere => scene.objects.push(object(
+            "Ball",
+            Shape::Sphere {
+                center: place(0.0, 0.5, 0.0),
+                radius: 0.5 * scale,
+            },
+        )),
+        Ball::Mesh => {
+            for (n, face) in super::triangle::ball().into_iter().enumerate() {
+                let corner = |v: Vec3<f64>| place(v.x * 0.5, v.y * 0.5 + 0.5, v.z * 0.5);
+                let [a, b, c] = face.map(corner);
+                let name = format!("Face {n}");
+                scene
+                    .objects
+                    .push(object(&name, Shape::Triangle { a, b, c }));
+            }
+        }
+    }
     scene.lights = vec![Light {
         name: "Light".to_owned(),
         position: place(1.6, 1.9, 1.3),

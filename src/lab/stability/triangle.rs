@@ -76,7 +76,7 @@ fn placed(corners: [Vec3<f64>; 3], away: f64, scale: f64) -> Triangle<f32> {
 }
 
 /// An octahedron whose faces are split twice and moved onto the ball around them.
-fn ball() -> Vec<[Vec3<f64>; 3]> {
+pub(super) fn ball() -> Vec<[Vec3<f64>; 3]> {
     let onto = |v: Vec3<f64>| v * (1.0 / v.length());
     let mut faces = Vec::new();
     for x in [-1.0, 1.0] {

@@ -92,7 +92,8 @@ fn nearest(axis: &Axis, value: f64) -> usize {
     let away = |mark: f64| {
         if mark == 0.0 || value == 0.0 {
             // Nothing is a decade away from zero: it stands for all that is below the next mark.
-            let above = axis.values.iter().find(|mark| **mark > 0.0);
+            let above = axis.values.iter().copied().filter(|mark| *mark > 0.0);
+            let above = above.min_by(f64::total_cmp);
             let is_below = above.is_some_and(|above| value < above * 0.3);
             return if (mark == 0.0) == is_below {
                 0.0

@@ -7,9 +7,10 @@ use egui::{RichText, ScrollArea, Ui, vec2};
 use super::super::raster::draw;
 use super::super::theme::{GRID, palette};
 use super::heat;
+use crate::animate::motion_between;
 use crate::image::Image;
 use crate::lab::stability::{Map, maps};
-use crate::scene::{Choice as _, Scene, Shape};
+use crate::scene::{Choice as _, Orientation, Scene, Shape};
 use crate::worker::run_errand;
 
 /// How many times more tries than for a first look: a second of computing.
@@ -81,7 +82,7 @@ impl Stability {
         for (place, map) in self.maps.iter().enumerate() {
             let used = if is_used(scene, map) { "●" } else { " " };
             let text = format!(
-                "{used} {:<12}{:<16}{:>8.3}%",
+                "{used} {:<19}{:<22}{:>8.3}%",
                 map.subject,
                 map.method,
                 map.total().rate() * 100.0
@@ -132,8 +133,9 @@ fn is_used(scene: &Scene, map: &Map) -> bool {
         "sphere" => render.sphere.word(),
         "triangle" => render.triangle.word(),
         "highlight" => render.specular.word(),
-        "plane" => map.method.clone(),
-        _ => render.offset.word(),
+        "shadow acne" | "shadow leak" | "mesh acne" | "mesh leak" => render.offset.word(),
+        // There is one way of doing the rest.
+        _ => return map.is_default,
     };
     word == map.method
 }
@@ -161,7 +163,24 @@ fn standing(scene: &Scene, map: &Map) -> Option<(f64, f64)> {
             let packs = scene.color_packs.values().map(|pack| pack.phong_exponent);
             packs.max_by(f64::total_cmp).map(|sharpest| (sharpest, 1.0))
         }
-        "plane" => None,
+        "plane" | "camera after turns" => None,
+        "camera at the pole" => {
+            let pitch = Orientation::of(&scene.camera).pitch.to_degrees();
+            Some((90.0 - pitch.abs(), 1.0))
+        }
+        "turn between keys" => {
+            let keys = scene.animation.keys.windows(2);
+            let turns = keys.map(|pair| motion_between(&pair[0].value, &pair[1].value).turn);
+            turns.max_by(f64::total_cmp).map(|turn| (turn, 1.0))
+        }
+        "path between keys" => {
+            let keys = scene.animation.keys.windows(2);
+            let ways = keys.map(|pair| (pair[1].value.position - pair[0].value.position).length());
+            let ways: Vec<f64> = ways.filter(|way| *way > 0.0).collect();
+            let ratio = |pair: &[f64]| (pair[0] / pair[1]).max(pair[1] / pair[0]);
+            let ratios = ways.windows(2).map(ratio);
+            ratios.max_by(f64::total_cmp).map(|ratio| (ratio, 1.0))
+        }
         // The plan moves every scene to the origin before it is traced.
         "triangle" => Some((0.0, size)),
         _ => Some((away, size)),

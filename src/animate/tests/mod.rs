@@ -1,15 +1,12 @@
 //! Paths where naive ones fail: duplicates, reversals, uneven spacing, opposite directions, poles.
 
-use std::sync::Arc;
+mod takes;
 
 use proptest::prelude::*;
 
 use super::*;
 use crate::lanes::Vec3;
-use crate::scene::{
-    Animation, Camera, Document, Easing, Interpolation, Key, Orientation, Projection, Scene, Take,
-    Target, Track, Value,
-};
+use crate::scene::{Camera, Easing, Interpolation, Key, Orientation, Projection, Scene};
 
 fn camera(position: Vec3<f64>, yaw: f64, pitch: f64) -> Camera {
     let angles = Orientation {
@@ -183,7 +180,7 @@ fn every_preset_starts_where_the_camera_is_and_looks_at_the_target() {
     for time in times(&path, 500) {
         let position = at(&path, time).position;
         let round = (position.x / 50.0).hypot(position.z / (50.0 * 1.6));
-        assert!((round - 1.0).abs() < 3e-4, "{round} at {time}");
+        assert!((round - 1.0).abs() < 4e-4, "{round} at {time}");
     }
 }
 
@@ -236,247 +233,6 @@ fn easing_starts_and_ends_slowly() {
     assert!((x(Easing::Out, 0.25) - 0.4375).abs() < 1e-12);
     assert!((x(Easing::InOut, 0.25) - 0.15625).abs() < 1e-12);
     assert!((x(Easing::InOut, 0.5) - 0.5).abs() < 1e-12);
-}
-
-/// A flight by hand: uneven times, pauses, a wobble.
-fn take() -> Take {
-    let mut take = Take::default();
-    let mut time: f64 = 0.0;
-    for n in 0..240_u32 {
-        let share = time / 5.7;
-        let place = Vec3::new(
-            share * 90.0,
-            (share * 5.0).sin() * 10.0,
-            40.0 - share * 30.0,
-        );
-        let angles = Orientation {
-            yaw: (share * 3.0).sin() * 0.8,
-            pitch: -0.3 + share * 0.2,
-            roll: 0.0,
-        };
-        let camera = angles.apply(&Camera {
-            position: place,
-            ..Camera::default()
-        });
-        take.push(time, &camera, angles);
-        time += 0.016 + 0.004 * f64::from(n % 5);
-    }
-    take
-}
-
-/// What every sample sees: a grid of points 60 ahead.
-fn seen(take: &Take) -> Vec<Vec<Seen>> {
-    let of = |sample: usize| {
-        let camera = take.camera(sample).expect("a sample");
-        let framing = camera.framing().expect("a basis");
-        let place = |n: u32| {
-            let at = [f64::from(n % 3) * 0.4 - 0.4, f64::from(n / 3) * 0.4 - 0.4];
-            let (origin, direction) = framing.ray(at);
-            Seen {
-                at,
-                what: origin + direction * 60.0,
-                is_sky: false,
-            }
-        };
-        (0..9).map(place).collect()
-    };
-    (0..take.samples.len()).map(of).collect()
-}
-
-#[test]
-fn a_take_becomes_few_keys_within_its_tolerance() {
-    let take = take();
-    let seen = seen(&take);
-    let mut last = usize::MAX;
-    for pixels in [0.5, 2.0, 10.0, 60.0] {
-        let tolerance = pixels / 1024.0;
-        let simplified = simplify(&take, &seen, tolerance);
-        let count = simplified.keys.len();
-        assert!(
-            simplified.worst <= tolerance,
-            "{} of {tolerance}",
-            simplified.worst
-        );
-        assert!(
-            count <= last,
-            "{count} keys at {pixels} pixels, {last} before"
-        );
-        last = count;
-    }
-    assert!((2..=5).contains(&last), "{last} keys at 60 pixels");
-    let fine = simplify(&take, &seen, 0.5 / 1024.0).keys.len();
-    assert!((6..=40).contains(&fine), "{fine} keys at half a pixel");
-}
-
-#[test]
-fn a_take_is_replayed_bit_by_bit_from_its_file() {
-    let take = take();
-    let mut scene = Scene::demo();
-    scene.animation.take = Some(Arc::new(take.clone()));
-    let key = |n: usize| Key::new(take.samples[n].0, take.camera(n).expect("a sample"));
-    scene.animation.keys = (0..take.samples.len()).map(key).collect();
-    let text = Document {
-        header: String::new(),
-        scene,
-    };
-    let text = text.to_text().expect("writable");
-    let read = Document::from_text(&text).expect("readable").scene;
-    assert_eq!(read.animation.take.as_deref(), Some(&take));
-    let path = CameraPath::new(&read.animation.keys);
-    for (n, sample) in take.samples.iter().enumerate() {
-        assert_eq!(path.at(sample.0), take.camera(n));
-    }
-    let bytes = text.split("take:").nth(1).expect("a take").len();
-    assert!(bytes < 100 * take.samples.len(), "{bytes} bytes");
-}
-
-#[test]
-fn a_changed_projection_is_a_cut_in_the_keys() {
-    let mut take = Take::default();
-    for n in 0..20_u32 {
-        let projection = if n < 11 {
-            Projection::Perspective
-        } else {
-            Projection::Orthographic
-        };
-        let camera = Camera {
-            projection,
-            ..camera(Vec3::new(f64::from(n), 0.0, 0.0), 0.0, 0.0)
-        };
-        take.push(f64::from(n) / 10.0, &camera, Orientation::of(&camera));
-    }
-    assert_eq!(take.lenses.len(), 2);
-    let keys = simplify(&take, &seen(&take), 1e-3).keys;
-    let path = CameraPath::new(&keys);
-    for n in 0..20 {
-        let was = take.camera(n).expect("a sample").projection;
-        assert_eq!(at(&path, take.samples[n].0).projection, was, "sample {n}");
-    }
-}
-
-#[test]
-fn constant_speed_is_constant_and_takes_as_long() {
-    let path = on_x(&[(0.0, 0.0), (1.0, 50.0), (4.0, 60.0), (5.0, 200.0)]);
-    let even = CameraPath::new(&Retime::ConstantSpeed.apply(path.keys()));
-    assert!((even.keys()[3].time - 5.0).abs() < 1e-9);
-    for time in times(&even, 50) {
-        let x = at(&even, time).position.x;
-        assert!((x - 40.0 * time).abs() < 0.5, "{x} at {time}");
-    }
-    // Turns alone have a speed too.
-    let here = Vec3::splat(0.0);
-    let turns = [(0.0, 0.0), (1.0, 90.0), (9.0, 100.0)];
-    let key = |&(time, yaw): &(f64, f64)| Key::new(time, camera(here, yaw, 0.0));
-    let keys = Retime::ConstantSpeed.apply(&turns.iter().map(key).collect::<Vec<_>>());
-    assert!((keys[1].time - 8.1).abs() < 0.05, "{}", keys[1].time);
-}
-
-#[test]
-fn pauses_are_trimmed_and_flights_stretched() {
-    let path = on_x(&[(0.0, 0.0), (1.0, 50.0), (4.0, 50.0), (5.0, 90.0)]);
-    assert_eq!(paused_seconds(path.keys()), 3.0);
-    let trimmed = Retime::TrimPauses.apply(path.keys());
-    let times: Vec<f64> = trimmed.iter().map(|key| key.time).collect();
-    assert_eq!(times, [0.0, 1.0, 2.0]);
-    let longer = Retime::Stretch(10.0).apply(path.keys());
-    assert_eq!(longer[2].time, 8.0);
-    assert_eq!(longer[3].value, path.keys()[3].value);
-}
-
-#[test]
-fn smoothing_takes_corners_off_and_keeps_the_ends() {
-    let path = on_x(&[(0.0, 0.0), (1.0, 30.0), (2.0, 20.0), (3.0, 30.0)]);
-    let smooth = Retime::Smooth.apply(path.keys());
-    let x: Vec<f64> = smooth.iter().map(|key| key.value.position.x).collect();
-    assert_eq!(x, [0.0, 20.0, 25.0, 30.0]);
-}
-
-#[test]
-fn paths_survive_their_texts() {
-    let keys = simplify(&take(), &seen(&take()), 1e-3).keys;
-    assert_eq!(
-        from_text(&to_text(&keys).expect("a text")).as_ref(),
-        Ok(&keys)
-    );
-    let table = to_table(keys.iter().map(|key| (key.time, &key.value)));
-    let read = from_table(&table, &Camera::default()).expect("a table");
-    for (was, is) in keys.iter().zip(&read) {
-        assert_eq!(was.time, is.time);
-        assert_eq!(was.value.position, is.value.position);
-        assert!((was.value.look_at - is.value.look_at).length() < 1e-12);
-    }
-    let few = from_table("x,time, y,z\n1,0,2,3\n", &Camera::default()).expect("a table");
-    assert_eq!(few[0].value.position, Vec3::new(1.0, 2.0, 3.0));
-    let error = from_table("time,x,y,z\n0,1,2,3\n1,1,oops,3\n", &Camera::default());
-    assert_eq!(
-        error.expect_err("bad").to_string(),
-        "line 3: y must be a number, found \"oops\""
-    );
-    assert!(from_table("time,x,y\n", &Camera::default()).is_err());
-    assert_eq!(from_text("[\nKey(time: 0)]").expect_err("bad").line, 2);
-}
-
-#[test]
-fn tracks_move_lights_objects_and_the_ambience() {
-    let mut scene = Scene::demo();
-    let light = scene.lights[0].name.clone();
-    let triangle = scene.objects.last().expect("objects").name.clone();
-    let track = |target: Target, values: [Value; 2]| Track {
-        target,
-        keys: vec![Key::new(1.0, values[0]), Key::new(3.0, values[1])],
-    };
-    let (from, to) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(5.0, 2.0, -3.0));
-    scene.animation.tracks = vec![
-        track(
-            Target::AmbientIntensity,
-            [Value::Number(0.1), Value::Number(0.5)],
-        ),
-        track(
-            Target::LightIntensity(light.clone()),
-            [Value::Number(0.0), Value::Number(1.0)],
-        ),
-        track(
-            Target::LightPosition(light),
-            [Value::Point(from), Value::Point(to)],
-        ),
-        track(
-            Target::ObjectPosition(triangle),
-            [Value::Point(from), Value::Point(to)],
-        ),
-    ];
-    assert_eq!(crate::scene::check(&scene), Ok(()));
-    let shape = scene.objects.last().expect("objects").shape.clone();
-    let scene = Arc::new(scene);
-    let path = CameraPath::new(&[]);
-    let half = shot(&scene, &path, 2.0);
-    assert!((half.ambient_intensity - 0.3).abs() < 1e-12);
-    assert!((half.lights[0].intensity - 0.5).abs() < 1e-12);
-    assert!((half.lights[0].position - Vec3::new(3.0, 2.0, 0.0)).length() < 1e-9);
-    let moved = &half.objects.last().expect("objects").shape;
-    assert_eq!(moved.kind(), shape.kind());
-    assert!((moved.position() - Vec3::new(3.0, 2.0, 0.0)).length() < 1e-9);
-    assert_eq!(
-        shot(&scene, &path, 0.0).lights[0].position,
-        from,
-        "before the first key"
-    );
-    assert_eq!(half.camera, scene.camera, "no camera keys, no other camera");
-}
-
-#[test]
-fn frames_do_not_bend_the_curve() {
-    let animation = |fps: f64| Animation {
-        frames_per_second: fps,
-        keys: on_x(&[(0.0, 0.0), (1.0, 7.0), (3.0, 1.0)]).keys().to_vec(),
-        ..Animation::default()
-    };
-    let (slow, fast) = (animation(7.0), animation(21.0));
-    assert_eq!((slow.frame_count(), fast.frame_count()), (22, 64));
-    for frame in 1..=slow.frame_count() {
-        let time = slow.time_of(frame);
-        assert_eq!(slow.frame_at(time), frame);
-        assert!((fast.time_of(frame * 3 - 2) - time).abs() < 1e-12);
-    }
 }
 
 fn any_keys() -> impl Strategy<Value = Vec<Key<Camera>>> {

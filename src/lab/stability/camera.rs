@@ -1,0 +1,152 @@
+//! The basis of a camera that looks nearly straight up, and after many turns.
+
+use super::{Axis, Map, Tries, scattered};
+use crate::lanes::Vec3;
+use crate::scene::{Basis, Camera, Orientation};
+
+/// Angles from straight up, in degrees.
+const FROM_POLE: [f64; 8] = [45.0, 1.0, 0.1, 0.01, 1e-3, 1e-4, 1e-5, 0.0];
+/// Frames of turning.
+const FRAMES: [f64; 6] = [1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
+/// Tries in each cell for a first look.
+const TRIES: u64 = 200;
+/// A roll that can be seen at the border of a picture of 1024 pixels, in radians.
+const VISIBLE_ROLL: f64 = 1e-3;
+/// How far from orthonormal a basis may be.
+const CROOKED: f64 = 1e-6;
+
+/// One map for each way of keeping a camera level at the pole, and of keeping it through turns.
+pub fn maps(effort: u32) -> Vec<Map> {
+    let across = || Axis {
+        name: "degrees from the pole",
+        values: FROM_POLE.to_vec(),
+    };
+    let pole = |name: &'static str, is_default, right: fn(f64, f64) -> Option<Vec3<f64>>| {
+        Map::measure(
+            ("camera at the pole", "leans by more than a thousandth"),
+            (name.to_owned(), is_default),
+            (across(), one()),
+            |degrees, _| {
+                let tries = 0..TRIES * u64::from(effort);
+                Tries::count(tries.map(|n| leans(n, degrees, right)))
+            },
+        )
+    };
+    let frames = || Axis {
+        name: "frames",
+        values: FRAMES.to_vec(),
+    };
+    let drift = |name: &'static str, is_default, turned: fn(u64) -> Basis| {
+        Map::measure(
+            ("camera after turns", "is no orthonormal basis any more"),
+            (name.to_owned(), is_default),
+            (frames(), one()),
+            |frames, _| Tries::count([is_crooked(&turned(frames as u64))]),
+        )
+    };
+    vec![
+        pole("yaw and pitch", true, by_angles),
+        pole("fixed-up f32", false, by_fixed_up),
+        drift("yaw and pitch", true, rebuilt),
+        drift("matrix-steps f32", false, stepped),
+    ]
+}
+
+fn one() -> Axis {
+    Axis {
+        name: "camera",
+        values: vec![1.0],
+    }
+}
+
+/// Whether the right of the picture is not at right angles to the yaw.
+fn leans(number: u64, degrees: f64, right: fn(f64, f64) -> Option<Vec3<f64>>) -> bool {
+    let yaw = (scattered(number, 0) * 2.0 - 1.0) * std::f64::consts::PI;
+    let pitch = (90.0 - degrees).to_radians();
+    let level = Vec3::new(yaw.cos(), 0.0, yaw.sin());
+    right(yaw, pitch).is_none_or(|right| (right - level).length() > VISIBLE_ROLL)
+}
+
+fn by_angles(yaw: f64, pitch: f64) -> Option<Vec3<f64>> {
+    let angles = Orientation {
+        yaw,
+        pitch,
+        roll: 0.0,
+    };
+    Some(angles.apply(&Camera::default()).basis()?.u)
+}
+
+/// u = up × w with the world's up, in single precision: what a first program does.
+fn by_fixed_up(yaw: f64, pitch: f64) -> Option<Vec3<f64>> {
+    let (yaw, pitch) = (yaw as f32, pitch as f32);
+    let look = Vec3::new(
+        yaw.sin() * pitch.cos(),
+        pitch.sin(),
+        -yaw.cos() * pitch.cos(),
+    );
+    let across = look.cross(Vec3::new(0.0, 1.0, 0.0));
+    Some(across.unit()?.to_f64())
+}
+
+fn is_crooked(basis: &Basis) -> bool {
+    let Basis { u, v, w } = *basis;
+    let errors = [
+        u.dot(u) - 1.0,
+        v.dot(v) - 1.0,
+        w.dot(w) - 1.0,
+        u.dot(v),
+        v.dot(w),
+        w.dot(u),
+    ];
+    !errors.iter().all(|error| error.abs() <= CROOKED)
+}
+
+/// A tenth of a degree in each frame, to and fro in pitch.
+fn step(frame: u64) -> (f64, f64) {
+    let tenth = 0.1_f64.to_radians();
+    (
+        tenth,
+        if (frame / 300).is_multiple_of(2) {
+            tenth
+        } else {
+            -tenth
+        },
+    )
+}
+
+/// The angles are kept, and the basis is made from them.
+fn rebuilt(frames: u64) -> Basis {
+    let mut angles = Orientation::default();
+    for frame in 0..frames {
+        let (yaw, pitch) = step(frame);
+        angles = angles.turned(yaw, pitch);
+    }
+    let broken = Vec3::splat(f64::NAN);
+    let basis = angles.apply(&Camera::default()).basis();
+    basis.unwrap_or(Basis {
+        u: broken,
+        v: broken,
+        w: broken,
+    })
+}
+
+/// The basis itself is turned by small matrices, frame after frame.
+fn stepped(frames: u64) -> Basis {
+    let mut basis = [
+        Vec3::new(1.0_f32, 0.0, 0.0),
+        Vec3::new(0.0, 1.0, 0.0),
+        Vec3::new(0.0, 0.0, 1.0),
+    ];
+    for frame in 0..frames {
+        let (yaw, pitch) = step(frame);
+        let turned = |v: Vec3<f32>| {
+            let (sine, cosine) = (yaw as f32).sin_cos();
+            let v = Vec3::new(v.x * cosine - v.z * sine, v.y, v.x * sine + v.z * cosine);
+            let (sine, cosine) = (pitch as f32).sin_cos();
+            Vec3::new(v.x, v.y * cosine - v.z * sine, v.y * sine + v.z * cosine)
+        };
+        basis = basis.map(turned);
+    }
+    let [u, v, w] = basis.map(Vec3::to_f64);
+    Basis { u, v, w }
+}

@@ -1,0 +1,206 @@
+//! Between keys of a flight: ways that leave the road, turns that lose their direction.
+
+use super::{Axis, Map, Tries, scattered};
+use crate::animate::{CameraPath, motion_between};
+use crate::lanes::Vec3;
+use crate::scene::{Camera, Key, Orientation};
+
+/// How much longer one segment is than its neighbours.
+const RATIOS: [f64; 7] = [1.0, 2.0, 5.0, 1e1, 1e2, 1e3, 1e4];
+/// Angles between two viewing directions, in degrees.
+const ANGLES: [f64; 9] = [
+    1e-6,
+    1e-3,
+    1.0,
+    90.0,
+    179.0,
+    179.9,
+    179.99,
+    179.999_999,
+    180.0,
+];
+/// Tries in each cell for a first look.
+const TRIES: u64 = 40;
+/// Places that are looked at between two keys.
+const PLACES: u32 = 50;
+/// Share of its length by which a segment may be left.
+const OVERSHOOT: f64 = 1e-6;
+/// How far from unit length or from right angles directions may be.
+const CROOKED: f64 = 1e-6;
+
+/// One map for each way through points on a line, and for each way between two directions.
+pub fn maps(effort: u32) -> Vec<Map> {
+    let tries = || 0..TRIES * u64::from(effort);
+    let ratios = Axis {
+        name: "longest to shortest segment",
+        values: RATIOS.to_vec(),
+    };
+    let angles = Axis {
+        name: "degrees between keys",
+        values: ANGLES.to_vec(),
+    };
+    let one = || Axis {
+        name: "flight",
+        values: vec![1.0],
+    };
+    let way = |name: &'static str, is_default, leaves: fn(&[f64; 4]) -> bool| {
+        Map::measure(
+            ("path between keys", "overshoots a key"),
+            (name.to_owned(), is_default),
+            (ratios.clone(), one()),
+            |ratio, _| Tries::count(tries().map(|n| leaves(&stops(n, ratio)))),
+        )
+    };
+    let turn = |name: &'static str, is_default, fails: fn(f64, f64) -> bool| {
+        Map::measure(
+            (
+                "turn between keys",
+                "no direction or a step of twice the mean",
+            ),
+            (name.to_owned(), is_default),
+            (angles.clone(), one()),
+            |degrees, _| {
+                let yaw = |n| (scattered(n, 0) * 2.0 - 1.0) * std::f64::consts::PI;
+                Tries::count(tries().map(|n| fails(yaw(n), degrees.to_radians())))
+            },
+        )
+    };
+    vec![
+        way("centripetal", true, path_overshoots),
+        way("uniform", false, uniform_overshoots),
+        turn("yaw and pitch", true, path_loses_direction),
+        turn("straight f32", false, lerp_loses_direction),
+        turn("acos-slerp f32", false, slerp_loses_direction),
+    ]
+}
+
+/// Four places on a line, the middle segment longer or shorter than its neighbours; every third
+/// flight turns back.
+fn stops(number: u64, ratio: f64) -> [f64; 4] {
+    let (outer, inner) = if number.is_multiple_of(2) {
+        (ratio, 1.0)
+    } else {
+        (1.0, ratio)
+    };
+    let outer = |stream| outer * (0.5 + scattered(number, stream));
+    let back = if number.is_multiple_of(3) { -1.0 } else { 1.0 };
+    let first = outer(0);
+    let second = first + inner * back;
+    [0.0, first, second, second + outer(1)]
+}
+
+fn leaves_segments(stops: &[f64; 4], place: impl Fn(usize, f64) -> f64) -> bool {
+    (0..3).any(|segment| {
+        let (from, to) = (stops[segment], stops[segment + 1]);
+        let slack = (to - from).abs() * OVERSHOOT;
+        let (low, high) = (from.min(to) - slack, from.max(to) + slack);
+        (0..=PLACES).any(|n| {
+            let x = place(segment, f64::from(n) / f64::from(PLACES));
+            !(low..=high).contains(&x)
+        })
+    })
+}
+
+fn path_overshoots(stops: &[f64; 4]) -> bool {
+    let key = |(n, &x): (usize, &f64)| {
+        let position = Vec3::new(x, 0.0, 0.0);
+        let camera = Camera {
+            position,
+            ..Camera::default()
+        };
+        Key::new(n as f64, camera)
+    };
+    let path = CameraPath::new(&stops.iter().enumerate().map(key).collect::<Vec<_>>());
+    leaves_segments(stops, |segment, along| {
+        let camera = path.at(segment as f64 + along);
+        camera.map_or(f64::NAN, |camera| camera.position.x)
+    })
+}
+
+/// The Catmull–Rom spline of the textbooks, every segment as long in its parameter.
+///
+/// Catmull and Rom, "A class of local interpolating splines", Computer Aided Geometric Design, 1974.
+fn uniform_overshoots(stops: &[f64; 4]) -> bool {
+    leaves_segments(stops, |segment, u| {
+        let (b, c) = (stops[segment], stops[segment + 1]);
+        let (a, d) = (
+            stops[segment.saturating_sub(1)],
+            stops[(segment + 2).min(3)],
+        );
+        let cubic = 3.0 * (b - c) + d - a;
+        0.5 * (2.0 * b + u * (c - a + u * (2.0 * a - 5.0 * b + 4.0 * c - d + u * cubic)))
+    })
+}
+
+/// Whether steps along a turn are uneven or have no direction.
+fn is_uneven(looks: &[Option<Vec3<f64>>], angle: f64) -> bool {
+    let mean = angle / f64::from(PLACES);
+    // Comparisons with what is no number are false: only what is shown to be right passes.
+    let is_right =
+        |look: &Option<Vec3<f64>>| look.is_some_and(|look| (look.dot(look) - 1.0).abs() <= CROOKED);
+    !looks.iter().all(is_right)
+        || !looks.windows(2).all(|pair| match (pair[0], pair[1]) {
+            (Some(a), Some(b)) => {
+                let step = 2.0 * (a - b).length().atan2((a + b).length());
+                // Directions are rounded to 6e-8 in single precision: that is no fault of the way.
+                step <= 2.0 * mean + 2.5e-7
+            }
+            _ => false,
+        })
+}
+
+fn look(yaw: f64) -> Vec3<f64> {
+    Vec3::new(yaw.sin(), 0.0, -yaw.cos())
+}
+
+fn path_loses_direction(yaw: f64, angle: f64) -> bool {
+    let key = |time: f64, yaw: f64| {
+        let level = Orientation {
+            yaw,
+            ..Orientation::default()
+        };
+        Key::new(time, level.apply(&Camera::default()))
+    };
+    let path = CameraPath::new(&[key(0.0, yaw), key(1.0, yaw + angle)]);
+    let camera = |n: u32| path.at(f64::from(n) / f64::from(PLACES));
+    let cameras: Vec<Option<Camera>> = (0..=PLACES).map(camera).collect();
+    let is_crooked = |camera: &Option<Camera>| {
+        let upright = |camera: &Camera| camera.look_at.dot(camera.up).abs() <= CROOKED;
+        !camera.as_ref().is_some_and(upright)
+    };
+    let looks: Vec<_> = cameras
+        .iter()
+        .map(|camera| camera.as_ref().map(|camera| camera.look_at))
+        .collect();
+    let whole = match (&cameras[0], &cameras[cameras.len() - 1]) {
+        (Some(from), Some(to)) => motion_between(from, to).turn.to_radians(),
+        _ => f64::NAN,
+    };
+    let is_whole = (whole - angle).abs() < 1e-6;
+    cameras.iter().any(is_crooked) || is_uneven(&looks, angle) || !is_whole
+}
+
+/// The straight way from one unit vector to the other, made a unit vector again.
+fn lerp_loses_direction(yaw: f64, angle: f64) -> bool {
+    let (a, b) = (look(yaw), look(yaw + angle));
+    let (a, b) = (Vec3::<f32>::from_f64(a), Vec3::<f32>::from_f64(b));
+    let at = |n: u32| {
+        let along = n as f32 / PLACES as f32;
+        (a + (b - a) * along).unit().map(Vec3::to_f64)
+    };
+    is_uneven(&(0..=PLACES).map(at).collect::<Vec<_>>(), angle)
+}
+
+/// Shoemake, "Animating rotation with quaternion curves", SIGGRAPH 1985, for directions.
+fn slerp_loses_direction(yaw: f64, angle: f64) -> bool {
+    let (a, b) = (look(yaw), look(yaw + angle));
+    let (a, b) = (Vec3::<f32>::from_f64(a), Vec3::<f32>::from_f64(b));
+    let whole = a.dot(b).acos();
+    let at = |n: u32| {
+        let along = n as f32 / PLACES as f32;
+        let (out, into) = (((1.0 - along) * whole).sin(), (along * whole).sin());
+        let sum = a * (out / whole.sin()) + b * (into / whole.sin());
+        Some(sum.to_f64())
+    };
+    is_uneven(&(0..=PLACES).map(at).collect::<Vec<_>>(), angle)
+}

@@ -1,0 +1,476 @@
+//! Where methods fail: the robust one holds, the weak one beside it is shown to fail, so that each
+//! check can. Every row runs with few tries in `cargo test` and with all of them in CI.
+//!
+//! Rows that need the inside of a kernel are tested beside it: refined hits and planets in
+//! `trace/sphere.rs`, leaks in `trace/triangle`, grazing planes in `trace/plane.rs`, highlights in
+//! `lanes/highlight.rs`, mouse moves in `editor/fly.rs`, paths in `animate/tests`; shadow rays at
+//! every scale and place, of single shapes and of meshes, are maps of the lab.
+
+use glint::image::{Image, render};
+use glint::lanes::{Real, Vec3};
+use glint::plan::{Picture, Sphere, SphereMethod};
+use glint::scene::{
+    Accelerator, Camera, ColorPack, Methods, Object, Precision, Projection, RayOffset, Sampling,
+    Scene, Shape,
+};
+use glint::trace::probe::meet_sphere;
+use glint::trace::{Ray, Watch};
+
+/// A row: its name, and its check with so many tries per case.
+type Row = (&'static str, fn(u32));
+
+const ROWS: &[Row] = &[
+    ("spheres far away, single precision", far_spheres),
+    ("spheres far away, double precision", far_spheres_in_double),
+    ("an eye just above a huge ball", low_over_a_planet),
+    ("viewing directions of any length", unnormalised_cameras),
+    ("bundles of flat things on their own borders", flat_bundles),
+    ("shadows that touch what casts them", contact_shadows),
+    ("light inside and outside a hollow ball", hollow_balls),
+    (
+        "lights, exponents and planes that degenerate",
+        degenerate_shading,
+    ),
+    ("thirty-two mirror images", many_mirrors),
+];
+
+#[test]
+fn every_row_holds_for_few_tries() {
+    for (name, row) in ROWS {
+        println!("{name}");
+        row(2_000);
+    }
+}
+
+#[test]
+#[ignore = "much computing: every row with all its tries"]
+fn every_row_holds_for_all_tries() {
+    for (name, row) in ROWS {
+        println!("{name}");
+        row(200_000);
+    }
+}
+
+const U: f64 = 5.960_464_477_539_063e-8;
+
+/// Numbers without a pattern, the same every time: Weyl's sequence.
+fn share(n: u32, stream: u32) -> f64 {
+    let speeds = [
+        0.754_877_666_246_693,
+        0.569_840_290_998_053,
+        0.430_159_709_001_947,
+    ];
+    let speed = speeds[stream as usize % 3] + f64::from(stream / 3) * 0.117_323;
+    (f64::from(n + 1) * speed).fract()
+}
+
+/// A ray from `ratio` radii away past a unit ball at `miss` radii from its middle.
+fn aimed<R: Real>(n: u32, ratio: f64, miss: f64) -> (Ray<R>, Sphere<R>) {
+    let (a, b) = (share(n, 0) * std::f64::consts::TAU, share(n, 1) * 3.0 - 1.5);
+    let towards = Vec3::new(a.cos() * b.cos(), b.sin(), a.sin() * b.cos());
+    let c = share(n, 2) * std::f64::consts::TAU;
+    let aside = towards.cross(Vec3::new(c.cos(), 0.3, c.sin()));
+    let aside = aside.unit().expect("not along the ray");
+    let sphere = Sphere {
+        center: Vec3::from_f64(towards * ratio + aside * miss),
+        radius: R::ONE,
+        material: 0,
+    };
+    let ray = Ray {
+        origin: Vec3::from_f64(Vec3::splat(0.0)),
+        direction: Vec3::from_f64(towards),
+    };
+    (ray, sphere)
+}
+
+/// The exact way to the ball of the rounded numbers.
+fn truth(ray: &Ray<f32>, sphere: &Sphere<f32>) -> f64 {
+    let (c, d) = (sphere.center.to_f64(), ray.direction.to_f64());
+    let d = d.unit().expect("a direction");
+    let b = d.dot(c);
+    let across = c - d * b;
+    b - (1.0 - across.dot(across)).max(0.0).sqrt()
+}
+
+fn quantile(mut errors: Vec<f64>, share: f64) -> f64 {
+    errors.sort_by(f64::total_cmp);
+    errors[((errors.len() - 1) as f64 * share) as usize]
+}
+
+fn far_spheres(tries: u32) {
+    for ratio in [1.5, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6] {
+        let errors = |method| {
+            let error = |n| {
+                let (ray, sphere) = aimed::<f32>(n, ratio, 0.9 * share(n, 3));
+                let t = f64::from(meet_sphere(method, &ray, &sphere));
+                (t - truth(&ray, &sphere)).abs()
+            };
+            (0..tries).map(error).collect::<Vec<f64>>()
+        };
+        let stable = errors(SphereMethod::Stable);
+        // A miss is off by infinity: it is counted here too.
+        let misses = stable.iter().filter(|error| !error.is_finite()).count();
+        assert_eq!(misses, 0, "missed at {ratio} radii");
+        let worst = quantile(stable, 0.999);
+        assert!(
+            worst <= 4.0 * U * (ratio + 2.0),
+            "{worst:e} at {ratio} radii"
+        );
+        let passes_by = |n: &u32| {
+            let (ray, sphere) = aimed::<f32>(*n, ratio, 1.1 + share(*n, 3));
+            meet_sphere(SphereMethod::Stable, &ray, &sphere).is_finite()
+        };
+        assert_eq!(
+            (0..tries).filter(passes_by).count(),
+            0,
+            "hit at {ratio} radii"
+        );
+        if ratio == 1e4 {
+            let classic = quantile(errors(SphereMethod::Classic), 0.9);
+            assert!(classic > 0.1, "the classic formula must fail: {classic:e}");
+        }
+    }
+}
+
+fn far_spheres_in_double(tries: u32) {
+    for ratio in [1e2, 1e4, 1e6, 1e8] {
+        for n in 0..tries {
+            let (ray, sphere) = aimed::<f64>(n, ratio, 0.9 * share(n, 3));
+            let t = meet_sphere(SphereMethod::Stable, &ray, &sphere);
+            let off = (ray.direction * t - sphere.center).length() - 1.0;
+            // Along the ray it is off by at most 1 / cos of what it is off the surface.
+            assert!(off.abs() <= 4e-7, "{off:e} at {ratio} radii");
+        }
+    }
+    let missed = |n: &u32| {
+        let (ray, sphere) = aimed::<f64>(*n, 1e8, 0.8 * share(*n, 3));
+        !meet_sphere(SphereMethod::Classic, &ray, &sphere).is_finite()
+    };
+    assert!(
+        (0..2000).filter(missed).count() > 100,
+        "the classic one must fail"
+    );
+}
+
+/// The single-precision kernel cannot; the plan sees that and takes double precision.
+fn low_over_a_planet(tries: u32) {
+    for height in [1e-1, 1e-3, 1e-5, 1e-7] {
+        let errors = |is_double: bool| {
+            let error = |n: u32| {
+                let down = Vec3::new(share(n, 0) - 0.5, -1.0, share(n, 1) - 0.5);
+                let down = Vec3::<f32>::from_f64(down.unit().expect("a direction"));
+                let y = 1.0 + height;
+                // Rounded to single precision first: both kernels get the same numbers.
+                let (y, d) = (f64::from(y as f32), down.to_f64().unit().expect("unit"));
+                let half = -d.y * y;
+                let exact =
+                    (y - 1.0) * (y + 1.0) / (half + (half * half - (y - 1.0) * (y + 1.0)).sqrt());
+                let t = if is_double {
+                    meet_sphere(SphereMethod::Stable, &over::<f64>(y, d), &ball())
+                } else {
+                    let ray = over::<f32>(y, d);
+                    f64::from(meet_sphere(SphereMethod::Stable, &ray, &ball()))
+                };
+                if exact > 0.0 {
+                    (t - exact).abs() / exact
+                } else {
+                    0.0
+                }
+            };
+            quantile((0..tries).map(error).collect(), 0.999)
+        };
+        let worst = errors(true);
+        assert!(worst <= 4.0 * U, "{worst:e} at a height of {height}");
+        if height == 1e-5 {
+            assert!(errors(false) > 4.0 * U, "single precision must fail");
+        }
+    }
+    let mut scene = Scene::empty();
+    scene
+        .objects
+        .push(object("Planet", Vec3::new(0.0, -1e6, 0.0), 1e6));
+    scene.camera.position = Vec3::new(0.0, 100.0, 0.0);
+    let plan = glint::plan::needs(&scene, &Picture::sized(64, 64));
+    let precision = plan.iter().find(|need| need.what == "double precision");
+    assert!(precision.is_some(), "the plan must take f64: {plan:?}");
+}
+
+fn over<R: Real>(y: f64, direction: Vec3<f64>) -> Ray<R> {
+    Ray {
+        origin: Vec3::from_f64(Vec3::new(0.0, y, 0.0)),
+        direction: Vec3::from_f64(direction),
+    }
+}
+
+fn ball<R: Real>() -> Sphere<R> {
+    Sphere {
+        center: Vec3::from_f64(Vec3::splat(0.0)),
+        radius: R::ONE,
+        material: 0,
+    }
+}
+
+fn object(name: &str, center: Vec3<f64>, radius: f64) -> Object {
+    Object {
+        name: name.to_owned(),
+        color_pack: "pack 1".to_owned(),
+        shape: Shape::Sphere { center, radius },
+        visible: true,
+    }
+}
+
+/// A picture of one sample per pixel.
+fn plain(scene: &Scene, picture: Picture) -> Image {
+    let picture = Picture {
+        sampling: Sampling::Centres,
+        ..picture
+    };
+    render(scene, &picture, &Watch::default())
+        .expect("not stopped")
+        .0
+}
+
+fn unnormalised_cameras(_: u32) {
+    let demo = Scene::demo();
+    let here = plain(&demo, Picture::sized(96, 96));
+    for scale in [0.5, 3.0, 1e-9, 1e9] {
+        let mut scene = demo.clone();
+        scene.camera.look_at = demo.camera.look_at * scale;
+        scene.camera.up = demo.camera.up * (1.0 / scale);
+        let there = plain(&scene, Picture::sized(96, 96));
+        let differ = here
+            .pixels
+            .iter()
+            .zip(&there.pixels)
+            .filter(|(a, b)| a != b);
+        // Powers of two change no digit; the others round once more.
+        let allowed = if scale == 0.5 { 0 } else { 2 };
+        assert!(differ.count() <= allowed, "scaled by {scale}");
+    }
+    for method in [SphereMethod::Stable, SphereMethod::Classic] {
+        let nowhere = over::<f32>(3.0, Vec3::splat(0.0));
+        assert!(
+            !meet_sphere(method, &nowhere, &ball()).is_nan(),
+            "{method:?}"
+        );
+    }
+}
+
+/// A wall of axis-aligned triangles, looked at through pixel centres that lie on its edges.
+fn flat_bundles(_: u32) {
+    for away in [0.0, 1e4, 1e6] {
+        let corner = |x: u32, y: u32| Vec3::new(f64::from(x) + away, f64::from(y), -away);
+        let mut scene = Scene::empty();
+        for n in 0..144_u32 {
+            let (x, y) = (n % 12, n / 12);
+            for (half, far) in [("a", corner(x, y + 1)), ("b", corner(x + 1, y))] {
+                scene.objects.push(Object {
+                    shape: Shape::Triangle {
+                        a: corner(x, y),
+                        b: corner(x + 1, y + 1),
+                        c: far,
+                    },
+                    ..object(&format!("{n} {half}"), Vec3::splat(0.0), 1.0)
+                });
+            }
+        }
+        scene.camera = Camera {
+            position: Vec3::new(6.0 + away, 6.0, 20.0 - away),
+            look_at: Vec3::new(0.0, 0.0, -1.0),
+            up: Vec3::new(0.0, 1.0, 0.0),
+            projection: Projection::Orthographic,
+            orthographic_height: 13.0,
+            ..Camera::default()
+        };
+        let with = |accelerator| {
+            let picture = Picture {
+                accelerator,
+                ..Picture::sized(13 * 8 + 1, 13 * 8 + 1)
+            };
+            plain(&scene, picture)
+        };
+        let list = with(Accelerator::List);
+        assert!(list == with(Accelerator::Bundles), "{away} away");
+        let side = 13 * 8 + 1;
+        let middle = list.pixels[side / 2 * side + side / 2];
+        assert_ne!(middle, list.pixels[0], "the wall is in the picture");
+        let inside = (8..side - 8).flat_map(|y| (8..side - 8).map(move |x| (x, y)));
+        let holes = inside.filter(|&(x, y)| list.pixels[y * side + x] == list.pixels[0]);
+        assert_eq!(holes.count(), 0, "no edge lets a ray through, {away} away");
+    }
+}
+
+/// The ground right behind a card that stands on it is in its shadow: the gap is less than a
+/// hundred-thousandth of the card.
+fn contact_shadows(_: u32) {
+    let lit = |scale: f64, offset: RayOffset| {
+        let mut scene = Scene::empty();
+        scene.ambient_intensity = 0.0;
+        let place = |x: f64, y: f64, z: f64| Vec3::new(x, y, z) * scale;
+        let shapes = [
+            Shape::Plane {
+                point: Vec3::splat(0.0),
+                normal: Vec3::new(0.0, 1.0, 0.0),
+            },
+            Shape::Triangle {
+                a: place(0.0, 0.0, -0.5),
+                b: place(0.0, 1.0, 0.0),
+                c: place(0.0, 0.0, 0.5),
+            },
+        ];
+        for (shape, name) in shapes.into_iter().zip(["Floor", "Card"]) {
+            scene.objects.push(Object {
+                shape,
+                ..object(name, Vec3::splat(0.0), 1.0)
+            });
+        }
+        scene.lights[0].position = place(-3.0, 1.0, 0.0);
+        scene.lights[0].intensity = 1.0;
+        scene.lights[0].marker = None;
+        scene.camera = Camera {
+            position: place(1.0 + 2e-5, 1.0, 0.0),
+            look_at: Vec3::new(-1.0, -1.0, 0.0),
+            up: Vec3::new(0.0, 1.0, 0.0),
+            projection: Projection::Orthographic,
+            orthographic_height: 2e-5 * scale,
+            ..Camera::default()
+        };
+        let picture = Picture {
+            precision: Precision::Single,
+            methods: Methods {
+                offset,
+                ..Methods::default()
+            },
+            ..Picture::sized(32, 32)
+        };
+        let image = plain(&scene, picture);
+        image.pixels.iter().filter(|pixel| pixel[0] > 0).count()
+    };
+    for scale in [1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6] {
+        assert_eq!(lit(scale, RayOffset::Robust), 0, "at scale {scale}");
+    }
+    assert_eq!(
+        lit(1.0, RayOffset::Fixed(0.1)),
+        32 * 32,
+        "a fixed offset must leave a gap"
+    );
+}
+
+/// A camera in a ball: a light inside shines on all of the wall, one outside on none of it.
+fn hollow_balls(_: u32) {
+    for radius in [1e-4, 1.0, 1e6] {
+        for away in [0.0, 1e4] {
+            let center = Vec3::new(0.6, -0.64, 0.48) * (away * radius);
+            let dark = |distance: f64| {
+                let mut scene = Scene::empty();
+                scene.ambient_intensity = 0.0;
+                scene.objects.push(object("Ball", center, radius));
+                scene.lights[0].position = center + Vec3::new(0.1, 0.3, -0.2) * (distance * radius);
+                scene.lights[0].intensity = 1.0;
+                scene.lights[0].marker = None;
+                scene.camera.position = center + Vec3::new(0.2, 0.1, 0.3) * radius;
+                let picture = Picture {
+                    precision: Precision::Single,
+                    ..Picture::sized(160, 160)
+                };
+                let image = plain(&scene, picture);
+                image.pixels.iter().filter(|pixel| pixel[0] == 0).count()
+            };
+            assert_eq!(dark(1.0), 0, "radius {radius}, {away} away, light inside");
+            assert_eq!(
+                dark(9.0),
+                160 * 160,
+                "radius {radius}, {away} away, light outside"
+            );
+        }
+    }
+}
+
+fn shaded(pack: ColorPack, light: Vec3<f64>, precision: Precision) -> [u8; 4] {
+    let mut scene = Scene::empty();
+    scene.ambient_intensity = 0.0;
+    scene.background = Vec3::new(9.0, 9.0, 9.0);
+    scene.color_packs["pack 1"] = pack;
+    scene.objects.push(object("Ball", Vec3::splat(0.0), 1.0));
+    scene.lights[0].position = light;
+    scene.lights[0].intensity = 1.0;
+    scene.lights[0].marker = None;
+    scene.camera.position = Vec3::new(0.0, 0.0, 10.0);
+    scene.camera.look_at = Vec3::new(0.0, 0.0, -1.0);
+    scene.camera.up = Vec3::new(0.0, 1.0, 0.0);
+    let picture = Picture {
+        precision,
+        ..Picture::sized(3, 3)
+    };
+    plain(&scene, picture).pixels[4]
+}
+
+fn degenerate_shading(_: u32) {
+    let pack = |phong_exponent: f64| ColorPack {
+        ambient: Vec3::splat(0.0),
+        diffuse: Vec3::splat(0.0),
+        specular: Vec3::splat(255.0),
+        phong_exponent,
+        reflective: false,
+    };
+    for precision in [Precision::Single, Precision::Double] {
+        for exponent in [0.0, 0.5, 16.0, 16.5, 1e4, 1e6, 1e7] {
+            let at = |z: f64| shaded(pack(exponent), Vec3::new(0.0, 0.0, z), precision);
+            assert_eq!(at(20.0), [255; 4], "straight on, {exponent}");
+            assert_eq!(at(1.0), [0, 0, 0, 255], "in the surface, {exponent}");
+            assert_eq!(at(-20.0), [0, 0, 0, 255], "behind, {exponent}");
+            assert_eq!(at(0.999_999), [0, 0, 0, 255], "just below, {exponent}");
+        }
+        // Flat is flat: wherever the light is, if only it shines on the point.
+        for x in [0.0, 5.0, 500.0] {
+            let flat = shaded(pack(0.0), Vec3::new(x, 0.0, 20.0), precision);
+            assert_eq!(flat, [255; 4], "exponent 0 from {x}");
+        }
+        // The light opposite to the eye, on the horizon of what is seen: no highlight, no NaN.
+        let aside = shaded(pack(16.0), Vec3::new(1e12, 0.0, 1.0), precision);
+        assert_eq!(aside, [0, 0, 0, 255]);
+    }
+}
+
+/// Between two mirrors, single precision sees what double precision sees in the last image too.
+fn many_mirrors(_: u32) {
+    let mut scene = Scene::empty();
+    scene.ambient_intensity = 0.4;
+    scene.render.reflection_limit = 32;
+    let mut mirror = scene.color_packs["pack 1"].clone();
+    mirror.reflective = true;
+    mirror.specular = Vec3::splat(255.0);
+    mirror.ambient = Vec3::splat(2.0);
+    mirror.diffuse = Vec3::splat(0.0);
+    scene.color_packs.insert("mirror".to_owned(), mirror);
+    for (name, z) in [("Front", -2.0), ("Back", 2.0)] {
+        scene.objects.push(Object {
+            color_pack: "mirror".to_owned(),
+            shape: Shape::Plane {
+                point: Vec3::new(0.0, 0.0, z),
+                normal: Vec3::new(0.02, 0.0, 1.0),
+            },
+            ..object(name, Vec3::splat(0.0), 1.0)
+        });
+    }
+    scene
+        .objects
+        .push(object("Ball", Vec3::new(0.4, 0.2, -0.5), 0.3));
+    scene.lights[0].position = Vec3::new(1.0, 3.0, 1.0);
+    scene.lights[0].intensity = 1.0;
+    scene.camera.position = Vec3::new(-0.3, 0.1, 1.5);
+    scene.camera.look_at = Vec3::new(0.1, 0.0, -1.0);
+    scene.camera.up = Vec3::new(0.0, 1.0, 0.0);
+    let at = |precision| {
+        let picture = Picture {
+            precision,
+            ..Picture::sized(128, 128)
+        };
+        plain(&scene, picture)
+    };
+    let (single, double) = (at(Precision::Single), at(Precision::Double));
+    let pairs = single.pixels.iter().zip(&double.pixels);
+    let far_off = pairs.filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 1));
+    let far_off = far_off.count();
+    assert!(far_off <= 8 * 128 * 128 / 1000, "{far_off} pixels differ");
+}
