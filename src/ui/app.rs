@@ -150,7 +150,8 @@ impl App {
         });
         Panel::bottom("status").exact_size(ROW).show(ui, |ui| {
             let frame = self.pictures.shown(&self.editor);
-            let text = frame.map_or(String::new(), |frame| describe(frame, self.editor.scene()));
+            let live = frame.map_or(String::new(), |frame| describe(frame, self.editor.scene()));
+            let text = self.lab.describe().unwrap_or(live);
             let kept = self.autosave.kept_since();
             status::show(ui, &text, &self.pictures.activity(), kept, out);
         });

@@ -12,8 +12,8 @@ const FRAMES: [f64; 6] = [1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
 const TRIES: u64 = 200;
 /// A roll that can be seen at the border of a picture of 1024 pixels, in radians.
 const VISIBLE_ROLL: f64 = 1e-3;
-/// How far from orthonormal a basis may be.
-const CROOKED: f64 = 1e-6;
+/// How far from orthonormal a basis may be: a tenth of a pixel in 1024.
+const CROOKED: f64 = 1e-4;
 
 /// One map for each way of keeping a camera level at the pole, and of keeping it through turns.
 pub fn maps(effort: u32) -> Vec<Map> {

@@ -8,17 +8,7 @@ use crate::scene::{Camera, Key, Orientation};
 /// How much longer one segment is than its neighbours.
 const RATIOS: [f64; 7] = [1.0, 2.0, 5.0, 1e1, 1e2, 1e3, 1e4];
 /// Angles between two viewing directions, in degrees.
-const ANGLES: [f64; 9] = [
-    1e-6,
-    1e-3,
-    1.0,
-    90.0,
-    179.0,
-    179.9,
-    179.99,
-    179.999_999,
-    180.0,
-];
+const ANGLES: [f64; 8] = [1e-6, 1e-3, 1.0, 90.0, 179.0, 179.9, 179.99, 180.0];
 /// Tries in each cell for a first look.
 const TRIES: u64 = 40;
 /// Places that are looked at between two keys.

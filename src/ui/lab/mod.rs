@@ -109,6 +109,18 @@ impl Lab {
         self.is_open && self.chosen.is_some()
     }
 
+    /// What the status line says about the dot that is looked at, if one is.
+    pub fn describe(&self) -> Option<String> {
+        let place = self.chosen.filter(|_| self.is_open)?;
+        let dot = self.study.as_ref()?.dots.get(place)?;
+        let image = dot.picture.as_ref()?;
+        let (name, words) = (&dot.candidate.name, dot.candidate.words());
+        Some(format!(
+            "lab: {name} · {}×{} · {words}",
+            image.width, image.height
+        ))
+    }
+
     /// Leaves the dot that is looked at; whether there was one.
     pub fn leave(&mut self) -> bool {
         self.is_open && self.chosen.take().is_some()

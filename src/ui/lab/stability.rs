@@ -108,6 +108,7 @@ pub fn stability_picture(maps: &[Map]) -> Image {
                     ui.allocate_ui(vec2(width, height), |ui| {
                         ui.vertical(|ui| {
                             ui.set_width(width);
+                            ui.set_min_height(height);
                             ui.add_space(GRID);
                             let star = if map.is_default { " *" } else { "" };
                             ui.label(format!("   {} {}{star}", map.subject, map.method));
