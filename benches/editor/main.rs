@@ -21,7 +21,7 @@ use glint::plan::{Picture, Sampling};
 use glint::scene::Scene;
 use glint::trace::{Threads, Watch};
 use glint::ui::{App, Setup};
-use glint::worker::{Frame, LiveJob, Pace, Worker};
+use glint::worker::{BUDGET, Frame, LiveJob, Pace, Worker};
 
 fn main() {
     divan::main();
@@ -62,7 +62,7 @@ fn published(bencher: Bencher) {
                 sampling: Sampling::ADAPTIVE,
                 ..Picture::sized(SIDE, SIDE)
             },
-            pace: Pace::Progressive,
+            pace: Pace::Within(BUDGET),
         });
     };
     // The lane learns how fine the first picture may be.

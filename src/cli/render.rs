@@ -1,6 +1,6 @@
 //! `glint render`: a scene file in, a picture file out.
 
-use std::num::NonZeroUsize;
+use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -13,6 +13,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use super::{fail, refuse, say};
+use crate::animate::{CameraPath, shot};
 use crate::export::save_image;
 use crate::image::{Cost, Format, Image, render_into};
 use crate::lanes::Level;
@@ -68,8 +69,9 @@ pub struct RenderWords {
     /// Lanes of the tracer; all give the same picture [default: the widest of this processor]
     #[arg(long, value_name = "LEVEL", value_parser = lanes)]
     lanes: Option<Level>,
-    #[arg(long, hide = true, value_parser = not_yet)]
-    frame: Option<Never>,
+    /// Frame of the animation, from 1 [default: the scene's own camera and values]
+    #[arg(long, value_name = "N")]
+    frame: Option<NonZeroU64>,
     /// Tracing threads [default: one per core]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: Option<u16>,
@@ -115,14 +117,6 @@ fn lanes(word: &str) -> Result<Level, String> {
     })
 }
 
-/// The value of an option of a later version, of which there is none.
-#[derive(Clone, Copy, Debug)]
-enum Never {}
-
-fn not_yet(_: &str) -> Result<Never, String> {
-    Err("this option is not built yet; leave it out".to_owned())
-}
-
 /// Traces and writes the picture, then prints what was asked for.
 pub fn run(words: &RenderWords) -> ExitCode {
     // A name that cannot be written is known before the first ray.
@@ -137,6 +131,12 @@ pub fn run(words: &RenderWords) -> ExitCode {
         Ok(threads) => threads,
         Err(error) => return fail(&error.to_string()),
     };
+    if let Some(frame) = words.frame {
+        scene = match at_frame(scene, frame.get()) {
+            Ok(scene) => scene,
+            Err(sentence) => return refuse(&format!("{}: {sentence}", words.scene.display())),
+        };
+    }
     words.adjust(&mut scene.render);
     let picture = words.picture(&scene);
     let count = threads.count();
@@ -158,6 +158,20 @@ pub fn run(words: &RenderWords) -> ExitCode {
         (None, false) => {}
     }
     ExitCode::SUCCESS
+}
+
+/// The scene as its animation shows it in a frame.
+fn at_frame(scene: Scene, frame: u64) -> Result<Scene, String> {
+    let count = scene.animation.frame_count();
+    if frame > count {
+        return Err(format!(
+            "there is no frame {frame}: the animation has {count} frame{}",
+            if count == 1 { "" } else { "s" }
+        ));
+    }
+    let time = scene.animation.time_of(frame);
+    let path = CameraPath::new(&scene.animation.keys);
+    Ok(Arc::unwrap_or_clone(shot(&Arc::new(scene), &path, time)))
 }
 
 impl RenderWords {

@@ -1,7 +1,7 @@
 //! The changes that can be made to a scene, each with its name in the history.
 
 use crate::lanes::Vec3;
-use crate::scene::{Camera, ColorPack, Light, LightObj, Object, Render, Scene, Shape};
+use crate::scene::{Animation, Camera, ColorPack, Light, LightObj, Object, Render, Scene, Shape};
 
 use super::Selection;
 
@@ -39,6 +39,8 @@ pub enum Edit {
     LightVisualization(bool),
     /// Other settings of the still picture.
     Render(Render, &'static str),
+    /// Other keys; the name is what was done to them.
+    Animation(Box<Animation>, &'static str),
     /// Another object in this place.
     Object(usize, Object, &'static str),
     /// Another light in this place.
@@ -118,6 +120,7 @@ impl Edit {
             Self::LightVisualization(true) => "Show light markers".to_owned(),
             Self::LightVisualization(false) => "Hide light markers".to_owned(),
             Self::Render(_, field) => format!("Render: {field}"),
+            Self::Animation(_, what) => (*what).to_owned(),
             Self::Object(index, _, field) => format!("{}: {field}", name(Item::object(*index))),
             Self::Light(index, _, field) => format!("{}: {field}", name(Item::light(*index))),
             Self::Pack(index, _, field) => format!("{}: {field}", name(Item::pack(*index))),
@@ -146,6 +149,7 @@ impl Edit {
             Self::Ambient(intensity) => scene.ambient_intensity = intensity,
             Self::LightVisualization(visible) => scene.light_visualization = visible,
             Self::Render(render, _) => scene.render = render,
+            Self::Animation(animation, _) => scene.animation = *animation,
             Self::Object(index, object, _) => replace(&mut scene.objects, index, object),
             Self::Light(index, light, _) => replace(&mut scene.lights, index, light),
             Self::Pack(index, pack, _) => {
@@ -306,8 +310,14 @@ fn beside(scene: &Scene, shape: &Shape) -> Vec3<f64> {
 fn delete(scene: &mut Scene, item: Item) -> Result<(), String> {
     let Item { kind, index } = item;
     match kind {
-        Kind::Object if index < scene.objects.len() => drop(scene.objects.remove(index)),
-        Kind::Light if index < scene.lights.len() => drop(scene.lights.remove(index)),
+        Kind::Object if index < scene.objects.len() => {
+            let name = scene.objects.remove(index).name;
+            scene.animation.follow(false, &name, None);
+        }
+        Kind::Light if index < scene.lights.len() => {
+            let name = scene.lights.remove(index).name;
+            scene.animation.follow(true, &name, None);
+        }
         Kind::Pack => {
             let name = item.name(scene).unwrap_or_default().to_owned();
             let users = scene.users_of_pack(&name);
@@ -333,8 +343,14 @@ fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), String> {
         return Ok(());
     };
     match item.kind {
-        Kind::Object => to.clone_into(&mut scene.objects[item.index].name),
-        Kind::Light => to.clone_into(&mut scene.lights[item.index].name),
+        Kind::Object => {
+            to.clone_into(&mut scene.objects[item.index].name);
+            scene.animation.follow(false, &from, Some(to));
+        }
+        Kind::Light => {
+            to.clone_into(&mut scene.lights[item.index].name);
+            scene.animation.follow(true, &from, Some(to));
+        }
         Kind::Pack if scene.color_packs.contains_key(to) => {
             return Err(format!(
                 "There is another color pack named {to:?}; choose another name"

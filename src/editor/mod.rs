@@ -5,6 +5,9 @@
 mod edit;
 mod fly;
 mod history;
+mod keys;
+mod moving;
+mod timeline;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -13,7 +16,10 @@ pub use edit::{Edit, Item, Kind};
 use fly::Flight;
 pub use fly::Motion;
 use history::{History, Snapshot};
+use moving::Moving;
+pub use timeline::{MEASURED_AT, Repeat, Time, Timeline};
 
+use crate::animate::CameraPath;
 use crate::scene::{DEMO_TEXT, Document, Orientation, Scene, SceneError, check};
 
 /// What the inspector shows.
@@ -28,6 +34,8 @@ pub enum Selection {
     Render,
     /// One entry of a list of the scene.
     Item(Item),
+    /// The selected keys of the camera.
+    Keys,
 }
 
 /// What the picture area shows.
@@ -57,6 +65,8 @@ pub enum Action {
     Redo,
     /// Show something else in the picture area.
     Show(Mode),
+    /// Something about the timeline.
+    Time(Time),
 }
 
 /// Something the user should read.
@@ -81,6 +91,7 @@ pub struct Editor {
     is_dirty: bool,
     history: History,
     flight: Flight,
+    moving: Moving,
     /// What the inspector shows.
     pub selection: Selection,
     /// What the picture area shows.
@@ -103,6 +114,7 @@ impl Editor {
         let scene = Arc::new(document.scene);
         Self {
             saved: Arc::clone(&scene),
+            moving: Moving::new(&scene),
             scene,
             revision: 1,
             header: document.header,
@@ -120,6 +132,37 @@ impl Editor {
     /// The scene as it is now.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
+    }
+
+    /// The scene as it is on show: at the time of the playhead, through the camera that is looked
+    /// through.
+    pub fn shown(&self) -> &Arc<Scene> {
+        self.moving.shown()
+    }
+
+    /// Grows with every change of what is on show.
+    pub fn shown_revision(&self) -> u64 {
+        self.moving.revision()
+    }
+
+    /// The timeline.
+    pub fn timeline(&self) -> &Timeline {
+        self.moving.timeline()
+    }
+
+    /// The camera over time.
+    pub fn path_of_camera(&self) -> &CameraPath {
+        self.moving.path()
+    }
+
+    /// The time that is on show, in seconds.
+    pub fn shown_time(&self) -> f64 {
+        self.timeline().shown_time(&self.scene.animation)
+    }
+
+    /// Whether the picture is that of the shot camera.
+    pub fn looks_through(&self) -> bool {
+        self.timeline().looks_through && !self.scene.animation.keys.is_empty()
     }
 
     /// Grows with every change of the scene.
@@ -161,7 +204,7 @@ impl Editor {
 
     /// The angles of the camera, from its vectors.
     pub fn orientation(&self) -> Orientation {
-        self.flight.orientation(&self.scene.camera)
+        self.flight.orientation(&self.shown().camera)
     }
 
     /// Does what a panel asked for.
@@ -169,13 +212,18 @@ impl Editor {
         match action {
             Action::Edit(edit) => self.edit(edit),
             Action::Fly(motion) => {
-                let camera = self.flight.step(&self.scene.camera, &motion);
+                let camera = self.flight.step(&self.moving.shown().camera, &motion);
                 self.edit(Edit::Camera(camera, "move"));
             }
             Action::Select(selection) => self.selection = selection,
             Action::Undo => self.travel(History::undo),
             Action::Redo => self.travel(History::redo),
             Action::Show(mode) => self.mode = mode,
+            Action::Time(time) => self.apply_time(time),
+        }
+        self.moving.follow(&self.scene);
+        if matches!(self.selection, Selection::Keys) && self.timeline().selected.is_empty() {
+            self.selection = Selection::Camera;
         }
     }
 
@@ -269,8 +317,10 @@ impl Editor {
     fn become_other(&mut self, other: Self) {
         let revision = self.revision + 1;
         let messages = std::mem::take(&mut self.messages);
+        let moving = self.moving.start_again(&other.scene);
         *self = Self {
             revision,
+            moving,
             messages,
             ..other
         };
@@ -278,11 +328,16 @@ impl Editor {
 
     fn edit(&mut self, edit: Edit) {
         let label = edit.label(&self.scene);
+        let is_camera = matches!(edit, Edit::Camera(..));
         let mut next = Scene::clone(&self.scene);
         let selection = match edit.apply(&mut next) {
             Ok(selection) => selection.unwrap_or(self.selection),
             Err(reason) => return self.complain(reason),
         };
+        self.moving.key_tracked(&self.scene, &mut next);
+        if is_camera {
+            self.moving.look_at_view();
+        }
         if next == *self.scene {
             return;
         }
@@ -317,6 +372,7 @@ impl Editor {
         if self.mode == Mode::HighRes {
             self.mode = Mode::Live;
         }
+        self.moving.follow(&self.scene);
     }
 }
 

@@ -279,6 +279,19 @@ fn new_file_builder() -> tempfile::Builder<'static, 'static> {
     builder
 }
 
+/// Reads a text file no longer than a scene may be.
+///
+/// # Errors
+/// [`SceneError`]: unreadable, too large, or not UTF-8.
+pub fn read_text(path: &Path) -> Result<String, SceneError> {
+    let bytes = read_bounded(path)?;
+    String::from_utf8(bytes).map_err(|error| SceneError::Disk {
+        verb: "read",
+        path: path.to_owned(),
+        source: io::Error::new(io::ErrorKind::InvalidData, error),
+    })
+}
+
 fn read_bounded(path: &Path) -> Result<Vec<u8>, SceneError> {
     let disk = |source| SceneError::Disk {
         verb: "read",

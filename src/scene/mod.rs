@@ -24,7 +24,7 @@ pub use animation::{
 };
 pub use camera::{Basis, Camera, Framing, Projection};
 pub use check::{Problem, check};
-pub use file::{Document, SceneError, write_atomic};
+pub use file::{Document, SceneError, read_text, write_atomic};
 pub use locate::Step;
 pub use notation::{format_number, parse_vec3};
 pub use orientation::Orientation;

@@ -13,6 +13,7 @@ pub mod probe;
 mod samples;
 mod sampling;
 mod shade;
+pub mod sight;
 mod sphere;
 mod stage;
 mod thin;

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use egui::{CentralPanel, Context, Frame, Margin, Panel, Theme, Ui, ViewportCommand};
 
 use super::autosave::Autosave;
-use super::commands::{Command, is_enabled, pressed};
-use super::dialogs::{Ask, Dialogs, Native};
+use super::commands::pressed;
+use super::dialogs::{Dialogs, Native};
 use super::files::{Files, Next, Outcome};
 use super::flying::Flying;
 use super::lab::Lab;
@@ -15,14 +15,14 @@ use super::menu::Layout;
 use super::outliner::Outliner;
 use super::pictures::Pictures;
 use super::screenshot::Screenshot;
-use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, palette};
+use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, TIMELINE, palette};
+use super::timeline::{Overlay, Thumbs, Timeline};
 use super::toasts::Toasts;
 use super::viewport::{Place, describe, fit};
 use super::window::data_folder;
 use super::{Out, help, inspector, menu, status, theme};
-use crate::editor::{Action, Edit, Editor, Mode, Selection};
+use crate::editor::{Action, Editor, Mode, Time};
 use crate::image::Image;
-use crate::scene::Projection;
 use crate::worker::LaneError;
 
 /// Where the list of recent files is kept between runs.
@@ -65,22 +65,25 @@ impl Setup {
 
 /// The window.
 pub struct App {
-    editor: Editor,
-    pictures: Pictures,
-    files: Files,
-    outliner: Outliner,
-    lab: Lab,
-    toasts: Toasts,
-    flying: Flying,
-    layout: Layout,
-    shortcuts_open: bool,
-    keys_are_taken: bool,
+    pub(super) editor: Editor,
+    pub(super) pictures: Pictures,
+    pub(super) files: Files,
+    pub(super) outliner: Outliner,
+    pub(super) lab: Lab,
+    pub(super) timeline: Timeline,
+    pub(super) overlay: Overlay,
+    pub(super) thumbs: Thumbs,
+    pub(super) toasts: Toasts,
+    pub(super) flying: Flying,
+    pub(super) layout: Layout,
+    pub(super) shortcuts_open: bool,
+    pub(super) keys_are_taken: bool,
     /// The revision at which the user said that the window may close.
-    closing: Option<u64>,
-    title: String,
-    theme: Theme,
-    autosave: Autosave,
-    screenshot: Option<Screenshot>,
+    pub(super) closing: Option<u64>,
+    pub(super) title: String,
+    pub(super) theme: Theme,
+    pub(super) autosave: Autosave,
+    pub(super) screenshot: Option<Screenshot>,
 }
 
 impl App {
@@ -106,11 +109,16 @@ impl App {
             files: Files::new(setup.dialogs, recent.unwrap_or_default()),
             outliner: Outliner::default(),
             lab: Lab::default(),
+            timeline: Timeline::default(),
+            overlay: Overlay::default(),
+            thumbs: Thumbs::default(),
             toasts: Toasts::default(),
             flying: Flying::default(),
             layout: Layout {
                 outliner: true,
                 inspector: true,
+                flight: true,
+                shot: true,
                 actual_size: false,
             },
             shortcuts_open: false,
@@ -150,7 +158,7 @@ impl App {
         });
         Panel::bottom("status").exact_size(ROW).show(ui, |ui| {
             let frame = self.pictures.shown(&self.editor);
-            let live = frame.map_or(String::new(), |frame| describe(frame, self.editor.scene()));
+            let live = frame.map_or(String::new(), |frame| describe(frame, self.editor.shown()));
             let text = self.lab.describe().unwrap_or(live);
             let kept = self.autosave.kept_since();
             status::show(ui, &text, &self.pictures.activity(), kept, out);
@@ -164,6 +172,20 @@ impl App {
             if let Some(wish) = shown.inner {
                 self.pictures.fulfil(wish);
             }
+        }
+        if self.timeline.is_open {
+            let per_second = self.pictures.per_second();
+            // Where nothing moves, the room is the picture's.
+            let panel = if self.editor.scene().animation.is_still() {
+                Panel::bottom("timeline without keys").exact_size(3.0 * ROW)
+            } else {
+                let panel = Panel::bottom("timeline").resizable(true);
+                panel.default_size(TIMELINE).size_range(64.0..=600.0)
+            };
+            panel.frame(side).show(ui, |ui| {
+                self.timeline
+                    .show(ui, &self.editor, &self.thumbs, per_second, out);
+            });
         }
         if self.layout.outliner {
             Panel::left("outliner")
@@ -186,11 +208,11 @@ impl App {
         let behind = Frame::new().fill(palette(ui.ctx()).window);
         CentralPanel::no_frame()
             .frame(behind)
-            .show(ui, |ui| self.show_picture(ui))
+            .show(ui, |ui| self.show_picture(ui, out))
             .inner
     }
 
-    fn show_picture(&mut self, ui: &mut Ui) -> Option<(Place, egui::Response)> {
+    fn show_picture(&mut self, ui: &mut Ui, out: &mut Out) -> Option<(Place, egui::Response)> {
         let area = ui.max_rect();
         let place = fit(
             area.shrink(GRID),
@@ -206,99 +228,16 @@ impl App {
         } else {
             self.pictures.screen.show(ui, place, is_still)
         };
+        if !is_still && self.layout.shot {
+            self.thumbs.show_shot(ui, &self.editor, place.rect);
+        }
+        if !is_still && self.layout.flight {
+            self.overlay.show(ui, &self.editor, place.rect, out);
+        }
         Some((place, response))
     }
 
-    fn run(&mut self, ctx: &Context, command: Command) {
-        let outcome = match command {
-            Command::New => self.files.start(ctx, &mut self.editor, Next::New),
-            Command::OpenDemo => self.files.start(ctx, &mut self.editor, Next::Demo),
-            Command::Open => self.files.start(ctx, &mut self.editor, Next::Choose),
-            Command::OpenRecent(path) => self.files.start(ctx, &mut self.editor, Next::Open(path)),
-            Command::Quit => self.files.start(ctx, &mut self.editor, Next::Quit),
-            Command::Save => self.files.save(ctx, &mut self.editor),
-            Command::SaveAs => {
-                self.files.ask(ctx, &self.editor, Ask::SaveScene);
-                None
-            }
-            Command::SaveImage => {
-                self.files.ask(ctx, &self.editor, Ask::SaveImage);
-                None
-            }
-            Command::Escape => {
-                self.escape();
-                None
-            }
-            Command::Lab => {
-                self.lab.is_open = !self.lab.is_open;
-                None
-            }
-            Command::Shortcuts => {
-                self.shortcuts_open = !self.shortcuts_open;
-                None
-            }
-            other => {
-                self.run_on_scene(&other);
-                None
-            }
-        };
-        self.follow(ctx, outcome);
-    }
-
-    /// The commands that are actions of the editor.
-    fn run_on_scene(&mut self, command: &Command) {
-        let editor = &mut self.editor;
-        if !is_enabled(command, editor) {
-            return;
-        }
-        let action = match command {
-            Command::Undo => Action::Undo,
-            Command::Redo => Action::Redo,
-            Command::Live => Action::Show(Mode::Live),
-            Command::LowRes => Action::Show(Mode::LowRes),
-            Command::HighRes => Action::Show(Mode::HighRes),
-            Command::CancelStill => {
-                self.pictures.cancel_still();
-                Action::Show(Mode::Live)
-            }
-            Command::Perspective => projected(editor, Projection::Perspective),
-            Command::Orthographic => projected(editor, Projection::Orthographic),
-            Command::MarkersOn => Action::Edit(Edit::LightVisualization(true)),
-            Command::MarkersOff => Action::Edit(Edit::LightVisualization(false)),
-            on_item => match (on_item, editor.selection) {
-                (Command::Rename, Selection::Item(item)) => {
-                    self.layout.outliner = true;
-                    return self.outliner.rename(item);
-                }
-                (Command::Duplicate, Selection::Item(item)) => Action::Edit(Edit::Duplicate(item)),
-                (Command::Delete, Selection::Item(item)) => Action::Edit(Edit::Delete(item)),
-                (Command::MoveUp, Selection::Item(item)) => {
-                    Action::Edit(Edit::Move(item, item.index.saturating_sub(1)))
-                }
-                (Command::MoveDown, Selection::Item(item)) => {
-                    Action::Edit(Edit::Move(item, item.index + 1))
-                }
-                _ => return,
-            },
-        };
-        editor.apply(action);
-    }
-
-    /// Leaves the innermost mode; in none, asks to quit.
-    fn escape(&mut self) {
-        if self.shortcuts_open {
-            self.shortcuts_open = false;
-        } else if self.lab.leave() {
-            // The live view is back.
-        } else if self.editor.mode != Mode::Live {
-            self.pictures.cancel_still();
-            self.editor.apply(Action::Show(Mode::Live));
-        } else {
-            self.files.ask_to_quit(&self.editor);
-        }
-    }
-
-    fn follow(&mut self, ctx: &Context, outcome: Option<Outcome>) {
+    pub(super) fn follow(&mut self, ctx: &Context, outcome: Option<Outcome>) {
         match outcome {
             None => {}
             Some(Outcome::Quit) => {
@@ -328,6 +267,21 @@ impl App {
         }
     }
 
+    /// While it plays, time passes as on the clock; the window is drawn again for the next frame.
+    fn pass_time(&mut self, ctx: &Context) {
+        if !self.editor.timeline().is_playing {
+            return;
+        }
+        let passed = ctx.input(|input| input.unstable_dt);
+        self.editor
+            .apply(Action::Time(Time::Tick(f64::from(passed))));
+        let timeline = self.editor.timeline();
+        let animation = &self.editor.scene().animation;
+        let frame = 1.0 / animation.frames_per_second;
+        let left = timeline.shown_time(animation) + frame - timeline.playhead;
+        ctx.request_repaint_after_secs((left / timeline.speed).clamp(0.002, frame) as f32);
+    }
+
     fn show_title(&mut self, ctx: &Context) {
         let dot = if self.editor.is_dirty() { " ●" } else { "" };
         let title = format!("Glint — {}{dot}", self.editor.title());
@@ -338,19 +292,13 @@ impl App {
     }
 }
 
-fn projected(editor: &Editor, projection: Projection) -> Action {
-    let camera = crate::scene::Camera {
-        projection,
-        ..editor.scene().camera.clone()
-    };
-    Action::Edit(Edit::Camera(camera, "projection"))
-}
-
 impl eframe::App for App {
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
         self.pictures.poll(ctx, &mut self.editor);
         let is_measuring = self.pictures.is_measuring();
         self.lab.follow(is_measuring, self.pictures.take_study());
+        self.thumbs.take(ctx, self.pictures.take_sketches());
+        self.pass_time(ctx);
         self.close_if_meant(ctx);
         let outcome = self.files.poll(ctx, &mut self.editor);
         self.follow(ctx, outcome);
@@ -391,6 +339,11 @@ impl eframe::App for App {
             self.editor.apply(action);
         }
         let ctx = ui.ctx().clone();
+        if self.editor.timeline().recorded().is_some() {
+            let now = ui.input(|input| input.time);
+            self.editor.apply(Action::Time(Time::Sample(now)));
+            ctx.request_repaint();
+        }
         for command in out.commands {
             self.run(&ctx, command);
         }
@@ -408,6 +361,9 @@ impl eframe::App for App {
         self.toasts.show(&ctx);
         if let Some((place, _)) = picture {
             self.pictures.submit(&self.editor, place.pixels);
+            if let Some(wishes) = self.thumbs.wishes(&ctx, &self.editor, place.rect) {
+                self.pictures.request_sketches(wishes);
+            }
         }
         if let Some(screenshot) = &mut self.screenshot
             && screenshot.tick(&ctx, self.pictures.is_settled(&self.editor))

@@ -58,6 +58,34 @@ pub enum Command {
     MarkersOff,
     /// Leave the current mode; in none, quit.
     Escape,
+    /// Play or pause.
+    Play,
+    /// The playhead to the first frame.
+    FirstFrame,
+    /// The playhead to the last frame.
+    LastFrame,
+    /// The playhead one frame back.
+    FrameBack,
+    /// The playhead one frame on.
+    FrameOn,
+    /// The playhead to the key before it.
+    PreviousKey,
+    /// The playhead to the key after it.
+    NextKey,
+    /// Start to record the flight.
+    Record,
+    /// Stop recording and make keys.
+    StopRecording,
+    /// Set a key at the playhead.
+    AddKey,
+    /// Look through the shot camera, or at it.
+    LookThrough,
+    /// Choose a file and take keys from it.
+    ImportPath,
+    /// Choose a file and write the keys to it.
+    ExportPath,
+    /// Show or hide the timeline.
+    Timeline,
     /// Show or hide the lab.
     Lab,
     /// Show or hide the list of shortcuts.
@@ -120,6 +148,18 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     Rename [plain(Key::F2)] "Rename the selected item",
     MoveUp [alt(Key::ArrowUp)] "Move the selected item up",
     MoveDown [alt(Key::ArrowDown)] "Move the selected item down",
+    Record [plain(Key::R)] "Record the flight",
+    Timeline [ctrl(Key::T)] "Show or hide the timeline",
+    StopRecording [plain(Key::T)] "Stop recording and make keys",
+    Play [plain(Key::G)] "Play or pause",
+    AddKey [plain(Key::K)] "Set a key at the playhead",
+    LookThrough [plain(Key::C)] "Look through the shot camera, or at it",
+    PreviousKey [plain(Key::OpenBracket)] "Previous key",
+    NextKey [plain(Key::CloseBracket)] "Next key",
+    FrameBack [plain(Key::Comma)] "One frame back",
+    FrameOn [plain(Key::Period)] "One frame on",
+    FirstFrame [plain(Key::Home)] "First frame",
+    LastFrame [plain(Key::End)] "Last frame",
     Shortcuts [plain(Key::F1)] "Show these shortcuts",
 };
 
@@ -219,6 +259,7 @@ pub const MOUSE: &[(&str, &str)] = &[
     ("Right button, drag", "Look around"),
     ("Wheel", "Fly forward and back"),
     ("Shift, held", "Fly four times as fast"),
+    ("Left button, on a key", "Move the key"),
 ];
 
 impl FlightKey {
@@ -278,11 +319,10 @@ pub fn is_enabled(command: &Command, editor: &Editor) -> bool {
     match command {
         Command::Undo => editor.undo_label().is_some(),
         Command::Redo => editor.redo_label().is_some(),
-        Command::Duplicate
-        | Command::Delete
-        | Command::Rename
-        | Command::MoveUp
-        | Command::MoveDown => matches!(editor.selection, Selection::Item(_)),
+        Command::Delete => matches!(editor.selection, Selection::Item(_) | Selection::Keys),
+        Command::Duplicate | Command::Rename | Command::MoveUp | Command::MoveDown => {
+            matches!(editor.selection, Selection::Item(_))
+        }
         _ => true,
     }
 }

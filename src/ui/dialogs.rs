@@ -17,6 +17,10 @@ pub enum Ask {
     SaveScene,
     /// Where to write the picture.
     SaveImage,
+    /// A camera path to take the keys of.
+    ImportPath,
+    /// Where to write the camera path.
+    ExportPath,
 }
 
 impl Ask {
@@ -26,12 +30,14 @@ impl Ask {
             Self::OpenScene => "Open scene",
             Self::SaveScene => "Save scene",
             Self::SaveImage => "Save image",
+            Self::ImportPath => "Import camera path",
+            Self::ExportPath => "Export camera path",
         }
     }
 
     /// Whether something is written to the path.
     pub fn writes(&self) -> bool {
-        !matches!(self, Self::OpenScene)
+        !matches!(self, Self::OpenScene | Self::ImportPath)
     }
 
     /// The path, with the ending that such files have if it has none.
@@ -47,6 +53,7 @@ impl Ask {
         match self {
             Self::OpenScene | Self::SaveScene => &["ron"],
             Self::SaveImage => &["png", "ppm"],
+            Self::ImportPath | Self::ExportPath => &["csv", "ron"],
         }
     }
 }
@@ -69,6 +76,9 @@ impl Dialogs for Native {
             dialog = match ask {
                 Ask::OpenScene | Ask::SaveScene => dialog.add_filter("Glint scene", ask.endings()),
                 Ask::SaveImage => dialog.add_filter("Picture", ask.endings()),
+                Ask::ImportPath | Ask::ExportPath => {
+                    dialog.add_filter("Camera path", ask.endings())
+                }
             };
             if let Some(folder) = suggested.parent().filter(|folder| folder.is_dir()) {
                 dialog = dialog.set_directory(folder);

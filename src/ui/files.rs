@@ -9,7 +9,9 @@ use egui::{Context, Ui};
 
 use super::dialogs::{Ask, Dialogs};
 use super::prompts::{Answer, PathPrompt, ask_about_changes, ask_to_quit};
-use crate::editor::Editor;
+use crate::animate::{from_table, from_text, to_table, to_text};
+use crate::editor::{Action, Edit, Editor};
+use crate::scene::{Animation, read_text, write_atomic};
 
 /// A dialog that comes back empty sooner than a hand can cancel it was never shown.
 const NO_DIALOG: Duration = Duration::from_millis(400);
@@ -218,6 +220,8 @@ impl Files {
         match wish.ask {
             Ask::OpenScene => self.open(editor, &path),
             Ask::SaveImage => return Some(Outcome::SaveImage(path)),
+            Ask::ImportPath => import_path(editor, &path),
+            Ask::ExportPath => export_path(editor, &path),
             Ask::SaveScene => match editor.save(&path) {
                 Ok(()) => {
                     self.remember(editor);
@@ -273,7 +277,59 @@ fn suggestion(editor: &Editor, ask: &Ask) -> PathBuf {
     let title = editor.title();
     let stem = title.strip_suffix(".ron").unwrap_or(&title);
     match ask {
-        Ask::OpenScene => folder.join(""),
+        Ask::OpenScene | Ask::ImportPath => folder.join(""),
+        Ask::ExportPath => folder.join(format!("{stem} path.csv")),
         Ask::SaveScene | Ask::SaveImage => folder.join(format!("{stem}.{}", ask.endings()[0])),
     }
+}
+
+/// The keys of a file take the place of the camera's.
+fn import_path(editor: &mut Editor, path: &Path) {
+    let text = match read_text(path) {
+        Ok(text) => text,
+        Err(error) => return editor.complain(error.to_string()),
+    };
+    let keys = if is_table(path) {
+        from_table(&text, &editor.shown().camera)
+    } else {
+        from_text(&text)
+    };
+    match keys {
+        Ok(keys) => {
+            let count = keys.len();
+            let animation = Animation {
+                keys,
+                take: None,
+                ..editor.scene().animation.clone()
+            };
+            editor.apply(Action::Edit(Edit::Animation(
+                Box::new(animation),
+                "Import path",
+            )));
+            editor.inform(format!("{count} keys from {}", path.display()));
+        }
+        Err(error) => editor.complain(format!("{}: {error}", path.display())),
+    }
+}
+
+fn export_path(editor: &mut Editor, path: &Path) {
+    let keys = &editor.scene().animation.keys;
+    let text = if is_table(path) {
+        Ok(to_table(keys.iter().map(|key| (key.time, &key.value))))
+    } else {
+        to_text(keys).map_err(|error| error.to_string())
+    };
+    let written = text.and_then(|text| {
+        let written = write_atomic(path, text.as_bytes());
+        written.map_err(|error| format!("cannot write {}: {error}", path.display()))
+    });
+    match written {
+        Ok(()) => editor.inform(format!("Saved {}", path.display())),
+        Err(sentence) => editor.complain(sentence),
+    }
+}
+
+fn is_table(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
 }

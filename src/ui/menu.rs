@@ -2,21 +2,28 @@
 
 use std::path::PathBuf;
 
-use egui::{Button, Context, MenuBar, Theme, Ui};
+use egui::{Button, Context, DragValue, MenuBar, Theme, Ui};
 
 use super::commands::{Command, is_enabled, key_of};
+use super::inspector::target;
 use super::outliner::add_menu;
 use super::{Out, icons};
-use crate::editor::{Editor, Mode, Selection};
-use crate::scene::Projection;
+use crate::animate::{Preset, Retime};
+use crate::editor::{Edit, Editor, Mode, Selection, Time};
+use crate::scene::{Animation, Projection};
 
 /// What of the window can be shown or hidden.
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a tick in the menu")]
 pub struct Layout {
     /// The panel on the left.
     pub outliner: bool,
     /// The panel on the right.
     pub inspector: bool,
+    /// Whether the flight of the camera is drawn into the view.
+    pub flight: bool,
+    /// Whether the shot is shown in a corner of the view.
+    pub shot: bool,
     /// Whether the still picture is shown one pixel to one pixel, with scroll bars.
     pub actual_size: bool,
 }
@@ -45,6 +52,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, recent: &[PathBuf], layout: &mut Layou
                 out.select(Selection::Render);
             }
         });
+        ui.menu_button("Animate", |ui| animate_menu(ui, editor, out));
         ui.menu_button("Help", |ui| {
             entry(ui, "Shortcuts", Command::Shortcuts, true, out);
             ui.separator();
@@ -135,9 +143,115 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut Out) {
     ui.checkbox(&mut layout.actual_size, "High-res at actual size");
     ui.checkbox(&mut layout.outliner, "Outliner");
     ui.checkbox(&mut layout.inspector, "Inspector");
+    entry(ui, "Timeline", Command::Timeline, true, out);
     entry(ui, "Lab", Command::Lab, true, out);
     ui.separator();
+    ui.checkbox(&mut layout.flight, "Flight in the view");
+    ui.checkbox(&mut layout.shot, "Shot in a corner of the view");
+    ui.separator();
     theme_choice(ui);
+}
+
+fn animate_menu(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+    let animation = &editor.scene().animation;
+    let is_recording = editor.timeline().recorded().is_some();
+    let has_keys = !animation.keys.is_empty();
+    entry(
+        ui,
+        "Play or pause",
+        Command::Play,
+        !animation.is_still(),
+        out,
+    );
+    entry(ui, "Record flight", Command::Record, !is_recording, out);
+    entry(
+        ui,
+        "Stop recording",
+        Command::StopRecording,
+        is_recording,
+        out,
+    );
+    ui.separator();
+    entry(ui, "Add key", Command::AddKey, true, out);
+    entry(ui, "Previous key", Command::PreviousKey, has_keys, out);
+    entry(ui, "Next key", Command::NextKey, has_keys, out);
+    entry(
+        ui,
+        "Look through the shot",
+        Command::LookThrough,
+        has_keys,
+        out,
+    );
+    ui.separator();
+    ui.menu_button("Ready-made flight", |ui| preset_entries(ui, editor, out));
+    ui.add_enabled_ui(animation.keys.len() > 1, |ui| {
+        ui.menu_button("Other timing", |ui| retime_entries(ui, editor, out));
+    });
+    ui.separator();
+    entry(ui, "Import path…", Command::ImportPath, true, out);
+    entry(ui, "Export path…", Command::ExportPath, has_keys, out);
+}
+
+/// Seconds that a ready-made flight takes.
+const PRESET_SECONDS: f64 = 8.0;
+
+fn preset_entries(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+    for preset in Preset::ALL {
+        let (name, hint) = preset.words();
+        let hint = format!("{hint}. Replaces the camera's keys");
+        if ui.button(name).on_hover_text(hint).clicked() {
+            let keys = preset.keys(&editor.shown().camera, target(editor), PRESET_SECONDS);
+            let changed = Animation {
+                keys,
+                take: None,
+                ..editor.scene().animation.clone()
+            };
+            out.edit(Edit::Animation(Box::new(changed), name));
+            out.time(Time::Seek(0.0));
+        }
+    }
+}
+
+fn retime_entries(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+    let animation = &editor.scene().animation;
+    let mut retimed = None;
+    for (name, hint, retime) in [
+        (
+            "Constant speed",
+            "As far in each second as in any other",
+            Retime::ConstantSpeed,
+        ),
+        (
+            "Trim pauses",
+            "Without the time in which nothing moves",
+            Retime::TrimPauses,
+        ),
+        ("Smooth", "Takes corners off the flight", Retime::Smooth),
+    ] {
+        if ui.button(name).on_hover_text(hint).clicked() {
+            retimed = Some((retime, name));
+        }
+    }
+    ui.horizontal(|ui| {
+        let first = animation.keys.first().map_or(0.0, |key| key.time);
+        let mut seconds = animation.keys.last().map_or(0.0, |key| key.time) - first;
+        ui.label("Stretch to");
+        let drag = DragValue::new(&mut seconds)
+            .range(0.1..=36_000.0)
+            .speed(0.05)
+            .suffix(" s");
+        let drag = ui.add(drag).accessible_name("length of the flight");
+        if drag.changed() && seconds.is_finite() {
+            retimed = Some((Retime::Stretch(seconds), "Stretch"));
+        }
+    });
+    if let Some((retime, name)) = retimed {
+        let changed = Animation {
+            keys: retime.apply(&animation.keys),
+            ..animation.clone()
+        };
+        out.edit(Edit::Animation(Box::new(changed), name));
+    }
 }
 
 fn theme_choice(ui: &mut Ui) {

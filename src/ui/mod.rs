@@ -17,9 +17,11 @@ mod pictures;
 mod prompts;
 mod raster;
 mod rows;
+mod run;
 mod screenshot;
 mod status;
 mod theme;
+mod timeline;
 mod toasts;
 mod upload;
 mod viewport;
@@ -31,7 +33,7 @@ pub use dialogs::{Ask, Dialogs};
 pub use lab::{chart_picture, stability_picture};
 pub use window::{NoWindow, run};
 
-use crate::editor::{Action, Edit, Selection};
+use crate::editor::{Action, Edit, Selection, Time};
 
 /// What panels ask for while they are drawn; done when all of them are.
 #[derive(Debug, Default)]
@@ -43,6 +45,10 @@ struct Out {
 impl Out {
     fn edit(&mut self, edit: Edit) {
         self.actions.push(Action::Edit(edit));
+    }
+
+    fn time(&mut self, time: Time) {
+        self.actions.push(Action::Time(time));
     }
 
     fn select(&mut self, selection: Selection) {

@@ -1,21 +1,60 @@
 //! Between the editor and the lane: which pictures are asked for, and which one is on screen.
 
+use std::collections::VecDeque;
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 use egui::Context;
 
 use super::lab::Wish;
 use super::viewport::{Screen, low_res};
 use crate::editor::{Editor, Mode};
+use crate::image::Image;
 use crate::lab::Study;
 use crate::plan::{Picture, Sampling};
-use crate::worker::{Activity, Event, Frame, LaneError, LiveJob, Pace, StillJob, Worker};
+use crate::worker::{
+    Activity, BUDGET, Event, Frame, LaneError, LiveJob, Pace, Sketch, StillJob, Worker,
+};
+
+/// Time over which pictures per second are counted.
+const RHYTHM: Duration = Duration::from_secs(1);
+
+/// When pictures of what came on the screen.
+#[derive(Debug, Default)]
+struct Rhythm {
+    shown: VecDeque<(Instant, u64)>,
+}
+
+impl Rhythm {
+    /// The first picture of each revision counts.
+    fn note(&mut self, revision: u64, now: Instant) {
+        if self.shown.back().is_none_or(|(_, last)| *last != revision) {
+            self.shown.push_back((now, revision));
+        }
+        if self.shown.len() > 256 {
+            self.shown.pop_front();
+        }
+    }
+
+    /// Pictures per second over the last second.
+    fn per_second(&self, now: Instant) -> f64 {
+        let recent = self.shown.iter().filter(|(at, _)| now - *at <= RHYTHM);
+        let times: Vec<Instant> = recent.map(|(at, _)| *at).collect();
+        match times[..] {
+            [first, .., last] if last > first => {
+                (times.len() - 1) as f64 / (last - first).as_secs_f64()
+            }
+            _ => 0.0,
+        }
+    }
+}
 
 /// The lane and its pictures.
 pub struct Pictures {
     worker: Worker,
     /// The pictures on the graphics card.
     pub screen: Screen,
+    rhythm: Rhythm,
     submitted: Option<(u64, (u32, u32), Pace)>,
     still_requested: Option<(u64, (u32, u32))>,
 }
@@ -31,6 +70,7 @@ impl Pictures {
         Ok(Self {
             worker,
             screen: Screen::default(),
+            rhythm: Rhythm::default(),
             submitted: None,
             still_requested: None,
         })
@@ -39,6 +79,9 @@ impl Pictures {
     /// Takes up what the lane has finished.
     pub fn poll(&mut self, ctx: &Context, editor: &mut Editor) {
         while let Some(frame) = self.worker.take_frame() {
+            if !frame.is_still {
+                self.rhythm.note(frame.revision, Instant::now());
+            }
             self.screen.take(ctx, frame);
         }
         for event in self.worker.take_events() {
@@ -47,6 +90,21 @@ impl Pictures {
                 Event::Failed(reason) => editor.complain(reason),
             }
         }
+    }
+
+    /// How many different pictures a second have been on screen lately.
+    pub fn per_second(&self) -> f64 {
+        self.rhythm.per_second(Instant::now())
+    }
+
+    /// Asks for small pictures, each in place of one of its name that waits.
+    pub fn request_sketches(&self, sketches: Vec<Sketch>) {
+        self.worker.request_sketches(sketches);
+    }
+
+    /// The small pictures that are finished.
+    pub fn take_sketches(&self) -> Vec<(u64, Image)> {
+        self.worker.take_sketches()
     }
 
     /// Passes a wish of the lab on to the lane.
@@ -85,14 +143,17 @@ impl Pictures {
     /// The still picture, if it is wanted and there.
     pub fn shown_still(&self, editor: &Editor) -> Option<&Frame> {
         match editor.mode {
-            Mode::HighRes => self.screen.still(editor.revision(), still_size(editor)),
+            Mode::HighRes => self
+                .screen
+                .still(editor.shown_revision(), still_size(editor)),
             Mode::Live | Mode::LowRes => None,
         }
     }
 
     /// Whether the picture on screen is the finished one of the newest scene.
     pub fn is_settled(&self, editor: &Editor) -> bool {
-        let is_finished = |frame: &Frame| frame.revision == editor.revision() && frame.step == 1;
+        let is_finished =
+            |frame: &Frame| frame.revision == editor.shown_revision() && frame.step == 1;
         let is_shown = match editor.mode {
             Mode::HighRes => self.shown_still(editor).is_some(),
             Mode::Live | Mode::LowRes => self.screen.live().is_some_and(is_finished),
@@ -103,11 +164,11 @@ impl Pictures {
     /// Asks for the still picture, and for a file of it.
     pub fn request_still(&mut self, editor: &Editor, save_to: Option<PathBuf>) {
         // What is written is also looked at.
-        self.still_requested = Some((editor.revision(), still_size(editor)));
+        self.still_requested = Some((editor.shown_revision(), still_size(editor)));
         self.worker.request_still(StillJob {
-            revision: editor.revision(),
-            scene: editor.scene().clone(),
-            picture: Picture::still(editor.scene()),
+            revision: editor.shown_revision(),
+            scene: editor.shown().clone(),
+            picture: Picture::still(editor.shown()),
             save_to,
         });
     }
@@ -120,7 +181,7 @@ impl Pictures {
 
     /// Asks for what the picture area, `pixels` large, needs and does not have.
     pub fn submit(&mut self, editor: &Editor, pixels: (u32, u32)) {
-        let revision = editor.revision();
+        let revision = editor.shown_revision();
         if editor.mode == Mode::HighRes {
             let wanted = (revision, still_size(editor));
             if self.shown_still(editor).is_none() && self.still_requested != Some(wanted) {
@@ -131,7 +192,13 @@ impl Pictures {
         self.still_requested = None;
         let (size, pace) = match editor.mode {
             Mode::LowRes => (low_res(pixels), Pace::Whole),
-            Mode::Live | Mode::HighRes => (pixels, Pace::Progressive),
+            // A frame of the animation has its time, and no more.
+            Mode::Live | Mode::HighRes if editor.timeline().is_playing => {
+                let frame = 1.0 / editor.shown().animation.frames_per_second;
+                let frame = Duration::from_secs_f64(frame / editor.timeline().speed);
+                (pixels, Pace::Within(frame.min(BUDGET)))
+            }
+            Mode::Live | Mode::HighRes => (pixels, Pace::Within(BUDGET)),
         };
         if self.submitted == Some((revision, size, pace)) {
             return;
@@ -139,13 +206,13 @@ impl Pictures {
         self.submitted = Some((revision, size, pace));
         self.worker.submit(LiveJob {
             revision,
-            scene: editor.scene().clone(),
+            scene: editor.shown().clone(),
             picture: Picture {
                 sampling: match pace {
                     Pace::Whole => Sampling::Centres,
-                    Pace::Progressive => editor.scene().render.antialias,
+                    Pace::Within(_) => editor.shown().render.antialias,
                 },
-                ..Picture::of(editor.scene(), size.0, size.1)
+                ..Picture::of(editor.shown(), size.0, size.1)
             },
             pace,
         });
@@ -153,6 +220,23 @@ impl Pictures {
 }
 
 fn still_size(editor: &Editor) -> (u32, u32) {
-    let render = &editor.scene().render;
+    let render = &editor.shown().render;
     (render.width, render.height)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rhythm_counts_each_revision_once() {
+        let (mut rhythm, start) = (Rhythm::default(), Instant::now());
+        let at = |millis: u64| start + Duration::from_millis(millis);
+        for n in 0..30_u64 {
+            rhythm.note(n, at(n * 50));
+            rhythm.note(n, at(n * 50 + 20));
+        }
+        assert!((rhythm.per_second(at(1450)) - 20.0).abs() < 1e-9);
+        assert_eq!(rhythm.per_second(at(9000)), 0.0);
+    }
 }

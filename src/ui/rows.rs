@@ -318,7 +318,9 @@ fn rounded(value: f64, unit: &str) -> String {
         size if size >= 100.0 => 2,
         size if size >= 1.0 => 3,
         size if size >= 1e-3 => 5,
-        _ => return format_number(value),
+        0.0 => 0,
+        // All its digits would be wider than the field.
+        _ => return format!("{value:.2e}"),
     };
     let text = format!("{value:.decimals$}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

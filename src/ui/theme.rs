@@ -18,6 +18,16 @@ pub const OUTLINER: f32 = 224.0;
 pub const INSPECTOR: f32 = 320.0;
 /// Height of the lab when it is first shown.
 pub const LAB: f32 = 280.0;
+/// Height of the timeline when it is first shown.
+pub const TIMELINE: f32 = 216.0;
+/// Width of the labels of the timeline's lanes.
+pub const TRACK_LABEL: f32 = 112.0;
+/// Height of a lane of the timeline.
+pub const TRACK: f32 = 20.0;
+/// Height of the small pictures above keys.
+pub const THUMB: f32 = 44.0;
+/// Height of the graph of the camera's speed.
+pub const GRAPH: f32 = 56.0;
 /// Width of a colour as `#RRGGBB`.
 pub const HEX: f32 = 60.0;
 /// Size of plain text.
@@ -48,6 +58,8 @@ pub struct Palette {
     pub accent: Color32,
     /// Text on the accent.
     pub on_accent: Color32,
+    /// Keys and curves.
+    pub curve: Color32,
     /// The selected row.
     pub selected: Color32,
     /// Errors, and nothing else.
@@ -64,6 +76,7 @@ const DARK: Palette = Palette {
     muted: Color32::from_rgb(0x8B, 0x93, 0xA5),
     accent: Color32::from_rgb(0xF2, 0xB1, 0x34),
     on_accent: Color32::from_rgb(0x16, 0x18, 0x1D),
+    curve: Color32::from_rgb(0x5C, 0xC8, 0xC2),
     selected: Color32::from_rgb(0x4A, 0x3D, 0x22),
     error: Color32::from_rgb(0xFF, 0x6B, 0x6B),
 };
@@ -78,6 +91,7 @@ const LIGHT: Palette = Palette {
     muted: Color32::from_rgb(0x5F, 0x68, 0x7A),
     accent: Color32::from_rgb(0xB4, 0x77, 0x00),
     on_accent: Color32::from_rgb(0xFF, 0xFF, 0xFF),
+    curve: Color32::from_rgb(0x00, 0x86, 0x80),
     selected: Color32::from_rgb(0xF6, 0xE2, 0xB8),
     error: Color32::from_rgb(0xC6, 0x28, 0x28),
 };

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 /// Time that a picture may take while something is being dragged: 30 pictures a second.
-const BUDGET: Duration = Duration::from_millis(33);
+pub const BUDGET: Duration = Duration::from_millis(33);
 /// A first picture never has fewer pixels along its longer side: better late than unreadable.
 const FLOOR_PIXELS: usize = 128;
 /// Coarsest step, whatever the size of the picture.
@@ -34,13 +34,13 @@ impl Budget {
         }
     }
 
-    /// The step of the first pass over a picture of this size.
-    pub fn choose(&mut self, width: usize, height: usize) -> usize {
+    /// The step of the first pass over a picture of this size that may take so long.
+    pub fn choose(&mut self, width: usize, height: usize, time: Duration) -> usize {
         let coarsest = (width.max(height) / FLOOR_PIXELS).clamp(1, COARSEST);
         let floor = 1 << coarsest.ilog2();
-        let needed = self.finest_step(width, height, 1.0).min(floor);
+        let needed = self.finest_step((width, height), time).min(floor);
         self.step = self.step.max(needed).min(floor);
-        if self.finest_step(width, height, SPARE_SHARE) < self.step {
+        if self.finest_step((width, height), time.mul_f64(SPARE_SHARE)) < self.step {
             self.spare += 1;
         } else {
             self.spare = 0;
@@ -61,9 +61,9 @@ impl Budget {
         };
     }
 
-    /// The finest step whose picture is expected to take this share of the budget.
-    fn finest_step(&self, width: usize, height: usize, share: f64) -> usize {
-        let budget = BUDGET.as_nanos() as f64 * share;
+    /// The finest step whose picture is expected to take no more than this time.
+    fn finest_step(&self, (width, height): (usize, usize), time: Duration) -> usize {
+        let budget = time.as_nanos() as f64;
         let fits = |step: &usize| {
             let pixels = (width.div_ceil(*step) * height.div_ceil(*step)) as f64;
             pixels * self.nanos_per_pixel <= budget
@@ -83,7 +83,7 @@ mod tests {
         let steps = (0..frames)
             .map(|_| {
                 budget.learn(1000, Duration::from_nanos(nanos_per_pixel * 1000));
-                budget.choose(SIDE, SIDE)
+                budget.choose(SIDE, SIDE, BUDGET)
             })
             .collect();
         (budget, steps)
@@ -100,11 +100,11 @@ mod tests {
         let (mut budget, steps) = after(1_000_000, 4);
         assert_eq!(steps, [8, 8, 8, 8], "128 pixels are left");
         assert_eq!(
-            budget.choose(200, 100),
+            budget.choose(200, 100, BUDGET),
             1,
             "a small picture has nothing to save"
         );
-        assert_eq!(budget.choose(4096, 100), COARSEST);
+        assert_eq!(budget.choose(4096, 100, BUDGET), COARSEST);
     }
 
     #[test]
@@ -112,10 +112,10 @@ mod tests {
         let border = BUDGET.as_nanos() as u64 / (SIDE * SIDE / 4) as u64;
         let (mut budget, _) = after(border, 20);
         let mut changes = 0;
-        let mut last = budget.choose(SIDE, SIDE);
+        let mut last = budget.choose(SIDE, SIDE, BUDGET);
         for n in 0..300_u64 {
             budget.learn(1000, Duration::from_nanos((border - 3 + n % 7) * 1000));
-            let step = budget.choose(SIDE, SIDE);
+            let step = budget.choose(SIDE, SIDE, BUDGET);
             changes += usize::from(step != last);
             last = step;
         }

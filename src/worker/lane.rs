@@ -7,11 +7,11 @@ use std::time::{Duration, Instant};
 use super::budget::Budget;
 use super::easel::Easel;
 use super::errand::panic_text;
-use super::{Event, Frame, LiveJob, Pace, Running, RunningJob, Shared, StillJob, lock};
+use super::{Event, Frame, LiveJob, Pace, Running, RunningJob, Shared, Sketch, StillJob, lock};
 use crate::export::save_image;
 use crate::image::{Cost, Image, render};
 use crate::lab::Study;
-use crate::plan::Sampling;
+use crate::plan::{Picture, Sampling};
 use crate::trace::{Grid, Pass, Rays, Threads, Tracer, Watch};
 
 /// Time between two reports of a study.
@@ -19,6 +19,7 @@ const NEWS: Duration = Duration::from_millis(250);
 
 enum Job {
     Live(LiveJob),
+    Sketch(Sketch),
     Still(StillJob),
     Lab(Box<Study>),
 }
@@ -50,6 +51,10 @@ pub(super) fn run(shared: &Shared, threads: &Threads) {
                     live.run(&watch, &mut budget, start);
                     Outcome::Ended
                 }
+                Job::Sketch(job) => {
+                    sketch(shared, job);
+                    Outcome::Ended
+                }
                 Job::Still(job) => still(shared, job, &watch),
                 Job::Lab(study) => {
                     if study.step(&watch) {
@@ -69,7 +74,7 @@ pub(super) fn run(shared: &Shared, threads: &Threads) {
                 }
                 woken = Instant::now();
             }
-            Job::Live(_) | Job::Still(_) => {
+            Job::Live(_) | Job::Sketch(_) | Job::Still(_) => {
                 finish(shared, matches!(outcome, Ok(Outcome::Stopped)));
             }
         }
@@ -83,7 +88,8 @@ pub(super) fn run(shared: &Shared, threads: &Threads) {
     }
 }
 
-/// Waits for work: the live view, then the still picture to look at, then those to be written.
+/// Waits for work: the live view, then small pictures, then the still picture to look at, then those
+/// to be written.
 fn next_job(shared: &Shared) -> Option<(Job, Arc<Watch>)> {
     let mut mailbox = lock(&shared.mailbox);
     loop {
@@ -92,6 +98,7 @@ fn next_job(shared: &Shared) -> Option<(Job, Arc<Watch>)> {
         }
         let live = mailbox.live.take().map(Job::Live);
         let job = live
+            .or_else(|| mailbox.sketches.pop_front().map(Job::Sketch))
             .or_else(|| mailbox.still.take().map(Job::Still))
             .or_else(|| mailbox.saves.pop_front().map(Job::Still))
             .or_else(|| mailbox.study.take().map(|study| Job::Lab(Box::new(study))));
@@ -102,6 +109,7 @@ fn next_job(shared: &Shared) -> Option<(Job, Arc<Watch>)> {
                     Job::Live(live) => RunningJob::Live {
                         revision: live.revision,
                     },
+                    Job::Sketch(_) => RunningJob::Sketch,
                     Job::Still(still) => RunningJob::Still(still.clone()),
                     Job::Lab(_) => RunningJob::Lab,
                 },
@@ -177,7 +185,7 @@ impl Live<'_> {
     fn trace_centres(&mut self, watch: &Watch, budget: &mut Budget, start: Instant) -> Option<()> {
         let mut image = self.canvas();
         let first = match self.job.pace {
-            Pace::Progressive => budget.choose(image.width, image.height),
+            Pace::Within(time) => budget.choose(image.width, image.height, time),
             Pace::Whole => 1,
         };
         let mut rays = Rays::default();
@@ -245,6 +253,17 @@ impl Live<'_> {
                 lanes: self.tracer.lanes(),
             },
         });
+    }
+}
+
+/// Small pictures are stopped by nothing but quitting.
+fn sketch(shared: &Shared, job: &Sketch) {
+    let picture = Picture {
+        sampling: Sampling::Centres,
+        ..Picture::of(&job.scene, job.size.0, job.size.1)
+    };
+    if let Some((image, _)) = render(&job.scene, &picture, &shared.first_pass) {
+        lock(&shared.news).sketches.push((job.name, image));
     }
 }
 

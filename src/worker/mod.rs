@@ -5,6 +5,7 @@
 mod budget;
 mod easel;
 mod errand;
+mod jobs;
 mod lane;
 
 use std::collections::VecDeque;
@@ -14,98 +15,14 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+pub use budget::BUDGET;
 pub use errand::{panic_text, run_errand};
+pub use jobs::{Activity, Event, Frame, LiveJob, Pace, Sketch, StillJob};
 
-use crate::image::{Cost, Image};
+use crate::image::Image;
 use crate::lab::Study;
-use crate::plan::{Picture, Sampling};
-use crate::scene::Scene;
+use crate::plan::Picture;
 use crate::trace::{PoolError, Threads, Watch};
-
-/// What the live view shall show.
-#[derive(Clone, Debug)]
-pub struct LiveJob {
-    /// Number of the scene's state; only ever grows.
-    pub revision: u64,
-    /// The scene at that revision.
-    pub scene: Arc<Scene>,
-    /// The picture, at its full resolution.
-    pub picture: Picture,
-    /// Whether coarse pictures may come first, to keep up with the hand that edits.
-    pub pace: Pace,
-}
-
-/// How a live picture is approached.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pace {
-    /// A coarse picture within the frame budget, then finer ones.
-    Progressive,
-    /// The full picture at once.
-    Whole,
-}
-
-/// A picture at full quality, on request.
-#[derive(Clone, Debug)]
-pub struct StillJob {
-    /// Number of the scene's state.
-    pub revision: u64,
-    /// The scene at that revision.
-    pub scene: Arc<Scene>,
-    /// The picture.
-    pub picture: Picture,
-    /// Where to write it. A picture that is to be written outlives edits: it is started again when
-    /// the live view is done.
-    pub save_to: Option<PathBuf>,
-}
-
-/// A picture to look at.
-#[derive(Clone, Debug)]
-pub struct Frame {
-    /// The scene's state that it shows.
-    pub revision: u64,
-    /// The pixels that are traced so far: every `step`-th of the full picture.
-    pub image: Arc<Image>,
-    /// Full width and height in pixels.
-    pub full_size: (usize, usize),
-    /// 1 in a finished picture.
-    pub step: usize,
-    /// How its edges are smoothed.
-    pub sampling: Sampling,
-    /// Whether this is the still picture and not the live view.
-    pub is_still: bool,
-    /// What it cost so far.
-    pub cost: Cost,
-}
-
-/// What the lane is doing.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Activity {
-    /// Nothing that anybody waits for; perhaps measuring.
-    Idle,
-    /// Tracing the live view of a revision.
-    Live {
-        /// The revision.
-        revision: u64,
-    },
-    /// Tracing a still picture.
-    Still {
-        /// Pixels traced, of [`Self::Still::total`].
-        done: u64,
-        /// Pixels of the picture.
-        total: u64,
-        /// Time since it was started.
-        elapsed: Duration,
-    },
-}
-
-/// What happened on the lane that the user should know.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Event {
-    /// A still picture was written to this file.
-    Saved(PathBuf),
-    /// Something failed, in words for the user.
-    Failed(String),
-}
 
 /// The system started no threads for the lane.
 #[derive(Debug, thiserror::Error)]
@@ -137,6 +54,7 @@ struct Shared {
 #[derive(Debug, Default)]
 struct Mailbox {
     live: Option<LiveJob>,
+    sketches: VecDeque<Sketch>,
     still: Option<StillJob>,
     /// Pictures that are to be written, in order.
     saves: VecDeque<StillJob>,
@@ -159,6 +77,7 @@ enum RunningJob {
         revision: u64,
     },
     Still(StillJob),
+    Sketch,
     /// A piece of the study.
     Lab,
     /// A piece of a study that was given up.
@@ -169,6 +88,7 @@ enum RunningJob {
 struct News {
     live: Option<Frame>,
     still: Option<Frame>,
+    sketches: Vec<(u64, Image)>,
     study: Option<Study>,
     events: Vec<Event>,
 }
@@ -244,6 +164,31 @@ impl Worker {
         }
         drop(mailbox);
         self.shared.bell.notify_one();
+    }
+
+    /// Asks for small pictures, in this order, before others that wait and in place of those of the
+    /// same names.
+    pub fn request_sketches(&self, sketches: Vec<Sketch>) {
+        let mut mailbox = lock(&self.shared.mailbox);
+        let waiting = std::mem::take(&mut mailbox.sketches);
+        mailbox.sketches = sketches.into();
+        let is_new = |old: &Sketch| mailbox.sketches.iter().any(|new| new.name == old.name);
+        let kept: Vec<Sketch> = waiting.into_iter().filter(|old| !is_new(old)).collect();
+        mailbox.sketches.extend(kept);
+        if let Some(Running {
+            job: RunningJob::Lab,
+            ..
+        }) = mailbox.running
+        {
+            mailbox.stop_running();
+        }
+        drop(mailbox);
+        self.shared.bell.notify_one();
+    }
+
+    /// The small pictures that were finished since the last call, by name.
+    pub fn take_sketches(&self) -> Vec<(u64, Image)> {
+        std::mem::take(&mut lock(&self.shared.news).sketches)
     }
 
     /// Gives up every still picture, waiting or running. Those that were to be written are told of
@@ -389,7 +334,10 @@ impl Running {
     fn still_activity(&self) -> Activity {
         let total = match &self.job {
             RunningJob::Still(still) => pixels(&still.picture),
-            RunningJob::Live { .. } | RunningJob::Lab | RunningJob::GivenUp => 0,
+            RunningJob::Live { .. }
+            | RunningJob::Sketch
+            | RunningJob::Lab
+            | RunningJob::GivenUp => 0,
         };
         let done = self.watch.pixels.load(Ordering::Relaxed);
         Activity::Still {

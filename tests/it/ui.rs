@@ -915,3 +915,17 @@ fn the_lab_shows_where_formulas_break_and_warns_of_those_in_use() {
         assert_eq!(warnings.next().is_some(), warned, "{method}");
     }
 }
+
+#[test]
+fn panels_keep_their_width_while_numbers_change() {
+    let mut desk = Desk::new();
+    let left = |desk: &Desk| desk.window.get_by_label("look_at x").rect().left();
+    let before = left(&desk);
+    desk.window.key_down(Key::ArrowRight);
+    desk.window.key_down(Key::W);
+    // Past the back, where one of the numbers is nearly nothing.
+    for _ in 0..300 {
+        desk.window.step();
+        assert_eq!(left(&desk), before);
+    }
+}

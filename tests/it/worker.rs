@@ -9,7 +9,7 @@ use glint::lanes::Vec3;
 use glint::plan::Picture;
 use glint::scene::{Object, Scene, Shape};
 use glint::trace::Watch;
-use glint::worker::{Activity, Event, Frame, LiveJob, Pace, StillJob, Worker};
+use glint::worker::{Activity, BUDGET, Event, Frame, LiveJob, Pace, StillJob, Worker};
 
 /// A test that waits longer than this has lost.
 const PATIENCE: Duration = Duration::from_mins(1);
@@ -20,7 +20,7 @@ fn live(revision: u64, scene: &Arc<Scene>, side: u32) -> LiveJob {
         revision,
         scene: Arc::clone(scene),
         picture,
-        pace: Pace::Progressive,
+        pace: Pace::Within(BUDGET),
     }
 }
 

@@ -11,26 +11,12 @@ use crate::ui::{Out, icons};
 /// Every property of the camera.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut Out) {
     title(ui, icons::CAMERA, "Camera");
-    let before = &editor.scene().camera;
+    let before = &editor.shown().camera;
     let mut camera = before.clone();
     let mut rows = Rows::new(ui);
-    let kinds = [Projection::Perspective, Projection::Orthographic];
-    rows.choice(
-        "projection",
-        "Whether rays spread from the eye (P) or run side by side (O)",
-        &mut camera.projection,
-        kinds.map(|kind| (kind, format!("{kind:?}"))),
-    );
-    projection_rows(&mut rows, &mut camera);
-    rows.heading("Place");
-    let defaults = Camera::default();
-    rows.vector(
-        &coordinate("position", "Where the camera stands, in world units"),
-        defaults.position,
-        &mut camera.position,
-    );
-    angle_rows(&mut rows, editor.orientation(), &mut camera);
+    place_rows(&mut rows, editor.orientation(), &mut camera);
     rows.heading("Vectors");
+    let defaults = Camera::default();
     rows.vector(
         &coordinate("look_at", "Viewing direction; its length does not matter"),
         defaults.look_at,
@@ -48,6 +34,25 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut Out) {
     if let Some(field) = changed.filter(|_| camera != *before) {
         out.edit(Edit::Camera(camera, field));
     }
+}
+
+/// Projection, place and angles.
+pub fn place_rows(rows: &mut Rows, angles: Orientation, camera: &mut Camera) {
+    let kinds = [Projection::Perspective, Projection::Orthographic];
+    rows.choice(
+        "projection",
+        "Whether rays spread from the eye (P) or run side by side (O)",
+        &mut camera.projection,
+        kinds.map(|kind| (kind, format!("{kind:?}"))),
+    );
+    projection_rows(rows, camera);
+    rows.heading("Place");
+    rows.vector(
+        &coordinate("position", "Where the camera stands, in world units"),
+        Camera::default().position,
+        &mut camera.position,
+    );
+    angle_rows(rows, angles, camera);
 }
 
 fn projection_rows(rows: &mut Rows, camera: &mut Camera) {

@@ -2,8 +2,11 @@
 
 mod camera;
 mod items;
+mod keys;
 mod needs;
 mod world;
+
+pub use keys::target;
 
 use egui::{Align2, Id, RichText, ScrollArea, TextEdit, Ui};
 use egui_material_icons::MaterialIcon;
@@ -11,15 +14,20 @@ use egui_material_icons::MaterialIcon;
 use super::theme::{GRID, ROW};
 use super::{Out, icons};
 use crate::editor::{Edit, Editor, Item, Kind, Selection};
+use crate::scene::Target;
 
 /// Shows the selection and pushes its changes.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut Out) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(GRID / 2.0);
-        let scene = editor.scene();
+        let scene = editor.shown();
         match editor.selection {
             Selection::Camera => camera::show(ui, editor, out),
-            Selection::World => world::show(ui, scene, out),
+            Selection::Keys => keys::show(ui, editor, out),
+            Selection::World => {
+                world::show(ui, scene, out);
+                keys::of_values(ui, editor, &[("ambient", Target::AmbientIntensity)], out);
+            }
             Selection::Render => world::show_picture(ui, scene, out),
             Selection::Item(Item {
                 kind: Kind::Light,
@@ -27,6 +35,12 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut Out) {
             }) => {
                 if let Some(value) = scene.lights.get(index) {
                     items::light(ui, scene, index, value, out);
+                    let owner = value.name.clone();
+                    let light = [
+                        ("position", Target::LightPosition(owner.clone())),
+                        ("intensity", Target::LightIntensity(owner)),
+                    ];
+                    keys::of_values(ui, editor, &light, out);
                 }
             }
             Selection::Item(Item {
@@ -35,6 +49,8 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut Out) {
             }) => {
                 if let Some(value) = scene.objects.get(index) {
                     items::object(ui, scene, index, value, out);
+                    let owner = Target::ObjectPosition(value.name.clone());
+                    keys::of_values(ui, editor, &[("position", owner)], out);
                 }
             }
             Selection::Item(Item {

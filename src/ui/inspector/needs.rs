@@ -30,12 +30,12 @@ pub fn show(ui: &mut Ui, editor: &Editor) {
 
 fn lines(ui: &Ui, editor: &Editor) -> Arc<Vec<Need>> {
     let id = Id::unique("needs of the scene");
-    let revision = editor.revision();
+    let revision = editor.shown_revision();
     let known = ui.data(|data| data.get_temp::<(u64, Arc<Vec<Need>>)>(id));
     match known {
         Some((of, lines)) if of == revision => lines,
         _ => {
-            let scene = editor.scene();
+            let scene = editor.shown();
             let lines = Arc::new(needs(scene, &Picture::still(scene)));
             ui.data_mut(|data| data.insert_temp(id, (revision, Arc::clone(&lines))));
             lines

@@ -16,6 +16,7 @@ use self::chart::{Chart, Spot};
 use self::look::{FACES, Face, Look};
 use self::stability::Stability;
 use super::Out;
+use super::commands::Command;
 use super::raster::draw;
 use super::theme::{GRID, palette};
 use super::viewport::Place;
@@ -129,9 +130,9 @@ impl Lab {
     /// Shows the panel.
     pub fn show(&mut self, ui: &mut Ui, editor: &Editor, out: &mut Out) -> Option<Wish> {
         ui.add_space(GRID / 2.0);
-        let wish = ui.horizontal(|ui| self.show_head(ui, editor)).inner;
+        let wish = ui.horizontal(|ui| self.show_head(ui, editor, out)).inner;
         if self.shows_maps {
-            self.stability.show(ui, editor.scene());
+            self.stability.show(ui, editor.shown());
             return wish;
         }
         ui.horizontal_top(|ui| {
@@ -147,7 +148,14 @@ impl Lab {
         wish
     }
 
-    fn show_head(&mut self, ui: &mut Ui, editor: &Editor) -> Option<Wish> {
+    fn show_head(&mut self, ui: &mut Ui, editor: &Editor, out: &mut Out) -> Option<Wish> {
+        let timeline = ui.selectable_label(false, "Timeline");
+        if timeline
+            .on_hover_text("Keys and playing (Ctrl+T)")
+            .clicked()
+        {
+            out.commands.push(Command::Timeline);
+        }
         for (maps, name, hint) in [
             (
                 false,
@@ -184,7 +192,7 @@ impl Lab {
             .on_hover_text("Trace the scene in every way there is, and compare: a few seconds")
             .clicked()
         {
-            let study = Box::new(Study::of_side(Arc::clone(editor.scene()), SIDE));
+            let study = Box::new(Study::of_side(Arc::clone(editor.shown()), SIDE));
             self.study = Some(study.clone());
             self.chosen = None;
             self.number += 1;
@@ -288,7 +296,7 @@ impl Lab {
         let hint = obstacle.unwrap_or("Trace the scene with these settings (one undo step)");
         let adopt = adopt.on_hover_text(hint).on_disabled_hover_text(hint);
         if adopt.clicked() {
-            let own = &editor.scene().render;
+            let own = &editor.shown().render;
             let render = Render {
                 width: own.width,
                 height: own.height,
@@ -326,8 +334,8 @@ impl Lab {
             ..scene.clone()
         };
         self.study.as_ref().is_some_and(|study| {
-            !Arc::ptr_eq(study.scene(), editor.scene())
-                && bare(study.scene()) != bare(editor.scene())
+            !Arc::ptr_eq(study.scene(), editor.shown())
+                && bare(study.scene()) != bare(editor.shown())
         })
     }
 

@@ -1,0 +1,217 @@
+//! Where on the line of time the editor is: the playhead, playing, recording.
+
+use std::collections::BTreeSet;
+
+use crate::animate::Seen;
+use crate::scene::{Animation, Camera, Framing, Orientation, Scene, Take};
+use crate::trace::sight::Sight;
+
+/// Side of the grid of places at which a picture is watched for how far it is off.
+const WATCHED: u32 = 5;
+/// The picture that a deviation is told for, in pixels.
+pub const MEASURED_AT: f64 = 1024.0;
+
+/// What happens at the ends of the timeline.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Repeat {
+    /// It stops.
+    Once,
+    /// It starts again.
+    #[default]
+    Loop,
+    /// It turns back.
+    PingPong,
+}
+
+/// Something asked of the timeline.
+#[derive(Clone, Debug)]
+pub enum Time {
+    /// Put the playhead at the frame nearest to so many seconds.
+    Seek(f64),
+    /// Put it so many frames further, or back.
+    Step(i64),
+    /// Play or pause.
+    Play(bool),
+    /// So many seconds have passed.
+    Tick(f64),
+    /// What happens at the ends.
+    Repeat(Repeat),
+    /// Playing speed, 1 is real time.
+    Speed(f64),
+    /// Show the picture of the shot camera, or the one of the view.
+    LookThrough(bool),
+    /// Select these keys, by place.
+    SelectKeys(BTreeSet<usize>),
+    /// Start to record what the camera does; the clock shows so many seconds.
+    Record(f64),
+    /// The camera as it is, at this time of the clock, is part of the recording.
+    Sample(f64),
+    /// Make keys of what was recorded.
+    Stop,
+    /// Make keys of the take anew: off by so many pixels of a picture 1024 high at most.
+    Simplify(f64),
+}
+
+/// The state of the timeline; changed by [`Time`] actions.
+#[derive(Clone, Debug)]
+pub struct Timeline {
+    /// Seconds from the start.
+    pub playhead: f64,
+    /// Whether time passes.
+    pub is_playing: bool,
+    /// What happens at the ends.
+    pub repeat: Repeat,
+    /// 1 is real time.
+    pub speed: f64,
+    /// Whether the picture is that of the shot camera, if there are keys.
+    pub looks_through: bool,
+    /// Places of the selected camera keys.
+    pub selected: BTreeSet<usize>,
+    /// How far keys made of a take may be off, in pixels of a picture 1024 high.
+    pub tolerance: f64,
+    /// How far the keys made last are off, in the same pixels.
+    pub worst: Option<f64>,
+    is_returning: bool,
+    pub(super) recording: Option<Recording>,
+}
+
+/// A flight that is being recorded.
+#[derive(Clone, Debug)]
+pub(super) struct Recording {
+    pub take: Take,
+    start: f64,
+}
+
+impl Default for Timeline {
+    fn default() -> Self {
+        Self {
+            playhead: 0.0,
+            is_playing: false,
+            repeat: Repeat::default(),
+            speed: 1.0,
+            looks_through: false,
+            selected: BTreeSet::new(),
+            tolerance: 1.0,
+            worst: None,
+            is_returning: false,
+            recording: None,
+        }
+    }
+}
+
+impl Timeline {
+    /// Samples recorded so far, and their seconds; `None` while nothing is recorded.
+    pub fn recorded(&self) -> Option<(usize, f64)> {
+        let take = &self.recording.as_ref()?.take;
+        Some((
+            take.samples.len(),
+            take.samples.last().map_or(0.0, |last| last.0),
+        ))
+    }
+
+    /// The time that is on show: that of the frame that the playhead has reached.
+    pub fn shown_time(&self, animation: &Animation) -> f64 {
+        animation.time_of(animation.frame_at(self.playhead))
+    }
+
+    pub(super) fn seek(&mut self, animation: &Animation, seconds: f64) {
+        let half = 0.5 / animation.frames_per_second;
+        let frame = animation.frame_at(seconds + half);
+        self.playhead = animation.time_of(frame);
+        self.is_returning = false;
+    }
+
+    /// Time passes; at the ends, what was chosen happens.
+    pub(super) fn tick(&mut self, seconds: f64, duration: f64) {
+        if !self.is_playing {
+            return;
+        }
+        let step = seconds * self.speed;
+        match self.repeat {
+            _ if duration <= 0.0 => self.playhead = 0.0,
+            Repeat::Once => {
+                self.playhead += step;
+                if self.playhead >= duration {
+                    self.playhead = duration;
+                    self.is_playing = false;
+                }
+            }
+            Repeat::Loop => self.playhead = (self.playhead + step).rem_euclid(duration),
+            Repeat::PingPong => {
+                // On a line of twice the length, whose second half is the way back.
+                let there = if self.is_returning {
+                    2.0 * duration - self.playhead
+                } else {
+                    self.playhead
+                };
+                let there = (there + step).rem_euclid(2.0 * duration);
+                self.is_returning = there > duration;
+                self.playhead = if self.is_returning {
+                    2.0 * duration - there
+                } else {
+                    there
+                };
+            }
+        }
+    }
+
+    pub(super) fn play(&mut self, is_playing: bool, animation: &Animation) {
+        self.is_playing = is_playing;
+        if !is_playing {
+            self.playhead = self.shown_time(animation);
+        } else if self.repeat == Repeat::Once && self.playhead >= animation.duration() - 1e-9 {
+            self.playhead = 0.0;
+        }
+    }
+
+    pub(super) fn record(&mut self, now: f64) {
+        self.is_playing = false;
+        self.recording = Some(Recording {
+            take: Take::default(),
+            start: now,
+        });
+    }
+
+    pub(super) fn sample(&mut self, now: f64, camera: &Camera, angles: Orientation) {
+        if let Some(recording) = &mut self.recording {
+            recording.take.push(now - recording.start, camera, angles);
+        }
+    }
+}
+
+/// What every sample of a take sees of the scene, at a grid of places.
+pub(super) fn watched(take: &Take, scene: &Scene) -> Vec<Vec<Seen>> {
+    let sight = Sight::new(scene);
+    let aspect = f64::from(scene.render.width) / f64::from(scene.render.height);
+    let last = f64::from(WATCHED - 1);
+    let at = |n: u32| {
+        let (x, y) = (f64::from(n % WATCHED), f64::from(n / WATCHED));
+        [(x / last - 0.5) * aspect, y / last - 0.5]
+    };
+    let look = |framing: &Framing, at: [f64; 2]| {
+        let (origin, direction) = framing.ray(at);
+        let distance = sight.distance(origin, direction);
+        let is_sky = distance.is_infinite();
+        Seen {
+            at,
+            what: if is_sky {
+                direction
+            } else {
+                origin + direction * distance
+            },
+            is_sky,
+        }
+    };
+    let camera = |sample: usize| {
+        let framing = take.camera(sample).and_then(|camera| camera.framing());
+        framing.map_or(Vec::new(), |framing| {
+            let all = (0..WATCHED * WATCHED).map(|n| look(&framing, at(n)));
+            // Rays that run side by side all see the same place of the sky.
+            let is_flat = framing
+                .project_direction(framing.ray([0.0, 0.0]).1)
+                .is_none();
+            all.filter(|seen| !(seen.is_sky && is_flat)).collect()
+        })
+    };
+    (0..take.samples.len()).map(camera).collect()
+}

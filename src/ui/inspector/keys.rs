@@ -1,0 +1,199 @@
+//! The selected keys of the camera, and the keys of other values.
+
+use egui::{Button, Ui};
+
+use super::camera::place_rows;
+use super::title;
+use crate::editor::{Edit, Editor, Time};
+use crate::scene::{
+    Animation, Camera, Easing, Interpolation, Key, MAX_SECONDS, Orientation, Target,
+};
+use crate::ui::rows::{Field, Rows, coordinate};
+use crate::ui::{Out, icons};
+
+/// Time, way and camera of the selected keys; what several keys do not share is not shown.
+pub fn show(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+    let animation = &editor.scene().animation;
+    let places = &editor.timeline().selected;
+    let Some(first) = places
+        .iter()
+        .next()
+        .and_then(|&place| animation.keys.get(place))
+    else {
+        return;
+    };
+    let name = match places.len() {
+        1 => format!("Key {}", places.iter().next().map_or(0, |place| place + 1)),
+        count => format!("{count} keys"),
+    };
+    title(ui, icons::KEY, &name);
+    let mut key = first.clone();
+    let mut rows = Rows::new(ui);
+    if places.len() == 1 {
+        rows.number(&time_field(), &mut key.time);
+    }
+    way_rows(&mut rows, editor, &mut key);
+    if places.len() == 1 {
+        rows.heading("Camera");
+        let angles = Orientation::of(&key.value);
+        place_rows(&mut rows, angles, &mut key.value);
+    }
+    let changed = rows.changed();
+    ui.horizontal_wrapped(|ui| buttons(ui, editor, out));
+    let Some(field) = changed.filter(|_| key != *first) else {
+        return;
+    };
+    if key.time != first.time {
+        let (moved, new) = animation.with_moved(places, key.time - first.time, false);
+        out.edit(Edit::Animation(Box::new(moved), "Key: time"));
+        return out.time(Time::SelectKeys(new));
+    }
+    let changed = animation.with_each(places, |each| {
+        each.interpolation = key.interpolation;
+        each.easing = key.easing;
+        if places.len() == 1 {
+            each.value = key.value.clone();
+        }
+    });
+    let label = match field {
+        "way" => "Key: way",
+        "pace" => "Key: pace",
+        _ => "Key: camera",
+    };
+    out.edit(Edit::Animation(Box::new(changed), label));
+}
+
+fn time_field() -> Field {
+    Field {
+        name: "time",
+        hint: "Seconds from the start",
+        unit: " s",
+        default: 0.0,
+        range: 0.0..=MAX_SECONDS,
+        speed: Some(0.02),
+    }
+}
+
+fn way_rows(rows: &mut Rows, editor: &Editor, key: &mut Key<Camera>) {
+    let around = match key.interpolation {
+        Interpolation::Orbit { around } => around,
+        _ => target(editor),
+    };
+    let ways = [
+        Interpolation::Smooth,
+        Interpolation::Linear,
+        Interpolation::Hold,
+        Interpolation::Orbit { around },
+    ];
+    rows.choice(
+        "way",
+        "How the camera goes on to the next key.\nsmooth: in a curve\nlinear: straight\nhold: stays, then cuts\norbit: on an arc around a point",
+        &mut key.interpolation,
+        ways.map(|way| (way, way.name().to_owned())),
+    );
+    if let Interpolation::Orbit { around } = &mut key.interpolation {
+        let field = coordinate("around", "The point that the arc goes around");
+        let before = *around;
+        rows.vector(&field, before, around);
+    }
+    rows.choice(
+        "pace",
+        "How fast, on the way to the next key",
+        &mut key.easing,
+        Easing::ALL.map(|easing| (easing, easing.name().to_owned())),
+    );
+}
+
+/// The middle of what is selected, or of everything.
+pub fn target(editor: &Editor) -> crate::lanes::Vec3<f64> {
+    use crate::editor::{Item, Kind, Selection};
+    let scene = editor.shown();
+    let selected = match editor.selection {
+        Selection::Item(Item {
+            kind: Kind::Object,
+            index,
+        }) => scene
+            .objects
+            .get(index)
+            .and_then(|object| object.shape.bounds()),
+        Selection::Item(Item {
+            kind: Kind::Light,
+            index,
+        }) => scene
+            .lights
+            .get(index)
+            .map(|light| (light.position, light.position)),
+        _ => None,
+    };
+    let all = scene.objects.iter().filter(|object| object.visible);
+    let all = all.filter_map(|object| object.shape.bounds());
+    let all = all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let bounds = selected.or(all);
+    bounds.map_or(crate::lanes::Vec3::splat(0.0), |(low, high)| {
+        (low + high) * 0.5
+    })
+}
+
+fn buttons(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+    let animation = &editor.scene().animation;
+    let places = &editor.timeline().selected;
+    let overwrite = ui.add_enabled(places.len() == 1, Button::new("Overwrite with view"));
+    let hint = "Put the camera of the view into this key";
+    if overwrite.on_hover_text(hint).clicked() {
+        let view = editor.shown().camera.clone();
+        let changed = animation.with_each(places, |key| key.value = view.clone());
+        out.edit(Edit::Animation(Box::new(changed), "Overwrite key"));
+    }
+    let go = ui.add_enabled(places.len() == 1, Button::new("Go there"));
+    let key = places
+        .iter()
+        .next()
+        .and_then(|&place| animation.keys.get(place));
+    if go.on_hover_text("Put the playhead on this key").clicked()
+        && let Some(key) = key
+    {
+        out.time(Time::Seek(key.time));
+    }
+    if ui.button("Delete").clicked() {
+        let kept = animation.without_keys(places);
+        out.edit(Edit::Animation(Box::new(kept), "Delete keys"));
+        out.time(Time::SelectKeys(std::collections::BTreeSet::new()));
+    }
+}
+
+/// A button for each value that can carry keys: sets one at the playhead, or takes it away.
+pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[(&str, Target)], out: &mut Out) {
+    let animation: &Animation = &editor.scene().animation;
+    let time = editor.shown_time();
+    ui.horizontal(|ui| {
+        ui.weak("Keys");
+        for (name, target) in values {
+            let track = animation.track(target);
+            let near = 0.25 / animation.frames_per_second;
+            let has_key = track.is_some_and(|track| {
+                let mut keys = track.keys.iter();
+                keys.any(|key| (key.time - time).abs() < near)
+            });
+            let mark = if has_key { "◆" } else { "◇" };
+            let count = track.map_or(String::new(), |track| format!(" {}", track.keys.len()));
+            let button = Button::selectable(track.is_some(), format!("{mark} {name}{count}"));
+            let hint = if has_key {
+                "Take the key at the playhead away"
+            } else {
+                "Set a key at the playhead; from then on, changes set keys"
+            };
+            let button = ui.add(button).on_hover_text(hint);
+            if button.accessible_name(format!("key {name}")).clicked() {
+                let changed = if has_key {
+                    Some(animation.without_value(target, time))
+                } else {
+                    let value = target.get(editor.shown());
+                    value.map(|value| animation.with_value(target, time, value))
+                };
+                if let Some(changed) = changed {
+                    out.edit(Edit::Animation(Box::new(changed), "Key value"));
+                }
+            }
+        }
+    });
+}

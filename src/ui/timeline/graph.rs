@@ -1,0 +1,205 @@
+//! How fast the camera moves and turns from frame to frame, and where that jumps.
+
+use egui::{Ui, Vec2b, vec2};
+use egui_plot::{HoverPosition, Line, MarkerShape, Plot, PlotPoint, PlotPoints, Points};
+
+use super::lanes::Scale;
+use crate::animate::{CameraPath, Motion, motion_between};
+use crate::editor::Editor;
+use crate::scene::{Animation, Camera, Interpolation, Key};
+use crate::ui::theme::{GRAPH, palette};
+
+/// Most places that are looked at; a longer flight is looked at in larger steps.
+const MOST: u64 = 4000;
+/// A step is a jump if it is so many times the one before or after, and the mean.
+const JUMP: f64 = 4.0;
+/// Faster turns are hard to watch, in degrees per second.
+const DIZZY: f64 = 120.0;
+
+/// The curves of the flight that was looked at last.
+#[derive(Default)]
+pub struct Graph {
+    made_for: Option<(Vec<Key<Camera>>, f64)>,
+    steps: Vec<Step>,
+}
+
+/// From one frame to the next.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    time: f64,
+    /// World units per second.
+    speed: f64,
+    /// Degrees per second.
+    turn: f64,
+    /// Whether it is much more than beside it, or too much to watch.
+    is_rough: bool,
+}
+
+impl Graph {
+    /// Draws speed and turn rate, each as a share of its highest.
+    pub fn show(&mut self, ui: &mut Ui, scale: &Scale, editor: &Editor) {
+        self.follow(editor);
+        let colors = palette(ui.ctx());
+        let highest = |of: fn(&Step) -> f64| self.steps.iter().map(of).fold(0.0, f64::max);
+        let (fastest, sharpest) = (highest(|step| step.speed), highest(|step| step.turn));
+        let line = |of: fn(&Step) -> f64, most: f64| {
+            let at = |step: &Step| [step.time, if most > 0.0 { of(step) / most } else { 0.0 }];
+            self.steps.iter().map(at).collect::<Vec<[f64; 2]>>()
+        };
+        let rough = self.steps.iter().filter(|step| step.is_rough).count();
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            let label = scale.left - ui.max_rect().left();
+            ui.allocate_ui(vec2(label, GRAPH), |ui| {
+                ui.vertical(|ui| {
+                    ui.set_width(label);
+                    ui.small(egui::RichText::new(format!("speed ≤ {fastest:.1}/s")).color(colors.curve));
+                    ui.small(egui::RichText::new(format!("turn ≤ {sharpest:.0}°/s")).color(colors.muted));
+                    if rough > 0 {
+                        let text = egui::RichText::new(format!("{rough} jumps")).color(colors.accent);
+                        ui.small(text).on_hover_text("Frames where speed or turn changes abruptly, or turns by more than 120° a second");
+                    }
+                });
+            });
+            Plot::new("speed of the flight")
+                .width(scale.width)
+                .height(GRAPH)
+                .show_axes(Vec2b::FALSE)
+                .show_grid(Vec2b::FALSE)
+                .allow_drag(false)
+                .allow_zoom(false)
+                .allow_scroll(false)
+                .allow_boxed_zoom(false)
+                .allow_double_click_reset(false)
+                .set_margin_fraction(vec2(0.0, 0.0))
+                .auto_bounds(Vec2b::FALSE)
+                .default_x_bounds(0.0, scale.end)
+                .default_y_bounds(-0.05, 1.1)
+                .label_formatter(|hover| self.label(hover))
+                .show(ui, |plot| {
+                    plot.set_plot_bounds_x(0.0..=scale.end);
+                    let speed = line(|step| step.speed, fastest);
+                    plot.line(Line::new("speed", speed).color(colors.curve));
+                    let turn = line(|step| step.turn, sharpest);
+                    plot.line(Line::new("turn", turn).color(colors.muted));
+                    let at = |step: &Step| [step.time, 1.0];
+                    let rough = self.steps.iter().filter(|step| step.is_rough);
+                    let rough: Vec<[f64; 2]> = rough.map(at).collect();
+                    let marks = Points::new("jump", PlotPoints::from(rough));
+                    plot.points(marks.shape(MarkerShape::Down).radius(4.0).color(colors.accent));
+                    let now = editor.shown_time();
+                    let playhead = vec![[now, -1.0], [now, 2.0]];
+                    plot.line(Line::new("playhead", playhead).color(colors.accent).width(1.0));
+                });
+        });
+    }
+
+    fn label(&self, hover: &HoverPosition) -> Option<String> {
+        let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) =
+            hover;
+        let PlotPoint { x, .. } = *position;
+        let near = self.steps.iter();
+        let near = near.min_by(|a, b| (a.time - x).abs().total_cmp(&(b.time - x).abs()))?;
+        Some(format!(
+            "{:.2} s: {:.1}/s, {:.0}°/s",
+            near.time, near.speed, near.turn
+        ))
+    }
+
+    fn follow(&mut self, editor: &Editor) {
+        let Animation {
+            keys,
+            frames_per_second,
+            ..
+        } = &editor.scene().animation;
+        let is_same =
+            |made: &(Vec<Key<Camera>>, f64)| made.0 == *keys && made.1 == *frames_per_second;
+        if !self.made_for.as_ref().is_some_and(is_same) {
+            self.made_for = Some((keys.clone(), *frames_per_second));
+            self.steps = steps(&editor.scene().animation, editor.path_of_camera());
+        }
+    }
+}
+
+fn steps(animation: &Animation, path: &CameraPath) -> Vec<Step> {
+    let (count, fps) = (animation.frame_count(), animation.frames_per_second);
+    let stride = count.div_ceil(MOST).max(1);
+    let frames: Vec<u64> = (1..=count).step_by(stride as usize).collect();
+    let motion = |pair: &[u64]| {
+        let [from, to] = [pair[0], pair[1]].map(|frame| path.at(animation.time_of(frame)));
+        let still = Motion::default();
+        from.zip(to)
+            .map_or(still, |(from, to)| motion_between(&from, &to))
+    };
+    let motions: Vec<Motion> = frames.windows(2).map(motion).collect();
+    let each = motions.len().max(1) as f64;
+    let mean = |of: fn(&Motion) -> f64| motions.iter().map(of).sum::<f64>() / each;
+    let (mean_distance, mean_turn) = (mean(|m| m.distance), mean(|m| m.turn));
+    let per_second = fps / stride as f64;
+    let step = |place: usize| {
+        let time = animation.time_of(frames[place + 1]);
+        let is_cut = animation.keys.windows(2).any(|pair| {
+            let is_hold = pair[0].interpolation == Interpolation::Hold;
+            is_hold
+                && pair[1].time > animation.time_of(frames[place])
+                && pair[1].time <= time + 1e-6
+        });
+        let beside = [place.checked_sub(1), Some(place + 1)];
+        let is_jump = |of: fn(&Motion) -> f64, mean: f64| {
+            let here = of(&motions[place]);
+            let beside = beside
+                .into_iter()
+                .flatten()
+                .filter_map(|near| motions.get(near));
+            here > JUMP * mean && beside.map(of).any(|near| here > JUMP * near)
+        };
+        let Motion { distance, turn } = motions[place];
+        let is_jump = is_jump(|m| m.distance, mean_distance) || is_jump(|m| m.turn, mean_turn);
+        Step {
+            time,
+            speed: if is_cut { 0.0 } else { distance * per_second },
+            turn: if is_cut { 0.0 } else { turn * per_second },
+            is_rough: !is_cut && (is_jump || turn * per_second > DIZZY),
+        }
+    };
+    (0..motions.len()).map(step).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::Vec3;
+
+    fn flight(places: &[(f64, f64)]) -> Animation {
+        let key = |&(time, x): &(f64, f64)| {
+            let camera = Camera {
+                position: Vec3::new(x, 0.0, 0.0),
+                ..Camera::default()
+            };
+            let mut key = Key::new(time, camera);
+            key.interpolation = Interpolation::Linear;
+            key
+        };
+        Animation {
+            frames_per_second: 10.0,
+            keys: places.iter().map(key).collect(),
+            ..Animation::default()
+        }
+    }
+
+    fn rough(animation: &Animation) -> Vec<f64> {
+        let steps = steps(animation, &CameraPath::new(&animation.keys));
+        let rough = steps.iter().filter(|step| step.is_rough);
+        rough.map(|step| step.time).collect()
+    }
+
+    #[test]
+    fn a_jump_is_told_and_a_cut_is_not() {
+        let even = flight(&[(0.0, 0.0), (2.0, 20.0), (4.0, 40.0)]);
+        assert!(rough(&even).is_empty());
+        let mut jumpy = flight(&[(0.0, 0.0), (2.0, 20.0), (2.1, 90.0), (4.0, 109.0)]);
+        assert_eq!(rough(&jumpy), [2.1]);
+        jumpy.keys[1].interpolation = Interpolation::Hold;
+        assert!(rough(&jumpy).is_empty());
+    }
+}

@@ -1,0 +1,398 @@
+//! Time from left to right: the ruler, the camera's keys, and those of other values.
+
+use std::collections::BTreeSet;
+
+use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
+
+use crate::editor::{Edit, Editor, Time};
+use crate::scene::{Animation, Easing, Interpolation, Target};
+use crate::ui::Out;
+use crate::ui::theme::{GRID, TRACK, palette};
+
+/// Half the width of a key.
+const KEY: f32 = 5.0;
+/// Least room between two times that are written out.
+const APART: f32 = 64.0;
+/// Least room between two marks of frames.
+const FRAME_APART: f32 = 4.0;
+/// Steps of written times, in seconds.
+const STEPS: [f64; 11] = [
+    0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 600.0, 3600.0,
+];
+/// Size of the written times.
+const SMALL: f32 = 10.0;
+
+/// From time to place on the screen.
+#[derive(Clone, Copy, Debug)]
+pub struct Scale {
+    /// Where time 0 is, in points.
+    pub left: f32,
+    /// Width of all of it, in points.
+    pub width: f32,
+    /// The time at its right end, in seconds.
+    pub end: f64,
+}
+
+impl Scale {
+    /// Place of a time.
+    pub fn x(&self, time: f64) -> f32 {
+        self.left + (time / self.end) as f32 * self.width
+    }
+
+    fn time(&self, x: f32) -> f64 {
+        f64::from((x - self.left) / self.width) * self.end
+    }
+}
+
+/// Keys on their way.
+#[derive(Clone, Debug)]
+pub struct Drag {
+    /// What they are keys of; `None` for the camera.
+    target: Option<Target>,
+    /// The animation before.
+    before: Animation,
+    /// Places of the camera's keys.
+    places: BTreeSet<usize>,
+    /// Time of the key that the pointer holds.
+    from: f64,
+    are_copies: bool,
+}
+
+/// Seconds, frames, and the playhead, which follows the pointer.
+pub fn ruler(ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut Out) {
+    let (rect, response) = lane(ui, scale, Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Playhead"));
+    if let Some(pointer) = response.interact_pointer_pos() {
+        out.time(Time::Seek(scale.time(pointer.x)));
+    }
+    let colors = palette(ui.ctx());
+    let painter = ui.painter();
+    let animation = &editor.scene().animation;
+    let per_second = scale.width / scale.end as f32;
+    let step = STEPS
+        .iter()
+        .find(|step| **step as f32 * per_second >= APART);
+    let step = step.copied().unwrap_or(scale.end);
+    let line = Stroke::new(1.0, colors.line);
+    for n in 0..=(scale.end / step) as u32 {
+        let x = scale.x(f64::from(n) * step);
+        painter.vline(x, rect.y_range(), line);
+        let text = format!("{} s", (f64::from(n) * step * 10.0).round() / 10.0);
+        let at = pos2(x + GRID / 2.0, rect.top());
+        painter.text(
+            at,
+            Align2::LEFT_TOP,
+            text,
+            FontId::proportional(SMALL),
+            colors.muted,
+        );
+    }
+    if per_second / animation.frames_per_second as f32 >= FRAME_APART {
+        for frame in 1..=animation.frame_count() {
+            let x = scale.x(animation.time_of(frame));
+            painter.vline(x, rect.bottom() - GRID / 2.0..=rect.bottom(), line);
+        }
+    }
+    playhead(ui, scale, rect, editor);
+    let x = scale.x(editor.shown_time());
+    let tip = pos2(x, rect.bottom());
+    let corners = vec![tip + vec2(-KEY, -KEY), tip + vec2(KEY, -KEY), tip];
+    ui.painter()
+        .add(Shape::convex_polygon(corners, colors.accent, Stroke::NONE));
+}
+
+fn playhead(ui: &Ui, scale: &Scale, rect: Rect, editor: &Editor) {
+    let x = scale.x(editor.shown_time());
+    let stroke = Stroke::new(1.0, palette(ui.ctx()).accent);
+    ui.painter().vline(x, rect.y_range(), stroke);
+}
+
+/// A strip as wide as the time, with the part for a label to its left.
+fn lane(ui: &mut Ui, scale: &Scale, sense: Sense) -> (Rect, Response) {
+    let (whole, _) = ui.allocate_exact_size(vec2(ui.available_width(), TRACK), Sense::hover());
+    let rect = Rect::from_x_y_ranges(scale.left..=scale.left + scale.width, whole.y_range());
+    let id = ui.scope_id().with(("lane", whole.top() as i32));
+    // The first moment can be hit from a little to its left.
+    let response = ui.interact(rect.expand2(vec2(GRID, 0.0)), id, sense);
+    (rect, response)
+}
+
+fn label(ui: &Ui, rect: Rect, text: &str) {
+    let colors = palette(ui.ctx());
+    let room = Rect::from_min_max(pos2(ui.max_rect().left(), rect.top()), rect.left_bottom());
+    let painter = ui.painter().with_clip_rect(room.shrink2(vec2(GRID, 0.0)));
+    let at = room.left_center() + vec2(GRID, 0.0);
+    painter.text(
+        at,
+        Align2::LEFT_CENTER,
+        text,
+        FontId::proportional(SMALL + 1.0),
+        colors.muted,
+    );
+}
+
+fn diamond(ui: &Ui, at: Pos2, fill: Color32, is_cut: bool) {
+    let corners = if is_cut {
+        // What is held is a square.
+        let half = KEY * 0.8;
+        [
+            vec2(-half, -half),
+            vec2(half, -half),
+            vec2(half, half),
+            vec2(-half, half),
+        ]
+    } else {
+        [
+            vec2(0.0, -KEY),
+            vec2(KEY, 0.0),
+            vec2(0.0, KEY),
+            vec2(-KEY, 0.0),
+        ]
+    };
+    let corners = corners.map(|corner| at + corner).to_vec();
+    ui.painter()
+        .add(Shape::convex_polygon(corners, fill, Stroke::NONE));
+}
+
+/// The camera's keys: click, Shift-click, drag, Ctrl-drag, and a menu.
+pub fn keys(ui: &mut Ui, scale: &Scale, editor: &Editor, drag: &mut Option<Drag>, out: &mut Out) {
+    let (rect, response) = lane(ui, scale, Sense::click());
+    if response.clicked() {
+        out.time(Time::SelectKeys(BTreeSet::new()));
+    }
+    label(ui, rect, "Camera");
+    let colors = palette(ui.ctx());
+    let animation = &editor.scene().animation;
+    ways(ui, scale, rect, animation);
+    playhead(ui, scale, rect, editor);
+    let selected = &editor.timeline().selected;
+    for (place, key) in animation.keys.iter().enumerate() {
+        let at = pos2(scale.x(key.time), rect.center().y);
+        let near = Rect::from_center_size(at, vec2(2.0 * KEY + 2.0, TRACK));
+        let response = ui.interact(
+            near,
+            ui.scope_id().with(("key", place)),
+            Sense::click_and_drag(),
+        );
+        let name = format!("Key {}", place + 1);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+        let is_on = selected.contains(&place);
+        let fill = match (is_on, response.hovered()) {
+            (true, _) => colors.accent,
+            (false, true) => colors.text,
+            (false, false) => colors.curve,
+        };
+        diamond(ui, at, fill, key.interpolation == Interpolation::Hold);
+        pick(ui, &response, place, editor, drag, out);
+        response.context_menu(|ui| menu(ui, place, editor, out));
+        response.on_hover_text(format!(
+            "{name}: {:.3} s, {}\nDrag to move, Ctrl-drag to copy, Shift-click for several",
+            key.time,
+            key.interpolation.name()
+        ));
+    }
+    follow(ui, scale, editor, drag, out);
+}
+
+/// Lines between keys: straight ones thin, curves thick, none where it is held.
+fn ways(ui: &Ui, scale: &Scale, rect: Rect, animation: &Animation) {
+    let color = palette(ui.ctx()).line;
+    for pair in animation.keys.windows(2) {
+        let width = match pair[0].interpolation {
+            Interpolation::Hold => continue,
+            Interpolation::Linear => 1.0,
+            Interpolation::Smooth | Interpolation::Orbit { .. } => 3.0,
+        };
+        let span = scale.x(pair[0].time)..=scale.x(pair[1].time);
+        ui.painter()
+            .hline(span, rect.center().y, Stroke::new(width, color));
+    }
+}
+
+/// A click selects, a drag starts to move.
+fn pick(
+    ui: &Ui,
+    response: &Response,
+    place: usize,
+    editor: &Editor,
+    drag: &mut Option<Drag>,
+    out: &mut Out,
+) {
+    let selected = &editor.timeline().selected;
+    let modifiers = ui.input(|input| input.modifiers);
+    if response.clicked() {
+        let mut places = selected.clone();
+        if modifiers.shift {
+            if !places.remove(&place) {
+                places.insert(place);
+            }
+        } else {
+            places = BTreeSet::from([place]);
+        }
+        out.time(Time::SelectKeys(places));
+    }
+    if response.drag_started() {
+        let places = if selected.contains(&place) {
+            selected.clone()
+        } else {
+            BTreeSet::from([place])
+        };
+        let before = editor.scene().animation.clone();
+        *drag = Some(Drag {
+            target: None,
+            from: before.keys[place].time,
+            before,
+            places,
+            are_copies: modifiers.command,
+        });
+    }
+}
+
+/// Moves what is dragged to the frame at the pointer.
+fn follow(ui: &Ui, scale: &Scale, editor: &Editor, drag: &mut Option<Drag>, out: &mut Out) {
+    let Some(held) = drag.as_ref().filter(|drag| drag.target.is_none()) else {
+        return;
+    };
+    let Some(to) = pointed(ui, scale, &held.before) else {
+        *drag = None;
+        return;
+    };
+    let (moved, new) = held
+        .before
+        .with_moved(&held.places, to - held.from, held.are_copies);
+    if moved != editor.scene().animation {
+        let label = if held.are_copies {
+            "Copy keys"
+        } else {
+            "Move keys"
+        };
+        out.edit(Edit::Animation(Box::new(moved), label));
+    }
+    if new != editor.timeline().selected {
+        out.time(Time::SelectKeys(new));
+    }
+}
+
+/// The frame's time at the pointer; `None` once it is let go.
+fn pointed(ui: &Ui, scale: &Scale, animation: &Animation) -> Option<f64> {
+    let (is_down, at) =
+        ui.input(|input| (input.pointer.primary_down(), input.pointer.latest_pos()));
+    let at = at.filter(|_| is_down)?;
+    let fps = animation.frames_per_second;
+    Some((scale.time(at.x).max(0.0) * fps).round() / fps)
+}
+
+fn menu(ui: &mut Ui, place: usize, editor: &Editor, out: &mut Out) {
+    let animation = &editor.scene().animation;
+    let mut places = editor.timeline().selected.clone();
+    if !places.contains(&place) {
+        places = BTreeSet::from([place]);
+    }
+    let Some(key) = animation.keys.get(place) else {
+        return;
+    };
+    for way in [
+        Interpolation::Smooth,
+        Interpolation::Linear,
+        Interpolation::Hold,
+    ] {
+        if ui.radio(key.interpolation == way, way.name()).clicked() {
+            let changed = animation.with_each(&places, |key| key.interpolation = way);
+            out.edit(Edit::Animation(Box::new(changed), "Key: way"));
+        }
+    }
+    ui.separator();
+    for easing in Easing::ALL {
+        if ui.radio(key.easing == easing, easing.name()).clicked() {
+            let changed = animation.with_each(&places, |key| key.easing = easing);
+            out.edit(Edit::Animation(Box::new(changed), "Key: pace"));
+        }
+    }
+    ui.separator();
+    if ui.button("Delete").clicked() {
+        out.edit(Edit::Animation(
+            Box::new(animation.without_keys(&places)),
+            "Delete keys",
+        ));
+        out.time(Time::SelectKeys(BTreeSet::new()));
+    }
+}
+
+/// The keys of lights, objects and the ambience, one lane for each value.
+pub fn tracks(ui: &mut Ui, scale: &Scale, editor: &Editor, drag: &mut Option<Drag>, out: &mut Out) {
+    let animation = &editor.scene().animation;
+    let colors = palette(ui.ctx());
+    for track in &animation.tracks {
+        let (rect, _) = lane(ui, scale, Sense::hover());
+        label(ui, rect, &track.target.name());
+        playhead(ui, scale, rect, editor);
+        for (place, key) in track.keys.iter().enumerate() {
+            let at = pos2(scale.x(key.time), rect.center().y);
+            let near = Rect::from_center_size(at, vec2(2.0 * KEY + 2.0, TRACK));
+            let id = ui.scope_id().with(("value", &track.target.name(), place));
+            let response = ui.interact(near, id, Sense::click_and_drag());
+            let name = format!("{} key {}", track.target.name(), place + 1);
+            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+            let fill = if response.hovered() {
+                colors.text
+            } else {
+                colors.curve
+            };
+            diamond(ui, at, fill, key.interpolation == Interpolation::Hold);
+            if response.clicked() {
+                out.time(Time::Seek(key.time));
+            }
+            if response.drag_started() {
+                *drag = Some(Drag {
+                    target: Some(track.target.clone()),
+                    before: animation.clone(),
+                    places: BTreeSet::new(),
+                    from: key.time,
+                    are_copies: false,
+                });
+            }
+            response.context_menu(|ui| value_menu(ui, animation, &track.target, place, out));
+        }
+    }
+    let Some(held) = drag.as_ref() else { return };
+    let Some(target) = held.target.clone() else {
+        return;
+    };
+    let Some(to) = pointed(ui, scale, &held.before) else {
+        *drag = None;
+        return;
+    };
+    let moved = held.before.with_value_moved(&target, held.from, to);
+    if moved != *animation {
+        out.edit(Edit::Animation(Box::new(moved), "Move key"));
+    }
+}
+
+fn value_menu(ui: &mut Ui, animation: &Animation, target: &Target, place: usize, out: &mut Out) {
+    let mut changed = animation.clone();
+    let Some(track) = changed
+        .tracks
+        .iter_mut()
+        .find(|track| track.target == *target)
+    else {
+        return;
+    };
+    let key = &mut track.keys[place];
+    for way in [
+        Interpolation::Smooth,
+        Interpolation::Linear,
+        Interpolation::Hold,
+    ] {
+        if ui.radio(key.interpolation == way, way.name()).clicked() {
+            key.interpolation = way;
+        }
+    }
+    ui.separator();
+    let time = key.time;
+    if ui.button("Delete").clicked() {
+        changed = animation.without_value(target, time);
+    }
+    if changed != *animation {
+        out.edit(Edit::Animation(Box::new(changed), "Key value"));
+    }
+}

@@ -1,0 +1,214 @@
+//! The flight in the view: its way, a tick for each frame, and its keys, which can be dragged.
+
+use std::collections::BTreeSet;
+
+use egui::{Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+
+use crate::editor::{Edit, Editor, Time};
+use crate::lanes::Vec3;
+use crate::scene::{Camera, Framing, Projection};
+use crate::trace::sight::Sight;
+use crate::ui::Out;
+use crate::ui::theme::palette;
+
+/// Most ticks that are drawn.
+const MOST_TICKS: u64 = 1500;
+/// Most tests of whether a tick is hidden, in ticks times objects: more would hold the window up.
+const MOST_TESTS: usize = 300_000;
+/// Length of a drawn camera, as a share of the flight's extent.
+const CAMERA_SHARE: f64 = 0.06;
+/// How near to a key the pointer must be, in points.
+const REACH: f32 = 9.0;
+/// How strongly what is hidden is drawn.
+const HIDDEN: f32 = 0.22;
+
+/// What was found for the last picture.
+#[derive(Default)]
+pub struct Overlay {
+    made_for: Option<(u64, u64)>,
+    /// Each tick in world space, and whether nothing stands before it.
+    ticks: Vec<(Vec3<f64>, bool)>,
+    /// The key that is dragged, and how deep it is in the view.
+    dragged: Option<(usize, f64)>,
+}
+
+/// From the scene to the screen.
+struct Lens {
+    framing: Framing,
+    view: Rect,
+}
+
+impl Lens {
+    fn place(&self, point: Vec3<f64>) -> Option<Pos2> {
+        let [x, y] = self.framing.project(point)?;
+        let height = self.view.height();
+        Some(self.view.center() + vec2(x as f32 * height, -y as f32 * height))
+    }
+
+    fn ray(&self, at: Pos2) -> (Vec3<f64>, Vec3<f64>) {
+        let off = (at - self.view.center()) / self.view.height();
+        self.framing.ray([f64::from(off.x), f64::from(-off.y)])
+    }
+}
+
+impl Overlay {
+    /// Draws the flight over the picture at `view`, unless the picture is the flight's own.
+    pub fn show(&mut self, ui: &mut Ui, editor: &Editor, view: Rect, out: &mut Out) {
+        let animation = &editor.scene().animation;
+        if animation.keys.is_empty() || editor.looks_through() {
+            self.dragged = None;
+            return;
+        }
+        let Some(framing) = editor.shown().camera.framing() else {
+            return;
+        };
+        let lens = Lens { framing, view };
+        self.follow(editor, &lens);
+        let painter = ui.painter().with_clip_rect(view);
+        let colors = palette(ui.ctx());
+        self.draw_way(&painter, &lens, colors.curve);
+        let size = self.extent() * CAMERA_SHARE;
+        let selected = &editor.timeline().selected;
+        for (place, key) in animation.keys.iter().enumerate() {
+            let color = if selected.contains(&place) {
+                colors.accent
+            } else {
+                colors.curve
+            };
+            draw_camera(&painter, &lens, &key.value, size, color);
+            self.handle(ui, editor, &lens, place, out);
+        }
+        if let Some(shot) = editor.path_of_camera().at(editor.shown_time()) {
+            draw_camera(&painter, &lens, &shot, size * 1.6, colors.accent);
+        }
+    }
+
+    fn follow(&mut self, editor: &Editor, lens: &Lens) {
+        let key = (editor.shown_revision(), editor.revision());
+        if self.made_for == Some(key) {
+            return;
+        }
+        self.made_for = Some(key);
+        let animation = &editor.scene().animation;
+        let stride = animation.frame_count().div_ceil(MOST_TICKS).max(1) as usize;
+        let frames = (1..=animation.frame_count()).step_by(stride);
+        let path = editor.path_of_camera();
+        let places = frames.filter_map(|frame| path.at(animation.time_of(frame)));
+        let places: Vec<Vec3<f64>> = places.map(|camera| camera.position).collect();
+        let scene = editor.shown();
+        let is_tested = places.len() * scene.objects.len() <= MOST_TESTS;
+        let sight = if is_tested {
+            Sight::new(scene)
+        } else {
+            Sight::default()
+        };
+        let is_clear = |point: Vec3<f64>| {
+            let from = lens.framing.project(point).map(|at| lens.framing.ray(at).0);
+            from.is_some_and(|from| sight.is_clear(from, point))
+        };
+        self.ticks = places
+            .into_iter()
+            .map(|point| (point, is_clear(point)))
+            .collect();
+    }
+
+    fn draw_way(&self, painter: &Painter, lens: &Lens, color: Color32) {
+        let places: Vec<(Option<Pos2>, bool)> = self
+            .ticks
+            .iter()
+            .map(|&(point, is_clear)| (lens.place(point), is_clear))
+            .collect();
+        let shade = |is_clear: bool| color.gamma_multiply(if is_clear { 1.0 } else { HIDDEN });
+        for pair in places.windows(2) {
+            if let (Some(from), Some(to)) = (pair[0].0, pair[1].0) {
+                let color = shade(pair[0].1 && pair[1].1);
+                painter.line_segment([from, to], Stroke::new(1.5, color));
+            }
+        }
+        for (place, is_clear) in places {
+            if let Some(place) = place {
+                painter.circle_filled(place, 2.0, shade(is_clear));
+            }
+        }
+    }
+
+    /// Size of the flight in world units.
+    fn extent(&self) -> f64 {
+        let points = self.ticks.iter().map(|(point, _)| (*point, *point));
+        let all = points.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let extent = all.map_or(0.0, |(low, high)| (high - low).length());
+        if extent > 0.0 { extent } else { 1.0 }
+    }
+
+    /// A key is clicked to be selected, and dragged in the plane of the view.
+    fn handle(&mut self, ui: &Ui, editor: &Editor, lens: &Lens, place: usize, out: &mut Out) {
+        let animation = &editor.scene().animation;
+        let position = animation.keys[place].value.position;
+        let Some(at) = lens.place(position) else {
+            return;
+        };
+        if !lens.view.contains(at) {
+            return;
+        }
+        let near = Rect::from_center_size(at, vec2(2.0, 2.0) * REACH);
+        let id = ui.scope_id().with(("key in the view", place));
+        let response = ui.interact(near, id, Sense::click_and_drag());
+        let name = format!("Key {} in the view", place + 1);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+        if response.clicked() {
+            out.time(Time::SelectKeys(BTreeSet::from([place])));
+        }
+        if response.drag_started_by(egui::PointerButton::Primary) {
+            let (origin, direction) = lens.ray(at);
+            self.dragged = Some((place, (position - origin).dot(direction)));
+            out.time(Time::SelectKeys(BTreeSet::from([place])));
+        }
+        let Some((dragged, depth)) = self.dragged.filter(|(dragged, _)| *dragged == place) else {
+            return;
+        };
+        let pointer = response.interact_pointer_pos();
+        let Some(pointer) = pointer.filter(|_| response.dragged()) else {
+            self.dragged = None;
+            return;
+        };
+        // As deep in the view as it was: along the ray by as much more as that leans.
+        let (_, straight) = lens.ray(lens.view.center());
+        let (_, before) = lens.ray(at);
+        let (origin, direction) = lens.ray(pointer);
+        let depth = depth * before.dot(straight) / direction.dot(straight);
+        self.dragged = Some((dragged, depth));
+        let to = origin + direction * depth;
+        let moved = animation.with_each(&BTreeSet::from([place]), |key| key.value.position = to);
+        out.edit(Edit::Animation(Box::new(moved), "Move key in the view"));
+    }
+}
+
+/// A pyramid from the eye to the frame of the picture, or the frame alone where rays run side by side.
+fn draw_camera(painter: &Painter, lens: &Lens, camera: &Camera, size: f64, color: Color32) {
+    let Some(framing) = camera.framing() else {
+        return;
+    };
+    let depth = match camera.projection {
+        Projection::Perspective => size,
+        Projection::Orthographic => 0.0,
+    };
+    let corners = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
+    let corners: Option<Vec<Pos2>> = corners
+        .into_iter()
+        .map(|at| {
+            let (origin, direction) = framing.ray(at);
+            lens.place(origin + direction * depth)
+        })
+        .collect();
+    let stroke = Stroke::new(1.0, color);
+    let (eye, corners) = (lens.place(camera.position), corners.unwrap_or_default());
+    if let (Some(eye), Projection::Perspective) = (eye, camera.projection) {
+        for corner in &corners {
+            painter.line_segment([eye, *corner], stroke);
+        }
+    }
+    painter.add(Shape::closed_line(corners, stroke));
+    if let Some(eye) = eye {
+        painter.add(Shape::circle_filled(pos2(eye.x, eye.y), 3.5, color));
+    }
+}

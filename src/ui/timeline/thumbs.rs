@@ -1,0 +1,145 @@
+//! Small pictures: what the keys see, above them, and the shot in a corner of the view.
+
+use egui::{Context, Pos2, Rect, Sense, TextureHandle, TextureOptions, Ui, pos2, vec2};
+
+use super::lanes::Scale;
+use crate::animate::shot;
+use crate::editor::Editor;
+use crate::image::Image;
+use crate::scene::Animation;
+use crate::ui::theme::{GRID, THUMB, palette};
+use crate::ui::upload::whole;
+use crate::worker::Sketch;
+
+/// The name of the shot's picture; keys are named by their places.
+const SHOT: u64 = u64::MAX;
+/// Most keys that have a picture.
+const MOST: usize = 200;
+/// Width of the shot's picture, as a share of the view's.
+const SHARE: f32 = 0.28;
+
+/// The pictures, and what they were asked for.
+#[derive(Default)]
+pub struct Thumbs {
+    keys: Vec<Option<TextureHandle>>,
+    shot: Option<TextureHandle>,
+    /// Revision of the scene whose keys were asked for, and the screen's scale.
+    asked: Option<(u64, u32)>,
+    /// Revision of what is on show, and size, that the shot was asked for.
+    asked_shot: Option<(u64, u32)>,
+}
+
+impl Thumbs {
+    /// Takes finished pictures up.
+    pub fn take(&mut self, ctx: &Context, pictures: Vec<(u64, Image)>) {
+        for (name, image) in pictures {
+            let picture = whole(&image);
+            let texture = ctx.load_texture("small picture", picture, TextureOptions::LINEAR);
+            if name == SHOT {
+                self.shot = Some(texture);
+            } else if let Some(place) = self.keys.get_mut(name as usize) {
+                *place = Some(texture);
+            }
+        }
+    }
+
+    /// What is to be traced now, if anything: the shot whenever it changes, the keys when the hand
+    /// rests.
+    pub fn wishes(&mut self, ctx: &Context, editor: &Editor, view: Rect) -> Option<Vec<Sketch>> {
+        let scene = editor.scene();
+        let keys = &scene.animation.keys;
+        if keys.is_empty() {
+            self.keys.clear();
+            self.shot = None;
+            return None;
+        }
+        let scale = ctx.pixels_per_point();
+        let aspect = scene.render.width as f32 / scene.render.height as f32;
+        let pixels = |height: f32| {
+            let height = (height * scale).round().clamp(1.0, 512.0);
+            (
+                (height * aspect).round().clamp(1.0, 1024.0) as u32,
+                height as u32,
+            )
+        };
+        let mut wishes = Vec::new();
+        if !editor.looks_through() {
+            let size = pixels(shot_place(view, aspect).height());
+            let wanted = Some((editor.shown_revision(), size.1));
+            if self.asked_shot != wanted {
+                self.asked_shot = wanted;
+                let time = editor.shown_time();
+                wishes.push(Sketch {
+                    name: SHOT,
+                    scene: shot(scene, editor.path_of_camera(), time),
+                    size,
+                });
+            }
+        }
+        let is_resting = !ctx.input(|input| input.pointer.any_down())
+            && !editor.timeline().is_playing
+            && editor.timeline().recorded().is_none();
+        let wanted = Some((editor.revision(), (scale * 100.0) as u32));
+        if self.asked != wanted && is_resting {
+            self.asked = wanted;
+            self.keys.resize(keys.len().min(MOST), None);
+            self.keys.truncate(keys.len().min(MOST));
+            let sketch = |(place, key): (usize, &crate::scene::Key<_>)| Sketch {
+                name: place as u64,
+                scene: shot(scene, editor.path_of_camera(), key.time),
+                size: pixels(THUMB),
+            };
+            wishes.extend(keys.iter().take(MOST).enumerate().map(sketch));
+        }
+        (!wishes.is_empty()).then_some(wishes)
+    }
+
+    /// The keys' pictures above them, as many as have room.
+    pub fn show(&self, ui: &mut Ui, scale: &Scale, animation: &Animation) {
+        let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), THUMB), Sense::hover());
+        let mut free = f32::NEG_INFINITY;
+        for (key, texture) in animation.keys.iter().zip(&self.keys) {
+            let Some(texture) = texture else { continue };
+            let size = texture.size_vec2();
+            let width = THUMB * size.x / size.y;
+            let left = scale.x(key.time) - width / 2.0;
+            if left < free {
+                continue;
+            }
+            free = left + width + 2.0;
+            let place = Rect::from_min_size(pos2(left, rect.top()), vec2(width, THUMB));
+            paint(ui, texture, place);
+        }
+    }
+
+    /// The shot in a corner of the view, while the view is not the shot itself.
+    pub fn show_shot(&self, ui: &Ui, editor: &Editor, view: Rect) {
+        let Some(texture) = self.shot.as_ref().filter(|_| !editor.looks_through()) else {
+            return;
+        };
+        let size = texture.size_vec2();
+        let place = shot_place(view, size.x / size.y);
+        paint(ui, texture, place);
+        let colors = palette(ui.ctx());
+        let stroke = egui::Stroke::new(1.0, colors.accent);
+        ui.painter()
+            .rect_stroke(place, 0, stroke, egui::StrokeKind::Outside);
+        let font = egui::FontId::proportional(11.0);
+        let at = place.left_top() + vec2(GRID / 2.0, 2.0);
+        ui.painter()
+            .text(at, egui::Align2::LEFT_TOP, "Shot", font, colors.accent);
+    }
+}
+
+/// The lower right corner of the view.
+fn shot_place(view: Rect, aspect: f32) -> Rect {
+    let width = (view.width() * SHARE).round();
+    let size = vec2(width, (width / aspect).round());
+    Rect::from_min_size(view.max - size - vec2(GRID, GRID), size)
+}
+
+fn paint(ui: &Ui, texture: &TextureHandle, place: Rect) {
+    let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+    ui.painter()
+        .image(texture.id(), place, whole, egui::Color32::WHITE);
+}

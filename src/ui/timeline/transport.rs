@@ -1,0 +1,247 @@
+//! The buttons above the keys.
+
+use std::collections::BTreeSet;
+
+use egui::{Button, DragValue, RichText, Slider, Ui};
+
+use crate::animate::paused_seconds;
+use crate::editor::{Edit, Editor, Repeat, Time};
+use crate::scene::Animation;
+use crate::ui::commands::Command;
+use crate::ui::theme::palette;
+use crate::ui::{Out, icons};
+
+/// Playing, keys, and what time it is.
+pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out: &mut Out) {
+    let timeline = editor.timeline();
+    let animation = &editor.scene().animation;
+    let mut press = |ui: &mut Ui, icon, name: &str, command: Command| {
+        if icons::button(ui, icon, name).clicked() {
+            out.commands.push(command);
+        }
+    };
+    press(ui, icons::FIRST, "First frame (Home)", Command::FirstFrame);
+    press(
+        ui,
+        icons::PREVIOUS,
+        "Previous key ([)",
+        Command::PreviousKey,
+    );
+    press(ui, icons::BACK, "One frame back (,)", Command::FrameBack);
+    let (icon, name) = if timeline.is_playing {
+        (icons::PAUSE, "Pause (G)")
+    } else {
+        (icons::PLAY, "Play (G)")
+    };
+    press(ui, icon, name, Command::Play);
+    press(ui, icons::FORTH, "One frame on (.)", Command::FrameOn);
+    press(ui, icons::NEXT, "Next key (])", Command::NextKey);
+    press(ui, icons::LAST, "Last frame (End)", Command::LastFrame);
+    let (icon, name, next) = match timeline.repeat {
+        Repeat::Once => (icons::ONCE, "Plays once; click for loop", Repeat::Loop),
+        Repeat::Loop => (
+            icons::LOOP,
+            "Plays in a loop; click for to and fro",
+            Repeat::PingPong,
+        ),
+        Repeat::PingPong => (
+            icons::PING_PONG,
+            "Plays to and fro; click for once",
+            Repeat::Once,
+        ),
+    };
+    if icons::button(ui, icon, name).clicked() {
+        out.time(Time::Repeat(next));
+    }
+    ui.separator();
+    let times = format!(
+        "{} / {}",
+        clock(editor.shown_time()),
+        clock(animation.duration())
+    );
+    ui.label(RichText::new(times).monospace());
+    let frame = animation.frame_at(timeline.playhead);
+    let frames = format!("{frame:>4}/{}", animation.frame_count());
+    let hint = "Frame, from 1; the number that glint render --frame takes";
+    ui.label(RichText::new(frames).monospace().weak())
+        .on_hover_text(hint);
+    ui.separator();
+    record_button(ui, editor, out);
+    let key = ui.button("Add key").on_hover_text(
+        "Set a key at the playhead from the view, in place of one that is there (K)",
+    );
+    if key.clicked() {
+        out.commands.push(Command::AddKey);
+    }
+    let through = ui.add_enabled(
+        !animation.keys.is_empty(),
+        Button::selectable(editor.looks_through(), "Through shot"),
+    );
+    let hint = "Look through the shot camera, or at it from the view (C)";
+    if through.on_hover_text(hint).clicked() {
+        out.commands.push(Command::LookThrough);
+    }
+    ui.separator();
+    rates(ui, editor, out);
+    ui.toggle_value(graph, "Speed")
+        .on_hover_text("Show speed and turn rate below the keys");
+    if timeline.is_playing {
+        let text = format!(
+            "{per_second:.1} of {:.0} fps",
+            animation.frames_per_second * timeline.speed
+        );
+        ui.label(RichText::new(text).monospace().weak())
+            .on_hover_text(
+                "Pictures a second on screen; a slow scene loses resolution, never time",
+            );
+    }
+}
+
+fn record_button(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+    let accent = palette(ui.ctx()).accent;
+    if let Some((samples, seconds)) = editor.timeline().recorded() {
+        let stop = Button::new((icons::text(icons::STOP).color(accent), "Stop"));
+        let stop = ui
+            .add(stop)
+            .on_hover_text("Stop recording and make keys (T)");
+        if stop.accessible_name("Stop recording").clicked() {
+            out.commands.push(Command::StopRecording);
+        }
+        let text = format!("{samples} samples, {seconds:.1} s");
+        ui.label(RichText::new(text).monospace().color(accent));
+        return;
+    }
+    let record = Button::new((icons::text(icons::RECORD), "Record"));
+    let record = ui
+        .add(record)
+        .on_hover_text("Record the flight of the camera (R)");
+    if record.accessible_name("Record").clicked() {
+        out.commands.push(Command::Record);
+    }
+}
+
+fn rates(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+    let animation = &editor.scene().animation;
+    let mut fps = animation.frames_per_second;
+    let drag = DragValue::new(&mut fps)
+        .range(1.0..=240.0)
+        .speed(0.1)
+        .max_decimals(3)
+        .suffix(" fps");
+    let hint = "Frames per second; the flight stays as it is";
+    let drag = ui.add(drag).accessible_name("frames per second");
+    if drag.on_hover_text(hint).changed() && fps.is_finite() {
+        let changed = Animation {
+            frames_per_second: fps,
+            ..animation.clone()
+        };
+        out.edit(Edit::Animation(Box::new(changed), "Frames per second"));
+    }
+    let mut speed = editor.timeline().speed;
+    let drag = DragValue::new(&mut speed)
+        .range(0.05..=20.0)
+        .speed(0.01)
+        .max_decimals(2)
+        .suffix("×");
+    let drag = ui.add(drag).accessible_name("playing speed");
+    if drag
+        .on_hover_text("Playing speed; 1 is real time")
+        .changed()
+        && speed.is_finite()
+    {
+        out.time(Time::Speed(speed));
+    }
+}
+
+/// The recorded flight, and how closely the keys follow it.
+pub fn show_take(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+    let animation = &editor.scene().animation;
+    let Some(take) = &animation.take else { return };
+    let off = editor.timeline().worst.map_or(String::new(), |worst| {
+        format!(", never more than {worst:.1} px off at 1024²")
+    });
+    let text = format!(
+        "{} samples → {} keys{off}",
+        take.samples.len(),
+        animation.keys.len()
+    );
+    ui.label(RichText::new(text).monospace());
+    let mut tolerance = editor.timeline().tolerance;
+    let slider = Slider::new(&mut tolerance, 0.05..=200.0)
+        .logarithmic(true)
+        .suffix(" px")
+        .max_decimals(2);
+    let slider = ui.add(slider).accessible_name("tolerance");
+    let hint = "Make the keys anew from the recording: how far they may be off. Other changes of the keys are lost (undo brings them back)";
+    if slider.on_hover_text(hint).changed() {
+        out.time(Time::Simplify(tolerance));
+    }
+    ui.separator();
+    let paused = paused_seconds(&animation.keys);
+    if paused > 0.0 {
+        ui.weak(format!("{paused:.1} s of pauses"));
+    }
+    let forget = ui.button("Forget the recording");
+    if forget
+        .on_hover_text("Keep the keys, and make the file smaller")
+        .clicked()
+    {
+        let changed = Animation {
+            take: None,
+            ..animation.clone()
+        };
+        out.edit(Edit::Animation(Box::new(changed), "Forget the recording"));
+    }
+}
+
+/// Minutes, seconds and tenths.
+fn clock(seconds: f64) -> String {
+    let tenths = (seconds * 10.0).round() as u64;
+    format!(
+        "{:02}:{:02}.{}",
+        tenths / 600,
+        tenths / 10 % 60,
+        tenths % 10
+    )
+}
+
+/// What a command of the timeline comes to; nothing where it makes no sense.
+pub fn actions(command: &Command, editor: &Editor, now: f64) -> Vec<crate::editor::Action> {
+    use crate::editor::Action;
+    let animation = &editor.scene().animation;
+    let time = editor.shown_time();
+    let is_later = |key: &f64| *key > time + 1e-4;
+    let is_earlier = |key: &f64| *key < time - 1e-4;
+    let mut keys = animation.keys.iter().map(|key| key.time);
+    let timed = |time: Time| vec![Action::Time(time)];
+    let has_time = !animation.is_still();
+    match command {
+        Command::Play if has_time => timed(Time::Play(!editor.timeline().is_playing)),
+        Command::FirstFrame if has_time => timed(Time::Seek(0.0)),
+        Command::LastFrame if has_time => timed(Time::Seek(animation.duration())),
+        Command::FrameBack if has_time => timed(Time::Step(-1)),
+        Command::FrameOn if has_time => timed(Time::Step(1)),
+        Command::PreviousKey => {
+            let key = keys.rfind(is_earlier);
+            key.map_or(Vec::new(), |key| timed(Time::Seek(key)))
+        }
+        Command::NextKey => {
+            let key = keys.find(is_later);
+            key.map_or(Vec::new(), |key| timed(Time::Seek(key)))
+        }
+        Command::Record if editor.timeline().recorded().is_none() => timed(Time::Record(now)),
+        Command::StopRecording => timed(Time::Stop),
+        Command::LookThrough if !animation.keys.is_empty() => {
+            timed(Time::LookThrough(!editor.looks_through()))
+        }
+        Command::AddKey => {
+            let view = editor.shown().camera.clone();
+            let (changed, place) = animation.with_key(time, view);
+            vec![
+                Action::Edit(Edit::Animation(Box::new(changed), "Add key")),
+                Action::Time(Time::SelectKeys(BTreeSet::from([place]))),
+            ]
+        }
+        _ => Vec::new(),
+    }
+}

@@ -1,0 +1,105 @@
+//! What is asked of the lane, and what it tells.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::image::{Cost, Image};
+use crate::plan::{Picture, Sampling};
+use crate::scene::Scene;
+
+/// What the live view shall show.
+#[derive(Clone, Debug)]
+pub struct LiveJob {
+    /// Number of the scene's state; only ever grows.
+    pub revision: u64,
+    /// The scene at that revision.
+    pub scene: Arc<Scene>,
+    /// The picture, at its full resolution.
+    pub picture: Picture,
+    /// Whether coarse pictures may come first, to keep up with the hand that edits.
+    pub pace: Pace,
+}
+
+/// A small picture for the side: traced when no live view waits, never stopped, one sample per pixel.
+#[derive(Clone, Debug)]
+pub struct Sketch {
+    /// What the asker calls it.
+    pub name: u64,
+    /// What it shows.
+    pub scene: Arc<Scene>,
+    /// Width and height in pixels.
+    pub size: (u32, u32),
+}
+
+/// How a live picture is approached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// A coarse picture within this time, then finer ones.
+    Within(Duration),
+    /// The full picture at once.
+    Whole,
+}
+
+/// A picture at full quality, on request.
+#[derive(Clone, Debug)]
+pub struct StillJob {
+    /// Number of the scene's state.
+    pub revision: u64,
+    /// The scene at that revision.
+    pub scene: Arc<Scene>,
+    /// The picture.
+    pub picture: Picture,
+    /// Where to write it. A picture that is to be written outlives edits: it is started again when
+    /// the live view is done.
+    pub save_to: Option<PathBuf>,
+}
+
+/// A picture to look at.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// The scene's state that it shows.
+    pub revision: u64,
+    /// The pixels that are traced so far: every `step`-th of the full picture.
+    pub image: Arc<Image>,
+    /// Full width and height in pixels.
+    pub full_size: (usize, usize),
+    /// 1 in a finished picture.
+    pub step: usize,
+    /// How its edges are smoothed.
+    pub sampling: Sampling,
+    /// Whether this is the still picture and not the live view.
+    pub is_still: bool,
+    /// What it cost so far.
+    pub cost: Cost,
+}
+
+/// What the lane is doing.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Activity {
+    /// Nothing that anybody waits for; perhaps measuring.
+    Idle,
+    /// Tracing the live view of a revision.
+    Live {
+        /// The revision.
+        revision: u64,
+    },
+    /// Tracing a still picture.
+    Still {
+        /// Pixels traced, of [`Self::Still::total`].
+        done: u64,
+        /// Pixels of the picture.
+        total: u64,
+        /// Time since it was started.
+        elapsed: Duration,
+    },
+}
+
+/// What happened on the lane that the user should know.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// A still picture was written to this file.
+    Saved(PathBuf),
+    /// Something failed, in words for the user.
+    Failed(String),
+}
