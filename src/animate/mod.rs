@@ -12,6 +12,7 @@ mod presets;
 mod retime;
 mod route;
 mod simplify;
+mod steady;
 mod table;
 
 pub use curve::{Closing, Curve};

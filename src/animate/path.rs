@@ -207,7 +207,7 @@ fn shorter(turn: f64) -> f64 {
 }
 
 /// Each angle moved by whole rounds to be the nearest to the one before it.
-fn unwound(angles: impl Iterator<Item = Orientation>) -> Vec<Orientation> {
+pub(super) fn unwound(angles: impl Iterator<Item = Orientation>) -> Vec<Orientation> {
     let mut unwound: Vec<Orientation> = Vec::new();
     for angles in angles {
         let next = match unwound.last() {

@@ -3,11 +3,15 @@
 use std::collections::BTreeSet;
 
 use super::CameraPath;
+use super::steady::smoothed;
 use crate::lanes::Vec3;
 use crate::scene::{Camera, Interpolation, Key, Take};
 
 /// Keys to both sides whose removal a key feels: a smooth segment is shaped by its neighbours.
 const REACH: usize = 3;
+
+/// Widths in seconds over which a take may be smoothed, widest first.
+const SMOOTHING: [f64; 6] = [0.6, 0.4, 0.25, 0.15, 0.08, 0.04];
 
 /// A place in a picture and what is seen there: by how much it moves tells how far off another
 /// camera is.
@@ -50,12 +54,17 @@ pub fn deviation(camera: &Camera, seen: &[Seen]) -> f64 {
 
 /// Keys at as few samples as it takes to be nowhere off by more than `tolerance` image heights.
 /// `seen` holds what each sample saw.
+///
+/// A hand trembles: where the tolerance allows it, the keys are taken from a smoother flight that is
+/// itself off by no more than half of it.
 pub fn simplify(take: &Take, seen: &[Vec<Seen>], tolerance: f64) -> Simplified {
+    let cuts = cuts(take);
     let search = Search {
         take,
+        cameras: steady(take, &cuts, seen, tolerance / 2.0),
         seen,
         tolerance,
-        cuts: cuts(take),
+        cuts,
     };
     let mut chosen = search.refined();
     search.prune(&mut chosen);
@@ -67,8 +76,28 @@ pub fn simplify(take: &Take, seen: &[Vec<Seen>], tolerance: f64) -> Simplified {
     Simplified { keys, worst }
 }
 
+/// The cameras of a take, as smooth as the tolerance allows.
+fn steady(take: &Take, cuts: &BTreeSet<usize>, seen: &[Vec<Seen>], tolerance: f64) -> Vec<Camera> {
+    let is_near = |cameras: &Vec<Camera>| {
+        let mut pairs = cameras.iter().zip(seen);
+        pairs.all(|(camera, seen)| deviation(camera, seen) <= tolerance)
+    };
+    let smooth = SMOOTHING
+        .iter()
+        .map(|&seconds| smoothed(take, cuts, seconds));
+    let mut smooth = smooth.filter(is_near);
+    let plain = || {
+        (0..take.samples.len())
+            .filter_map(|n| take.camera(n))
+            .collect()
+    };
+    smooth.next().unwrap_or_else(plain)
+}
+
 struct Search<'t> {
     take: &'t Take,
+    /// What the samples' keys are.
+    cameras: Vec<Camera>,
     seen: &'t [Vec<Seen>],
     tolerance: f64,
     /// Last samples before the projection changes.
@@ -87,7 +116,7 @@ fn cuts(take: &Take) -> BTreeSet<usize> {
 impl Search<'_> {
     fn keys(&self, chosen: impl Iterator<Item = usize>) -> Vec<Key<Camera>> {
         let key = |sample: usize| {
-            let camera = self.take.camera(sample)?;
+            let camera = self.cameras.get(sample)?.clone();
             let mut key = Key::new(self.take.samples[sample].0, camera);
             if self.cuts.contains(&sample) {
                 key.interpolation = Interpolation::Hold;

@@ -7,6 +7,11 @@ use super::{Edit, Editor, Mode, Selection};
 use crate::animate::{CameraPath, Seen, Simplified, pose, shot, simplify};
 use crate::scene::{Animation, Camera, Key, Scene, Take, Target};
 
+/// Keys that a recording becomes, at first, and for each second: about as many as a hand can edit.
+const FEW: (f64, f64) = (4.0, 1.2);
+/// Where the search for a tolerance ends, in pixels.
+const COARSEST: f64 = 64.0;
+
 /// A scene, its path and its timeline, and what they come to at the time of the playhead.
 #[derive(Debug)]
 pub(super) struct Moving {
@@ -236,8 +241,16 @@ impl Editor {
         if count < 2 {
             return self.inform("Nothing was recorded".to_owned());
         }
+        let seconds = take.samples.last().map_or(0.0, |last| last.0);
+        let few = (FEW.0 + FEW.1 * seconds) as usize;
         let take = Arc::new(take);
-        let keys = self.simplified(&take);
+        self.moving.timeline.tolerance = 1.0;
+        let mut keys = self.simplified(&take);
+        // A trembling hand would leave a key in every frame.
+        while keys.len() > few && self.moving.timeline.tolerance < COARSEST {
+            self.moving.timeline.tolerance *= 1.5;
+            keys = self.simplified(&take);
+        }
         let said = keys.len();
         let worst = self.moving.timeline.worst.unwrap_or(0.0);
         let animation = Animation {

@@ -150,7 +150,7 @@ fn wrong_words_and_wrong_files_exit_with_2() {
         ),
         (
             &["render", DEMO, "-o", "a.png", "--frame", "3"],
-            "'--frame <FRAME>': this option is not built yet",
+            "there is no frame 3: the animation has 1 frame",
         ),
         (
             &["render", DEMO, "-o", "a.png", "--accelerator", "octree"],

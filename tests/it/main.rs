@@ -11,6 +11,7 @@ mod numerics;
 mod povray;
 mod random;
 mod scenes;
+mod timeline;
 mod ui;
 mod window;
 mod worker;

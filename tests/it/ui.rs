@@ -17,7 +17,7 @@ use glint::trace::Watch;
 use glint::ui::{App, Ask, Command, Dialogs, FLIGHT, SHORTCUTS, Setup};
 
 /// Dialogs that answer from a list; with none left, they do as a desktop without dialogs does.
-struct Scripted(VecDeque<(Ask, Option<PathBuf>)>);
+pub struct Scripted(VecDeque<(Ask, Option<PathBuf>)>);
 
 impl Dialogs for Scripted {
     fn ask(&mut self, _: &Context, ask: &Ask, _: PathBuf) -> Receiver<Option<PathBuf>> {
@@ -34,23 +34,23 @@ impl Dialogs for Scripted {
 }
 
 /// The control key as a keyboard sends it: on Linux it is also the command key.
-const CTRL: Modifiers = Modifiers {
+pub const CTRL: Modifiers = Modifiers {
     ctrl: true,
     ..Modifiers::COMMAND
 };
 
-struct Desk {
-    window: Harness<'static, App>,
-    folder: tempfile::TempDir,
+pub struct Desk {
+    pub window: Harness<'static, App>,
+    pub folder: tempfile::TempDir,
 }
 
 impl Desk {
-    fn new() -> Self {
+    pub fn new() -> Self {
         Self::with(|_| Vec::new(), None)
     }
 
     /// A window with dialogs that answer as listed, on a scene text (or the demo).
-    fn with(
+    pub fn with(
         answers: impl FnOnce(&std::path::Path) -> Vec<(Ask, Option<PathBuf>)>,
         scene: Option<&str>,
     ) -> Self {
@@ -83,7 +83,7 @@ impl Desk {
     }
 
     /// Steps until the picture on screen is the finished one of the newest scene.
-    fn settle(&mut self) {
+    pub fn settle(&mut self) {
         let start = Instant::now();
         self.window.step();
         self.window.step();
@@ -98,15 +98,15 @@ impl Desk {
         self.window.step();
     }
 
-    fn editor(&self) -> &Editor {
+    pub fn editor(&self) -> &Editor {
         self.window.state().editor()
     }
 
-    fn scene(&self) -> &Scene {
+    pub fn scene(&self) -> &Scene {
         self.editor().scene()
     }
 
-    fn picture(&self) -> Image {
+    pub fn picture(&self) -> Image {
         self.window
             .state()
             .shown_picture()
@@ -114,18 +114,18 @@ impl Desk {
             .clone()
     }
 
-    fn click(&mut self, name: &str) {
+    pub fn click(&mut self, name: &str) {
         self.window.get_by_label(name).click();
         self.settle();
     }
 
-    fn press(&mut self, modifiers: Modifiers, key: Key) {
+    pub fn press(&mut self, modifiers: Modifiers, key: Key) {
         self.window.key_press_modifiers(modifiers, key);
         self.settle();
     }
 
     /// Opens a menu and chooses an entry of it.
-    fn choose(&mut self, menu: &str, entry: &str) {
+    pub fn choose(&mut self, menu: &str, entry: &str) {
         self.window
             .get_by_role_and_label(Role::Button, menu)
             .click();
@@ -134,7 +134,7 @@ impl Desk {
     }
 
     /// Types a number over the one in a field.
-    fn type_into(&mut self, field: &str, text: &str) {
+    pub fn type_into(&mut self, field: &str, text: &str) {
         self.window
             .get_by_role_and_label(Role::SpinButton, field)
             .click();
@@ -144,8 +144,20 @@ impl Desk {
         self.press(Modifiers::NONE, Key::Enter);
     }
 
+    /// Types a name over the one in a field.
+    pub fn type_name(&mut self, field: &str, text: &str) {
+        self.window
+            .get_by_role_and_label(Role::TextInput, field)
+            .click();
+        self.settle();
+        self.press(CTRL, Key::A);
+        self.window.event(Event::Text(text.to_owned()));
+        self.settle();
+        self.press(Modifiers::NONE, Key::Enter);
+    }
+
     /// Double-clicks a label, which brings its default back.
-    fn double_click(&mut self, label: &str) {
+    pub fn double_click(&mut self, label: &str) {
         let at = self
             .window
             .get_by_role_and_label(Role::Label, label)
@@ -161,7 +173,7 @@ impl Desk {
     }
 
     /// Drags a number field sideways in several moves.
-    fn drag(&mut self, field: &str, points: f32) {
+    pub fn drag(&mut self, field: &str, points: f32) {
         let start = self
             .window
             .get_by_role_and_label(Role::SpinButton, field)

@@ -76,6 +76,26 @@ fn a_take_becomes_few_keys_within_its_tolerance() {
 }
 
 #[test]
+fn a_trembling_hand_costs_few_keys_where_the_tolerance_allows_it() {
+    let calm = take();
+    let mut shaken = Take::default();
+    for (n, sample) in calm.samples.iter().enumerate() {
+        let tremor = if n % 2 == 0 { 0.002 } else { -0.002 };
+        let angles = Orientation {
+            yaw: sample.2 + tremor,
+            pitch: sample.3,
+            roll: sample.4,
+        };
+        let camera = angles.apply(&calm.camera(n).expect("a sample"));
+        shaken.push(sample.0, &camera, angles);
+    }
+    let seen = seen(&shaken);
+    let keys = |pixels: f64| simplify(&shaken, &seen, pixels / 1024.0).keys.len();
+    assert!(keys(1.0) > 100, "the tremor is more than a pixel");
+    assert!(keys(8.0) < 20, "{} keys", keys(8.0));
+}
+
+#[test]
 fn a_take_is_replayed_bit_by_bit_from_its_file() {
     let take = take();
     let mut scene = Scene::demo();

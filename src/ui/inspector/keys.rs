@@ -174,9 +174,9 @@ pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[(&str, Target)], out: &
                 let mut keys = track.keys.iter();
                 keys.any(|key| (key.time - time).abs() < near)
             });
-            let mark = if has_key { "◆" } else { "◇" };
-            let count = track.map_or(String::new(), |track| format!(" {}", track.keys.len()));
-            let button = Button::selectable(track.is_some(), format!("{mark} {name}{count}"));
+            let count = track.map_or(String::new(), |track| format!(" ({})", track.keys.len()));
+            let text = (icons::text(icons::KEY), format!("{name}{count}"));
+            let button = Button::selectable(has_key, text);
             let hint = if has_key {
                 "Take the key at the playhead away"
             } else {

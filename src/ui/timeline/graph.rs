@@ -13,6 +13,8 @@ use crate::ui::theme::{GRAPH, palette};
 const MOST: u64 = 4000;
 /// A step is a jump if it is so many times the one before or after, and the mean.
 const JUMP: f64 = 4.0;
+/// Smaller turns in one frame are no jumps, in degrees.
+const SEEN: f64 = 0.25;
 /// Faster turns are hard to watch, in degrees per second.
 const DIZZY: f64 = 120.0;
 
@@ -154,7 +156,8 @@ fn steps(animation: &Animation, path: &CameraPath) -> Vec<Step> {
             here > JUMP * mean && beside.map(of).any(|near| here > JUMP * near)
         };
         let Motion { distance, turn } = motions[place];
-        let is_jump = is_jump(|m| m.distance, mean_distance) || is_jump(|m| m.turn, mean_turn);
+        let is_jump = is_jump(|m| m.distance, mean_distance)
+            || is_jump(|m| m.turn, mean_turn.max(SEEN / JUMP));
         Step {
             time,
             speed: if is_cut { 0.0 } else { distance * per_second },

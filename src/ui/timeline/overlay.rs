@@ -28,6 +28,8 @@ pub struct Overlay {
     made_for: Option<(u64, u64)>,
     /// Each tick in world space, and whether nothing stands before it.
     ticks: Vec<(Vec3<f64>, bool)>,
+    /// The flight as it was recorded, for how far the keys are off it.
+    recorded: Vec<Vec3<f64>>,
     /// The key that is dragged, and how deep it is in the view.
     dragged: Option<(usize, f64)>,
 }
@@ -66,6 +68,13 @@ impl Overlay {
         self.follow(editor, &lens);
         let painter = ui.painter().with_clip_rect(view);
         let colors = palette(ui.ctx());
+        let thin = Stroke::new(1.0, colors.text.gamma_multiply(0.6));
+        let recorded = self.recorded.iter().map(|&point| lens.place(point));
+        for pair in recorded.collect::<Vec<_>>().windows(2) {
+            if let (Some(from), Some(to)) = (pair[0], pair[1]) {
+                painter.line_segment([from, to], thin);
+            }
+        }
         self.draw_way(&painter, &lens, colors.curve);
         let size = self.extent() * CAMERA_SHARE;
         let selected = &editor.timeline().selected;
@@ -95,6 +104,16 @@ impl Overlay {
         let path = editor.path_of_camera();
         let places = frames.filter_map(|frame| path.at(animation.time_of(frame)));
         let places: Vec<Vec3<f64>> = places.map(|camera| camera.position).collect();
+        let samples = animation
+            .take
+            .as_ref()
+            .map_or(&[][..], |take| &take.samples);
+        let stride = samples.len().div_ceil(MOST_TICKS as usize).max(1);
+        self.recorded = samples
+            .iter()
+            .step_by(stride)
+            .map(|sample| sample.1)
+            .collect();
         let scene = editor.shown();
         let is_tested = places.len() * scene.objects.len() <= MOST_TESTS;
         let sight = if is_tested {

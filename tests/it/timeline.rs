@@ -1,0 +1,545 @@
+//! The timeline, driven in the window: recording, keys, playing, what is drawn of the flight; and
+//! frames on the command line.
+
+use std::process::Command;
+use std::sync::Arc;
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, Pos2, vec2};
+use egui_kittest::kittest::Queryable as _;
+use glint::animate::{CameraPath, Preset, shot};
+use glint::editor::{Action, Edit, Editor, Repeat, Time};
+use glint::image::render;
+use glint::lanes::Vec3;
+use glint::plan::Picture;
+use glint::scene::{Animation, Document, Interpolation, Key as SceneKey, Projection, Scene, Value};
+use glint::trace::Watch;
+use glint::ui::Ask;
+use glint::worker::{Sketch, Worker};
+
+use crate::ui::{CTRL, Desk};
+
+const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
+
+fn flight() -> Scene {
+    Document::load(FLIGHT.as_ref()).expect("a scene").scene
+}
+
+/// A window on a demo whose camera moves from key to key: so many seconds, so far to the right.
+fn moving(keys: &[(f64, f64)]) -> Desk {
+    let mut scene = Scene::demo();
+    let key = |&(time, right): &(f64, f64)| {
+        let mut camera = scene.camera.clone();
+        camera.position.x += right;
+        SceneKey::new(time, camera)
+    };
+    scene.animation.keys = keys.iter().map(key).collect();
+    scene.animation.frames_per_second = 10.0;
+    let document = Document {
+        header: String::new(),
+        scene,
+    };
+    Desk::with(|_| Vec::new(), Some(&document.to_text().expect("a text")))
+}
+
+fn times(desk: &Desk) -> Vec<f64> {
+    let keys = desk.scene().animation.keys.iter();
+    keys.map(|key| (key.time * 1e3).round() / 1e3).collect()
+}
+
+fn place_of(desk: &Desk, name: &str) -> Pos2 {
+    let role = if name == "Playhead" {
+        Role::Slider
+    } else {
+        Role::Button
+    };
+    let widget = desk.window.get_by_role_and_label(role, name);
+    widget.rect().center()
+}
+
+/// Drags from a place by so much, in several moves, with keys held.
+fn drag(desk: &mut Desk, from: Pos2, by: egui::Vec2, modifiers: Modifiers) {
+    let moved = |part: u16| from + by * f32::from(part) / 6.0;
+    desk.window.event(Event::ModifiersChanged(modifiers));
+    desk.window.drag_at(from);
+    desk.window.step();
+    for part in 1..=6 {
+        desk.window.hover_at(moved(part));
+        desk.window.step();
+    }
+    desk.window.drop_at(from + by);
+    desk.window.step();
+    desk.window.event(Event::ModifiersChanged(Modifiers::NONE));
+    desk.settle();
+}
+
+/// Points on screen for a second of the timeline.
+fn points_per_second(desk: &Desk) -> f32 {
+    let (first, last) = (
+        place_of(desk, "Key 1"),
+        place_of(desk, &format!("Key {}", times(desk).len())),
+    );
+    let seconds = times(desk)[times(desk).len() - 1] - times(desk)[0];
+    (last.x - first.x) / seconds as f32
+}
+
+#[test]
+fn a_flight_is_recorded_and_becomes_keys_in_one_step() {
+    let mut desk = Desk::new();
+    let start = desk.scene().camera.clone();
+    desk.window.key_press(Key::R);
+    desk.window.step();
+    desk.window.key_down(Key::W);
+    (0..60).for_each(|_| desk.window.step());
+    desk.window.key_down(Key::ArrowRight);
+    (0..60).for_each(|_| desk.window.step());
+    desk.window.key_up(Key::W);
+    desk.window.key_up(Key::ArrowRight);
+    (0..5).for_each(|_| desk.window.step());
+    let end = desk.scene().camera.clone();
+    desk.press(Modifiers::NONE, Key::T);
+    let animation = desk.scene().animation.clone();
+    let take = animation.take.clone().expect("a take");
+    assert!(
+        (120..140).contains(&take.samples.len()),
+        "{}",
+        take.samples.len()
+    );
+    let seconds = take.samples.last().expect("samples").0;
+    assert!((2.0..2.4).contains(&seconds), "true times: {seconds} s");
+    let count = animation.keys.len();
+    assert!((2..=12).contains(&count), "{count} keys");
+    let path = CameraPath::new(&animation.keys);
+    let first = path.at(0.0).expect("a camera").position;
+    let last = path.at(seconds).expect("a camera").position;
+    assert!((first - start.position).length() < 2.0, "{first:?}");
+    assert!((last - end.position).length() < 2.0, "{last:?}");
+    assert!(desk.editor().looks_through(), "the flight is shown");
+    desk.window.get_by_label_contains("samples → ");
+    assert_eq!(desk.editor().undo_label(), Some("Record flight"));
+    // The slider makes other keys of the same take.
+    let mut editor = Editor::demo();
+    let text = desk.editor().to_text().expect("a text");
+    editor.recover(Document::from_text(&text).expect("a scene"), None);
+    editor.apply(Action::Time(Time::Simplify(0.1)));
+    let fine = editor.scene().animation.keys.len();
+    editor.apply(Action::Time(Time::Simplify(100.0)));
+    let coarse = editor.scene().animation.keys.len();
+    assert!(coarse <= count && count <= fine, "{coarse} {count} {fine}");
+    assert!(editor.timeline().worst.expect("measured") <= 100.0);
+    assert_eq!(editor.scene().animation.take.as_deref(), Some(&*take));
+    // One step back is before the recording.
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert!(desk.scene().animation.is_still());
+}
+
+#[test]
+fn keys_are_set_overwritten_and_deleted() {
+    let mut desk = Desk::new();
+    desk.press(Modifiers::NONE, Key::K);
+    assert_eq!(times(&desk), [0.0]);
+    // With one key there is no time yet: a second one is typed.
+    let mut later = desk.scene().animation.clone();
+    later
+        .keys
+        .push(SceneKey::new(2.0, desk.scene().camera.clone()));
+    let text = Document {
+        header: String::new(),
+        scene: Scene {
+            animation: later,
+            ..desk.scene().clone()
+        },
+    };
+    let mut desk = Desk::with(|_| Vec::new(), Some(&text.to_text().expect("a text")));
+    desk.press(Modifiers::NONE, Key::CloseBracket);
+    assert_eq!(desk.editor().shown_time(), 2.0);
+    // Fly away from the key, and put the view into it.
+    desk.window.key_down(Key::D);
+    (0..30).for_each(|_| desk.window.step());
+    desk.window.key_up(Key::D);
+    desk.settle();
+    assert!(!desk.editor().looks_through(), "flying leaves the shot");
+    let view = desk.scene().camera.clone();
+    assert_ne!(view.position, desk.scene().animation.keys[1].value.position);
+    desk.press(Modifiers::NONE, Key::K);
+    assert_eq!(times(&desk), [0.0, 2.0], "the key there is overwritten");
+    assert_eq!(desk.scene().animation.keys[1].value, view);
+    assert_eq!(desk.editor().undo_label(), Some("Add key"));
+    // The key is selected: its numbers are in the inspector.
+    desk.type_into("time", "3.5");
+    assert_eq!(times(&desk), [0.0, 3.5]);
+    desk.type_into("position x", "12");
+    assert_eq!(desk.scene().animation.keys[1].value.position.x, 12.0);
+    desk.press(Modifiers::NONE, Key::Delete);
+    assert_eq!(times(&desk), [0.0]);
+    for expected in [
+        vec![0.0, 3.5],
+        vec![0.0, 3.5],
+        vec![0.0, 2.0],
+        vec![0.0, 2.0],
+    ] {
+        desk.press(Modifiers::COMMAND, Key::Z);
+        assert_eq!(times(&desk), expected);
+    }
+}
+
+#[test]
+fn keys_are_dragged_copied_and_picked_with_the_mouse() {
+    let mut desk = moving(&[(0.0, 0.0), (1.0, 30.0), (2.0, 10.0), (4.0, 60.0)]);
+    let second = points_per_second(&desk);
+    let at = place_of(&desk, "Key 2");
+    drag(&mut desk, at, vec2(0.5 * second, 0.0), Modifiers::NONE);
+    assert_eq!(times(&desk), [0.0, 1.5, 2.0, 4.0]);
+    assert_eq!(desk.editor().undo_label(), Some("Move keys"));
+    let at = place_of(&desk, "Key 2");
+    drag(&mut desk, at, vec2(1.5 * second, 0.0), CTRL);
+    assert_eq!(times(&desk), [0.0, 1.5, 2.0, 3.0, 4.0], "a copy");
+    assert_eq!(desk.editor().undo_label(), Some("Copy keys"));
+    let keys = &desk.scene().animation.keys;
+    assert_eq!(keys[1].value, keys[3].value);
+    // Two keys together; the later one replaces what it lands on.
+    desk.click("Key 2");
+    desk.window
+        .get_by_label("Key 3")
+        .click_modifiers(Modifiers::SHIFT);
+    desk.settle();
+    assert_eq!(desk.editor().timeline().selected.len(), 2);
+    let at = place_of(&desk, "Key 2");
+    drag(&mut desk, at, vec2(1.0 * second, 0.0), Modifiers::NONE);
+    assert_eq!(times(&desk), [0.0, 2.5, 3.0, 4.0]);
+    // None goes before the start.
+    let at = place_of(&desk, "Key 2");
+    drag(&mut desk, at, vec2(-9.0 * second, 0.0), Modifiers::NONE);
+    assert_eq!(times(&desk)[0], 0.0);
+    for _ in 0..4 {
+        desk.press(Modifiers::COMMAND, Key::Z);
+    }
+    assert_eq!(times(&desk), [0.0, 1.0, 2.0, 4.0], "one step for each drag");
+}
+
+#[test]
+fn the_playhead_is_dragged_and_stepped_and_the_picture_follows() {
+    let mut desk = moving(&[(0.0, 0.0), (2.0, 60.0)]);
+    let at_rest = desk.picture();
+    let second = points_per_second(&desk);
+    let start = Pos2::new(place_of(&desk, "Key 1").x, place_of(&desk, "Playhead").y);
+    drag(&mut desk, start, vec2(1.23 * second, 0.0), Modifiers::NONE);
+    assert_eq!(desk.editor().shown_time(), 1.2, "it snaps to frames");
+    assert!(desk.picture() != at_rest);
+    let scene = Arc::new(desk.scene().clone());
+    let there = shot(&scene, &CameraPath::new(&scene.animation.keys), 1.2);
+    let size = desk.picture();
+    let expected = Picture::of(&there, size.width as u32, size.height as u32);
+    let direct = render(&there, &expected, &Watch::default())
+        .expect("whole")
+        .0;
+    assert!(desk.picture() == direct, "what is shown is the frame");
+    assert_eq!(desk.editor().undo_label(), None, "looking is no edit");
+    desk.press(Modifiers::NONE, Key::Period);
+    assert!((desk.editor().shown_time() - 1.3).abs() < 1e-12);
+    desk.press(Modifiers::NONE, Key::Comma);
+    desk.press(Modifiers::NONE, Key::Comma);
+    assert!((desk.editor().shown_time() - 1.1).abs() < 1e-12);
+    desk.press(Modifiers::NONE, Key::End);
+    assert_eq!(desk.editor().shown_time(), 2.0);
+    desk.press(Modifiers::NONE, Key::Home);
+    assert_eq!(desk.editor().shown_time(), 0.0);
+}
+
+#[test]
+fn playing_is_real_time_whatever_the_frames() {
+    for (repeat, seconds, expected) in [
+        (Repeat::Loop, 1.5, 1.5),
+        (Repeat::Loop, 2.5, 0.5),
+        (Repeat::PingPong, 2.5, 1.5),
+        (Repeat::PingPong, 4.5, 0.5),
+        (Repeat::Once, 3.0, 2.0),
+    ] {
+        let mut editor = Editor::demo();
+        let mut scene = Scene::demo();
+        scene.animation.keys = vec![
+            SceneKey::new(0.0, scene.camera.clone()),
+            SceneKey::new(2.0, scene.camera.clone()),
+        ];
+        let animation = Box::new(scene.animation);
+        editor.apply(Action::Edit(Edit::Animation(animation, "keys")));
+        editor.apply(Action::Time(Time::Repeat(repeat)));
+        editor.apply(Action::Time(Time::Play(true)));
+        for _ in 0..(seconds * 100.0) as u32 {
+            editor.apply(Action::Time(Time::Tick(0.01)));
+        }
+        let playhead = editor.timeline().playhead;
+        assert!(
+            (playhead - expected).abs() < 1e-6,
+            "{repeat:?} {seconds}: {playhead}"
+        );
+        assert_eq!(editor.timeline().is_playing, repeat != Repeat::Once);
+    }
+}
+
+#[test]
+fn the_window_plays_and_pauses() {
+    let mut desk = moving(&[(0.0, 0.0), (20.0, 60.0)]);
+    desk.window.key_press(Key::G);
+    (0..61).for_each(|_| desk.window.step());
+    let playhead = desk.editor().timeline().playhead;
+    assert!(
+        (0.9..1.1).contains(&playhead),
+        "a second of steps: {playhead}"
+    );
+    assert!(desk.editor().looks_through());
+    desk.window.get_by_label_contains(" of 10 fps");
+    desk.press(Modifiers::NONE, Key::G);
+    assert!(!desk.editor().timeline().is_playing);
+    assert_eq!(
+        desk.editor().timeline().playhead,
+        desk.editor().shown_time()
+    );
+    desk.press(Modifiers::NONE, Key::C);
+    assert!(!desk.editor().looks_through());
+    assert_eq!(desk.editor().shown().camera, desk.scene().camera);
+}
+
+#[test]
+fn a_key_is_dragged_in_the_view() {
+    let mut desk = moving(&[(0.0, -60.0), (2.0, 40.0)]);
+    // From farther back the flight is in sight.
+    desk.window.key_down(Key::S);
+    (0..60).for_each(|_| desk.window.step());
+    desk.window.key_up(Key::S);
+    desk.settle();
+    let before = desk.scene().animation.keys[1].value.clone();
+    let at = place_of(&desk, "Key 2 in the view");
+    drag(&mut desk, at, vec2(0.0, -60.0), Modifiers::NONE);
+    let after = desk.scene().animation.keys[1].value.clone();
+    assert_eq!(desk.editor().undo_label(), Some("Move key in the view"));
+    let moved = after.position - before.position;
+    let view = desk.scene().camera.basis().expect("a basis");
+    assert!(moved.dot(view.v) > 5.0, "up in the view: {moved:?}");
+    assert!(
+        moved.dot(view.w).abs() < 1e-6 * moved.length(),
+        "in its plane"
+    );
+    assert_eq!(after.look_at, before.look_at);
+    let there = place_of(&desk, "Key 2 in the view");
+    assert!(
+        (there - (at + vec2(0.0, -60.0))).length() < 2.0,
+        "{there:?} from {at:?}"
+    );
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(desk.scene().animation.keys[1].value, before, "one step");
+}
+
+#[test]
+fn what_has_keys_is_keyed_by_changing_it() {
+    let mut desk = moving(&[(0.0, 0.0), (2.0, 0.0)]);
+    desk.click("Light 1");
+    desk.click("key intensity");
+    assert_eq!(desk.scene().animation.tracks.len(), 1);
+    desk.press(Modifiers::NONE, Key::End);
+    desk.type_into("intensity", "0.8");
+    let track = &desk.scene().animation.tracks[0];
+    let values: Vec<(f64, Value)> = track.keys.iter().map(|key| (key.time, key.value)).collect();
+    assert_eq!(
+        values,
+        [(0.0, Value::Number(0.2)), (2.0, Value::Number(0.8))]
+    );
+    assert_eq!(
+        desk.scene().lights[0].intensity,
+        0.2,
+        "the scene's own stays"
+    );
+    assert_eq!(desk.editor().shown().lights[0].intensity, 0.8);
+    // Other fields of the same light are no keys.
+    desk.type_into("position x", "90");
+    assert_eq!(desk.scene().lights[0].position.x, 90.0);
+    assert_eq!(desk.scene().lights[0].intensity, 0.2);
+    assert_eq!(desk.scene().animation.tracks[0].keys.len(), 2);
+    desk.press(Modifiers::NONE, Key::Home);
+    for _ in 0..10 {
+        desk.press(Modifiers::NONE, Key::Period);
+    }
+    assert!(
+        (desk.editor().shown().lights[0].intensity - 0.5).abs() < 1e-9,
+        "halfway"
+    );
+    // Keys follow a new name, and go with the light.
+    desk.type_name("name", "Sun");
+    assert_eq!(desk.scene().animation.tracks[0].target.owner(), Some("Sun"));
+    desk.press(Modifiers::NONE, Key::Delete);
+    assert!(desk.scene().animation.tracks.is_empty());
+}
+
+#[test]
+fn an_object_with_keys_moves_and_its_corners_do_not_drift() {
+    let mut editor = Editor::demo();
+    let mut scene = Scene::demo();
+    let index = scene.objects.len() - 2;
+    let target = glint::scene::Target::ObjectPosition(scene.objects[index].name.clone());
+    let own = scene.objects[index].shape.clone();
+    let from = own.position();
+    let to = from + Vec3::new(0.1, 33.3, -7.7);
+    scene.animation = scene.animation.with_value(&target, 0.0, Value::Point(from));
+    scene.animation = scene.animation.with_value(&target, 2.0, Value::Point(to));
+    let animation = Box::new(scene.animation);
+    editor.apply(Action::Edit(Edit::Animation(animation, "keys")));
+    for step in 0..30 {
+        editor.apply(Action::Time(Time::Seek(f64::from(step) / 14.0)));
+        let mut object = editor.shown().objects[index].clone();
+        object.visible = step % 2 == 0;
+        editor.apply(Action::Edit(Edit::Object(index, object, "visible")));
+        assert_eq!(editor.scene().objects[index].shape, own, "bit by bit");
+        assert_eq!(editor.scene().animation.tracks[0].keys.len(), 2);
+    }
+}
+
+#[test]
+fn ready_made_flights_and_other_timings_are_one_step_each() {
+    let mut desk = Desk::new();
+    let presets = Preset::ALL.map(|preset| preset.words().0);
+    desk.window
+        .get_by_role_and_label(Role::Button, "Animate")
+        .click();
+    desk.settle();
+    desk.window
+        .get_by_label_contains("Ready-made flight")
+        .click();
+    desk.settle();
+    for name in presets {
+        desk.window.get_by_label(name);
+    }
+    desk.click("Turntable");
+    assert_eq!(desk.scene().animation.keys.len(), 5);
+    assert!(matches!(
+        desk.scene().animation.keys[0].interpolation,
+        Interpolation::Orbit { .. }
+    ));
+    assert_eq!(desk.editor().undo_label(), Some("Turntable"));
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert!(desk.scene().animation.is_still());
+}
+
+#[test]
+fn paths_go_out_to_a_table_and_come_back() {
+    let text = std::fs::read_to_string(FLIGHT).expect("readable");
+    let mut desk = Desk::with(
+        |folder| {
+            vec![
+                (Ask::ExportPath, Some(folder.join("path.csv"))),
+                (Ask::ImportPath, Some(folder.join("path.csv"))),
+                (Ask::ImportPath, Some(folder.join("broken.csv"))),
+            ]
+        },
+        Some(&text),
+    );
+    let before = desk.scene().animation.keys.clone();
+    desk.choose("Animate", "Export path…");
+    let table = std::fs::read_to_string(desk.folder.path().join("path.csv")).expect("written");
+    assert_eq!(table.lines().count(), 1 + before.len());
+    desk.choose("Animate", "Import path…");
+    let after = &desk.scene().animation.keys;
+    assert_eq!(after.len(), before.len());
+    for (was, is) in before.iter().zip(after) {
+        assert_eq!((was.time, was.value.position), (is.time, is.value.position));
+        assert!((was.value.look_at - is.value.look_at).length() < 1e-9);
+    }
+    let broken = desk.folder.path().join("broken.csv");
+    std::fs::write(&broken, "time,x,y,z\n0,1,2,3\n0,1,2,3\n").expect("written");
+    let kept = desk.scene().animation.keys.clone();
+    desk.choose("Animate", "Import path…");
+    desk.window
+        .get_by_label_contains("keys must be in order of time");
+    assert_eq!(
+        desk.scene().animation.keys,
+        kept,
+        "a bad table changes nothing"
+    );
+}
+
+/// A frame on the command line is what the playhead shows in the window, byte by byte.
+#[test]
+fn a_frame_is_the_same_from_the_command_line_and_in_the_window() {
+    let mut scene = flight();
+    (scene.render.width, scene.render.height) = (160, 120);
+    let document = Document {
+        header: String::new(),
+        scene,
+    };
+    let text = document.to_text().expect("a text");
+    let mut desk = Desk::with(|_| Vec::new(), Some(&text));
+    let frame = 77;
+    let time = desk.scene().animation.time_of(frame);
+    desk.press(Modifiers::NONE, Key::Home);
+    for _ in 1..frame {
+        desk.window.key_press(Key::Period);
+        desk.window.step();
+    }
+    desk.settle();
+    assert_eq!(desk.editor().shown_time(), time);
+    desk.press(Modifiers::NONE, Key::H);
+    let picture = desk.picture();
+    assert_eq!((picture.width, picture.height), (160, 120));
+    let file = desk.folder.path().join("given.ron");
+    let output = desk.folder.path().join("frame.ppm");
+    let status = Command::new(env!("CARGO_BIN_EXE_glint"))
+        .args(["render", "--frame", "77", "-o"])
+        .args([&output, &file])
+        .status();
+    assert!(status.expect("it runs").success());
+    let bytes = std::fs::read(output).expect("written");
+    assert!(bytes.starts_with(b"P6"));
+    let shown: Vec<u8> = picture
+        .pixels
+        .iter()
+        .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]])
+        .collect();
+    assert_eq!(bytes.len() - shown.len(), b"P6\n160 120 255\n".len());
+    assert!(bytes.ends_with(&shown));
+}
+
+#[test]
+fn the_published_flight_is_what_it_says() {
+    let scene = flight();
+    let animation: &Animation = &scene.animation;
+    assert_eq!(animation.frame_count(), 202);
+    assert_eq!(animation.frames_per_second, 14.0);
+    let take = animation.take.as_ref().expect("the recording is kept");
+    assert!(
+        take.samples.len() > 500 && animation.keys.len() <= 40,
+        "few keys"
+    );
+    let path = CameraPath::new(&animation.keys);
+    for frame in 1..=202 {
+        let camera = path.at(animation.time_of(frame)).expect("a camera");
+        assert!(camera.basis().is_some());
+        assert_eq!(camera.projection, Projection::Perspective);
+    }
+}
+
+#[test]
+fn small_pictures_are_plain_renders_and_come_in_their_order() {
+    let scene = Arc::new(Scene::demo());
+    let worker = Worker::new(Some(2), || ()).expect("a lane");
+    let sketch = |name: u64| Sketch {
+        name,
+        scene: Arc::clone(&scene),
+        size: (40, 30),
+    };
+    worker.request_sketches(vec![sketch(3), sketch(1)]);
+    worker.request_sketches(vec![sketch(7)]);
+    let start = std::time::Instant::now();
+    let mut pictures = Vec::new();
+    while pictures.len() < 3 && start.elapsed().as_secs() < 60 {
+        pictures.extend(worker.take_sketches());
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    let mut names: Vec<u64> = pictures.iter().map(|(name, _)| *name).collect();
+    names.sort_unstable();
+    assert_eq!(names, [1, 3, 7]);
+    let plain = Picture {
+        sampling: glint::plan::Sampling::Centres,
+        ..Picture::of(&scene, 40, 30)
+    };
+    let direct = render(&scene, &plain, &Watch::default()).expect("whole").0;
+    assert!(pictures.iter().all(|(_, image)| *image == direct));
+}
