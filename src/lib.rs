@@ -3,13 +3,13 @@
 //! ```text
 //!      ui (egui; panels read state, push actions)          cli
 //!       │ Action ▼        ▲ Arc<Scene>, revision            │
-//!     editor (state, actions, history)                      │  same calls, no lane
+//!     editor (state, actions, history, playing)             │  same calls, no lane
 //!       │ submit(revision, scene, picture)                  │
 //!     worker (the background lane; newest wins) ◄ · · · · · ┘
 //!       │
-//!  scene ─► plan ─► trace ─► image ─► export      lab (ways of tracing ► time, error)
-//!                     ▲
-//!               lanes ┘
+//!  scene ─► animate ─► plan ─► trace ─► image ─► export      lab (ways of tracing ► time, error)
+//!                                 ▲
+//!                           lanes ┘
 //! ```
 //!
 //! The modules stand in the order of their dependence: a file imports from its own module and from

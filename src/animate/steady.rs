@@ -60,8 +60,9 @@ fn mean(part: &[(f64, Numbers)], n: usize, seconds: f64) -> Numbers {
     let reach = 3.0 * seconds;
     let from = |time: f64| part.partition_point(|sample| sample.0 < time);
     let stands_for = |m: usize| (part[(m + 1).min(last)].0 - part[m.saturating_sub(1)].0) / 2.0;
-    for m in from(here - reach)..from(here + reach) {
-        add(part[m].0 - here, stands_for(m), &part[m].1, None);
+    let direct = part.iter().enumerate().take(from(here + reach));
+    for (m, (time, numbers)) in direct.skip(from(here - reach)) {
+        add(time - here, stands_for(m), numbers, None);
     }
     // What is beyond an end is as far from it as what is mirrored there.
     for m in 1..from(2.0 * first_time - here + reach) {

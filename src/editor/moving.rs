@@ -71,8 +71,9 @@ impl Moving {
 
     /// The picture is that of the view from now on.
     pub fn look_at_view(&mut self) {
+        // From outside one may fly while it plays.
+        self.timeline.is_playing &= !self.timeline.looks_through;
         self.timeline.looks_through = false;
-        self.timeline.is_playing = false;
     }
 
     /// Takes up what has changed: the scene, the time, the camera that is looked through.
@@ -181,7 +182,7 @@ impl Editor {
             Time::Speed(speed) => timeline.speed = speed,
             Time::LookThrough(looks_through) => {
                 timeline.looks_through = looks_through;
-                timeline.is_playing &= looks_through;
+                timeline.stays_outside = !looks_through;
                 self.leave_still();
             }
             Time::SelectKeys(places) => {
@@ -192,10 +193,10 @@ impl Editor {
                 };
                 timeline.selected = places;
             }
-            Time::Record(now) => {
+            Time::Record => {
                 let camera = self.moving.shown.camera.clone();
                 self.edit(Edit::Camera(camera, "move"));
-                self.moving.timeline.record(now);
+                self.moving.timeline.record();
                 self.leave_still();
             }
             Time::Sample(now) => {
@@ -229,9 +230,10 @@ impl Editor {
         }
     }
 
-    /// What moves is looked at as it moves.
+    /// What moves is looked at as it moves: through the shot camera, unless the user has chosen to
+    /// stay outside.
     fn show_time(&mut self) {
-        self.moving.timeline.looks_through = true;
+        self.moving.timeline.looks_through = !self.moving.timeline.stays_outside;
         self.leave_still();
     }
 
@@ -262,6 +264,7 @@ impl Editor {
         self.edit(Edit::Animation(Box::new(animation), "Record flight"));
         self.end_gesture();
         self.moving.timeline.playhead = 0.0;
+        self.moving.timeline.stays_outside = false;
         self.show_time();
         self.inform(format!(
             "{count} samples became {said} keys, never more than {worst:.1} px off at 1024²"

@@ -42,9 +42,9 @@ pub enum Time {
     LookThrough(bool),
     /// Select these keys, by place.
     SelectKeys(BTreeSet<usize>),
-    /// Start to record what the camera does; the clock shows so many seconds.
-    Record(f64),
-    /// The camera as it is, at this time of the clock, is part of the recording.
+    /// Start to record what the camera does.
+    Record,
+    /// The camera as it is, at this time of the clock in seconds, is part of the recording.
     Sample(f64),
     /// Make keys of what was recorded.
     Stop,
@@ -53,6 +53,7 @@ pub enum Time {
 }
 
 /// The state of the timeline; changed by [`Time`] actions.
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 #[derive(Clone, Debug)]
 pub struct Timeline {
     /// Seconds from the start.
@@ -71,6 +72,8 @@ pub struct Timeline {
     pub tolerance: f64,
     /// How far the keys made last are off, in the same pixels.
     pub worst: Option<f64>,
+    /// Whether the user has chosen to see the shot camera from outside.
+    pub(super) stays_outside: bool,
     is_returning: bool,
     pub(super) recording: Option<Recording>,
 }
@@ -79,7 +82,8 @@ pub struct Timeline {
 #[derive(Clone, Debug)]
 pub(super) struct Recording {
     pub take: Take,
-    start: f64,
+    /// What the clock showed at the first sample.
+    start: Option<f64>,
 }
 
 impl Default for Timeline {
@@ -93,6 +97,7 @@ impl Default for Timeline {
             selected: BTreeSet::new(),
             tolerance: 1.0,
             worst: None,
+            stays_outside: false,
             is_returning: false,
             recording: None,
         }
@@ -164,17 +169,18 @@ impl Timeline {
         }
     }
 
-    pub(super) fn record(&mut self, now: f64) {
+    pub(super) fn record(&mut self) {
         self.is_playing = false;
         self.recording = Some(Recording {
             take: Take::default(),
-            start: now,
+            start: None,
         });
     }
 
     pub(super) fn sample(&mut self, now: f64, camera: &Camera, angles: Orientation) {
         if let Some(recording) = &mut self.recording {
-            recording.take.push(now - recording.start, camera, angles);
+            let start = *recording.start.get_or_insert(now);
+            recording.take.push(now - start, camera, angles);
         }
     }
 }

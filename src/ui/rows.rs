@@ -318,7 +318,7 @@ fn rounded(value: f64, unit: &str) -> String {
         size if size >= 100.0 => 2,
         size if size >= 1.0 => 3,
         size if size >= 1e-3 => 5,
-        0.0 => 0,
+        0.0 => return "0".to_owned(),
         // All its digits would be wider than the field.
         _ => return format!("{value:.2e}"),
     };

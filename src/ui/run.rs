@@ -55,8 +55,7 @@ impl App {
                 None
             }
             other => {
-                let now = ctx.input(|input| input.time);
-                for action in actions(&other, &self.editor, now) {
+                for action in actions(&other, &self.editor) {
                     self.editor.apply(action);
                 }
                 self.run_on_scene(&other);

@@ -298,6 +298,17 @@ fn the_window_plays_and_pauses() {
     desk.press(Modifiers::NONE, Key::C);
     assert!(!desk.editor().looks_through());
     assert_eq!(desk.editor().shown().camera, desk.scene().camera);
+    // From outside it plays too, and one may fly meanwhile.
+    desk.window.key_press(Key::G);
+    desk.window.key_down(Key::S);
+    (0..30).for_each(|_| desk.window.step());
+    desk.window.key_up(Key::S);
+    desk.window.step();
+    let timeline = desk.editor().timeline();
+    assert!(timeline.is_playing && !timeline.looks_through);
+    assert!(timeline.playhead > playhead);
+    desk.press(Modifiers::NONE, Key::C);
+    assert!(desk.editor().looks_through());
 }
 
 #[test]

@@ -226,7 +226,10 @@ fn draw_camera(painter: &Painter, lens: &Lens, camera: &Camera, size: f64, color
             painter.line_segment([eye, *corner], stroke);
         }
     }
-    painter.add(Shape::closed_line(corners, stroke));
+    // One by one: the corners of a line through points that nearly coincide would be spikes.
+    for (n, corner) in corners.iter().enumerate() {
+        painter.line_segment([*corner, corners[(n + 1) % corners.len()]], stroke);
+    }
     if let Some(eye) = eye {
         painter.add(Shape::circle_filled(pos2(eye.x, eye.y), 3.5, color));
     }

@@ -25,8 +25,8 @@ pub struct Thumbs {
     shot: Option<TextureHandle>,
     /// Revision of the scene whose keys were asked for, and the screen's scale.
     asked: Option<(u64, u32)>,
-    /// Revision of what is on show, and size, that the shot was asked for.
-    asked_shot: Option<(u64, u32)>,
+    /// Revision of the scene, time, and size that the shot was asked for.
+    asked_shot: Option<(u64, f64, u32)>,
 }
 
 impl Thumbs {
@@ -65,10 +65,10 @@ impl Thumbs {
         let mut wishes = Vec::new();
         if !editor.looks_through() {
             let size = pixels(shot_place(view, aspect).height());
-            let wanted = Some((editor.shown_revision(), size.1));
+            let time = editor.shown_time();
+            let wanted = Some((editor.revision(), time, size.1));
             if self.asked_shot != wanted {
                 self.asked_shot = wanted;
-                let time = editor.shown_time();
                 wishes.push(Sketch {
                     name: SHOT,
                     scene: shot(scene, editor.path_of_camera(), time),

@@ -206,7 +206,7 @@ fn clock(seconds: f64) -> String {
 }
 
 /// What a command of the timeline comes to; nothing where it makes no sense.
-pub fn actions(command: &Command, editor: &Editor, now: f64) -> Vec<crate::editor::Action> {
+pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action> {
     use crate::editor::Action;
     let animation = &editor.scene().animation;
     let time = editor.shown_time();
@@ -229,7 +229,7 @@ pub fn actions(command: &Command, editor: &Editor, now: f64) -> Vec<crate::edito
             let key = keys.find(is_later);
             key.map_or(Vec::new(), |key| timed(Time::Seek(key)))
         }
-        Command::Record if editor.timeline().recorded().is_none() => timed(Time::Record(now)),
+        Command::Record if editor.timeline().recorded().is_none() => timed(Time::Record),
         Command::StopRecording => timed(Time::Stop),
         Command::LookThrough if !animation.keys.is_empty() => {
             timed(Time::LookThrough(!editor.looks_through()))
