@@ -1,7 +1,7 @@
 //! From keys and a time to a scene that stands still: interpolation, takes and their keys, timing,
 //! ready-made flights.
 //!
-//! Positions follow centripetal splines ([`route`]) at a pace that is monotone in time ([`curve`]);
+//! Positions follow centripetal splines ([`Route`]) at a pace that is monotone in time ([`Curve`]);
 //! directions are yaw, pitch and roll, turned the shorter way. At the time of a key, everything is
 //! exactly what the key says.
 
