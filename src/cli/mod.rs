@@ -3,6 +3,7 @@
 
 mod chart;
 mod check;
+mod export;
 mod fallback;
 mod plan;
 mod render;
@@ -24,9 +25,6 @@ use crate::lab::stability::Map;
 const FAILED: u8 = 1;
 /// Exit code when the words or the file were wrong.
 const WRONG: u8 = 2;
-
-/// Commands of later versions, so that asking for one is answered by name.
-const NOT_YET: [&str; 2] = ["export", "job"];
 
 #[derive(Debug, Parser)]
 #[command(
@@ -50,6 +48,10 @@ struct Words {
 enum Command {
     /// Trace a scene into a picture
     Render(render::RenderWords),
+    /// Write the frames of an animation, going on where it was left
+    Export(export::ExportWords),
+    /// Write a job for a render farm (Open Job Description)
+    Job(export::JobWords),
     /// Validate scene files
     Check(check::CheckWords),
     /// Say what a scene needs of the tracer, and why
@@ -91,17 +93,9 @@ pub enum Asked {
 /// Reads the command line and runs its command, if it has one.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
     let words: Vec<OsString> = words.into_iter().collect();
-    if let Some(name) = NOT_YET
-        .iter()
-        .find(|name| words.get(1).is_some_and(|word| word == **name))
-    {
-        return Asked::Done(refuse(&format!(
-            "`glint {name}` is not built yet; this version has `glint`, `glint render`, `glint check`, `glint plan`, `glint chart` and `glint stability`"
-        )));
-    }
     if let Some(name) = unknown_command(&words) {
         return Asked::Done(refuse(&format!(
-            "there is no command {name:?}; there are render, check, plan, chart and stability, and `glint SCENE` opens the editor"
+            "there is no command {name:?}; there are render, export, job, check, plan, chart and stability, and `glint SCENE` opens the editor"
         )));
     }
     match Words::try_parse_from(words) {
@@ -109,6 +103,14 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
             command: Some(Command::Render(words)),
             ..
         }) => Asked::Done(render::run(&words)),
+        Ok(Words {
+            command: Some(Command::Export(words)),
+            ..
+        }) => Asked::Done(export::run(&words)),
+        Ok(Words {
+            command: Some(Command::Job(words)),
+            ..
+        }) => Asked::Done(export::run_job(&words)),
         Ok(Words {
             command: Some(Command::Check(words)),
             ..

@@ -188,12 +188,7 @@ impl RenderWords {
 
     fn picture(&self, scene: &Scene) -> Picture {
         let own = (scene.render.width, scene.render.height);
-        let (width, height) = match (self.width, self.height) {
-            (None, None) => own,
-            (Some(width), Some(height)) => (width, height),
-            (Some(width), None) => (width, in_proportion(width, own.1, own.0)),
-            (None, Some(height)) => (in_proportion(height, own.0, own.1), height),
-        };
+        let (width, height) = sized(own, (self.width, self.height));
         Picture {
             projection: self.camera.map(|word| match word {
                 CameraWord::Perspective => Projection::Perspective,
@@ -202,6 +197,16 @@ impl RenderWords {
             level: self.lanes,
             ..Picture::of(scene, width, height)
         }
+    }
+}
+
+/// The asked-for size; one side alone keeps the aspect of the scene's `own`.
+pub fn sized(own: (u32, u32), asked: (Option<u32>, Option<u32>)) -> (u32, u32) {
+    match asked {
+        (None, None) => own,
+        (Some(width), Some(height)) => (width, height),
+        (Some(width), None) => (width, in_proportion(width, own.1, own.0)),
+        (None, Some(height)) => (in_proportion(height, own.0, own.1), height),
     }
 }
 

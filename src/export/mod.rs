@@ -1,7 +1,21 @@
-//! Pictures on disk.
+//! Pictures on disk: single ones, and sequences that can be taken up where they were left.
+
+mod frames;
+mod job;
+mod manifest;
+mod pattern;
+mod sequence;
+mod video;
 
 use std::io;
 use std::path::{Path, PathBuf};
+
+pub use frames::Frames;
+pub use job::job_template;
+pub use manifest::{Hash, MANIFEST, Manifest};
+pub use pattern::Pattern;
+pub use sequence::Sequence;
+pub use video::{Video, VideoError};
 
 use crate::image::{Format, FormatError, Image};
 use crate::scene::write_atomic;
@@ -21,6 +35,9 @@ pub enum ExportError {
         /// What the encoder said.
         source: image::ImageError,
     },
+    /// The scene cannot be put into words, which its fingerprint is made of.
+    #[error("the scene cannot be written: {0}")]
+    Unwritable(#[from] ron::Error),
     /// The disk said no.
     #[error("cannot write {path}: {source}", path = .path.display())]
     Disk {

@@ -26,6 +26,14 @@ pub struct FormatError {
 }
 
 impl Format {
+    /// The ending of such files.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Png => "png",
+            Self::Ppm => "ppm",
+        }
+    }
+
     /// The format that a file's ending asks for, in any case.
     ///
     /// # Errors

@@ -5,6 +5,7 @@
 mod budget;
 mod easel;
 mod errand;
+mod exporting;
 mod jobs;
 mod lane;
 
@@ -17,6 +18,7 @@ use std::time::{Duration, Instant};
 
 pub use budget::BUDGET;
 pub use errand::{panic_text, run_errand};
+pub use exporting::{ExportStep, Exported, Exporting};
 pub use jobs::{Activity, Event, Frame, LiveJob, Pace, Sketch, StillJob};
 
 use crate::image::Image;

@@ -164,11 +164,11 @@ fn wrong_words_and_wrong_files_exit_with_2() {
             &["render", "missing.ron", "-o", "a.png"],
             "cannot read missing.ron",
         ),
-        (&["export", DEMO], "`glint export` is not built yet"),
+        (&["export", DEMO], "--output <DIR>"),
         (&["check"], "<SCENE>..."),
         (
             &["chek", DEMO],
-            "there is no command \"chek\"; there are render, check, plan, chart and stability",
+            "there is no command \"chek\"; there are render, export, job, check, plan, chart and stability",
         ),
     ];
     for (words, expected) in cases {

@@ -4,6 +4,7 @@
 
 mod antialias;
 mod cli;
+mod export;
 mod house;
 mod image_model;
 mod needs;

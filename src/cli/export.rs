@@ -1,0 +1,260 @@
+//! `glint export`: an animation as files, taken up where it was left; `glint job`: the same for a
+//! farm.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::Instant;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::{fail, refuse, say};
+use crate::export::{Frames, Pattern, Sequence, Video, job_template};
+use crate::image::Format;
+use crate::scene::{Choice as _, Document, MAX_SIDE, Sampling, Scene, write_atomic};
+use crate::trace::{Threads, Watch};
+use crate::worker::{ExportStep, Exported, Exporting};
+
+/// What is exported, for a folder and for a job.
+#[derive(Debug, Args)]
+struct What {
+    /// The scene file (RON)
+    scene: PathBuf,
+    /// Frames, counted from 1: 1-202, 1,4 or 1-10:3 [default: all]
+    #[arg(long, value_parser = Frames::parse)]
+    frames: Option<Frames>,
+    /// Names of the frames, with %d where the number goes, or %05d for five digits
+    #[arg(long, value_name = "PATTERN", default_value = "rayTrace%d", value_parser = Pattern::parse)]
+    name: Pattern,
+    /// Format of the frames: ppm or png
+    #[arg(long, default_value = "ppm", value_parser = format_of)]
+    format: Format,
+    /// Width in pixels; alone, it keeps the scene's aspect
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SIDE)))]
+    width: Option<u32>,
+    /// Height in pixels; alone, it keeps the scene's aspect
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SIDE)))]
+    height: Option<u32>,
+    /// How edges are smoothed: none, adaptive, or grid:N [default: the scene's own]
+    #[arg(long, value_parser = Sampling::parse)]
+    antialias: Option<Sampling>,
+}
+
+#[derive(Debug, Args)]
+pub struct ExportWords {
+    #[command(flatten)]
+    what: What,
+    /// The folder that the frames go to
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// A video to make of the frames: .mp4, .mov and .mkv by ffmpeg, .gif and .apng without it
+    #[arg(long, value_name = "FILE")]
+    video: Option<PathBuf>,
+    /// Tracing threads [default: one per core]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    threads: Option<u16>,
+    /// Only say which frames would be made, and how many
+    #[arg(long)]
+    dry_run: bool,
+    /// Tell the progress in the lines that Open Job Description runners read
+    #[arg(long)]
+    openjd: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct JobWords {
+    #[command(flatten)]
+    what: What,
+    /// The template to write; the scene is copied beside it if it is elsewhere
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+}
+
+fn format_of(word: &str) -> Result<Format, String> {
+    match word {
+        "ppm" => Ok(Format::Ppm),
+        "png" => Ok(Format::Png),
+        _ => Err("expected ppm or png".to_owned()),
+    }
+}
+
+impl What {
+    fn sequence(&self, folder: PathBuf) -> Result<Sequence, String> {
+        let document = Document::load(&self.scene).map_err(|error| error.to_string())?;
+        let mut scene: Scene = document.scene;
+        let render = &mut scene.render;
+        (render.width, render.height) =
+            super::render::sized((render.width, render.height), (self.width, self.height));
+        render.antialias = self.antialias.unwrap_or(render.antialias);
+        let (frames, name) = (self.frames.clone(), self.name.clone());
+        Sequence::new(Arc::new(scene), frames, name, self.format, folder)
+            .map_err(|sentence| format!("{}: {sentence}", self.scene.display()))
+    }
+}
+
+/// Writes the frames that are not there as they should be, then the video.
+pub fn run(words: &ExportWords) -> ExitCode {
+    let video = match words
+        .video
+        .as_deref()
+        .map(|path| (path, Video::of_path(path)))
+    {
+        None => None,
+        Some((path, Ok(video))) => Some((path, video)),
+        Some((_, Err(error))) => return refuse(&error.to_string()),
+    };
+    let sequence = match words.what.sequence(words.output.clone()) {
+        Ok(sequence) => sequence,
+        Err(sentence) => return refuse(&sentence),
+    };
+    if words.dry_run {
+        return tell_missing(&sequence);
+    }
+    let threads = match Threads::new(words.threads.map(usize::from)) {
+        Ok(threads) => threads,
+        Err(error) => return fail(&error.to_string()),
+    };
+    let start = Instant::now();
+    let teller = Teller::new(&sequence, words.openjd);
+    let done = match export(sequence.clone(), &threads, &teller) {
+        Ok(done) => done,
+        Err(sentence) => return fail(&sentence),
+    };
+    teller.end();
+    if let Some((path, video)) = video {
+        teller.say_status("encoding");
+        if let Err(error) = video.make(&sequence, path, |_| ()) {
+            return fail(&error.to_string());
+        }
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    say(&format!(
+        "{}: {} written, {} there already, {seconds:.1} s, {:.1} frames/s",
+        words.output.display(),
+        counted(done.written),
+        done.kept,
+        done.total as f64 / seconds
+    ));
+    ExitCode::SUCCESS
+}
+
+fn counted(frames: usize) -> String {
+    let s = if frames == 1 { "" } else { "s" };
+    format!("{frames} frame{s}")
+}
+
+fn tell_missing(sequence: &Sequence) -> ExitCode {
+    let missing = match sequence.missing() {
+        Ok(missing) => missing,
+        Err(error) => return fail(&error.to_string()),
+    };
+    let total = sequence.frames.count();
+    let frames: Vec<String> = missing.iter().map(u64::to_string).collect();
+    let set = Frames::parse(&frames.join(",")).map_or(String::new(), |set| format!(": {set}"));
+    say(&format!(
+        "{} of {total} to make{set}",
+        counted(missing.len())
+    ));
+    ExitCode::SUCCESS
+}
+
+fn export(sequence: Sequence, threads: &Threads, teller: &Teller) -> Result<Exported, String> {
+    let again = "; what is done stays, and the same command goes on from there";
+    let failed = |error: crate::export::ExportError| format!("{error}{again}");
+    let mut exporting = Exporting::new(sequence).map_err(|error| error.to_string())?;
+    let watch = Watch::default();
+    threads.run(|| {
+        loop {
+            match exporting.step(&watch) {
+                ExportStep::Going => teller.tell(exporting.done()),
+                ExportStep::Done | ExportStep::Stopped => break,
+                ExportStep::Failed(error) => return Err(failed(error)),
+            }
+        }
+        exporting.finish().map_err(failed)
+    })
+}
+
+/// Tells how far it is: a bar on a terminal, or lines for a runner.
+struct Teller {
+    bar: ProgressBar,
+    is_openjd: bool,
+}
+
+impl Teller {
+    fn new(sequence: &Sequence, is_openjd: bool) -> Self {
+        let count = sequence.frames.count() as u64;
+        let bar = if is_openjd {
+            ProgressBar::hidden()
+        } else {
+            ProgressBar::new(count)
+        };
+        bar.set_length(count);
+        let style = "{bar:32} {pos}/{len} frames  {per_sec}  {eta} left";
+        if let Ok(style) = ProgressStyle::with_template(style) {
+            bar.set_style(style);
+        }
+        Self { bar, is_openjd }
+    }
+
+    fn tell(&self, done: Exported) {
+        let so_far = done.kept + done.written;
+        self.bar.set_position(so_far as u64);
+        if self.is_openjd {
+            let share = so_far as f64 * 100.0 / done.total.max(1) as f64;
+            say(&format!("openjd_progress: {share:.1}"));
+            self.say_status(&format!("{so_far} of {} frames", done.total));
+        }
+    }
+
+    fn say_status(&self, status: &str) {
+        if self.is_openjd {
+            say(&format!("openjd_status: {status}"));
+        }
+    }
+
+    fn end(&self) {
+        self.bar.finish_and_clear();
+        if self.is_openjd {
+            say("openjd_progress: 100");
+        }
+    }
+}
+
+/// Writes the template of a job, and the scene beside it.
+pub fn run_job(words: &JobWords) -> ExitCode {
+    let sequence = match words.what.sequence(PathBuf::from("frames")) {
+        Ok(sequence) => sequence,
+        Err(sentence) => return refuse(&sentence),
+    };
+    let scene = &words.what.scene;
+    let stem = scene.file_stem().unwrap_or_default().to_string_lossy();
+    let file = scene.file_name().unwrap_or_default().to_string_lossy();
+    let text = job_template(&sequence, &stem, &file);
+    match write_atomic(&words.output, text.as_bytes()).and_then(|()| beside(scene, &words.output)) {
+        Ok(()) => {
+            let frames = sequence.frames.count();
+            say(&format!(
+                "{}: a job of {}",
+                words.output.display(),
+                counted(frames)
+            ));
+            ExitCode::SUCCESS
+        }
+        Err(error) => fail(&format!("cannot write {}: {error}", words.output.display())),
+    }
+}
+
+/// Copies the scene into the template's folder, unless it is there.
+fn beside(scene: &Path, template: &Path) -> std::io::Result<()> {
+    let Some(name) = scene.file_name() else {
+        return Ok(());
+    };
+    let copy = template.with_file_name(name);
+    let is_same = |path: &Path| std::fs::canonicalize(path).ok();
+    if is_same(scene) == is_same(&copy) {
+        return Ok(());
+    }
+    write_atomic(&copy, &std::fs::read(scene)?)
+}

@@ -1,0 +1,123 @@
+//! Which frames: sets such as `1-202`, `1,4` and `1-10:3`, as farms write them.
+
+use std::fmt;
+
+/// Most frames of one set.
+const MOST: u64 = 1_000_000;
+
+/// Frames in order, each once; counted from 1.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Frames(Vec<u64>);
+
+impl Frames {
+    /// All frames from the first to this one.
+    pub fn up_to(last: u64) -> Self {
+        Self((1..=last.min(MOST)).collect())
+    }
+
+    /// Reads a set: numbers and ranges, apart by commas; a range may have a step.
+    ///
+    /// # Errors
+    /// What was expected, in words.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let expected = || {
+            format!("expected frames such as 1-202, 1,4 or 1-10:3, counted from 1; found {text:?}")
+        };
+        let mut frames = Vec::new();
+        for part in text.split(',') {
+            let (range, step) = part.split_once(':').unwrap_or((part, "1"));
+            let (first, last) = range.split_once('-').unwrap_or((range, range));
+            let number = |word: &str| word.trim().parse::<u64>().ok().filter(|&number| number > 0);
+            let (Some(first), Some(last), Some(step)) = (number(first), number(last), number(step))
+            else {
+                return Err(expected());
+            };
+            if last < first {
+                return Err(format!(
+                    "{last} comes before {first} in the frames {text:?}"
+                ));
+            }
+            if (last - first) / step + frames.len() as u64 >= MOST {
+                return Err(format!("there may be at most {MOST} frames at once"));
+            }
+            frames.extend((first..=last).step_by(usize::try_from(step).unwrap_or(usize::MAX)));
+        }
+        frames.sort_unstable();
+        frames.dedup();
+        Ok(Self(frames))
+    }
+
+    /// The frames, in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = u64> + '_ {
+        self.0.iter().copied()
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    /// The last of them.
+    pub fn last(&self) -> Option<u64> {
+        self.0.last().copied()
+    }
+}
+
+impl fmt::Display for Frames {
+    /// In as few ranges as there are gaps.
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let mut rest = &self.0[..];
+        let mut comma = "";
+        while let [first, ..] = rest {
+            let run = rest
+                .iter()
+                .zip(*first..)
+                .take_while(|(a, b)| *a == b)
+                .count();
+            let last = rest[run - 1];
+            match run {
+                1 => write!(f, "{comma}{first}")?,
+                _ => write!(f, "{comma}{first}-{last}")?,
+            }
+            comma = ",";
+            rest = &rest[run..];
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn sets_are_read_as_farms_write_them() {
+        let frames = |text| Frames::parse(text).expect("a set").0;
+        assert_eq!(frames("1-4"), [1, 2, 3, 4]);
+        assert_eq!(frames("1,4"), [1, 4]);
+        assert_eq!(frames("1-10:3"), [1, 4, 7, 10]);
+        assert_eq!(frames(" 7 - 9 , 1-3, 2"), [1, 2, 3, 7, 8, 9]);
+        for wrong in [
+            "",
+            "0",
+            "1-",
+            "-3",
+            "a",
+            "1-10:0",
+            "5-3",
+            "1-99999999999",
+            "1;2",
+        ] {
+            assert!(Frames::parse(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_set_survives_its_text(frames in prop::collection::btree_set(1..300_u64, 1..60)) {
+            let set = Frames(frames.into_iter().collect());
+            prop_assert_eq!(Frames::parse(&set.to_string()), Ok(set));
+        }
+    }
+}

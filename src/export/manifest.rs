@@ -1,0 +1,111 @@
+//! What is known about the frames in a folder: a text file with a line for each that was written.
+
+use std::collections::HashMap;
+use std::fmt::Write as _;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Read as _, Write as _};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// The file's name.
+pub const MANIFEST: &str = "glint-frames.txt";
+/// Its first line.
+const HEAD: &str =
+    "# Frames by Glint: file, hash of its bytes, fingerprint of what it shows, milliseconds";
+
+/// A hash as 64 hexadecimal digits.
+pub type Hash = blake3::Hash;
+
+/// What was noted about a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Note {
+    content: Hash,
+    fingerprint: Hash,
+}
+
+/// The notes of a folder. The newest line about a file counts; a line that was cut off is none.
+#[derive(Debug)]
+pub struct Manifest {
+    folder: PathBuf,
+    notes: HashMap<String, Note>,
+}
+
+impl Manifest {
+    /// Reads the notes of a folder; none, if there are none.
+    ///
+    /// # Errors
+    /// Whatever the system answers, except that the file is not there.
+    pub fn read(folder: &Path) -> io::Result<Self> {
+        let text = match fs::read(folder.join(MANIFEST)) {
+            Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
+            Err(error) => return Err(error),
+        };
+        let notes = text.split_inclusive('\n').filter_map(note);
+        Ok(Self {
+            folder: folder.to_owned(),
+            notes: notes.collect(),
+        })
+    }
+
+    /// Whether the file is there, whole, as it was written, and shows what it would show now.
+    pub fn is_valid(&self, file: &str, fingerprint: &Hash) -> bool {
+        let Some(note) = self.notes.get(file) else {
+            return false;
+        };
+        let is_same = note.fingerprint == *fingerprint;
+        is_same && content(&self.folder.join(file)).is_ok_and(|found| found == note.content)
+    }
+}
+
+fn note(line: &str) -> Option<(String, Note)> {
+    let line = line.strip_suffix('\n')?;
+    let mut cells = line.split('\t');
+    let (file, content, fingerprint) = (cells.next()?, cells.next()?, cells.next()?);
+    let note = Note {
+        content: Hash::from_hex(content).ok()?,
+        fingerprint: Hash::from_hex(fingerprint).ok()?,
+    };
+    // The time is not read, but a line without it was cut off.
+    cells.next().map(|_| (file.to_owned(), note))
+}
+
+/// The hash of a file.
+fn content(path: &Path) -> io::Result<Hash> {
+    let mut hasher = blake3::Hasher::new();
+    let mut file = File::open(path)?;
+    let mut part = vec![0; 1 << 18];
+    loop {
+        match file.read(&mut part)? {
+            0 => return Ok(hasher.finalize()),
+            count => hasher.update(&part[..count]),
+        };
+    }
+}
+
+/// Adds a line about a file. Lines are added whole, so that several programs may write frames into
+/// one folder.
+///
+/// # Errors
+/// Whatever the system answers.
+pub fn add_note(
+    folder: &Path,
+    file: &str,
+    bytes: &[u8],
+    fingerprint: &Hash,
+    time: Duration,
+) -> io::Result<()> {
+    let path = folder.join(MANIFEST);
+    let mut line = String::new();
+    if !path.exists() {
+        let _ = writeln!(line, "{HEAD}");
+    }
+    let _ = writeln!(
+        line,
+        "{file}\t{}\t{fingerprint}\t{:.3}",
+        blake3::hash(bytes),
+        time.as_secs_f64() * 1e3
+    );
+    let mut manifest = OpenOptions::new().create(true).append(true).open(path)?;
+    manifest.write_all(line.as_bytes())
+}

@@ -1,0 +1,105 @@
+//! Names of frames: `rayTrace%d`, `shot.%05d`.
+
+/// A file name with a place for the number.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pattern {
+    before: String,
+    /// The number is filled up with zeros to so many digits.
+    digits: usize,
+    after: String,
+}
+
+impl Pattern {
+    /// Reads a pattern with one `%d`, or `%05d` for five digits; its width does not depend on how
+    /// many frames there are, so that names stay when more come.
+    ///
+    /// # Errors
+    /// What was expected, in words.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let wrong = |why: &str| {
+            Err(format!(
+                "{why}, for example rayTrace%d or shot.%05d; found {text:?}"
+            ))
+        };
+        let Some((before, rest)) = text.split_once('%') else {
+            return wrong("a name needs %d where the number goes");
+        };
+        let Some((digits, after)) = rest.split_once('d') else {
+            return wrong("behind % comes d, or the number of digits and d");
+        };
+        let Some(digits) = digits_of(digits) else {
+            return wrong("behind % comes d, or the number of digits (at most 12) and d");
+        };
+        if after.contains('%') {
+            return wrong("a name has one % only");
+        }
+        if text.contains(['/', '\\']) || text.chars().any(char::is_control) {
+            return wrong("a name has no folders in it");
+        }
+        Ok(Self {
+            before: before.to_owned(),
+            digits,
+            after: after.to_owned(),
+        })
+    }
+
+    /// The name of a frame, without an ending.
+    pub fn name(&self, frame: u64) -> String {
+        let Self {
+            before,
+            digits,
+            after,
+        } = self;
+        format!("{before}{frame:0digits$}{after}")
+    }
+
+    /// The pattern as text.
+    pub fn text(&self) -> String {
+        let digits = match self.digits {
+            0 => String::new(),
+            digits => format!("0{digits}"),
+        };
+        format!("{}%{digits}d{}", self.before, self.after)
+    }
+}
+
+/// `05` or `5` or nothing.
+fn digits_of(text: &str) -> Option<usize> {
+    if text.is_empty() {
+        return Some(0);
+    }
+    let digits = text.parse::<usize>().ok()?;
+    (digits <= 12 && text.chars().all(|c| c.is_ascii_digit())).then_some(digits)
+}
+
+impl Default for Pattern {
+    /// The names of the program that Glint grew from.
+    fn default() -> Self {
+        Self {
+            before: "rayTrace".to_owned(),
+            digits: 0,
+            after: String::new(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_go_where_the_pattern_says() {
+        let name = |text, frame| Pattern::parse(text).expect("a pattern").name(frame);
+        assert_eq!(name("rayTrace%d", 7), "rayTrace7");
+        assert_eq!(name("shot.%05d.x", 7), "shot.00007.x");
+        assert_eq!(name("%3d", 1234), "1234");
+        for wrong in ["frame", "%s", "%d%d", "a/%d", "%xd", "%099d", "%"] {
+            assert!(Pattern::parse(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(
+            Pattern::parse("a%05db").expect("a pattern").text(),
+            "a%05db"
+        );
+        assert_eq!(Pattern::default().text(), "rayTrace%d");
+    }
+}

@@ -1,0 +1,185 @@
+//! An animation as files: which, where, and what each of them shows.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::manifest::{Hash, Manifest, add_note};
+use super::{ExportError, Frames, Pattern};
+use crate::animate::{CameraPath, shot};
+use crate::image::{Format, Image};
+use crate::plan::Picture;
+use crate::scene::{Animation, Choice as _, Scene};
+
+/// What is exported, and where to.
+#[derive(Clone, Debug)]
+pub struct Sequence {
+    scene: Arc<Scene>,
+    path: CameraPath,
+    /// The frames.
+    pub frames: Frames,
+    /// Their names.
+    pub pattern: Pattern,
+    /// Their format.
+    pub format: Format,
+    /// Their folder.
+    pub folder: PathBuf,
+}
+
+impl Sequence {
+    /// Frames of a scene; their size and how they are traced is what the scene's `render` says.
+    ///
+    /// # Errors
+    /// What is wrong with the frames, in words.
+    pub fn new(
+        scene: Arc<Scene>,
+        frames: Option<Frames>,
+        pattern: Pattern,
+        format: Format,
+        folder: PathBuf,
+    ) -> Result<Self, String> {
+        let count = scene.animation.frame_count();
+        let frames = frames.unwrap_or_else(|| Frames::up_to(count));
+        if let Some(last) = frames.last().filter(|&last| last > count) {
+            let s = if count == 1 { "" } else { "s" };
+            return Err(format!(
+                "there is no frame {last}: the animation has {count} frame{s}"
+            ));
+        }
+        Ok(Self {
+            path: CameraPath::new(&scene.animation.keys),
+            scene,
+            frames,
+            pattern,
+            format,
+            folder,
+        })
+    }
+
+    /// Frames per second of playing time.
+    pub fn frames_per_second(&self) -> f64 {
+        self.scene.animation.frames_per_second
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> (u32, u32) {
+        (self.scene.render.width, self.scene.render.height)
+    }
+
+    /// How edges are smoothed, by its word.
+    pub fn antialias(&self) -> String {
+        self.scene.render.antialias.word()
+    }
+
+    /// What a frame shows.
+    pub fn shown(&self, frame: u64) -> Arc<Scene> {
+        shot(&self.scene, &self.path, self.scene.animation.time_of(frame))
+    }
+
+    /// How a frame is traced.
+    pub fn picture(&self, scene: &Scene) -> Picture {
+        Picture::still(scene)
+    }
+
+    /// The file's name.
+    pub fn file(&self, frame: u64) -> String {
+        format!("{}.{}", self.pattern.name(frame), self.format.ending())
+    }
+
+    /// The file.
+    pub fn path(&self, frame: u64) -> PathBuf {
+        self.folder.join(self.file(frame))
+    }
+
+    /// A hash of everything that decides the frame's bytes: what is in it, how it is traced, the
+    /// format and the version of the program.
+    ///
+    /// # Errors
+    /// [`ExportError::Unwritable`], for a scene that has no text.
+    pub fn fingerprint(&self, shown: &Scene) -> Result<Hash, ExportError> {
+        let still = Scene {
+            animation: Animation::default(),
+            ..shown.clone()
+        };
+        let text = ron::to_string(&still)?;
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
+        hasher.update(self.format.ending().as_bytes());
+        hasher.update(text.as_bytes());
+        Ok(hasher.finalize())
+    }
+
+    /// The frames that are not there as they should be, of those that are asked for.
+    ///
+    /// # Errors
+    /// [`ExportError`], if the folder's notes cannot be read.
+    pub fn missing(&self) -> Result<Vec<u64>, ExportError> {
+        let manifest = self.manifest()?;
+        let mut missing = Vec::new();
+        for frame in self.frames.iter() {
+            if !self.is_valid(&manifest, frame)? {
+                missing.push(frame);
+            }
+        }
+        Ok(missing)
+    }
+
+    /// Makes the folder if it is not there, and reads its notes.
+    ///
+    /// # Errors
+    /// [`ExportError::Disk`].
+    pub fn manifest(&self) -> Result<Manifest, ExportError> {
+        let disk = |source| disk(&self.folder, source);
+        fs::create_dir_all(&self.folder).map_err(disk)?;
+        Manifest::read(&self.folder).map_err(disk)
+    }
+
+    /// Whether a frame is there, whole, and shows what it would show now.
+    ///
+    /// # Errors
+    /// [`ExportError::Unwritable`], for a scene that has no text.
+    pub fn is_valid(&self, manifest: &Manifest, frame: u64) -> Result<bool, ExportError> {
+        let fingerprint = self.fingerprint(&self.shown(frame))?;
+        Ok(manifest.is_valid(&self.file(frame), &fingerprint))
+    }
+
+    /// Writes a frame: beside its place first, then under its name, then into the notes. It is not
+    /// forced to the disk, which would cost more than tracing it: after a power cut its hash tells.
+    ///
+    /// # Errors
+    /// [`ExportError`]; a file that was there is then untouched.
+    pub fn write(
+        &self,
+        frame: u64,
+        image: &Image,
+        fingerprint: &Hash,
+        time: Duration,
+    ) -> Result<(), ExportError> {
+        let path = self.path(frame);
+        let bytes = image
+            .encode(self.format)
+            .map_err(|source| ExportError::Encode {
+                path: path.clone(),
+                source,
+            })?;
+        let file = self.file(frame);
+        // One name for each frame, so that what a killed program left is written over.
+        let beside = self.folder.join(format!(".{file}.part"));
+        let written = fs::write(&beside, &bytes).and_then(|()| fs::rename(&beside, &path));
+        if let Err(source) = written {
+            let _ = fs::remove_file(&beside);
+            return Err(disk(&path, source));
+        }
+        add_note(&self.folder, &file, &bytes, fingerprint, time)
+            .map_err(|source| disk(&self.folder, source))
+    }
+}
+
+fn disk(path: &Path, source: io::Error) -> ExportError {
+    ExportError::Disk {
+        path: path.to_owned(),
+        source,
+    }
+}

@@ -1,0 +1,313 @@
+//! One file that moves, made of frames that are there: by ffmpeg, or as GIF or APNG without it.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use image::codecs::gif::{GifEncoder, Repeat};
+use image::{Delay, Frame, RgbaImage};
+
+use super::Sequence;
+
+/// Speed of the GIF encoder's search for colours, 1 (slow) to 30.
+const GIF_SPEED: i32 = 10;
+
+/// How a video is encoded; its ending says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Video {
+    /// H.264 in MP4, by ffmpeg, with the settings of the program that Glint grew from.
+    H264,
+    /// `ProRes` 4444 in MOV, by ffmpeg.
+    ProRes,
+    /// Lossless FFV1 in Matroska, by ffmpeg.
+    Lossless,
+    /// Animated GIF, 256 colours in each frame.
+    Gif,
+    /// Animated PNG, lossless.
+    Apng,
+}
+
+/// Why there is no video.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum VideoError {
+    /// The ending says no known kind.
+    #[error("{0:?} ends in no known video format; end it in .mp4, .mov, .mkv, .gif or .apng")]
+    Unknown(String),
+    /// There is no ffmpeg.
+    #[error(
+        "ffmpeg is not installed, or not on the PATH; the frames are there, and this makes the video of them:\n{command}\n.gif and .apng need no ffmpeg"
+    )]
+    NoFfmpeg {
+        /// What to type.
+        command: String,
+    },
+    /// It ended with an error.
+    #[error("ffmpeg failed:\n{said}")]
+    Ffmpeg {
+        /// The end of what it said.
+        said: String,
+    },
+    /// A frame could not be read.
+    #[error("cannot read {path}: {source}", path = .path.display())]
+    Frame {
+        /// The frame's file.
+        path: PathBuf,
+        /// What the decoder said.
+        source: image::ImageError,
+    },
+    /// The video could not be written.
+    #[error("cannot write {path}: {why}", path = .path.display())]
+    Disk {
+        /// The video's file.
+        path: PathBuf,
+        /// What the system or the encoder answered.
+        why: String,
+    },
+}
+
+impl Video {
+    /// The kind that a file's ending asks for.
+    ///
+    /// # Errors
+    /// [`VideoError::Unknown`].
+    pub fn of_path(path: &Path) -> Result<Self, VideoError> {
+        let ending = path
+            .extension()
+            .map(|e| e.to_string_lossy().to_ascii_lowercase());
+        match ending.as_deref() {
+            Some("mp4") => Ok(Self::H264),
+            Some("mov") => Ok(Self::ProRes),
+            Some("mkv") => Ok(Self::Lossless),
+            Some("gif") => Ok(Self::Gif),
+            Some("apng") => Ok(Self::Apng),
+            _ => Err(VideoError::Unknown(path.display().to_string())),
+        }
+    }
+
+    /// What ffmpeg is told about the codec.
+    fn codec(self) -> &'static [&'static str] {
+        match self {
+            // Both sides even, as the codec needs them.
+            Self::H264 => &[
+                "-c:v",
+                "libx264",
+                "-crf",
+                "25",
+                "-vf",
+                "scale=trunc(iw/2)*2:trunc(ih/2)*2,format=yuv420p",
+                "-movflags",
+                "+faststart",
+            ],
+            Self::ProRes => &[
+                "-c:v",
+                "prores_ks",
+                "-profile:v",
+                "4444",
+                "-pix_fmt",
+                "yuv444p10le",
+            ],
+            Self::Lossless | Self::Gif | Self::Apng => {
+                &["-c:v", "ffv1", "-level", "3", "-pix_fmt", "bgr0"]
+            }
+        }
+    }
+
+    /// Makes a video of the frames of a sequence, all of which must be there, and puts it in place
+    /// when it is whole. `done` is told how many frames are in it.
+    ///
+    /// # Errors
+    /// [`VideoError`]; a file that was there is then untouched.
+    pub fn make(
+        self,
+        sequence: &Sequence,
+        path: &Path,
+        mut done: impl FnMut(usize),
+    ) -> Result<(), VideoError> {
+        let beside = beside(path);
+        let made = match self {
+            Self::Gif => gif(sequence, &beside, &mut done),
+            Self::Apng => apng(sequence, &beside, &mut done),
+            Self::H264 | Self::ProRes | Self::Lossless => {
+                self.by_ffmpeg(sequence, path, &beside, &mut done)
+            }
+        };
+        let placed =
+            made.and_then(|()| fs::rename(&beside, path).map_err(|error| disk(path, &error)));
+        if placed.is_err() {
+            let _ = fs::remove_file(&beside);
+        }
+        placed
+    }
+
+    fn by_ffmpeg(
+        self,
+        sequence: &Sequence,
+        path: &Path,
+        beside: &Path,
+        done: &mut impl FnMut(usize),
+    ) -> Result<(), VideoError> {
+        let fps = sequence.frames_per_second().to_string();
+        let codec = if sequence.format == crate::image::Format::Ppm {
+            "ppm"
+        } else {
+            "png"
+        };
+        let mut command = Command::new("ffmpeg");
+        command
+            .args([
+                "-hide_banner",
+                "-loglevel",
+                "error",
+                "-y",
+                "-f",
+                "image2pipe",
+            ])
+            .args(["-c:v", codec, "-framerate", &fps, "-i", "-"])
+            .args(self.codec())
+            .arg(beside)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped());
+        let mut ffmpeg = match command.spawn() {
+            Ok(ffmpeg) => ffmpeg,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                let command = self.command(sequence, path);
+                return Err(VideoError::NoFfmpeg { command });
+            }
+            Err(error) => return Err(disk(path, &error)),
+        };
+        if let Some(mut pipe) = ffmpeg.stdin.take() {
+            for (place, frame) in sequence.frames.iter().enumerate() {
+                let file = sequence.path(frame);
+                let bytes = fs::read(&file).map_err(|error| unreadable(&file, error.into()))?;
+                // It hangs up when it fails; why, it says below.
+                if pipe.write_all(&bytes).is_err() {
+                    break;
+                }
+                done(place + 1);
+            }
+        }
+        let output = ffmpeg
+            .wait_with_output()
+            .map_err(|error| disk(path, &error))?;
+        if output.status.success() {
+            return Ok(());
+        }
+        let said = String::from_utf8_lossy(&output.stderr);
+        let lines: Vec<&str> = said.lines().collect();
+        let said = lines[lines.len().saturating_sub(12)..].join("\n");
+        Err(VideoError::Ffmpeg { said })
+    }
+
+    /// What one would type to make the video by hand.
+    pub fn command(self, sequence: &Sequence, path: &Path) -> String {
+        let fps = sequence.frames_per_second();
+        let codec: Vec<String> = self.codec().iter().map(|word| quoted(word)).collect();
+        let (codec, output) = (codec.join(" "), quoted(&path.display().to_string()));
+        let first = sequence.frames.iter().next().unwrap_or(1);
+        if sequence
+            .frames
+            .iter()
+            .eq(first..first + sequence.frames.count() as u64)
+        {
+            let names = format!("{}.{}", sequence.pattern.text(), sequence.format.ending());
+            let input = quoted(&sequence.folder.join(names).display().to_string());
+            return format!(
+                "ffmpeg -framerate {fps} -start_number {first} -i {input} {codec} {output}"
+            );
+        }
+        let files = sequence.frames.iter();
+        let files = files.map(|frame| quoted(&sequence.path(frame).display().to_string()));
+        let files = files.collect::<Vec<String>>().join(" ");
+        format!("cat {files} | ffmpeg -f image2pipe -framerate {fps} -i - {codec} {output}")
+    }
+}
+
+/// As a shell needs it.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_=+./:,%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', r"'\''"))
+}
+
+/// Beside the file, with its ending, by which encoders know the format.
+fn beside(path: &Path) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!(".part-{name}"))
+}
+
+fn disk(path: &Path, why: &dyn std::error::Error) -> VideoError {
+    VideoError::Disk {
+        path: path.to_owned(),
+        why: why.to_string(),
+    }
+}
+
+fn unreadable(path: &Path, source: image::ImageError) -> VideoError {
+    VideoError::Frame {
+        path: path.to_owned(),
+        source,
+    }
+}
+
+fn read(path: &Path) -> Result<RgbaImage, VideoError> {
+    let image = image::open(path).map_err(|source| unreadable(path, source))?;
+    Ok(image.to_rgba8())
+}
+
+fn gif(sequence: &Sequence, path: &Path, done: &mut impl FnMut(usize)) -> Result<(), VideoError> {
+    let file = File::create(path).map_err(|error| disk(path, &error))?;
+    let mut encoder = GifEncoder::new_with_speed(BufWriter::new(file), GIF_SPEED);
+    let wrong = |error: image::ImageError| disk(path, &error);
+    encoder.set_repeat(Repeat::Infinite).map_err(wrong)?;
+    let delay = Duration::from_secs_f64(1.0 / sequence.frames_per_second());
+    for (place, frame) in sequence.frames.iter().enumerate() {
+        let image = read(&sequence.path(frame))?;
+        let delay = Delay::from_saturating_duration(delay);
+        let frame = Frame::from_parts(image, 0, 0, delay);
+        encoder.encode_frame(frame).map_err(wrong)?;
+        done(place + 1);
+    }
+    Ok(())
+}
+
+fn apng(sequence: &Sequence, path: &Path, done: &mut impl FnMut(usize)) -> Result<(), VideoError> {
+    let file = File::create(path).map_err(|error| disk(path, &error))?;
+    let (width, height) = sequence.size();
+    let wrong = |error: png::EncodingError| disk(path, &error);
+    let mut encoder = png::Encoder::new(BufWriter::new(file), width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    let count = u32::try_from(sequence.frames.count()).unwrap_or(u32::MAX);
+    encoder.set_animated(count, 0).map_err(wrong)?;
+    // A delay is a fraction of two short whole numbers.
+    let thousandths = (1000.0 / sequence.frames_per_second()).round() as u16;
+    encoder.set_frame_delay(thousandths, 1000).map_err(wrong)?;
+    let mut writer = encoder.write_header().map_err(wrong)?;
+    for (place, frame) in sequence.frames.iter().enumerate() {
+        let image = image::DynamicImage::from(read(&sequence.path(frame))?).to_rgb8();
+        writer.write_image_data(&image).map_err(wrong)?;
+        done(place + 1);
+    }
+    writer.finish().map_err(wrong)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn endings_name_the_kind() {
+        let kind = |name: &str| Video::of_path(Path::new(name)).ok();
+        assert_eq!(kind("a/b.MP4"), Some(Video::H264));
+        assert_eq!(kind("b.gif"), Some(Video::Gif));
+        assert_eq!(kind("b.apng"), Some(Video::Apng));
+        assert_eq!(kind("b.avi"), None);
+    }
+}

@@ -1,0 +1,188 @@
+//! An export on its way: frames are traced by one thread pool while the one before is written.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
+use std::time::Duration;
+
+use super::errand::spawn;
+use crate::export::{ExportError, Hash, Manifest, Sequence};
+use crate::image::{Image, render_into};
+use crate::trace::Watch;
+
+/// Pictures that may wait to be written: memory stays bounded, however long the sequence is.
+const WAITING: usize = 2;
+
+/// What has been done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Exported {
+    /// Frames in all.
+    pub total: usize,
+    /// Frames that were there already.
+    pub kept: usize,
+    /// Frames that were written.
+    pub written: usize,
+}
+
+/// How a step ended.
+#[derive(Debug)]
+pub enum ExportStep {
+    /// There is more to do.
+    Going,
+    /// Every frame is on its way; [`Exporting::finish`] waits for the last.
+    Done,
+    /// It was stopped in a frame, which is the next again.
+    Stopped,
+    /// A frame could not be written.
+    Failed(ExportError),
+}
+
+/// A picture on its way to the disk.
+struct Parcel {
+    frame: u64,
+    image: Image,
+    fingerprint: Hash,
+    time: Duration,
+}
+
+/// What came of it, and the memory back.
+struct Receipt {
+    written: Result<(), ExportError>,
+    image: Image,
+}
+
+/// A sequence that is being exported.
+pub struct Exporting {
+    sequence: Arc<Sequence>,
+    manifest: Manifest,
+    left: VecDeque<u64>,
+    parcels: Option<SyncSender<Parcel>>,
+    receipts: Receiver<Receipt>,
+    spare: Vec<Image>,
+    done: Exported,
+}
+
+impl Exporting {
+    /// Opens the folder and starts the thread that writes.
+    ///
+    /// # Errors
+    /// [`ExportError`], if the folder cannot be made or read.
+    pub fn new(sequence: Sequence) -> Result<Self, ExportError> {
+        let manifest = sequence.manifest()?;
+        let sequence = Arc::new(sequence);
+        let (parcels, to_write) = sync_channel::<Parcel>(WAITING);
+        let (to_return, receipts) = channel();
+        let writer = spawn("glint-writer", {
+            let sequence = Arc::clone(&sequence);
+            move || write_all(&sequence, &to_write, &to_return)
+        });
+        writer.map_err(|source| ExportError::Disk {
+            path: sequence.folder.clone(),
+            source,
+        })?;
+        Ok(Self {
+            manifest,
+            left: sequence.frames.iter().collect(),
+            done: Exported {
+                total: sequence.frames.count(),
+                ..Exported::default()
+            },
+            sequence,
+            parcels: Some(parcels),
+            receipts,
+            spare: Vec::new(),
+        })
+    }
+
+    /// What is exported.
+    pub fn sequence(&self) -> &Sequence {
+        &self.sequence
+    }
+
+    /// What has been done so far.
+    pub fn done(&self) -> Exported {
+        self.done
+    }
+
+    /// Looks at the next frame and traces it, if it is not there as it should be.
+    pub fn step(&mut self, watch: &Watch) -> ExportStep {
+        while let Ok(receipt) = self.receipts.try_recv() {
+            if let Err(error) = self.take(receipt) {
+                return ExportStep::Failed(error);
+            }
+        }
+        let Some(frame) = self.left.pop_front() else {
+            return ExportStep::Done;
+        };
+        let shown = self.sequence.shown(frame);
+        let fingerprint = match self.sequence.fingerprint(&shown) {
+            Ok(fingerprint) => fingerprint,
+            Err(error) => return ExportStep::Failed(error),
+        };
+        if self
+            .manifest
+            .is_valid(&self.sequence.file(frame), &fingerprint)
+        {
+            self.done.kept += 1;
+            return ExportStep::Going;
+        }
+        let mut image = self.spare.pop().unwrap_or_default();
+        let picture = self.sequence.picture(&shown);
+        let Some(cost) = render_into(&mut image, &shown, &picture, watch) else {
+            self.spare.push(image);
+            self.left.push_front(frame);
+            return ExportStep::Stopped;
+        };
+        let parcel = Parcel {
+            frame,
+            image,
+            fingerprint,
+            time: cost.time,
+        };
+        // It hangs up only after a frame that failed, whose receipt tells why.
+        if let Some(parcels) = &self.parcels
+            && parcels.send(parcel).is_err()
+        {
+            return self
+                .finish()
+                .map_or_else(ExportStep::Failed, |_| ExportStep::Done);
+        }
+        ExportStep::Going
+    }
+
+    /// Waits until the last frame is on the disk.
+    ///
+    /// # Errors
+    /// [`ExportError`] of the first frame that was not written.
+    pub fn finish(&mut self) -> Result<Exported, ExportError> {
+        self.parcels = None;
+        while let Ok(receipt) = self.receipts.recv() {
+            self.take(receipt)?;
+        }
+        Ok(self.done)
+    }
+
+    fn take(&mut self, receipt: Receipt) -> Result<(), ExportError> {
+        self.spare.push(receipt.image);
+        receipt.written?;
+        self.done.written += 1;
+        Ok(())
+    }
+}
+
+/// Writes what arrives, in order; hangs up after the first that fails.
+fn write_all(sequence: &Sequence, parcels: &Receiver<Parcel>, receipts: &Sender<Receipt>) {
+    for parcel in parcels {
+        let Parcel {
+            frame,
+            image,
+            fingerprint,
+            time,
+        } = parcel;
+        let written = sequence.write(frame, &image, &fingerprint, time);
+        let is_over = written.is_err();
+        if receipts.send(Receipt { written, image }).is_err() || is_over {
+            return;
+        }
+    }
+}

@@ -1,0 +1,415 @@
+//! Sequences on disk: the real program, real files, killed and damaged on the way.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+use glint::scene::{Document, Scene};
+use image::AnimationDecoder as _;
+
+const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
+
+fn glint(words: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_glint"));
+    command.args(words);
+    command
+}
+
+/// Exports small frames of the published flight into a folder.
+fn export(folder: &Path, more: &[&str]) -> Command {
+    let folder = folder.to_str().expect("a plain name");
+    let mut command = glint(&[
+        "export",
+        FLIGHT,
+        "-o",
+        folder,
+        "--width",
+        "48",
+        "--threads",
+        "2",
+    ]);
+    command.args(more);
+    command
+}
+
+fn run(command: &mut Command) -> Output {
+    command.output().expect("it runs")
+}
+
+fn done(command: &mut Command) -> String {
+    let output = run(command);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// The files of a folder but the notes, whose times differ.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let entries = entries.map(|entry| entry.expect("an entry").path());
+    let files = entries.filter(|path| {
+        path.file_name()
+            .is_some_and(|name| name != "glint-frames.txt")
+    });
+    files
+        .map(|path| {
+            let name = path
+                .file_name()
+                .expect("a name")
+                .to_string_lossy()
+                .into_owned();
+            (name, fs::read(&path).expect("readable"))
+        })
+        .collect()
+}
+
+#[test]
+fn a_killed_export_goes_on_and_ends_as_if_nothing_had_been() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (whole, killed) = (folder.path().join("whole"), folder.path().join("killed"));
+    done(&mut export(&whole, &[]));
+    let expected = files(&whole);
+    assert_eq!(expected.len(), 202);
+    let mut kills = 0;
+    for n in 0..200_u64 {
+        if kills == 30 {
+            break;
+        }
+        let mut child = export(&killed, &[])
+            .stdout(Stdio::null())
+            .spawn()
+            .expect("it runs");
+        sleep(Duration::from_micros(4_000 + n * n * 7_919 % 37_000));
+        if child.try_wait().expect("a child").is_none() {
+            child.kill().expect("killed");
+            kills += 1;
+        }
+        child.wait().expect("ended");
+        // When it got to the end, some frames are damaged and it is killed again.
+        let frames: Vec<_> = fs::read_dir(&killed)
+            .map(Iterator::collect)
+            .unwrap_or_default();
+        if frames.len() > 150 {
+            for frame in 1..=100 {
+                let _ = fs::remove_file(killed.join(format!("rayTrace{frame}.ppm")));
+            }
+        }
+    }
+    assert_eq!(kills, 30);
+    done(&mut export(&killed, &[]));
+    assert!(files(&killed) == expected, "the same files, byte by byte");
+}
+
+#[test]
+fn only_what_is_not_there_as_it_should_be_is_made() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let frames = folder.path().join("frames");
+    let twelve = ["--frames", "1-12"];
+    let said = done(&mut export(&frames, &twelve));
+    assert!(
+        said.contains("12 frames written, 0 there already"),
+        "{said}"
+    );
+    let before = files(&frames);
+    assert!(before.contains_key("rayTrace1.ppm") && before.contains_key("rayTrace12.ppm"));
+    // Cut off, empty, gone, and another program's.
+    let path = |frame: u32| frames.join(format!("rayTrace{frame}.ppm"));
+    let bytes = fs::read(path(2)).expect("there");
+    fs::write(path(2), &bytes[..bytes.len() / 2]).expect("written");
+    fs::write(path(3), "").expect("written");
+    fs::remove_file(path(4)).expect("removed");
+    let mut foreign = bytes.clone();
+    *foreign.last_mut().expect("bytes") ^= 1;
+    fs::write(path(5), foreign).expect("written");
+    let said = done(export(&frames, &twelve).arg("--dry-run"));
+    assert!(said.contains("4 frames of 12 to make: 2-5"), "{said}");
+    let said = done(&mut export(&frames, &twelve));
+    assert!(said.contains("4 frames written, 8 there already"), "{said}");
+    assert!(files(&frames) == before);
+    // A note that was cut off is none.
+    let notes = frames.join("glint-frames.txt");
+    let text = fs::read_to_string(&notes).expect("there");
+    let lines: Vec<&str> = text.lines().collect();
+    let cut = format!("{}\n{}", lines[..5].join("\n"), &lines[5][..40]);
+    fs::write(&notes, cut).expect("written");
+    let said = done(&mut export(&frames, &twelve));
+    assert!(said.contains("8 frames written, 4 there already"), "{said}");
+    // Settings are part of what a frame shows.
+    let said = done(export(&frames, &twelve).args(["--antialias", "none"]));
+    assert!(said.contains("12 frames written"), "{said}");
+}
+
+#[test]
+fn after_an_edit_only_the_frames_that_change_are_made_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("edited.ron");
+    let mut document = Document::load(FLIGHT.as_ref()).expect("a scene");
+    let frames = folder.path().join("frames");
+    let mut again = |scene: &Scene| {
+        document.scene = scene.clone();
+        fs::write(&file, document.to_text().expect("a text")).expect("written");
+        let words = [
+            "export",
+            file.to_str().expect("a plain name"),
+            "-o",
+            frames.to_str().expect("a plain name"),
+            "--width",
+            "24",
+        ];
+        done(&mut glint(&words))
+    };
+    let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
+    assert!(again(&scene).contains("202 frames written"));
+    // The last key moves: what is before its neighbours stays.
+    let last = scene.animation.keys.len() - 1;
+    scene.animation.keys[last].value.position.y += 1.0;
+    let said = again(&scene);
+    let made: u32 = said
+        .split_whitespace()
+        .nth(1)
+        .and_then(|word| word.parse().ok())
+        .expect("a number");
+    assert!((1..60).contains(&made), "{said}");
+    scene.background.x = 9.0;
+    assert!(
+        again(&scene).contains("202 frames written"),
+        "all of them show the sky's colour"
+    );
+    // The recording is not in the picture.
+    scene.animation.take = None;
+    assert!(again(&scene).contains("0 frames written, 202 there already"));
+}
+
+#[test]
+fn what_cannot_be_written_is_told_and_leaves_no_parts() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let frames = folder.path().join("frames");
+    // A folder stands where a frame should go.
+    let obstacle = frames.join("rayTrace7.ppm");
+    fs::create_dir_all(&obstacle).expect("made");
+    let output = run(&mut export(&frames, &["--frames", "1-12"]));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("rayTrace7.ppm") && said.contains("goes on from there"),
+        "{said}"
+    );
+    fs::remove_dir(&obstacle).expect("removed");
+    let made = files(&frames);
+    assert!(
+        made.keys().all(|name| !name.contains("part")),
+        "{:?}",
+        made.keys()
+    );
+    assert!((6..12).contains(&made.len()));
+    done(&mut export(&frames, &["--frames", "1-12"]));
+    assert_eq!(files(&frames).len(), 12);
+    // A file stands where the folder should be.
+    let output = run(export(&obstacle, &[]).arg("--dry-run"));
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("cannot write"));
+}
+
+#[test]
+fn words_are_checked_before_anything_is_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let frames = folder.path().join("frames");
+    for (words, expected) in [
+        (
+            &["--frames", "1-203"][..],
+            "there is no frame 203: the animation has 202 frames",
+        ),
+        (&["--frames", "3-1"], "1 comes before 3"),
+        (&["--name", "frame"], "a name needs %d"),
+        (&["--name", "../%d"], "a name has no folders"),
+        (
+            &["--video", "a.avi"],
+            "end it in .mp4, .mov, .mkv, .gif or .apng",
+        ),
+        (&["--format", "jpg"], "expected ppm or png"),
+    ] {
+        let output = run(&mut export(&frames, words));
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{words:?}: {said}");
+        assert!(said.contains(expected), "{words:?}: {said}");
+    }
+    assert!(!frames.exists());
+}
+
+#[test]
+fn runners_are_told_how_far_it_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let said = done(&mut export(
+        folder.path(),
+        &["--frames", "1,4-5", "--openjd"],
+    ));
+    let lines: Vec<&str> = said.lines().collect();
+    assert!(lines.contains(&"openjd_progress: 100"), "{said}");
+    assert!(said.contains("openjd_status: "), "{said}");
+    let shares = lines
+        .iter()
+        .filter_map(|line| line.strip_prefix("openjd_progress: "));
+    let shares: Vec<f64> = shares
+        .map(|share| share.parse().expect("a number"))
+        .collect();
+    assert!(
+        shares.windows(2).all(|pair| pair[0] <= pair[1]),
+        "{shares:?}"
+    );
+}
+
+#[test]
+fn videos_without_ffmpeg_hold_every_frame() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let video = |name: &str| folder.path().join(name).to_str().expect("plain").to_owned();
+    let (gif, apng) = (video("flight.gif"), video("flight.apng"));
+    let frames = folder.path().join("frames");
+    done(&mut export(
+        &frames,
+        &["--frames", "1-9:2", "--video", &gif, "--format", "png"],
+    ));
+    done(&mut export(
+        &frames,
+        &["--frames", "1-9:2", "--video", &apng, "--format", "png"],
+    ));
+    let file = std::io::BufReader::new(fs::File::open(&gif).expect("there"));
+    let decoder = image::codecs::gif::GifDecoder::new(file).expect("a GIF");
+    let shown = decoder.into_frames().collect_frames().expect("frames");
+    assert_eq!(shown.len(), 5);
+    assert_eq!(
+        shown[0].delay().numer_denom_ms(),
+        (70, 1),
+        "1/14 s in hundredths"
+    );
+    let file = std::io::BufReader::new(fs::File::open(&apng).expect("there"));
+    let decoder = image::codecs::png::PngDecoder::new(file).expect("a PNG");
+    let shown = decoder
+        .apng()
+        .expect("animated")
+        .into_frames()
+        .collect_frames()
+        .expect("frames");
+    assert_eq!(shown.len(), 5);
+    for (frame, shown) in (1..=9).step_by(2).zip(&shown) {
+        let plain = image::open(frames.join(format!("rayTrace{frame}.png"))).expect("there");
+        assert_eq!(
+            shown.buffer(),
+            &plain.to_rgba8(),
+            "frame {frame} is lossless"
+        );
+    }
+    // Without ffmpeg the exact command is told; with it there is a video.
+    let mp4 = video("flight.mp4");
+    let output = run(export(&frames, &["--frames", "1-9:2", "--video", &mp4]).env("PATH", ""));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        said.contains("ffmpeg -framerate 14") || said.contains("ffmpeg -f image2pipe"),
+        "{said}"
+    );
+    let left = fs::read_dir(folder.path()).expect("there");
+    let left: Vec<String> = left
+        .map(|entry| {
+            entry
+                .expect("an entry")
+                .file_name()
+                .to_string_lossy()
+                .into_owned()
+        })
+        .collect();
+    assert!(left.iter().all(|name| !name.contains("part")), "{left:?}");
+}
+
+#[test]
+#[ignore = "needs ffmpeg"]
+fn ffmpeg_makes_videos_of_all_frames() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let frames = folder.path().join("frames");
+    for (name, format) in [("a.mp4", "ppm"), ("b.mov", "png"), ("c.mkv", "ppm")] {
+        let video = folder.path().join(name);
+        let path = video.to_str().expect("plain");
+        done(&mut export(
+            &frames,
+            &["--frames", "1-28", "--video", path, "--format", format],
+        ));
+        let mut probe = Command::new("ffprobe");
+        probe.args([
+            "-v",
+            "error",
+            "-count_frames",
+            "-show_entries",
+            "stream=nb_read_frames,r_frame_rate",
+        ]);
+        let said = done(probe.args(["-of", "csv=p=0", path]));
+        assert_eq!(said.trim(), "14/1,28", "{name}");
+    }
+    // What it says when it fails is passed on.
+    let nowhere = folder.path().join("none/a.mp4");
+    let output = run(&mut export(
+        &frames,
+        &[
+            "--frames",
+            "1-28",
+            "--video",
+            nowhere.to_str().expect("plain"),
+        ],
+    ));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        said.contains("ffmpeg failed") && said.contains("No such file"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_job_is_a_template_with_its_scene_beside_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let template = folder.path().join("job.yaml");
+    let path = template.to_str().expect("plain");
+    let said = done(&mut glint(&["job", FLIGHT, "-o", path, "--frames", "1-12"]));
+    assert!(said.contains("a job of 12 frames"), "{said}");
+    let text = fs::read_to_string(&template).expect("written");
+    for expected in [
+        "jobtemplate-2023-09",
+        "\"1-12\"",
+        "CHUNK[INT]",
+        "dependsOn: Render",
+        "\"flight.ron\"",
+    ] {
+        assert!(text.contains(expected), "{expected} in {text}");
+    }
+    let copy = fs::read(folder.path().join("flight.ron")).expect("copied");
+    assert!(copy == fs::read(FLIGHT).expect("there"));
+}
+
+/// The template is run by the reference runner, in chunks, and gives the same bytes as the program
+/// alone.
+#[test]
+#[ignore = "needs openjd-cli from PyPI on the PATH"]
+fn a_farm_makes_the_same_bytes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let template = folder.path().join("job.yaml");
+    let path = template.to_str().expect("plain");
+    done(&mut glint(&[
+        "job", FLIGHT, "-o", path, "--frames", "1-12", "--width", "48",
+    ]));
+    let (farm, alone) = (folder.path().join("farm"), folder.path().join("alone"));
+    let parameter = |name: &str, value: &str| format!("{name}={value}");
+    let program = parameter("Glint", env!("CARGO_BIN_EXE_glint"));
+    let output = parameter("Output", farm.to_str().expect("plain"));
+    let mut openjd = Command::new("openjd");
+    openjd.args(["run", path, "--step", "Encode", "--run-dependencies"]);
+    openjd.args(["-p", &program, "-p", &output, "-p", "Video=flight.gif"]);
+    done(openjd.args(["--extensions", "TASK_CHUNKING"]));
+    done(&mut export(&alone, &["--frames", "1-12"]));
+    let mut made = files(&farm);
+    assert!(
+        made.remove("flight.gif")
+            .is_some_and(|gif| gif.starts_with(b"GIF89a"))
+    );
+    assert!(made == files(&alone));
+}
