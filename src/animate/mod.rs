@@ -21,7 +21,7 @@ pub use pose::{Motion, motion_between, pose, shot};
 pub use presets::Preset;
 pub use retime::{Retime, paused_seconds};
 pub use route::Route;
-pub use simplify::{Seen, Simplified, deviation, simplify};
+pub use simplify::{Seen, Simplified, deviation, simplify, worst_off};
 pub use table::{TableError, from_table, from_text, to_table, to_text};
 
 #[cfg(test)]

@@ -66,13 +66,12 @@ pub fn simplify(take: &Take, seen: &[Vec<Seen>], tolerance: f64) -> Simplified {
         tolerance,
         cuts,
     };
-    let mut chosen = search.refined();
+    let mut chosen = search.refined(search.ends());
     search.prune(&mut chosen);
+    // Where places coincide, a curve is shaped from farther away than pruning looks.
+    let chosen = search.refined(chosen);
     let keys = search.keys(chosen.iter().copied());
-    let path = CameraPath::new(&keys);
-    let worst = (0..take.samples.len())
-        .map(|sample| search.off(&path, sample))
-        .fold(0.0, f64::max);
+    let worst = worst_off(&CameraPath::new(&keys), take, seen);
     Simplified { keys, worst }
 }
 
@@ -92,6 +91,20 @@ fn steady(take: &Take, cuts: &BTreeSet<usize>, seen: &[Vec<Seen>], tolerance: f6
             .collect()
     };
     smooth.next().unwrap_or_else(plain)
+}
+
+/// How far keys are off a take at most, in image heights: it is flown in the time that the keys take.
+pub fn worst_off(path: &CameraPath, take: &Take, seen: &[Vec<Seen>]) -> f64 {
+    let times = |keys: &[Key<Camera>]| Some((keys.first()?.time, keys.last()?.time));
+    let (Some((start, end)), [first, .., last]) = (times(path.keys()), &take.samples[..]) else {
+        return f64::INFINITY;
+    };
+    let scale = (end - start) / (last.0 - first.0);
+    let off = take.samples.iter().zip(seen).map(|(sample, seen)| {
+        let camera = path.at(start + (sample.0 - first.0) * scale);
+        camera.map_or(f64::INFINITY, |camera| deviation(&camera, seen))
+    });
+    off.fold(0.0, f64::max)
 }
 
 struct Search<'t> {
@@ -139,12 +152,15 @@ impl Search<'_> {
         (worst.1 > self.tolerance).then_some(worst.0)
     }
 
-    /// Starts from the ends and adds the worst sample of each stretch until none is off too far.
-    fn refined(&self) -> BTreeSet<usize> {
+    /// The samples that are keys in any case: the ends, and both sides of cuts.
+    fn ends(&self) -> BTreeSet<usize> {
         let last = self.take.samples.len().saturating_sub(1);
-        let ends = [0, last].into_iter();
         let cuts = self.cuts.iter().flat_map(|&cut| [cut, cut + 1]);
-        let mut chosen: BTreeSet<usize> = ends.chain(cuts).collect();
+        [0, last].into_iter().chain(cuts).collect()
+    }
+
+    /// With the worst sample of each stretch added until none is off too far.
+    fn refined(&self, mut chosen: BTreeSet<usize>) -> BTreeSet<usize> {
         loop {
             let places: Vec<usize> = chosen.iter().copied().collect();
             let path = CameraPath::new(&self.keys(places.iter().copied()));

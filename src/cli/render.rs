@@ -1,6 +1,6 @@
 //! `glint render`: a scene file in, a picture file out.
 
-use std::num::{NonZeroU64, NonZeroUsize};
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -70,8 +70,8 @@ pub struct RenderWords {
     #[arg(long, value_name = "LEVEL", value_parser = lanes)]
     lanes: Option<Level>,
     /// Frame of the animation, from 1 [default: the scene's own camera and values]
-    #[arg(long, value_name = "N")]
-    frame: Option<NonZeroU64>,
+    #[arg(long, value_name = "N", value_parser = frame)]
+    frame: Option<u64>,
     /// Tracing threads [default: one per core]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: Option<u16>,
@@ -132,7 +132,7 @@ pub fn run(words: &RenderWords) -> ExitCode {
         Err(error) => return fail(&error.to_string()),
     };
     if let Some(frame) = words.frame {
-        scene = match at_frame(scene, frame.get()) {
+        scene = match at_frame(scene, frame) {
             Ok(scene) => scene,
             Err(sentence) => return refuse(&format!("{}: {sentence}", words.scene.display())),
         };
@@ -158,6 +158,11 @@ pub fn run(words: &RenderWords) -> ExitCode {
         (None, false) => {}
     }
     ExitCode::SUCCESS
+}
+
+fn frame(word: &str) -> Result<u64, String> {
+    let number = word.parse().ok().filter(|&number| number > 0);
+    number.ok_or_else(|| "frames are whole numbers, counted from 1".to_owned())
 }
 
 /// The scene as its animation shows it in a frame.

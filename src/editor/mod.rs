@@ -360,6 +360,8 @@ impl Editor {
         };
         if let Some(there) = step(&mut self.history, here) {
             self.selection = there.selection;
+            // Keys are known by their places, which may be others' now.
+            self.moving.deselect_keys();
             self.set_scene(there.scene);
         }
     }

@@ -4,13 +4,15 @@ use std::sync::Arc;
 
 use super::timeline::{MEASURED_AT, Recording, Time, Timeline, watched};
 use super::{Edit, Editor, Mode, Selection};
-use crate::animate::{CameraPath, Seen, Simplified, pose, shot, simplify};
+use crate::animate::{CameraPath, Seen, Simplified, pose, shot, simplify, worst_off};
 use crate::scene::{Animation, Camera, Key, Scene, Take, Target};
 
 /// Keys that a recording becomes, at first, and for each second: about as many as a hand can edit.
-const FEW: (f64, f64) = (4.0, 1.2);
+const FEW: (f64, f64) = (8.0, 2.5);
 /// Where the search for a tolerance ends, in pixels.
-const COARSEST: f64 = 64.0;
+const COARSEST: f64 = 32.0;
+/// The finest tolerance of the slider, in pixels.
+const FINEST: f64 = 0.05;
 
 /// A scene, its path and its timeline, and what they come to at the time of the playhead.
 #[derive(Debug)]
@@ -29,7 +31,7 @@ pub(super) struct Moving {
 
 impl Moving {
     pub fn new(scene: &Arc<Scene>) -> Self {
-        Self {
+        let mut moving = Self {
             timeline: Timeline::default(),
             scene: Arc::clone(scene),
             path: CameraPath::new(&scene.animation.keys),
@@ -37,20 +39,47 @@ impl Moving {
             made_for: (0.0, false),
             revision: 1,
             watched: None,
+        };
+        moving.measure();
+        moving
+    }
+
+    /// How far the keys are off the recording. The slider stands there, until it is moved.
+    fn measure(&mut self) {
+        let scene = Arc::clone(&self.scene);
+        let take = scene.animation.take.as_ref();
+        let take = take.filter(|_| !scene.animation.keys.is_empty());
+        self.timeline.worst = take.map(|take| {
+            self.watch(take);
+            let seen = self.watched.as_ref().map_or(&[][..], |(_, seen)| seen);
+            worst_off(&self.path, take, seen) * MEASURED_AT
+        });
+        if let Some(worst) = self.timeline.worst.filter(|worst| worst.is_finite()) {
+            // As the slider shows it: a hundredth more or less is no wish of the user's.
+            self.timeline.tolerance = (worst.max(FINEST) * 100.0).ceil() / 100.0;
         }
+    }
+
+    /// Finds out what the samples of a take see, unless that is known.
+    fn watch(&mut self, take: &Arc<Take>) {
+        let is_watched = matches!(&self.watched, Some((of, _)) if Arc::ptr_eq(of, take));
+        if !is_watched {
+            self.watched = Some((Arc::clone(take), watched(take, &self.scene)));
+        }
+    }
+
+    /// No key is selected any more.
+    pub fn deselect_keys(&mut self) {
+        self.timeline.selected.clear();
     }
 
     /// For another document; how it is played stays.
     pub fn start_again(&self, scene: &Arc<Scene>) -> Self {
-        let mut timeline = Timeline::default();
-        timeline.repeat = self.timeline.repeat;
-        timeline.speed = self.timeline.speed;
-        timeline.tolerance = self.timeline.tolerance;
-        Self {
-            timeline,
-            revision: self.revision + 1,
-            ..Self::new(scene)
-        }
+        let mut new = Self::new(scene);
+        new.timeline.repeat = self.timeline.repeat;
+        new.timeline.speed = self.timeline.speed;
+        new.revision = self.revision + 1;
+        new
     }
 
     pub fn timeline(&self) -> &Timeline {
@@ -80,12 +109,17 @@ impl Moving {
     pub fn follow(&mut self, scene: &Arc<Scene>) {
         let is_new = !Arc::ptr_eq(scene, &self.scene);
         if is_new {
-            if scene.animation.keys != self.scene.animation.keys {
-                self.path = CameraPath::new(&scene.animation.keys);
-                let count = scene.animation.keys.len();
+            let (new, old) = (&scene.animation, &self.scene.animation);
+            let is_flown_otherwise = new.keys != old.keys || new.take != old.take;
+            if new.keys != old.keys {
+                self.path = CameraPath::new(&new.keys);
+                let count = new.keys.len();
                 self.timeline.selected.retain(|&place| place < count);
             }
             self.scene = Arc::clone(scene);
+            if is_flown_otherwise {
+                self.measure();
+            }
         }
         let animation = &scene.animation;
         let time = self.timeline.shown_time(animation);
@@ -212,12 +246,12 @@ impl Editor {
             Time::Simplify(pixels) => {
                 timeline.tolerance = pixels;
                 if let Some(take) = animation.take.clone() {
-                    let keys = self.simplified(&take);
                     let animation = Animation {
-                        keys,
+                        keys: in_the_time_of(&animation.keys, self.simplified(&take)),
                         ..animation.clone()
                     };
                     self.edit(Edit::Animation(Box::new(animation), "Simplify"));
+                    self.moving.timeline.tolerance = pixels;
                 }
             }
         }
@@ -273,16 +307,29 @@ impl Editor {
 
     fn simplified(&mut self, take: &Arc<Take>) -> Vec<Key<Camera>> {
         let moving = &mut self.moving;
-        let is_watched = matches!(&moving.watched, Some((of, _)) if Arc::ptr_eq(of, take));
-        if !is_watched {
-            moving.watched = Some((Arc::clone(take), watched(take, &self.scene)));
-        }
+        moving.watch(take);
         let seen = moving.watched.as_ref().map_or(&[][..], |(_, seen)| seen);
         let Simplified { keys, worst } =
             simplify(take, seen, moving.timeline.tolerance / MEASURED_AT);
         moving.timeline.worst = Some(worst * MEASURED_AT);
         keys
     }
+}
+
+/// New keys for a flight that had been given another length.
+fn in_the_time_of(old: &[Key<Camera>], new: Vec<Key<Camera>>) -> Vec<Key<Camera>> {
+    let ([first, .., last], [start, .., end]) = (old, &new[..]) else {
+        return new;
+    };
+    let scale = (last.time - first.time) / (end.time - start.time);
+    let (from, to) = (start.time, first.time);
+    let at = |time: f64| to + (time - from) * scale;
+    let keys = new.into_iter();
+    keys.map(|key| Key {
+        time: at(key.time),
+        ..key
+    })
+    .collect()
 }
 
 /// How far the playhead goes.

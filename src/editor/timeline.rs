@@ -70,7 +70,7 @@ pub struct Timeline {
     pub selected: BTreeSet<usize>,
     /// How far keys made of a take may be off, in pixels of a picture 1024 high.
     pub tolerance: f64,
-    /// How far the keys made last are off, in the same pixels.
+    /// How far the keys are off the recording, in the same pixels; `None` without one.
     pub worst: Option<f64>,
     /// Whether the user has chosen to see the shot camera from outside.
     pub(super) stays_outside: bool,

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use egui::{CentralPanel, Context, Frame, Margin, Panel, Theme, Ui, ViewportCommand};
 
 use super::autosave::Autosave;
-use super::commands::pressed;
+use super::commands::{Command, is_about_files, pressed};
 use super::dialogs::{Dialogs, Native};
 use super::files::{Files, Next, Outcome};
 use super::flying::Flying;
@@ -78,6 +78,8 @@ pub struct App {
     pub(super) layout: Layout,
     pub(super) shortcuts_open: bool,
     pub(super) keys_are_taken: bool,
+    /// Commands for the next frame.
+    pub(super) late: Vec<Command>,
     /// The revision at which the user said that the window may close.
     pub(super) closing: Option<u64>,
     pub(super) title: String,
@@ -123,6 +125,7 @@ impl App {
             },
             shortcuts_open: false,
             keys_are_taken: false,
+            late: Vec::new(),
             closing: None,
             title: String::new(),
             theme: cc.egui_ctx.theme(),
@@ -228,11 +231,11 @@ impl App {
         } else {
             self.pictures.screen.show(ui, place, is_still)
         };
-        if !is_still && self.layout.shot {
-            self.thumbs.show_shot(ui, &self.editor, place.rect);
-        }
         if !is_still && self.layout.flight {
             self.overlay.show(ui, &self.editor, place.rect, out);
+        }
+        if !is_still && self.layout.shot {
+            self.thumbs.show_shot(ui, &self.editor, place.rect);
         }
         Some((place, response))
     }
@@ -323,8 +326,17 @@ impl eframe::App for App {
         // What had the keys when this frame's were pressed: a field loses its focus to Escape, and a
         // menu closes, before this is asked.
         let keys_are_free = !self.keys_are_taken && !ui.text_edit_focused();
+        out.commands = std::mem::take(&mut self.late);
         if keys_are_free {
-            out.commands = pressed(ui, self.flying.is_flying());
+            let pressed = pressed(ui, self.flying.is_flying(), |_| true);
+            out.commands.extend(pressed);
+        } else if ui.text_edit_focused() && !self.files.is_asking() {
+            // The text is taken over first, and the command runs when that is done.
+            self.late = pressed(ui, false, is_about_files);
+            if !self.late.is_empty() {
+                ui.memory_mut(egui::Memory::stop_text_input);
+                ui.request_repaint();
+            }
         }
         let picture = self.show_panels(ui, &mut out);
         // Still pictures are looked at, not flown through: they would be gone.

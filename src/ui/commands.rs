@@ -78,6 +78,8 @@ pub enum Command {
     StopRecording,
     /// Set a key at the playhead.
     AddKey,
+    /// Select all keys of the camera.
+    SelectKeys,
     /// Look through the shot camera, or at it.
     LookThrough,
     /// Choose a file and take keys from it.
@@ -153,6 +155,7 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     StopRecording [plain(Key::T)] "Stop recording and make keys",
     Play [plain(Key::G)] "Play or pause",
     AddKey [plain(Key::K)] "Set a key at the playhead",
+    SelectKeys [ctrl(Key::A)] "Select all keys",
     LookThrough [plain(Key::C)] "Look through the shot camera, or at it",
     PreviousKey [plain(Key::OpenBracket)] "Previous key",
     NextKey [plain(Key::CloseBracket)] "Next key",
@@ -270,8 +273,9 @@ impl FlightKey {
 }
 
 /// The commands whose keys were pressed in this frame. A key that repeats because it is held
-/// commands nothing more, but undo and redo; while keys fly the camera, none with Ctrl counts.
-pub fn pressed(ui: &Ui, is_flying: bool) -> Vec<Command> {
+/// commands nothing more, but undo and redo; while keys fly the camera, none with Ctrl counts. Keys
+/// of commands that are not heard stay for others.
+pub fn pressed(ui: &Ui, is_flying: bool, is_heard: impl Fn(&Command) -> bool) -> Vec<Command> {
     let mut pressed = Vec::new();
     ui.input_mut(|input| {
         input.events.retain(|event| {
@@ -293,6 +297,7 @@ pub fn pressed(ui: &Ui, is_flying: bool) -> Vec<Command> {
             let Some(shortcut) = SHORTCUTS
                 .iter()
                 .find(|shortcut| shortcut.keys.iter().any(is_meant))
+                .filter(|shortcut| is_heard(&shortcut.command))
             else {
                 return true;
             };
@@ -310,7 +315,27 @@ pub fn key_of(ui: &Ui, command: &Command) -> Option<String> {
     let shortcut = SHORTCUTS
         .iter()
         .find(|shortcut| shortcut.command == *command)?;
-    Some(ui.format_shortcut(&shortcut.keys[0]))
+    Some(name_of(ui, shortcut.keys[0]))
+}
+
+/// Whether the command is heard while a text is edited, which then ends.
+pub fn is_about_files(command: &Command) -> bool {
+    use Command::{New, Open, Quit, Save, SaveAs, SaveImage};
+    matches!(command, New | Open | Quit | Save | SaveAs | SaveImage)
+}
+
+/// A key as it is printed on it.
+pub fn name_of(ui: &Ui, keys: KeyboardShortcut) -> String {
+    let name = ui.format_shortcut(&keys);
+    let printed = [
+        ("OpenBracket", "["),
+        ("CloseBracket", "]"),
+        ("Comma", ","),
+        ("Period", "."),
+    ];
+    printed
+        .iter()
+        .fold(name, |name, (word, sign)| name.replace(word, sign))
 }
 
 /// Whether the command would do anything now.

@@ -313,6 +313,12 @@ fn import_path(editor: &mut Editor, path: &Path) {
 }
 
 fn export_path(editor: &mut Editor, path: &Path) {
+    let is_text = path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("ron"));
+    if !is_table(path) && !is_text {
+        return editor.complain(format!("{}: end it in .csv or .ron", path.display()));
+    }
     let keys = &editor.scene().animation.keys;
     let text = if is_table(path) {
         Ok(to_table(keys.iter().map(|key| (key.time, &key.value))))

@@ -2,7 +2,7 @@
 
 use egui::{Context, Grid, RichText, ScrollArea, Ui, Window};
 
-use super::commands::{FLIGHT, MOUSE, SHORTCUTS};
+use super::commands::{FLIGHT, MOUSE, SHORTCUTS, name_of};
 use super::theme::{GRID, palette};
 
 /// Shows the list while `open`.
@@ -22,11 +22,7 @@ pub fn show(ctx: &Context, open: &mut bool) {
 
 fn lists(ui: &mut Ui) {
     let commands = SHORTCUTS.iter().map(|shortcut| {
-        let keys: Vec<String> = shortcut
-            .keys
-            .iter()
-            .map(|key| ui.format_shortcut(key))
-            .collect();
+        let keys: Vec<String> = shortcut.keys.iter().map(|key| name_of(ui, *key)).collect();
         (keys.join(", "), shortcut.what)
     });
     let commands: Vec<_> = commands.collect();

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use egui::{Button, Context, DragValue, MenuBar, Theme, Ui};
+use egui::{Button, Context, MenuBar, Theme, Ui};
 
 use super::commands::{Command, is_enabled, key_of};
 use super::inspector::target;
@@ -173,6 +173,7 @@ fn animate_menu(ui: &mut Ui, editor: &Editor, out: &mut Out) {
     );
     ui.separator();
     entry(ui, "Add key", Command::AddKey, true, out);
+    entry(ui, "Select all keys", Command::SelectKeys, has_keys, out);
     entry(ui, "Previous key", Command::PreviousKey, has_keys, out);
     entry(ui, "Next key", Command::NextKey, has_keys, out);
     entry(
@@ -232,19 +233,6 @@ fn retime_entries(ui: &mut Ui, editor: &Editor, out: &mut Out) {
             retimed = Some((retime, name));
         }
     }
-    ui.horizontal(|ui| {
-        let first = animation.keys.first().map_or(0.0, |key| key.time);
-        let mut seconds = animation.keys.last().map_or(0.0, |key| key.time) - first;
-        ui.label("Stretch to");
-        let drag = DragValue::new(&mut seconds)
-            .range(0.1..=36_000.0)
-            .speed(0.05)
-            .suffix(" s");
-        let drag = ui.add(drag).accessible_name("length of the flight");
-        if drag.changed() && seconds.is_finite() {
-            retimed = Some((Retime::Stretch(seconds), "Stretch"));
-        }
-    });
     if let Some((retime, name)) = retimed {
         let changed = Animation {
             keys: retime.apply(&animation.keys),

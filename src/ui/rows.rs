@@ -286,7 +286,10 @@ fn drag(
         .accessible_name(name);
     // Formatting rounds what is shown; only a change by hand may reach the scene.
     let is_cancelled = is_cancelled(ui, &response);
-    if response.changed() && edited.is_finite() && !is_cancelled {
+    // A field that is left as it was entered gives back what it showed.
+    let is_as_shown =
+        !response.dragged() && rounded(edited, field.unit) == rounded(*value, field.unit);
+    if response.changed() && edited.is_finite() && !is_cancelled && !is_as_shown {
         *value = edited.clamp(*field.range.start(), *field.range.end());
     }
     response.on_hover_text(field.hint);

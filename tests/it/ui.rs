@@ -941,3 +941,37 @@ fn panels_keep_their_width_while_numbers_change() {
         assert_eq!(left(&desk), before);
     }
 }
+
+#[test]
+fn a_field_that_is_left_as_it_was_changes_nothing() {
+    let mut desk = Desk::new();
+    for field in ["view angle", "distance", "yaw", "look_at x", "position y"] {
+        desk.window
+            .get_by_role_and_label(Role::SpinButton, field)
+            .click();
+        desk.settle();
+        desk.press(Modifiers::NONE, Key::Enter);
+        assert!(!desk.editor().is_dirty(), "{field}");
+    }
+}
+
+#[test]
+fn saving_works_from_within_a_field() {
+    let text = Document::empty().to_text().expect("a text");
+    let mut desk = Desk::with(|_| Vec::new(), Some(&text));
+    desk.window
+        .get_by_role_and_label(Role::SpinButton, "position x")
+        .click();
+    desk.settle();
+    desk.window.event(Event::Text("12.5".to_owned()));
+    desk.settle();
+    desk.press(CTRL, Key::S);
+    desk.settle();
+    assert!(!desk.editor().is_dirty());
+    let file = desk.folder.path().join("given.ron");
+    let saved = Document::load(&file).expect("a scene").scene;
+    assert_eq!(
+        saved.camera.position.x, 12.5,
+        "what was typed is in the file"
+    );
+}

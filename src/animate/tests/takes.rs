@@ -96,6 +96,40 @@ fn a_trembling_hand_costs_few_keys_where_the_tolerance_allows_it() {
 }
 
 #[test]
+fn the_tolerance_is_kept_through_pauses_and_kinks() {
+    let mut take = Take::default();
+    let mut x = 0.0;
+    for n in 0..300_u32 {
+        // Starts and stops at once, as keys on a keyboard do.
+        x += if n / 40 % 2 == 1 { 1.0 } else { 0.0 };
+        let yaw = f64::from(n.clamp(100, 180)) * 0.01;
+        let angles = Orientation {
+            yaw,
+            ..Orientation::default()
+        };
+        let camera = angles.apply(&Camera {
+            position: Vec3::new(x, 5.0, 0.0),
+            ..Camera::default()
+        });
+        take.push(f64::from(n) / 60.0, &camera, angles);
+    }
+    let seen = seen(&take);
+    for pixels in [0.1, 0.3, 0.7, 1.5, 2.5, 5.0, 12.0, 40.0] {
+        let Simplified { keys, worst } = simplify(&take, &seen, pixels / 1024.0);
+        assert!(
+            worst * 1024.0 <= pixels * (1.0 + 1e-9),
+            "{} at {pixels}",
+            worst * 1024.0
+        );
+        assert_eq!(worst, worst_off(&CameraPath::new(&keys), &take, &seen));
+        // In another time it is the same flight.
+        let slower = CameraPath::new(&Retime::Stretch(20.0).apply(&keys));
+        let off = worst_off(&slower, &take, &seen) * 1024.0;
+        assert!((off - worst * 1024.0).abs() < 0.05, "{off} stretched");
+    }
+}
+
+#[test]
 fn a_take_is_replayed_bit_by_bit_from_its_file() {
     let take = take();
     let mut scene = Scene::demo();

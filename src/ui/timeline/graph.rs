@@ -15,6 +15,10 @@ const MOST: u64 = 4000;
 const JUMP: f64 = 4.0;
 /// Smaller turns in one frame are no jumps, in degrees.
 const SEEN: f64 = 0.25;
+/// Steps of this share of the coordinates are rounding.
+const NOISE: f64 = 1e-9;
+/// Turns in one frame that are rounding, in degrees.
+const NOISE_TURN: f64 = 1e-6;
 /// Faster turns are hard to watch, in degrees per second.
 const DIZZY: f64 = 120.0;
 
@@ -58,7 +62,7 @@ impl Graph {
                     ui.small(egui::RichText::new(format!("speed ≤ {fastest:.1}/s")).color(colors.curve));
                     ui.small(egui::RichText::new(format!("turn ≤ {sharpest:.0}°/s")).color(colors.muted));
                     if rough > 0 {
-                        let text = egui::RichText::new(format!("{rough} jumps")).color(colors.accent);
+                        let text = egui::RichText::new(format!("{rough} jump{}", if rough == 1 { "" } else { "s" })).color(colors.accent);
                         ui.small(text).on_hover_text("Frames where speed or turn changes abruptly, or turns by more than 120° a second");
                     }
                 });
@@ -137,6 +141,12 @@ fn steps(animation: &Animation, path: &CameraPath) -> Vec<Step> {
     let each = motions.len().max(1) as f64;
     let mean = |of: fn(&Motion) -> f64| motions.iter().map(of).sum::<f64>() / each;
     let (mean_distance, mean_turn) = (mean(|m| m.distance), mean(|m| m.turn));
+    // What rounding alone moves is no motion.
+    let far = animation
+        .keys
+        .iter()
+        .map(|key| key.value.position.max_abs());
+    let noise = far.fold(0.0, f64::max) * NOISE;
     let per_second = fps / stride as f64;
     let step = |place: usize| {
         let time = animation.time_of(frames[place + 1]);
@@ -156,6 +166,8 @@ fn steps(animation: &Animation, path: &CameraPath) -> Vec<Step> {
             here > JUMP * mean && beside.map(of).any(|near| here > JUMP * near)
         };
         let Motion { distance, turn } = motions[place];
+        let distance = if distance > noise { distance } else { 0.0 };
+        let turn = if turn > NOISE_TURN { turn } else { 0.0 };
         let is_jump = is_jump(|m| m.distance, mean_distance)
             || is_jump(|m| m.turn, mean_turn.max(SEEN / JUMP));
         Step {

@@ -7,6 +7,7 @@ use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, 
 use crate::editor::{Edit, Editor, Time};
 use crate::scene::{Animation, Easing, Interpolation, Target};
 use crate::ui::Out;
+use crate::ui::inspector::target;
 use crate::ui::theme::{GRID, TRACK, palette};
 
 /// Half the width of a key.
@@ -220,6 +221,9 @@ fn pick(
 ) {
     let selected = &editor.timeline().selected;
     let modifiers = ui.input(|input| input.modifiers);
+    if response.secondary_clicked() && !selected.contains(&place) {
+        out.time(Time::SelectKeys(BTreeSet::from([place])));
+    }
     if response.clicked() {
         let mut places = selected.clone();
         if modifiers.shift {
@@ -291,10 +295,15 @@ fn menu(ui: &mut Ui, place: usize, editor: &Editor, out: &mut Out) {
     let Some(key) = animation.keys.get(place) else {
         return;
     };
+    let around = match key.interpolation {
+        Interpolation::Orbit { around } => around,
+        _ => target(editor),
+    };
     for way in [
         Interpolation::Smooth,
         Interpolation::Linear,
         Interpolation::Hold,
+        Interpolation::Orbit { around },
     ] {
         if ui.radio(key.interpolation == way, way.name()).clicked() {
             let changed = animation.with_each(&places, |key| key.interpolation = way);

@@ -82,14 +82,15 @@ impl Thumbs {
         let wanted = Some((editor.revision(), (scale * 100.0) as u32));
         if self.asked != wanted && is_resting {
             self.asked = wanted;
-            self.keys.resize(keys.len().min(MOST), None);
-            self.keys.truncate(keys.len().min(MOST));
+            self.keys.resize(keys.len(), None);
+            // Of very many keys some, evenly.
+            let stride = keys.len().div_ceil(MOST).max(1);
             let sketch = |(place, key): (usize, &crate::scene::Key<_>)| Sketch {
                 name: place as u64,
                 scene: shot(scene, editor.path_of_camera(), key.time),
                 size: pixels(THUMB),
             };
-            wishes.extend(keys.iter().take(MOST).enumerate().map(sketch));
+            wishes.extend(keys.iter().enumerate().step_by(stride).map(sketch));
         }
         (!wishes.is_empty()).then_some(wishes)
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use egui::{Button, DragValue, RichText, Slider, Ui};
 
-use crate::animate::paused_seconds;
+use crate::animate::{Retime, paused_seconds};
 use crate::editor::{Edit, Editor, Repeat, Time};
 use crate::scene::Animation;
 use crate::ui::commands::Command;
@@ -122,6 +122,7 @@ fn record_button(ui: &mut Ui, editor: &Editor, out: &mut Out) {
 
 fn rates(ui: &mut Ui, editor: &Editor, out: &mut Out) {
     let animation = &editor.scene().animation;
+    length(ui, animation, out);
     let mut fps = animation.frames_per_second;
     let drag = DragValue::new(&mut fps)
         .range(1.0..=240.0)
@@ -153,10 +154,47 @@ fn rates(ui: &mut Ui, editor: &Editor, out: &mut Out) {
     }
 }
 
+/// How long the flight of the camera is; another length stretches it.
+fn length(ui: &mut Ui, animation: &Animation, out: &mut Out) {
+    let [first, .., last] = &animation.keys[..] else {
+        return;
+    };
+    let mut seconds = last.time - first.time;
+    let drag = DragValue::new(&mut seconds)
+        .range(0.1..=36_000.0)
+        .speed(0.05)
+        .max_decimals(3)
+        .update_while_editing(false)
+        .suffix(" s");
+    let drag = ui.add(drag).accessible_name("length of the flight");
+    let hint = "Length of the flight; another one stretches it";
+    if drag.on_hover_text(hint).changed() && seconds.is_finite() {
+        let changed = Animation {
+            keys: Retime::Stretch(seconds).apply(&animation.keys),
+            ..animation.clone()
+        };
+        out.edit(Edit::Animation(Box::new(changed), "Stretch"));
+    }
+}
+
 /// The recorded flight, and how closely the keys follow it.
 pub fn show_take(ui: &mut Ui, editor: &Editor, out: &mut Out) {
     let animation = &editor.scene().animation;
     let Some(take) = &animation.take else { return };
+    let before = editor.timeline().tolerance;
+    let mut tolerance = before;
+    let slider = Slider::new(&mut tolerance, 0.05..=1000.0)
+        .clamping(egui::SliderClamping::Edits)
+        .logarithmic(true)
+        .suffix(" px")
+        .max_decimals(2);
+    let slider = ui.add(slider).accessible_name("tolerance");
+    let hint = "Make the keys anew from the recording: how far they may be off. Other changes of the keys are lost (undo brings them back)";
+    // The widget rounds what it is given: that is no wish of the user's.
+    if slider.on_hover_text(hint).changed() && (tolerance - before).abs() > 0.006 {
+        out.time(Time::Simplify(tolerance));
+    }
+    // Behind what is dragged, which must not move.
     let off = editor.timeline().worst.map_or(String::new(), |worst| {
         format!(", never more than {worst:.1} px off at 1024²")
     });
@@ -166,16 +204,6 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, out: &mut Out) {
         animation.keys.len()
     );
     ui.label(RichText::new(text).monospace());
-    let mut tolerance = editor.timeline().tolerance;
-    let slider = Slider::new(&mut tolerance, 0.05..=200.0)
-        .logarithmic(true)
-        .suffix(" px")
-        .max_decimals(2);
-    let slider = ui.add(slider).accessible_name("tolerance");
-    let hint = "Make the keys anew from the recording: how far they may be off. Other changes of the keys are lost (undo brings them back)";
-    if slider.on_hover_text(hint).changed() {
-        out.time(Time::Simplify(tolerance));
-    }
     ui.separator();
     let paused = paused_seconds(&animation.keys);
     if paused > 0.0 {
@@ -231,6 +259,7 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action>
         }
         Command::Record if editor.timeline().recorded().is_none() => timed(Time::Record),
         Command::StopRecording => timed(Time::Stop),
+        Command::SelectKeys => timed(Time::SelectKeys((0..animation.keys.len()).collect())),
         Command::LookThrough if !animation.keys.is_empty() => {
             timed(Time::LookThrough(!editor.looks_through()))
         }
