@@ -8,6 +8,7 @@ use egui::{CentralPanel, Context, Frame, Margin, Panel, Theme, Ui, ViewportComma
 use super::autosave::Autosave;
 use super::commands::{Command, is_about_files, pressed};
 use super::dialogs::{Dialogs, Native};
+use super::exports::Exports;
 use super::files::{Files, Next, Outcome};
 use super::flying::Flying;
 use super::lab::Lab;
@@ -71,6 +72,7 @@ pub struct App {
     pub(super) outliner: Outliner,
     pub(super) lab: Lab,
     pub(super) timeline: Timeline,
+    pub(super) exports: Exports,
     pub(super) overlay: Overlay,
     pub(super) thumbs: Thumbs,
     pub(super) toasts: Toasts,
@@ -112,6 +114,7 @@ impl App {
             outliner: Outliner::default(),
             lab: Lab::default(),
             timeline: Timeline::default(),
+            exports: Exports::default(),
             overlay: Overlay::default(),
             thumbs: Thumbs::default(),
             toasts: Toasts::default(),
@@ -147,6 +150,11 @@ impl App {
     /// Whether the picture on screen is the finished one of the newest scene.
     pub fn is_settled(&self) -> bool {
         self.pictures.is_settled(&self.editor)
+    }
+
+    /// Whether frames are being exported, or a video of them made.
+    pub fn is_exporting(&self) -> bool {
+        self.exports.is_busy(&self.pictures)
     }
 
     /// The picture on screen.
@@ -251,6 +259,7 @@ impl App {
                 }
                 ctx.request_repaint();
             }
+            Some(Outcome::ExportFolder(path)) => self.exports.choose_folder(&path),
             Some(Outcome::SaveImage(path)) => {
                 self.editor.apply(Action::Show(Mode::HighRes));
                 self.pictures.request_still(&self.editor, Some(path));
@@ -301,6 +310,7 @@ impl eframe::App for App {
         let is_measuring = self.pictures.is_measuring();
         self.lab.follow(is_measuring, self.pictures.take_study());
         self.thumbs.take(ctx, self.pictures.take_sketches());
+        self.exports.follow(&mut self.editor, &self.pictures);
         self.pass_time(ctx);
         self.close_if_meant(ctx);
         let outcome = self.files.poll(ctx, &mut self.editor);
@@ -339,6 +349,9 @@ impl eframe::App for App {
             }
         }
         let picture = self.show_panels(ui, &mut out);
+        let ctx = ui.ctx().clone();
+        self.exports
+            .show(&ctx, &mut self.editor, &self.pictures, &mut out);
         // Still pictures are looked at, not flown through: they would be gone.
         let flown = picture.as_ref().map(|(_, response)| response);
         let is_still = self.editor.mode == Mode::HighRes || self.lab.is_looking();
@@ -350,7 +363,6 @@ impl eframe::App for App {
         for action in out.actions {
             self.editor.apply(action);
         }
-        let ctx = ui.ctx().clone();
         if self.editor.timeline().recorded().is_some() {
             let now = ui.input(|input| input.time);
             self.editor.apply(Action::Time(Time::Sample(now)));

@@ -82,6 +82,10 @@ pub enum Command {
     SelectKeys,
     /// Look through the shot camera, or at it.
     LookThrough,
+    /// Open the window of exports.
+    Export,
+    /// Choose the folder of an export.
+    ExportFolder,
     /// Choose a file and take keys from it.
     ImportPath,
     /// Choose a file and write the keys to it.
@@ -141,6 +145,7 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     Open [ctrl(Key::O)] "Open a scene",
     SaveAs [ctrl_shift(Key::S)] "Save under another name",
     Save [ctrl(Key::S)] "Save the scene",
+    Export [ctrl_shift(Key::E)] "Export the animation",
     SaveImage [ctrl(Key::E)] "Save the high-res picture",
     Quit [ctrl(Key::Q)] "Quit",
     Redo [ctrl_shift(Key::Z), ctrl(Key::Y)] "Redo",

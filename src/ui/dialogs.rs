@@ -21,6 +21,8 @@ pub enum Ask {
     ImportPath,
     /// Where to write the camera path.
     ExportPath,
+    /// The folder for frames.
+    ExportFolder,
 }
 
 impl Ask {
@@ -32,12 +34,16 @@ impl Ask {
             Self::SaveImage => "Save image",
             Self::ImportPath => "Import camera path",
             Self::ExportPath => "Export camera path",
+            Self::ExportFolder => "Folder for the frames",
         }
     }
 
     /// Whether something is written to the path.
     pub fn writes(&self) -> bool {
-        !matches!(self, Self::OpenScene | Self::ImportPath)
+        !matches!(
+            self,
+            Self::OpenScene | Self::ImportPath | Self::ExportFolder
+        )
     }
 
     /// The path, with the ending that such files have if it has none.
@@ -54,6 +60,7 @@ impl Ask {
             Self::OpenScene | Self::SaveScene => &["ron"],
             Self::SaveImage => &["png", "ppm"],
             Self::ImportPath | Self::ExportPath => &["csv", "ron"],
+            Self::ExportFolder => &[""],
         }
     }
 }
@@ -76,6 +83,7 @@ impl Dialogs for Native {
             dialog = match ask {
                 Ask::OpenScene | Ask::SaveScene => dialog.add_filter("Glint scene", ask.endings()),
                 Ask::SaveImage => dialog.add_filter("Picture", ask.endings()),
+                Ask::ExportFolder => dialog,
                 Ask::ImportPath | Ask::ExportPath => {
                     dialog.add_filter("Camera path", ask.endings())
                 }
@@ -88,7 +96,9 @@ impl Dialogs for Native {
             {
                 dialog = dialog.set_file_name(name.to_string_lossy());
             }
-            let path = if ask.writes() {
+            let path = if ask == Ask::ExportFolder {
+                dialog.pick_folder()
+            } else if ask.writes() {
                 dialog.save_file()
             } else {
                 dialog.pick_file()

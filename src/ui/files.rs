@@ -40,6 +40,8 @@ pub enum Outcome {
     Quit,
     /// The still picture is to be traced and written here.
     SaveImage(PathBuf),
+    /// Frames are to be written here.
+    ExportFolder(PathBuf),
 }
 
 /// The wishes in progress.
@@ -220,6 +222,7 @@ impl Files {
         match wish.ask {
             Ask::OpenScene => self.open(editor, &path),
             Ask::SaveImage => return Some(Outcome::SaveImage(path)),
+            Ask::ExportFolder => return Some(Outcome::ExportFolder(path)),
             Ask::ImportPath => import_path(editor, &path),
             Ask::ExportPath => export_path(editor, &path),
             Ask::SaveScene => match editor.save(&path) {
@@ -277,7 +280,7 @@ fn suggestion(editor: &Editor, ask: &Ask) -> PathBuf {
     let title = editor.title();
     let stem = title.strip_suffix(".ron").unwrap_or(&title);
     match ask {
-        Ask::OpenScene | Ask::ImportPath => folder.join(""),
+        Ask::OpenScene | Ask::ImportPath | Ask::ExportFolder => folder.join(""),
         Ask::ExportPath => folder.join(format!("{stem} path.csv")),
         Ask::SaveScene | Ask::SaveImage => folder.join(format!("{stem}.{}", ask.endings()[0])),
     }

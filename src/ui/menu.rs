@@ -47,6 +47,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, recent: &[PathBuf], layout: &mut Layou
         ui.menu_button("Render", |ui| {
             entry(ui, "High-res picture", Command::HighRes, true, out);
             entry(ui, "Save image…", Command::SaveImage, true, out);
+            entry(ui, "Export animation…", Command::Export, true, out);
             ui.separator();
             if ui.button("Picture settings").clicked() {
                 out.select(Selection::Render);

@@ -5,6 +5,7 @@ mod app;
 mod autosave;
 mod commands;
 mod dialogs;
+mod exports;
 mod files;
 mod flying;
 mod help;

@@ -9,11 +9,12 @@ use egui::Context;
 use super::lab::Wish;
 use super::viewport::{Screen, low_res};
 use crate::editor::{Editor, Mode};
+use crate::export::{ExportError, Sequence};
 use crate::image::Image;
 use crate::lab::Study;
 use crate::plan::{Picture, Sampling};
 use crate::worker::{
-    Activity, BUDGET, Event, Frame, LaneError, LiveJob, Pace, Sketch, StillJob, Worker,
+    Activity, BUDGET, Event, ExportState, Frame, LaneError, LiveJob, Pace, Sketch, StillJob, Worker,
 };
 
 /// Time over which pictures per second are counted.
@@ -105,6 +106,41 @@ impl Pictures {
     /// The small pictures that are finished.
     pub fn take_sketches(&self) -> Vec<(u64, Image)> {
         self.worker.take_sketches()
+    }
+
+    /// Puts an export into the queue.
+    ///
+    /// # Errors
+    /// [`ExportError`], if its folder cannot be made or read.
+    pub fn export(&self, sequence: Sequence) -> Result<u64, ExportError> {
+        self.worker.export(sequence)
+    }
+
+    /// All exports.
+    pub fn exports(&self) -> Vec<ExportState> {
+        self.worker.exports()
+    }
+
+    /// Whether an export is not done yet.
+    pub fn is_exporting(&self) -> bool {
+        self.worker.is_exporting()
+    }
+
+    /// Lets an export wait, or go on.
+    pub fn pause_export(&self, id: u64, is_paused: bool) {
+        self.worker.pause_export(id, is_paused);
+    }
+
+    /// Gives an export up, or takes it out of the list.
+    pub fn forget_export(&self, id: u64) {
+        self.worker.forget_export(id);
+    }
+
+    /// What a pixel of the finished picture on screen took, in milliseconds.
+    pub fn millis_per_pixel(&self, editor: &Editor) -> Option<f64> {
+        let frame = self.shown(editor).filter(|frame| frame.step == 1)?;
+        let pixels = (frame.image.width * frame.image.height) as f64;
+        Some(frame.cost.time.as_secs_f64() * 1e3 / pixels.max(1.0))
     }
 
     /// Passes a wish of the lab on to the lane.

@@ -39,6 +39,14 @@ impl App {
                 self.files.ask(ctx, &self.editor, Ask::ExportPath);
                 None
             }
+            Command::Export => {
+                self.exports.is_open = !self.exports.is_open;
+                None
+            }
+            Command::ExportFolder => {
+                self.files.ask(ctx, &self.editor, Ask::ExportFolder);
+                None
+            }
             // The two share the room below the picture.
             Command::Lab => {
                 self.lab.is_open = !self.lab.is_open;

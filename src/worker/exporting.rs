@@ -13,6 +13,9 @@ use crate::trace::Watch;
 /// Pictures that may wait to be written: memory stays bounded, however long the sequence is.
 const WAITING: usize = 2;
 
+/// Height of the small picture of a frame, in pixels.
+const SMALL: usize = 64;
+
 /// What has been done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Exported {
@@ -60,6 +63,15 @@ pub struct Exporting {
     receipts: Receiver<Receipt>,
     spare: Vec<Image>,
     done: Exported,
+    last: Option<Arc<Image>>,
+}
+
+impl std::fmt::Debug for Exporting {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.debug_struct("Exporting")
+            .field("done", &self.done)
+            .finish_non_exhaustive()
+    }
 }
 
 impl Exporting {
@@ -91,6 +103,7 @@ impl Exporting {
             parcels: Some(parcels),
             receipts,
             spare: Vec::new(),
+            last: None,
         })
     }
 
@@ -102,6 +115,11 @@ impl Exporting {
     /// What has been done so far.
     pub fn done(&self) -> Exported {
         self.done
+    }
+
+    /// A small picture of the frame that was traced last.
+    pub fn last(&self) -> Option<&Arc<Image>> {
+        self.last.as_ref()
     }
 
     /// Looks at the next frame and traces it, if it is not there as it should be.
@@ -133,6 +151,8 @@ impl Exporting {
             self.left.push_front(frame);
             return ExportStep::Stopped;
         };
+        let step = image.height.div_ceil(SMALL).max(1);
+        self.last = Some(Arc::new(image.thinned(step)));
         let parcel = Parcel {
             frame,
             image,

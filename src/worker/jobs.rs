@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::exporting::Exported;
 use crate::image::{Cost, Image};
 use crate::plan::{Picture, Sampling};
 use crate::scene::Scene;
@@ -93,6 +94,25 @@ pub enum Activity {
         /// Time since it was started.
         elapsed: Duration,
     },
+}
+
+/// An export, as far as it is.
+#[derive(Clone, Debug)]
+pub struct ExportState {
+    /// What it is called by the worker.
+    pub id: u64,
+    /// Where the frames go.
+    pub folder: PathBuf,
+    /// How many frames are done.
+    pub done: Exported,
+    /// Time that the lane has spent on it; what it waited does not count.
+    pub busy: Duration,
+    /// Whether it waits until it is told to go on.
+    pub is_paused: bool,
+    /// A small picture of the frame that was traced last.
+    pub last: Option<Arc<Image>>,
+    /// How it ended, if it has: the error in words for the user.
+    pub ended: Option<Result<(), String>>,
 }
 
 /// What happened on the lane that the user should know.

@@ -7,7 +7,10 @@ use std::time::{Duration, Instant};
 use super::budget::Budget;
 use super::easel::Easel;
 use super::errand::panic_text;
-use super::{Event, Frame, LiveJob, Pace, Running, RunningJob, Shared, Sketch, StillJob, lock};
+use super::{
+    Event, ExportState, ExportStep, Exporting, Frame, LiveJob, Pace, Running, RunningJob, Shared,
+    Sketch, StillJob, lock,
+};
 use crate::export::save_image;
 use crate::image::{Cost, Image, render};
 use crate::lab::Study;
@@ -21,6 +24,7 @@ enum Job {
     Live(LiveJob),
     Sketch(Sketch),
     Still(StillJob),
+    Export(u64, Box<Exporting>),
     Lab(Box<Study>),
 }
 
@@ -30,6 +34,8 @@ enum Outcome {
     Ended,
     /// It was stopped on the way.
     Stopped,
+    /// A frame of an export, or what came in its way.
+    Export(ExportStep),
 }
 
 /// Works until told to quit. A panic in a job becomes an event, and the lane lives on.
@@ -38,7 +44,7 @@ pub(super) fn run(shared: &Shared, threads: &Threads) {
     let mut easel = Easel::default();
     let mut woken = Instant::now();
     while let Some((mut job, watch)) = next_job(shared) {
-        let outcome = catch_unwind(AssertUnwindSafe(|| {
+        let mut outcome = catch_unwind(AssertUnwindSafe(|| {
             threads.run(|| match &mut job {
                 Job::Live(job) => {
                     let start = Instant::now();
@@ -56,6 +62,7 @@ pub(super) fn run(shared: &Shared, threads: &Threads) {
                     Outcome::Ended
                 }
                 Job::Still(job) => still(shared, job, &watch),
+                Job::Export(_, exporting) => Outcome::Export(exporting.step(&watch)),
                 Job::Lab(study) => {
                     if study.step(&watch) {
                         Outcome::Stopped
@@ -73,6 +80,13 @@ pub(super) fn run(shared: &Shared, threads: &Threads) {
                     continue;
                 }
                 woken = Instant::now();
+            }
+            Job::Export(id, exporting) => {
+                let step = match &mut outcome {
+                    Ok(Outcome::Export(step)) => Some(std::mem::replace(step, ExportStep::Going)),
+                    _ => None,
+                };
+                finish_frame(shared, id, *exporting, step);
             }
             Job::Live(_) | Job::Sketch(_) | Job::Still(_) => {
                 finish(shared, matches!(outcome, Ok(Outcome::Stopped)));
@@ -101,6 +115,7 @@ fn next_job(shared: &Shared) -> Option<(Job, Arc<Watch>)> {
             .or_else(|| mailbox.sketches.pop_front().map(Job::Sketch))
             .or_else(|| mailbox.still.take().map(Job::Still))
             .or_else(|| mailbox.saves.pop_front().map(Job::Still))
+            .or_else(|| mailbox.next_export(&lock(&shared.news).exports))
             .or_else(|| mailbox.study.take().map(|study| Job::Lab(Box::new(study))));
         if let Some(job) = job {
             let watch = Arc::new(Watch::default());
@@ -111,6 +126,7 @@ fn next_job(shared: &Shared) -> Option<(Job, Arc<Watch>)> {
                     },
                     Job::Sketch(_) => RunningJob::Sketch,
                     Job::Still(still) => RunningJob::Still(still.clone()),
+                    Job::Export(id, _) => RunningJob::Export(*id),
                     Job::Lab(_) => RunningJob::Lab,
                 },
                 watch: Arc::clone(&watch),
@@ -137,6 +153,44 @@ fn finish(shared: &Shared, was_stopped: bool) {
         && still.save_to.is_some()
     {
         mailbox.saves.push_front(still);
+    }
+}
+
+impl super::Mailbox {
+    /// The first export that does not wait.
+    fn next_export(&mut self, states: &[ExportState]) -> Option<Job> {
+        let is_waiting = |id: u64| states.iter().any(|state| state.id == id && state.is_paused);
+        let place = self.exports.iter().position(|(id, _)| !is_waiting(*id))?;
+        let (id, exporting) = self.exports.remove(place)?;
+        Some(Job::Export(id, Box::new(exporting)))
+    }
+}
+
+/// Puts an export back for its next frame, or says how it ended; `None` is a fault of the tracer. One
+/// that is not wanted any more is dropped.
+fn finish_frame(shared: &Shared, id: u64, mut exporting: Exporting, step: Option<ExportStep>) {
+    let is_going = matches!(step, Some(ExportStep::Going | ExportStep::Stopped));
+    let ended = match step {
+        Some(ExportStep::Going | ExportStep::Stopped) => None,
+        Some(ExportStep::Done) => Some(exporting.finish().map(|_| ()).map_err(|e| e.to_string())),
+        Some(ExportStep::Failed(error)) => Some(Err(error.to_string())),
+        None => Some(Err("the tracer stopped with a fault of its own".to_owned())),
+    };
+    let mut mailbox = lock(&shared.mailbox);
+    let spent = mailbox
+        .running
+        .take()
+        .map_or(Duration::ZERO, |running| running.started.elapsed());
+    let mut news = lock(&shared.news);
+    let Some(state) = news.exports.iter_mut().find(|state| state.id == id) else {
+        return;
+    };
+    state.done = exporting.done();
+    state.busy += spent;
+    state.last = exporting.last().cloned();
+    state.ended = ended;
+    if is_going {
+        mailbox.exports.push_front((id, exporting));
     }
 }
 

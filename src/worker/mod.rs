@@ -6,6 +6,7 @@ mod budget;
 mod easel;
 mod errand;
 mod exporting;
+mod exports;
 mod jobs;
 mod lane;
 
@@ -19,7 +20,7 @@ use std::time::{Duration, Instant};
 pub use budget::BUDGET;
 pub use errand::{panic_text, run_errand};
 pub use exporting::{ExportStep, Exported, Exporting};
-pub use jobs::{Activity, Event, Frame, LiveJob, Pace, Sketch, StillJob};
+pub use jobs::{Activity, Event, ExportState, Frame, LiveJob, Pace, Sketch, StillJob};
 
 use crate::image::Image;
 use crate::lab::Study;
@@ -60,6 +61,8 @@ struct Mailbox {
     still: Option<StillJob>,
     /// Pictures that are to be written, in order.
     saves: VecDeque<StillJob>,
+    /// Exports, in order.
+    exports: VecDeque<(u64, Exporting)>,
     /// The study that is being measured when there is nothing else to do.
     study: Option<Study>,
     running: Option<Running>,
@@ -80,6 +83,8 @@ enum RunningJob {
     },
     Still(StillJob),
     Sketch,
+    /// A frame of the export of this name.
+    Export(u64),
     /// A piece of the study.
     Lab,
     /// A piece of a study that was given up.
@@ -91,6 +96,7 @@ struct News {
     live: Option<Frame>,
     still: Option<Frame>,
     sketches: Vec<(u64, Image)>,
+    exports: Vec<ExportState>,
     study: Option<Study>,
     events: Vec<Event>,
 }
@@ -338,6 +344,7 @@ impl Running {
             RunningJob::Still(still) => pixels(&still.picture),
             RunningJob::Live { .. }
             | RunningJob::Sketch
+            | RunningJob::Export(_)
             | RunningJob::Lab
             | RunningJob::GivenUp => 0,
         };

@@ -7,8 +7,15 @@ use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use glint::export::{Frames, Pattern, Sequence};
+use glint::image::Format;
 use glint::scene::{Document, Scene};
+use glint::worker::Worker;
 use image::AnimationDecoder as _;
+
+use crate::ui::{CTRL, Desk};
 
 const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
 
@@ -384,6 +391,130 @@ fn a_job_is_a_template_with_its_scene_beside_it() {
     }
     let copy = fs::read(folder.path().join("flight.ron")).expect("copied");
     assert!(copy == fs::read(FLIGHT).expect("there"));
+}
+
+/// Waits until nothing is exported any more.
+fn finish(desk: &mut Desk) {
+    let start = std::time::Instant::now();
+    while desk.window.state().is_exporting() {
+        assert!(
+            start.elapsed() < Duration::from_mins(1),
+            "the export never ended"
+        );
+        sleep(Duration::from_millis(5));
+        desk.window.step();
+    }
+    desk.settle();
+}
+
+#[test]
+fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
+    let text = fs::read_to_string(FLIGHT).expect("readable");
+    let mut desk = Desk::with(|_| Vec::new(), Some(&text));
+    let folder = desk.folder.path().join("frames");
+    desk.press(CTRL.plus(Modifiers::SHIFT), Key::E);
+    desk.type_name("folder", folder.to_str().expect("plain"));
+    desk.type_name("frames", "1-40:3");
+    desk.type_into("export width", "48");
+    desk.type_into("export height", "48");
+    desk.window
+        .get_by_label_contains("rayTrace1.ppm … rayTrace40.ppm");
+    while desk
+        .window
+        .query_by_label_contains("14 frames to make")
+        .is_none()
+    {
+        desk.settle();
+    }
+    desk.window.get_by_label("gif").click();
+    desk.settle();
+    desk.click("Start export");
+    // The scene is edited while it is exported.
+    for frame in 0..20 {
+        desk.window
+            .key_press(if frame % 2 == 0 { Key::U } else { Key::I });
+        desk.window.step();
+    }
+    desk.press(Modifiers::NONE, Key::U);
+    assert!(!desk.scene().light_visualization);
+    finish(&mut desk);
+    let mut made = files(&folder);
+    assert!(
+        made.remove("frames.gif")
+            .is_some_and(|gif| gif.starts_with(b"GIF89a"))
+    );
+    let alone = desk.folder.path().join("alone");
+    done(&mut export(&alone, &["--frames", "1-40:3"]));
+    assert!(
+        made == files(&alone),
+        "the same bytes, as the scene was at the start"
+    );
+    desk.window.get_by_label_contains("14 frames are in");
+    desk.click("Remove");
+    // With the lights' markers off, every frame that shows one is another.
+    while desk.window.query_by_label_contains("to make").is_none() {
+        desk.settle();
+    }
+    desk.type_name("frames", "nonsense");
+    desk.window.get_by_label_contains("expected frames such as");
+}
+
+#[test]
+fn an_export_waits_goes_on_and_is_given_up() {
+    let scene = std::sync::Arc::new(Document::load(FLIGHT.as_ref()).expect("a scene").scene);
+    let folder = tempfile::tempdir().expect("a folder");
+    let sequence = |name: &str, frames: &str| {
+        let frames = Frames::parse(frames).expect("a set");
+        let folder = folder.path().join(name);
+        Sequence::new(
+            scene.clone(),
+            Some(frames),
+            Pattern::default(),
+            Format::Ppm,
+            folder,
+        )
+        .expect("a sequence")
+    };
+    let worker = Worker::new(Some(2), || ()).expect("a lane");
+    let first = worker.export(sequence("first", "1-202")).expect("a folder");
+    let second = worker.export(sequence("second", "1-3")).expect("a folder");
+    let state = |id: u64| worker.exports().into_iter().find(|state| state.id == id);
+    let wait = |what: &str, is_true: &dyn Fn() -> bool| {
+        let start = std::time::Instant::now();
+        while !is_true() {
+            assert!(start.elapsed() < Duration::from_mins(1), "{what}");
+            sleep(Duration::from_millis(2));
+        }
+    };
+    wait("it starts", &|| {
+        state(first).is_some_and(|state| state.done.written > 2)
+    });
+    worker.pause_export(first, true);
+    // While the first waits, the second is done.
+    wait("the second ends", &|| {
+        state(second).is_some_and(|state| state.ended == Some(Ok(())))
+    });
+    let at = state(first).expect("listed").done.written;
+    sleep(Duration::from_millis(50));
+    let still = state(first).expect("listed").done.written;
+    assert!(
+        still <= at + 3,
+        "only what was on its way came: {at} {still}"
+    );
+    assert!(state(first).expect("listed").last.is_some());
+    worker.pause_export(first, false);
+    wait("it goes on", &|| {
+        state(first).is_some_and(|state| state.done.written > still + 3)
+    });
+    worker.forget_export(first);
+    assert!(state(first).is_none() && !worker.is_exporting());
+    drop(worker);
+    // What is written stays, whole, and is taken up by the next.
+    let left = sequence("first", "1-202")
+        .missing()
+        .expect("readable")
+        .len();
+    assert!(left < 202 - still, "{left} left");
 }
 
 /// The template is run by the reference runner, in chunks, and gives the same bytes as the program

@@ -1,0 +1,241 @@
+//! What is asked of an export.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use egui::{ComboBox, DragValue, TextEdit, Ui};
+
+use super::Found;
+use crate::editor::Editor;
+use crate::export::{Frames, Pattern, Sequence, Video};
+use crate::image::Format;
+use crate::scene::{Choice as _, MAX_SIDE, Sampling, Scene};
+use crate::ui::Out;
+use crate::ui::commands::Command;
+
+/// Width of the window's fields, in points.
+pub const FIELDS: f32 = 360.0;
+/// Videos that can be made beside the frames; the first is none.
+const VIDEOS: [&str; 6] = ["none", "mp4", "mov", "mkv", "gif", "apng"];
+/// Bytes of a PNG for each of a PPM, about.
+const PNG_SHARE: f64 = 0.35;
+
+/// What is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Where to.
+    pub folder: String,
+    frames: String,
+    name: String,
+    format: Format,
+    width: u32,
+    height: u32,
+    fps: f64,
+    antialias: Sampling,
+    video: &'static str,
+}
+
+impl Settings {
+    /// What an editor's scene asks for.
+    pub fn of(editor: &Editor) -> Self {
+        let scene = editor.scene();
+        let folder = editor.path().and_then(Path::parent).map(Path::to_owned);
+        let folder = folder
+            .or_else(|| std::env::current_dir().ok())
+            .unwrap_or_default();
+        let title = editor.title();
+        let stem = title.strip_suffix(".ron").unwrap_or(&title);
+        Self {
+            folder: folder.join(format!("{stem} frames")).display().to_string(),
+            frames: Frames::up_to(scene.animation.frame_count()).to_string(),
+            name: Pattern::default().text(),
+            format: Format::Ppm,
+            width: scene.render.width,
+            height: scene.render.height,
+            fps: scene.animation.frames_per_second,
+            antialias: scene.render.antialias,
+            video: VIDEOS[0],
+        }
+    }
+
+    /// The sequence, with the scene as it is now.
+    pub fn sequence(&self, scene: &Scene) -> Result<Sequence, String> {
+        let mut scene = scene.clone();
+        (scene.render.width, scene.render.height) = (self.width, self.height);
+        scene.render.antialias = self.antialias;
+        scene.animation.frames_per_second = self.fps;
+        crate::scene::check(&scene).map_err(|problem| problem.sentence)?;
+        let frames = Frames::parse(&self.frames)?;
+        let pattern = Pattern::parse(&self.name)?;
+        if self.folder.trim().is_empty() {
+            return Err("choose a folder for the frames".to_owned());
+        }
+        let folder = PathBuf::from(self.folder.trim());
+        Sequence::new(Arc::new(scene), Some(frames), pattern, self.format, folder)
+    }
+
+    /// The video that is to follow the frames.
+    pub fn video(&self, sequence: &Sequence) -> Option<(PathBuf, Video)> {
+        let name = sequence.folder.file_name()?.to_string_lossy().into_owned();
+        let path = sequence.folder.join(format!("{name}.{}", self.video));
+        Video::of_path(&path).ok().map(|video| (path, video))
+    }
+}
+
+/// Settings that go together.
+pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
+    ui.horizontal(|ui| {
+        ui.weak("Presets");
+        let own = (scene.render.width, scene.render.height);
+        for (name, hint, format, antialias, half) in [
+            (
+                "PPM",
+                "As the program that Glint grew from: one sample, rayTrace%d.ppm",
+                Format::Ppm,
+                Sampling::Centres,
+                false,
+            ),
+            (
+                "PNG",
+                "Clean edges, compressed",
+                Format::Png,
+                Sampling::ADAPTIVE,
+                false,
+            ),
+            (
+                "Draft",
+                "Half the size, one sample",
+                Format::Png,
+                Sampling::Centres,
+                true,
+            ),
+        ] {
+            if ui.button(name).on_hover_text(hint).clicked() {
+                settings.format = format;
+                settings.antialias = antialias;
+                let size = |side: u32| if half { side.div_ceil(2) } else { side };
+                (settings.width, settings.height) = (size(own.0), size(own.1));
+            }
+        }
+    });
+}
+
+/// The rows of the window.
+pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut Out) {
+    ui.weak("folder");
+    ui.horizontal(|ui| {
+        let field = TextEdit::singleline(&mut settings.folder).desired_width(FIELDS - 90.0);
+        ui.add(field).accessible_name("folder");
+        if ui.button("Browse…").clicked() {
+            out.commands.push(Command::ExportFolder);
+        }
+    });
+    ui.end_row();
+    ui.weak("frames");
+    let frames = TextEdit::singleline(&mut settings.frames).desired_width(FIELDS);
+    ui.add(frames)
+        .on_hover_text("1-202, 1,4 or 1-10:3, counted from 1")
+        .accessible_name("frames");
+    ui.end_row();
+    ui.weak("names");
+    ui.horizontal(|ui| {
+        let name = TextEdit::singleline(&mut settings.name).desired_width(140.0);
+        ui.add(name)
+            .on_hover_text("%d is the number, %05d the number with five digits")
+            .accessible_name("names");
+        if let (Ok(pattern), Ok(frames)) = (
+            Pattern::parse(&settings.name),
+            Frames::parse(&settings.frames),
+        ) {
+            let ending = settings.format.ending();
+            let file = |frame: u64| format!("{}.{ending}", pattern.name(frame));
+            let first = frames.iter().next().map_or(String::new(), file);
+            let last = frames.last().map_or(String::new(), file);
+            ui.weak(format!("{first} … {last}"));
+        }
+    });
+    ui.end_row();
+    ui.weak("picture");
+    ui.horizontal(|ui| {
+        for (name, side) in [
+            ("width", &mut settings.width),
+            ("height", &mut settings.height),
+        ] {
+            ui.add(DragValue::new(side).range(1..=MAX_SIDE).suffix(" px"))
+                .accessible_name(format!("export {name}"));
+        }
+        ComboBox::from_id_salt("export antialias")
+            .selected_text(settings.antialias.word())
+            .show_ui(ui, |ui| {
+                for way in Sampling::ALL {
+                    ui.selectable_value(&mut settings.antialias, way.value, way.word);
+                }
+            });
+        for format in [Format::Ppm, Format::Png] {
+            ui.selectable_value(&mut settings.format, format, format.ending());
+        }
+    });
+    ui.end_row();
+    ui.weak("time");
+    ui.horizontal(|ui| {
+        let fps = DragValue::new(&mut settings.fps)
+            .range(1.0..=240.0)
+            .speed(0.1)
+            .suffix(" fps");
+        ui.add(fps).accessible_name("export frames per second");
+        ui.weak("video");
+        for video in VIDEOS {
+            let hint = match video {
+                "none" => "Only frames",
+                "gif" | "apng" => "Made by Glint itself",
+                _ => "Made by ffmpeg, if that is installed",
+            };
+            ui.selectable_value(&mut settings.video, video, video)
+                .on_hover_text(hint);
+        }
+    });
+    ui.end_row();
+}
+
+/// What will happen: frames, time, room on the disk.
+pub fn forecast(
+    settings: &Settings,
+    sequence: &Sequence,
+    found: Option<&Found>,
+    millis: Option<f64>,
+) -> String {
+    let pixels = f64::from(settings.width) * f64::from(settings.height);
+    let total = sequence.frames.count();
+    let (missing, what) = match found {
+        None => (total, "looking into the folder…".to_owned()),
+        Some(Err(error)) => (total, error.clone()),
+        Some(Ok((missing, _))) if *missing == total => (total, format!("{total} frames to make")),
+        Some(Ok((missing, total))) => {
+            let there = total - missing;
+            (
+                *missing,
+                format!("{missing} frames to make, {there} are there and stay"),
+            )
+        }
+    };
+    let share = if settings.format == Format::Png {
+        PNG_SHARE
+    } else {
+        1.0
+    };
+    let megabytes = pixels * 3.0 * share * missing as f64 / 1e6;
+    let seconds = millis.map(|millis| millis * pixels * missing as f64 / 1e3);
+    let time = seconds.map_or(String::new(), |seconds| {
+        format!(", about {}", in_words(seconds))
+    });
+    format!("{what}{time}, {megabytes:.0} MB")
+}
+
+/// A time in seconds or minutes.
+pub fn in_words(seconds: f64) -> String {
+    if seconds < 90.0 {
+        format!("{:.0} s", seconds.ceil())
+    } else {
+        format!("{:.0} min", (seconds / 60.0).ceil())
+    }
+}
