@@ -14,9 +14,13 @@ fn main() -> ExitCode {
         Asked::Done(code) => code,
         Asked::Chart { study, path } => save(&ui::chart_picture(&study), &path),
         Asked::Stability { maps, path } => save(&ui::stability_picture(&maps), &path),
-        Asked::Editor { scene, screenshot } => {
+        Asked::Editor {
+            scene,
+            screenshot,
+            exports,
+        } => {
             let is_screenshot = screenshot.is_some();
-            match ui::run(scene.clone(), screenshot) {
+            match ui::run(scene.clone(), screenshot, exports) {
                 Ok(()) => ExitCode::SUCCESS,
                 Err(NoWindow::Unavailable(reason)) if is_screenshot => {
                     fail(&format!("no window: {reason}"))

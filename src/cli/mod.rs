@@ -40,6 +40,9 @@ struct Words {
     /// Write a picture of the window once it is complete (PNG or PPM), and quit
     #[arg(long, value_name = "IMAGE")]
     screenshot: Option<PathBuf>,
+    /// Open the window of exports first
+    #[arg(long, requires = "screenshot")]
+    exports: bool,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -71,6 +74,8 @@ pub enum Asked {
         scene: Option<PathBuf>,
         /// Where to write a picture of the window, which then closes.
         screenshot: Option<PathBuf>,
+        /// Whether the window of exports is opened first.
+        exports: bool,
     },
     /// Draw the chart of a study into this file.
     Chart {
@@ -131,9 +136,14 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
             command: None,
             scene,
             screenshot,
+            exports,
         }) => match screenshot.as_deref().map(Format::of_path) {
             Some(Err(error)) => Asked::Done(refuse(&error.to_string())),
-            _ => Asked::Editor { scene, screenshot },
+            _ => Asked::Editor {
+                scene,
+                screenshot,
+                exports,
+            },
         },
         Err(error) => {
             // Help and version are "errors" of exit code 0 that go to stdout.

@@ -41,6 +41,8 @@ pub struct Setup {
     pub data_folder: Option<PathBuf>,
     /// A picture to be made of the window, which then closes.
     pub screenshot: Option<Screenshot>,
+    /// Whether the window of exports is open at first.
+    pub exports: bool,
 }
 
 impl Setup {
@@ -51,6 +53,7 @@ impl Setup {
             dialogs: Box::new(Native),
             data_folder: data_folder(),
             screenshot: None,
+            exports: false,
         }
     }
 
@@ -135,6 +138,7 @@ impl App {
             autosave: Autosave::default(),
             screenshot: setup.screenshot,
         };
+        app.exports.is_open = setup.exports;
         if let Some(path) = setup.scene {
             app.files.open(&mut app.editor, &path);
         }

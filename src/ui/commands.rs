@@ -84,6 +84,8 @@ pub enum Command {
     LookThrough,
     /// Open the window of exports.
     Export,
+    /// Choose a file and write a job for a render farm to it.
+    ExportJob,
     /// Choose the folder of an export.
     ExportFolder,
     /// Choose a file and take keys from it.

@@ -21,6 +21,8 @@ pub enum Ask {
     ImportPath,
     /// Where to write the camera path.
     ExportPath,
+    /// Where to write the job for a render farm.
+    ExportJob,
     /// The folder for frames.
     ExportFolder,
 }
@@ -34,6 +36,7 @@ impl Ask {
             Self::SaveImage => "Save image",
             Self::ImportPath => "Import camera path",
             Self::ExportPath => "Export camera path",
+            Self::ExportJob => "Export farm job",
             Self::ExportFolder => "Folder for the frames",
         }
     }
@@ -60,6 +63,7 @@ impl Ask {
             Self::OpenScene | Self::SaveScene => &["ron"],
             Self::SaveImage => &["png", "ppm"],
             Self::ImportPath | Self::ExportPath => &["csv", "ron"],
+            Self::ExportJob => &["yaml"],
             Self::ExportFolder => &[""],
         }
     }
@@ -83,6 +87,7 @@ impl Dialogs for Native {
             dialog = match ask {
                 Ask::OpenScene | Ask::SaveScene => dialog.add_filter("Glint scene", ask.endings()),
                 Ask::SaveImage => dialog.add_filter("Picture", ask.endings()),
+                Ask::ExportJob => dialog.add_filter("Open Job Description", ask.endings()),
                 Ask::ExportFolder => dialog,
                 Ask::ImportPath | Ask::ExportPath => {
                     dialog.add_filter("Camera path", ask.endings())

@@ -11,6 +11,8 @@ use super::dialogs::{Ask, Dialogs};
 use super::prompts::{Answer, PathPrompt, ask_about_changes, ask_to_quit};
 use crate::animate::{from_table, from_text, to_table, to_text};
 use crate::editor::{Action, Edit, Editor};
+use crate::export::{Pattern, Sequence, job_template};
+use crate::image::Format;
 use crate::scene::{Animation, read_text, write_atomic};
 
 /// A dialog that comes back empty sooner than a hand can cancel it was never shown.
@@ -225,6 +227,7 @@ impl Files {
             Ask::ExportFolder => return Some(Outcome::ExportFolder(path)),
             Ask::ImportPath => import_path(editor, &path),
             Ask::ExportPath => export_path(editor, &path),
+            Ask::ExportJob => export_job(editor, &path),
             Ask::SaveScene => match editor.save(&path) {
                 Ok(()) => {
                     self.remember(editor);
@@ -282,6 +285,7 @@ fn suggestion(editor: &Editor, ask: &Ask) -> PathBuf {
     match ask {
         Ask::OpenScene | Ask::ImportPath | Ask::ExportFolder => folder.join(""),
         Ask::ExportPath => folder.join(format!("{stem} path.csv")),
+        Ask::ExportJob => folder.join(format!("{stem} job.yaml")),
         Ask::SaveScene | Ask::SaveImage => folder.join(format!("{stem}.{}", ask.endings()[0])),
     }
 }
@@ -334,6 +338,36 @@ fn export_path(editor: &mut Editor, path: &Path) {
     });
     match written {
         Ok(()) => editor.inform(format!("Saved {}", path.display())),
+        Err(sentence) => editor.complain(sentence),
+    }
+}
+
+/// The template, and the scene as it is now beside it.
+fn export_job(editor: &mut Editor, path: &Path) {
+    let name = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let scene = path.with_extension("ron");
+    let file = scene
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let (pattern, folder) = (Pattern::default(), PathBuf::from("frames"));
+    let sequence = Sequence::new(editor.scene().clone(), None, pattern, Format::Ppm, folder);
+    let written = sequence.and_then(|sequence| {
+        let text = editor.to_text().map_err(|error| error.to_string())?;
+        let job = job_template(&sequence, &name, &file);
+        let both = [(path, job), (&scene, text)];
+        both.into_iter().try_for_each(|(path, text)| {
+            let written = write_atomic(path, text.as_bytes());
+            written.map_err(|error| format!("cannot write {}: {error}", path.display()))
+        })
+    });
+    match written {
+        Ok(()) => editor.inform(format!("Saved {} and {}", path.display(), scene.display())),
         Err(sentence) => editor.complain(sentence),
     }
 }

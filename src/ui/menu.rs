@@ -103,6 +103,8 @@ fn file_menu(ui: &mut Ui, recent: &[PathBuf], out: &mut Out) {
     entry(ui, "Save", Command::Save, true, out);
     entry(ui, "Save as…", Command::SaveAs, true, out);
     entry(ui, "Save image…", Command::SaveImage, true, out);
+    entry(ui, "Export animation…", Command::Export, true, out);
+    entry(ui, "Export farm job…", Command::ExportJob, true, out);
     ui.separator();
     entry(ui, "Quit", Command::Quit, true, out);
 }

@@ -43,6 +43,10 @@ impl App {
                 self.exports.is_open = !self.exports.is_open;
                 None
             }
+            Command::ExportJob => {
+                self.files.ask(ctx, &self.editor, Ask::ExportJob);
+                None
+            }
             Command::ExportFolder => {
                 self.files.ask(ctx, &self.editor, Ask::ExportFolder);
                 None

@@ -34,13 +34,17 @@ pub enum NoWindow {
 }
 
 /// Opens the window on a scene file (or the demo) and stays until it is closed, or until a
-/// picture of it is written to `screenshot`.
+/// picture of it is written to `screenshot`. `exports` opens the window of exports first.
 ///
 /// # Errors
 /// [`NoWindow::Unavailable`] if there is no display, no OpenGL, or a system library is missing. The library
 /// calls below this report some of that by a panic, which is caught and explained here; a panic
 /// once the window is open passes.
-pub fn run(scene: Option<PathBuf>, screenshot: Option<PathBuf>) -> Result<(), NoWindow> {
+pub fn run(
+    scene: Option<PathBuf>,
+    screenshot: Option<PathBuf>,
+    exports: bool,
+) -> Result<(), NoWindow> {
     let (screenshot, outcome) = screenshot.map(Screenshot::new).unzip();
     let persist_window = screenshot.is_none();
     let is_open = Arc::new(AtomicBool::new(false));
@@ -49,7 +53,10 @@ pub fn run(scene: Option<PathBuf>, screenshot: Option<PathBuf>) -> Result<(), No
         let is_open = Arc::clone(&is_open);
         let setup = match screenshot {
             None => Setup::native(scene),
-            Some(screenshot) => Setup::for_screenshot(scene, screenshot),
+            Some(screenshot) => Setup {
+                exports,
+                ..Setup::for_screenshot(scene, screenshot)
+            },
         };
         eframe::run_native(
             APP_ID,

@@ -12,6 +12,7 @@ use egui_kittest::kittest::Queryable as _;
 use glint::export::{Frames, Pattern, Sequence};
 use glint::image::Format;
 use glint::scene::{Document, Scene};
+use glint::ui::Ask;
 use glint::worker::Worker;
 use image::AnimationDecoder as _;
 
@@ -451,12 +452,30 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
     );
     desk.window.get_by_label_contains("14 frames are in");
     desk.click("Remove");
-    // With the lights' markers off, every frame that shows one is another.
-    while desk.window.query_by_label_contains("to make").is_none() {
+    // With the lights' markers off, the frames that show one are others.
+    while desk
+        .window
+        .query_by_label_contains("replace older files")
+        .is_none()
+    {
         desk.settle();
     }
     desk.type_name("frames", "nonsense");
     desk.window.get_by_label_contains("expected frames such as");
+}
+
+#[test]
+fn the_window_writes_a_farm_job_and_its_scene() {
+    let answer = |folder: &Path| vec![(Ask::ExportJob, Some(folder.join("job.yaml")))];
+    let mut desk = Desk::with(answer, None);
+    desk.choose("File", "Export farm job…");
+    desk.window.get_by_label_contains("job.yaml and ");
+    let template = fs::read_to_string(desk.folder.path().join("job.yaml")).expect("written");
+    assert!(template.contains("\"job.ron\"") && template.contains("\"1\""));
+    let scene = Document::load(&desk.folder.path().join("job.ron"))
+        .expect("a scene")
+        .scene;
+    assert_eq!(&scene, desk.scene());
 }
 
 #[test]

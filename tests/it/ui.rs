@@ -73,6 +73,7 @@ impl Desk {
                         dialogs,
                         data_folder: None,
                         screenshot: None,
+                        exports: false,
                     },
                 )
                 .expect("a lane")

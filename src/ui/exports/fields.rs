@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use egui::{ComboBox, DragValue, TextEdit, Ui};
+use egui::{Align2, ComboBox, DragValue, TextEdit, Ui};
 
 use super::Found;
 use crate::editor::Editor;
@@ -12,6 +12,7 @@ use crate::image::Format;
 use crate::scene::{Choice as _, MAX_SIDE, Sampling, Scene};
 use crate::ui::Out;
 use crate::ui::commands::Command;
+use crate::ui::theme::ROW;
 
 /// Width of the window's fields, in points.
 pub const FIELDS: f32 = 360.0;
@@ -124,23 +125,24 @@ pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
 pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut Out) {
     ui.weak("folder");
     ui.horizontal(|ui| {
-        let field = TextEdit::singleline(&mut settings.folder).desired_width(FIELDS - 90.0);
-        ui.add(field).accessible_name("folder");
+        let field = TextEdit::singleline(&mut settings.folder).align(Align2::LEFT_CENTER);
+        ui.add_sized([FIELDS - 90.0, ROW], field)
+            .accessible_name("folder");
         if ui.button("Browse…").clicked() {
             out.commands.push(Command::ExportFolder);
         }
     });
     ui.end_row();
     ui.weak("frames");
-    let frames = TextEdit::singleline(&mut settings.frames).desired_width(FIELDS);
-    ui.add(frames)
+    let frames = TextEdit::singleline(&mut settings.frames).align(Align2::LEFT_CENTER);
+    ui.add_sized([FIELDS, ROW], frames)
         .on_hover_text("1-202, 1,4 or 1-10:3, counted from 1")
         .accessible_name("frames");
     ui.end_row();
     ui.weak("names");
     ui.horizontal(|ui| {
-        let name = TextEdit::singleline(&mut settings.name).desired_width(140.0);
-        ui.add(name)
+        let name = TextEdit::singleline(&mut settings.name).align(Align2::LEFT_CENTER);
+        ui.add_sized([140.0, ROW], name)
             .on_hover_text("%d is the number, %05d the number with five digits")
             .accessible_name("names");
         if let (Ok(pattern), Ok(frames)) = (
@@ -209,13 +211,17 @@ pub fn forecast(
     let (missing, what) = match found {
         None => (total, "looking into the folder…".to_owned()),
         Some(Err(error)) => (total, error.clone()),
-        Some(Ok((missing, _))) if *missing == total => (total, format!("{total} frames to make")),
-        Some(Ok((missing, total))) => {
+        Some(Ok((missing, replaced, total))) => {
             let there = total - missing;
-            (
-                *missing,
-                format!("{missing} frames to make, {there} are there and stay"),
-            )
+            let stay = match there {
+                0 => String::new(),
+                there => format!(", {there} are there and stay"),
+            };
+            let replace = match replaced {
+                0 => String::new(),
+                replaced => format!(", {replaced} replace older files"),
+            };
+            (*missing, format!("{missing} frames to make{stay}{replace}"))
         }
     };
     let share = if settings.format == Format::Png {

@@ -20,8 +20,8 @@ use crate::editor::Editor;
 use crate::export::{Sequence, Video, VideoError};
 use crate::worker::{ExportState, run_errand};
 
-/// Frames that are to be made, of those asked for.
-type Found = Result<(usize, usize), String>;
+/// Frames that are to be made, how many of them replace files, and all that are asked for.
+type Found = Result<(usize, usize, usize), String>;
 
 /// The window and its exports.
 #[derive(Default)]
@@ -200,10 +200,13 @@ impl Exports {
             // A folder that is not there has no frames; looking must not make it.
             let total = sequence.frames.count();
             if !sequence.folder.exists() {
-                return Ok((total, total));
+                return Ok((total, 0, total));
             }
             let missing = sequence.missing().map_err(|error| error.to_string())?;
-            Ok((missing.len(), total))
+            let replaced = missing
+                .iter()
+                .filter(|frame| sequence.path(**frame).exists());
+            Ok((missing.len(), replaced.count(), total))
         }));
     }
 

@@ -1,0 +1,55 @@
+//! How fast an animation comes to the disk: `cargo bench --bench export`. Tracing, encoding and writing
+//! overlap; the folder is emptied before each run.
+
+#![allow(
+    clippy::expect_used,
+    reason = "a benchmark that cannot go on has failed"
+)]
+
+use std::sync::Arc;
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use glint::export::{Pattern, Sequence};
+use glint::image::Format;
+use glint::scene::{Document, Sampling};
+use glint::trace::{Threads, Watch};
+use glint::worker::{ExportStep, Exporting};
+
+const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
+
+fn main() {
+    divan::main();
+}
+
+fn flight(bencher: Bencher, sampling: Sampling, format: Format) {
+    let threads = Threads::new(None).expect("threads");
+    let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
+    scene.render.antialias = sampling;
+    let scene = Arc::new(scene);
+    let count = scene.animation.frame_count();
+    bencher
+        .counter(ItemsCount::new(count))
+        .with_inputs(|| tempfile::tempdir().expect("a folder"))
+        .bench_local_values(|folder| {
+            let frames = folder.path().to_owned();
+            let sequence =
+                Sequence::new(Arc::clone(&scene), None, Pattern::default(), format, frames);
+            let mut exporting = Exporting::new(sequence.expect("frames")).expect("a folder");
+            threads.run(|| while let ExportStep::Going = exporting.step(&Watch::default()) {});
+            assert_eq!(exporting.finish().expect("written").written as u64, count);
+            folder
+        });
+}
+
+/// The 202 frames of the published flight, 1024², one sample, PPM.
+#[divan::bench(sample_count = 5, sample_size = 1)]
+fn flight_ppm(bencher: Bencher) {
+    flight(bencher, Sampling::Centres, Format::Ppm);
+}
+
+/// The same with clean edges, PNG.
+#[divan::bench(sample_count = 2, sample_size = 1)]
+fn flight_png_smooth(bencher: Bencher) {
+    flight(bencher, Sampling::ADAPTIVE, Format::Png);
+}
