@@ -18,12 +18,8 @@ impl Worker {
         let exporting = Exporting::new(sequence)?;
         let mut mailbox = lock(&self.shared.mailbox);
         let mut news = lock(&self.shared.news);
-        let id = news
-            .exports
-            .iter()
-            .map(|state| state.id + 1)
-            .max()
-            .unwrap_or(1);
+        mailbox.export_count += 1;
+        let id = mailbox.export_count;
         news.exports.push(ExportState {
             id,
             folder,

@@ -63,6 +63,8 @@ struct Mailbox {
     saves: VecDeque<StillJob>,
     /// Exports, in order.
     exports: VecDeque<(u64, Exporting)>,
+    /// How many exports there were: the name of the newest.
+    export_count: u64,
     /// The study that is being measured when there is nothing else to do.
     study: Option<Study>,
     running: Option<Running>,
@@ -150,7 +152,7 @@ impl Worker {
     pub fn request_still(&self, job: StillJob) {
         let mut mailbox = lock(&self.shared.mailbox);
         if let Some(Running {
-            job: RunningJob::Lab,
+            job: RunningJob::Lab | RunningJob::Export(_),
             ..
         }) = mailbox.running
         {

@@ -13,7 +13,7 @@ use glint::export::{Frames, Pattern, Sequence};
 use glint::image::Format;
 use glint::scene::{Document, Scene};
 use glint::ui::Ask;
-use glint::worker::Worker;
+use glint::worker::{ExportStep, Exporting, Worker};
 use image::AnimationDecoder as _;
 
 use crate::ui::{CTRL, Desk};
@@ -221,6 +221,53 @@ fn what_cannot_be_written_is_told_and_leaves_no_parts() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("cannot write"));
 }
 
+/// A real full device: what is written beside a frame goes there.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_is_told_and_gone_on_from() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let frames = folder.path().join("frames");
+    fs::create_dir(&frames).expect("made");
+    std::os::unix::fs::symlink("/dev/full", frames.join(".rayTrace5.ppm.part")).expect("linked");
+    let output = run(&mut export(&frames, &["--frames", "1-9"]));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("rayTrace5.ppm: No space left on device"),
+        "{said}"
+    );
+    assert!(
+        !frames.join("rayTrace5.ppm").exists(),
+        "nothing half under the name"
+    );
+    done(&mut export(&frames, &["--frames", "1-9"]));
+    assert_eq!(files(&frames).len(), 9);
+}
+
+#[test]
+fn a_folder_that_vanishes_is_told() {
+    let scene = std::sync::Arc::new(Document::load(FLIGHT.as_ref()).expect("a scene").scene);
+    let folder = tempfile::tempdir().expect("a folder");
+    let frames = folder.path().join("frames");
+    let sequence = Sequence::new(scene, None, Pattern::default(), Format::Ppm, frames.clone());
+    let mut exporting = Exporting::new(sequence.expect("frames")).expect("a folder");
+    let watch = glint::trace::Watch::default();
+    assert!(matches!(exporting.step(&watch), ExportStep::Going));
+    fs::remove_dir_all(&frames).expect("removed");
+    let error = loop {
+        match exporting.step(&watch) {
+            ExportStep::Failed(error) => break error,
+            ExportStep::Going => {}
+            other => panic!("{other:?}"),
+        }
+    };
+    assert!(error.to_string().contains("cannot write"), "{error}");
+    assert!(
+        !frames.exists(),
+        "it is not made again behind the user's back"
+    );
+}
+
 #[test]
 fn words_are_checked_before_anything_is_written() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -408,6 +455,19 @@ fn finish(desk: &mut Desk) {
     desk.settle();
 }
 
+/// Waits until a text is in the window.
+fn see(desk: &mut Desk, text: &str) {
+    let start = std::time::Instant::now();
+    while desk.window.query_by_label_contains(text).is_none() {
+        assert!(
+            start.elapsed() < Duration::from_mins(1),
+            "{text} never came"
+        );
+        sleep(Duration::from_millis(5));
+        desk.window.step();
+    }
+}
+
 #[test]
 fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
     let text = fs::read_to_string(FLIGHT).expect("readable");
@@ -420,13 +480,7 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
     desk.type_into("export height", "48");
     desk.window
         .get_by_label_contains("rayTrace1.ppm … rayTrace40.ppm");
-    while desk
-        .window
-        .query_by_label_contains("14 frames to make")
-        .is_none()
-    {
-        desk.settle();
-    }
+    see(&mut desk, "14 frames to make");
     desk.window.get_by_label("gif").click();
     desk.settle();
     desk.click("Start export");
@@ -453,13 +507,7 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
     desk.window.get_by_label_contains("14 frames are in");
     desk.click("Remove");
     // With the lights' markers off, the frames that show one are others.
-    while desk
-        .window
-        .query_by_label_contains("replace older files")
-        .is_none()
-    {
-        desk.settle();
-    }
+    see(&mut desk, "replace older files");
     desk.type_name("frames", "nonsense");
     desk.window.get_by_label_contains("expected frames such as");
 }
@@ -526,6 +574,13 @@ fn an_export_waits_goes_on_and_is_given_up() {
         state(first).is_some_and(|state| state.done.written > still + 3)
     });
     worker.forget_export(first);
+    worker.forget_export(second);
+    let third = worker.export(sequence("second", "1-3")).expect("a folder");
+    assert!(third > second, "no name is given twice");
+    wait("the third ends", &|| {
+        state(third).is_some_and(|state| state.done.kept == 3)
+    });
+    wait("and is done", &|| !worker.is_exporting());
     assert!(state(first).is_none() && !worker.is_exporting());
     drop(worker);
     // What is written stays, whole, and is taken up by the next.

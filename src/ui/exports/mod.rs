@@ -29,8 +29,9 @@ pub struct Exports {
     /// Whether the window is shown.
     pub is_open: bool,
     settings: Option<Settings>,
-    /// What was found in the folder, for these settings and this state of the scene.
-    found: Option<(Settings, u64, Option<Found>)>,
+    /// What was found in the folder, for these settings, this state of the scene, and so many exports
+    /// that have ended.
+    found: Option<(Settings, (u64, usize), Option<Found>)>,
     looking: Option<Receiver<Found>>,
     /// Videos that follow their frames.
     videos: Vec<Following>,
@@ -188,13 +189,13 @@ impl Exports {
             }
             self.looking = None;
         }
-        let revision = editor.revision();
+        let state = (editor.revision(), self.told.len());
         let is_same =
-            |(of, at, _): &(Settings, u64, Option<Found>)| of == settings && *at == revision;
+            |(of, at, _): &(Settings, (u64, usize), Option<Found>)| of == settings && *at == state;
         if self.found.as_ref().is_some_and(is_same) {
             return;
         }
-        self.found = Some((settings.clone(), revision, None));
+        self.found = Some((settings.clone(), state, None));
         let sequence = sequence.clone();
         self.looking = Some(run_errand("glint-look", move || {
             // A folder that is not there has no frames; looking must not make it.
