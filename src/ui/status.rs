@@ -75,7 +75,8 @@ fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut Out
     ui.request_repaint_after(Duration::from_millis(50));
 }
 
-fn in_words(seconds: f64) -> String {
+/// A time in seconds or minutes.
+pub fn in_words(seconds: f64) -> String {
     if seconds < 90.0 {
         format!("{:.0} s", seconds.ceil())
     } else {

@@ -12,6 +12,7 @@ use crate::image::Format;
 use crate::scene::{Choice as _, MAX_SIDE, Sampling, Scene};
 use crate::ui::Out;
 use crate::ui::commands::Command;
+use crate::ui::status::in_words;
 use crate::ui::theme::ROW;
 
 /// Width of the window's fields, in points.
@@ -235,13 +236,4 @@ pub fn forecast(
         format!(", about {}", in_words(seconds))
     });
     format!("{what}{time}, {megabytes:.0} MB")
-}
-
-/// A time in seconds or minutes.
-pub fn in_words(seconds: f64) -> String {
-    if seconds < 90.0 {
-        format!("{:.0} s", seconds.ceil())
-    } else {
-        format!("{:.0} min", (seconds / 60.0).ceil())
-    }
 }

@@ -11,9 +11,10 @@ use egui::{
     Ui, Window, vec2,
 };
 
-use self::fields::{FIELDS, Settings, fields, forecast, in_words, presets};
+use self::fields::{FIELDS, Settings, fields, forecast, presets};
 use super::Out;
 use super::pictures::Pictures;
+use super::status::in_words;
 use super::theme::{GRID, THUMB, palette};
 use super::upload::whole;
 use crate::editor::Editor;
