@@ -224,7 +224,7 @@ pub(super) fn unwound(angles: impl Iterator<Item = Orientation>) -> Vec<Orientat
 }
 
 /// `angle` plus whole rounds; itself where none is needed, bit by bit.
-fn nearest(angle: f64, to: f64) -> f64 {
+pub(super) fn nearest(angle: f64, to: f64) -> f64 {
     let turn = angle - to;
     if turn.abs() < PI {
         angle

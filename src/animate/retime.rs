@@ -1,5 +1,6 @@
 //! Other timing for the same way: all of it works on keys and gives new ones.
 
+use super::path::nearest;
 use super::{CameraPath, motion_between};
 use crate::scene::{Camera, Interpolation, Key, MAX_SECONDS, Orientation};
 
@@ -179,13 +180,13 @@ fn smoothed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
         let straight = |a: f64, b: f64, c: f64| (b + a + (c - a) * share) / 2.0;
         let angles = [before, here, after].map(Orientation::of);
         let middle = angles[1];
-        let near = |angle: f64, to: f64| {
-            to + (angle - to + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)
-                - std::f64::consts::PI
-        };
         let turn = |of: fn(&Orientation) -> f64| {
             let here = of(&middle);
-            straight(near(of(&angles[0]), here), here, near(of(&angles[2]), here))
+            straight(
+                nearest(of(&angles[0]), here),
+                here,
+                nearest(of(&angles[2]), here),
+            )
         };
         let turned = Orientation {
             yaw: turn(|angles| angles.yaw),

@@ -97,6 +97,14 @@ impl Animation {
         self.tracks.iter().find(|track| track.target == *target)
     }
 
+    /// Whether something has a key of its own at this time.
+    pub fn has_value(&self, target: &Target, time: f64) -> bool {
+        self.track(target).is_some_and(|track| {
+            let mut keys = track.keys.iter();
+            keys.any(|key| self.is_same_time(key.time, time))
+        })
+    }
+
     /// With a key of a track at this time, in place of one that is there.
     pub fn with_value(&self, target: &Target, time: f64, value: Value) -> Self {
         let mut animation = self.clone();

@@ -5,7 +5,7 @@ use egui::Context;
 use super::app::App;
 use super::commands::{Command, is_enabled};
 use super::dialogs::Ask;
-use super::files::Next;
+use super::files::{Next, Outcome};
 use super::timeline::actions;
 use crate::editor::{Action, Edit, Editor, Mode, Selection, Time};
 use crate::scene::Projection;
@@ -19,38 +19,20 @@ impl App {
             Command::OpenRecent(path) => self.files.start(ctx, &mut self.editor, Next::Open(path)),
             Command::Quit => self.files.start(ctx, &mut self.editor, Next::Quit),
             Command::Save => self.files.save(ctx, &mut self.editor),
-            Command::SaveAs => {
-                self.files.ask(ctx, &self.editor, Ask::SaveScene);
-                None
-            }
-            Command::SaveImage => {
-                self.files.ask(ctx, &self.editor, Ask::SaveImage);
-                None
-            }
+            Command::SaveAs => self.ask(ctx, Ask::SaveScene),
+            Command::SaveImage => self.ask(ctx, Ask::SaveImage),
             Command::Escape => {
                 self.escape();
                 None
             }
-            Command::ImportPath => {
-                self.files.ask(ctx, &self.editor, Ask::ImportPath);
-                None
-            }
-            Command::ExportPath => {
-                self.files.ask(ctx, &self.editor, Ask::ExportPath);
-                None
-            }
+            Command::ImportPath => self.ask(ctx, Ask::ImportPath),
+            Command::ExportPath => self.ask(ctx, Ask::ExportPath),
             Command::Export => {
                 self.exports.is_open = !self.exports.is_open;
                 None
             }
-            Command::ExportJob => {
-                self.files.ask(ctx, &self.editor, Ask::ExportJob);
-                None
-            }
-            Command::ExportFolder => {
-                self.files.ask(ctx, &self.editor, Ask::ExportFolder);
-                None
-            }
+            Command::ExportJob => self.ask(ctx, Ask::ExportJob),
+            Command::ExportFolder => self.ask(ctx, Ask::ExportFolder),
             // The two share the room below the picture.
             Command::Lab => {
                 self.lab.is_open = !self.lab.is_open;
@@ -121,6 +103,12 @@ impl App {
             },
         };
         editor.apply(action);
+    }
+
+    /// Asks for a path; nothing comes of it before it is answered.
+    fn ask(&mut self, ctx: &Context, ask: Ask) -> Option<Outcome> {
+        self.files.ask(ctx, &self.editor, ask);
+        None
     }
 
     /// Leaves the innermost mode; in none, asks to quit.

@@ -169,11 +169,7 @@ pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[(&str, Target)], out: &
         ui.weak("Keys");
         for (name, target) in values {
             let track = animation.track(target);
-            let near = 0.25 / animation.frames_per_second;
-            let has_key = track.is_some_and(|track| {
-                let mut keys = track.keys.iter();
-                keys.any(|key| (key.time - time).abs() < near)
-            });
+            let has_key = animation.has_value(target, time);
             let count = track.map_or(String::new(), |track| format!(" ({})", track.keys.len()));
             let text = (icons::text(icons::KEY), format!("{name}{count}"));
             let button = Button::selectable(has_key, text);
