@@ -3,6 +3,7 @@
 #![allow(clippy::expect_used, reason = "a test that cannot go on has failed")]
 
 mod antialias;
+mod bytes;
 mod cli;
 mod export;
 mod house;
