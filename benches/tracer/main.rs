@@ -10,8 +10,9 @@
 mod plain;
 
 use divan::{Bencher, black_box};
+use glam::DVec3;
 use glint::image::{Image, render, render_into};
-use glint::lanes::{Level, Vec3};
+use glint::lanes::Level;
 use glint::plan::{Picture, Precision, Sampling};
 use glint::scene::{Object, Scene, Shape};
 use glint::trace::{Threads, Watch};
@@ -101,7 +102,7 @@ fn spheres_512(bencher: Bencher, count: u32) {
     for n in 0..count {
         let (column, row) = (f64::from(n) % side, (f64::from(n) / side).floor());
         let place = |at: f64| 400.0 * (at + 0.5) / side;
-        let center = Vec3::new(place(column) - 25.0, 80.0 / side, 50.0 - place(row));
+        let center = DVec3::new(place(column) - 25.0, 80.0 / side, 50.0 - place(row));
         scene.objects.push(Object {
             name: format!("Ball {n}"),
             color_pack: "sphere 1".to_owned(),

@@ -2,11 +2,11 @@
 //! a call through a table for every test of every object, nothing left out, rays that start 0.1
 //! away from their surface.
 
+use glam::DVec3;
 use glint::image::Image;
-use glint::lanes::Vec3;
-use glint::scene::{Basis, ColorPack, Projection, Scene, Shape};
+use glint::scene::{ColorPack, Projection, Scene, Shape};
 
-type V = Vec3<f64>;
+type V = DVec3;
 
 /// The seed's "distance away constant".
 const AWAY: f64 = 0.1;
@@ -74,7 +74,7 @@ struct World<'a> {
 }
 
 fn thing(shape: &Shape) -> Box<dyn Thing> {
-    let unit = |v: V| v.unit().expect("a direction");
+    let unit = |v: V| v.try_normalize().expect("a direction");
     match *shape {
         Shape::Sphere { center, radius } => Box::new(Ball { center, radius }),
         Shape::Plane { point, normal } => Box::new(Flat {
@@ -125,14 +125,18 @@ impl World<'_> {
         let mut total = linear(part.pack.ambient) * self.scene.ambient_intensity;
         let (diffuse, specular) = (linear(part.pack.diffuse), linear(part.pack.specular));
         for light in &self.scene.lights {
-            let l = (light.position - point).unit().expect("not in the light");
+            let l = (light.position - point)
+                .try_normalize()
+                .expect("not in the light");
             let cosine = normal.dot(l);
             let start = point + l * AWAY;
             let distance = (light.position - start).length();
             if cosine <= 0.0 || self.is_blocked(start, l, distance) {
                 continue;
             }
-            let h = (l - direction).unit().expect("not against the light");
+            let h = (l - direction)
+                .try_normalize()
+                .expect("not against the light");
             let highlight = normal.dot(h).max(0.0).powf(part.pack.phong_exponent);
             total = total + (diffuse * cosine + specular * highlight) * light.intensity;
         }
@@ -140,9 +144,9 @@ impl World<'_> {
             let mirrored = direction - normal * (2.0 * direction.dot(normal));
             let seen = self.color(point + mirrored * AWAY, mirrored, bounces + 1);
             let intensities: f64 = self.scene.lights.iter().map(|light| light.intensity).sum();
-            total = total + specular.filter(seen) * intensities;
+            total = total + specular * seen * intensities;
         }
-        total.clamp(0.0, 1.0)
+        total.clamp(V::ZERO, V::ONE)
     }
 }
 
@@ -175,13 +179,14 @@ pub fn render(scene: &Scene, width: usize, height: usize) -> Image {
         });
     }
     let world = World { scene, parts };
-    let Basis { u, v, w } = scene.camera.basis().expect("a basis");
+    let basis = scene.camera.basis().expect("a basis");
+    let (u, v, w) = (basis.x_axis, basis.y_axis, basis.z_axis);
     let mut image = Image::new(width, height);
     for (index, pixel) in image.pixels.iter_mut().enumerate() {
         let across = ((index % width) as f64 + 0.5 - width as f64 / 2.0) / height as f64;
         let upwards = (height as f64 / 2.0 - (index / width) as f64 - 0.5) / height as f64;
         let direction = -w * scene.camera.projection_distance + u * across + v * upwards;
-        let direction = direction.unit().expect("a direction");
+        let direction = direction.try_normalize().expect("a direction");
         let color = world.color(scene.camera.position, direction, 0);
         let [r, g, b] = color
             .to_array()

@@ -2,8 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
+use glam::DVec3;
+
 use super::{Closing, Curve, Route};
-use crate::lanes::Vec3;
 use crate::scene::{Camera, Easing, Interpolation, Key, Orientation};
 
 /// Keys, ready to be asked for the camera at any time.
@@ -74,7 +75,7 @@ impl CameraPath {
         let angle = |of: fn(&Orientation) -> f64| curve(angles.iter().map(of).collect());
         let lens =
             |of: fn(&Camera) -> f64| curve(keys.iter().map(|key| of(&key.value).ln()).collect());
-        let points: Vec<Vec3<f64>> = keys.iter().map(|key| key.value.position).collect();
+        let points: Vec<DVec3> = keys.iter().map(|key| key.value.position).collect();
         let route = Route::new(&points, closing);
         Run {
             pace: curve(route.reached().to_vec()),
@@ -188,15 +189,15 @@ pub(super) fn eased(easing: Easing, along: f64) -> f64 {
 
 /// The place at a share of an arc around the vertical axis through `around`: angle, radius and
 /// height change evenly, the angle the shorter way.
-pub(super) fn orbit(around: Vec3<f64>, from: Vec3<f64>, to: Vec3<f64>, along: f64) -> Vec3<f64> {
+pub(super) fn orbit(around: DVec3, from: DVec3, to: DVec3, along: f64) -> DVec3 {
     let (start, end) = (from - around, to - around);
-    let angle = |v: Vec3<f64>| v.z.atan2(v.x);
+    let angle = |v: DVec3| v.z.atan2(v.x);
     let turn = shorter(angle(end) - angle(start));
     let (near, far) = (start.x.hypot(start.z), end.x.hypot(end.z));
     let radius = near + (far - near) * along;
     let (sine, cosine) = (angle(start) + turn * along).sin_cos();
     let height = start.y + (end.y - start.y) * along;
-    around + Vec3::new(radius * cosine, height, radius * sine)
+    around + DVec3::new(radius * cosine, height, radius * sine)
 }
 
 /// The turn to the same direction that is no longer than half a round.

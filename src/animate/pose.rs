@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::path::{eased, orbit};
 use super::{CameraPath, Closing, Curve, Route};
-use crate::lanes::Vec3;
 use crate::scene::{Camera, Interpolation, Key, Orientation, Scene, Value};
 
 /// The scene as it is at `time` in seconds, seen by its own camera: every track has set its value.
@@ -56,7 +57,7 @@ fn value_at(keys: &[Key<Value>], time: f64) -> Option<Value> {
         (Value::Point(_), Value::Point(_), Interpolation::Smooth) => {
             let (run, place) = run_around(keys, i);
             let times = run.iter().map(|key| key.time).collect();
-            let points: Vec<Vec3<f64>> = run.iter().map(|key| point(key.value)).collect();
+            let points: Vec<DVec3> = run.iter().map(|key| point(key.value)).collect();
             let route = Route::new(&points, Closing::Open);
             let pace = Curve::new(times, route.reached().to_vec(), Closing::Open);
             let there = route.at(pace.at(place, along));
@@ -88,10 +89,10 @@ fn number(value: Value) -> f64 {
     }
 }
 
-fn point(value: Value) -> Vec3<f64> {
+fn point(value: Value) -> DVec3 {
     match value {
         Value::Point(point) => point,
-        Value::Number(number) => Vec3::splat(number),
+        Value::Number(number) => DVec3::splat(number),
     }
 }
 
@@ -111,11 +112,11 @@ pub fn motion_between(from: &Camera, to: &Camera) -> Motion {
     };
     // Accurate for small angles and for opposite directions: Kahan, "How futile are mindless
     // assessments of roundoff in floating-point computation?", 2006, §12.
-    let angle = |a: Vec3<f64>, b: Vec3<f64>| 2.0 * (a - b).length().atan2((a + b).length());
+    let angle = |a: DVec3, b: DVec3| 2.0 * (a - b).length().atan2((a + b).length());
     let roll = Orientation::of(to).roll - Orientation::of(from).roll;
     let roll = (roll.to_degrees() + 180.0).rem_euclid(360.0) - 180.0;
     Motion {
         distance: (to.position - from.position).length(),
-        turn: angle(a.w, b.w).to_degrees().max(roll.abs()),
+        turn: angle(a.z_axis, b.z_axis).to_degrees().max(roll.abs()),
     }
 }

@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::lanes::Vec3;
+use glam::DVec3;
+
 use crate::scene::{Camera, Interpolation, Key, Orientation};
 
 /// Keys of a round that is drawn by splines. A centripetal spline leaves a circle through so many
@@ -53,7 +54,7 @@ impl Preset {
     }
 
     /// Keys for a flight of so many seconds from `camera` around or towards `target`.
-    pub fn keys(self, camera: &Camera, target: Vec3<f64>, seconds: f64) -> Vec<Key<Camera>> {
+    pub fn keys(self, camera: &Camera, target: DVec3, seconds: f64) -> Vec<Key<Camera>> {
         let arm = camera.position - target;
         match self {
             Self::Turntable => {
@@ -70,18 +71,18 @@ impl Preset {
             Self::Crane => {
                 let rise = arm.length() * TRAVEL;
                 looking(camera, target, 6, seconds, |share| {
-                    camera.position + Vec3::new(0.0, rise * share, 0.0)
+                    camera.position + DVec3::new(0.0, rise * share, 0.0)
                 })
             }
             Self::Ellipse => looking(camera, target, ROUND_KEYS, seconds, |share| {
                 let (sine, cosine) = (share * TAU).sin_cos();
-                let aside = turned(Vec3::new(arm.x, 0.0, arm.z), TAU / 4.0);
-                target + Vec3::new(arm.x * cosine, arm.y, arm.z * cosine) + aside * (OBLONG * sine)
+                let aside = turned(DVec3::new(arm.x, 0.0, arm.z), TAU / 4.0);
+                target + DVec3::new(arm.x * cosine, arm.y, arm.z * cosine) + aside * (OBLONG * sine)
             }),
             Self::FigureEight => looking(camera, target, ROUND_KEYS, seconds, |share| {
                 // Gerono's lemniscate, in front of the target.
                 let (sine, cosine) = (share * TAU).sin_cos();
-                let aside = turned(Vec3::new(arm.x, 0.0, arm.z), TAU / 4.0);
+                let aside = turned(DVec3::new(arm.x, 0.0, arm.z), TAU / 4.0);
                 camera.position + aside * (0.5 * OBLONG * sine) - arm * (0.25 * sine * cosine)
             }),
         }
@@ -89,19 +90,19 @@ impl Preset {
 }
 
 /// Turned about the vertical axis by an angle in radians.
-fn turned(v: Vec3<f64>, angle: f64) -> Vec3<f64> {
+fn turned(v: DVec3, angle: f64) -> DVec3 {
     let (sine, cosine) = angle.sin_cos();
-    Vec3::new(v.x * cosine - v.z * sine, v.y, v.x * sine + v.z * cosine)
+    DVec3::new(v.x * cosine - v.z * sine, v.y, v.x * sine + v.z * cosine)
 }
 
 /// Keys at even times on a way, looking at the target. A way that returns ends where it began, bit
 /// by bit.
 fn looking(
     camera: &Camera,
-    target: Vec3<f64>,
+    target: DVec3,
     segments: usize,
     seconds: f64,
-    place: impl Fn(f64) -> Vec3<f64>,
+    place: impl Fn(f64) -> DVec3,
 ) -> Vec<Key<Camera>> {
     let extent = (camera.position - target).length();
     let key = |n: usize| {
@@ -112,7 +113,7 @@ fn looking(
         }
         let facing = Camera {
             look_at: target - position,
-            up: Vec3::new(0.0, 1.0, 0.0),
+            up: DVec3::new(0.0, 1.0, 0.0),
             position,
             ..camera.clone()
         };

@@ -1,7 +1,8 @@
 //! A curve in space through points, by length.
 
+use glam::DVec3;
+
 use super::Closing;
-use crate::lanes::Vec3;
 
 /// Pieces of a segment whose lengths are kept.
 const PIECES: usize = 16;
@@ -21,9 +22,9 @@ pub struct Route {
 /// A cubic from one point to the next, with its lengths.
 #[derive(Clone, Debug)]
 struct Segment {
-    ends: [Vec3<f64>; 2],
+    ends: [DVec3; 2],
     /// Directions at the ends, per run of the whole segment.
-    tangents: [Vec3<f64>; 2],
+    tangents: [DVec3; 2],
     /// Length before it.
     start: f64,
     /// Length from its start to the end of each piece, from 0.
@@ -32,8 +33,8 @@ struct Segment {
 
 impl Route {
     /// A curve through `points`; at least one.
-    pub fn new(points: &[Vec3<f64>], closing: Closing) -> Self {
-        let mut stops: Vec<Vec3<f64>> = Vec::new();
+    pub fn new(points: &[DVec3], closing: Closing) -> Self {
+        let mut stops: Vec<DVec3> = Vec::new();
         let mut places = Vec::new();
         for &point in points {
             // A distance that is too small to be squared is none.
@@ -79,7 +80,7 @@ impl Route {
     }
 
     /// The place after a length; `None` for a route of one point.
-    pub fn at(&self, length: f64) -> Option<Vec3<f64>> {
+    pub fn at(&self, length: f64) -> Option<DVec3> {
         let after = self
             .segments
             .partition_point(|segment| segment.start <= length);
@@ -89,11 +90,11 @@ impl Route {
 }
 
 impl Segment {
-    fn new([before, from, to, after]: [Vec3<f64>; 4], start: f64) -> Self {
+    fn new([before, from, to, after]: [DVec3; 4], start: f64) -> Self {
         // Knots are apart by the roots of the distances.
-        let knot = |a: Vec3<f64>, b: Vec3<f64>| (b - a).length().sqrt();
+        let knot = |a: DVec3, b: DVec3| (b - a).length().sqrt();
         let (left, here, right) = (knot(before, from), knot(from, to), knot(to, after));
-        let slope = |a: Vec3<f64>, b: Vec3<f64>, c: Vec3<f64>, ab: f64, bc: f64| {
+        let slope = |a: DVec3, b: DVec3, c: DVec3, ab: f64, bc: f64| {
             (b - a) * (1.0 / ab) - (c - a) * (1.0 / (ab + bc)) + (c - b) * (1.0 / bc)
         };
         let mut segment = Self {
@@ -117,7 +118,7 @@ impl Segment {
     }
 
     /// The place at a share (0–1) of the parameter: Hermite's cubic.
-    fn at(&self, share: f64) -> Vec3<f64> {
+    fn at(&self, share: f64) -> DVec3 {
         let [from, to] = self.ends;
         if share >= 1.0 {
             return to;

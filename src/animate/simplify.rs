@@ -2,9 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use glam::DVec3;
+
 use super::CameraPath;
 use super::steady::smoothed;
-use crate::lanes::Vec3;
 use crate::scene::{Camera, Interpolation, Key, Take};
 
 /// Keys to both sides whose removal a key feels: a smooth segment is shaped by its neighbours.
@@ -20,7 +21,7 @@ pub struct Seen {
     /// In the picture, in image heights from its middle, y up.
     pub at: [f64; 2],
     /// The point of the scene, in world units; for the sky, the direction.
-    pub what: Vec3<f64>,
+    pub what: DVec3,
     /// Whether nothing is there but sky.
     pub is_sky: bool,
 }

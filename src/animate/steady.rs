@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use glam::DVec3;
+
 use super::path::unwound;
-use crate::lanes::Vec3;
 use crate::scene::{Camera, Orientation, Sample, Take};
 
 /// Place and angles of a sample.
@@ -34,7 +35,7 @@ pub(super) fn smoothed(take: &Take, cuts: &BTreeSet<usize>, seconds: f64) -> Vec
             let camera = take.camera(start + n);
             cameras.extend(camera.map(|camera| {
                 turned.apply(&Camera {
-                    position: Vec3::new(x, y, z),
+                    position: DVec3::new(x, y, z),
                     ..camera
                 })
             }));

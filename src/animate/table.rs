@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use crate::lanes::Vec3;
+use glam::DVec3;
+
 use crate::scene::{Camera, Key, Orientation, Projection, format_number};
 
 const HEAD: &str = "time,x,y,z,yaw,pitch,roll,projection,projection_distance,orthographic_height";
@@ -101,7 +102,7 @@ pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableEr
             }
         };
         let camera = Camera {
-            position: Vec3::new(number("x", 0.0)?, number("y", 0.0)?, number("z", 0.0)?),
+            position: DVec3::new(number("x", 0.0)?, number("y", 0.0)?, number("z", 0.0)?),
             projection,
             projection_distance: number("projection_distance", like.projection_distance)?,
             orthographic_height: number("orthographic_height", like.orthographic_height)?,

@@ -1,6 +1,7 @@
 //! The changes that can be made to a scene, each with its name in the history.
 
-use crate::lanes::Vec3;
+use glam::DVec3;
+
 use crate::scene::{Animation, Camera, ColorPack, Light, LightObj, Object, Render, Scene, Shape};
 
 use super::Selection;
@@ -32,7 +33,7 @@ pub enum Edit {
     /// Another camera.
     Camera(Camera, &'static str),
     /// Another background colour, 0–255.
-    Background(Vec3<f64>),
+    Background(DVec3),
     /// Another ambient intensity, 0–1.
     Ambient(f64),
     /// Whether the markers of lights are seen.
@@ -50,7 +51,7 @@ pub enum Edit {
     /// A new object of this shape.
     AddObject(Shape),
     /// A new light here.
-    AddLight(Vec3<f64>),
+    AddLight(DVec3),
     /// A new pack.
     AddPack,
     /// Another name; whatever refers to a pack follows it.
@@ -234,7 +235,7 @@ fn add_object(scene: &mut Scene, shape: Shape) -> Item {
     Item::object(scene.objects.len() - 1)
 }
 
-fn add_light(scene: &mut Scene, position: Vec3<f64>) -> Item {
+fn add_light(scene: &mut Scene, position: DVec3) -> Item {
     let name = free_light_name(scene, "Light 1");
     let radius = scene
         .lights
@@ -292,18 +293,18 @@ fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
 }
 
 /// From a shape to where its copy stands: two things in one place would shadow each other.
-fn beside(scene: &Scene, shape: &Shape) -> Vec3<f64> {
+fn beside(scene: &Scene, shape: &Shape) -> DVec3 {
     match (shape.bounds(), shape) {
-        (Some((low, high)), _) => Vec3::new((high - low).max_abs(), 0.0, 0.0),
+        (Some((low, high)), _) => DVec3::new((high - low).abs().max_element(), 0.0, 0.0),
         (None, Shape::Plane { normal, .. }) => {
             let extent = scene
                 .bounds()
                 .map_or(1.0, |(low, high)| (high - low).length());
             normal
-                .unit()
-                .map_or(Vec3::new(0.0, 0.0, 0.0), |n| n * (extent / 20.0))
+                .try_normalize()
+                .map_or(DVec3::new(0.0, 0.0, 0.0), |n| n * (extent / 20.0))
         }
-        (None, _) => Vec3::new(0.0, 0.0, 0.0),
+        (None, _) => DVec3::new(0.0, 0.0, 0.0),
     }
 }
 

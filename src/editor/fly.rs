@@ -1,7 +1,8 @@
 //! Flying: the camera's angles, kept in double precision, and its vectors rebuilt from them.
 
-use crate::lanes::Vec3;
-use crate::scene::{Basis, Camera, Orientation};
+use glam::DVec3;
+
+use crate::scene::{Camera, Orientation};
 
 /// A step of a flight: distances in world units, turns in radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -48,7 +49,7 @@ impl Motion {
 /// vectors again.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Flight {
-    last: Option<(Orientation, Vec3<f64>, Vec3<f64>)>,
+    last: Option<(Orientation, DVec3, DVec3)>,
 }
 
 impl Flight {
@@ -67,9 +68,9 @@ impl Flight {
             next = angles.apply(camera);
             self.last = Some((angles, next.look_at, next.up));
         }
-        if let Some(Basis { u, w, .. }) = next.basis() {
-            let up = Vec3::new(0.0, motion.up, 0.0);
-            next.position = next.position - w * motion.forward + u * motion.right + up;
+        if let Some(basis) = next.basis() {
+            let up = DVec3::new(0.0, motion.up, 0.0);
+            next.position += basis.x_axis * motion.right - basis.z_axis * motion.forward + up;
         }
         next
     }
@@ -110,7 +111,7 @@ mod tests {
                     ..Motion::default()
                 },
             );
-            assert!(camera.basis().expect("a basis").v.y > 0.0);
+            assert!(camera.basis().expect("a basis").y_axis.y > 0.0);
         }
         assert!((flight.orientation(&camera).pitch.to_degrees() - 89.9).abs() < 1e-9);
     }
@@ -118,9 +119,9 @@ mod tests {
     #[test]
     fn steps_go_where_the_picture_says() {
         let level = Camera {
-            look_at: Vec3::new(0.0, 0.0, -1.0),
-            up: Vec3::new(0.0, 1.0, 0.0),
-            position: Vec3::new(0.0, 0.0, 0.0),
+            look_at: DVec3::new(0.0, 0.0, -1.0),
+            up: DVec3::new(0.0, 1.0, 0.0),
+            position: DVec3::new(0.0, 0.0, 0.0),
             ..Camera::default()
         };
         let step = |motion: Motion| Flight::default().step(&level, &motion);
@@ -130,7 +131,7 @@ mod tests {
             up: 4.0,
             ..Motion::default()
         };
-        assert_eq!(step(motion).position, Vec3::new(3.0, 4.0, -2.0));
+        assert_eq!(step(motion).position, DVec3::new(3.0, 4.0, -2.0));
         let right = step(Motion {
             yaw: 0.1,
             ..Motion::default()

@@ -1,5 +1,6 @@
+use glam::DVec3;
+
 use super::*;
-use crate::lanes::Vec3;
 use crate::scene::Shape;
 use proptest::prelude::*;
 
@@ -35,7 +36,7 @@ fn a_drag_is_one_step_and_two_drags_are_two() {
     assert_eq!(
         editor.scene().objects[0].shape,
         Shape::Sphere {
-            center: Vec3::new(125.0, 50.0, -150.0),
+            center: DVec3::new(125.0, 50.0, -150.0),
             radius: 53.0
         }
     );
@@ -130,9 +131,9 @@ fn any_edit() -> impl Strategy<Value = Action> {
         (0.0..1.0_f64).prop_map(Edit::Ambient),
         any::<bool>().prop_map(Edit::LightVisualization),
         Just(Edit::AddPack),
-        Just(Edit::AddLight(Vec3::new(1.0, 2.0, 3.0))),
+        Just(Edit::AddLight(DVec3::new(1.0, 2.0, 3.0))),
         (0..3_usize).prop_map(|kind| {
-            Edit::AddObject(Shape::examples(Vec3::new(0.0, 0.0, 0.0), 10.0)[kind].clone())
+            Edit::AddObject(Shape::examples(DVec3::new(0.0, 0.0, 0.0), 10.0)[kind].clone())
         }),
         item.clone().prop_map(Edit::Delete),
         item.clone().prop_map(Edit::Duplicate),

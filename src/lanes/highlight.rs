@@ -152,18 +152,20 @@ fn exponential<L: Lane>(token: L::Token, x: L) -> L {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
 
     /// Worst difference to the exact power over half-vectors around the peak, in levels of 255.
     fn worst_level(p: f64, power: impl Fn(Vec3<f32>, Vec3<f32>) -> f32) -> f64 {
-        let n = Vec3::new(0.36_f64, 0.48, 0.8);
-        let across = Vec3::new(0.8_f64, -0.6, 0.0);
+        let n = DVec3::new(0.36_f64, 0.48, 0.8);
+        let across = DVec3::new(0.8_f64, -0.6, 0.0);
         (0..400)
             .map(|i| {
                 let angle = 4.0 / p.sqrt() * f64::from(i) / 400.0;
                 let h = n * angle.cos() + across * angle.sin();
                 let exact = angle.cos().max(0.0).powf(p);
-                let got = power(Vec3::from_f64(n), Vec3::from_f64(h));
+                let got = power(Vec3::from_dvec3(n), Vec3::from_dvec3(h));
                 (f64::from(got) - exact).abs() * 255.0
             })
             .fold(0.0, f64::max)
@@ -189,13 +191,17 @@ mod tests {
 
     #[test]
     fn the_reference_is_exact() {
-        let n = Vec3::new(0.36_f64, 0.48, 0.8);
-        let across = Vec3::new(0.8_f64, -0.6, 0.0);
+        let n = DVec3::new(0.36_f64, 0.48, 0.8);
+        let across = DVec3::new(0.8_f64, -0.6, 0.0);
         for p in [0.05, 0.5, 16.0, 17.0, 100.5, 257.0, 1e4, 1e6] {
             for i in 0..400 {
                 let angle = (4.0 / f64::sqrt(p)).min(1.57) * f64::from(i) / 400.0;
                 let half = (n * angle.cos() + across * angle.sin()) * 1.7;
-                let error = Exponent::new(p).highlight((), n, half) - angle.cos().powf(p);
+                let error: f64 = Exponent::new(p).highlight(
+                    (),
+                    Vec3::<f64>::from_dvec3(n),
+                    Vec3::from_dvec3(half),
+                ) - angle.cos().powf(p);
                 assert!(error.abs() < 1e-9, "p = {p}, angle {angle}: {error:e}");
             }
         }

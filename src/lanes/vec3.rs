@@ -2,6 +2,8 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
+use glam::DVec3;
+
 use super::{Lane, Real};
 
 /// Three real numbers in the order x, y, z (or red, green, blue).
@@ -125,19 +127,19 @@ impl<L: Lane> Vec3<L> {
 impl<R: Real> Vec3<R> {
     /// Narrows (or copies) a double-precision vector.
     #[inline(always)]
-    pub fn from_f64(v: Vec3<f64>) -> Self {
+    pub fn from_dvec3(v: DVec3) -> Self {
         Self::new(R::from_f64(v.x), R::from_f64(v.y), R::from_f64(v.z))
     }
 
     /// The same vector in double precision (exact).
     #[inline(always)]
-    pub fn to_f64(self) -> Vec3<f64> {
-        Vec3::new(self.x.to_f64(), self.y.to_f64(), self.z.to_f64())
+    pub fn to_dvec3(self) -> DVec3 {
+        DVec3::new(self.x.to_f64(), self.y.to_f64(), self.z.to_f64())
     }
 
     /// The vector of length 1 in this direction, or `None` where there is no direction (zero, NaN or infinite).
     #[inline(always)]
-    pub fn unit(self) -> Option<Self> {
+    pub fn try_normalize(self) -> Option<Self> {
         let length = self.length();
         (length > R::ZERO && length < R::INFINITY).then(|| self * (R::ONE / length))
     }

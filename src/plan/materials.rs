@@ -1,5 +1,7 @@
 //! Colour packs, made ready for shading.
 
+use glam::DVec3;
+
 use super::{HighlightMethod, Model, Picture};
 use crate::lanes::{Exponent, Real, Vec3};
 use crate::scene::{ColorPack, Scene};
@@ -49,9 +51,9 @@ fn pack_surface<R: Real>(
     picture: &Picture,
 ) -> Option<Surface<R>> {
     let all = picture.model == Model::Everything;
-    let shines = pack.specular.max_abs() > 0.0;
+    let shines = pack.specular.abs().max_element() > 0.0;
     let mirrors = pack.reflective && (all || shines && total_intensity > 0.0);
-    (all || shines || pack.diffuse.max_abs() > 0.0).then(|| Surface {
+    (all || shines || pack.diffuse.abs().max_element() > 0.0).then(|| Surface {
         diffuse: linear(pack.diffuse),
         specular: linear(pack.specular),
         exponent: match picture.methods.highlight {
@@ -64,6 +66,6 @@ fn pack_surface<R: Real>(
 }
 
 /// 0–255 to 0–1.
-pub fn linear<R: Real>(color: Vec3<f64>) -> Vec3<R> {
-    Vec3::from_f64(color * (1.0 / 255.0))
+pub fn linear<R: Real>(color: DVec3) -> Vec3<R> {
+    Vec3::from_dvec3(color * (1.0 / 255.0))
 }

@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use glam::DVec3;
+
 use super::materials::{Material, linear, pack_materials};
 use super::solids::{Corner, Solids, corner};
 use super::volumes::LARGEST_LIST;
@@ -156,33 +158,33 @@ impl<R: Real> Plan<R> {
         plan
     }
 
-    fn pack_objects(&mut self, scene: &Scene, centre: Vec3<f64>) {
+    fn pack_objects(&mut self, scene: &Scene, centre: DVec3) {
         let corner_users = count_corner_users(scene);
         for object in scene.objects.iter().filter(|object| object.visible) {
             let material = material_number(scene, &object.color_pack);
             match object.shape {
                 Shape::Sphere { center, radius } => self.spheres.push(Sphere {
-                    center: Vec3::from_f64(center - centre),
+                    center: Vec3::from_dvec3(center - centre),
                     radius: R::from_f64(radius),
                     material,
                 }),
                 Shape::Plane { point, normal } => {
-                    let Some(normal) = normal.unit() else {
+                    let Some(normal) = normal.try_normalize() else {
                         continue;
                     };
                     self.planes.push(Plane {
-                        normal: Vec3::from_f64(normal),
+                        normal: Vec3::from_dvec3(normal),
                         offset: R::from_f64(normal.dot(point - centre)),
                         material,
                     });
                 }
                 Shape::Triangle { a, b, c } => {
-                    let Some(normal) = (c - a).cross(b - a).unit() else {
+                    let Some(normal) = (c - a).cross(b - a).try_normalize() else {
                         continue;
                     };
                     self.triangles.push(Triangle {
-                        corners: [a, b, c].map(|corner| Vec3::from_f64(corner - centre)),
-                        normal: Vec3::from_f64(normal),
+                        corners: [a, b, c].map(|corner| Vec3::from_dvec3(corner - centre)),
+                        normal: Vec3::from_dvec3(normal),
                         in_mesh: [a, b, c].iter().any(|p| corner_users[&corner(*p)] > 1),
                         thickness: R::from_f64(thickness([a, b, c])),
                         material,
@@ -193,27 +195,27 @@ impl<R: Real> Plan<R> {
     }
 
     /// Finds the faces of solids that camera rays, and shadow rays to each light, can do without.
-    fn drop_far_faces(&mut self, scene: &Scene, picture: &Picture, centre: Vec3<f64>) {
+    fn drop_far_faces(&mut self, scene: &Scene, picture: &Picture, centre: DVec3) {
         let triangles = self.triangles.iter();
-        let solids = Solids::among(triangles.map(|t| t.corners.map(Vec3::to_f64)).collect());
+        let solids = Solids::among(triangles.map(|t| t.corners.map(Vec3::to_dvec3)).collect());
         let projection = picture.projection.unwrap_or(scene.camera.projection);
         if projection == Projection::Perspective {
             self.unseen_faces = solids.turned_away(scene.camera.position - centre);
         }
         for light in &mut self.lights {
-            light.idle_faces = solids.turned_away(light.position.to_f64());
+            light.idle_faces = solids.turned_away(light.position.to_dvec3());
         }
     }
 
     fn bound(&self, accelerator: Accelerator) -> Volumes<R> {
         let spheres = self.spheres.iter().map(|sphere| Ball {
-            center: sphere.center.to_f64(),
+            center: sphere.center.to_dvec3(),
             radius: sphere.radius.to_f64(),
         });
         let triangles = self
             .triangles
             .iter()
-            .map(|triangle| Ball::around_triangle(triangle.corners.map(Vec3::to_f64)));
+            .map(|triangle| Ball::around_triangle(triangle.corners.map(Vec3::to_dvec3)));
         let balls: Vec<Ball> = spheres.chain(triangles).collect();
         let bundled = match accelerator {
             Accelerator::Auto => balls.len() > LARGEST_LIST,
@@ -223,7 +225,7 @@ impl<R: Real> Plan<R> {
         Volumes::new(&balls, bundled)
     }
 
-    fn pack_markers(&mut self, scene: &Scene, centre: Vec3<f64>) {
+    fn pack_markers(&mut self, scene: &Scene, centre: DVec3) {
         let first_marker_material = scene.color_packs.len();
         for light in scene.lights.iter().filter(|light| light.visible) {
             let Some(LightObj { radius, color_pack }) = &light.marker else {
@@ -231,7 +233,7 @@ impl<R: Real> Plan<R> {
             };
             let pack = material_number(scene, color_pack) as usize;
             self.spheres.push(Sphere {
-                center: Vec3::from_f64(light.position - centre),
+                center: Vec3::from_dvec3(light.position - centre),
                 radius: R::from_f64(*radius),
                 material: number(first_marker_material + pack),
             });
@@ -257,7 +259,7 @@ fn departure<R: Real>(scene: &Scene, offset: RayOffset) -> Departure<R> {
 /// Lights that shine on what the eye can reach.
 fn pack_lights<R: Real>(
     scene: &Scene,
-    centre: Vec3<f64>,
+    centre: DVec3,
     walls: &[Wall],
     model: Model,
 ) -> Vec<Light<R>> {
@@ -269,7 +271,7 @@ fn pack_lights<R: Real>(
     shining
         .filter(|light| walls.iter().all(|wall| wall.side(light.position) >= 0.0))
         .map(|light| Light {
-            position: Vec3::from_f64(light.position - centre),
+            position: Vec3::from_dvec3(light.position - centre),
             intensity: R::from_f64(light.intensity),
             idle_faces: Vec::new(),
         })
@@ -277,8 +279,8 @@ fn pack_lights<R: Real>(
 }
 
 /// Twice the area over the longest side.
-fn thickness([a, b, c]: [Vec3<f64>; 3]) -> f64 {
-    let sides = [b - a, c - b, a - c].map(Vec3::length);
+fn thickness([a, b, c]: [DVec3; 3]) -> f64 {
+    let sides = [b - a, c - b, a - c].map(DVec3::length);
     let longest = sides[0].max(sides[1]).max(sides[2]);
     (b - a).cross(c - a).length() / longest
 }
@@ -382,7 +384,7 @@ mod tests {
     fn distance_from_the_origin_costs_no_precision() {
         let scene = Scene::demo();
         let mut moved = scene.clone();
-        let by = Vec3::new(1e6, -3e6, 2e6);
+        let by = DVec3::new(1e6, -3e6, 2e6);
         for object in &mut moved.objects {
             object.shape = object.shape.moved(by);
         }

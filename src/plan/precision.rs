@@ -1,6 +1,7 @@
 //! Which real type a scene needs: single precision wherever its errors stay invisible.
 
-use crate::lanes::Vec3;
+use glam::DVec3;
+
 use crate::scene::{Scene, Shape};
 
 /// Largest ratio of a sphere's distance to its radius in single precision: the perpendicular
@@ -35,7 +36,7 @@ pub fn needs_double(scene: &Scene) -> bool {
 }
 
 /// Whether the eye is all but on a sphere.
-fn is_grazed(shape: &Shape, eye: Vec3<f64>) -> bool {
+fn is_grazed(shape: &Shape, eye: DVec3) -> bool {
     match *shape {
         Shape::Sphere { center, radius } => {
             ((eye - center).length() - radius).abs() < MIN_HEIGHT_PER_RADIUS * radius
@@ -45,7 +46,7 @@ fn is_grazed(shape: &Shape, eye: Vec3<f64>) -> bool {
 }
 
 /// Where a bounded shape is and how small its smallest measure.
-fn feature(shape: &Shape) -> Option<(Vec3<f64>, f64)> {
+fn feature(shape: &Shape) -> Option<(DVec3, f64)> {
     match *shape {
         Shape::Sphere { center, radius } => Some((center, radius)),
         Shape::Plane { .. } => None,
@@ -66,7 +67,7 @@ mod tests {
         assert!(!needs_double(&scene));
         scene.objects.retain(|object| object.name == "Sphere 1");
         scene.lights.clear();
-        let away = |radii: f64| Vec3::new(125.0, 50.0, -150.0 + radii * 50.0);
+        let away = |radii: f64| DVec3::new(125.0, 50.0, -150.0 + radii * 50.0);
         scene.camera.position = away(MAX_DISTANCE_PER_RADIUS * 0.999);
         assert!(!needs_double(&scene));
         scene.camera.position = away(MAX_DISTANCE_PER_RADIUS * 1.001);

@@ -1,8 +1,9 @@
 //! Where things are in the picture: rectangles of pixels, never too small.
 
+use glam::{DMat3, DVec3};
+
 use super::{Picture, Sampling};
-use crate::lanes::Vec3;
-use crate::scene::{Basis, Projection, Scene, Shape};
+use crate::scene::{Projection, Scene, Shape};
 
 /// A range of pixels in one direction, ends included; may lie outside the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,8 +43,8 @@ impl Extent {
 
 /// The camera in double precision.
 struct Projector {
-    position: Vec3<f64>,
-    basis: Basis,
+    position: DVec3,
+    basis: DMat3,
     projection: Projection,
     /// Pixels per unit of (distance across / depth), or per world unit.
     scale: f64,
@@ -107,16 +108,12 @@ impl Projector {
     }
 
     /// Right, up and ahead of the camera.
-    fn seen(&self, point: Vec3<f64>) -> [f64; 3] {
-        let offset = point - self.position;
-        [
-            offset.dot(self.basis.u),
-            offset.dot(self.basis.v),
-            -offset.dot(self.basis.w),
-        ]
+    fn seen(&self, point: DVec3) -> [f64; 3] {
+        let seen = self.basis.transpose_mul_vec3(point - self.position);
+        [seen.x, seen.y, -seen.z]
     }
 
-    fn sphere(&self, center: Vec3<f64>, radius: f64) -> (Extent, Extent) {
+    fn sphere(&self, center: DVec3, radius: f64) -> (Extent, Extent) {
         let [x, y, depth] = self.seen(center);
         let range = match self.projection {
             Projection::Orthographic => {
@@ -130,7 +127,7 @@ impl Projector {
         )
     }
 
-    fn triangle(&self, corners: [Vec3<f64>; 3]) -> (Extent, Extent) {
+    fn triangle(&self, corners: [DVec3; 3]) -> (Extent, Extent) {
         let seen = corners.map(|corner| self.seen(corner));
         let size = seen
             .iter()

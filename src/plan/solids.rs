@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use crate::lanes::Vec3;
+use glam::DVec3;
 
 /// Most faces of a solid: its corners are held against each of its faces.
 const MOST_FACES: usize = 256;
@@ -14,7 +14,7 @@ const MARGIN: f64 = 1e-5;
 /// Triangles with corners that are clockwise seen from outside, and the solids that they make.
 #[derive(Clone, Debug, Default)]
 pub struct Solids {
-    triangles: Vec<[Vec3<f64>; 3]>,
+    triangles: Vec<[DVec3; 3]>,
     /// For each solid its faces, by their places in the list.
     solids: Vec<Vec<usize>>,
 }
@@ -24,7 +24,7 @@ pub type Corner = [u64; 3];
 
 impl Solids {
     /// Finds the closed convex solids among the triangles.
-    pub fn among(triangles: Vec<[Vec3<f64>; 3]>) -> Self {
+    pub fn among(triangles: Vec<[DVec3; 3]>) -> Self {
         let mut parts = parts(&triangles);
         parts.retain(|faces| {
             faces.len() <= MOST_FACES
@@ -40,7 +40,7 @@ impl Solids {
     /// For each triangle, whether no ray that comes from `point`, or arrives there, has to be
     /// tested for it: it belongs to a solid, the point is outside, and a face that is turned
     /// towards the point is hit as well.
-    pub fn turned_away(&self, point: Vec3<f64>) -> Vec<bool> {
+    pub fn turned_away(&self, point: DVec3) -> Vec<bool> {
         let mut is_away = vec![false; self.triangles.len()];
         for faces in &self.solids {
             let heights = faces.iter().map(|&face| {
@@ -59,21 +59,21 @@ impl Solids {
 }
 
 /// Unit normal outwards, distance from the origin along it, and what counts as on the face.
-fn plane([a, b, c]: &[Vec3<f64>; 3]) -> (Vec3<f64>, f64, f64) {
+fn plane([a, b, c]: &[DVec3; 3]) -> (DVec3, f64, f64) {
     let across = (*c - *a).cross(*b - *a);
-    let normal = across.unit().unwrap_or(across);
-    let size = (*b - *a).length() + (*c - *a).length() + a.max_abs();
+    let normal = across.try_normalize().unwrap_or(across);
+    let size = (*b - *a).length() + (*c - *a).length() + a.abs().max_element();
     (normal, normal.dot(*a), MARGIN * size)
 }
 
 /// A corner as a key: corners are one where their coordinates are equal.
-pub fn corner(point: Vec3<f64>) -> Corner {
+pub fn corner(point: DVec3) -> Corner {
     // Adding zero makes one zero of the two.
     point.to_array().map(|part| (part + 0.0).to_bits())
 }
 
 /// Triangles that hang together by common corners.
-fn parts(triangles: &[[Vec3<f64>; 3]]) -> Vec<Vec<usize>> {
+fn parts(triangles: &[[DVec3; 3]]) -> Vec<Vec<usize>> {
     // Each triangle points to one of its part; the last of the chain names the part.
     let mut chain: Vec<usize> = (0..triangles.len()).collect();
     let mut users: HashMap<Corner, usize> = HashMap::new();
@@ -103,7 +103,7 @@ fn last(chain: &mut [usize], mut index: usize) -> usize {
 }
 
 /// Whether every edge is passed once in each direction.
-fn is_closed(triangles: &[[Vec3<f64>; 3]], faces: &[usize]) -> bool {
+fn is_closed(triangles: &[[DVec3; 3]], faces: &[usize]) -> bool {
     let mut edges: HashMap<(Corner, Corner), u32> = HashMap::new();
     for &face in faces {
         let [a, b, c] = triangles[face].map(corner);
@@ -117,11 +117,11 @@ fn is_closed(triangles: &[[Vec3<f64>; 3]], faces: &[usize]) -> bool {
 }
 
 /// Whether every corner is on or behind every face.
-fn is_convex(triangles: &[[Vec3<f64>; 3]], faces: &[usize]) -> bool {
+fn is_convex(triangles: &[[DVec3; 3]], faces: &[usize]) -> bool {
     faces.iter().all(|&face| {
         let (normal, offset, margin) = plane(&triangles[face]);
         let corners = faces.iter().flat_map(|&other| triangles[other]);
-        normal != Vec3::splat(0.0)
+        normal != DVec3::splat(0.0)
             && corners
                 .map(|point| normal.dot(point) - offset)
                 .all(|height| height <= margin * 1e-3)
@@ -134,7 +134,7 @@ mod tests {
     use crate::scene::{Scene, Shape};
 
     /// The demo's pyramid.
-    fn pyramid() -> Vec<[Vec3<f64>; 3]> {
+    fn pyramid() -> Vec<[DVec3; 3]> {
         let scene = Scene::demo();
         let shapes = scene.objects.iter().map(|object| &object.shape);
         shapes
@@ -145,21 +145,25 @@ mod tests {
             .collect()
     }
 
-    fn away(triangles: Vec<[Vec3<f64>; 3]>, point: Vec3<f64>) -> usize {
+    fn away(triangles: Vec<[DVec3; 3]>, point: DVec3) -> usize {
         let away = Solids::among(triangles).turned_away(point);
         away.into_iter().filter(|away| *away).count()
     }
 
     #[test]
     fn from_outside_the_far_faces_are_left_out() {
-        assert_eq!(away(pyramid(), Vec3::new(200.0, 20.0, 1000.0)), 5);
-        assert_eq!(away(pyramid(), Vec3::new(200.0, 1000.0, -100.0)), 2);
-        assert_eq!(away(pyramid(), Vec3::new(200.0, 20.0, -100.0)), 0, "inside");
+        assert_eq!(away(pyramid(), DVec3::new(200.0, 20.0, 1000.0)), 5);
+        assert_eq!(away(pyramid(), DVec3::new(200.0, 1000.0, -100.0)), 2);
+        assert_eq!(
+            away(pyramid(), DVec3::new(200.0, 20.0, -100.0)),
+            0,
+            "inside"
+        );
     }
 
     #[test]
     fn what_is_open_inside_out_or_dented_is_no_solid() {
-        let outside = Vec3::new(200.0, 20.0, 1000.0);
+        let outside = DVec3::new(200.0, 20.0, 1000.0);
         for missing in 0..6 {
             let mut open = pyramid();
             open.remove(missing);
@@ -167,8 +171,8 @@ mod tests {
         }
         let turned = pyramid().into_iter().map(|[a, b, c]| [a, c, b]);
         assert_eq!(away(turned.collect(), outside), 0);
-        let apex = Vec3::new(200.0, 55.0, -100.0);
-        let low = Vec3::new(200.0, -5.0, -100.0);
+        let apex = DVec3::new(200.0, 55.0, -100.0);
+        let low = DVec3::new(200.0, -5.0, -100.0);
         let dented = pyramid().into_iter();
         let dented = dented.map(|corners| corners.map(|p| if p == apex { low } else { p }));
         assert_eq!(away(dented.collect(), outside), 0);

@@ -1,8 +1,10 @@
 //! Primary rays: from a pixel to a ray.
 
+use glam::{DMat3, DVec3};
+
 use super::Picture;
 use crate::lanes::{Lane, Real, Vec3};
-use crate::scene::{Basis, Camera, Projection};
+use crate::scene::{Camera, Projection};
 
 /// The camera made ready: turns pixels into rays with unit directions.
 #[derive(Clone, Copy, Debug)]
@@ -25,12 +27,9 @@ pub struct View<R> {
 
 impl<R: Real> View<R> {
     /// Makes `camera` ready, with everything moved by `-centre`.
-    pub fn new(camera: &Camera, picture: &Picture, centre: Vec3<f64>) -> Self {
-        let Basis { u, v, w } = camera.basis().unwrap_or(Basis {
-            u: Vec3::new(1.0, 0.0, 0.0),
-            v: Vec3::new(0.0, 1.0, 0.0),
-            w: Vec3::new(0.0, 0.0, 1.0),
-        });
+    pub fn new(camera: &Camera, picture: &Picture, centre: DVec3) -> Self {
+        let basis = camera.basis().unwrap_or(DMat3::IDENTITY);
+        let (u, v, w) = (basis.x_axis, basis.y_axis, basis.z_axis);
         let projection = picture.projection.unwrap_or(camera.projection);
         let (scale, forward) = match projection {
             Projection::Perspective => (1.0, -w * camera.projection_distance),
@@ -38,10 +37,10 @@ impl<R: Real> View<R> {
         };
         let (width, height) = (f64::from(picture.width), f64::from(picture.height));
         Self {
-            origin: Vec3::from_f64(camera.position - centre),
-            u: Vec3::from_f64(u * scale),
-            v: Vec3::from_f64(v * scale),
-            forward: Vec3::from_f64(forward),
+            origin: Vec3::from_dvec3(camera.position - centre),
+            u: Vec3::from_dvec3(u * scale),
+            v: Vec3::from_dvec3(v * scale),
+            forward: Vec3::from_dvec3(forward),
             projection,
             half: (R::from_f64(width / 2.0), R::from_f64(height / 2.0)),
             pixel: R::from_f64(1.0 / height),
@@ -91,8 +90,9 @@ impl<R: Real> View<R> {
 mod tests {
     use super::*;
 
-    fn rays(picture: &Picture, camera: &Camera, x: f64, y: f64) -> (Vec3<f64>, Vec3<f64>) {
-        View::<f64>::new(camera, picture, Vec3::new(0.0, 0.0, 0.0)).rays((), x, y)
+    fn rays(picture: &Picture, camera: &Camera, x: f64, y: f64) -> (DVec3, DVec3) {
+        let (origin, direction) = View::<f64>::new(camera, picture, DVec3::ZERO).rays((), x, y);
+        (origin.to_dvec3(), direction.to_dvec3())
     }
 
     #[test]
@@ -104,7 +104,7 @@ mod tests {
                 ..Picture::sized(101, 51)
             };
             let (origin, direction) = rays(&picture, &camera, 50.5, 25.5);
-            let w = camera.basis().expect("valid").w;
+            let w = camera.basis().expect("valid").z_axis;
             assert!((origin - camera.position).length() < 1e-12);
             assert!((direction + w).length() < 1e-12);
         }
@@ -115,7 +115,7 @@ mod tests {
         let camera = Camera::default();
         let basis = camera.basis().expect("valid");
         let (_, direction) = rays(&Picture::sized(64, 64), &camera, 32.0, 0.0);
-        let angle = direction.dot(basis.v).asin();
+        let angle = direction.dot(basis.y_axis).asin();
         assert!((angle - camera.field_of_view_radians() / 2.0).abs() < 1e-12);
     }
 

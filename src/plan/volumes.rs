@@ -3,7 +3,9 @@
 //! Few primitives are one flat list of balls. Many are sorted along a curve through space and
 //! bundled, [`GROUP`] by [`GROUP`], under larger balls, those again, and so on.
 
-use crate::lanes::{Real, Vec3};
+use glam::DVec3;
+
+use crate::lanes::Real;
 
 /// How many balls are tested together: as many as the widest processor has lanes.
 pub const GROUP: usize = 16;
@@ -15,7 +17,7 @@ pub const LARGEST_LIST: usize = 128;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
     /// Its middle.
-    pub center: Vec3<f64>,
+    pub center: DVec3,
     /// ≥ 0.
     pub radius: f64,
 }
@@ -85,7 +87,7 @@ impl<R: Real> Balls<R> {
 
 impl Ball {
     /// The smallest ball around a triangle.
-    pub fn around_triangle([a, b, c]: [Vec3<f64>; 3]) -> Self {
+    pub fn around_triangle([a, b, c]: [DVec3; 3]) -> Self {
         let squares =
             [(a, b, c), (b, c, a), (c, a, b)].map(|(p, q, r)| ((q - p).dot(q - p), p, q, r));
         let longest = squares.iter().fold(
@@ -113,9 +115,9 @@ impl Ball {
 
     /// A ball around balls, of which there is at least one.
     fn around_balls(balls: &[Self]) -> Self {
-        let (mut low, mut high) = (Vec3::splat(f64::INFINITY), Vec3::splat(f64::NEG_INFINITY));
+        let (mut low, mut high) = (DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY));
         for ball in balls {
-            let reach = Vec3::splat(ball.radius);
+            let reach = DVec3::splat(ball.radius);
             low = low.min(ball.center - reach);
             high = high.max(ball.center + reach);
         }
@@ -133,12 +135,12 @@ impl Ball {
 /// The place of each ball's centre on a curve that fills the box around them, neighbours in space
 /// mostly being neighbours on it (Morton 1966).
 fn curve(balls: &[Ball]) -> Vec<u64> {
-    let (mut low, mut high) = (Vec3::splat(f64::INFINITY), Vec3::splat(f64::NEG_INFINITY));
+    let (mut low, mut high) = (DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY));
     for ball in balls {
         low = low.min(ball.center);
         high = high.max(ball.center);
     }
-    let side = (high - low).max_abs().max(f64::MIN_POSITIVE);
+    let side = (high - low).abs().max_element().max(f64::MIN_POSITIVE);
     let last_cell = f64::from((1_u32 << CELL_BITS) - 1);
     let place = |ball: &Ball| {
         let cell = (ball.center - low) * (last_cell / side);
@@ -163,8 +165,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn vector() -> impl Strategy<Value = Vec3<f64>> {
-        prop::array::uniform3(-50.0..50.0_f64).prop_map(Vec3::from)
+    fn vector() -> impl Strategy<Value = DVec3> {
+        prop::array::uniform3(-50.0..50.0_f64).prop_map(DVec3::from)
     }
 
     proptest! {
@@ -180,7 +182,7 @@ mod tests {
                 let mut place = place;
                 for level in &volumes.levels[1..] {
                     place /= GROUP;
-                    let center = Vec3::new(level.x[place], level.y[place], level.z[place]);
+                    let center = DVec3::new(level.x[place], level.y[place], level.z[place]);
                     prop_assert!((own.center - center).length() + own.radius <= level.radius[place] * (1.0 + 1e-12));
                 }
             }

@@ -1,15 +1,16 @@
 //! Planes that settle once for all points which lights they hide.
 
+use glam::DVec3;
+
 use super::{Model, Picture, RayOffset, SphereMethod};
-use crate::lanes::Vec3;
 use crate::scene::{Projection, Scene, Shape};
 
 /// A plane, its normal turned to the eye.
 pub struct Wall {
     /// Of length 1.
-    normal: Vec3<f64>,
+    normal: DVec3,
     /// Any of its points.
-    point: Vec3<f64>,
+    point: DVec3,
 }
 
 /// Share of the coordinates within which a point counts as on a plane: what their own rounding
@@ -18,9 +19,9 @@ const ON_PLANE: f64 = 1e-12;
 
 impl Wall {
     /// Above zero on the eye's side, below it behind the plane, zero on it.
-    pub fn side(&self, point: Vec3<f64>) -> f64 {
+    pub fn side(&self, point: DVec3) -> f64 {
         let height = self.normal.dot(point - self.point);
-        let rounding = ON_PLANE * (point.max_abs() + self.point.max_abs());
+        let rounding = ON_PLANE * (point.abs().max_element() + self.point.abs().max_element());
         if height.abs() <= rounding {
             0.0
         } else {
@@ -45,7 +46,7 @@ pub fn settle_planes(scene: &Scene, picture: &Picture) -> Option<Vec<Wall>> {
     let visible = scene.objects.iter().filter(|object| object.visible);
     let planes = visible.filter_map(|object| match object.shape {
         Shape::Plane { point, normal } => Some(Wall {
-            normal: normal.unit()?,
+            normal: normal.try_normalize()?,
             point,
         }),
         Shape::Sphere { .. } | Shape::Triangle { .. } => None,

@@ -5,9 +5,10 @@ use std::sync::Arc;
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use glam::DVec3;
+
 use super::notation;
 use super::{Camera, Light, Orientation, Projection, Scene};
-use crate::lanes::Vec3;
 
 /// Longest animation, in seconds: a day.
 pub const MAX_SECONDS: f64 = 86_400.0;
@@ -62,7 +63,8 @@ pub enum Interpolation {
     /// On an arc around the vertical axis through a point (cameras and positions).
     Orbit {
         /// A point on the axis.
-        around: Vec3<f64>,
+        #[serde(with = "notation::vector")]
+        around: DVec3,
     },
 }
 
@@ -109,7 +111,7 @@ pub enum Value {
     /// For intensities.
     Number(f64),
     /// For positions, in world units.
-    Point(Vec3<f64>),
+    Point(DVec3),
 }
 
 /// A recorded flight: what the camera did, at the times when it was seen doing it.
@@ -126,7 +128,7 @@ pub struct Take {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sample(
     #[serde(with = "notation::number")] pub f64,
-    pub Vec3<f64>,
+    #[serde(with = "notation::vector")] pub DVec3,
     #[serde(with = "notation::number")] pub f64,
     #[serde(with = "notation::number")] pub f64,
     #[serde(with = "notation::number")] pub f64,
@@ -334,7 +336,7 @@ impl Take {
             self.lenses.push(lens);
         }
         let angle = |radians: f64| (radians * 1e7).round() / 1e7;
-        let position = Vec3::from(camera.position.to_array().map(nine_digits));
+        let position = DVec3::from(camera.position.to_array().map(nine_digits));
         self.samples.push(Sample(
             time,
             position,
@@ -357,7 +359,7 @@ impl Serialize for Value {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::Number(number) => notation::number::serialize(number, serializer),
-            Self::Point(point) => point.serialize(serializer),
+            Self::Point(point) => notation::vector::serialize(point, serializer),
         }
     }
 }
@@ -398,7 +400,7 @@ impl<'de> Visitor<'de> for NumberOrPoint {
         }
         match parts.next_element::<f64>()? {
             Some(_) => Err(A::Error::invalid_length(4, &self)),
-            None => Ok(Value::Point(Vec3::from(point))),
+            None => Ok(Value::Point(DVec3::from(point))),
         }
     }
 }

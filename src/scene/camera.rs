@@ -1,20 +1,24 @@
-//! The camera as the file stores it, and the basis that its vectors span.
+//! The camera as the file stores it, and the frame that its vectors span.
 
 use serde::{Deserialize, Serialize};
 
+use glam::{DAffine3, DMat3, DVec3};
+
 use super::notation;
-use crate::lanes::Vec3;
 
 /// Where a picture is taken from, and how.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Camera {
     /// The eye (perspective), or the centre of the view window (orthographic).
-    pub position: Vec3<f64>,
+    #[serde(with = "notation::vector")]
+    pub position: DVec3,
     /// Viewing direction; any length but zero.
-    pub look_at: Vec3<f64>,
+    #[serde(with = "notation::vector")]
+    pub look_at: DVec3,
     /// Roughly upwards; any direction that is not along `look_at`.
-    pub up: Vec3<f64>,
+    #[serde(with = "notation::vector")]
+    pub up: DVec3,
     /// Whether rays spread from the eye or run side by side.
     pub projection: Projection,
     /// Distance of the image plane from the eye, in image heights (perspective only).
@@ -34,22 +38,11 @@ pub enum Projection {
     Orthographic,
 }
 
-/// The orthonormal basis of a camera: `u` right, `v` up, `w` towards the viewer.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Basis {
-    /// Right in the picture.
-    pub u: Vec3<f64>,
-    /// Up in the picture.
-    pub v: Vec3<f64>,
-    /// Against the viewing direction.
-    pub w: Vec3<f64>,
-}
-
 /// A camera, ready to be asked where in its picture things are.
 #[derive(Clone, Copy, Debug)]
 pub struct Framing {
-    basis: Basis,
-    position: Vec3<f64>,
+    /// From camera to world coordinates.
+    frame: DAffine3,
     projection: Projection,
     projection_distance: f64,
     orthographic_height: f64,
@@ -59,25 +52,25 @@ pub struct Framing {
 const MIN_SINE: f64 = 1e-6;
 
 impl Camera {
-    /// w = -`look_at`, u = up × w, v = w × u, all of length 1.
+    /// The orthonormal basis of the camera as the columns of a matrix: x = up × z to the right of the
+    /// picture, y = z × x upwards, z = -`look_at` towards the viewer.
     ///
     /// `None` if `look_at` or `up` has no direction or they are parallel.
-    pub fn basis(&self) -> Option<Basis> {
-        let w = -self.look_at.unit()?;
-        let across = self.up.unit()?.cross(w);
+    pub fn basis(&self) -> Option<DMat3> {
+        let w = -self.look_at.try_normalize()?;
+        let across = self.up.try_normalize()?.cross(w);
         if across.length() < MIN_SINE {
             return None;
         }
-        let u = across.unit()?;
-        let v = w.cross(u).unit()?;
-        Some(Basis { u, v, w })
+        let u = across.try_normalize()?;
+        let v = w.cross(u).try_normalize()?;
+        Some(DMat3::from_cols(u, v, w))
     }
 
     /// Where things are in the picture. `None` without a basis.
     pub fn framing(&self) -> Option<Framing> {
         Some(Framing {
-            basis: self.basis()?,
-            position: self.position,
+            frame: DAffine3::from_mat3_translation(self.basis()?, self.position),
             projection: self.projection,
             projection_distance: self.projection_distance,
             orthographic_height: self.orthographic_height,
@@ -93,42 +86,45 @@ impl Camera {
 impl Framing {
     /// Place of a point in the picture, in image heights from its middle, y up; `None` behind the
     /// eye (perspective) or the view window (orthographic).
-    pub fn project(&self, point: Vec3<f64>) -> Option<[f64; 2]> {
-        self.place(point - self.position, self.orthographic_height)
+    pub fn project(&self, point: DVec3) -> Option<[f64; 2]> {
+        self.place(point - self.frame.translation, self.orthographic_height)
     }
 
     /// Place of what is endlessly far away in a direction; `None` behind, and where rays run side by
     /// side: all of them end in one place there.
-    pub fn project_direction(&self, direction: Vec3<f64>) -> Option<[f64; 2]> {
+    pub fn project_direction(&self, direction: DVec3) -> Option<[f64; 2]> {
         match self.projection {
             Projection::Perspective => self.place(direction, 1.0),
             Projection::Orthographic => None,
         }
     }
 
-    fn place(&self, arm: Vec3<f64>, height: f64) -> Option<[f64; 2]> {
-        let Basis { u, v, w } = self.basis;
-        let depth = -w.dot(arm);
+    fn place(&self, arm: DVec3, height: f64) -> Option<[f64; 2]> {
+        let seen = self.frame.matrix3.transpose_mul_vec3(arm);
+        let depth = -seen.z;
         let scale = match self.projection {
             Projection::Perspective => self.projection_distance / depth,
             Projection::Orthographic => 1.0 / height,
         };
-        let place = [u.dot(arm) * scale, v.dot(arm) * scale];
+        let place = [seen.x * scale, seen.y * scale];
         (depth > 0.0 && place.iter().all(|part| part.is_finite())).then_some(place)
     }
 
     /// Origin and unit direction of the ray through a place in the picture, in image heights from
     /// its middle, y up.
-    pub fn ray(&self, [x, y]: [f64; 2]) -> (Vec3<f64>, Vec3<f64>) {
-        let Basis { u, v, w } = self.basis;
+    pub fn ray(&self, [x, y]: [f64; 2]) -> (DVec3, DVec3) {
+        let DAffine3 {
+            matrix3: basis,
+            translation: eye,
+        } = self.frame;
         match self.projection {
             Projection::Perspective => {
-                let direction = u * x + v * y - w * self.projection_distance;
-                (self.position, direction * (1.0 / direction.length()))
+                let direction = basis * DVec3::new(x, y, -self.projection_distance);
+                (eye, direction * (1.0 / direction.length()))
             }
             Projection::Orthographic => {
-                let height = self.orthographic_height;
-                (self.position + u * (x * height) + v * (y * height), -w)
+                let window = DVec3::new(x, y, 0.0) * self.orthographic_height;
+                (eye + basis * window, -basis.z_axis)
             }
         }
     }
@@ -137,9 +133,9 @@ impl Framing {
 impl Default for Camera {
     fn default() -> Self {
         Self {
-            position: Vec3::new(175.0, 105.0, 14.0),
-            look_at: Vec3::new(-0.25, -0.25, -0.93),
-            up: Vec3::new(-0.06, 0.97, -0.25),
+            position: DVec3::new(175.0, 105.0, 14.0),
+            look_at: DVec3::new(-0.25, -0.25, -0.93),
+            up: DVec3::new(-0.06, 0.97, -0.25),
             projection: Projection::Perspective,
             projection_distance: 0.5625,
             orthographic_height: 200.0,
@@ -152,16 +148,17 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn vector() -> impl Strategy<Value = Vec3<f64>> {
+    fn vector() -> impl Strategy<Value = DVec3> {
         let part = -1e3..1e3_f64;
-        (part.clone(), part.clone(), part).prop_map(|(x, y, z)| Vec3::new(x, y, z))
+        (part.clone(), part.clone(), part).prop_map(|(x, y, z)| DVec3::new(x, y, z))
     }
 
     proptest! {
         #[test]
         fn a_basis_is_orthonormal_or_absent(look_at in vector(), up in vector()) {
             let camera = Camera { look_at, up, ..Camera::default() };
-            if let Some(Basis { u, v, w }) = camera.basis() {
+            if let Some(basis) = camera.basis() {
+                let (u, v, w) = (basis.x_axis, basis.y_axis, basis.z_axis);
                 for (a, b, expected) in [(u, u, 1.0), (v, v, 1.0), (w, w, 1.0), (u, v, 0.0), (v, w, 0.0), (w, u, 0.0)] {
                     prop_assert!((a.dot(b) - expected).abs() < 1e-9);
                 }

@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 pub use animation::{
     Animation, Easing, Interpolation, Key, Lens, MAX_SECONDS, Sample, Take, Target, Track, Value,
 };
-pub use camera::{Basis, Camera, Framing, Projection};
+pub use camera::{Camera, Framing, Projection};
 pub use check::{Problem, check};
 pub use file::{Document, SceneError, read_text, write_atomic};
 pub use locate::Step;
@@ -35,7 +35,7 @@ pub use tracing::{
     Sampling, SphereMethod, TriangleMethod, Way,
 };
 
-use crate::lanes::Vec3;
+use glam::DVec3;
 
 /// The scene-file version that this program writes and the newest that it reads.
 pub const VERSION: u32 = 1;
@@ -57,7 +57,8 @@ pub struct Scene {
     pub version: u32,
     /// Colour of a ray that hits nothing, 0–255.
     #[serde(default)]
-    pub background: Vec3<f64>,
+    #[serde(with = "notation::vector")]
+    pub background: DVec3,
     /// How much of every pack's ambient colour is seen without any light, 0–1.
     #[serde(default = "default_ambient_intensity", with = "notation::number")]
     pub ambient_intensity: f64,
@@ -88,11 +89,14 @@ pub struct Scene {
 #[serde(deny_unknown_fields, default)]
 pub struct ColorPack {
     /// Colour without any light, scaled by the scene's ambient intensity.
-    pub ambient: Vec3<f64>,
+    #[serde(with = "notation::vector")]
+    pub ambient: DVec3,
     /// Colour of matte reflection.
-    pub diffuse: Vec3<f64>,
+    #[serde(with = "notation::vector")]
+    pub diffuse: DVec3,
     /// Colour of the highlight, and of the mirror image if reflective.
-    pub specular: Vec3<f64>,
+    #[serde(with = "notation::vector")]
+    pub specular: DVec3,
     /// Sharpness of the highlight: 0 is flat, 16 soft, 1000 a pinpoint.
     #[serde(with = "notation::number")]
     pub phong_exponent: f64,
@@ -122,7 +126,8 @@ pub struct Light {
     /// Unique name, shown in the outliner.
     pub name: String,
     /// Where it shines from.
-    pub position: Vec3<f64>,
+    #[serde(with = "notation::vector")]
+    pub position: DVec3,
     /// Brightness, 0–1.
     #[serde(default = "default_intensity", with = "notation::number")]
     pub intensity: f64,
@@ -212,7 +217,7 @@ impl Scene {
         light.marker = Some(LightObj::default());
         Self {
             version: VERSION,
-            background: Vec3::new(0.0, 0.0, 0.0),
+            background: DVec3::new(0.0, 0.0, 0.0),
             ambient_intensity: default_ambient_intensity(),
             light_visualization: true,
             camera: Camera::default(),
@@ -229,7 +234,7 @@ impl Scene {
 
     /// Smallest and largest corner of the box around everything visible that has an end, lights
     /// included; `None` if there is nothing.
-    pub fn bounds(&self) -> Option<(Vec3<f64>, Vec3<f64>)> {
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         let visible = self.objects.iter().filter(|object| object.visible);
         let lights = self.lights.iter().filter(|light| light.visible);
         let boxes = visible
@@ -262,9 +267,9 @@ impl Scene {
 impl Default for ColorPack {
     fn default() -> Self {
         Self {
-            ambient: Vec3::new(255.0, 128.0, 128.0),
-            diffuse: Vec3::new(255.0, 128.0, 128.0),
-            specular: Vec3::new(255.0, 255.0, 255.0),
+            ambient: DVec3::new(255.0, 128.0, 128.0),
+            diffuse: DVec3::new(255.0, 128.0, 128.0),
+            specular: DVec3::new(255.0, 255.0, 255.0),
             phong_exponent: 16.0,
             reflective: false,
         }
@@ -318,7 +323,7 @@ fn default_intensity() -> f64 {
 }
 
 fn light_pack() -> ColorPack {
-    let yellow = Vec3::new(255.0, 255.0, 0.0);
+    let yellow = DVec3::new(255.0, 255.0, 0.0);
     ColorPack {
         ambient: yellow,
         diffuse: yellow,
@@ -328,8 +333,8 @@ fn light_pack() -> ColorPack {
 
 fn default_packs() -> IndexMap<String, ColorPack> {
     let matte = |x, y, z| ColorPack {
-        ambient: Vec3::new(x, y, z),
-        diffuse: Vec3::new(x, y, z),
+        ambient: DVec3::new(x, y, z),
+        diffuse: DVec3::new(x, y, z),
         ..ColorPack::default()
     };
     IndexMap::from([
@@ -352,7 +357,7 @@ fn default_packs() -> IndexMap<String, ColorPack> {
 fn default_lights() -> Vec<Light> {
     let light = |name: &str, x, y, z| Light {
         name: name.to_owned(),
-        position: Vec3::new(x, y, z),
+        position: DVec3::new(x, y, z),
         intensity: default_intensity(),
         marker: None,
         visible: true,

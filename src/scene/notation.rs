@@ -7,8 +7,9 @@ use indexmap::IndexMap;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use serde::ser::{Serialize, SerializeTuple, Serializer};
 
+use glam::DVec3;
+
 use super::ColorPack;
-use crate::lanes::Vec3;
 
 /// Whole numbers below this are written without a decimal point; every one of them is exact in `f64`.
 const LARGEST_PLAIN: f64 = 1e15;
@@ -70,7 +71,7 @@ pub fn format_number(value: f64) -> String {
 }
 
 /// Reads `1, 2, 3`, `(1, 2, 3)` or `1 2 3`; `None` if that is not three finite numbers.
-pub fn parse_vec3(text: &str) -> Option<Vec3<f64>> {
+pub fn parse_vec3(text: &str) -> Option<DVec3> {
     let inner = text
         .trim()
         .trim_start_matches(['(', '['])
@@ -80,7 +81,7 @@ pub fn parse_vec3(text: &str) -> Option<Vec3<f64>> {
         .filter(|part| !part.is_empty())
         .map(|part| part.parse().ok().filter(|number: &f64| number.is_finite()))
         .collect();
-    <[f64; 3]>::try_from(numbers?).ok().map(Vec3::from)
+    <[f64; 3]>::try_from(numbers?).ok().map(DVec3::from)
 }
 
 struct Number(f64);
@@ -91,19 +92,22 @@ impl Serialize for Number {
     }
 }
 
-impl Serialize for Vec3<f64> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+/// A vector as `(x, y, z)`.
+pub mod vector {
+    use super::{DVec3, Deserialize, Deserializer, Number, SerializeTuple as _, Serializer};
+
+    /// Writes the three numbers.
+    pub fn serialize<S: Serializer>(value: &DVec3, serializer: S) -> Result<S::Ok, S::Error> {
         let mut tuple = serializer.serialize_tuple(3)?;
-        for part in self.to_array() {
+        for part in value.to_array() {
             tuple.serialize_element(&Number(part))?;
         }
         tuple.end()
     }
-}
 
-impl<'de> Deserialize<'de> for Vec3<f64> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        <[f64; 3]>::deserialize(deserializer).map(Self::from)
+    /// Reads three numbers.
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DVec3, D::Error> {
+        <[f64; 3]>::deserialize(deserializer).map(DVec3::from)
     }
 }
 
@@ -144,7 +148,7 @@ mod tests {
     #[test]
     fn vectors_are_pasted_in_many_ways() {
         for text in ["1, 2, -3.5", "(1,2,-3.5)", " 1 2 -3.5 ", "[1; 2; -3.5]"] {
-            assert_eq!(parse_vec3(text), Some(Vec3::new(1.0, 2.0, -3.5)), "{text}");
+            assert_eq!(parse_vec3(text), Some(DVec3::new(1.0, 2.0, -3.5)), "{text}");
         }
         for text in ["", "1, 2", "1, 2, 3, 4", "1, x, 3", "1, inf, 3"] {
             assert_eq!(parse_vec3(text), None, "{text}");

@@ -2,8 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::{Basis, Camera};
-use crate::lanes::Vec3;
+use glam::DVec3;
+
+use super::Camera;
 
 /// Steepest pitch: short of straight up, where yaw would lose its meaning.
 const MAX_PITCH: f64 = 89.9 * PI / 180.0;
@@ -23,16 +24,16 @@ pub struct Orientation {
 impl Orientation {
     /// The angles of a camera's basis.
     pub fn of(camera: &Camera) -> Self {
-        let Some(Basis { u, v, w }) = camera.basis() else {
+        let Some(basis) = camera.basis() else {
             return Self::default();
         };
-        let look = -w;
+        let (u, v, look) = (basis.x_axis, basis.y_axis, -basis.z_axis);
         let level = look.x.hypot(look.z);
         let pitch = look.y.atan2(level);
         if level > 1e-9 {
             // With yaw and pitch taken away, u and v are turned by the roll alone.
             let yaw = look.x.atan2(-look.z);
-            let flat = Vec3::new(yaw.cos(), 0.0, yaw.sin());
+            let flat = DVec3::new(yaw.cos(), 0.0, yaw.sin());
             let roll = (-flat.dot(v)).atan2(flat.dot(u));
             return Self {
                 yaw,
@@ -49,19 +50,19 @@ impl Orientation {
     }
 
     /// Viewing direction and up vector, both of length 1 and at right angles.
-    pub fn vectors(self) -> (Vec3<f64>, Vec3<f64>) {
+    pub fn vectors(self) -> (DVec3, DVec3) {
         let Self { yaw, pitch, roll } = self;
-        let look = Vec3::new(
+        let look = DVec3::new(
             yaw.sin() * pitch.cos(),
             pitch.sin(),
             -yaw.cos() * pitch.cos(),
         );
-        let level_up = Vec3::new(
+        let level_up = DVec3::new(
             -yaw.sin() * pitch.sin(),
             pitch.cos(),
             yaw.cos() * pitch.sin(),
         );
-        let right = Vec3::new(yaw.cos(), 0.0, yaw.sin());
+        let right = DVec3::new(yaw.cos(), 0.0, yaw.sin());
         (look, level_up * roll.cos() + right * roll.sin())
     }
 
@@ -94,8 +95,8 @@ mod tests {
     #[test]
     fn the_published_camera_has_the_published_angles() {
         let camera = Camera {
-            look_at: Vec3::new(-0.25, -0.70, -0.67),
-            up: Vec3::new(-0.25, 0.71, -0.65),
+            look_at: DVec3::new(-0.25, -0.70, -0.67),
+            up: DVec3::new(-0.25, 0.71, -0.65),
             ..Camera::default()
         };
         let angles = Orientation::of(&camera);

@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use glam::DVec3;
+
 use super::notation;
-use crate::lanes::Vec3;
 
 /// A primitive: all numbers in world units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -12,7 +13,8 @@ pub enum Shape {
     /// A ball.
     Sphere {
         /// Its middle.
-        center: Vec3<f64>,
+        #[serde(with = "notation::vector")]
+        center: DVec3,
         /// > 0.
         #[serde(with = "notation::number")]
         radius: f64,
@@ -20,18 +22,23 @@ pub enum Shape {
     /// An endless plane.
     Plane {
         /// Any point on it.
-        point: Vec3<f64>,
+        #[serde(with = "notation::vector")]
+        point: DVec3,
         /// Across it; any length but zero.
-        normal: Vec3<f64>,
+        #[serde(with = "notation::vector")]
+        normal: DVec3,
     },
     /// A flat triangle, its corners clockwise seen from outside.
     Triangle {
         /// First corner.
-        a: Vec3<f64>,
+        #[serde(with = "notation::vector")]
+        a: DVec3,
         /// Second corner.
-        b: Vec3<f64>,
+        #[serde(with = "notation::vector")]
+        b: DVec3,
         /// Third corner.
-        c: Vec3<f64>,
+        #[serde(with = "notation::vector")]
+        c: DVec3,
     },
 }
 
@@ -46,8 +53,8 @@ impl Shape {
     }
 
     /// One shape of every kind, of the given size around `at`: what "Add" offers.
-    pub fn examples(at: Vec3<f64>, size: f64) -> [Self; 3] {
-        let corner = |x: f64, y: f64| at + Vec3::new(x * size, y * size, 0.0);
+    pub fn examples(at: DVec3, size: f64) -> [Self; 3] {
+        let corner = |x: f64, y: f64| at + DVec3::new(x * size, y * size, 0.0);
         [
             Self::Sphere {
                 center: at,
@@ -55,7 +62,7 @@ impl Shape {
             },
             Self::Plane {
                 point: at,
-                normal: Vec3::new(0.0, 1.0, 0.0),
+                normal: DVec3::new(0.0, 1.0, 0.0),
             },
             Self::Triangle {
                 a: corner(-0.5, -0.4),
@@ -66,10 +73,10 @@ impl Shape {
     }
 
     /// Smallest and largest corner of the box around the shape; `None` for what never ends.
-    pub fn bounds(&self) -> Option<(Vec3<f64>, Vec3<f64>)> {
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         match self {
             Self::Sphere { center, radius } => {
-                let reach = Vec3::splat(*radius);
+                let reach = DVec3::splat(*radius);
                 Some((*center - reach, *center + reach))
             }
             Self::Plane { .. } => None,
@@ -78,7 +85,7 @@ impl Shape {
     }
 
     /// Where it is: the middle of a sphere, the point of a plane, the first corner of a triangle.
-    pub fn position(&self) -> Vec3<f64> {
+    pub fn position(&self) -> DVec3 {
         match *self {
             Self::Sphere { center, .. } => center,
             Self::Plane { point, .. } => point,
@@ -88,7 +95,7 @@ impl Shape {
 
     /// The same shape, moved.
     #[must_use]
-    pub fn moved(&self, by: Vec3<f64>) -> Self {
+    pub fn moved(&self, by: DVec3) -> Self {
         match *self {
             Self::Sphere { center, radius } => Self::Sphere {
                 center: center + by,

@@ -1,6 +1,8 @@
 //! Bundles of rays, and what they can meet at all. Whatever a beam does not meet, no ray in it
 //! would have hit: leaving it out changes no pixel.
 
+use glam::DVec3;
+
 use super::packet::Packet;
 use crate::lanes::{Lane, Mask as _, Real, Vec3};
 use crate::plan::{Ball, Balls, GROUP, Volumes};
@@ -26,15 +28,15 @@ pub struct Beam<R> {
 
 impl<R: Real> Beam<R> {
     /// From a point to all points of a ball; `None` where that is every direction.
-    pub fn to_ball(from: Vec3<f64>, ball: &Ball) -> Option<Self> {
+    pub fn to_ball(from: DVec3, ball: &Ball) -> Option<Self> {
         let towards = ball.center - from;
         let length = towards.length();
         let radius = ball.radius * (1.0 + CAUTION) + length * FAR_CAUTION;
         let sine = radius / length;
         (sine < 1.0).then(|| Self {
-            origin: Vec3::from_f64(from),
+            origin: Vec3::from_dvec3(from),
             spread: R::ZERO,
-            axis: Vec3::from_f64(towards * (1.0 / length)),
+            axis: Vec3::from_dvec3(towards * (1.0 / length)),
             sine: R::from_f64(sine),
             cosine: R::from_f64((1.0 - sine * sine).sqrt()),
             reach: R::from_f64(length + radius),
@@ -43,13 +45,13 @@ impl<R: Real> Beam<R> {
 
     /// From a ball, in directions that differ from `axis` by at most `chord` (the length of the
     /// difference of unit vectors), endlessly; `None` where that is more than half of all.
-    pub fn from_ball(ball: &Ball, axis: Vec3<f64>, chord: f64) -> Option<Self> {
+    pub fn from_ball(ball: &Ball, axis: DVec3, chord: f64) -> Option<Self> {
         let chord = chord * (1.0 + CAUTION) + FAR_CAUTION;
         let cosine = 1.0 - chord * chord * 0.5;
         (cosine > 0.0).then(|| Self {
-            origin: Vec3::from_f64(ball.center),
+            origin: Vec3::from_dvec3(ball.center),
             spread: R::from_f64(ball.radius),
-            axis: Vec3::from_f64(axis),
+            axis: Vec3::from_dvec3(axis),
             sine: R::from_f64((1.0 - cosine * cosine).sqrt()),
             cosine: R::from_f64(cosine),
             reach: R::INFINITY,
@@ -147,7 +149,7 @@ impl<R: Real> Beam<R> {
 }
 
 /// Whether a ball lies wholly behind a sphere, seen from a light: nothing in it is lit.
-pub fn is_hidden(light: Vec3<f64>, sphere: &Ball, ball: &Ball) -> bool {
+pub fn is_hidden(light: DVec3, sphere: &Ball, ball: &Ball) -> bool {
     let towards = sphere.center - light;
     let length = towards.length();
     let sine = sphere.radius * (1.0 - CAUTION) / length;
@@ -191,13 +193,13 @@ impl<L: Lane> Bounds<L> {
     /// The ball around the box of all lanes; `None` if no point was taken in.
     #[inline(always)]
     pub fn ball(&self) -> Option<Ball> {
-        let low = Vec3::new(self.low.x.least(), self.low.y.least(), self.low.z.least()).to_f64();
+        let low = Vec3::new(self.low.x.least(), self.low.y.least(), self.low.z.least()).to_dvec3();
         let high = Vec3::new(
             self.high.x.greatest(),
             self.high.y.greatest(),
             self.high.z.greatest(),
         )
-        .to_f64();
+        .to_dvec3();
         let radius = (high - low).length() * 0.5;
         radius.is_finite().then(|| Ball {
             center: (low + high) * 0.5,
@@ -214,8 +216,8 @@ pub fn beam_around<L: Lane>(token: L::Token, packets: &[Packet<L>]) -> Option<Be
         origins.add(packet.active, packet.rays.origin);
         directions.add(packet.active, packet.rays.direction);
     }
-    let axis = directions.ball()?.center.unit()?;
-    let shared = Vec3::broadcast(token, Vec3::from_f64(axis));
+    let axis = directions.ball()?.center.try_normalize()?;
+    let shared = Vec3::broadcast(token, Vec3::from_dvec3(axis));
     let mut chord = L::splat(token, L::Real::ZERO);
     for packet in packets {
         let off = packet.rays.direction - shared;
@@ -231,12 +233,12 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn vector(scale: f64) -> impl Strategy<Value = Vec3<f64>> {
-        prop::array::uniform3(-scale..scale).prop_map(Vec3::from)
+    fn vector(scale: f64) -> impl Strategy<Value = DVec3> {
+        prop::array::uniform3(-scale..scale).prop_map(DVec3::from)
     }
 
     /// A point of the ball: `inside` is drawn into it.
-    fn within(ball: &Ball, inside: Vec3<f64>) -> Vec3<f64> {
+    fn within(ball: &Ball, inside: DVec3) -> DVec3 {
         ball.center + inside * (ball.radius / inside.length().max(1.0))
     }
 
@@ -260,12 +262,12 @@ mod tests {
         fn what_a_ray_of_a_beam_hits_is_met(origins in prop::collection::vec(vector(3.0), 1..5), axis in vector(1.0), turns in prop::collection::vec(vector(0.5), 5),
                                             pick in 0..5_usize, at in 0.0..20.0_f64, off in vector(1.0), size in 0.01..3.0_f64) {
             let rays: Vec<Ray<f64>> = origins.iter().zip(&turns)
-                .filter_map(|(&origin, &turn)| Some(Ray { origin, direction: (axis + turn).unit()? })).collect();
+                .filter_map(|(&origin, &turn)| Some(Ray { origin: Vec3::from_dvec3(origin), direction: Vec3::from_dvec3((axis + turn).try_normalize()?) })).collect();
             prop_assume!(!rays.is_empty());
             let near = Nearest { t: 0.0, number: 0.0 };
-            let packets: Vec<Packet<f64>> = rays.iter().map(|&rays| Packet { rays, active: true, near, color: axis }).collect();
+            let packets: Vec<Packet<f64>> = rays.iter().map(|&rays| Packet { rays, active: true, near, color: Vec3::splat(0.0) }).collect();
             let beam = beam_around((), &packets);
-            let on_ray = rays[pick % rays.len()].at(at);
+            let on_ray = rays[pick % rays.len()].at(at).to_dvec3();
             let ball = Ball { center: on_ray + off * (size * 0.999 / off.length().max(1.0)), radius: size };
             prop_assert!(is_met(beam, ball));
         }
@@ -277,7 +279,7 @@ mod tests {
             let (sphere, ball) = (Ball { center, radius }, Ball { center: place, radius: size * radius });
             prop_assume!(is_hidden(light, &sphere, &ball));
             let point = within(&ball, inside);
-            let to_light = (light - point).unit().expect("apart");
+            let to_light = (light - point).try_normalize().expect("apart");
             let along = (center - point).dot(to_light);
             let beside = (center - point - to_light * along).length();
             prop_assert!(beside < radius && along > 0.0 && along < (light - point).length());
@@ -285,22 +287,22 @@ mod tests {
 
         #[test]
         fn a_plane_that_a_ray_meets_is_crossed(origin in vector(3.0), axis in vector(1.0), turn in vector(0.3), normal in vector(1.0), offset in -4.0..4.0_f64) {
-            let (Some(axis), Some(direction), Some(normal)) = (axis.unit(), (axis + turn).unit(), normal.unit()) else { return Ok(()) };
+            let (Some(axis), Some(direction), Some(normal)) = (axis.try_normalize(), (axis + turn).try_normalize(), normal.try_normalize()) else { return Ok(()) };
             let ball = Ball { center: origin, radius: 0.1 };
             let Some(beam) = Beam::<f64>::from_ball(&ball, axis, (direction - axis).length()) else { return Ok(()) };
             let t = (offset - normal.dot(origin)) / normal.dot(direction);
             prop_assume!(t > 0.0 && t.is_finite());
-            prop_assert!(beam.crosses(normal, offset));
+            prop_assert!(beam.crosses(Vec3::from_dvec3(normal), offset));
         }
     }
 
     #[test]
     fn what_is_far_aside_is_left_out() {
         let at = |x: f64, y: f64, radius: f64| Ball {
-            center: Vec3::new(x, y, 0.0),
+            center: DVec3::new(x, y, 0.0),
             radius,
         };
-        let light = Vec3::new(0.0, 0.0, 0.0);
+        let light = DVec3::ZERO;
         let beam = Beam::to_ball(light, &at(10.0, 0.0, 1.0));
         assert!(!is_met(beam, at(5.0, 3.0, 1.0)));
         assert!(!is_met(beam, at(-3.0, 0.0, 1.0)));
@@ -308,8 +310,7 @@ mod tests {
         assert!(is_met(beam, at(5.0, 1.4, 1.0)));
         assert!(is_hidden(light, &at(5.0, 0.0, 2.0), &at(10.0, 0.5, 1.0)));
         assert!(!is_hidden(light, &at(5.0, 0.0, 2.0), &at(10.0, 3.5, 1.0)));
-        let up = Beam::<f64>::from_ball(&at(0.0, 1.0, 0.1), Vec3::new(0.0, 1.0, 0.0), 0.1)
-            .expect("narrow");
+        let up = Beam::<f64>::from_ball(&at(0.0, 1.0, 0.1), DVec3::Y, 0.1).expect("narrow");
         assert!(
             !up.crosses(Vec3::new(0.0, 1.0, 0.0), 0.0),
             "a beam upwards never meets the floor"

@@ -203,7 +203,7 @@ impl Shadows {
         footprint: L::Real,
         room: &mut Room,
     ) {
-        let from = light.position.to_f64();
+        let from = light.position.to_dvec3();
         let slipping = footprint * L::Real::from_f64(SLIPPING);
         let Some(beam) = Beam::to_ball(from, ball) else {
             self.casters = Lists::all_casting(plan);
@@ -223,7 +223,7 @@ impl Shadows {
         self.is_umbra = self.casters.spheres.iter().any(|&index| {
             let sphere = &plan.spheres[index as usize];
             let sphere = Ball {
-                center: sphere.center.to_f64(),
+                center: sphere.center.to_dvec3(),
                 radius: sphere.radius.to_f64(),
             };
             is_hidden(from, &sphere, ball)

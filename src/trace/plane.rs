@@ -28,6 +28,8 @@ pub fn refine<L: Lane>(token: L::Token, ray: &Ray<L>, plane: &Plane<L::Real>, t:
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
 
     fn floor() -> Plane<f32> {
@@ -42,7 +44,7 @@ mod tests {
         let (sin, cos) = degrees.to_radians().sin_cos();
         Ray {
             origin: Vec3::new(0.0, 1.0, 0.0),
-            direction: Vec3::from_f64(Vec3::new(cos, -sin, 0.0)),
+            direction: Vec3::from_dvec3(DVec3::new(cos, -sin, 0.0)),
         }
     }
 

@@ -1,6 +1,8 @@
 //! What a single ray sees, in double precision and without a plan: for what is drawn over the
 //! picture and for the depth of what the picture shows.
 
+use glam::DVec3;
+
 use super::Ray;
 use super::probe::{meet_plane, meet_sphere, meet_triangle};
 use crate::lanes::Vec3;
@@ -29,24 +31,24 @@ impl Sight {
         let material = 0;
         match *shape {
             Shape::Sphere { center, radius } => self.spheres.push(Sphere {
-                center,
+                center: Vec3::from_dvec3(center),
                 radius,
                 material,
             }),
             Shape::Plane { point, normal } => {
-                if let Some(normal) = normal.unit() {
+                if let Some(normal) = normal.try_normalize() {
                     self.planes.push(Plane {
-                        normal,
+                        normal: Vec3::from_dvec3(normal),
                         offset: normal.dot(point),
                         material,
                     });
                 }
             }
             Shape::Triangle { a, b, c } => {
-                if let Some(normal) = (c - a).cross(b - a).unit() {
+                if let Some(normal) = (c - a).cross(b - a).try_normalize() {
                     self.triangles.push(Triangle {
-                        corners: [a, b, c],
-                        normal,
+                        corners: [a, b, c].map(Vec3::from_dvec3),
+                        normal: Vec3::from_dvec3(normal),
                         in_mesh: true,
                         thickness: 1.0,
                         material,
@@ -57,8 +59,11 @@ impl Sight {
     }
 
     /// How far the first object is along a ray with a unit direction; infinity for the sky.
-    pub fn distance(&self, origin: Vec3<f64>, direction: Vec3<f64>) -> f64 {
-        let ray = Ray { origin, direction };
+    pub fn distance(&self, origin: DVec3, direction: DVec3) -> f64 {
+        let ray = Ray {
+            origin: Vec3::from_dvec3(origin),
+            direction: Vec3::from_dvec3(direction),
+        };
         let spheres = self.spheres.iter();
         let spheres = spheres.map(|sphere| meet_sphere(SphereMethod::Stable, &ray, sphere));
         let planes = self.planes.iter().map(|plane| meet_plane(&ray, plane));
@@ -70,9 +75,9 @@ impl Sight {
     }
 
     /// Whether nothing stands between two points. What is at the second point itself does not.
-    pub fn is_clear(&self, from: Vec3<f64>, to: Vec3<f64>) -> bool {
+    pub fn is_clear(&self, from: DVec3, to: DVec3) -> bool {
         let arm = to - from;
-        match arm.unit() {
+        match arm.try_normalize() {
             Some(direction) => self.distance(from, direction) >= arm.length() * (1.0 - 1e-6),
             None => true,
         }
@@ -86,13 +91,13 @@ mod tests {
     #[test]
     fn the_demo_is_seen_where_it_is() {
         let sight = Sight::new(&Scene::demo());
-        let down = Vec3::new(0.0, -1.0, 0.0);
+        let down = DVec3::new(0.0, -1.0, 0.0);
         // Sphere 1: centre (125, 50, -150), radius 50, on the plane y = 0.
-        let above = Vec3::new(125.0, 300.0, -150.0);
+        let above = DVec3::new(125.0, 300.0, -150.0);
         assert!((sight.distance(above, down) - 200.0).abs() < 1e-9);
-        assert!(sight.is_clear(above, Vec3::new(125.0, 100.0, -150.0)));
-        assert!(!sight.is_clear(above, Vec3::new(125.0, 99.0, -150.0)));
-        let ground = Vec3::new(1000.0, 30.0, 1000.0);
+        assert!(sight.is_clear(above, DVec3::new(125.0, 100.0, -150.0)));
+        assert!(!sight.is_clear(above, DVec3::new(125.0, 99.0, -150.0)));
+        let ground = DVec3::new(1000.0, 30.0, 1000.0);
         assert_eq!(sight.distance(ground, down), 30.0);
         assert_eq!(sight.distance(ground, -down), f64::INFINITY);
     }

@@ -95,35 +95,37 @@ pub fn refine<L: Lane>(
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
     use proptest::prelude::*;
 
     /// A ray from `ratio` radii away past a unit sphere at `miss` radii from its centre, turned by
     /// three angles so that no axis is special; the exact entry distance beside it.
     fn aimed(ratio: f64, miss: f64, turn: [f64; 3]) -> (Ray<f32>, Sphere<f32>, f64) {
-        let d = Vec3::new(
+        let d = DVec3::new(
             turn[0].cos() * turn[1].cos(),
             turn[1].sin(),
             turn[0].sin() * turn[1].cos(),
         );
         let side = d
-            .cross(Vec3::new(turn[2].cos(), 0.3, turn[2].sin()))
-            .unit()
+            .cross(DVec3::new(turn[2].cos(), 0.3, turn[2].sin()))
+            .try_normalize()
             .expect("not along d");
         let center = d * ratio + side * miss;
         let sphere = Sphere {
-            center: Vec3::from_f64(center),
+            center: Vec3::from_dvec3(center),
             radius: 1.0_f32,
             material: 0,
         };
         let ray = Ray {
             origin: Vec3::splat(0.0_f32),
-            direction: Vec3::from_f64(d),
+            direction: Vec3::from_dvec3(d),
         };
         // The truth belongs to the rounded numbers that the kernel is given.
         let (c, d) = (
-            sphere.center.to_f64(),
-            ray.direction.to_f64().unit().expect("unit"),
+            sphere.center.to_dvec3(),
+            ray.direction.to_dvec3().try_normalize().expect("unit"),
         );
         let b = d.dot(c);
         let across = c - d * b;
@@ -183,14 +185,18 @@ mod tests {
                 material: 0,
             };
             let y = (radius * (1.0 + height)) as f32;
-            let direction = Vec3::from_f64(Vec3::new(0.3_f64, -0.9, 0.2).unit().expect("unit"));
+            let direction = Vec3::from_dvec3(
+                DVec3::new(0.3_f64, -0.9, 0.2)
+                    .try_normalize()
+                    .expect("unit"),
+            );
             let ray = Ray {
                 origin: Vec3::new(0.0, y, 0.0),
                 direction,
             };
             let t = intersect((), SphereMethod::Stable, &ray, &sphere);
             let (point, normal) = refine((), &ray, &sphere, t);
-            let on_surface = (point.to_f64().length() - radius).abs() / radius;
+            let on_surface = (point.to_dvec3().length() - radius).abs() / radius;
             assert!(
                 on_surface <= 4.0 * f64::from(f32::UNIT_ROUNDOFF),
                 "{height}: {on_surface:e}"
@@ -222,17 +228,17 @@ mod tests {
             let t = intersect((), SphereMethod::Stable, &ray, &sphere);
             prop_assert!(t.is_finite());
             let (point, normal) = refine((), &ray, &sphere, t);
-            let off = ((point - sphere.center).to_f64().length() - 1.0).abs();
+            let off = ((point - sphere.center).to_dvec3().length() - 1.0).abs();
             prop_assert!(off <= 4.0 * f64::from(f32::UNIT_ROUNDOFF) * (1.0 + ratio), "{off:e}");
             prop_assert!(normal.dot(ray.direction) < 1e-3, "the entry faces the ray");
         }
 
         #[test]
         fn from_the_wall_only_the_far_side_is_met(turn in prop::array::uniform3(0.0..6.0_f64), d in prop::array::uniform3(-1.0..1.0_f64)) {
-            let Some(d) = Vec3::from(d).unit() else { return Ok(()) };
+            let Some(d) = DVec3::from(d).try_normalize() else { return Ok(()) };
             let (ray, sphere, _) = aimed(3.0, 0.2, turn);
             let (point, normal) = refine((), &ray, &sphere, intersect((), SphereMethod::Stable, &ray, &sphere));
-            let onwards = Ray { origin: point, direction: Vec3::from_f64(d) };
+            let onwards = Ray { origin: point, direction: Vec3::from_dvec3(d) };
             let t = leave((), &onwards, &sphere);
             prop_assert_eq!(t.is_finite(), normal.dot(onwards.direction) < 0.0);
         }

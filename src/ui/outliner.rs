@@ -7,11 +7,12 @@ use egui::{
 };
 use egui_material_icons::MaterialIcon;
 
+use glam::DVec3;
+
 use super::inspector::name_field;
 use super::theme::{GRID, ROW, palette};
 use super::{Out, icons, menu};
 use crate::editor::{Edit, Editor, Item, Kind, Selection};
-use crate::lanes::Vec3;
 use crate::scene::{Scene, Shape};
 
 /// What the panel remembers between frames.
@@ -353,7 +354,7 @@ pub fn add_menu(ui: &mut Ui, scene: &Scene, out: &mut Out) {
         (
             icons::LIGHT,
             "Add Light",
-            Edit::AddLight(at + Vec3::new(0.0, size, 0.0)),
+            Edit::AddLight(at + DVec3::new(0.0, size, 0.0)),
         ),
         (icons::PACK, "Add ColorPack", Edit::AddPack),
     ];
@@ -369,9 +370,12 @@ pub fn add_menu(ui: &mut Ui, scene: &Scene, out: &mut Out) {
 }
 
 /// Where a new thing goes, and how large it is: in the middle of the picture, a fifth of its height.
-fn in_front_of_camera(scene: &Scene) -> (Vec3<f64>, f64) {
+fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     let camera = &scene.camera;
-    let look = camera.look_at.unit().unwrap_or(Vec3::new(0.0, 0.0, -1.0));
+    let look = camera
+        .look_at
+        .try_normalize()
+        .unwrap_or(DVec3::new(0.0, 0.0, -1.0));
     let extent = scene
         .bounds()
         .map_or(0.0, |(low, high)| (high - low).length());
@@ -384,7 +388,7 @@ fn in_front_of_camera(scene: &Scene) -> (Vec3<f64>, f64) {
     let tidy = |x: f64| if distance > 10.0 { x.round() } else { x };
     let at = camera.position + look * distance;
     (
-        Vec3::new(tidy(at.x), tidy(at.y), tidy(at.z)),
+        DVec3::new(tidy(at.x), tidy(at.y), tidy(at.z)),
         tidy(height / 5.0).max(1e-6),
     )
 }

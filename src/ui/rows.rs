@@ -6,8 +6,9 @@ use std::ops::RangeInclusive;
 
 use egui::{Align, ComboBox, DragValue, Key, Label, Layout, Response, RichText, Sense, Ui, vec2};
 
+use glam::DVec3;
+
 use super::theme::{GRID, HEX, LABEL, ROW};
-use crate::lanes::Vec3;
 use crate::scene::{format_number, parse_vec3};
 
 /// What a number may be, and what is said about it.
@@ -100,7 +101,7 @@ impl<'u> Rows<'u> {
     }
 
     /// Three numbers in one row.
-    pub fn vector(&mut self, field: &Field, default: Vec3<f64>, value: &mut Vec3<f64>) {
+    pub fn vector(&mut self, field: &Field, default: DVec3, value: &mut DVec3) {
         let before = *value;
         row(self.ui, field, &format_vec3(default), |ui, reset| {
             if reset {
@@ -128,8 +129,8 @@ impl<'u> Rows<'u> {
         &mut self,
         name: &'static str,
         hint: &'static str,
-        default: Vec3<f64>,
-        value: &mut Vec3<f64>,
+        default: DVec3,
+        value: &mut DVec3,
     ) {
         let before = *value;
         let field = Field {
@@ -158,7 +159,7 @@ impl<'u> Rows<'u> {
                 drag(ui, &field, &name, part, width, Some(&pasted));
             }
             if let Some(whole) = pasted.get() {
-                *value = whole.clamp(0.0, 255.0);
+                *value = whole.clamp(DVec3::ZERO, DVec3::splat(255.0));
             }
             hex(ui, name, value);
         });
@@ -259,7 +260,7 @@ fn drag(
     name: &str,
     value: &mut f64,
     width: f32,
-    pasted: Option<&Cell<Option<Vec3<f64>>>>,
+    pasted: Option<&Cell<Option<DVec3>>>,
 ) {
     let by_size = || (value.abs() * 0.01).max(0.01);
     let speed = field.speed.unwrap_or_else(by_size);
@@ -295,7 +296,7 @@ fn drag(
     response.on_hover_text(field.hint);
 }
 
-fn format_vec3(v: Vec3<f64>) -> String {
+fn format_vec3(v: DVec3) -> String {
     v.to_array().map(format_number).join(", ")
 }
 
@@ -334,19 +335,19 @@ fn rounded(value: f64, unit: &str) -> String {
     }
 }
 
-fn swatch(ui: &mut Ui, name: &str, value: &mut Vec3<f64>) {
+fn swatch(ui: &mut Ui, name: &str, value: &mut DVec3) {
     let mut bytes = to_bytes(*value);
     let response = ui
         .color_edit_button_srgb(&mut bytes)
         .accessible_name(format!("{name} swatch"));
     // The button writes rounded colours back in every frame; only a pick counts.
     if response.changed() {
-        *value = Vec3::from(bytes.map(f64::from));
+        *value = DVec3::from(bytes.map(f64::from));
     }
 }
 
 /// The colour as `#RRGGBB`, to copy and to type.
-fn hex(ui: &mut Ui, name: &str, value: &mut Vec3<f64>) {
+fn hex(ui: &mut Ui, name: &str, value: &mut DVec3) {
     let [r, g, b] = to_bytes(*value);
     let packed = f64::from(u32::from_be_bytes([0, r, g, b]));
     let mut edited = packed;
@@ -361,7 +362,7 @@ fn hex(ui: &mut Ui, name: &str, value: &mut Vec3<f64>) {
     let is_cancelled = is_cancelled(ui, &response);
     if response.changed() && edited != packed && !is_cancelled {
         let [_, r, g, b] = (edited as u32).to_be_bytes();
-        *value = Vec3::new(f64::from(r), f64::from(g), f64::from(b));
+        *value = DVec3::new(f64::from(r), f64::from(g), f64::from(b));
     }
     response.on_hover_text("Click to type or copy, for example #FF8040");
 }
@@ -373,7 +374,7 @@ fn parse_hex(text: &str) -> Option<u32> {
         .flatten()
 }
 
-fn to_bytes(color: Vec3<f64>) -> [u8; 3] {
+fn to_bytes(color: DVec3) -> [u8; 3] {
     color.to_array().map(|channel| channel.round() as u8)
 }
 

@@ -1,6 +1,7 @@
 //! Clean edges: against many samples per pixel, in double precision, on the published views.
 
-use glint::lanes::{Real, Vec3};
+use glam::DVec3;
+use glint::lanes::Real;
 use glint::plan::{Picture, Precision, Sampling};
 use glint::scene::{Object, Scene, Shape};
 use glint::trace::{Pass, Pixel, Rays, Tracer, Watch};
@@ -83,9 +84,9 @@ fn picture(sampling: Sampling) -> Picture {
 fn published() -> [Scene; 2] {
     let first = Scene::demo();
     let mut second = first.clone();
-    second.camera.position = Vec3::new(172.0, 159.0, -27.0);
-    second.camera.look_at = Vec3::new(-0.25, -0.70, -0.67);
-    second.camera.up = Vec3::new(-0.25, 0.71, -0.65);
+    second.camera.position = DVec3::new(172.0, 159.0, -27.0);
+    second.camera.look_at = DVec3::new(-0.25, -0.70, -0.67);
+    second.camera.up = DVec3::new(-0.25, 0.71, -0.65);
     [first, second]
 }
 
@@ -121,8 +122,8 @@ fn poles() -> Scene {
             40.0 + 10.0 * f64::from(n % 12),
             -60.0 - 30.0 * f64::from(n / 12) - f64::from(n % 5),
         );
-        let (foot, top) = (Vec3::new(x, 0.0, z), Vec3::new(x + 3.0, 30.0, z));
-        let wide = Vec3::new(0.25, 0.0, 0.0);
+        let (foot, top) = (DVec3::new(x, 0.0, z), DVec3::new(x + 3.0, 30.0, z));
+        let wide = DVec3::new(0.25, 0.0, 0.0);
         add(
             format!("Pole {n} left"),
             Shape::Triangle {
@@ -141,7 +142,7 @@ fn poles() -> Scene {
         );
     }
     for n in 0..40 {
-        let center = Vec3::new(
+        let center = DVec3::new(
             60.0 + 12.0 * f64::from(n % 10),
             20.0 + f64::from(n % 7),
             -40.0 - 11.0 * f64::from(n / 10),

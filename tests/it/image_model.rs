@@ -2,8 +2,9 @@
 
 use std::collections::HashSet;
 
+use glam::DVec3;
 use glint::image::{Image, render};
-use glint::lanes::{Level, Vec3};
+use glint::lanes::Level;
 use glint::plan::{
     Accelerator, HighlightMethod, Methods, Picture, Precision, RayOffset, Sampling, SphereMethod,
     TriangleMethod,
@@ -125,9 +126,9 @@ fn is_on_edge(pixel: [u8; 4], x: usize, y: usize, other: &Image) -> bool {
 #[test]
 fn single_and_double_precision_differ_on_edges_only() {
     let mut second = Scene::demo();
-    second.camera.position = Vec3::new(172.0, 159.0, -27.0);
-    second.camera.look_at = Vec3::new(-0.25, -0.70, -0.67);
-    second.camera.up = Vec3::new(-0.25, 0.71, -0.65);
+    second.camera.position = DVec3::new(172.0, 159.0, -27.0);
+    second.camera.look_at = DVec3::new(-0.25, -0.70, -0.67);
+    second.camera.up = DVec3::new(-0.25, 0.71, -0.65);
     let scenes = (0..50).map(random::scene).chain([Scene::demo(), second]);
     for (number, scene) in scenes.enumerate() {
         let at = |precision| Picture {
@@ -245,9 +246,9 @@ fn changed_one_at_a_time() -> Vec<(String, Methods)> {
 }
 
 /// The demo scaled and moved as a whole.
-fn placed(scale: f64, by: Vec3<f64>) -> Scene {
+fn placed(scale: f64, by: DVec3) -> Scene {
     let mut scene = Scene::demo();
-    let place = |v: Vec3<f64>| v * scale + by;
+    let place = |v: DVec3| v * scale + by;
     for object in &mut scene.objects {
         object.shape = match object.shape {
             Shape::Sphere { center, radius } => Shape::Sphere {
@@ -276,7 +277,7 @@ fn placed(scale: f64, by: Vec3<f64>) -> Scene {
     scene
 }
 
-fn changed_ppm(scale: f64, by: Vec3<f64>, methods: Methods, precision: Precision) -> usize {
+fn changed_ppm(scale: f64, by: DVec3, methods: Methods, precision: Precision) -> usize {
     let at = |scene: &Scene, methods| {
         picture(
             scene,
@@ -301,7 +302,7 @@ fn changed_ppm(scale: f64, by: Vec3<f64>, methods: Methods, precision: Precision
 
 #[test]
 fn no_scale_and_no_place_changes_the_picture() {
-    let here = Vec3::new(0.0, 0.0, 0.0);
+    let here = DVec3::new(0.0, 0.0, 0.0);
     let (single, double) = (Precision::Single, Precision::Double);
     for scale in [1e-4, 1e-2, 1e2, 1e4, 1e6] {
         let ppm = changed_ppm(scale, here, Methods::default(), single);
@@ -311,7 +312,7 @@ fn no_scale_and_no_place_changes_the_picture() {
     }
     let (low, high) = Scene::demo().bounds().expect("a size");
     let size = (high - low).length();
-    let aside = Vec3::new(0.6, -0.64, 0.48);
+    let aside = DVec3::new(0.6, -0.64, 0.48);
     for sizes in [1.0, 1e2, 1e3, 1e4, 1e5] {
         let ppm = changed_ppm(1.0, aside * (size * sizes), Methods::default(), single);
         assert!(ppm <= 500, "{sizes} sizes away: {ppm} ppm");
@@ -330,21 +331,21 @@ fn no_scale_and_no_place_changes_the_picture() {
 /// A white ball of radius 1 in front of a camera that looks along -z, lit from the camera.
 fn ball() -> Scene {
     let mut scene = Scene::empty();
-    scene.camera.position = Vec3::new(0.0, 0.0, 10.0);
-    scene.camera.look_at = Vec3::new(0.0, 0.0, -1.0);
-    scene.camera.up = Vec3::new(0.0, 1.0, 0.0);
-    scene.lights[0].position = Vec3::new(0.0, 0.0, 20.0);
+    scene.camera.position = DVec3::new(0.0, 0.0, 10.0);
+    scene.camera.look_at = DVec3::new(0.0, 0.0, -1.0);
+    scene.camera.up = DVec3::new(0.0, 1.0, 0.0);
+    scene.lights[0].position = DVec3::new(0.0, 0.0, 20.0);
     scene.lights[0].intensity = 0.5;
     scene.lights[0].marker.as_mut().expect("a marker").radius = 0.5;
     let pack = &mut scene.color_packs["pack 1"];
-    pack.ambient = Vec3::new(40.0, 80.0, 120.0);
-    pack.diffuse = Vec3::new(100.0, 50.0, 0.0);
-    pack.specular = Vec3::new(0.0, 0.0, 60.0);
+    pack.ambient = DVec3::new(40.0, 80.0, 120.0);
+    pack.diffuse = DVec3::new(100.0, 50.0, 0.0);
+    pack.specular = DVec3::new(0.0, 0.0, 60.0);
     scene.objects.push(glint::scene::Object {
         name: "Ball".to_owned(),
         color_pack: "pack 1".to_owned(),
         shape: Shape::Sphere {
-            center: Vec3::new(0.0, 0.0, 0.0),
+            center: DVec3::new(0.0, 0.0, 0.0),
             radius: 1.0,
         },
         visible: true,
@@ -362,14 +363,14 @@ fn ambient_diffuse_and_specular_add_up_as_written() {
 fn a_blocked_light_leaves_ambient_and_a_marker_blocks_nothing() {
     let mut scene = ball();
     // The marker stands between the ball and the camera, but its light is behind it.
-    scene.lights[0].position = Vec3::new(0.0, 0.0, 5.0);
+    scene.lights[0].position = DVec3::new(0.0, 0.0, 5.0);
     scene.light_visualization = false;
     assert_eq!(middle(&scene), [70, 65, 90], "hidden markers are not there");
     let mut blocker = scene.objects[0].clone();
     blocker.name = "Blocker".to_owned();
-    scene.lights[0].position = Vec3::new(10.0, 0.0, 10.0);
+    scene.lights[0].position = DVec3::new(10.0, 0.0, 10.0);
     blocker.shape = Shape::Sphere {
-        center: Vec3::new(5.0, 0.0, 5.5),
+        center: DVec3::new(5.0, 0.0, 5.5),
         radius: 1.0,
     };
     let lit = middle(&scene);
@@ -386,20 +387,20 @@ fn a_blocked_light_leaves_ambient_and_a_marker_blocks_nothing() {
 #[test]
 fn a_marker_is_full_ambient_and_nothing_else() {
     let mut scene = ball();
-    scene.lights[0].position = Vec3::new(0.0, 0.0, 5.0);
+    scene.lights[0].position = DVec3::new(0.0, 0.0, 5.0);
     assert_eq!(middle(&scene), [255, 255, 0]);
-    scene.color_packs["light"].ambient = Vec3::new(10.0, 20.0, 30.0);
+    scene.color_packs["light"].ambient = DVec3::new(10.0, 20.0, 30.0);
     assert_eq!(middle(&scene), [10, 20, 30]);
 }
 
 #[test]
 fn a_mirror_adds_the_sum_of_intensities_even_in_shadow() {
     let mut scene = ball();
-    scene.background = Vec3::new(200.0, 0.0, 0.0);
+    scene.background = DVec3::new(200.0, 0.0, 0.0);
     scene.color_packs["pack 1"].reflective = true;
-    scene.color_packs["pack 1"].specular = Vec3::new(255.0, 255.0, 255.0);
+    scene.color_packs["pack 1"].specular = DVec3::new(255.0, 255.0, 255.0);
     // Behind the ball: no diffuse, no highlight, but the mirror stays: 0.5·ambient + 0.5·200.
-    scene.lights[0].position = Vec3::new(0.0, 0.0, -50.0);
+    scene.lights[0].position = DVec3::new(0.0, 0.0, -50.0);
     scene.light_visualization = false;
     assert_eq!(middle(&scene), [120, 40, 60]);
     scene.render.reflection_limit = 0;
@@ -410,7 +411,7 @@ fn a_mirror_adds_the_sum_of_intensities_even_in_shadow() {
 fn a_camera_inside_a_ball_sees_its_lit_wall() {
     let mut scene = ball();
     scene.objects[0].shape = Shape::Sphere {
-        center: Vec3::new(0.0, 0.0, 0.0),
+        center: DVec3::new(0.0, 0.0, 0.0),
         radius: 100.0,
     };
     assert_eq!(
@@ -418,7 +419,7 @@ fn a_camera_inside_a_ball_sees_its_lit_wall() {
         [70, 65, 90],
         "the inner wall faces the light inside"
     );
-    scene.lights[0].position = Vec3::new(0.0, 0.0, 300.0);
+    scene.lights[0].position = DVec3::new(0.0, 0.0, 300.0);
     assert_eq!(
         middle(&scene),
         [20, 40, 60],
@@ -462,18 +463,18 @@ fn what_is_left_out_would_not_have_shown() {
 fn degenerate_lights_and_views_stay_finite() {
     let mut scene = ball();
     scene.light_visualization = false;
-    scene.lights[0].position = Vec3::new(0.0, 0.0, 1.0);
+    scene.lights[0].position = DVec3::new(0.0, 0.0, 1.0);
     assert_eq!(
         middle(&scene),
         [20, 40, 60],
         "a light in the surface adds nothing"
     );
     scene.objects[0].shape = Shape::Plane {
-        point: Vec3::new(0.0, 0.0, 0.0),
-        normal: Vec3::new(0.0, 1.0, 0.0),
+        point: DVec3::new(0.0, 0.0, 0.0),
+        normal: DVec3::new(0.0, 1.0, 0.0),
     };
     scene.camera.projection = Projection::Orthographic;
-    scene.background = Vec3::new(1.0, 2.0, 3.0);
+    scene.background = DVec3::new(1.0, 2.0, 3.0);
     assert_eq!(
         middle(&scene),
         [1, 2, 3],
@@ -513,7 +514,7 @@ fn bundles_show_what_a_list_shows() {
             name: format!("Speck {n}"),
             color_pack: "pack 0".to_owned(),
             shape: Shape::Sphere {
-                center: Vec3::new(place(1.7), place(2.3), place(3.1)),
+                center: DVec3::new(place(1.7), place(2.3), place(3.1)),
                 radius: 2.5,
             },
             visible: true,

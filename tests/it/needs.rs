@@ -1,8 +1,8 @@
 //! No more than the scene needs: each rule of the plan leaves the picture as it is, spares what it
 //! says, and stops where it must.
 
+use glam::DVec3;
 use glint::image::{Image, render};
-use glint::lanes::Vec3;
 use glint::plan::{Model, Picture, Plan, needs};
 use glint::scene::{Object, Scene, Shape};
 use glint::trace::{Rays, Watch};
@@ -37,12 +37,12 @@ fn what_is_left_out_is_not_missed() {
     let scenes = (0..12).map(random::scene).chain([
         Scene::demo(),
         demo(|scene| scene.lights[0].intensity = 0.0),
-        demo(|scene| scene.lights[1].position = Vec3::new(100.0, -20.0, -50.0)),
+        demo(|scene| scene.lights[1].position = DVec3::new(100.0, -20.0, -50.0)),
         demo(|scene| {
             scene
                 .color_packs
                 .values_mut()
-                .for_each(|pack| pack.specular = Vec3::new(0.0, 0.0, 0.0));
+                .for_each(|pack| pack.specular = DVec3::new(0.0, 0.0, 0.0));
         }),
     ]);
     for (index, scene) in scenes.enumerate() {
@@ -76,7 +76,7 @@ fn surfaces_that_face_away_cast_no_shadow_rays() {
 fn a_dark_or_hidden_light_costs_no_ray() {
     let bright = picture(&Scene::demo(), Model::Needed).1;
     let dark = demo(|scene| scene.lights[0].intensity = 0.0);
-    let below = demo(|scene| scene.lights[0].position = Vec3::new(100.0, -20.0, -50.0));
+    let below = demo(|scene| scene.lights[0].position = DVec3::new(100.0, -20.0, -50.0));
     for scene in [&dark, &below] {
         let rays = picture(scene, Model::Needed).1;
         assert!(rays.shadow < bright.shadow * 2 / 3, "{rays:?} {bright:?}");
@@ -96,7 +96,7 @@ fn without_mirrors_nothing_is_reflected_and_one_brings_it_back() {
     assert_eq!(said(&matte, "reflections"), "no reflected rays");
     let black = demo(|scene| {
         for pack in scene.color_packs.values_mut() {
-            pack.specular = Vec3::new(0.0, 0.0, 0.0);
+            pack.specular = DVec3::new(0.0, 0.0, 0.0);
         }
     });
     assert_eq!(picture(&black, Model::Needed).1.reflected, 0);
@@ -124,7 +124,7 @@ fn bundles_begin_where_a_list_is_too_long() {
                 name: format!("Ball {n}"),
                 color_pack: pack.clone(),
                 shape: Shape::Sphere {
-                    center: Vec3::new(n as f64, 0.0, -50.0),
+                    center: DVec3::new(n as f64, 0.0, -50.0),
                     radius: 0.4,
                 },
                 visible: true,
@@ -154,7 +154,7 @@ fn far_faces_of_solids_are_left_out_and_of_open_meshes_are_not() {
     let open = demo(|scene| scene.objects[2].visible = false);
     assert_eq!(left_out(&open), (0, 0));
     assert!(said(&open, "faces").starts_with("both sides"));
-    let inside = demo(|scene| scene.camera.position = Vec3::new(200.0, 20.0, -100.0));
+    let inside = demo(|scene| scene.camera.position = DVec3::new(200.0, 20.0, -100.0));
     assert_eq!(left_out(&inside).0, 0);
     for scene in [closed, open, inside] {
         let (needed, everything) = (

@@ -6,6 +6,7 @@
 //! `lanes/highlight.rs`, mouse moves in `editor/fly.rs`, paths in `animate/tests`; shadow rays at
 //! every scale and place, of single shapes and of meshes, are maps of the lab.
 
+use glam::DVec3;
 use glint::image::{Image, render};
 use glint::lanes::{Real, Vec3};
 use glint::plan::{Picture, Sphere, SphereMethod};
@@ -67,26 +68,26 @@ fn share(n: u32, stream: u32) -> f64 {
 /// A ray from `ratio` radii away past a unit ball at `miss` radii from its middle.
 fn aimed<R: Real>(n: u32, ratio: f64, miss: f64) -> (Ray<R>, Sphere<R>) {
     let (a, b) = (share(n, 0) * std::f64::consts::TAU, share(n, 1) * 3.0 - 1.5);
-    let towards = Vec3::new(a.cos() * b.cos(), b.sin(), a.sin() * b.cos());
+    let towards = DVec3::new(a.cos() * b.cos(), b.sin(), a.sin() * b.cos());
     let c = share(n, 2) * std::f64::consts::TAU;
-    let aside = towards.cross(Vec3::new(c.cos(), 0.3, c.sin()));
-    let aside = aside.unit().expect("not along the ray");
+    let aside = towards.cross(DVec3::new(c.cos(), 0.3, c.sin()));
+    let aside = aside.try_normalize().expect("not along the ray");
     let sphere = Sphere {
-        center: Vec3::from_f64(towards * ratio + aside * miss),
+        center: Vec3::from_dvec3(towards * ratio + aside * miss),
         radius: R::ONE,
         material: 0,
     };
     let ray = Ray {
-        origin: Vec3::from_f64(Vec3::splat(0.0)),
-        direction: Vec3::from_f64(towards),
+        origin: Vec3::from_dvec3(DVec3::splat(0.0)),
+        direction: Vec3::from_dvec3(towards),
     };
     (ray, sphere)
 }
 
 /// The exact way to the ball of the rounded numbers.
 fn truth(ray: &Ray<f32>, sphere: &Sphere<f32>) -> f64 {
-    let (c, d) = (sphere.center.to_f64(), ray.direction.to_f64());
-    let d = d.unit().expect("a direction");
+    let (c, d) = (sphere.center.to_dvec3(), ray.direction.to_dvec3());
+    let d = d.try_normalize().expect("a direction");
     let b = d.dot(c);
     let across = c - d * b;
     b - (1.0 - across.dot(across)).max(0.0).sqrt()
@@ -157,11 +158,14 @@ fn low_over_a_planet(tries: u32) {
     for height in [1e-1, 1e-3, 1e-5, 1e-7] {
         let errors = |is_double: bool| {
             let error = |n: u32| {
-                let down = Vec3::new(share(n, 0) - 0.5, -1.0, share(n, 1) - 0.5);
-                let down = Vec3::<f32>::from_f64(down.unit().expect("a direction"));
+                let down = DVec3::new(share(n, 0) - 0.5, -1.0, share(n, 1) - 0.5);
+                let down = Vec3::<f32>::from_dvec3(down.try_normalize().expect("a direction"));
                 let y = 1.0 + height;
                 // Rounded to single precision first: both kernels get the same numbers.
-                let (y, d) = (f64::from(y as f32), down.to_f64().unit().expect("unit"));
+                let (y, d) = (
+                    f64::from(y as f32),
+                    down.to_dvec3().try_normalize().expect("unit"),
+                );
                 let half = -d.y * y;
                 let exact =
                     (y - 1.0) * (y + 1.0) / (half + (half * half - (y - 1.0) * (y + 1.0)).sqrt());
@@ -188,29 +192,29 @@ fn low_over_a_planet(tries: u32) {
     let mut scene = Scene::empty();
     scene
         .objects
-        .push(object("Planet", Vec3::new(0.0, -1e6, 0.0), 1e6));
-    scene.camera.position = Vec3::new(0.0, 100.0, 0.0);
+        .push(object("Planet", DVec3::new(0.0, -1e6, 0.0), 1e6));
+    scene.camera.position = DVec3::new(0.0, 100.0, 0.0);
     let plan = glint::plan::needs(&scene, &Picture::sized(64, 64));
     let precision = plan.iter().find(|need| need.what == "double precision");
     assert!(precision.is_some(), "the plan must take f64: {plan:?}");
 }
 
-fn over<R: Real>(y: f64, direction: Vec3<f64>) -> Ray<R> {
+fn over<R: Real>(y: f64, direction: DVec3) -> Ray<R> {
     Ray {
-        origin: Vec3::from_f64(Vec3::new(0.0, y, 0.0)),
-        direction: Vec3::from_f64(direction),
+        origin: Vec3::from_dvec3(DVec3::new(0.0, y, 0.0)),
+        direction: Vec3::from_dvec3(direction),
     }
 }
 
 fn ball<R: Real>() -> Sphere<R> {
     Sphere {
-        center: Vec3::from_f64(Vec3::splat(0.0)),
+        center: Vec3::from_dvec3(DVec3::splat(0.0)),
         radius: R::ONE,
         material: 0,
     }
 }
 
-fn object(name: &str, center: Vec3<f64>, radius: f64) -> Object {
+fn object(name: &str, center: DVec3, radius: f64) -> Object {
     Object {
         name: name.to_owned(),
         color_pack: "pack 1".to_owned(),
@@ -248,7 +252,7 @@ fn unnormalised_cameras(_: u32) {
         assert!(differ.count() <= allowed, "scaled by {scale}");
     }
     for method in [SphereMethod::Stable, SphereMethod::Classic] {
-        let nowhere = over::<f32>(3.0, Vec3::splat(0.0));
+        let nowhere = over::<f32>(3.0, DVec3::splat(0.0));
         assert!(
             !meet_sphere(method, &nowhere, &ball()).is_nan(),
             "{method:?}"
@@ -259,7 +263,7 @@ fn unnormalised_cameras(_: u32) {
 /// A wall of axis-aligned triangles, looked at through pixel centres that lie on its edges.
 fn flat_bundles(_: u32) {
     for away in [0.0, 1e4, 1e6] {
-        let corner = |x: u32, y: u32| Vec3::new(f64::from(x) + away, f64::from(y), -away);
+        let corner = |x: u32, y: u32| DVec3::new(f64::from(x) + away, f64::from(y), -away);
         let mut scene = Scene::empty();
         for n in 0..144_u32 {
             let (x, y) = (n % 12, n / 12);
@@ -270,14 +274,14 @@ fn flat_bundles(_: u32) {
                         b: corner(x + 1, y + 1),
                         c: far,
                     },
-                    ..object(&format!("{n} {half}"), Vec3::splat(0.0), 1.0)
+                    ..object(&format!("{n} {half}"), DVec3::splat(0.0), 1.0)
                 });
             }
         }
         scene.camera = Camera {
-            position: Vec3::new(6.0 + away, 6.0, 20.0 - away),
-            look_at: Vec3::new(0.0, 0.0, -1.0),
-            up: Vec3::new(0.0, 1.0, 0.0),
+            position: DVec3::new(6.0 + away, 6.0, 20.0 - away),
+            look_at: DVec3::new(0.0, 0.0, -1.0),
+            up: DVec3::new(0.0, 1.0, 0.0),
             projection: Projection::Orthographic,
             orthographic_height: 13.0,
             ..Camera::default()
@@ -306,11 +310,11 @@ fn contact_shadows(_: u32) {
     let lit = |scale: f64, offset: RayOffset| {
         let mut scene = Scene::empty();
         scene.ambient_intensity = 0.0;
-        let place = |x: f64, y: f64, z: f64| Vec3::new(x, y, z) * scale;
+        let place = |x: f64, y: f64, z: f64| DVec3::new(x, y, z) * scale;
         let shapes = [
             Shape::Plane {
-                point: Vec3::splat(0.0),
-                normal: Vec3::new(0.0, 1.0, 0.0),
+                point: DVec3::splat(0.0),
+                normal: DVec3::new(0.0, 1.0, 0.0),
             },
             Shape::Triangle {
                 a: place(0.0, 0.0, -0.5),
@@ -321,7 +325,7 @@ fn contact_shadows(_: u32) {
         for (shape, name) in shapes.into_iter().zip(["Floor", "Card"]) {
             scene.objects.push(Object {
                 shape,
-                ..object(name, Vec3::splat(0.0), 1.0)
+                ..object(name, DVec3::splat(0.0), 1.0)
             });
         }
         scene.lights[0].position = place(-3.0, 1.0, 0.0);
@@ -329,8 +333,8 @@ fn contact_shadows(_: u32) {
         scene.lights[0].marker = None;
         scene.camera = Camera {
             position: place(1.0 + 2e-5, 1.0, 0.0),
-            look_at: Vec3::new(-1.0, -1.0, 0.0),
-            up: Vec3::new(0.0, 1.0, 0.0),
+            look_at: DVec3::new(-1.0, -1.0, 0.0),
+            up: DVec3::new(0.0, 1.0, 0.0),
             projection: Projection::Orthographic,
             orthographic_height: 2e-5 * scale,
             ..Camera::default()
@@ -360,15 +364,16 @@ fn contact_shadows(_: u32) {
 fn hollow_balls(_: u32) {
     for radius in [1e-4, 1.0, 1e6] {
         for away in [0.0, 1e4] {
-            let center = Vec3::new(0.6, -0.64, 0.48) * (away * radius);
+            let center = DVec3::new(0.6, -0.64, 0.48) * (away * radius);
             let dark = |distance: f64| {
                 let mut scene = Scene::empty();
                 scene.ambient_intensity = 0.0;
                 scene.objects.push(object("Ball", center, radius));
-                scene.lights[0].position = center + Vec3::new(0.1, 0.3, -0.2) * (distance * radius);
+                scene.lights[0].position =
+                    center + DVec3::new(0.1, 0.3, -0.2) * (distance * radius);
                 scene.lights[0].intensity = 1.0;
                 scene.lights[0].marker = None;
-                scene.camera.position = center + Vec3::new(0.2, 0.1, 0.3) * radius;
+                scene.camera.position = center + DVec3::new(0.2, 0.1, 0.3) * radius;
                 let picture = Picture {
                     precision: Precision::Single,
                     ..Picture::sized(160, 160)
@@ -386,18 +391,18 @@ fn hollow_balls(_: u32) {
     }
 }
 
-fn shaded(pack: ColorPack, light: Vec3<f64>, precision: Precision) -> [u8; 4] {
+fn shaded(pack: ColorPack, light: DVec3, precision: Precision) -> [u8; 4] {
     let mut scene = Scene::empty();
     scene.ambient_intensity = 0.0;
-    scene.background = Vec3::new(9.0, 9.0, 9.0);
+    scene.background = DVec3::new(9.0, 9.0, 9.0);
     scene.color_packs["pack 1"] = pack;
-    scene.objects.push(object("Ball", Vec3::splat(0.0), 1.0));
+    scene.objects.push(object("Ball", DVec3::splat(0.0), 1.0));
     scene.lights[0].position = light;
     scene.lights[0].intensity = 1.0;
     scene.lights[0].marker = None;
-    scene.camera.position = Vec3::new(0.0, 0.0, 10.0);
-    scene.camera.look_at = Vec3::new(0.0, 0.0, -1.0);
-    scene.camera.up = Vec3::new(0.0, 1.0, 0.0);
+    scene.camera.position = DVec3::new(0.0, 0.0, 10.0);
+    scene.camera.look_at = DVec3::new(0.0, 0.0, -1.0);
+    scene.camera.up = DVec3::new(0.0, 1.0, 0.0);
     let picture = Picture {
         precision,
         ..Picture::sized(3, 3)
@@ -407,15 +412,15 @@ fn shaded(pack: ColorPack, light: Vec3<f64>, precision: Precision) -> [u8; 4] {
 
 fn degenerate_shading(_: u32) {
     let pack = |phong_exponent: f64| ColorPack {
-        ambient: Vec3::splat(0.0),
-        diffuse: Vec3::splat(0.0),
-        specular: Vec3::splat(255.0),
+        ambient: DVec3::splat(0.0),
+        diffuse: DVec3::splat(0.0),
+        specular: DVec3::splat(255.0),
         phong_exponent,
         reflective: false,
     };
     for precision in [Precision::Single, Precision::Double] {
         for exponent in [0.0, 0.5, 16.0, 16.5, 1e4, 1e6, 1e7] {
-            let at = |z: f64| shaded(pack(exponent), Vec3::new(0.0, 0.0, z), precision);
+            let at = |z: f64| shaded(pack(exponent), DVec3::new(0.0, 0.0, z), precision);
             assert_eq!(at(20.0), [255; 4], "straight on, {exponent}");
             assert_eq!(at(1.0), [0, 0, 0, 255], "in the surface, {exponent}");
             assert_eq!(at(-20.0), [0, 0, 0, 255], "behind, {exponent}");
@@ -423,11 +428,11 @@ fn degenerate_shading(_: u32) {
         }
         // Flat is flat: wherever the light is, if only it shines on the point.
         for x in [0.0, 5.0, 500.0] {
-            let flat = shaded(pack(0.0), Vec3::new(x, 0.0, 20.0), precision);
+            let flat = shaded(pack(0.0), DVec3::new(x, 0.0, 20.0), precision);
             assert_eq!(flat, [255; 4], "exponent 0 from {x}");
         }
         // The light opposite to the eye, on the horizon of what is seen: no highlight, no NaN.
-        let aside = shaded(pack(16.0), Vec3::new(1e12, 0.0, 1.0), precision);
+        let aside = shaded(pack(16.0), DVec3::new(1e12, 0.0, 1.0), precision);
         assert_eq!(aside, [0, 0, 0, 255]);
     }
 }
@@ -439,28 +444,28 @@ fn many_mirrors(_: u32) {
     scene.render.reflection_limit = 32;
     let mut mirror = scene.color_packs["pack 1"].clone();
     mirror.reflective = true;
-    mirror.specular = Vec3::splat(255.0);
-    mirror.ambient = Vec3::splat(2.0);
-    mirror.diffuse = Vec3::splat(0.0);
+    mirror.specular = DVec3::splat(255.0);
+    mirror.ambient = DVec3::splat(2.0);
+    mirror.diffuse = DVec3::splat(0.0);
     scene.color_packs.insert("mirror".to_owned(), mirror);
     for (name, z) in [("Front", -2.0), ("Back", 2.0)] {
         scene.objects.push(Object {
             color_pack: "mirror".to_owned(),
             shape: Shape::Plane {
-                point: Vec3::new(0.0, 0.0, z),
-                normal: Vec3::new(0.02, 0.0, 1.0),
+                point: DVec3::new(0.0, 0.0, z),
+                normal: DVec3::new(0.02, 0.0, 1.0),
             },
-            ..object(name, Vec3::splat(0.0), 1.0)
+            ..object(name, DVec3::splat(0.0), 1.0)
         });
     }
     scene
         .objects
-        .push(object("Ball", Vec3::new(0.4, 0.2, -0.5), 0.3));
-    scene.lights[0].position = Vec3::new(1.0, 3.0, 1.0);
+        .push(object("Ball", DVec3::new(0.4, 0.2, -0.5), 0.3));
+    scene.lights[0].position = DVec3::new(1.0, 3.0, 1.0);
     scene.lights[0].intensity = 1.0;
-    scene.camera.position = Vec3::new(-0.3, 0.1, 1.5);
-    scene.camera.look_at = Vec3::new(0.1, 0.0, -1.0);
-    scene.camera.up = Vec3::new(0.0, 1.0, 0.0);
+    scene.camera.position = DVec3::new(-0.3, 0.1, 1.5);
+    scene.camera.look_at = DVec3::new(0.1, 0.0, -1.0);
+    scene.camera.up = DVec3::new(0.0, 1.0, 0.0);
     let at = |precision| {
         let picture = Picture {
             precision,

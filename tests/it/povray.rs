@@ -4,19 +4,19 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
 
+use glam::DVec3;
 use glint::image::{Image, render};
-use glint::lanes::Vec3;
 use glint::plan::{Methods, Picture, RayOffset};
 use glint::scene::{ColorPack, Projection, Scene, Shape};
 use glint::trace::Watch;
 
 use crate::random;
 
-fn vector(v: Vec3<f64>) -> String {
+fn vector(v: DVec3) -> String {
     format!("<{:?},{:?},{:?}>", v.x, v.y, v.z)
 }
 
-fn color(v: Vec3<f64>) -> String {
+fn color(v: DVec3) -> String {
     format!("rgb {}", vector(v * (1.0 / 255.0)))
 }
 
@@ -61,7 +61,7 @@ fn translate(scene: &Scene) -> String {
                 )
             }
             Shape::Plane { point, normal } => {
-                let n = normal.unit().expect("checked");
+                let n = normal.try_normalize().expect("checked");
                 writeln!(
                     pov,
                     "plane {{ {}, {:?} {texture} }}",
@@ -95,14 +95,14 @@ fn translate_camera(pov: &mut String, scene: &Scene) {
         pov,
         "camera {{ {kind} location {} direction {} right {} up {} }}",
         vector(camera.position),
-        vector(-basis.w * distance),
-        vector(basis.u * (scale * aspect)),
-        vector(basis.v * scale)
+        vector(-basis.z_axis * distance),
+        vector(basis.x_axis * (scale * aspect)),
+        vector(basis.y_axis * scale)
     );
 }
 
 fn texture(pack: &ColorPack, total_intensity: f64) -> String {
-    let share = Vec3::new(
+    let share = DVec3::new(
         pack.ambient.x / pack.diffuse.x,
         pack.ambient.y / pack.diffuse.y,
         pack.ambient.z / pack.diffuse.z,
@@ -176,9 +176,9 @@ fn povray_draws_the_same_pictures() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut scenes = vec![("demo".to_owned(), Scene::demo())];
     let mut side = Scene::demo();
-    side.camera.position = Vec3::new(172.0, 159.0, -27.0);
-    side.camera.look_at = Vec3::new(-0.25, -0.70, -0.67);
-    side.camera.up = Vec3::new(-0.25, 0.71, -0.65);
+    side.camera.position = DVec3::new(172.0, 159.0, -27.0);
+    side.camera.look_at = DVec3::new(-0.25, -0.70, -0.67);
+    side.camera.up = DVec3::new(-0.25, 0.71, -0.65);
     scenes.push(("demo, second camera".to_owned(), side.clone()));
     side.camera.projection = Projection::Orthographic;
     scenes.push(("demo, orthographic".to_owned(), side));

@@ -1,6 +1,6 @@
 //! Random scenes with a fixed seed: what both Glint and POV-Ray can say.
 
-use glint::lanes::Vec3;
+use glam::DVec3;
 use glint::scene::{
     Camera, ColorPack, Light, LightObj, Object, Projection, Render, Scene, Shape, check,
 };
@@ -21,8 +21,8 @@ impl Dice {
         low + (high - low) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    fn vector(&mut self, low: f64, high: f64) -> Vec3<f64> {
-        Vec3::new(
+    fn vector(&mut self, low: f64, high: f64) -> DVec3 {
+        DVec3::new(
             self.real(low, high),
             self.real(low, high),
             self.real(low, high),
@@ -71,8 +71,8 @@ fn pack(dice: &mut Dice, reflective: bool) -> ColorPack {
     let share = dice.vector(0.2, 1.0);
     ColorPack {
         diffuse,
-        ambient: diffuse.filter(share),
-        specular: Vec3::splat(dice.real(0.0, 200.0)),
+        ambient: diffuse * share,
+        specular: DVec3::splat(dice.real(0.0, 200.0)),
         phong_exponent: dice.real(2.0, 120.0).round(),
         reflective,
     }
@@ -104,10 +104,10 @@ fn add_objects(scene: &mut Scene, dice: &mut Dice) {
         let (b, c) = (a + dice.vector(-40.0, 40.0), a + dice.vector(-40.0, 40.0));
         add(Shape::Triangle { a, b, c }, dice);
     }
-    let tilt = Vec3::new(dice.real(-0.2, 0.2), 1.0, dice.real(-0.2, 0.2));
+    let tilt = DVec3::new(dice.real(-0.2, 0.2), 1.0, dice.real(-0.2, 0.2));
     add(
         Shape::Plane {
-            point: Vec3::new(0.0, -60.0, 0.0),
+            point: DVec3::new(0.0, -60.0, 0.0),
             normal: tilt,
         },
         dice,
@@ -117,7 +117,7 @@ fn add_objects(scene: &mut Scene, dice: &mut Dice) {
 fn light(dice: &mut Dice, number: u64) -> Light {
     Light {
         name: format!("Light {}", number + 1),
-        position: Vec3::new(
+        position: DVec3::new(
             dice.real(-150.0, 150.0),
             dice.real(60.0, 200.0),
             dice.real(-50.0, 200.0),
@@ -132,7 +132,7 @@ fn light(dice: &mut Dice, number: u64) -> Light {
 }
 
 fn camera(dice: &mut Dice, seed: u64) -> Camera {
-    let position = Vec3::new(
+    let position = DVec3::new(
         dice.real(-80.0, 80.0),
         dice.real(-20.0, 120.0),
         dice.real(120.0, 180.0),
@@ -141,7 +141,7 @@ fn camera(dice: &mut Dice, seed: u64) -> Camera {
     Camera {
         position,
         look_at: target - position,
-        up: Vec3::new(dice.real(-0.3, 0.3), 1.0, 0.0),
+        up: DVec3::new(dice.real(-0.3, 0.3), 1.0, 0.0),
         projection: if seed.is_multiple_of(2) {
             Projection::Perspective
         } else {

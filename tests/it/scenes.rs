@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use glint::lanes::Vec3;
+use glam::DVec3;
 use glint::plan::Picture;
 use glint::scene::{Document, RayOffset, Sampling, Scene, SceneError, Shape, check};
 use proptest::prelude::*;
@@ -146,7 +146,7 @@ fn published_scenes_are_valid_and_saved_as_they_stand() {
 #[expect(clippy::too_many_lines, reason = "a table")]
 fn the_demo_has_every_number_of_the_report() {
     let demo = Scene::demo();
-    let vector = |[x, y, z]: [f64; 3]| Vec3::new(x, y, z);
+    let vector = |[x, y, z]: [f64; 3]| DVec3::new(x, y, z);
     let sphere = |center, radius| Shape::Sphere {
         center: vector(center),
         radius,
@@ -361,7 +361,7 @@ proptest! {
     #[test]
     fn any_scene_survives_its_file(seed in 0..1000_u64, x in prop::num::f64::NORMAL, y in -1e12..1e12_f64) {
         let mut scene = crate::random::scene(seed);
-        scene.camera.position = Vec3::new(x.clamp(-1e12, 1e12), y, -0.0);
+        scene.camera.position = DVec3::new(x.clamp(-1e12, 1e12), y, -0.0);
         let document = Document { header: "// seed\n".to_owned(), scene };
         let text = document.to_text().expect("text");
         let back = Document::from_text(&text).expect("valid");

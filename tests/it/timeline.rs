@@ -7,10 +7,10 @@ use std::sync::Arc;
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, Pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
+use glam::DVec3;
 use glint::animate::{CameraPath, Preset, shot};
 use glint::editor::{Action, Edit, Editor, Repeat, Time};
 use glint::image::render;
-use glint::lanes::Vec3;
 use glint::plan::Picture;
 use glint::scene::{Animation, Document, Interpolation, Key as SceneKey, Projection, Scene, Value};
 use glint::trace::Watch;
@@ -355,9 +355,9 @@ fn a_key_is_dragged_in_the_view() {
     assert_eq!(desk.editor().undo_label(), Some("Move key in the view"));
     let moved = after.position - before.position;
     let view = desk.scene().camera.basis().expect("a basis");
-    assert!(moved.dot(view.v) > 5.0, "up in the view: {moved:?}");
+    assert!(moved.dot(view.y_axis) > 5.0, "up in the view: {moved:?}");
     assert!(
-        moved.dot(view.w).abs() < 1e-6 * moved.length(),
+        moved.dot(view.z_axis).abs() < 1e-6 * moved.length(),
         "in its plane"
     );
     assert_eq!(after.look_at, before.look_at);
@@ -418,7 +418,7 @@ fn an_object_with_keys_moves_and_its_corners_do_not_drift() {
     let target = glint::scene::Target::ObjectPosition(scene.objects[index].name.clone());
     let own = scene.objects[index].shape.clone();
     let from = own.position();
-    let to = from + Vec3::new(0.1, 33.3, -7.7);
+    let to = from + DVec3::new(0.1, 33.3, -7.7);
     scene.animation = scene.animation.with_value(&target, 0.0, Value::Point(from));
     scene.animation = scene.animation.with_value(&target, 2.0, Value::Point(to));
     let animation = Box::new(scene.animation);

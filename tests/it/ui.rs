@@ -383,7 +383,7 @@ fn flying_is_per_second_and_one_step() {
     // Half a second at a quarter of the scene's extent (about 320) per second.
     assert!((20.0..80.0).contains(&flown), "{flown}");
     assert!(
-        end.look_at.x > start.look_at.unit().expect("a direction").x,
+        end.look_at.x > start.look_at.try_normalize().expect("a direction").x,
         "turned right"
     );
     assert_eq!(desk.editor().undo_label(), Some("Camera: move"));
@@ -651,7 +651,7 @@ fn a_scene_of_thousands_shows_only_the_rows_in_sight() {
             name: format!("Ball {n} with a name that is rather longer than the panel is wide"),
             color_pack: "pack 1".to_owned(),
             shape: Shape::Sphere {
-                center: glint::lanes::Vec3::new(f64::from(n), 0.0, 0.0),
+                center: glam::DVec3::new(f64::from(n), 0.0, 0.0),
                 radius: 0.4,
             },
             visible: n % 3 != 0,

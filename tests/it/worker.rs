@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use glam::DVec3;
 use glint::image::render;
 use glint::lab::Study;
-use glint::lanes::Vec3;
 use glint::plan::Picture;
 use glint::scene::{Object, Scene, Shape};
 use glint::trace::Watch;
@@ -63,7 +63,7 @@ fn wait_until(what: &str, mut is_true: impl FnMut() -> bool) {
 fn slow_scene() -> Arc<Scene> {
     let mut scene = Scene::demo();
     for n in 0..2000_u32 {
-        let center = Vec3::new(f64::from(n % 50) * 8.0, 3.0, f64::from(n / 50) * -8.0);
+        let center = DVec3::new(f64::from(n % 50) * 8.0, 3.0, f64::from(n / 50) * -8.0);
         scene.objects.push(Object {
             name: format!("Ball {n}"),
             color_pack: "sphere 1".to_owned(),

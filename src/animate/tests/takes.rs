@@ -11,7 +11,7 @@ fn take() -> Take {
     let mut time: f64 = 0.0;
     for n in 0..240_u32 {
         let share = time / 5.7;
-        let place = Vec3::new(
+        let place = DVec3::new(
             share * 90.0,
             (share * 5.0).sin() * 10.0,
             40.0 - share * 30.0,
@@ -108,7 +108,7 @@ fn the_tolerance_is_kept_through_pauses_and_kinks() {
             ..Orientation::default()
         };
         let camera = angles.apply(&Camera {
-            position: Vec3::new(x, 5.0, 0.0),
+            position: DVec3::new(x, 5.0, 0.0),
             ..Camera::default()
         });
         take.push(f64::from(n) / 60.0, &camera, angles);
@@ -162,7 +162,7 @@ fn a_changed_projection_is_a_cut_in_the_keys() {
         };
         let camera = Camera {
             projection,
-            ..camera(Vec3::new(f64::from(n), 0.0, 0.0), 0.0, 0.0)
+            ..camera(DVec3::new(f64::from(n), 0.0, 0.0), 0.0, 0.0)
         };
         take.push(f64::from(n) / 10.0, &camera, Orientation::of(&camera));
     }
@@ -185,7 +185,7 @@ fn constant_speed_is_constant_and_takes_as_long() {
         assert!((x - 40.0 * time).abs() < 0.5, "{x} at {time}");
     }
     // Turns alone have a speed too.
-    let here = Vec3::splat(0.0);
+    let here = DVec3::splat(0.0);
     let turns = [(0.0, 0.0), (1.0, 90.0), (9.0, 100.0)];
     let key = |&(time, yaw): &(f64, f64)| Key::new(time, camera(here, yaw, 0.0));
     let keys = Retime::ConstantSpeed.apply(&turns.iter().map(key).collect::<Vec<_>>());
@@ -227,7 +227,7 @@ fn paths_survive_their_texts() {
         assert!((was.value.look_at - is.value.look_at).length() < 1e-12);
     }
     let few = from_table("x,time, y,z\n1,0,2,3\n", &Camera::default()).expect("a table");
-    assert_eq!(few[0].value.position, Vec3::new(1.0, 2.0, 3.0));
+    assert_eq!(few[0].value.position, DVec3::new(1.0, 2.0, 3.0));
     let error = from_table("time,x,y,z\n0,1,2,3\n1,1,oops,3\n", &Camera::default());
     assert_eq!(
         error.expect_err("bad").to_string(),
@@ -246,7 +246,7 @@ fn tracks_move_lights_objects_and_the_ambience() {
         target,
         keys: vec![Key::new(1.0, values[0]), Key::new(3.0, values[1])],
     };
-    let (from, to) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(5.0, 2.0, -3.0));
+    let (from, to) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(5.0, 2.0, -3.0));
     scene.animation.tracks = vec![
         track(
             Target::AmbientIntensity,
@@ -272,10 +272,10 @@ fn tracks_move_lights_objects_and_the_ambience() {
     let half = shot(&scene, &path, 2.0);
     assert!((half.ambient_intensity - 0.3).abs() < 1e-12);
     assert!((half.lights[0].intensity - 0.5).abs() < 1e-12);
-    assert!((half.lights[0].position - Vec3::new(3.0, 2.0, 0.0)).length() < 1e-9);
+    assert!((half.lights[0].position - DVec3::new(3.0, 2.0, 0.0)).length() < 1e-9);
     let moved = &half.objects.last().expect("objects").shape;
     assert_eq!(moved.kind(), shape.kind());
-    assert!((moved.position() - Vec3::new(3.0, 2.0, 0.0)).length() < 1e-9);
+    assert!((moved.position() - DVec3::new(3.0, 2.0, 0.0)).length() < 1e-9);
     assert_eq!(
         shot(&scene, &path, 0.0).lights[0].position,
         from,

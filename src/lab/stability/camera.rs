@@ -1,8 +1,11 @@
 //! The basis of a camera that looks nearly straight up, and after many turns.
 
+use glam::{DMat3, DVec3};
+
 use super::{Axis, Map, Tries, scattered};
+
 use crate::lanes::Vec3;
-use crate::scene::{Basis, Camera, Orientation};
+use crate::scene::{Camera, Orientation};
 
 /// Angles from straight up, in degrees.
 const FROM_POLE: [f64; 8] = [45.0, 1.0, 0.1, 0.01, 1e-3, 1e-4, 1e-5, 0.0];
@@ -21,7 +24,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
         name: "degrees from the pole",
         values: FROM_POLE.to_vec(),
     };
-    let pole = |name: &'static str, is_default, right: fn(f64, f64) -> Option<Vec3<f64>>| {
+    let pole = |name: &'static str, is_default, right: fn(f64, f64) -> Option<DVec3>| {
         Map::measure(
             ("camera at the pole", "leans by more than a thousandth"),
             (name.to_owned(), is_default),
@@ -36,7 +39,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
         name: "frames",
         values: FRAMES.to_vec(),
     };
-    let drift = |name: &'static str, is_default, turned: fn(u64) -> Basis| {
+    let drift = |name: &'static str, is_default, turned: fn(u64) -> DMat3| {
         Map::measure(
             ("camera after turns", "is no orthonormal basis any more"),
             (name.to_owned(), is_default),
@@ -60,24 +63,24 @@ fn one() -> Axis {
 }
 
 /// Whether the right of the picture is not at right angles to the yaw.
-fn leans(number: u64, degrees: f64, right: fn(f64, f64) -> Option<Vec3<f64>>) -> bool {
+fn leans(number: u64, degrees: f64, right: fn(f64, f64) -> Option<DVec3>) -> bool {
     let yaw = (scattered(number, 0) * 2.0 - 1.0) * std::f64::consts::PI;
     let pitch = (90.0 - degrees).to_radians();
-    let level = Vec3::new(yaw.cos(), 0.0, yaw.sin());
+    let level = DVec3::new(yaw.cos(), 0.0, yaw.sin());
     right(yaw, pitch).is_none_or(|right| (right - level).length() > VISIBLE_ROLL)
 }
 
-fn by_angles(yaw: f64, pitch: f64) -> Option<Vec3<f64>> {
+fn by_angles(yaw: f64, pitch: f64) -> Option<DVec3> {
     let angles = Orientation {
         yaw,
         pitch,
         roll: 0.0,
     };
-    Some(angles.apply(&Camera::default()).basis()?.u)
+    Some(angles.apply(&Camera::default()).basis()?.x_axis)
 }
 
 /// u = up × w with the world's up, in single precision: what a first program does.
-fn by_fixed_up(yaw: f64, pitch: f64) -> Option<Vec3<f64>> {
+fn by_fixed_up(yaw: f64, pitch: f64) -> Option<DVec3> {
     let (yaw, pitch) = (yaw as f32, pitch as f32);
     let look = Vec3::new(
         yaw.sin() * pitch.cos(),
@@ -85,11 +88,11 @@ fn by_fixed_up(yaw: f64, pitch: f64) -> Option<Vec3<f64>> {
         -yaw.cos() * pitch.cos(),
     );
     let across = look.cross(Vec3::new(0.0, 1.0, 0.0));
-    Some(across.unit()?.to_f64())
+    Some(across.try_normalize()?.to_dvec3())
 }
 
-fn is_crooked(basis: &Basis) -> bool {
-    let Basis { u, v, w } = *basis;
+fn is_crooked(basis: &DMat3) -> bool {
+    let (u, v, w) = (basis.x_axis, basis.y_axis, basis.z_axis);
     let errors = [
         u.dot(u) - 1.0,
         v.dot(v) - 1.0,
@@ -115,23 +118,18 @@ fn step(frame: u64) -> (f64, f64) {
 }
 
 /// The angles are kept, and the basis is made from them.
-fn rebuilt(frames: u64) -> Basis {
+fn rebuilt(frames: u64) -> DMat3 {
     let mut angles = Orientation::default();
     for frame in 0..frames {
         let (yaw, pitch) = step(frame);
         angles = angles.turned(yaw, pitch);
     }
-    let broken = Vec3::splat(f64::NAN);
     let basis = angles.apply(&Camera::default()).basis();
-    basis.unwrap_or(Basis {
-        u: broken,
-        v: broken,
-        w: broken,
-    })
+    basis.unwrap_or(DMat3::NAN)
 }
 
 /// The basis itself is turned by small matrices, frame after frame.
-fn stepped(frames: u64) -> Basis {
+fn stepped(frames: u64) -> DMat3 {
     let mut basis = [
         Vec3::new(1.0_f32, 0.0, 0.0),
         Vec3::new(0.0, 1.0, 0.0),
@@ -147,6 +145,6 @@ fn stepped(frames: u64) -> Basis {
         };
         basis = basis.map(turned);
     }
-    let [u, v, w] = basis.map(Vec3::to_f64);
-    Basis { u, v, w }
+    let [u, v, w] = basis.map(Vec3::to_dvec3);
+    DMat3::from_cols(u, v, w)
 }

@@ -1,5 +1,7 @@
 //! Highlights of growing sharpness.
 
+use glam::DVec3;
+
 use super::{Axis, Map, Tries, scattered};
 use crate::lanes::{Exponent, Vec3};
 use crate::scene::{Choice as _, HighlightMethod};
@@ -44,17 +46,23 @@ fn fails(method: HighlightMethod, number: u64, p: f64) -> Option<bool> {
         HighlightMethod::Log1p => Exponent::Large(p),
     };
     let random = |stream| scattered(number, stream) * 2.0 - 1.0;
-    let normal = Vec3::new(random(0), random(1), random(2)).unit()?;
+    let normal = DVec3::new(random(0), random(1), random(2)).try_normalize()?;
     let aside = normal
-        .cross(Vec3::new(random(3), random(4), random(5)))
-        .unit()?;
+        .cross(DVec3::new(random(3), random(4), random(5)))
+        .try_normalize()?;
     // Within the highlight: where it has fallen to e^-3 at most.
     let off = (6.0 / p).sqrt().min(1.0) * scattered(number, 6);
     let half = normal + aside * off;
-    let (normal, half) = (Vec3::<f32>::from_f64(normal), Vec3::<f32>::from_f64(half));
+    let (normal, half) = (
+        Vec3::<f32>::from_dvec3(normal),
+        Vec3::<f32>::from_dvec3(half),
+    );
     let found = f64::from(exponent.highlight((), normal, half));
     // The truth belongs to the rounded numbers, made unit vectors exactly.
-    let (n, h) = (normal.to_f64().unit()?, half.to_f64().unit()?);
+    let (n, h) = (
+        normal.to_dvec3().try_normalize()?,
+        half.to_dvec3().try_normalize()?,
+    );
     let w = (n - h).dot(n - h) / 2.0;
     let truth = if n.dot(h) > 0.0 {
         (p * (-w).ln_1p()).exp()

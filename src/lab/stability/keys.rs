@@ -1,5 +1,7 @@
 //! Between keys of a flight: ways that leave the road, turns that lose their direction.
 
+use glam::DVec3;
+
 use super::{Axis, Map, Tries, scattered};
 use crate::animate::{CameraPath, motion_between};
 use crate::lanes::Vec3;
@@ -93,7 +95,7 @@ fn leaves_segments(stops: &[f64; 4], place: impl Fn(usize, f64) -> f64) -> bool 
 
 fn path_overshoots(stops: &[f64; 4]) -> bool {
     let key = |(n, &x): (usize, &f64)| {
-        let position = Vec3::new(x, 0.0, 0.0);
+        let position = DVec3::new(x, 0.0, 0.0);
         let camera = Camera {
             position,
             ..Camera::default()
@@ -123,11 +125,11 @@ fn uniform_overshoots(stops: &[f64; 4]) -> bool {
 }
 
 /// Whether steps along a turn are uneven or have no direction.
-fn is_uneven(looks: &[Option<Vec3<f64>>], angle: f64) -> bool {
+fn is_uneven(looks: &[Option<DVec3>], angle: f64) -> bool {
     let mean = angle / f64::from(PLACES);
     // Comparisons with what is no number are false: only what is shown to be right passes.
     let is_right =
-        |look: &Option<Vec3<f64>>| look.is_some_and(|look| (look.dot(look) - 1.0).abs() <= CROOKED);
+        |look: &Option<DVec3>| look.is_some_and(|look| (look.dot(look) - 1.0).abs() <= CROOKED);
     !looks.iter().all(is_right)
         || !looks.windows(2).all(|pair| match (pair[0], pair[1]) {
             (Some(a), Some(b)) => {
@@ -139,8 +141,8 @@ fn is_uneven(looks: &[Option<Vec3<f64>>], angle: f64) -> bool {
         })
 }
 
-fn look(yaw: f64) -> Vec3<f64> {
-    Vec3::new(yaw.sin(), 0.0, -yaw.cos())
+fn look(yaw: f64) -> DVec3 {
+    DVec3::new(yaw.sin(), 0.0, -yaw.cos())
 }
 
 fn path_loses_direction(yaw: f64, angle: f64) -> bool {
@@ -173,10 +175,10 @@ fn path_loses_direction(yaw: f64, angle: f64) -> bool {
 /// The straight way from one unit vector to the other, made a unit vector again.
 fn lerp_loses_direction(yaw: f64, angle: f64) -> bool {
     let (a, b) = (look(yaw), look(yaw + angle));
-    let (a, b) = (Vec3::<f32>::from_f64(a), Vec3::<f32>::from_f64(b));
+    let (a, b) = (Vec3::<f32>::from_dvec3(a), Vec3::<f32>::from_dvec3(b));
     let at = |n: u32| {
         let along = n as f32 / PLACES as f32;
-        (a + (b - a) * along).unit().map(Vec3::to_f64)
+        (a + (b - a) * along).try_normalize().map(Vec3::to_dvec3)
     };
     is_uneven(&(0..=PLACES).map(at).collect::<Vec<_>>(), angle)
 }
@@ -184,13 +186,13 @@ fn lerp_loses_direction(yaw: f64, angle: f64) -> bool {
 /// Shoemake, "Animating rotation with quaternion curves", SIGGRAPH 1985, for directions.
 fn slerp_loses_direction(yaw: f64, angle: f64) -> bool {
     let (a, b) = (look(yaw), look(yaw + angle));
-    let (a, b) = (Vec3::<f32>::from_f64(a), Vec3::<f32>::from_f64(b));
+    let (a, b) = (Vec3::<f32>::from_dvec3(a), Vec3::<f32>::from_dvec3(b));
     let whole = a.dot(b).acos();
     let at = |n: u32| {
         let along = n as f32 / PLACES as f32;
         let (out, into) = (((1.0 - along) * whole).sin(), (along * whole).sin());
         let sum = a * (out / whole.sin()) + b * (into / whole.sin());
-        Some(sum.to_f64())
+        Some(sum.to_dvec3())
     };
     is_uneven(&(0..=PLACES).map(at).collect::<Vec<_>>(), angle)
 }

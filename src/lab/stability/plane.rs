@@ -1,5 +1,7 @@
 //! Rays that meet a plane at grazing angles.
 
+use glam::DVec3;
+
 use super::{Axis, Map, Tries, scales, scattered};
 use crate::lanes::{Real as _, Vec3};
 use crate::plan::Plane;
@@ -30,26 +32,26 @@ pub fn map(effort: u32) -> Map {
 
 fn fails(number: u64, angle: f64, scale: f64) -> Option<bool> {
     let random = |stream| scattered(number, stream) * 2.0 - 1.0;
-    let normal = Vec3::new(random(0), random(1), random(2)).unit()?;
+    let normal = DVec3::new(random(0), random(1), random(2)).try_normalize()?;
     let along = normal
-        .cross(Vec3::new(random(3), random(4), random(5)))
-        .unit()?;
+        .cross(DVec3::new(random(3), random(4), random(5)))
+        .try_normalize()?;
     let (sine, cosine) = angle.to_radians().sin_cos();
     let direction = along * cosine - normal * sine;
     let plane = Plane {
-        normal: Vec3::<f32>::from_f64(normal),
+        normal: Vec3::<f32>::from_dvec3(normal),
         offset: (-scale * (1.0 + scattered(number, 6))) as f32,
         material: 0,
     };
     let ray = Ray {
-        origin: Vec3::<f32>::from_f64(along * (scale * random(7))),
-        direction: Vec3::from_f64(direction),
+        origin: Vec3::<f32>::from_dvec3(along * (scale * random(7))),
+        direction: Vec3::from_dvec3(direction),
     };
     let found = f64::from(meet_plane(&ray, &plane));
     let (n, o, d) = (
-        plane.normal.to_f64(),
-        ray.origin.to_f64(),
-        ray.direction.to_f64(),
+        plane.normal.to_dvec3(),
+        ray.origin.to_dvec3(),
+        ray.direction.to_dvec3(),
     );
     let truth = (f64::from(plane.offset) - n.dot(o)) / n.dot(d);
     // A ray that its own rounding has turned away from the plane was never to meet it.

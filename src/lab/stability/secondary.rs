@@ -2,13 +2,13 @@
 //! a ball and a card on a floor, at every scale and place; the ball a sphere, or a mesh.
 
 use super::{Map, Tries, places, scales};
-use crate::lanes::Vec3;
 use crate::plan::Picture;
 use crate::scene::{
     Camera, Choice as _, ColorPack, Light, Methods, Object, Precision, RayOffset, Sampling, Scene,
     Shape,
 };
 use crate::trace::{Pass, Tracer, Watch};
+use glam::DVec3;
 
 /// Side of the pictures in pixels.
 const SIDE: u32 = 48;
@@ -96,11 +96,12 @@ fn is_inner(lit: &[bool], place: usize) -> bool {
 
 /// A floor, a ball on it, a thin card beside it, and one light; so large, so many sizes away.
 fn scene(ball: Ball, away: f64, scale: f64) -> Scene {
-    let place =
-        |x: f64, y: f64, z: f64| (Vec3::new(x, y, z) + Vec3::new(0.6, -0.64, 0.48) * away) * scale;
+    let place = |x: f64, y: f64, z: f64| {
+        (DVec3::new(x, y, z) + DVec3::new(0.6, -0.64, 0.48) * away) * scale
+    };
     let mut scene = Scene::empty();
-    let white = Vec3::splat(255.0);
-    let black = Vec3::splat(0.0);
+    let white = DVec3::splat(255.0);
+    let black = DVec3::splat(0.0);
     let chalk = ColorPack {
         ambient: black,
         diffuse: white,
@@ -121,7 +122,7 @@ fn scene(ball: Ball, away: f64, scale: f64) -> Scene {
             "Floor",
             Shape::Plane {
                 point: place(0.0, 0.0, 0.0),
-                normal: Vec3::new(0.0, 1.0, 0.0),
+                normal: DVec3::new(0.0, 1.0, 0.0),
             },
         ),
         object(
@@ -143,7 +144,7 @@ fn scene(ball: Ball, away: f64, scale: f64) -> Scene {
         )),
         Ball::Mesh => {
             for (n, face) in super::triangle::ball().into_iter().enumerate() {
-                let corner = |v: Vec3<f64>| place(v.x * 0.5, v.y * 0.5 + 0.5, v.z * 0.5);
+                let corner = |v: DVec3| place(v.x * 0.5, v.y * 0.5 + 0.5, v.z * 0.5);
                 let [a, b, c] = face.map(corner);
                 let name = format!("Face {n}");
                 scene
@@ -161,8 +162,8 @@ fn scene(ball: Ball, away: f64, scale: f64) -> Scene {
     }];
     scene.camera = Camera {
         position: place(0.4, 1.3, 2.6),
-        look_at: Vec3::new(0.0, -0.4, -1.0),
-        up: Vec3::new(0.0, 1.0, 0.0),
+        look_at: DVec3::new(0.0, -0.4, -1.0),
+        up: DVec3::new(0.0, 1.0, 0.0),
         projection_distance: 1.0,
         ..Camera::default()
     };

@@ -1,5 +1,7 @@
 //! Rays past spheres far away.
 
+use glam::DVec3;
+
 use super::{Axis, Map, Tries, scales, scattered};
 use crate::lanes::Vec3;
 use crate::plan::{Sphere, SphereMethod};
@@ -41,8 +43,11 @@ pub fn maps(effort: u32) -> Vec<Map> {
 fn fails(method: SphereMethod, number: u64, distance: f64, scale: f64) -> bool {
     let turn = |stream| scattered(number, stream) * std::f64::consts::TAU;
     let (a, b, c) = (turn(0), turn(1), turn(2));
-    let towards = Vec3::new(a.cos() * b.cos(), b.sin(), a.sin() * b.cos());
-    let Some(aside) = towards.cross(Vec3::new(c.cos(), 0.3, c.sin())).unit() else {
+    let towards = DVec3::new(a.cos() * b.cos(), b.sin(), a.sin() * b.cos());
+    let Some(aside) = towards
+        .cross(DVec3::new(c.cos(), 0.3, c.sin()))
+        .try_normalize()
+    else {
         return false;
     };
     let is_hit = number.is_multiple_of(2);
@@ -53,13 +58,13 @@ fn fails(method: SphereMethod, number: u64, distance: f64, scale: f64) -> bool {
     } * if is_hit { scattered(number, 4) } else { 1.0 };
     let center = (towards * distance + aside * beside) * scale;
     let sphere = Sphere {
-        center: Vec3::<f32>::from_f64(center),
+        center: Vec3::<f32>::from_dvec3(center),
         radius: scale as f32,
         material: 0,
     };
     let ray = Ray {
         origin: Vec3::splat(0.0),
-        direction: Vec3::from_f64(towards),
+        direction: Vec3::from_dvec3(towards),
     };
     meet_sphere(method, &ray, &sphere).is_finite() != is_hit
 }

@@ -1,5 +1,7 @@
 //! Rays from inside a closed mesh, aimed at its edges and corners: each must hit something.
 
+use glam::DVec3;
+
 use super::{Map, Tries, places, scales, scattered};
 use crate::lanes::Vec3;
 use crate::plan::{Triangle, TriangleMethod};
@@ -10,9 +12,9 @@ use crate::trace::probe::meet_triangle;
 /// Tries in each cell for a first look.
 const TRIES: u64 = 300;
 /// Which way the mesh is away from the origin.
-const AWAY: Vec3<f64> = Vec3::new(0.6, -0.64, 0.48);
+const AWAY: DVec3 = DVec3::new(0.6, -0.64, 0.48);
 /// A place inside, off the middle.
-const INSIDE: Vec3<f64> = Vec3::new(0.11, -0.07, 0.05);
+const INSIDE: DVec3 = DVec3::new(0.11, -0.07, 0.05);
 
 /// One map for each method.
 pub fn maps(effort: u32) -> Vec<Map> {
@@ -29,7 +31,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
             |away, scale| {
                 let mesh: Vec<Triangle<f32>> =
                     ball.iter().map(|&face| placed(face, away, scale)).collect();
-                let origin = Vec3::<f32>::from_f64((INSIDE + AWAY * away) * scale);
+                let origin = Vec3::<f32>::from_dvec3((INSIDE + AWAY * away) * scale);
                 let tries = (0..TRIES * u64::from(effort))
                     .filter_map(|n| leaks(way.value, &mesh, origin, n));
                 Tries::count(tries)
@@ -53,22 +55,22 @@ fn leaks(
     } else {
         scattered(number, 0) as f32
     };
-    let direction = (a + (b - a) * along - origin).to_f64().unit()?;
+    let direction = (a + (b - a) * along - origin).to_dvec3().try_normalize()?;
     let ray = Ray {
         origin,
-        direction: Vec3::from_f64(direction),
+        direction: Vec3::from_dvec3(direction),
     };
     let is_hit = |face: &Triangle<f32>| meet_triangle(method, &ray, face).is_finite();
     Some(!mesh.iter().any(is_hit))
 }
 
-fn placed(corners: [Vec3<f64>; 3], away: f64, scale: f64) -> Triangle<f32> {
-    let place = |corner: Vec3<f64>| Vec3::<f32>::from_f64((corner + AWAY * away) * scale);
+fn placed(corners: [DVec3; 3], away: f64, scale: f64) -> Triangle<f32> {
+    let place = |corner: DVec3| Vec3::<f32>::from_dvec3((corner + AWAY * away) * scale);
     let [a, b, c] = corners.map(place);
-    let normal = (c - a).to_f64().cross((b - a).to_f64());
+    let normal = (c - a).to_dvec3().cross((b - a).to_dvec3());
     Triangle {
         corners: [a, b, c],
-        normal: Vec3::from_f64(normal.unit().unwrap_or(normal)),
+        normal: Vec3::from_dvec3(normal.try_normalize().unwrap_or(normal)),
         in_mesh: true,
         thickness: 1.0,
         material: 0,
@@ -76,21 +78,21 @@ fn placed(corners: [Vec3<f64>; 3], away: f64, scale: f64) -> Triangle<f32> {
 }
 
 /// An octahedron whose faces are split twice and moved onto the ball around them.
-pub(super) fn ball() -> Vec<[Vec3<f64>; 3]> {
-    let onto = |v: Vec3<f64>| v * (1.0 / v.length());
+pub(super) fn ball() -> Vec<[DVec3; 3]> {
+    let onto = |v: DVec3| v * (1.0 / v.length());
     let mut faces = Vec::new();
     for x in [-1.0, 1.0] {
         for y in [-1.0, 1.0] {
             for z in [-1.0, 1.0] {
                 // Turned, so that no edge lies along an axis.
-                let turn = |v: Vec3<f64>| {
+                let turn = |v: DVec3| {
                     let (x, y) = (0.8 * v.x - 0.6 * v.y, 0.6 * v.x + 0.8 * v.y);
-                    Vec3::new(x, y * 0.96 - v.z * 0.28, y * 0.28 + v.z * 0.96)
+                    DVec3::new(x, y * 0.96 - v.z * 0.28, y * 0.28 + v.z * 0.96)
                 };
                 faces.push([
-                    turn(Vec3::new(x, 0.0, 0.0)),
-                    turn(Vec3::new(0.0, y, 0.0)),
-                    turn(Vec3::new(0.0, 0.0, z)),
+                    turn(DVec3::new(x, 0.0, 0.0)),
+                    turn(DVec3::new(0.0, y, 0.0)),
+                    turn(DVec3::new(0.0, 0.0, z)),
                 ]);
             }
         }

@@ -5,10 +5,11 @@ mod animation;
 
 use std::collections::HashSet;
 
+use glam::DVec3;
+
 use super::locate::Step;
 use super::notation::format_number;
 use super::{Camera, LightObj, MAX_REFLECTIONS, MAX_SIDE, Render, Scene, Shape, VERSION};
-use crate::lanes::Vec3;
 
 /// Largest coordinate or length, in world units: f32 squares of it are still finite.
 const MAX_COORDINATE: f64 = 1e12;
@@ -295,21 +296,21 @@ impl At {
         ))
     }
 
-    fn point(&self, value: Vec3<f64>) -> Check {
+    fn point(&self, value: DVec3) -> Check {
         self.finite(&value.to_array())?;
-        if value.max_abs() <= MAX_COORDINATE {
+        if value.abs().max_element() <= MAX_COORDINATE {
             return Ok(());
         }
         self.refuse(format!(
             "{} must lie within 1e12 of the origin, found {}",
             self.name(),
-            format_number(value.max_abs())
+            format_number(value.abs().max_element())
         ))
     }
 
-    fn direction(&self, value: Vec3<f64>) -> Check {
+    fn direction(&self, value: DVec3) -> Check {
         self.point(value)?;
-        match value.unit() {
+        match value.try_normalize() {
             Some(_) => Ok(()),
             None => self.refuse(format!(
                 "{} must have a direction, found (0, 0, 0)",
@@ -318,7 +319,7 @@ impl At {
         }
     }
 
-    fn color(&self, value: Vec3<f64>) -> Check {
+    fn color(&self, value: DVec3) -> Check {
         self.finite(&value.to_array())?;
         match value
             .to_array()

@@ -203,19 +203,21 @@ pub fn refine<L: Lane>(
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
     use crate::scene::Choice as _;
     use proptest::prelude::*;
 
     fn triangle(a: Vec3<f32>, b: Vec3<f32>, c: Vec3<f32>) -> Triangle<f32> {
         let normal = (c - a)
-            .to_f64()
-            .cross((b - a).to_f64())
-            .unit()
+            .to_dvec3()
+            .cross((b - a).to_dvec3())
+            .try_normalize()
             .expect("has area");
         Triangle {
             corners: [a, b, c],
-            normal: Vec3::from_f64(normal),
+            normal: Vec3::from_dvec3(normal),
             in_mesh: true,
             thickness: 1.0,
             material: 0,
@@ -225,8 +227,8 @@ mod tests {
     /// A closed ball of triangles around the origin: an octahedron, each face split `depth` times
     /// in four.
     fn ball(depth: u32) -> Vec<Triangle<f32>> {
-        let unit = |v: Vec3<f64>| v.unit().expect("not zero");
-        let axis = |x, y, z| Vec3::new(x, y, z);
+        let unit = |v: DVec3| v.try_normalize().expect("not zero");
+        let axis = |x, y, z| DVec3::new(x, y, z);
         let mut faces = Vec::new();
         for x in [-1.0, 1.0] {
             for y in [-1.0, 1.0] {
@@ -245,9 +247,9 @@ mod tests {
                 .collect();
         }
         // A turn and a stretch, so that no plane of the mesh lies along an axis.
-        let place = |v: Vec3<f64>| {
+        let place = |v: DVec3| {
             let (x, y) = (0.8 * v.x - 0.6 * v.y, 0.6 * v.x + 0.8 * v.y);
-            Vec3::from_f64(Vec3::new(
+            Vec3::from_dvec3(DVec3::new(
                 x * 1.3,
                 y * 0.96 - v.z * 0.28,
                 y * 0.28 + v.z * 0.96,
@@ -279,12 +281,12 @@ mod tests {
                     (i as f32 * 0.618_034).fract()
                 };
                 let target = (a + (b - a) * s - origin)
-                    .to_f64()
-                    .unit()
+                    .to_dvec3()
+                    .try_normalize()
                     .expect("not at the target");
                 let ray = Ray {
                     origin,
-                    direction: Vec3::from_f64(target),
+                    direction: Vec3::from_dvec3(target),
                 };
                 let shear = Shear::new((), ray.direction);
                 !mesh
@@ -315,8 +317,8 @@ mod tests {
     fn nothing_leaks_in_millions_of_rays_at_any_scale_and_place() {
         for scale in [1e-4, 1.0, 1e4] {
             for away in [0.0, 1e2, 1e4, 1e6] {
-                let by = Vec3::new(0.6, -0.64, 0.48) * (scale * away);
-                let place = |v: Vec3<f32>| Vec3::from_f64(v.to_f64() * scale + by);
+                let by = DVec3::new(0.6, -0.64, 0.48) * (scale * away);
+                let place = |v: Vec3<f32>| Vec3::from_dvec3(v.to_dvec3() * scale + by);
                 let mesh: Vec<_> = ball(2)
                     .iter()
                     .map(|t| {
@@ -370,9 +372,9 @@ mod tests {
             let t = triangle(a, b, c);
             let target = a + (b - a) * u + (c - a) * v;
             let origin = Vec3::from(origin);
-            let direction = (target - origin).to_f64().unit();
-            prop_assume!(direction.is_some_and(|d| d.dot(t.normal.to_f64()).abs() > 0.05));
-            let ray = Ray { origin, direction: Vec3::from_f64(direction.expect("assumed")) };
+            let direction = (target - origin).to_dvec3().try_normalize();
+            prop_assume!(direction.is_some_and(|d| d.dot(t.normal.to_dvec3()).abs() > 0.05));
+            let ray = Ray { origin, direction: Vec3::from_dvec3(direction.expect("assumed")) };
             let exact = (target - origin).length();
             let shear = Shear::new((), ray.direction);
             for way in TriangleMethod::ALL {

@@ -2,14 +2,15 @@
 
 use egui::Ui;
 
+use glam::DVec3;
+
 use super::title_field;
 use crate::editor::{Edit, Item, Selection};
-use crate::lanes::Vec3;
 use crate::scene::{ColorPack, Light, LightObj, Object, Scene, Shape};
 use crate::ui::rows::{Field, Rows, coordinate, fraction};
 use crate::ui::{Out, icons};
 
-const ORIGIN: Vec3<f64> = Vec3::new(0.0, 0.0, 0.0);
+const ORIGIN: DVec3 = DVec3::new(0.0, 0.0, 0.0);
 
 /// A light and its marker.
 pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut Out) {
@@ -142,7 +143,7 @@ fn shape_rows(rows: &mut Rows, shape: &mut Shape) {
                     "normal",
                     "Direction across the plane; its length does not matter",
                 ),
-                Vec3::new(0.0, 1.0, 0.0),
+                DVec3::new(0.0, 1.0, 0.0),
                 normal,
             );
         }

@@ -105,7 +105,7 @@ fn way_rows(rows: &mut Rows, editor: &Editor, key: &mut Key<Camera>) {
 }
 
 /// The middle of what is selected, or of everything.
-pub fn target(editor: &Editor) -> crate::lanes::Vec3<f64> {
+pub fn target(editor: &Editor) -> glam::DVec3 {
     use crate::editor::{Item, Kind, Selection};
     let scene = editor.shown();
     let selected = match editor.selection {
@@ -129,9 +129,7 @@ pub fn target(editor: &Editor) -> crate::lanes::Vec3<f64> {
     let all = all.filter_map(|object| object.shape.bounds());
     let all = all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
     let bounds = selected.or(all);
-    bounds.map_or(crate::lanes::Vec3::splat(0.0), |(low, high)| {
-        (low + high) * 0.5
-    })
+    bounds.map_or(glam::DVec3::splat(0.0), |(low, high)| (low + high) * 0.5)
 }
 
 fn buttons(ui: &mut Ui, editor: &Editor, out: &mut Out) {

@@ -2,9 +2,10 @@
 
 use egui::Ui;
 
+use glam::DVec3;
+
 use super::title;
 use crate::editor::Edit;
-use crate::lanes::Vec3;
 use crate::scene::{Choice, MAX_REFLECTIONS, MAX_SIDE, Render, Scene};
 use crate::ui::rows::{Field, Rows, fraction};
 use crate::ui::{Out, icons};
@@ -27,7 +28,7 @@ pub fn show(ui: &mut Ui, scene: &Scene, out: &mut Out) {
     rows.color(
         "background",
         "Colour of a ray that hits nothing, 0–255",
-        Vec3::new(0.0, 0.0, 0.0),
+        DVec3::new(0.0, 0.0, 0.0),
         &mut background,
     );
     rows.toggle(

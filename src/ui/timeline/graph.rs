@@ -145,7 +145,7 @@ fn steps(animation: &Animation, path: &CameraPath) -> Vec<Step> {
     let far = animation
         .keys
         .iter()
-        .map(|key| key.value.position.max_abs());
+        .map(|key| key.value.position.abs().max_element());
     let noise = far.fold(0.0, f64::max) * NOISE;
     let per_second = fps / stride as f64;
     let step = |place: usize| {
@@ -183,12 +183,12 @@ fn steps(animation: &Animation, path: &CameraPath) -> Vec<Step> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::Vec3;
+    use glam::DVec3;
 
     fn flight(places: &[(f64, f64)]) -> Animation {
         let key = |&(time, x): &(f64, f64)| {
             let camera = Camera {
-                position: Vec3::new(x, 0.0, 0.0),
+                position: DVec3::new(x, 0.0, 0.0),
                 ..Camera::default()
             };
             let mut key = Key::new(time, camera);

@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 
 use egui::{Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
+use glam::DVec3;
+
 use crate::editor::{Edit, Editor, Time};
-use crate::lanes::Vec3;
 use crate::scene::{Camera, Framing, Projection};
 use crate::trace::sight::Sight;
 use crate::ui::Out;
@@ -27,9 +28,9 @@ const HIDDEN: f32 = 0.22;
 pub struct Overlay {
     made_for: Option<(u64, u64)>,
     /// Each tick in world space, and whether nothing stands before it.
-    ticks: Vec<(Vec3<f64>, bool)>,
+    ticks: Vec<(DVec3, bool)>,
     /// The flight as it was recorded, for how far the keys are off it.
-    recorded: Vec<Vec3<f64>>,
+    recorded: Vec<DVec3>,
     /// The key that is dragged, and how deep it is in the view.
     dragged: Option<(usize, f64)>,
 }
@@ -41,13 +42,13 @@ struct Lens {
 }
 
 impl Lens {
-    fn place(&self, point: Vec3<f64>) -> Option<Pos2> {
+    fn place(&self, point: DVec3) -> Option<Pos2> {
         let [x, y] = self.framing.project(point)?;
         let height = self.view.height();
         Some(self.view.center() + vec2(x as f32 * height, -y as f32 * height))
     }
 
-    fn ray(&self, at: Pos2) -> (Vec3<f64>, Vec3<f64>) {
+    fn ray(&self, at: Pos2) -> (DVec3, DVec3) {
         let off = (at - self.view.center()) / self.view.height();
         self.framing.ray([f64::from(off.x), f64::from(-off.y)])
     }
@@ -103,7 +104,7 @@ impl Overlay {
         let frames = (1..=animation.frame_count()).step_by(stride);
         let path = editor.path_of_camera();
         let places = frames.filter_map(|frame| path.at(animation.time_of(frame)));
-        let places: Vec<Vec3<f64>> = places.map(|camera| camera.position).collect();
+        let places: Vec<DVec3> = places.map(|camera| camera.position).collect();
         let samples = animation
             .take
             .as_ref()
@@ -121,7 +122,7 @@ impl Overlay {
         } else {
             Sight::default()
         };
-        let is_clear = |point: Vec3<f64>| {
+        let is_clear = |point: DVec3| {
             let from = lens.framing.project(point).map(|at| lens.framing.ray(at).0);
             from.is_some_and(|from| sight.is_clear(from, point))
         };
