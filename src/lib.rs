@@ -25,11 +25,11 @@
 
 // The blank lines keep the formatter from sorting what is in order of dependence.
 
-pub mod lanes;
-
 pub mod scene;
 
 pub mod animate;
+
+pub mod simd;
 
 pub mod plan;
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use glint::cli::{Asked, fail, picture_instead_of_window};
+use glint::cli::{CliAction, fail, picture_instead_of_window};
 use glint::export::save_image;
 use glint::image::Image;
 use glint::ui::NoWindow;
@@ -11,10 +11,10 @@ use glint::{cli, ui};
 
 fn main() -> ExitCode {
     match cli::run(std::env::args_os()) {
-        Asked::Done(code) => code,
-        Asked::Chart { study, path } => save(&ui::chart_picture(&study), &path),
-        Asked::Stability { maps, path } => save(&ui::stability_picture(&maps), &path),
-        Asked::Editor {
+        CliAction::Done(code) => code,
+        CliAction::Chart { study, path } => save(&ui::chart_picture(&study), &path),
+        CliAction::Stability { maps, path } => save(&ui::stability_picture(&maps), &path),
+        CliAction::Editor {
             scene,
             screenshot,
             exports,

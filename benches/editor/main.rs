@@ -17,9 +17,9 @@ use divan::Bencher;
 use egui::{Event, PointerButton, pos2};
 use egui_kittest::Harness;
 use glint::image::{Image, render_into};
-use glint::plan::{Picture, Sampling};
+use glint::plan::{RenderRequest, Sampling};
 use glint::scene::Scene;
-use glint::trace::{Threads, Watch};
+use glint::trace::{RenderControl, Threads};
 use glint::ui::{App, Setup};
 use glint::worker::{BUDGET, Frame, LiveJob, Pace, Worker};
 
@@ -33,10 +33,10 @@ const SIDE: u32 = 1024;
 #[divan::bench(sample_count = 100, sample_size = 1)]
 fn plain_frame(bencher: Bencher) {
     let threads = Threads::new(None).expect("threads");
-    let (scene, picture) = (Scene::demo(), Picture::sized(SIDE, SIDE));
+    let (scene, picture) = (Scene::demo(), RenderRequest::sized(SIDE, SIDE));
     let mut image = Image::default();
     bencher.bench_local(|| {
-        threads.run(|| render_into(&mut image, &scene, &picture, &Watch::default()))
+        threads.run(|| render_into(&mut image, &scene, &picture, &RenderControl::default()))
     });
 }
 
@@ -58,9 +58,9 @@ fn published(bencher: Bencher) {
         worker.submit(LiveJob {
             revision: revision.get(),
             scene: Arc::new(scene),
-            picture: Picture {
+            picture: RenderRequest {
                 sampling: Sampling::ADAPTIVE,
-                ..Picture::sized(SIDE, SIDE)
+                ..RenderRequest::sized(SIDE, SIDE)
             },
             pace: Pace::Within(BUDGET),
         });
@@ -99,7 +99,7 @@ fn wait(worker: &Worker, woken: &Receiver<()>, revision: u64) -> Frame {
 /// up and sent on, everything is laid out, the next picture is asked for.
 #[divan::bench(sample_count = 100, sample_size = 1)]
 fn window_while_dragging(bencher: Bencher) {
-    let desk = RefCell::new(Desk::new());
+    let desk = RefCell::new(EditorHarness::new());
     desk.borrow_mut().press();
     bencher
         .with_inputs(|| desk.borrow_mut().drag())
@@ -109,17 +109,17 @@ fn window_while_dragging(bencher: Bencher) {
 /// One frame of the window in which nothing has happened.
 #[divan::bench(sample_count = 100, sample_size = 1)]
 fn window_at_rest(bencher: Bencher) {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     bencher.bench_local(|| desk.frame());
 }
 
-struct Desk {
+struct EditorHarness {
     window: Harness<'static, App>,
     x: f32,
     revision: u64,
 }
 
-impl Desk {
+impl EditorHarness {
     fn new() -> Self {
         let setup = Setup {
             data_folder: None,

@@ -13,7 +13,7 @@ use divan::counter::ItemsCount;
 use glint::export::{Pattern, Sequence};
 use glint::image::Format;
 use glint::scene::{Document, Sampling};
-use glint::trace::{Threads, Watch};
+use glint::trace::{RenderControl, Threads};
 use glint::worker::{ExportStep, Exporting};
 
 const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
@@ -36,7 +36,8 @@ fn flight(bencher: Bencher, sampling: Sampling, format: Format) {
             let sequence =
                 Sequence::new(Arc::clone(&scene), None, Pattern::default(), format, frames);
             let mut exporting = Exporting::new(sequence.expect("frames")).expect("a folder");
-            threads.run(|| while let ExportStep::Going = exporting.step(&Watch::default()) {});
+            threads
+                .run(|| while let ExportStep::Going = exporting.step(&RenderControl::default()) {});
             assert_eq!(exporting.finish().expect("written").written as u64, count);
             folder
         });

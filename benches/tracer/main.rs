@@ -12,10 +12,10 @@ mod plain;
 use divan::{Bencher, black_box};
 use glam::DVec3;
 use glint::image::{Image, render, render_into};
-use glint::lanes::Level;
-use glint::plan::{Picture, Precision, Sampling};
+use glint::plan::{Precision, RenderRequest, Sampling};
 use glint::scene::{Object, Scene, Shape};
-use glint::trace::{Threads, Watch};
+use glint::simd::Level;
+use glint::trace::{RenderControl, Threads};
 
 fn main() {
     agree();
@@ -26,8 +26,12 @@ fn main() {
 fn agree() {
     let scene = Scene::demo();
     let plain = plain::render(&scene, 256, 256);
-    let (ours, _) =
-        render(&scene, &Picture::sized(256, 256), &Watch::default()).expect("not stopped");
+    let (ours, _) = render(
+        &scene,
+        &RenderRequest::sized(256, 256),
+        &RenderControl::default(),
+    )
+    .expect("not stopped");
     let differ = plain.pixels.iter().zip(&ours.pixels);
     let differ = differ
         .filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 1))
@@ -38,12 +42,12 @@ fn agree() {
     );
 }
 
-fn trace(bencher: Bencher, scene: &Scene, picture: Picture, threads: usize) {
+fn trace(bencher: Bencher, scene: &Scene, picture: RenderRequest, threads: usize) {
     let threads = Threads::new(Some(threads)).expect("threads");
     // Over the last picture, as the window does.
     let mut image = Image::default();
     bencher.bench_local(|| {
-        let watch = Watch::default();
+        let watch = RenderControl::default();
         threads.run(|| render_into(&mut image, scene, &picture, &watch))
     });
 }
@@ -56,23 +60,28 @@ fn demo_1024_plain(bencher: Bencher) {
 
 #[divan::bench(args = [1, 2], sample_count = 50)]
 fn demo_1024_threads(bencher: Bencher, threads: usize) {
-    trace(bencher, &Scene::demo(), Picture::sized(1024, 1024), threads);
+    trace(
+        bencher,
+        &Scene::demo(),
+        RenderRequest::sized(1024, 1024),
+        threads,
+    );
 }
 
 #[divan::bench(args = [1, 2], sample_count = 50)]
 fn demo_1024_double_threads(bencher: Bencher, threads: usize) {
-    let picture = Picture {
+    let picture = RenderRequest {
         precision: Precision::Double,
-        ..Picture::sized(1024, 1024)
+        ..RenderRequest::sized(1024, 1024)
     };
     trace(bencher, &Scene::demo(), picture, threads);
 }
 
 #[divan::bench(args = Level::available().into_iter().map(|level| level.name), sample_count = 20)]
 fn demo_1024_lanes(bencher: Bencher, name: &str) {
-    let picture = Picture {
+    let picture = RenderRequest {
         level: Level::named(name),
-        ..Picture::sized(1024, 1024)
+        ..RenderRequest::sized(1024, 1024)
     };
     trace(bencher, &Scene::demo(), picture, 2);
 }
@@ -80,19 +89,19 @@ fn demo_1024_lanes(bencher: Bencher, name: &str) {
 /// With clean edges: adaptive, and the plain grid that costs about as many rays per edge pixel.
 #[divan::bench(args = ["adaptive", "grid 4"], sample_count = 20)]
 fn demo_1024_antialias(bencher: Bencher, sampling: &str) {
-    let picture = Picture {
+    let picture = RenderRequest {
         sampling: match sampling {
             "adaptive" => Sampling::ADAPTIVE,
             _ => Sampling::Grid(4),
         },
-        ..Picture::sized(1024, 1024)
+        ..RenderRequest::sized(1024, 1024)
     };
     trace(bencher, &Scene::demo(), picture, 2);
 }
 
 #[divan::bench(sample_count = 20)]
 fn demo_3840_2160(bencher: Bencher) {
-    trace(bencher, &Scene::demo(), Picture::sized(3840, 2160), 2);
+    trace(bencher, &Scene::demo(), RenderRequest::sized(3840, 2160), 2);
 }
 
 #[divan::bench(args = [10, 100, 1000, 10_000], sample_count = 10)]
@@ -113,5 +122,5 @@ fn spheres_512(bencher: Bencher, count: u32) {
             visible: true,
         });
     }
-    trace(bencher, &scene, Picture::sized(512, 512), 2);
+    trace(bencher, &scene, RenderRequest::sized(512, 512), 2);
 }

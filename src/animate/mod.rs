@@ -1,26 +1,26 @@
 //! From keys and a time to a scene that stands still: interpolation, takes and their keys, timing,
 //! ready-made flights.
 //!
-//! Positions follow centripetal splines ([`Route`]) at a pace that is monotone in time ([`Curve`]);
+//! Positions follow centripetal splines ([`ArcLengthSpline`]) at a pace that is monotone in time ([`Curve`]);
 //! directions are yaw, pitch and roll, turned the shorter way. At the time of a key, everything is
 //! exactly what the key says.
 
+mod arc_length_spline;
 mod curve;
 mod path;
 mod pose;
 mod presets;
 mod retime;
-mod route;
 mod simplify;
-mod steady;
+mod smoothing;
 mod table;
 
+pub use arc_length_spline::ArcLengthSpline;
 pub use curve::{Closing, Curve};
 pub use path::CameraPath;
 pub use pose::{Motion, motion_between, pose, shot};
 pub use presets::Preset;
 pub use retime::{Retime, paused_seconds};
-pub use route::Route;
 pub use simplify::{Seen, Simplified, deviation, simplify, worst_off};
 pub use table::{TableError, from_table, from_text, to_table, to_text};
 

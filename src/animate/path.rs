@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-use super::{Closing, Curve, Route};
+use super::{ArcLengthSpline, Closing, Curve};
 use crate::scene::{Camera, Easing, Interpolation, Key, Orientation};
 
 /// Keys, ready to be asked for the camera at any time.
@@ -22,7 +22,7 @@ pub struct CameraPath {
 /// Smooth segments one after the other.
 #[derive(Clone, Debug)]
 struct Run {
-    route: Route,
+    route: ArcLengthSpline,
     /// Length over time.
     pace: Curve,
     yaw: Curve,
@@ -76,7 +76,7 @@ impl CameraPath {
         let lens =
             |of: fn(&Camera) -> f64| curve(keys.iter().map(|key| of(&key.value).ln()).collect());
         let points: Vec<DVec3> = keys.iter().map(|key| key.value.position).collect();
-        let route = Route::new(&points, closing);
+        let route = ArcLengthSpline::new(&points, closing);
         Run {
             pace: curve(route.reached().to_vec()),
             route,
@@ -182,7 +182,7 @@ pub(super) fn eased(easing: Easing, along: f64) -> f64 {
     match easing {
         Easing::Even => along,
         Easing::In => along * along,
-        Easing::Out => along * (2.0 - along),
+        Easing::UiRequests => along * (2.0 - along),
         Easing::InOut => along * along * (3.0 - 2.0 * along),
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::path::{eased, orbit};
-use super::{CameraPath, Closing, Curve, Route};
+use super::{ArcLengthSpline, CameraPath, Closing, Curve};
 use crate::scene::{Camera, Interpolation, Key, Orientation, Scene, Value};
 
 /// The scene as it is at `time` in seconds, seen by its own camera: every track has set its value.
@@ -58,7 +58,7 @@ fn value_at(keys: &[Key<Value>], time: f64) -> Option<Value> {
             let (run, place) = run_around(keys, i);
             let times = run.iter().map(|key| key.time).collect();
             let points: Vec<DVec3> = run.iter().map(|key| point(key.value)).collect();
-            let route = Route::new(&points, Closing::Open);
+            let route = ArcLengthSpline::new(&points, Closing::Open);
             let pace = Curve::new(times, route.reached().to_vec(), Closing::Open);
             let there = route.at(pace.at(place, along));
             there.map_or(from.value, Value::Point)

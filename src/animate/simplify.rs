@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 
 use super::CameraPath;
-use super::steady::smoothed;
+use super::smoothing::smoothed;
 use crate::scene::{Camera, Interpolation, Key, Take};
 
 /// Keys to both sides whose removal a key feels: a smooth segment is shaped by its neighbours.

@@ -7,17 +7,17 @@ use std::sync::Arc;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{Asked, fail, refuse, say};
+use super::{CliAction, fail, refuse, say};
 use crate::image::Format;
 use crate::lab::{Study, cheapest_within, csv, table};
 use crate::scene::{Document, write_atomic};
-use crate::trace::{Threads, Watch};
+use crate::trace::{RenderControl, Threads};
 
 /// Steps of the progress bar.
 const BAR: u64 = 1000;
 
 #[derive(Debug, Args)]
-pub struct ChartWords {
+pub struct ChartArgs {
     /// The scene file (RON)
     scene: PathBuf,
     /// Longer side of the pictures that are compared, in pixels
@@ -41,18 +41,18 @@ pub struct ChartWords {
 }
 
 /// Measures, prints the table, and writes what was asked for. The picture is left to whoever can draw.
-pub fn run(words: &ChartWords) -> Asked {
+pub fn run(words: &ChartArgs) -> CliAction {
     // A name that cannot be written is known before the first ray.
     if let Some(Err(error)) = words.png.as_deref().map(Format::of_path) {
-        return Asked::Done(refuse(&error.to_string()));
+        return CliAction::Done(refuse(&error.to_string()));
     }
     let scene = match Document::load(&words.scene) {
         Ok(document) => document.scene,
-        Err(error) => return Asked::Done(refuse(&error.to_string())),
+        Err(error) => return CliAction::Done(refuse(&error.to_string())),
     };
     let threads = match Threads::new(words.threads.map(usize::from)) {
         Ok(threads) => threads,
-        Err(error) => return Asked::Done(fail(&error.to_string())),
+        Err(error) => return CliAction::Done(fail(&error.to_string())),
     };
     let mut study = Study::of_side(Arc::new(scene), words.side);
     measure(&mut study, &threads);
@@ -63,15 +63,15 @@ pub fn run(words: &ChartWords) -> Asked {
     if let Some(path) = &words.csv {
         let text = csv(&study, &machine(), threads.count());
         if let Err(error) = write_atomic(path, text.as_bytes()) {
-            return Asked::Done(fail(&format!("cannot write {}: {error}", path.display())));
+            return CliAction::Done(fail(&format!("cannot write {}: {error}", path.display())));
         }
     }
     match &words.png {
-        Some(path) => Asked::Chart {
+        Some(path) => CliAction::Chart {
             study: Box::new(study),
             path: path.clone(),
         },
-        None => Asked::Done(ExitCode::SUCCESS),
+        None => CliAction::Done(ExitCode::SUCCESS),
     }
 }
 
@@ -82,7 +82,7 @@ fn measure(study: &mut Study, threads: &Threads) {
     if let Ok(style) = style {
         bar.set_style(style);
     }
-    let watch = Watch::default();
+    let watch = RenderControl::default();
     while threads.run(|| study.step(&watch)) {
         bar.set_position((study.progress() * BAR as f64) as u64);
     }

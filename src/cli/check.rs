@@ -5,18 +5,18 @@ use std::process::ExitCode;
 
 use clap::Args;
 
-use super::{WRONG, complain, say};
+use super::{WRONG, report_error, say};
 use crate::scene::{Document, Scene};
 
 #[derive(Debug, Args)]
-pub struct CheckWords {
+pub struct CheckArgs {
     /// Scene files (RON)
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<PathBuf>,
 }
 
 /// One line per valid file on stdout, one message per refused file on stderr.
-pub fn run(words: &CheckWords) -> ExitCode {
+pub fn run(words: &CheckArgs) -> ExitCode {
     let mut code = ExitCode::SUCCESS;
     for path in &words.scenes {
         match Document::load(path) {
@@ -26,7 +26,7 @@ pub fn run(words: &CheckWords) -> ExitCode {
                 contents(&document.scene)
             )),
             Err(error) => {
-                complain(&error.to_string());
+                report_error(&error.to_string());
                 code = WRONG.into();
             }
         }

@@ -12,8 +12,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::{fail, refuse, say};
 use crate::export::{Frames, Pattern, Sequence, Video, job_template};
 use crate::image::Format;
-use crate::scene::{Choice as _, Document, MAX_SIDE, Sampling, Scene, write_atomic};
-use crate::trace::{Threads, Watch};
+use crate::scene::{Document, MAX_SIDE, Method as _, Sampling, Scene, write_atomic};
+use crate::trace::{RenderControl, Threads};
 use crate::worker::{ExportStep, Exported, Exporting};
 
 /// What is exported, for a folder and for a job.
@@ -42,7 +42,7 @@ struct What {
 }
 
 #[derive(Debug, Args)]
-pub struct ExportWords {
+pub struct ExportArgs {
     #[command(flatten)]
     what: What,
     /// The folder that the frames go to
@@ -63,7 +63,7 @@ pub struct ExportWords {
 }
 
 #[derive(Debug, Args)]
-pub struct JobWords {
+pub struct JobArgs {
     #[command(flatten)]
     what: What,
     /// The template to write; the scene is copied beside it if it is elsewhere
@@ -94,7 +94,7 @@ impl What {
 }
 
 /// Writes the frames that are not there as they should be, then the video.
-pub fn run(words: &ExportWords) -> ExitCode {
+pub fn run(words: &ExportArgs) -> ExitCode {
     let video = match words
         .video
         .as_deref()
@@ -116,7 +116,7 @@ pub fn run(words: &ExportWords) -> ExitCode {
         Err(error) => return fail(&error.to_string()),
     };
     let start = Instant::now();
-    let teller = Teller::new(&sequence, words.openjd);
+    let teller = ProgressReporter::new(&sequence, words.openjd);
     let done = match export(sequence.clone(), &threads, &teller) {
         Ok(done) => done,
         Err(sentence) => return fail(&sentence),
@@ -159,11 +159,15 @@ fn tell_missing(sequence: &Sequence) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-fn export(sequence: Sequence, threads: &Threads, teller: &Teller) -> Result<Exported, String> {
+fn export(
+    sequence: Sequence,
+    threads: &Threads,
+    teller: &ProgressReporter,
+) -> Result<Exported, String> {
     let again = "; what is done stays, and the same command goes on from there";
     let failed = |error: crate::export::ExportError| format!("{error}{again}");
     let mut exporting = Exporting::new(sequence).map_err(|error| error.to_string())?;
-    let watch = Watch::default();
+    let watch = RenderControl::default();
     threads.run(|| {
         loop {
             match exporting.step(&watch) {
@@ -177,12 +181,12 @@ fn export(sequence: Sequence, threads: &Threads, teller: &Teller) -> Result<Expo
 }
 
 /// Tells how far it is: a bar on a terminal, or lines for a runner.
-struct Teller {
+struct ProgressReporter {
     bar: ProgressBar,
     is_openjd: bool,
 }
 
-impl Teller {
+impl ProgressReporter {
     fn new(sequence: &Sequence, is_openjd: bool) -> Self {
         let count = sequence.frames.count() as u64;
         let bar = if is_openjd {
@@ -223,7 +227,7 @@ impl Teller {
 }
 
 /// Writes the template of a job, and the scene beside it.
-pub fn run_job(words: &JobWords) -> ExitCode {
+pub fn run_job(words: &JobArgs) -> ExitCode {
     let sequence = match words.what.sequence(PathBuf::from("frames")) {
         Ok(sequence) => sequence,
         Err(sentence) => return refuse(&sentence),

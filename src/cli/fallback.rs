@@ -6,9 +6,9 @@ use std::process::ExitCode;
 use super::{fail, refuse, say};
 use crate::export::{free_path, save_image};
 use crate::image::render;
-use crate::plan::Picture;
+use crate::plan::RenderRequest;
 use crate::scene::{Document, Scene};
-use crate::trace::{Threads, Watch};
+use crate::trace::{RenderControl, Threads};
 
 /// What a Debian or Ubuntu system needs to show a window.
 const PACKAGES: &str = "libgl1 libx11-6 libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0 (or, on Wayland, libwayland-client0 libwayland-egl1 libxkbcommon0 libegl1)";
@@ -32,8 +32,15 @@ pub fn picture_instead_of_window(scene: Option<&Path>, reason: &str) -> ExitCode
              glint: `glint render` and `glint check` need none of these; tracing the scene to a picture instead."
         );
     }
-    let traced = Threads::new(None)
-        .map(|threads| threads.run(|| render(&scene, &Picture::still(&scene), &Watch::default())));
+    let traced = Threads::new(None).map(|threads| {
+        threads.run(|| {
+            render(
+                &scene,
+                &RenderRequest::still(&scene),
+                &RenderControl::default(),
+            )
+        })
+    });
     let image = match traced {
         Ok(Some((image, _))) => image,
         Ok(None) => return fail("the trace ended without a picture"),

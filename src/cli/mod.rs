@@ -50,24 +50,24 @@ struct Words {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Trace a scene into a picture
-    Render(render::RenderWords),
+    Render(render::RenderArgs),
     /// Write the frames of an animation, going on where it was left
-    Export(export::ExportWords),
+    Export(export::ExportArgs),
     /// Write a job for a render farm (Open Job Description)
-    Job(export::JobWords),
+    Job(export::JobArgs),
     /// Validate scene files
-    Check(check::CheckWords),
+    Check(check::CheckArgs),
     /// Say what a scene needs of the tracer, and why
-    Plan(plan::PlanWords),
+    Plan(plan::PlanArgs),
     /// Chart time against error for every way of tracing a scene
-    Chart(chart::ChartWords),
+    Chart(chart::ChartArgs),
     /// Say how often every formula fails, and where most
-    Stability(stability::StabilityWords),
+    Stability(stability::StabilityArgs),
 }
 
 /// What the command line asked for.
 #[derive(Debug)]
-pub enum Asked {
+pub enum CliAction {
     /// Open the editor.
     Editor {
         /// The scene file; the demo if there is none.
@@ -96,10 +96,10 @@ pub enum Asked {
 }
 
 /// Reads the command line and runs its command, if it has one.
-pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
+pub fn run(words: impl IntoIterator<Item = OsString>) -> CliAction {
     let words: Vec<OsString> = words.into_iter().collect();
     if let Some(name) = unknown_command(&words) {
-        return Asked::Done(refuse(&format!(
+        return CliAction::Done(refuse(&format!(
             "there is no command {name:?}; there are render, export, job, check, plan, chart and stability, and `glint SCENE` opens the editor"
         )));
     }
@@ -107,23 +107,23 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
         Ok(Words {
             command: Some(Command::Render(words)),
             ..
-        }) => Asked::Done(render::run(&words)),
+        }) => CliAction::Done(render::run(&words)),
         Ok(Words {
             command: Some(Command::Export(words)),
             ..
-        }) => Asked::Done(export::run(&words)),
+        }) => CliAction::Done(export::run(&words)),
         Ok(Words {
             command: Some(Command::Job(words)),
             ..
-        }) => Asked::Done(export::run_job(&words)),
+        }) => CliAction::Done(export::run_job(&words)),
         Ok(Words {
             command: Some(Command::Check(words)),
             ..
-        }) => Asked::Done(check::run(&words)),
+        }) => CliAction::Done(check::run(&words)),
         Ok(Words {
             command: Some(Command::Plan(words)),
             ..
-        }) => Asked::Done(plan::run(&words)),
+        }) => CliAction::Done(plan::run(&words)),
         Ok(Words {
             command: Some(Command::Chart(words)),
             ..
@@ -138,8 +138,8 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
             screenshot,
             exports,
         }) => match screenshot.as_deref().map(Format::of_path) {
-            Some(Err(error)) => Asked::Done(refuse(&error.to_string())),
-            _ => Asked::Editor {
+            Some(Err(error)) => CliAction::Done(refuse(&error.to_string())),
+            _ => CliAction::Editor {
                 scene,
                 screenshot,
                 exports,
@@ -148,7 +148,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Asked {
         Err(error) => {
             // Help and version are "errors" of exit code 0 that go to stdout.
             let _ = error.print();
-            Asked::Done(if error.use_stderr() {
+            CliAction::Done(if error.use_stderr() {
                 WRONG.into()
             } else {
                 ExitCode::SUCCESS
@@ -174,19 +174,19 @@ fn say(line: &str) {
     let _ = writeln!(std::io::stdout(), "{line}");
 }
 
-fn complain(error: &str) {
+fn report_error(error: &str) {
     use std::io::Write as _;
     let _ = writeln!(std::io::stderr(), "error: {error}");
 }
 
 fn refuse(error: &str) -> ExitCode {
-    complain(error);
+    report_error(error);
     WRONG.into()
 }
 
 /// Says on stderr why the work failed, and gives the exit code for that.
 pub fn fail(error: &str) -> ExitCode {
-    complain(error);
+    report_error(error);
     FAILED.into()
 }
 

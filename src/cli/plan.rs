@@ -6,11 +6,11 @@ use std::process::ExitCode;
 use clap::Args;
 
 use super::{fail, refuse, say};
-use crate::plan::{Picture, needs};
+use crate::plan::{RenderRequest, needs};
 use crate::scene::Document;
 
 #[derive(Debug, Args)]
-pub struct PlanWords {
+pub struct PlanArgs {
     /// The scene file (RON)
     scene: PathBuf,
     /// Print one JSON array of {rule, what, why, saves}
@@ -19,12 +19,12 @@ pub struct PlanWords {
 }
 
 /// One line per rule of the plan on stdout.
-pub fn run(words: &PlanWords) -> ExitCode {
+pub fn run(words: &PlanArgs) -> ExitCode {
     let scene = match Document::load(&words.scene) {
         Ok(document) => document.scene,
         Err(error) => return refuse(&error.to_string()),
     };
-    let needs = needs(&scene, &Picture::still(&scene));
+    let needs = needs(&scene, &RenderRequest::still(&scene));
     if words.json {
         return match serde_json::to_string_pretty(&needs) {
             Ok(json) => {

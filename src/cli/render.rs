@@ -16,20 +16,20 @@ use super::{fail, refuse, say};
 use crate::animate::{CameraPath, shot};
 use crate::export::save_image;
 use crate::image::{Cost, Format, Image, render_into};
-use crate::lanes::Level;
-use crate::plan::Picture;
+use crate::plan::RenderRequest;
 use crate::scene::{
-    Accelerator, Choice as _, Document, HighlightMethod, MAX_SIDE, Precision, Projection,
+    Accelerator, Document, HighlightMethod, MAX_SIDE, Method as _, Precision, Projection,
     RayOffset, Render, Sampling, Scene, SphereMethod, TriangleMethod,
 };
-use crate::trace::{Threads, Watch};
-use crate::worker::run_errand;
+use crate::simd::Level;
+use crate::trace::{RenderControl, Threads};
+use crate::worker::run_in_background;
 
 /// Time after which a running render is worth a progress bar, and between its updates.
 const PROGRESS_TICK: Duration = Duration::from_millis(100);
 
 #[derive(Debug, Args)]
-pub struct RenderWords {
+pub struct RenderArgs {
     /// The scene file (RON)
     scene: PathBuf,
     /// The picture to write; ends in .png or .ppm
@@ -43,7 +43,7 @@ pub struct RenderWords {
     height: Option<u32>,
     /// Projection in place of the scene's own
     #[arg(long)]
-    camera: Option<CameraWord>,
+    camera: Option<CameraArg>,
     /// How edges are smoothed: none, adaptive, or grid:N for N×N samples in every pixel [default: the
     /// scene's own, as for all that follow]
     #[arg(long, value_parser = Sampling::parse)]
@@ -84,7 +84,7 @@ pub struct RenderWords {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum CameraWord {
+enum CameraArg {
     Perspective,
     Orthographic,
 }
@@ -118,7 +118,7 @@ fn lanes(word: &str) -> Result<Level, String> {
 }
 
 /// Traces and writes the picture, then prints what was asked for.
-pub fn run(words: &RenderWords) -> ExitCode {
+pub fn run(words: &RenderArgs) -> ExitCode {
     // A name that cannot be written is known before the first ray.
     if let Some(Err(error)) = words.output.as_deref().map(Format::of_path) {
         return refuse(&error.to_string());
@@ -179,7 +179,7 @@ fn at_frame(scene: Scene, frame: u64) -> Result<Scene, String> {
     Ok(Arc::unwrap_or_clone(shot(&Arc::new(scene), &path, time)))
 }
 
-impl RenderWords {
+impl RenderArgs {
     /// Puts what was asked for in place of the scene's own.
     fn adjust(&self, render: &mut Render) {
         render.antialias = self.antialias.unwrap_or(render.antialias);
@@ -191,16 +191,16 @@ impl RenderWords {
         render.accelerator = self.accelerator.unwrap_or(render.accelerator);
     }
 
-    fn picture(&self, scene: &Scene) -> Picture {
+    fn picture(&self, scene: &Scene) -> RenderRequest {
         let own = (scene.render.width, scene.render.height);
         let (width, height) = sized(own, (self.width, self.height));
-        Picture {
+        RenderRequest {
             projection: self.camera.map(|word| match word {
-                CameraWord::Perspective => Projection::Perspective,
-                CameraWord::Orthographic => Projection::Orthographic,
+                CameraArg::Perspective => Projection::Perspective,
+                CameraArg::Orthographic => Projection::Orthographic,
             }),
             level: self.lanes,
-            ..Picture::of(scene, width, height)
+            ..RenderRequest::of(scene, width, height)
         }
     }
 }
@@ -225,13 +225,13 @@ fn in_proportion(side: u32, numerator: u32, denominator: u32) -> u32 {
 /// Traces `repeat` times, with a bar on a terminal if it takes a while.
 fn trace(
     scene: Scene,
-    picture: Picture,
+    picture: RenderRequest,
     threads: Threads,
     repeat: usize,
 ) -> Option<(Image, Vec<Cost>)> {
-    let watch = Arc::new(Watch::default());
+    let watch = Arc::new(RenderControl::default());
     let total = u64::from(picture.width) * u64::from(picture.height) * repeat as u64;
-    let result = run_errand("glint-render", {
+    let result = run_in_background("glint-render", {
         let watch = Arc::clone(&watch);
         move || {
             let mut costs = Vec::new();

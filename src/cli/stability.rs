@@ -6,13 +6,13 @@ use std::process::ExitCode;
 
 use clap::Args;
 
-use super::{Asked, fail, refuse, say};
+use super::{CliAction, fail, refuse, say};
 use crate::image::Format;
 use crate::lab::stability::{cells_csv, maps, summary};
 use crate::scene::write_atomic;
 
 #[derive(Debug, Args)]
-pub struct StabilityWords {
+pub struct StabilityArgs {
     /// Write every cell of every map to this file
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -25,19 +25,19 @@ pub struct StabilityWords {
 }
 
 /// Tries, prints the summary, and writes what was asked for. The picture is left to whoever can draw.
-pub fn run(words: &StabilityWords) -> Asked {
+pub fn run(words: &StabilityArgs) -> CliAction {
     if let Some(Err(error)) = words.png.as_deref().map(Format::of_path) {
-        return Asked::Done(refuse(&error.to_string()));
+        return CliAction::Done(refuse(&error.to_string()));
     }
     let maps = maps(words.effort.get());
     say(summary(&maps).trim_end());
     if let Some(path) = &words.csv
         && let Err(error) = write_atomic(path, cells_csv(&maps).as_bytes())
     {
-        return Asked::Done(fail(&format!("cannot write {}: {error}", path.display())));
+        return CliAction::Done(fail(&format!("cannot write {}: {error}", path.display())));
     }
     match words.png.clone() {
-        Some(path) => Asked::Stability { maps, path },
-        None => Asked::Done(ExitCode::SUCCESS),
+        Some(path) => CliAction::Stability { maps, path },
+        None => CliAction::Done(ExitCode::SUCCESS),
     }
 }

@@ -2,21 +2,21 @@
 //! history, the flight. Panels read this state and push [`Action`]s; [`Editor::apply`] is the one
 //! place that changes anything. Knows no widgets.
 
+mod animation_state;
 mod edit;
 mod fly;
 mod history;
 mod keys;
-mod moving;
 mod timeline;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use animation_state::AnimationState;
 pub use edit::{Edit, Item, Kind};
 use fly::Flight;
 pub use fly::Motion;
 use history::{History, Snapshot};
-use moving::Moving;
 pub use timeline::{MEASURED_AT, Repeat, Time, Timeline};
 
 use crate::animate::CameraPath;
@@ -91,7 +91,7 @@ pub struct Editor {
     is_dirty: bool,
     history: History,
     flight: Flight,
-    moving: Moving,
+    moving: AnimationState,
     /// What the inspector shows.
     pub selection: Selection,
     /// What the picture area shows.
@@ -114,7 +114,7 @@ impl Editor {
         let scene = Arc::new(document.scene);
         Self {
             saved: Arc::clone(&scene),
-            moving: Moving::new(&scene),
+            moving: AnimationState::new(&scene),
             scene,
             revision: 1,
             header: document.header,
@@ -267,7 +267,7 @@ impl Editor {
                 backup.display()
             )
         });
-        self.inform(format!("Saved {}{kept}", path.display()));
+        self.notify(format!("Saved {}{kept}", path.display()));
         Ok(())
     }
 
@@ -294,7 +294,7 @@ impl Editor {
     }
 
     /// Tells the user something.
-    pub fn inform(&mut self, text: String) {
+    pub fn notify(&mut self, text: String) {
         self.messages.push(Message {
             is_error: false,
             text,
@@ -302,7 +302,7 @@ impl Editor {
     }
 
     /// Tells the user that something went wrong.
-    pub fn complain(&mut self, text: String) {
+    pub fn report_error(&mut self, text: String) {
         self.messages.push(Message {
             is_error: true,
             text,
@@ -332,7 +332,7 @@ impl Editor {
         let mut next = Scene::clone(&self.scene);
         let selection = match edit.apply(&mut next) {
             Ok(selection) => selection.unwrap_or(self.selection),
-            Err(reason) => return self.complain(reason),
+            Err(reason) => return self.report_error(reason),
         };
         self.moving.key_tracked(&self.scene, &mut next);
         if is_camera {
@@ -342,7 +342,7 @@ impl Editor {
             return;
         }
         if let Err(problem) = check(&next) {
-            return self.complain(format!("{label}: {}", problem.sentence));
+            return self.report_error(format!("{label}: {}", problem.sentence));
         }
         let before = Snapshot {
             scene: Arc::clone(&self.scene),

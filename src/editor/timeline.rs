@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::animate::Seen;
 use crate::scene::{Animation, Camera, Framing, Orientation, Scene, Take};
-use crate::trace::sight::Sight;
+use crate::trace::sight::SceneQuery;
 
 /// Side of the grid of places at which a picture is watched for how far it is off.
 const WATCHED: u32 = 5;
@@ -187,7 +187,7 @@ impl Timeline {
 
 /// What every sample of a take sees of the scene, at a grid of places.
 pub(super) fn watched(take: &Take, scene: &Scene) -> Vec<Vec<Seen>> {
-    let sight = Sight::new(scene);
+    let sight = SceneQuery::new(scene);
     let aspect = f64::from(scene.render.width) / f64::from(scene.render.height);
     let last = f64::from(WATCHED - 1);
     let at = |n: u32| {

@@ -10,8 +10,8 @@ use super::manifest::{Hash, Manifest, add_note};
 use super::{ExportError, Frames, Pattern};
 use crate::animate::{CameraPath, shot};
 use crate::image::{Format, Image};
-use crate::plan::Picture;
-use crate::scene::{Animation, Choice as _, Scene};
+use crate::plan::RenderRequest;
+use crate::scene::{Animation, Method as _, Scene};
 
 /// What is exported, and where to.
 #[derive(Clone, Debug)]
@@ -79,8 +79,8 @@ impl Sequence {
     }
 
     /// How a frame is traced.
-    pub fn picture(&self, scene: &Scene) -> Picture {
-        Picture::still(scene)
+    pub fn picture(&self, scene: &Scene) -> RenderRequest {
+        RenderRequest::still(scene)
     }
 
     /// The file's name.

@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 
 pub use encode::{Format, FormatError};
 
-use crate::lanes::Real;
-use crate::plan::Picture;
+use crate::plan::RenderRequest;
 use crate::scene::Scene;
-use crate::trace::{Pass, Pixel, Rays, Tracer, Watch};
+use crate::simd::Real;
+use crate::trace::{Pass, Pixel, Rays, RenderControl, Tracer};
 
 /// An 8-bit picture: RGBA, row by row from the top. Alpha is 255 where it was traced and says
 /// nothing else.
@@ -53,14 +53,14 @@ impl Image {
     }
 
     /// Traces the pixels of `pass`; `None` if `watch` said stop.
-    pub fn trace(&mut self, tracer: &Tracer, pass: Pass, watch: &Watch) -> Option<Rays> {
+    pub fn trace(&mut self, tracer: &Tracer, pass: Pass, watch: &RenderControl) -> Option<Rays> {
         tracer.pass(&mut self.pixels, pass, watch)
     }
 
     /// The picture that a pass with this step has filled: every `step`-th pixel of every
     /// `step`-th row.
     #[must_use]
-    pub fn thinned(&self, step: usize) -> Self {
+    pub fn decimated(&self, step: usize) -> Self {
         let rows = self.pixels.chunks(self.width.max(1)).step_by(step);
         let pixels = rows
             .flat_map(|row| row.iter().copied().step_by(step))
@@ -75,7 +75,11 @@ impl Image {
 
 /// Traces a whole picture on the current rayon pool: the one way from a scene to pixels.
 /// `None` if `watch` said stop.
-pub fn render(scene: &Scene, picture: &Picture, watch: &Watch) -> Option<(Image, Cost)> {
+pub fn render(
+    scene: &Scene,
+    picture: &RenderRequest,
+    watch: &RenderControl,
+) -> Option<(Image, Cost)> {
     let mut image = Image::new(picture.width as usize, picture.height as usize);
     let cost = render_into(&mut image, scene, picture, watch)?;
     Some((image, cost))
@@ -85,8 +89,8 @@ pub fn render(scene: &Scene, picture: &Picture, watch: &Watch) -> Option<(Image,
 pub fn render_into(
     image: &mut Image,
     scene: &Scene,
-    picture: &Picture,
-    watch: &Watch,
+    picture: &RenderRequest,
+    watch: &RenderControl,
 ) -> Option<Cost> {
     let start = Instant::now();
     let tracer = Tracer::new(scene, picture);
@@ -133,7 +137,7 @@ mod tests {
         for (index, pixel) in image.pixels.iter_mut().enumerate() {
             pixel[0] = u8::try_from(index).expect("small");
         }
-        let thin = image.thinned(2);
+        let thin = image.decimated(2);
         assert_eq!((thin.width, thin.height), (3, 2));
         let reds: Vec<u8> = thin.pixels.iter().map(|pixel| pixel[0]).collect();
         assert_eq!(reds, [0, 2, 4, 10, 12, 14]);

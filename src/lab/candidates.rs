@@ -1,8 +1,8 @@
 //! Which ways of tracing a picture are compared.
 
-use crate::plan::{Model, Picture};
+use crate::plan::{Model, RenderRequest};
 use crate::scene::{
-    Accelerator, Choice, HighlightMethod, MAX_REFLECTIONS, Precision, RayOffset, Render, Sampling,
+    Accelerator, HighlightMethod, MAX_REFLECTIONS, Method, Precision, RayOffset, Render, Sampling,
     Scene, SphereMethod, TriangleMethod,
 };
 
@@ -122,7 +122,7 @@ fn bounces(limit: u32) -> String {
 }
 
 /// All ways of one step but the plan's.
-fn neighbours<T: Choice>(
+fn neighbours<T: Method>(
     prefix: &str,
     change: &mut impl FnMut(String, &dyn Fn(&mut Render)),
     set: impl Fn(&mut Render, T),
@@ -136,12 +136,12 @@ fn neighbours<T: Choice>(
 
 impl Candidate {
     /// What is traced, before it is scaled up.
-    pub fn picture(&self, scene: &Scene) -> Picture {
+    pub fn picture(&self, scene: &Scene) -> RenderRequest {
         let side = |side: u32| side.div_ceil(self.upscale);
         let (width, height) = (side(self.render.width), side(self.render.height));
-        Picture {
+        RenderRequest {
             model: self.model,
-            ..Picture::of(&self.scene(scene), width, height)
+            ..RenderRequest::of(&self.scene(scene), width, height)
         }
     }
 

@@ -1,8 +1,8 @@
 //! How far a picture is off.
 
 use crate::image::Image;
-use crate::lanes::Real;
-use crate::trace::{Pass, Pixel, Rays, Tracer, Watch};
+use crate::simd::Real;
+use crate::trace::{Pass, Pixel, Rays, RenderControl, Tracer};
 
 /// The error that rounding to 8 bits leaves in the best of pictures: 1 / (255·√12), as a root mean
 /// square of linear colours from 0 to 1.
@@ -22,7 +22,7 @@ impl Pixel for Light {
 
 /// How far a picture is off, over all channels of all pixels; colours are linear, 0–1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Failing {
+pub struct ErrorMetrics {
     /// Root of the mean square.
     pub rmse: f64,
     /// The worst channel.
@@ -31,7 +31,7 @@ pub struct Failing {
     pub visible: f64,
 }
 
-impl Failing {
+impl ErrorMetrics {
     /// Peak signal to noise in decibels: -20·log₁₀(RMSE); infinity for equal pictures.
     pub fn psnr(self) -> f64 {
         -20.0 * self.rmse.log10()
@@ -39,7 +39,7 @@ impl Failing {
 }
 
 /// How far `picture` is off `truth`, which is as large.
-pub fn difference(picture: &[Light], truth: &[Light]) -> Failing {
+pub fn difference(picture: &[Light], truth: &[Light]) -> ErrorMetrics {
     let (mut squares, mut max, mut visible) = (0.0, 0.0_f32, 0_usize);
     for (a, b) in picture.iter().zip(truth) {
         let mut worst = 0.0_f32;
@@ -52,7 +52,7 @@ pub fn difference(picture: &[Light], truth: &[Light]) -> Failing {
         visible += usize::from(worst > VISIBLE);
     }
     let pixels = truth.len().max(1) as f64;
-    Failing {
+    ErrorMetrics {
         rmse: (squares / (3.0 * pixels)).sqrt(),
         max: f64::from(max),
         visible: visible as f64 / pixels,
@@ -60,7 +60,7 @@ pub fn difference(picture: &[Light], truth: &[Light]) -> Failing {
 }
 
 /// Traces a picture as linear light on the current rayon pool; `None` if `watch` said stop.
-pub fn trace_light(tracer: &Tracer, watch: &Watch) -> Option<(Vec<Light>, Rays)> {
+pub fn trace_light(tracer: &Tracer, watch: &RenderControl) -> Option<(Vec<Light>, Rays)> {
     let mut pixels = vec![[0.0; 3]; tracer.width() * tracer.height()];
     let rays = tracer.pass(&mut pixels, Pass::Whole, watch)?;
     Some((pixels, rays))
@@ -118,7 +118,7 @@ mod tests {
     fn an_error_is_what_it_says() {
         let truth = vec![[0.5; 3]; 4];
         let mut picture = truth.clone();
-        assert_eq!(difference(&picture, &truth), Failing::default());
+        assert_eq!(difference(&picture, &truth), ErrorMetrics::default());
         assert_eq!(difference(&picture, &truth).psnr(), f64::INFINITY);
         picture[1][2] = 0.75;
         let off = difference(&picture, &truth);

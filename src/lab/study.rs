@@ -4,11 +4,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::candidates::{Candidate, candidates};
-use super::measure::{Failing, Light, difference, eight_bits, scaled, trace_light};
+use super::measure::{ErrorMetrics, Light, difference, eight_bits, scaled, trace_light};
 use crate::image::{Image, render_into};
-use crate::plan::Picture;
+use crate::plan::RenderRequest;
 use crate::scene::{Precision, Sampling, Scene};
-use crate::trace::{Tracer, Watch};
+use crate::trace::{RenderControl, Tracer};
 
 /// Samples along each side of a pixel of the reference, and of a second one with samples in other
 /// places, which tells how far the first is off.
@@ -26,11 +26,11 @@ const SLOW_ROUNDS: usize = 3;
 
 /// One measured way of tracing.
 #[derive(Clone, Debug)]
-pub struct Dot {
+pub struct Measurement {
     /// The way.
     pub candidate: Candidate,
     /// What its picture is off; `None` until it is measured.
-    pub failing: Option<Failing>,
+    pub failing: Option<ErrorMetrics>,
     /// Rays per pixel of the finished picture, all kinds together.
     pub rays_per_pixel: f64,
     /// Milliseconds of each timed run.
@@ -54,7 +54,7 @@ pub struct Timing {
 
 /// What the errors are measured against.
 #[derive(Clone, Debug)]
-pub struct Yardstick {
+pub struct Reference {
     /// How far it is off itself: what two references with samples in other places differ by,
     /// over √2.
     pub rmse: f64,
@@ -70,9 +70,9 @@ pub struct Study {
     /// The reference and the second one, as many rows as are traced.
     truths: [Arc<Vec<Light>>; 2],
     /// There once the reference is.
-    pub yardstick: Option<Yardstick>,
+    pub yardstick: Option<Reference>,
     /// One for each candidate.
-    pub dots: Vec<Dot>,
+    pub dots: Vec<Measurement>,
     spent: Duration,
     timed: usize,
 }
@@ -90,7 +90,7 @@ impl Study {
     pub fn new(scene: Arc<Scene>, width: u32, height: u32) -> Self {
         let dots = candidates(&scene, width, height)
             .into_iter()
-            .map(|candidate| Dot {
+            .map(|candidate| Measurement {
                 candidate,
                 failing: None,
                 rays_per_pixel: 0.0,
@@ -122,7 +122,7 @@ impl Study {
     /// Does the next piece of work on the current rayon pool: rows of a reference, a picture, or a timed
     /// run.
     /// `false` when all is done. A piece that `watch` has stopped is done again the next time.
-    pub fn step(&mut self, watch: &Watch) -> bool {
+    pub fn step(&mut self, watch: &RenderControl) -> bool {
         let start = Instant::now();
         let is_more = if self.yardstick.is_none() {
             self.find_truth(watch);
@@ -144,7 +144,7 @@ impl Study {
         let traced: usize = self.truths.iter().map(|truth| truth.len()).sum();
         // References take as long as a good part of the rest.
         let truth = TRUTH_WORTH * traced as f64 / (2 * pixels) as f64;
-        let wanted: usize = self.dots.iter().map(Dot::rounds).sum();
+        let wanted: usize = self.dots.iter().map(Measurement::rounds).sum();
         let runs: usize = self.dots.iter().map(|dot| dot.times.len()).sum();
         let (done, all) = (seen + runs, self.dots.len() + wanted);
         (truth + done as f64) / (TRUTH_WORTH + all as f64)
@@ -157,7 +157,7 @@ impl Study {
     }
 
     /// A few rows of a reference, or what the two differ by when both are there.
-    fn find_truth(&mut self, watch: &Watch) {
+    fn find_truth(&mut self, watch: &RenderControl) {
         let (width, height) = (self.size.0 as usize, self.size.1 as usize);
         let unfinished = self
             .truths
@@ -165,16 +165,16 @@ impl Study {
             .position(|truth| truth.len() < width * height);
         let Some(place) = unfinished else {
             let rmse = difference(&self.truths[1], &self.truths[0]).rmse / 2.0_f64.sqrt();
-            self.yardstick = Some(Yardstick {
+            self.yardstick = Some(Reference {
                 rmse,
                 picture: Arc::new(eight_bits(&self.truths[0], width, height)),
             });
             return;
         };
-        let picture = Picture {
+        let picture = RenderRequest {
             precision: Precision::Double,
             sampling: Sampling::Grid(TRUTH_GRIDS[place]),
-            ..Picture::sized(self.size.0, self.size.1)
+            ..RenderRequest::sized(self.size.0, self.size.1)
         };
         let first = self.truths[place].len() / width;
         let rows = height.div_ceil(TRUTH_PIECES).min(height - first);
@@ -185,7 +185,7 @@ impl Study {
         }
     }
 
-    fn look_at(&mut self, place: usize, watch: &Watch) {
+    fn look_at(&mut self, place: usize, watch: &RenderControl) {
         let candidate = &self.dots[place].candidate;
         let picture = candidate.picture(&self.scene);
         let tracer = Tracer::new(&candidate.scene(&self.scene), &picture);
@@ -203,8 +203,8 @@ impl Study {
 
     /// One run of the candidate that has had the fewest, in turn, so that what disturbs the machine
     /// for a while disturbs all of them.
-    fn time_next(&mut self, watch: &Watch) -> bool {
-        let waiting = |dot: &&mut Dot| dot.times.len() < dot.rounds();
+    fn time_next(&mut self, watch: &RenderControl) -> bool {
+        let waiting = |dot: &&mut Measurement| dot.times.len() < dot.rounds();
         let Some(dot) = self
             .dots
             .iter_mut()
@@ -230,7 +230,7 @@ impl Study {
 }
 
 /// The finished picture, as the user would get it.
-fn draw(candidate: &Candidate, scene: &Scene, watch: &Watch) -> Option<Image> {
+fn draw(candidate: &Candidate, scene: &Scene, watch: &RenderControl) -> Option<Image> {
     let (scene, picture) = (candidate.scene(scene), candidate.picture(scene));
     let mut image = Image::default();
     if candidate.upscale == 1 {
@@ -244,7 +244,7 @@ fn draw(candidate: &Candidate, scene: &Scene, watch: &Watch) -> Option<Image> {
     Some(eight_bits(&light, size.0, size.1))
 }
 
-impl Dot {
+impl Measurement {
     /// How often it is to be timed.
     fn rounds(&self) -> usize {
         let slow = SLOW.as_secs_f64() * 1e3;
@@ -277,7 +277,7 @@ mod tests {
     fn a_study_measures_everything_and_its_truth_is_no_method() {
         let scene = Arc::new(Scene::demo());
         let mut study = Study::new(Arc::clone(&scene), 24, 18);
-        let watch = Watch::default();
+        let watch = RenderControl::default();
         let mut last = 0.0;
         while study.step(&watch) {
             let done = study.progress();
@@ -309,11 +309,11 @@ mod tests {
     #[test]
     fn a_stopped_piece_is_done_again() {
         let mut study = Study::new(Arc::new(Scene::demo()), 16, 16);
-        let stopped = Watch::default();
+        let stopped = RenderControl::default();
         stopped
             .stop
             .store(true, std::sync::atomic::Ordering::Relaxed);
         assert!(study.step(&stopped) && study.progress() == 0.0);
-        assert!(study.step(&Watch::default()) && study.progress() > 0.0);
+        assert!(study.step(&RenderControl::default()) && study.progress() > 0.0);
     }
 }

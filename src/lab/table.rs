@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::front::front;
-use super::study::{Dot, Study};
+use super::pareto_front::front;
+use super::study::{Measurement, Study};
 
 /// A spread above this makes a time doubtful.
 pub const DOUBTFUL: f64 = 0.2;
@@ -11,8 +11,8 @@ pub const DOUBTFUL: f64 = 0.2;
 impl Study {
     /// Milliseconds and RMSE of each dot, as far as they are known; NaN elsewhere.
     pub fn costs(&self) -> Vec<(f64, f64)> {
-        let cost = |dot: &Dot| dot.timing().map_or(f64::NAN, |timing| timing.median);
-        let error = |dot: &Dot| dot.failing.map_or(f64::NAN, |failing| failing.rmse);
+        let cost = |dot: &Measurement| dot.timing().map_or(f64::NAN, |timing| timing.median);
+        let error = |dot: &Measurement| dot.failing.map_or(f64::NAN, |failing| failing.rmse);
         self.dots
             .iter()
             .map(|dot| (cost(dot), error(dot)))

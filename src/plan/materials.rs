@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::{HighlightMethod, Model, Picture};
-use crate::lanes::{Exponent, Real, Vec3};
+use super::{HighlightMethod, Model, RenderRequest};
 use crate::scene::{ColorPack, Scene};
+use crate::simd::{Exponent, Real, Vec3};
 
 /// A material with everything multiplied in that is the same for all its points. Colours are 0–1.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +31,7 @@ pub struct Surface<R> {
 }
 
 /// One material per pack, then one per pack as a marker wears it.
-pub fn pack_materials<R: Real>(scene: &Scene, picture: &Picture) -> Vec<Material<R>> {
+pub fn pack_materials<R: Real>(scene: &Scene, picture: &RenderRequest) -> Vec<Material<R>> {
     let lights = scene.lights.iter().filter(|light| light.visible);
     let total_intensity: f64 = lights.map(|light| light.intensity).sum();
     let lit = scene.color_packs.values().map(|pack| Material {
@@ -48,7 +48,7 @@ pub fn pack_materials<R: Real>(scene: &Scene, picture: &Picture) -> Vec<Material
 fn pack_surface<R: Real>(
     pack: &ColorPack,
     total_intensity: f64,
-    picture: &Picture,
+    picture: &RenderRequest,
 ) -> Option<Surface<R>> {
     let all = picture.model == Model::Everything;
     let shines = pack.specular.abs().max_element() > 0.0;

@@ -2,34 +2,34 @@
 //! rebased around the scene's middle and narrowed to the kernel's real type, without what the
 //! picture cannot show. No names, no file.
 
+mod bvh;
 mod materials;
 mod needs;
 mod pack;
+mod plane_occluders;
 mod precision;
 mod screen;
 mod solids;
 mod view;
-mod volumes;
-mod walls;
 
+pub use bvh::{Ball, Balls, Bvh, GROUP};
 pub use materials::{Material, Surface};
 pub use needs::{Need, needs};
-pub use pack::{Departure, Light, Plan, Plane, Sphere, Triangle};
+pub use pack::{Light, Plan, Plane, RayOrigin, Sphere, Triangle};
 pub use precision::needs_double;
 pub use screen::{Extent, Screen};
 pub use view::View;
-pub use volumes::{Ball, Balls, GROUP, Volumes};
 
-use crate::lanes::Level;
 pub use crate::scene::{
     Accelerator, HighlightMethod, MAX_GRID, MAX_HALVINGS, Methods, Precision, RayOffset, Sampling,
     SphereMethod, TriangleMethod,
 };
 use crate::scene::{Projection, Scene};
+use crate::simd::Level;
 
 /// Which picture of a scene is asked for.
 #[derive(Clone, Copy, Debug)]
-pub struct Picture {
+pub struct RenderRequest {
     /// Width in pixels, ≥ 1.
     pub width: u32,
     /// Height in pixels, ≥ 1.
@@ -50,7 +50,7 @@ pub struct Picture {
     pub level: Option<Level>,
 }
 
-impl Picture {
+impl RenderRequest {
     /// The still picture that the scene itself asks for.
     pub fn still(scene: &Scene) -> Self {
         Self::of(scene, scene.render.width, scene.render.height)

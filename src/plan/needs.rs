@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::volumes::LARGEST_LIST;
-use super::{Material, Picture, Plan, Precision, Sampling, needs_double};
-use crate::lanes::Exponent;
+use super::bvh::LARGEST_LIST;
+use super::{Material, Plan, Precision, RenderRequest, Sampling, needs_double};
 use crate::scene::{Object, Scene};
+use crate::simd::Exponent;
 
 /// One decision of the plan.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -21,7 +21,7 @@ pub struct Need {
 }
 
 /// The decisions of the plan for `picture` of `scene`, which must pass [`crate::scene::check`].
-pub fn needs(scene: &Scene, picture: &Picture) -> Vec<Need> {
+pub fn needs(scene: &Scene, picture: &RenderRequest) -> Vec<Need> {
     let plan = Plan::<f64>::new(scene, picture);
     vec![
         precision(scene, picture),
@@ -50,7 +50,7 @@ fn count(number: usize, one: &str) -> String {
     format!("{number} {one}{}", if number == 1 { "" } else { "s" })
 }
 
-fn precision(scene: &Scene, picture: &Picture) -> Need {
+fn precision(scene: &Scene, picture: &RenderRequest) -> Need {
     let rule = "precision";
     let double = "double precision";
     match picture.precision {
@@ -201,8 +201,12 @@ fn faces(plan: &Plan<f64>) -> Need {
     let rule = "faces";
     let all = plan.triangles.len();
     let set = |flags: &[bool]| flags.iter().filter(|flag| **flag).count();
-    let unseen = set(&plan.unseen_faces);
-    let idle: usize = plan.lights.iter().map(|light| set(&light.idle_faces)).sum();
+    let unseen = set(&plan.camera_culled_faces);
+    let idle: usize = plan
+        .lights
+        .iter()
+        .map(|light| set(&light.shadow_culled_faces))
+        .sum();
     if unseen + idle == 0 {
         return need(
             rule,
@@ -230,7 +234,7 @@ fn accelerator(plan: &Plan<f64>) -> Need {
         return need(rule, "every primitive for every ray", why, "nothing");
     }
     let what = count(bounded, "bounded primitive");
-    if plan.volumes.is_bundled() {
+    if plan.volumes.is_tree() {
         need(
             rule,
             format!("{what} in bundles of bundles"),
@@ -284,7 +288,7 @@ fn highlights(plan: &Plan<f64>) -> Need {
     }
 }
 
-fn edges(picture: &Picture) -> Need {
+fn edges(picture: &RenderRequest) -> Need {
     let rule = "edges";
     match picture.sampling {
         Sampling::Centres => need(

@@ -4,16 +4,16 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
+use super::bvh::LARGEST_LIST;
 use super::materials::{Material, linear, pack_materials};
+use super::plane_occluders::{PlaneOccluder, classify_planes};
 use super::solids::{Corner, Solids, corner};
-use super::volumes::LARGEST_LIST;
-use super::walls::{Wall, settle_planes};
 use super::{
-    Accelerator, Ball, Methods, Model, Picture, RayOffset, Screen, SphereMethod, TriangleMethod,
-    View, Volumes,
+    Accelerator, Ball, Bvh, Methods, Model, RayOffset, RenderRequest, Screen, SphereMethod,
+    TriangleMethod, View,
 };
-use crate::lanes::{Real, Vec3};
 use crate::scene::{LightObj, Projection, Scene, Shape};
+use crate::simd::{Real, Vec3};
 
 /// A scene and a view of it, ready to be traced. Coordinates are relative to the scene's middle,
 /// so that single precision is spent on the scene and not on its distance from the origin.
@@ -40,7 +40,7 @@ pub struct Plan<R> {
     /// The formulas to trace with.
     pub methods: Methods,
     /// Where shadow and reflection rays start.
-    pub departure: Departure<R>,
+    pub departure: RayOrigin<R>,
     /// Whether planes must be tested for shadows. What a perspective eye reaches, directly or in
     /// mirrors, lies on its side of every plane, so a plane blocks a light for all points or none.
     pub planes_cast: bool,
@@ -50,14 +50,14 @@ pub struct Plan<R> {
     /// failures must not be hidden.
     pub screen: Option<Screen>,
     /// Balls around the spheres, then the triangles.
-    pub volumes: Volumes<R>,
+    pub volumes: Bvh<R>,
     /// For each triangle, whether no camera ray needs it; empty where they all may.
-    pub unseen_faces: Vec<bool>,
+    pub camera_culled_faces: Vec<bool>,
 }
 
 /// [`RayOffset`] with its lengths in the scene's units.
 #[derive(Clone, Copy, Debug)]
-pub enum Departure<R> {
+pub enum RayOrigin<R> {
     /// At the hit, ignoring the own primitive.
     AtHit,
     /// So far along the new ray.
@@ -112,16 +112,16 @@ pub struct Light<R> {
     /// > 0.
     pub intensity: R,
     /// For each triangle, whether another one casts all of its shadow; empty where none is known.
-    pub idle_faces: Vec<bool>,
+    pub shadow_culled_faces: Vec<bool>,
 }
 
 impl<R: Real> Plan<R> {
     /// Packs what `picture` of `scene` can show. The scene must pass [`crate::scene::check`].
-    pub fn new(scene: &Scene, picture: &Picture) -> Self {
+    pub fn new(scene: &Scene, picture: &RenderRequest) -> Self {
         let centre = scene
             .bounds()
             .map_or(scene.camera.position, |(low, high)| low * 0.5 + high * 0.5);
-        let (settled, model) = (settle_planes(scene, picture), picture.model);
+        let (settled, model) = (classify_planes(scene, picture), picture.model);
         let mut plan = Self {
             view: View::new(&scene.camera, picture, centre),
             spheres: Vec::new(),
@@ -137,8 +137,8 @@ impl<R: Real> Plan<R> {
             planes_cast: settled.is_none(),
             shadows_behind: model == Model::Everything,
             screen: None,
-            volumes: Volumes::default(),
-            unseen_faces: Vec::new(),
+            volumes: Bvh::default(),
+            camera_culled_faces: Vec::new(),
         };
         plan.pack_objects(scene, centre);
         plan.casting_spheres = plan.spheres.len();
@@ -195,19 +195,19 @@ impl<R: Real> Plan<R> {
     }
 
     /// Finds the faces of solids that camera rays, and shadow rays to each light, can do without.
-    fn drop_far_faces(&mut self, scene: &Scene, picture: &Picture, centre: DVec3) {
+    fn drop_far_faces(&mut self, scene: &Scene, picture: &RenderRequest, centre: DVec3) {
         let triangles = self.triangles.iter();
         let solids = Solids::among(triangles.map(|t| t.corners.map(Vec3::to_dvec3)).collect());
         let projection = picture.projection.unwrap_or(scene.camera.projection);
         if projection == Projection::Perspective {
-            self.unseen_faces = solids.turned_away(scene.camera.position - centre);
+            self.camera_culled_faces = solids.turned_away(scene.camera.position - centre);
         }
         for light in &mut self.lights {
-            light.idle_faces = solids.turned_away(light.position.to_dvec3());
+            light.shadow_culled_faces = solids.turned_away(light.position.to_dvec3());
         }
     }
 
-    fn bound(&self, accelerator: Accelerator) -> Volumes<R> {
+    fn bound(&self, accelerator: Accelerator) -> Bvh<R> {
         let spheres = self.spheres.iter().map(|sphere| Ball {
             center: sphere.center.to_dvec3(),
             radius: sphere.radius.to_f64(),
@@ -220,9 +220,9 @@ impl<R: Real> Plan<R> {
         let bundled = match accelerator {
             Accelerator::Auto => balls.len() > LARGEST_LIST,
             Accelerator::List => false,
-            Accelerator::Bundles => true,
+            Accelerator::Bvh => true,
         };
-        Volumes::new(&balls, bundled)
+        Bvh::new(&balls, bundled)
     }
 
     fn pack_markers(&mut self, scene: &Scene, centre: DVec3) {
@@ -241,10 +241,10 @@ impl<R: Real> Plan<R> {
     }
 }
 
-fn departure<R: Real>(scene: &Scene, offset: RayOffset) -> Departure<R> {
-    let along = |distance| Departure::Along(R::from_f64(distance));
+fn departure<R: Real>(scene: &Scene, offset: RayOffset) -> RayOrigin<R> {
+    let along = |distance| RayOrigin::Along(R::from_f64(distance));
     match offset {
-        RayOffset::Robust => Departure::AtHit,
+        RayOffset::Robust => RayOrigin::AtHit,
         RayOffset::Fixed(distance) => along(distance),
         RayOffset::Relative(share) => {
             let diagonal = scene
@@ -252,7 +252,7 @@ fn departure<R: Real>(scene: &Scene, offset: RayOffset) -> Departure<R> {
                 .map_or(1.0, |(low, high)| (high - low).length());
             along(share * diagonal)
         }
-        RayOffset::WachterBinder => Departure::Roundings,
+        RayOffset::WachterBinder => RayOrigin::Roundings,
     }
 }
 
@@ -260,7 +260,7 @@ fn departure<R: Real>(scene: &Scene, offset: RayOffset) -> Departure<R> {
 fn pack_lights<R: Real>(
     scene: &Scene,
     centre: DVec3,
-    walls: &[Wall],
+    walls: &[PlaneOccluder],
     model: Model,
 ) -> Vec<Light<R>> {
     let all = model == Model::Everything;
@@ -273,7 +273,7 @@ fn pack_lights<R: Real>(
         .map(|light| Light {
             position: Vec3::from_dvec3(light.position - centre),
             intensity: R::from_f64(light.intensity),
-            idle_faces: Vec::new(),
+            shadow_culled_faces: Vec::new(),
         })
         .collect()
 }
@@ -311,7 +311,7 @@ mod tests {
     use super::*;
 
     fn plan(scene: &Scene) -> Plan<f32> {
-        Plan::new(scene, &Picture::sized(64, 64))
+        Plan::new(scene, &RenderRequest::sized(64, 64))
     }
 
     #[test]

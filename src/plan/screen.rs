@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{Picture, Sampling};
+use super::{RenderRequest, Sampling};
 use crate::scene::{Projection, Scene, Shape};
 
 /// A range of pixels in one direction, ends included; may lie outside the picture.
@@ -54,7 +54,7 @@ struct Projector {
 
 impl Screen {
     /// The rectangles of what `Plan::new` packs, in the same order.
-    pub fn new(scene: &Scene, picture: &Picture) -> Self {
+    pub fn new(scene: &Scene, picture: &RenderRequest) -> Self {
         let mut screen = Self {
             spheres: Vec::new(),
             triangles: Vec::new(),
@@ -85,7 +85,7 @@ impl Screen {
 }
 
 impl Projector {
-    fn new(scene: &Scene, picture: &Picture) -> Option<Self> {
+    fn new(scene: &Scene, picture: &RenderRequest) -> Option<Self> {
         let camera = &scene.camera;
         let projection = picture.projection.unwrap_or(camera.projection);
         let height = f64::from(picture.height);

@@ -2,9 +2,9 @@
 
 use glam::{DMat3, DVec3};
 
-use super::Picture;
-use crate::lanes::{Lane, Real, Vec3};
+use super::RenderRequest;
 use crate::scene::{Camera, Projection};
+use crate::simd::{Real, SimdFloat, Vec3};
 
 /// The camera made ready: turns pixels into rays with unit directions.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +27,7 @@ pub struct View<R> {
 
 impl<R: Real> View<R> {
     /// Makes `camera` ready, with everything moved by `-centre`.
-    pub fn new(camera: &Camera, picture: &Picture, centre: DVec3) -> Self {
+    pub fn new(camera: &Camera, picture: &RenderRequest, centre: DVec3) -> Self {
         let basis = camera.basis().unwrap_or(DMat3::IDENTITY);
         let (u, v, w) = (basis.x_axis, basis.y_axis, basis.z_axis);
         let projection = picture.projection.unwrap_or(camera.projection);
@@ -64,7 +64,7 @@ impl<R: Real> View<R> {
     /// Origin and unit direction of the rays through the places (x, y) of the picture, in pixels
     /// from its left and upper edge. The centre of the first pixel is (½, ½).
     #[inline(always)]
-    pub fn rays<L: Lane<Real = R>>(&self, token: L::Token, x: L, y: L) -> (Vec3<L>, Vec3<L>) {
+    pub fn rays<L: SimdFloat<Real = R>>(&self, token: L::Token, x: L, y: L) -> (Vec3<L>, Vec3<L>) {
         let (half_width, half_height) = self.half;
         let pixel = L::splat(token, self.pixel);
         let across = (x - L::splat(token, half_width)) * pixel;
@@ -90,7 +90,7 @@ impl<R: Real> View<R> {
 mod tests {
     use super::*;
 
-    fn rays(picture: &Picture, camera: &Camera, x: f64, y: f64) -> (DVec3, DVec3) {
+    fn rays(picture: &RenderRequest, camera: &Camera, x: f64, y: f64) -> (DVec3, DVec3) {
         let (origin, direction) = View::<f64>::new(camera, picture, DVec3::ZERO).rays((), x, y);
         (origin.to_dvec3(), direction.to_dvec3())
     }
@@ -99,9 +99,9 @@ mod tests {
     fn both_projections_look_along_the_camera_in_the_middle() {
         let camera = Camera::default();
         for projection in [Projection::Perspective, Projection::Orthographic] {
-            let picture = Picture {
+            let picture = RenderRequest {
                 projection: Some(projection),
-                ..Picture::sized(101, 51)
+                ..RenderRequest::sized(101, 51)
             };
             let (origin, direction) = rays(&picture, &camera, 50.5, 25.5);
             let w = camera.basis().expect("valid").z_axis;
@@ -114,7 +114,7 @@ mod tests {
     fn the_top_of_the_picture_is_half_a_field_of_view_up() {
         let camera = Camera::default();
         let basis = camera.basis().expect("valid");
-        let (_, direction) = rays(&Picture::sized(64, 64), &camera, 32.0, 0.0);
+        let (_, direction) = rays(&RenderRequest::sized(64, 64), &camera, 32.0, 0.0);
         let angle = direction.dot(basis.y_axis).asin();
         assert!((angle - camera.field_of_view_radians() / 2.0).abs() < 1e-12);
     }
@@ -125,8 +125,8 @@ mod tests {
             projection: Projection::Orthographic,
             ..Camera::default()
         };
-        let small = rays(&Picture::sized(20, 10), &camera, 5.0, 2.5);
-        let large = rays(&Picture::sized(2000, 1000), &camera, 500.0, 250.0);
+        let small = rays(&RenderRequest::sized(20, 10), &camera, 5.0, 2.5);
+        let large = rays(&RenderRequest::sized(2000, 1000), &camera, 500.0, 250.0);
         assert!((small.0 - large.0).length() < 1e-12);
     }
 }

@@ -77,7 +77,7 @@ pub enum Easing {
     /// Starts slowly.
     In,
     /// Ends slowly.
-    Out,
+    UiRequests,
     /// Starts and ends slowly.
     InOut,
 }
@@ -217,14 +217,14 @@ impl Interpolation {
 
 impl Easing {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Even, Self::In, Self::Out, Self::InOut];
+    pub const ALL: [Self; 4] = [Self::Even, Self::In, Self::UiRequests, Self::InOut];
 
     /// What it is called in lists.
     pub fn name(self) -> &'static str {
         match self {
             Self::Even => "even",
             Self::In => "slow start",
-            Self::Out => "slow end",
+            Self::UiRequests => "slow end",
             Self::InOut => "slow start and end",
         }
     }

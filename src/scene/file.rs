@@ -10,7 +10,7 @@ use ron::ser::PrettyConfig;
 
 use super::check::{Problem, check};
 use super::locate::{claimed_version, has_inner_comments, header, locate};
-use super::words::sentence;
+use super::parse_errors::sentence;
 use super::{Scene, VERSION};
 
 /// Longest scene file that is read, in bytes: room for about 200,000 objects.

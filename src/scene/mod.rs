@@ -11,10 +11,10 @@ mod file;
 mod locate;
 mod notation;
 mod orientation;
+mod parse_errors;
 mod recovery;
 mod shape;
 mod tracing;
-mod words;
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -31,8 +31,8 @@ pub use orientation::Orientation;
 pub use recovery::{Leftover, Recovery};
 pub use shape::Shape;
 pub use tracing::{
-    Accelerator, Choice, HighlightMethod, MAX_GRID, MAX_HALVINGS, Methods, Precision, RayOffset,
-    Sampling, SphereMethod, TriangleMethod, Way,
+    Accelerator, HighlightMethod, MAX_GRID, MAX_HALVINGS, Method, MethodInfo, Methods, Precision,
+    RayOffset, Sampling, SphereMethod, TriangleMethod,
 };
 
 use glam::DVec3;

@@ -41,10 +41,10 @@ pub mod number {
 /// A choice by its word.
 pub mod word {
     use super::{Deserialize, Deserializer, Error, Serializer};
-    use crate::scene::Choice;
+    use crate::scene::Method;
 
     /// Writes the word.
-    pub fn serialize<T: Choice, S: Serializer>(
+    pub fn serialize<T: Method, S: Serializer>(
         value: &T,
         serializer: S,
     ) -> Result<S::Ok, S::Error> {
@@ -52,7 +52,7 @@ pub mod word {
     }
 
     /// Reads a word.
-    pub fn deserialize<'de, T: Choice, D: Deserializer<'de>>(
+    pub fn deserialize<'de, T: Method, D: Deserializer<'de>>(
         deserializer: D,
     ) -> Result<T, D::Error> {
         let word = String::deserialize(deserializer)?;

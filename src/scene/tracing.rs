@@ -6,9 +6,9 @@
 use std::fmt::Debug;
 
 /// A choice between ways of doing one step.
-pub trait Choice: Copy + PartialEq + Debug + Sized + 'static {
+pub trait Method: Copy + PartialEq + Debug + Sized + 'static {
     /// Every way, the default first; those with a number in them with a usual one.
-    const ALL: &'static [Way<Self>];
+    const ALL: &'static [MethodInfo<Self>];
 
     /// What the command line and the file call it.
     fn word(self) -> String {
@@ -31,7 +31,7 @@ pub trait Choice: Copy + PartialEq + Debug + Sized + 'static {
 
 /// A way of doing a step.
 #[derive(Clone, Copy, Debug)]
-pub struct Way<T> {
+pub struct MethodInfo<T> {
     /// The choice.
     pub value: T,
     /// What the command line and the file call it.
@@ -42,8 +42,13 @@ pub struct Way<T> {
     pub source: &'static str,
 }
 
-const fn way<T>(value: T, word: &'static str, what: &'static str, source: &'static str) -> Way<T> {
-    Way {
+const fn way<T>(
+    value: T,
+    word: &'static str,
+    what: &'static str,
+    source: &'static str,
+) -> MethodInfo<T> {
+    MethodInfo {
         value,
         word,
         what,
@@ -65,8 +70,8 @@ pub enum Precision {
     Double,
 }
 
-impl Choice for Precision {
-    const ALL: &'static [Way<Self>] = &[
+impl Method for Precision {
+    const ALL: &'static [MethodInfo<Self>] = &[
         way(
             Self::Auto,
             "auto",
@@ -88,8 +93,8 @@ pub enum SphereMethod {
     Classic,
 }
 
-impl Choice for SphereMethod {
-    const ALL: &'static [Way<Self>] = &[
+impl Method for SphereMethod {
+    const ALL: &'static [MethodInfo<Self>] = &[
         way(
             Self::Stable,
             "stable",
@@ -119,8 +124,8 @@ pub enum TriangleMethod {
     EdgePlanes,
 }
 
-impl Choice for TriangleMethod {
-    const ALL: &'static [Way<Self>] = &[
+impl Method for TriangleMethod {
+    const ALL: &'static [MethodInfo<Self>] = &[
         way(
             Self::Watertight,
             "watertight",
@@ -163,8 +168,8 @@ pub enum RayOffset {
     WachterBinder,
 }
 
-impl Choice for RayOffset {
-    const ALL: &'static [Way<Self>] = &[
+impl Method for RayOffset {
+    const ALL: &'static [MethodInfo<Self>] = &[
         way(
             Self::Robust,
             "robust",
@@ -230,8 +235,8 @@ pub enum HighlightMethod {
     Log1p,
 }
 
-impl Choice for HighlightMethod {
-    const ALL: &'static [Way<Self>] = &[
+impl Method for HighlightMethod {
+    const ALL: &'static [MethodInfo<Self>] = &[
         way(
             Self::Auto,
             "auto",
@@ -257,11 +262,11 @@ pub enum Accelerator {
     /// One by one.
     List,
     /// Bundles within bundles.
-    Bundles,
+    Bvh,
 }
 
-impl Choice for Accelerator {
-    const ALL: &'static [Way<Self>] = &[
+impl Method for Accelerator {
+    const ALL: &'static [MethodInfo<Self>] = &[
         way(
             Self::Auto,
             "auto",
@@ -270,7 +275,7 @@ impl Choice for Accelerator {
         ),
         way(Self::List, "list", "each by each, per tile", "Glint"),
         way(
-            Self::Bundles,
+            Self::Bvh,
             "bvh",
             "bundles of 16 along a Morton curve",
             "Wald, Boulos and Shirley, TOG 26(1), 2007, in kind",
@@ -313,8 +318,8 @@ impl Default for Sampling {
     }
 }
 
-impl Choice for Sampling {
-    const ALL: &'static [Way<Self>] = &[
+impl Method for Sampling {
+    const ALL: &'static [MethodInfo<Self>] = &[
         way(
             Self::ADAPTIVE,
             "adaptive",
@@ -383,7 +388,7 @@ pub struct Methods {
 mod tests {
     use super::*;
 
-    fn words_are_read_back<T: Choice + Default>() {
+    fn words_are_read_back<T: Method + Default>() {
         assert_eq!(T::ALL[0].value, T::default());
         for way in T::ALL {
             assert_eq!(way.value.word(), way.word);

@@ -4,8 +4,8 @@
 use glam::DVec3;
 
 use super::packet::Packet;
-use crate::lanes::{Lane, Mask as _, Real, Vec3};
-use crate::plan::{Ball, Balls, GROUP, Volumes};
+use crate::plan::{Ball, Balls, Bvh, GROUP};
+use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// Share by which balls and angles are taken larger than computed, for the rounding of the kernel.
 const CAUTION: f64 = 1e-3;
@@ -90,7 +90,12 @@ impl<R: Real> Beam<R> {
     /// Which of the balls from `first` on it meets: those whose distance from the cone is at most
     /// both radii.
     #[inline(always)]
-    fn meets<L: Lane<Real = R>>(&self, token: L::Token, balls: &Balls<R>, first: usize) -> u64 {
+    fn meets<L: SimdFloat<Real = R>>(
+        &self,
+        token: L::Token,
+        balls: &Balls<R>,
+        first: usize,
+    ) -> u64 {
         let center = Vec3::new(
             L::load(token, &balls.x[first..]),
             L::load(token, &balls.y[first..]),
@@ -113,10 +118,10 @@ impl<R: Real> Beam<R> {
 
     /// Lists the members of `volumes` that it meets, in order; `stack` is room to work in.
     #[inline(always)]
-    pub fn gather<L: Lane<Real = R>>(
+    pub fn gather<L: SimdFloat<Real = R>>(
         &self,
         token: L::Token,
-        volumes: &Volumes<R>,
+        volumes: &Bvh<R>,
         stack: &mut Vec<(usize, usize)>,
         met: &mut Vec<u32>,
     ) {
@@ -142,7 +147,7 @@ impl<R: Real> Beam<R> {
             }
         }
         // Bundles come in an order of their own; surfaces at the same distance must not care.
-        if volumes.is_bundled() {
+        if volumes.is_tree() {
             met.sort_unstable();
         }
     }
@@ -172,7 +177,7 @@ pub struct Bounds<L> {
     high: Vec3<L>,
 }
 
-impl<L: Lane> Bounds<L> {
+impl<L: SimdFloat> Bounds<L> {
     /// Around nothing.
     #[inline(always)]
     pub fn new(token: L::Token) -> Self {
@@ -210,7 +215,7 @@ impl<L: Lane> Bounds<L> {
 
 /// The beam of the rays of packets; `None` if they go everywhere, or there are none.
 #[inline(always)]
-pub fn beam_around<L: Lane>(token: L::Token, packets: &[Packet<L>]) -> Option<Beam<L::Real>> {
+pub fn beam_around<L: SimdFloat>(token: L::Token, packets: &[Packet<L>]) -> Option<Beam<L::Real>> {
     let (mut origins, mut directions) = (Bounds::new(token), Bounds::new(token));
     for packet in packets {
         origins.add(packet.active, packet.rays.origin);
@@ -243,9 +248,7 @@ mod tests {
     }
 
     fn is_met(beam: Option<Beam<f64>>, ball: Ball) -> bool {
-        beam.is_none_or(|beam| {
-            beam.meets::<f64>((), &Volumes::new(&[ball], false).levels[0], 0) != 0
-        })
+        beam.is_none_or(|beam| beam.meets::<f64>((), &Bvh::new(&[ball], false).levels[0], 0) != 0)
     }
 
     proptest! {

@@ -6,12 +6,12 @@ use std::ops::Range;
 use super::beam::{Beam, is_hidden};
 use super::sampling::Tile;
 use super::thin::SLIPPING;
-use crate::lanes::{Lane, Real, Vec3};
 use crate::plan::{Ball, Extent, Light, Plan, Screen};
+use crate::simd::{Real, SimdFloat, Vec3};
 
 /// The primitives that are worth testing, by their places in the plan's lists.
 #[derive(Clone, Debug, Default)]
-pub struct Lists {
+pub struct Candidates {
     /// Places in [`Plan::spheres`].
     pub spheres: Vec<u32>,
     /// Places in [`Plan::planes`].
@@ -27,7 +27,7 @@ pub struct Room {
     met: Vec<u32>,
 }
 
-impl Lists {
+impl Candidates {
     /// Everything there is, markers included.
     pub fn all<R: Real>(plan: &Plan<R>) -> Self {
         Self {
@@ -41,7 +41,7 @@ impl Lists {
     pub fn all_seen<R: Real>(plan: &Plan<R>) -> Self {
         let mut all = Self::all(plan);
         all.triangles
-            .retain(|&index| !is_set(&plan.unseen_faces, index));
+            .retain(|&index| !is_set(&plan.camera_culled_faces, index));
         all
     }
 
@@ -136,7 +136,7 @@ impl Lists {
     /// Becomes what rays of the beam can meet, markers included, but for a plane that all of them
     /// start on.
     #[inline(always)]
-    pub fn keep_met<L: Lane>(
+    pub fn keep_met<L: SimdFloat>(
         &mut self,
         token: L::Token,
         plan: &Plan<L::Real>,
@@ -181,20 +181,20 @@ impl Lists {
 
 /// What can stand between a light and the hits of a tile.
 #[derive(Clone, Debug, Default)]
-pub struct Shadows {
+pub struct LightCandidates {
     /// What may block the light for some of them.
-    pub casters: Lists,
+    pub casters: Candidates,
     /// Those of them whose shadows may slip between samples.
-    pub thin: Lists,
+    pub thin: Candidates,
     /// Whether one sphere blocks it for all of them.
     pub is_umbra: bool,
 }
 
-impl Shadows {
+impl LightCandidates {
     /// Becomes what can stand between a light and some point of a ball, `footprint` around it
     /// included.
     #[inline(always)]
-    pub fn keep_between<L: Lane>(
+    pub fn keep_between<L: SimdFloat>(
         &mut self,
         token: L::Token,
         plan: &Plan<L::Real>,
@@ -206,15 +206,19 @@ impl Shadows {
         let from = light.position.to_dvec3();
         let slipping = footprint * L::Real::from_f64(SLIPPING);
         let Some(beam) = Beam::to_ball(from, ball) else {
-            self.casters = Lists::all_casting(plan);
+            self.casters = Candidates::all_casting(plan);
             self.thin.keep_narrow(&self.casters, plan, |_, _| slipping);
             self.is_umbra = false;
             return;
         };
         let beam = beam.widened(footprint, L::Real::ZERO);
         beam.gather::<L>(token, &plan.volumes, &mut room.stack, &mut room.met);
-        self.casters
-            .sort_out(plan, &room.met, plan.casting_spheres, &light.idle_faces);
+        self.casters.sort_out(
+            plan,
+            &room.met,
+            plan.casting_spheres,
+            &light.shadow_culled_faces,
+        );
         self.casters.planes.clear();
         if plan.planes_cast {
             self.casters.planes.extend(0..plan.planes.len() as u32);

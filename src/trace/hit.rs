@@ -1,10 +1,10 @@
 //! The nearest hit among some primitives, and whether anything stands in a ray's way.
 
-use super::cull::Lists;
+use super::cull::Candidates;
 use super::triangle::Shear;
 use super::{Ray, plane, sphere, triangle};
-use crate::lanes::{Lane, Mask as _, Real, Vec3};
-use crate::plan::{Departure, Plan};
+use crate::plan::{Plan, RayOrigin};
+use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// Rays and the primitives that they start on, which they must not meet where they start.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +26,7 @@ pub enum Start<L> {
     Each(L),
 }
 
-impl<L: Lane> Start<L> {
+impl<L: SimdFloat> Start<L> {
     /// This where the mask is set, `other` elsewhere.
     #[inline(always)]
     pub fn over(self, token: L::Token, mask: L::Mask, other: Self) -> Self {
@@ -91,10 +91,10 @@ fn real<R: Real>(number: usize) -> R {
 
 /// The nearest primitives along the paths.
 #[inline(always)]
-pub fn nearest<L: Lane>(
+pub fn nearest<L: SimdFloat>(
     token: L::Token,
     plan: &Plan<L::Real>,
-    among: &Lists,
+    among: &Candidates,
     paths: &Paths<L>,
 ) -> Nearest<L> {
     let numbers = Numbers::of(plan);
@@ -125,7 +125,7 @@ pub fn nearest<L: Lane>(
 }
 
 #[inline(always)]
-fn offer<L: Lane>(token: L::Token, best: &mut Nearest<L>, t: L, number: usize) {
+fn offer<L: SimdFloat>(token: L::Token, best: &mut Nearest<L>, t: L, number: usize) {
     let closer = t.less(best.t);
     best.t = L::select(closer, t, best.t);
     best.number = L::select(closer, L::splat(token, real(number)), best.number);
@@ -134,10 +134,10 @@ fn offer<L: Lane>(token: L::Token, best: &mut Nearest<L>, t: L, number: usize) {
 /// Where a primitive that casts shadows meets the paths before `distance`; looked for only where
 /// `wanted`.
 #[inline(always)]
-pub fn blocked<L: Lane>(
+pub fn blocked<L: SimdFloat>(
     token: L::Token,
     plan: &Plan<L::Real>,
-    among: &Lists,
+    among: &Candidates,
     paths: &Paths<L>,
     distance: L,
     wanted: L::Mask,
@@ -171,7 +171,7 @@ pub fn blocked<L: Lane>(
 }
 
 #[inline(always)]
-fn sphere_distance<L: Lane>(
+fn sphere_distance<L: SimdFloat>(
     token: L::Token,
     plan: &Plan<L::Real>,
     paths: &Paths<L>,
@@ -196,7 +196,7 @@ fn sphere_distance<L: Lane>(
 }
 
 #[inline(always)]
-fn plane_distance<L: Lane>(
+fn plane_distance<L: SimdFloat>(
     token: L::Token,
     plan: &Plan<L::Real>,
     paths: &Paths<L>,
@@ -208,7 +208,7 @@ fn plane_distance<L: Lane>(
 }
 
 #[inline(always)]
-fn triangle_distance<L: Lane>(
+fn triangle_distance<L: SimdFloat>(
     token: L::Token,
     plan: &Plan<L::Real>,
     paths: &Paths<L>,
@@ -223,7 +223,7 @@ fn triangle_distance<L: Lane>(
 
 /// A flat primitive is never met again by a ray that starts on it.
 #[inline(always)]
-fn without_start<L: Lane>(token: L::Token, paths: &Paths<L>, number: usize, t: L) -> L {
+fn without_start<L: SimdFloat>(token: L::Token, paths: &Paths<L>, number: usize, t: L) -> L {
     let infinity = L::splat(token, L::Real::INFINITY);
     match paths.start {
         Start::On(start) if start == number => infinity,
@@ -234,7 +234,7 @@ fn without_start<L: Lane>(token: L::Token, paths: &Paths<L>, number: usize, t: L
 
 /// Hits on one primitive, refined.
 #[derive(Clone, Copy, Debug)]
-pub struct Hit<L: Lane> {
+pub struct Hit<L: SimdFloat> {
     /// On the surface.
     pub point: Vec3<L>,
     /// Unit normal of the surface, on either side.
@@ -253,7 +253,7 @@ pub struct Hit<L: Lane> {
 
 /// The hits at `t` on the primitive of this number.
 #[inline(always)]
-pub fn refine<L: Lane>(
+pub fn refine<L: SimdFloat>(
     token: L::Token,
     plan: &Plan<L::Real>,
     rays: &Ray<L>,
@@ -314,7 +314,7 @@ pub fn refine<L: Lane>(
 /// Wächter and Binder, "A fast and robust method for avoiding self-intersection", Ray Tracing Gems
 /// (2019), ch. 6; with 2u·|p| in place of the step to the next number, which is at most twice that.
 #[inline(always)]
-fn roundings_along<L: Lane>(token: L::Token, point: Vec3<L>, normal: Vec3<L>) -> Vec3<L> {
+fn roundings_along<L: SimdFloat>(token: L::Token, point: Vec3<L>, normal: Vec3<L>) -> Vec3<L> {
     let roundings = L::splat(
         token,
         L::Real::UNIT_ROUNDOFF * L::Real::from_f64(2.0 * 256.0),
@@ -329,25 +329,25 @@ fn roundings_along<L: Lane>(token: L::Token, point: Vec3<L>, normal: Vec3<L>) ->
     )
 }
 
-impl<L: Lane> Hit<L> {
+impl<L: SimdFloat> Hit<L> {
     /// The paths that leave the hits in unit directions on the side that the normal points to.
     #[inline(always)]
     pub fn leave(
         &self,
         token: L::Token,
-        departure: Departure<L::Real>,
+        departure: RayOrigin<L::Real>,
         direction: Vec3<L>,
     ) -> Paths<L> {
         let (origin, start) = match departure {
-            Departure::AtHit => (
+            RayOrigin::AtHit => (
                 self.point + self.normal * self.slack,
                 Start::On(self.number),
             ),
-            Departure::Along(distance) => {
+            RayOrigin::Along(distance) => {
                 let distance = L::splat(token, distance);
                 (self.point + direction * distance, Start::Nowhere)
             }
-            Departure::Roundings => (
+            RayOrigin::Roundings => (
                 self.point + roundings_along(token, self.point, self.normal),
                 Start::Nowhere,
             ),

@@ -1,11 +1,11 @@
 //! The samples of a tile that its pixels share, and when a cell between them is halved.
 
-use super::cull::Lists;
+use super::cull::Candidates;
 use super::samples::{Samples, Traced};
 use super::sampling::{Colors, Tile};
 use super::stage::Engine;
-use crate::lanes::{Lane, Real};
 use crate::plan::MAX_HALVINGS;
+use crate::simd::{Real, SimdFloat};
 
 /// Steps of the finest grid in a pixel: where something thinner than two pixels is, or a strong edge,
 /// it is halved once more than elsewhere.
@@ -151,11 +151,11 @@ impl<R: Real> Mesh<R> {
 
     /// Traces the samples that are wanted and not there yet.
     #[inline(always)]
-    pub fn sample<L: Lane<Real = R>>(
+    pub fn sample<L: SimdFloat<Real = R>>(
         &mut self,
         token: L::Token,
         engine: &mut Engine<L>,
-        seen: &Lists,
+        seen: &Candidates,
         tile: &Tile,
         samples: &mut Samples<R>,
         traced: &mut Traced<R>,
@@ -169,7 +169,7 @@ impl<R: Real> Mesh<R> {
                 R::from_f64(tile.rows.start as f64 + y as f64 * step),
             );
         }
-        samples.seal(L::WIDTH);
+        samples.pad(L::WIDTH);
         engine.trace(token, samples, seen, true, traced);
         self.take(traced);
     }

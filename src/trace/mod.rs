@@ -26,7 +26,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64};
 pub use threads::{PoolError, Threads};
 pub use tiles::{Grid, Pass, Pixel, Tracer};
 
-use crate::lanes::{Lane, Vec3};
+use crate::simd::{SimdFloat, Vec3};
 
 /// Half-lines: origins and unit directions.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +37,7 @@ pub struct Ray<L> {
     pub direction: Vec3<L>,
 }
 
-impl<L: Lane> Ray<L> {
+impl<L: SimdFloat> Ray<L> {
     /// The points `t` along.
     #[inline(always)]
     pub fn at(&self, t: L) -> Vec3<L> {
@@ -82,7 +82,7 @@ impl std::ops::Add for Rays {
 
 /// What a running trace and its caller tell each other.
 #[derive(Debug, Default)]
-pub struct Watch {
+pub struct RenderControl {
     /// Set by the caller to end the trace within a part of a tile.
     pub stop: AtomicBool,
     /// Pixels traced so far.

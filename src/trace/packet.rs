@@ -2,12 +2,12 @@
 
 use super::Ray;
 use super::hit::{NOTHING, Nearest, Start};
-use crate::lanes::{Lane, Real, Vec3};
 use crate::plan::Plan;
+use crate::simd::{Real, SimdFloat, Vec3};
 
 /// Rays that are traced in step, what they meet and what they bring back.
 #[derive(Clone, Copy)]
-pub struct Packet<L: Lane> {
+pub struct Packet<L: SimdFloat> {
     /// The rays.
     pub rays: Ray<L>,
     /// Where there is a ray.
@@ -20,7 +20,7 @@ pub struct Packet<L: Lane> {
 
 /// Where mirrored rays come from.
 #[derive(Clone, Copy)]
-pub struct Link<L: Lane> {
+pub struct Link<L: SimdFloat> {
     /// Place of the packet in the stage before.
     pub parent: usize,
     /// What they start on.
@@ -31,7 +31,7 @@ pub struct Link<L: Lane> {
 
 /// How wide a pixel is: where the rays start, and how much wider at distance 1.
 #[derive(Clone, Copy, Debug)]
-pub struct Trail<L> {
+pub struct RayCone<L> {
     /// Scene units.
     pub width: L,
     /// Scene units per scene unit.
@@ -42,14 +42,14 @@ pub struct Trail<L> {
 #[derive(Clone, Copy, Debug)]
 pub struct Mark<L> {
     /// How wide a pixel is along the rays.
-    pub trail: Trail<L>,
+    pub trail: RayCone<L>,
     /// The sum of 2ⁱ over the lights i that shine on what was hit.
     pub lit: L,
     /// How many pixels away the next thing is that may slip between samples; infinity for none.
     pub near: L,
 }
 
-impl<L: Lane> Packet<L> {
+impl<L: SimdFloat> Packet<L> {
     /// Rays that have met nothing yet.
     #[inline(always)]
     pub fn new(token: L::Token, plan: &Plan<L::Real>, rays: Ray<L>, active: L::Mask) -> Self {
@@ -65,10 +65,10 @@ impl<L: Lane> Packet<L> {
     }
 }
 
-impl<L: Lane> Mark<L> {
+impl<L: SimdFloat> Mark<L> {
     /// Of rays that have met nothing yet.
     #[inline(always)]
-    pub fn new(token: L::Token, trail: Trail<L>) -> Self {
+    pub fn new(token: L::Token, trail: RayCone<L>) -> Self {
         Self {
             trail,
             lit: L::splat(token, L::Real::ZERO),

@@ -1,13 +1,13 @@
 //! Ray against plane.
 
 use super::Ray;
-use crate::lanes::{Lane, Real, Vec3};
 use crate::plan::Plane;
+use crate::simd::{Real, SimdFloat, Vec3};
 
 /// t = (offset - n·o) / (n·d), or infinity if that is not in front. A ray along the plane divides
 /// by zero; the comparison then fails and the plane is rightly not seen edge-on.
 #[inline(always)]
-pub fn intersect<L: Lane>(token: L::Token, ray: &Ray<L>, plane: &Plane<L::Real>) -> L {
+pub fn intersect<L: SimdFloat>(token: L::Token, ray: &Ray<L>, plane: &Plane<L::Real>) -> L {
     let normal = Vec3::broadcast(token, plane.normal);
     let height = L::splat(token, plane.offset) - normal.dot(ray.origin);
     let t = height / normal.dot(ray.direction);
@@ -20,7 +20,12 @@ pub fn intersect<L: Lane>(token: L::Token, ray: &Ray<L>, plane: &Plane<L::Real>)
 
 /// The hit at `t`, drawn onto the plane.
 #[inline(always)]
-pub fn refine<L: Lane>(token: L::Token, ray: &Ray<L>, plane: &Plane<L::Real>, t: L) -> Vec3<L> {
+pub fn refine<L: SimdFloat>(
+    token: L::Token,
+    ray: &Ray<L>,
+    plane: &Plane<L::Real>,
+    t: L,
+) -> Vec3<L> {
     let normal = Vec3::broadcast(token, plane.normal);
     let point = ray.at(t);
     point - normal * (normal.dot(point) - L::splat(token, plane.offset))

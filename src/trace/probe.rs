@@ -2,8 +2,8 @@
 
 use super::triangle::Shear;
 use super::{Ray, plane, sphere, triangle};
-use crate::lanes::Real;
 use crate::plan::{Plane, Sphere, SphereMethod, Triangle, TriangleMethod};
+use crate::simd::Real;
 
 /// The t > 0 at which the ray meets the sphere; infinity if it does not.
 pub fn meet_sphere<R: Real>(method: SphereMethod, ray: &Ray<R>, target: &Sphere<R>) -> R {

@@ -1,7 +1,7 @@
 //! What goes into the tracing of a tile, and what comes out of it, one number per sample in each
 //! column.
 
-use crate::lanes::{Real, Vec3};
+use crate::simd::{Real, Vec3};
 
 /// Places in the picture to be traced, in pixels from its left and upper edge; filled up to whole
 /// packets.
@@ -64,7 +64,7 @@ impl<R: Real> Samples<R> {
 
     /// Counts the places, and fills the last packet up.
     #[inline(always)]
-    pub fn seal(&mut self, lanes: usize) {
+    pub fn pad(&mut self, lanes: usize) {
         self.count = self.x.len();
         if let (Some(&x), Some(&y)) = (self.x.last(), self.y.last()) {
             let full = self.count.next_multiple_of(lanes);

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use super::cull::Lists;
+use super::cull::Candidates;
 use super::mesh::{Cell, FINEST, Limits, Mesh, NEAR, range};
 use super::samples::{Samples, Traced};
 use super::stage::Engine;
-use crate::lanes::{Lane, Real};
+use crate::simd::{Real, SimdFloat};
 
 /// A rectangle of pixels.
 #[derive(Clone, Debug)]
@@ -27,7 +27,7 @@ pub struct Colors<R> {
 }
 
 /// What sampling leaves behind for the next tile to use again.
-pub struct Sampler<L: Lane> {
+pub struct Sampler<L: SimdFloat> {
     /// Places of the samples of a row.
     columns: Vec<L::Real>,
     samples: Samples<L::Real>,
@@ -62,7 +62,7 @@ impl<R: Real> Colors<R> {
     }
 }
 
-impl<L: Lane> Sampler<L> {
+impl<L: SimdFloat> Sampler<L> {
     /// Nothing yet.
     pub fn new() -> Self {
         Self {
@@ -83,7 +83,7 @@ impl<L: Lane> Sampler<L> {
         &mut self,
         token: L::Token,
         engine: &mut Engine<L>,
-        seen: &Lists,
+        seen: &Candidates,
         pixels: impl Iterator<Item = (usize, usize)>,
     ) -> &Traced<L::Real> {
         let centre = |index: usize| L::Real::from_f64(index as f64 + 0.5);
@@ -91,7 +91,7 @@ impl<L: Lane> Sampler<L> {
         for (column, row) in pixels {
             self.samples.push(centre(column), centre(row));
         }
-        self.samples.seal(L::WIDTH);
+        self.samples.pad(L::WIDTH);
         engine.trace(token, &self.samples, seen, false, &mut self.traced);
         &self.traced
     }
@@ -103,7 +103,7 @@ impl<L: Lane> Sampler<L> {
         &mut self,
         token: L::Token,
         engine: &mut Engine<L>,
-        seen: &Lists,
+        seen: &Candidates,
         tile: &Tile,
         (x, y): (f64, f64),
     ) -> &Traced<L::Real> {
@@ -120,7 +120,7 @@ impl<L: Lane> Sampler<L> {
         self.columns.extend(columns.map(|column| place(column, x)));
         self.samples
             .cross(&self.columns, rows.map(|row| place(row, y)));
-        self.samples.seal(L::WIDTH);
+        self.samples.pad(L::WIDTH);
     }
 
     /// The means of `side × side` samples in each pixel, each in the middle of its part.
@@ -129,7 +129,7 @@ impl<L: Lane> Sampler<L> {
         &mut self,
         token: L::Token,
         engine: &mut Engine<L>,
-        seen: &Lists,
+        seen: &Candidates,
         tile: &Tile,
         side: u32,
         colors: &mut Colors<L::Real>,
@@ -157,7 +157,7 @@ impl<L: Lane> Sampler<L> {
         &mut self,
         token: L::Token,
         engine: &mut Engine<L>,
-        seen: &Lists,
+        seen: &Candidates,
         tile: &Tile,
         limits: Limits<L::Real>,
         colors: &mut Colors<L::Real>,

@@ -3,17 +3,17 @@
 //! Rays that travel in step may hit different things: each thing that was hit is shaded for its own
 //! rays, and the results are put together.
 
-use super::cull::{Lists, Shadows};
+use super::cull::{Candidates, LightCandidates};
 use super::hit::{Hit, NOTHING, Paths, Start, blocked, refine};
 use super::mesh::EDGE_CONTRAST;
-use super::packet::{Mark, Packet, Trail};
+use super::packet::{Mark, Packet, RayCone};
 use super::thin::{Footprint, thin_distance};
 use super::{Ray, Rays};
-use crate::lanes::{Lane, Mask as _, Real, Vec3};
-use crate::plan::{Departure, Light, Plan, Surface};
+use crate::plan::{Light, Plan, RayOrigin, Surface};
+use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// How packets are painted.
-pub struct Painter<'a, L: Lane> {
+pub struct Shader<'a, L: SimdFloat> {
     /// The lanes.
     pub token: L::Token,
     /// The plan.
@@ -23,7 +23,7 @@ pub struct Painter<'a, L: Lane> {
 }
 
 /// Rays that a mirror sends on.
-pub struct Mirrored<L: Lane> {
+pub struct Mirrored<L: SimdFloat> {
     /// Where there are some.
     pub where_: L::Mask,
     /// What their colours are multiplied by.
@@ -31,11 +31,11 @@ pub struct Mirrored<L: Lane> {
     /// The rays.
     pub paths: Paths<L>,
     /// How wide a pixel is along them, where marks are wanted.
-    pub trail: Option<Trail<L>>,
+    pub trail: Option<RayCone<L>>,
 }
 
 /// The hits on one primitive.
-struct Spot<'a, L: Lane> {
+struct Spot<'a, L: SimdFloat> {
     hit: Hit<L>,
     surface: &'a Surface<L::Real>,
     /// The rays that made them.
@@ -46,7 +46,7 @@ struct Spot<'a, L: Lane> {
     footprint: Option<Footprint<L>>,
 }
 
-impl<L: Lane> Painter<'_, L> {
+impl<L: SimdFloat> Shader<'_, L> {
     /// Colours what the packet has met, and marks it if a mark is wanted, by what is `thin`. Gives the
     /// rays that mirrors send on.
     #[inline(always)]
@@ -55,8 +55,8 @@ impl<L: Lane> Painter<'_, L> {
         packet: &mut Packet<L>,
         start: Start<L>,
         mut mark: Option<&mut Mark<L>>,
-        thin: &Lists,
-        shadows: &[Shadows],
+        thin: &Candidates,
+        shadows: &[LightCandidates],
         rays: &mut Rays,
     ) -> Option<Mirrored<L>> {
         let (token, plan) = (self.token, self.plan);
@@ -137,7 +137,7 @@ impl<L: Lane> Painter<'_, L> {
         spot: &Spot<L>,
         index: usize,
         light: &Light<L::Real>,
-        shadows: &Shadows,
+        shadows: &LightCandidates,
         rays: &mut Rays,
     ) -> Vec3<L> {
         let (token, plan, hit) = (self.token, self.plan, &spot.hit);
@@ -164,8 +164,8 @@ impl<L: Lane> Painter<'_, L> {
         if !shadows.casters.is_empty() {
             let paths = hit.leave(token, plan.departure, l);
             let reach = match plan.departure {
-                Departure::AtHit | Departure::Roundings => distance,
-                Departure::Along(start) => distance - L::splat(token, start),
+                RayOrigin::AtHit | RayOrigin::Roundings => distance,
+                RayOrigin::Along(start) => distance - L::splat(token, start),
             };
             if let Some((mark, footprint)) = &mut mark {
                 let trail = footprint.shadow(token);
@@ -211,7 +211,11 @@ const LIGHT_BITS: usize = 20;
 
 /// Puts the rays of several mirrors into one row.
 #[inline(always)]
-fn join<L: Lane>(token: L::Token, before: Option<Mirrored<L>>, new: Mirrored<L>) -> Mirrored<L> {
+fn join<L: SimdFloat>(
+    token: L::Token,
+    before: Option<Mirrored<L>>,
+    new: Mirrored<L>,
+) -> Mirrored<L> {
     let Some(before) = before else { return new };
     let is_new = new.where_;
     let rays = Ray {
@@ -228,7 +232,7 @@ fn join<L: Lane>(token: L::Token, before: Option<Mirrored<L>>, new: Mirrored<L>)
         filter: Vec3::select(is_new, new.filter, before.filter),
         paths: Paths { rays, start },
         trail: match (new.trail, before.trail) {
-            (Some(new), Some(before)) => Some(Trail {
+            (Some(new), Some(before)) => Some(RayCone {
                 width: L::select(is_new, new.width, before.width),
                 spread: L::select(is_new, new.spread, before.spread),
             }),

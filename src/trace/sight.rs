@@ -5,19 +5,19 @@ use glam::DVec3;
 
 use super::Ray;
 use super::probe::{meet_plane, meet_sphere, meet_triangle};
-use crate::lanes::Vec3;
 use crate::plan::{Plane, Sphere, SphereMethod, Triangle, TriangleMethod};
 use crate::scene::{Scene, Shape};
+use crate::simd::Vec3;
 
 /// The visible objects of a scene; markers of lights are not among them.
 #[derive(Clone, Debug, Default)]
-pub struct Sight {
+pub struct SceneQuery {
     spheres: Vec<Sphere<f64>>,
     planes: Vec<Plane<f64>>,
     triangles: Vec<Triangle<f64>>,
 }
 
-impl Sight {
+impl SceneQuery {
     /// What can be seen of a scene, which must pass [`crate::scene::check`].
     pub fn new(scene: &Scene) -> Self {
         let mut sight = Self::default();
@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn the_demo_is_seen_where_it_is() {
-        let sight = Sight::new(&Scene::demo());
+        let sight = SceneQuery::new(&Scene::demo());
         let down = DVec3::new(0.0, -1.0, 0.0);
         // Sphere 1: centre (125, 50, -150), radius 50, on the plane y = 0.
         let above = DVec3::new(125.0, 300.0, -150.0);

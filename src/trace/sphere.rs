@@ -1,15 +1,15 @@
 //! Ray against sphere.
 
 use super::Ray;
-use crate::lanes::{Lane, Real, Vec3};
 use crate::plan::{Sphere, SphereMethod};
+use crate::simd::{Real, SimdFloat, Vec3};
 
 /// Distances along the ray to where its line enters and leaves a sphere; NaN if it passes by.
 type Roots<L> = (L, L);
 
 /// The smallest t > 0 at which the ray meets the sphere; infinity if it does not.
 #[inline(always)]
-pub fn intersect<L: Lane>(
+pub fn intersect<L: SimdFloat>(
     token: L::Token,
     method: SphereMethod,
     ray: &Ray<L>,
@@ -32,7 +32,7 @@ pub fn intersect<L: Lane>(
 /// Haines, Günther and Akenine-Möller, "Precision improvements for ray/sphere intersection", Ray
 /// Tracing Gems (2019), ch. 7.
 #[inline(always)]
-fn stable<L: Lane>(x: Vec3<L>, d: Vec3<L>, radius: L) -> Roots<L> {
+fn stable<L: SimdFloat>(x: Vec3<L>, d: Vec3<L>, radius: L) -> Roots<L> {
     let b = -d.dot(x);
     let perpendicular = x + d * b;
     let half_chord = (radius * radius - perpendicular.dot(perpendicular)).sqrt();
@@ -42,7 +42,7 @@ fn stable<L: Lane>(x: Vec3<L>, d: Vec3<L>, radius: L) -> Roots<L> {
 /// t = -d·x ± √((d·x)² - x·x + R²), the formula of Glint's ancestor. Needs |d| = 1; loses all
 /// digits of R² when the centre is more than 4096 radii away (single precision).
 #[inline(always)]
-fn classic<L: Lane>(x: Vec3<L>, d: Vec3<L>, radius: L) -> Roots<L> {
+fn classic<L: SimdFloat>(x: Vec3<L>, d: Vec3<L>, radius: L) -> Roots<L> {
     let dx = d.dot(x);
     let half_chord = (dx * dx - x.dot(x) + radius * radius).sqrt();
     (-dx - half_chord, -dx + half_chord)
@@ -51,7 +51,7 @@ fn classic<L: Lane>(x: Vec3<L>, d: Vec3<L>, radius: L) -> Roots<L> {
 /// Where a ray that starts on the sphere meets it again: t = -2·d·(p - c), or infinity. The root
 /// at t = 0 is the start itself and never counts, however it is rounded.
 #[inline(always)]
-pub fn leave<L: Lane>(token: L::Token, ray: &Ray<L>, sphere: &Sphere<L::Real>) -> L {
+pub fn leave<L: SimdFloat>(token: L::Token, ray: &Ray<L>, sphere: &Sphere<L::Real>) -> L {
     let outwards = ray.origin - Vec3::broadcast(token, sphere.center);
     let half = -ray.direction.dot(outwards);
     let zero = L::splat(token, L::Real::ZERO);
@@ -65,7 +65,7 @@ pub fn leave<L: Lane>(token: L::Token, ray: &Ray<L>, sphere: &Sphere<L::Real>) -
 /// How far along its line a ray is nearest to the sphere's centre, and how far from the surface
 /// that is; below zero inside.
 #[inline(always)]
-pub fn beside<L: Lane>(token: L::Token, ray: &Ray<L>, sphere: &Sphere<L::Real>) -> (L, L) {
+pub fn beside<L: SimdFloat>(token: L::Token, ray: &Ray<L>, sphere: &Sphere<L::Real>) -> (L, L) {
     let x = ray.origin - Vec3::broadcast(token, sphere.center);
     let along = -ray.direction.dot(x);
     let distance = (x + ray.direction * along).length();
@@ -75,7 +75,7 @@ pub fn beside<L: Lane>(token: L::Token, ray: &Ray<L>, sphere: &Sphere<L::Real>) 
 /// The hit at `t`, drawn onto the surface, p = c + (p - c)·R/|p - c|: point and outward unit
 /// normal. The point is then off by a few roundings of R, however far the ray has come.
 #[inline(always)]
-pub fn refine<L: Lane>(
+pub fn refine<L: SimdFloat>(
     token: L::Token,
     ray: &Ray<L>,
     sphere: &Sphere<L::Real>,

@@ -2,32 +2,32 @@
 //! light that falls on it; then the rays that mirrors send on, as the next stage.
 
 use super::beam::{Bounds, beam_around};
-use super::cull::{Lists, Room, Shadows};
+use super::cull::{Candidates, LightCandidates, Room};
 use super::hit::{Paths, Start, nearest};
-use super::packet::{Link, Mark, Packet, Trail};
+use super::packet::{Link, Mark, Packet, RayCone};
 use super::samples::{Samples, Traced};
-use super::shade::Painter;
+use super::shade::Shader;
 use super::thin::{LARGEST_STRETCH, SLIPPING};
 use super::{Ray, Rays};
-use crate::lanes::{Lane, MOST_LANES, Mask as _, Real, Vec3};
 use crate::plan::Plan;
+use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
 
 /// One bounce: its packets, and what they can meet.
-struct Stage<L: Lane> {
+struct Stage<L: SimdFloat> {
     packets: Vec<Packet<L>>,
     /// One for each packet, in stages of mirrored rays.
     links: Vec<Link<L>>,
     /// One for each packet, with edges.
     marks: Vec<Mark<L>>,
-    seen: Lists,
+    seen: Candidates,
     /// Those of them that may slip between samples.
-    thin: Lists,
-    shadows: Vec<Shadows>,
-    signatures: Vec<[u32; MOST_LANES]>,
+    thin: Candidates,
+    shadows: Vec<LightCandidates>,
+    signatures: Vec<[u32; MAX_LANES]>,
 }
 
 /// What traces the samples of a tile.
-pub struct Engine<'a, L: Lane> {
+pub struct Engine<'a, L: SimdFloat> {
     plan: &'a Plan<L::Real>,
     stages: Vec<Stage<L>>,
     room: Room,
@@ -35,7 +35,7 @@ pub struct Engine<'a, L: Lane> {
     pub rays: Rays,
 }
 
-impl<'a, L: Lane> Engine<'a, L> {
+impl<'a, L: SimdFloat> Engine<'a, L> {
     /// An engine for a plan.
     pub fn new(plan: &'a Plan<L::Real>) -> Self {
         Self {
@@ -52,12 +52,12 @@ impl<'a, L: Lane> Engine<'a, L> {
         &mut self,
         token: L::Token,
         samples: &Samples<L::Real>,
-        seen: &Lists,
+        seen: &Candidates,
         edges: bool,
         traced: &mut Traced<L::Real>,
     ) {
         // A function of its own: it is long, and called from several places.
-        L::in_step(
+        L::vectorize(
             token,
             #[inline(always)]
             || self.trace_in_step(token, samples, seen, edges, traced),
@@ -69,7 +69,7 @@ impl<'a, L: Lane> Engine<'a, L> {
         &mut self,
         token: L::Token,
         samples: &Samples<L::Real>,
-        seen: &Lists,
+        seen: &Candidates,
         edges: bool,
         traced: &mut Traced<L::Real>,
     ) {
@@ -88,7 +88,7 @@ impl<'a, L: Lane> Engine<'a, L> {
             let (stage, next) = (&mut stages[depth], &mut deeper[0]);
             next.clear();
             let may_mirror = (depth as u32) < self.plan.reflection_limit;
-            let painter = Painter {
+            let painter = Shader {
                 token,
                 plan: self.plan,
                 may_mirror,
@@ -117,17 +117,17 @@ impl<'a, L: Lane> Engine<'a, L> {
 
     fn grow(&mut self, depth: usize) {
         while self.stages.len() <= depth {
-            let shadows = Shadows {
-                casters: Lists::all_casting(self.plan),
-                thin: Lists::default(),
+            let shadows = LightCandidates {
+                casters: Candidates::all_casting(self.plan),
+                thin: Candidates::default(),
                 is_umbra: false,
             };
             self.stages.push(Stage {
                 packets: Vec::new(),
                 links: Vec::new(),
                 marks: Vec::new(),
-                seen: Lists::default(),
-                thin: Lists::default(),
+                seen: Candidates::default(),
+                thin: Candidates::default(),
                 shadows: vec![shadows; self.plan.lights.len()],
                 signatures: Vec::new(),
             });
@@ -135,7 +135,13 @@ impl<'a, L: Lane> Engine<'a, L> {
     }
 
     #[inline(always)]
-    fn start(&mut self, token: L::Token, samples: &Samples<L::Real>, seen: &Lists, edges: bool) {
+    fn start(
+        &mut self,
+        token: L::Token,
+        samples: &Samples<L::Real>,
+        seen: &Candidates,
+        edges: bool,
+    ) {
         self.grow(0);
         let stage = &mut self.stages[0];
         stage.seen.clone_from(seen);
@@ -157,7 +163,7 @@ impl<'a, L: Lane> Engine<'a, L> {
         }
         if edges {
             let (width, spread) = self.plan.view.footprint();
-            let trail = Trail {
+            let trail = RayCone {
                 width: L::splat(token, width),
                 spread: L::splat(token, spread),
             };
@@ -168,7 +174,7 @@ impl<'a, L: Lane> Engine<'a, L> {
     }
 }
 
-impl<L: Lane> Stage<L> {
+impl<L: SimdFloat> Stage<L> {
     fn clear(&mut self) {
         self.packets.clear();
         self.links.clear();
@@ -241,7 +247,7 @@ impl<L: Lane> Stage<L> {
     }
 
     #[inline(always)]
-    fn paint(&mut self, painter: &Painter<L>, next: &mut Self, rays: &mut Rays) {
+    fn paint(&mut self, painter: &Shader<L>, next: &mut Self, rays: &mut Rays) {
         let token = painter.token;
         for place in 0..self.packets.len() {
             let start = self.start_of(place);
@@ -278,7 +284,7 @@ impl<L: Lane> Stage<L> {
             None
         };
         let Some(beam) = beam else {
-            self.seen = Lists::all(plan);
+            self.seen = Candidates::all(plan);
             self.thin.clone_from(&self.seen);
             return;
         };
@@ -349,11 +355,11 @@ impl<L: Lane> Stage<L> {
     fn sign(&mut self) {
         self.signatures.clear();
         for (packet, mark) in self.packets.iter().zip(&self.marks) {
-            let mut numbers = [L::Real::ZERO; MOST_LANES];
+            let mut numbers = [L::Real::ZERO; MAX_LANES];
             let mut lit = numbers;
             packet.near.number.store(&mut numbers);
             mark.lit.store(&mut lit);
-            let mut signature = [0; MOST_LANES];
+            let mut signature = [0; MAX_LANES];
             for lane in 0..L::WIDTH {
                 // Odd multipliers spread the small numbers over all bits.
                 let number = (numbers[lane] + L::Real::ONE).nearest();
@@ -383,7 +389,7 @@ impl<L: Lane> Stage<L> {
 }
 
 #[inline(always)]
-fn clamped<L: Lane>(token: L::Token, color: Vec3<L>) -> Vec3<L> {
+fn clamped<L: SimdFloat>(token: L::Token, color: Vec3<L>) -> Vec3<L> {
     color.clamp(
         L::splat(token, L::Real::ZERO),
         L::splat(token, L::Real::ONE),

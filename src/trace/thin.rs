@@ -2,13 +2,13 @@
 //! that are narrower than two pixels, and highlights that are sharper. A sample that passes such a
 //! thing closely says so, and is then not left alone.
 
-use super::cull::Lists;
+use super::cull::Candidates;
 use super::hit::{Paths, Start};
-use super::packet::Trail;
+use super::packet::RayCone;
 use super::triangle::Shear;
 use super::{sphere, triangle};
-use crate::lanes::{Lane, Real};
 use crate::plan::Plan;
+use crate::simd::{Real, SimdFloat};
 
 /// Widest thing, in pixels, that may slip between samples.
 pub const SLIPPING: f64 = 2.0;
@@ -24,25 +24,25 @@ const HIGHLIGHT_REACH: f64 = 3.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Footprint<L> {
     /// Across the ray.
-    trail: Trail<L>,
+    trail: RayCone<L>,
     /// Along the surface.
     pub length: L,
     /// How far the surface's normal turns over that length.
     turn: L,
 }
 
-impl<L: Lane> Footprint<L> {
+impl<L: SimdFloat> Footprint<L> {
     /// The pixel around a ray that has gone as far as `t` and meets a surface of this radius of
     /// curvature (infinity: flat) at this cosine.
     #[inline(always)]
-    pub fn new(token: L::Token, trail: Trail<L>, t: L, cosine: L, radius: L::Real) -> Self {
+    pub fn new(token: L::Token, trail: RayCone<L>, t: L, cosine: L, radius: L::Real) -> Self {
         let width = trail.width + trail.spread * t;
         let length = width
             / cosine
                 .abs()
                 .max(L::splat(token, L::Real::from_f64(GRAZING)));
         Self {
-            trail: Trail {
+            trail: RayCone {
                 width,
                 spread: trail.spread,
             },
@@ -53,8 +53,8 @@ impl<L: Lane> Footprint<L> {
 
     /// How wide a pixel is along the mirrored ray: a curved mirror spreads it.
     #[inline(always)]
-    pub fn mirrored(&self) -> Trail<L> {
-        Trail {
+    pub fn mirrored(&self) -> RayCone<L> {
+        RayCone {
             spread: self.trail.spread + self.turn + self.turn,
             ..self.trail
         }
@@ -62,8 +62,8 @@ impl<L: Lane> Footprint<L> {
 
     /// The trail of the rays that go on from the surface to a light: no wider there than here.
     #[inline(always)]
-    pub fn shadow(&self, token: L::Token) -> Trail<L> {
-        Trail {
+    pub fn shadow(&self, token: L::Token) -> RayCone<L> {
+        RayCone {
             width: self.length,
             spread: L::splat(token, L::Real::ZERO),
         }
@@ -85,12 +85,12 @@ impl<L: Lane> Footprint<L> {
 /// How many pixels away from the paths the nearest of the primitives in the lists is that are
 /// narrower there than [`SLIPPING`] pixels, before `reach`; infinity for none.
 #[inline(always)]
-pub fn thin_distance<L: Lane>(
+pub fn thin_distance<L: SimdFloat>(
     token: L::Token,
     plan: &Plan<L::Real>,
-    among: &Lists,
+    among: &Candidates,
     paths: &Paths<L>,
-    trail: Trail<L>,
+    trail: RayCone<L>,
     reach: L,
 ) -> L {
     let slipping = L::splat(token, L::Real::from_f64(SLIPPING));
@@ -126,7 +126,7 @@ pub fn thin_distance<L: Lane>(
 /// `beside / width` where the mask is set; infinity elsewhere, and inside, where a sample sees the
 /// thing itself.
 #[inline(always)]
-fn pixels<L: Lane>(token: L::Token, mask: L::Mask, beside: L, width: L) -> L {
+fn pixels<L: SimdFloat>(token: L::Token, mask: L::Mask, beside: L, width: L) -> L {
     let outside = mask & L::splat(token, L::Real::ZERO).less(beside);
     L::select(outside, beside / width, L::splat(token, L::Real::INFINITY))
 }

@@ -6,15 +6,15 @@ use std::sync::atomic::Ordering;
 use rayon::iter::{IndexedParallelIterator as _, ParallelIterator as _};
 use rayon::slice::ParallelSliceMut as _;
 
-use super::cull::{Axis, Lists};
+use super::cull::{Axis, Candidates};
 use super::mesh::Limits;
 use super::samples::Traced;
 use super::sampling::{Colors, Sampler, Tile};
 use super::stage::Engine;
-use super::{Rays, Watch};
-use crate::lanes::{Lane, Level, Real, Vectored, Work};
-use crate::plan::{Picture, Plan, Precision, Sampling, needs_double};
+use super::{Rays, RenderControl};
+use crate::plan::{Plan, Precision, RenderRequest, Sampling, needs_double};
 use crate::scene::Scene;
+use crate::simd::{Level, Real, SimdFloat, SimdReal, WithSimd};
 
 /// Side of a tile in pixels where there is little to see. Large enough that the bookkeeping does not
 /// show, small enough that the rays of a tile stay in the cache and that threads end together.
@@ -112,7 +112,7 @@ impl Kernel {
 
 impl Tracer {
     /// Plans `picture` of `scene`, which must pass [`crate::scene::check`].
-    pub fn new(scene: &Scene, picture: &Picture) -> Self {
+    pub fn new(scene: &Scene, picture: &RenderRequest) -> Self {
         let double = match picture.precision {
             Precision::Auto => needs_double(scene),
             Precision::Single => false,
@@ -156,12 +156,22 @@ impl Tracer {
     ///
     /// The colours do not depend on the number of threads or lanes, or on what was traced before.
     /// `None` if `watch` said stop; some pixels are then still the old ones.
-    pub fn pass<P: Pixel>(&self, pixels: &mut [P], pass: Pass, watch: &Watch) -> Option<Rays> {
+    pub fn pass<P: Pixel>(
+        &self,
+        pixels: &mut [P],
+        pass: Pass,
+        watch: &RenderControl,
+    ) -> Option<Rays> {
         self.trace_rows(pixels, 0, pass, watch)
     }
 
     /// Traces whole rows of the picture, from `first` on, into `pixels`; see [`Self::pass`].
-    pub fn rows<P: Pixel>(&self, pixels: &mut [P], first: usize, watch: &Watch) -> Option<Rays> {
+    pub fn rows<P: Pixel>(
+        &self,
+        pixels: &mut [P],
+        first: usize,
+        watch: &RenderControl,
+    ) -> Option<Rays> {
         self.trace_rows(pixels, first, Pass::Whole, watch)
     }
 
@@ -170,7 +180,7 @@ impl Tracer {
         pixels: &mut [P],
         first: usize,
         pass: Pass,
-        watch: &Watch,
+        watch: &RenderControl,
     ) -> Option<Rays> {
         match &self.kernel {
             Kernel::Single(plan) => self.pass_of(plan, pixels, first, pass, watch),
@@ -178,15 +188,15 @@ impl Tracer {
         }
     }
 
-    fn pass_of<R: Vectored, P: Pixel>(
+    fn pass_of<R: SimdReal, P: Pixel>(
         &self,
         plan: &Plan<R>,
         pixels: &mut [P],
         first: usize,
         pass: Pass,
-        watch: &Watch,
+        watch: &RenderControl,
     ) -> Option<Rays> {
-        let seen = Lists::all_seen(plan);
+        let seen = Candidates::all_seen(plan);
         let (grid, sampling) = match pass {
             Pass::Whole => (Grid::ALL, self.sampling),
             Pass::Centres(grid) => (grid, Sampling::Centres),
@@ -219,25 +229,25 @@ impl Tracer {
 struct Band<'a, R, P> {
     plan: &'a Plan<R>,
     /// Everything that can be seen.
-    seen: &'a Lists,
+    seen: &'a Candidates,
     width: usize,
     tile: usize,
     rows: Range<usize>,
     pixels: &'a mut [P],
     grid: Grid,
     sampling: Sampling,
-    watch: &'a Watch,
+    watch: &'a RenderControl,
 }
 
-impl<R: Vectored, P: Pixel> Work<R> for Band<'_, R, P> {
+impl<R: SimdReal, P: Pixel> WithSimd<R> for Band<'_, R, P> {
     type Output = Option<Rays>;
 
     #[inline(always)]
-    fn run<L: Lane<Real = R>>(mut self, token: L::Token) -> Option<Rays> {
+    fn run<L: SimdFloat<Real = R>>(mut self, token: L::Token) -> Option<Rays> {
         let mut engine = Engine::<L>::new(self.plan);
         let mut sampler = Sampler::new();
         let mut colors = Colors::default();
-        let (mut in_band, mut in_tile) = (Lists::default(), Lists::default());
+        let (mut in_band, mut in_tile) = (Candidates::default(), Candidates::default());
         let screen = self.plan.screen.as_ref();
         in_band.keep_seen(self.seen, screen, &self.rows, Axis::Rows);
         for left in (0..self.width).step_by(self.tile) {
@@ -278,7 +288,7 @@ impl<R: Vectored, P: Pixel> Work<R> for Band<'_, R, P> {
     }
 }
 
-impl<R: Vectored, P: Pixel> Band<'_, R, P> {
+impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
     /// Writes the colours of a whole tile, `stride` apart from row to row.
     #[inline(always)]
     fn fill(&mut self, tile: &Tile, stride: usize, [red, green, blue]: [&[R]; 3]) {
@@ -330,16 +340,16 @@ mod tests {
         scene.render.reflection_limit = 3;
         for sampling in [Sampling::Centres, Sampling::Grid(2), Sampling::ADAPTIVE] {
             let pictures = [16, 8, 5, 32, 200].map(|tile| {
-                let picture = Picture {
+                let picture = RenderRequest {
                     sampling,
-                    ..Picture::sized(171, 93)
+                    ..RenderRequest::sized(171, 93)
                 };
                 let tracer = Tracer {
                     tile,
                     ..Tracer::new(&scene, &picture)
                 };
                 let mut pixels = vec![[0_u64; 3]; 171 * 93];
-                let rays = tracer.pass(&mut pixels, Pass::Whole, &Watch::default());
+                let rays = tracer.pass(&mut pixels, Pass::Whole, &RenderControl::default());
                 assert!(rays.is_some());
                 pixels
             });
@@ -353,11 +363,11 @@ mod tests {
     fn a_picture_in_pieces_has_the_same_bits() {
         let scene = Scene::demo();
         for sampling in [Sampling::Grid(2), Sampling::ADAPTIVE] {
-            let picture = Picture {
+            let picture = RenderRequest {
                 sampling,
-                ..Picture::sized(83, 61)
+                ..RenderRequest::sized(83, 61)
             };
-            let (tracer, watch) = (Tracer::new(&scene, &picture), Watch::default());
+            let (tracer, watch) = (Tracer::new(&scene, &picture), RenderControl::default());
             let mut whole = vec![[0_u64; 3]; 83 * 61];
             let rays = tracer.pass(&mut whole, Pass::Whole, &watch);
             let mut pieces = Vec::new();

@@ -21,10 +21,10 @@ use super::timeline::{Overlay, Thumbs, Timeline};
 use super::toasts::Toasts;
 use super::viewport::{Place, describe, fit};
 use super::window::data_folder;
-use super::{Out, help, inspector, menu, status, theme};
+use super::{UiRequests, help, inspector, menu, status, theme};
 use crate::editor::{Action, Editor, Mode, Time};
 use crate::image::Image;
-use crate::worker::LaneError;
+use crate::worker::RenderThreadError;
 
 /// Where the list of recent files is kept between runs.
 const RECENT_KEY: &str = "recent files";
@@ -97,8 +97,8 @@ impl App {
     /// Sets the window up: fonts, theme, lane, and the document.
     ///
     /// # Errors
-    /// [`LaneError`] when the system starts no threads.
-    pub fn new(cc: &eframe::CreationContext<'_>, setup: Setup) -> Result<Self, LaneError> {
+    /// [`RenderThreadError`] when the system starts no threads.
+    pub fn new(cc: &eframe::CreationContext<'_>, setup: Setup) -> Result<Self, RenderThreadError> {
         let chosen = cc
             .storage
             .and_then(|storage| eframe::get_value(storage, THEME_KEY));
@@ -166,7 +166,11 @@ impl App {
         self.pictures.shown(&self.editor).map(|frame| &*frame.image)
     }
 
-    fn show_panels(&mut self, ui: &mut Ui, out: &mut Out) -> Option<(Place, egui::Response)> {
+    fn show_panels(
+        &mut self,
+        ui: &mut Ui,
+        out: &mut UiRequests,
+    ) -> Option<(Place, egui::Response)> {
         let side = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(GRID as i8, 0));
         Panel::top("menu").show(ui, |ui| {
             menu::show(ui, &self.editor, &self.files.recent, &mut self.layout, out);
@@ -227,7 +231,11 @@ impl App {
             .inner
     }
 
-    fn show_picture(&mut self, ui: &mut Ui, out: &mut Out) -> Option<(Place, egui::Response)> {
+    fn show_picture(
+        &mut self,
+        ui: &mut Ui,
+        out: &mut UiRequests,
+    ) -> Option<(Place, egui::Response)> {
         let area = ui.max_rect();
         let place = fit(
             area.shrink(GRID),
@@ -259,7 +267,7 @@ impl App {
                 self.closing = Some(self.editor.revision());
                 if self.pictures.is_saving() {
                     self.editor
-                        .inform("Glint closes when the picture is written".to_owned());
+                        .notify("Glint closes when the picture is written".to_owned());
                 }
                 ctx.request_repaint();
             }
@@ -336,7 +344,7 @@ impl eframe::App for App {
     }
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
-        let mut out = Out::default();
+        let mut out = UiRequests::default();
         // What had the keys when this frame's were pressed: a field loses its focus to Escape, and a
         // menu closes, before this is asked.
         let keys_are_free = !self.keys_are_taken && !ui.text_edit_focused();

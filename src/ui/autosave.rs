@@ -31,7 +31,7 @@ impl Autosave {
             let path = leftover.path.as_ref();
             let name = path.map_or("a new scene".to_owned(), |path| path.display().to_string());
             editor.recover(leftover.document, leftover.path);
-            editor.inform(format!(
+            editor.notify(format!(
                 "Glint ended with unsaved changes to {name}; here they are. Save them, or open the file again to discard them."
             ));
         }
@@ -76,7 +76,7 @@ impl Autosave {
             });
         match kept {
             Ok(()) => self.kept = Some((revision, Instant::now())),
-            Err(error) => editor.complain(format!(
+            Err(error) => editor.report_error(format!(
                 "Unsaved changes cannot be kept safe: {error}. Save your work and make room on the disk."
             )),
         }

@@ -6,7 +6,7 @@ use std::sync::mpsc::Receiver;
 
 use egui::Context;
 
-use crate::worker::run_errand;
+use crate::worker::run_in_background;
 
 /// What a path is asked for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -82,7 +82,7 @@ pub struct Native;
 impl Dialogs for Native {
     fn ask(&mut self, ctx: &Context, ask: &Ask, suggested: PathBuf) -> Receiver<Option<PathBuf>> {
         let (ask, wake) = (ask.clone(), ctx.clone());
-        run_errand("glint-dialog", move || {
+        run_in_background("glint-dialog", move || {
             let mut dialog = rfd::FileDialog::new().set_title(ask.title());
             dialog = match ask {
                 Ask::OpenScene | Ask::SaveScene => dialog.add_filter("Glint scene", ask.endings()),

@@ -233,7 +233,7 @@ impl Files {
                     self.remember(editor);
                     return self.go_on(ctx, editor, wish.then?);
                 }
-                Err(error) => editor.complain(error.to_string()),
+                Err(error) => editor.report_error(error.to_string()),
             },
         }
         None
@@ -257,7 +257,7 @@ impl Files {
             Err(error) => {
                 self.recent
                     .retain(|recent| recent != path || recent.exists());
-                editor.complain(error.to_string());
+                editor.report_error(error.to_string());
             }
         }
     }
@@ -294,7 +294,7 @@ fn suggestion(editor: &Editor, ask: &Ask) -> PathBuf {
 fn import_path(editor: &mut Editor, path: &Path) {
     let text = match read_text(path) {
         Ok(text) => text,
-        Err(error) => return editor.complain(error.to_string()),
+        Err(error) => return editor.report_error(error.to_string()),
     };
     let keys = if is_table(path) {
         from_table(&text, &editor.shown().camera)
@@ -313,9 +313,9 @@ fn import_path(editor: &mut Editor, path: &Path) {
                 Box::new(animation),
                 "Import path",
             )));
-            editor.inform(format!("{count} keys from {}", path.display()));
+            editor.notify(format!("{count} keys from {}", path.display()));
         }
-        Err(error) => editor.complain(format!("{}: {error}", path.display())),
+        Err(error) => editor.report_error(format!("{}: {error}", path.display())),
     }
 }
 
@@ -324,7 +324,7 @@ fn export_path(editor: &mut Editor, path: &Path) {
         .extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("ron"));
     if !is_table(path) && !is_text {
-        return editor.complain(format!("{}: end it in .csv or .ron", path.display()));
+        return editor.report_error(format!("{}: end it in .csv or .ron", path.display()));
     }
     let keys = &editor.scene().animation.keys;
     let text = if is_table(path) {
@@ -337,8 +337,8 @@ fn export_path(editor: &mut Editor, path: &Path) {
         written.map_err(|error| format!("cannot write {}: {error}", path.display()))
     });
     match written {
-        Ok(()) => editor.inform(format!("Saved {}", path.display())),
-        Err(sentence) => editor.complain(sentence),
+        Ok(()) => editor.notify(format!("Saved {}", path.display())),
+        Err(sentence) => editor.report_error(sentence),
     }
 }
 
@@ -367,8 +367,8 @@ fn export_job(editor: &mut Editor, path: &Path) {
         })
     });
     match written {
-        Ok(()) => editor.inform(format!("Saved {} and {}", path.display(), scene.display())),
-        Err(sentence) => editor.complain(sentence),
+        Ok(()) => editor.notify(format!("Saved {} and {}", path.display(), scene.display())),
+        Err(sentence) => editor.report_error(sentence),
     }
 }
 

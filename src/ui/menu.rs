@@ -7,7 +7,7 @@ use egui::{Button, Context, MenuBar, Theme, Ui};
 use super::commands::{Command, is_enabled, key_of};
 use super::inspector::target;
 use super::outliner::add_menu;
-use super::{Out, icons};
+use super::{UiRequests, icons};
 use crate::animate::{Preset, Retime};
 use crate::editor::{Edit, Editor, Mode, Selection, Time};
 use crate::scene::{Animation, Projection};
@@ -38,7 +38,13 @@ pub const ITEM_COMMANDS: [(&str, Command); 5] = [
 ];
 
 /// Shows the bar.
-pub fn show(ui: &mut Ui, editor: &Editor, recent: &[PathBuf], layout: &mut Layout, out: &mut Out) {
+pub fn show(
+    ui: &mut Ui,
+    editor: &Editor,
+    recent: &[PathBuf],
+    layout: &mut Layout,
+    out: &mut UiRequests,
+) {
     MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| file_menu(ui, recent, out));
         ui.menu_button("Edit", |ui| edit_menu(ui, editor, out));
@@ -66,7 +72,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, recent: &[PathBuf], layout: &mut Layou
 }
 
 /// A menu entry with its key.
-pub fn entry(ui: &mut Ui, text: &str, command: Command, enabled: bool, out: &mut Out) {
+pub fn entry(ui: &mut Ui, text: &str, command: Command, enabled: bool, out: &mut UiRequests) {
     let key = key_of(ui, &command).unwrap_or_default();
     let button = Button::new(text).shortcut_text(key);
     if ui
@@ -78,7 +84,7 @@ pub fn entry(ui: &mut Ui, text: &str, command: Command, enabled: bool, out: &mut
     }
 }
 
-fn file_menu(ui: &mut Ui, recent: &[PathBuf], out: &mut Out) {
+fn file_menu(ui: &mut Ui, recent: &[PathBuf], out: &mut UiRequests) {
     entry(ui, "New", Command::New, true, out);
     entry(ui, "Open…", Command::Open, true, out);
     ui.add_enabled_ui(!recent.is_empty(), |ui| {
@@ -109,7 +115,7 @@ fn file_menu(ui: &mut Ui, recent: &[PathBuf], out: &mut Out) {
     entry(ui, "Quit", Command::Quit, true, out);
 }
 
-fn edit_menu(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+fn edit_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let step = |verb: &str, label: Option<&str>| match label {
         Some(label) => format!("{verb} “{label}”"),
         None => verb.to_owned(),
@@ -137,7 +143,7 @@ fn edit_menu(ui: &mut Ui, editor: &Editor, out: &mut Out) {
     }
 }
 
-fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut Out) {
+fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequests) {
     mode_entries(ui, editor, out);
     ui.separator();
     entry(ui, "Perspective", Command::Perspective, true, out);
@@ -155,7 +161,7 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut Out) {
     theme_choice(ui);
 }
 
-fn animate_menu(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+fn animate_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let is_recording = editor.timeline().recorded().is_some();
     let has_keys = !animation.keys.is_empty();
@@ -199,7 +205,7 @@ fn animate_menu(ui: &mut Ui, editor: &Editor, out: &mut Out) {
 /// Seconds that a ready-made flight takes.
 const PRESET_SECONDS: f64 = 8.0;
 
-fn preset_entries(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+fn preset_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     for preset in Preset::ALL {
         let (name, hint) = preset.words();
         let hint = format!("{hint}. Replaces the camera's keys");
@@ -216,7 +222,7 @@ fn preset_entries(ui: &mut Ui, editor: &Editor, out: &mut Out) {
     }
 }
 
-fn retime_entries(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+fn retime_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let mut retimed = None;
     for (name, hint, retime) in [
@@ -254,7 +260,7 @@ fn theme_choice(ui: &mut Ui) {
     }
 }
 
-fn mode_entries(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+fn mode_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     for (mode, text, command) in [
         (Mode::Live, "Live", Command::Live),
         (Mode::LowRes, "Low-res (64 pixels)", Command::LowRes),
@@ -269,7 +275,7 @@ fn mode_entries(ui: &mut Ui, editor: &Editor, out: &mut Out) {
 }
 
 /// From right to left: lights, projection, picture, live view.
-fn switches(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+fn switches(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let scene = editor.scene();
     let markers = scene.light_visualization;
     let hint = "Show the markers of lights (I on, U off)";

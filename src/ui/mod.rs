@@ -38,12 +38,12 @@ use crate::editor::{Action, Edit, Selection, Time};
 
 /// What panels ask for while they are drawn; done when all of them are.
 #[derive(Debug, Default)]
-struct Out {
+struct UiRequests {
     actions: Vec<Action>,
     commands: Vec<commands::Command>,
 }
 
-impl Out {
+impl UiRequests {
     fn edit(&mut self, edit: Edit) {
         self.actions.push(Action::Edit(edit));
     }

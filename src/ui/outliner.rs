@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::inspector::name_field;
 use super::theme::{GRID, ROW, palette};
-use super::{Out, icons, menu};
+use super::{UiRequests, icons, menu};
 use crate::editor::{Edit, Editor, Item, Kind, Selection};
 use crate::scene::{Scene, Shape};
 
@@ -39,7 +39,7 @@ impl Outliner {
     }
 
     /// Shows the panel and pushes what is asked for.
-    pub fn show(&mut self, ui: &mut Ui, editor: &Editor, out: &mut Out) {
+    pub fn show(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         ui.add_space(GRID / 2.0);
         ui.horizontal(|ui| {
             let width = ui.available_width() - ROW - GRID;
@@ -149,7 +149,7 @@ impl Outliner {
         }
     }
 
-    fn item(&mut self, ui: &mut Ui, editor: &Editor, item: Item, out: &mut Out) {
+    fn item(&mut self, ui: &mut Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
         let scene = editor.scene();
         let Some(name) = item.name(scene) else { return };
         if self.renaming == Some(item) {
@@ -192,7 +192,7 @@ impl Outliner {
         }
     }
 
-    fn rename_row(&mut self, ui: &mut Ui, scene: &Scene, item: Item, out: &mut Out) {
+    fn rename_row(&mut self, ui: &mut Ui, scene: &Scene, item: Item, out: &mut UiRequests) {
         let rect = row(ui);
         let name = item.name(scene).unwrap_or_default();
         ui.scope_builder(
@@ -285,7 +285,7 @@ fn entry(ui: &mut Ui, rect: Rect, look: Look, name: &str) -> egui::Response {
 }
 
 /// Drag a row onto another to put it there.
-fn reorder(ui: &Ui, response: &egui::Response, item: Item, out: &mut Out) {
+fn reorder(ui: &Ui, response: &egui::Response, item: Item, out: &mut UiRequests) {
     response.dnd_set_drag_payload(item);
     let fits = |dragged: &Item| dragged.kind == item.kind && dragged.index != item.index;
     if let Some(dragged) = response
@@ -308,7 +308,7 @@ fn reorder(ui: &Ui, response: &egui::Response, item: Item, out: &mut Out) {
     }
 }
 
-fn eye(ui: &mut Ui, scene: &Scene, item: Item, name: &str, visible: bool, out: &mut Out) {
+fn eye(ui: &mut Ui, scene: &Scene, item: Item, name: &str, visible: bool, out: &mut UiRequests) {
     let (icon, verb) = if visible {
         (icons::VISIBLE, "Hide")
     } else {
@@ -338,7 +338,7 @@ fn eye(ui: &mut Ui, scene: &Scene, item: Item, name: &str, visible: bool, out: &
 }
 
 /// What can be added, placed in front of the camera.
-pub fn add_menu(ui: &mut Ui, scene: &Scene, out: &mut Out) {
+pub fn add_menu(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
     let (at, size) = in_front_of_camera(scene);
     for shape in Shape::examples(at, size) {
         let name = format!("Add {}", shape.kind());

@@ -12,9 +12,10 @@ use crate::editor::{Editor, Mode};
 use crate::export::{ExportError, Sequence};
 use crate::image::Image;
 use crate::lab::Study;
-use crate::plan::{Picture, Sampling};
+use crate::plan::{RenderRequest, Sampling};
 use crate::worker::{
-    Activity, BUDGET, Event, ExportState, Frame, LaneError, LiveJob, Pace, Sketch, StillJob, Worker,
+    Activity, BUDGET, Event, ExportState, Frame, LiveJob, Pace, RenderThreadError, StillJob,
+    ThumbnailJob, Worker,
 };
 
 /// Time over which pictures per second are counted.
@@ -64,8 +65,8 @@ impl Pictures {
     /// Starts the lane; it wakes the window.
     ///
     /// # Errors
-    /// [`LaneError`] when the system starts no threads.
-    pub fn new(ctx: &Context) -> Result<Self, LaneError> {
+    /// [`RenderThreadError`] when the system starts no threads.
+    pub fn new(ctx: &Context) -> Result<Self, RenderThreadError> {
         let wake = ctx.clone();
         let worker = Worker::new(None, move || wake.request_repaint())?;
         Ok(Self {
@@ -87,8 +88,8 @@ impl Pictures {
         }
         for event in self.worker.take_events() {
             match event {
-                Event::Saved(path) => editor.inform(format!("Saved {}", path.display())),
-                Event::Failed(reason) => editor.complain(reason),
+                Event::Saved(path) => editor.notify(format!("Saved {}", path.display())),
+                Event::Failed(reason) => editor.report_error(reason),
             }
         }
     }
@@ -99,8 +100,8 @@ impl Pictures {
     }
 
     /// Asks for small pictures, each in place of one of its name that waits.
-    pub fn request_sketches(&self, sketches: Vec<Sketch>) {
-        self.worker.request_sketches(sketches);
+    pub fn request_sketches(&self, thumbnails: Vec<ThumbnailJob>) {
+        self.worker.request_sketches(thumbnails);
     }
 
     /// The small pictures that are finished.
@@ -204,7 +205,7 @@ impl Pictures {
         self.worker.request_still(StillJob {
             revision: editor.shown_revision(),
             scene: editor.shown().clone(),
-            picture: Picture::still(editor.shown()),
+            picture: RenderRequest::still(editor.shown()),
             save_to,
         });
     }
@@ -243,12 +244,12 @@ impl Pictures {
         self.worker.submit(LiveJob {
             revision,
             scene: editor.shown().clone(),
-            picture: Picture {
+            picture: RenderRequest {
                 sampling: match pace {
                     Pace::Whole => Sampling::Centres,
                     Pace::Within(_) => editor.shown().render.antialias,
                 },
-                ..Picture::of(editor.shown(), size.0, size.1)
+                ..RenderRequest::of(editor.shown(), size.0, size.1)
             },
             pace,
         });

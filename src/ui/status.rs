@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use egui::{Align, Layout, ProgressBar, RichText, Ui};
 
-use super::Out;
+use super::UiRequests;
 use super::commands::Command;
 use super::theme::palette;
 use crate::worker::Activity;
@@ -23,7 +23,7 @@ pub fn show(
     picture: &str,
     activity: &Activity,
     autosaved: Option<Instant>,
-    out: &mut Out,
+    out: &mut UiRequests,
 ) {
     ui.horizontal_centered(|ui| {
         ui.label(RichText::new(picture).monospace().weak());
@@ -47,7 +47,7 @@ pub fn show(
     });
 }
 
-fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut Out) {
+fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut UiRequests) {
     let share = done as f64 / total.max(1) as f64;
     ui.spacing_mut().interact_size.y = BAR;
     ui.spacing_mut().button_padding.y = 0.0;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use egui::{
-    Color32, Context, Painter, Pos2, Rect, Response, ScrollArea, Sense, Stroke, StrokeKind,
+    Color32, Context, Pos2, Rect, Response, ScrollArea, Sense, Painter, Stroke, StrokeKind,
     TextureFilter, TextureHandle, TextureOptions, TextureWrapMode, Ui, Vec2, pos2, vec2,
 };
 

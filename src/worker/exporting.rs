@@ -5,10 +5,10 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::time::Duration;
 
-use super::errand::spawn;
+use super::task::spawn;
 use crate::export::{ExportError, Hash, Manifest, Sequence};
 use crate::image::{Image, render_into};
-use crate::trace::Watch;
+use crate::trace::RenderControl;
 
 /// Pictures that may wait to be written: memory stays bounded, however long the sequence is.
 const WAITING: usize = 2;
@@ -41,7 +41,7 @@ pub enum ExportStep {
 }
 
 /// A picture on its way to the disk.
-struct Parcel {
+struct WriteJob {
     frame: u64,
     image: Image,
     fingerprint: Hash,
@@ -49,7 +49,7 @@ struct Parcel {
 }
 
 /// What came of it, and the memory back.
-struct Receipt {
+struct WriteResult {
     written: Result<(), ExportError>,
     image: Image,
 }
@@ -59,8 +59,8 @@ pub struct Exporting {
     sequence: Arc<Sequence>,
     manifest: Manifest,
     left: VecDeque<u64>,
-    parcels: Option<SyncSender<Parcel>>,
-    receipts: Receiver<Receipt>,
+    parcels: Option<SyncSender<WriteJob>>,
+    receipts: Receiver<WriteResult>,
     spare: Vec<Image>,
     done: Exported,
     last: Option<Arc<Image>>,
@@ -82,7 +82,7 @@ impl Exporting {
     pub fn new(sequence: Sequence) -> Result<Self, ExportError> {
         let manifest = sequence.manifest()?;
         let sequence = Arc::new(sequence);
-        let (parcels, to_write) = sync_channel::<Parcel>(WAITING);
+        let (parcels, to_write) = sync_channel::<WriteJob>(WAITING);
         let (to_return, receipts) = channel();
         let writer = spawn("glint-writer", {
             let sequence = Arc::clone(&sequence);
@@ -123,7 +123,7 @@ impl Exporting {
     }
 
     /// Looks at the next frame and traces it, if it is not there as it should be.
-    pub fn step(&mut self, watch: &Watch) -> ExportStep {
+    pub fn step(&mut self, watch: &RenderControl) -> ExportStep {
         while let Ok(receipt) = self.receipts.try_recv() {
             if let Err(error) = self.take(receipt) {
                 return ExportStep::Failed(error);
@@ -152,8 +152,8 @@ impl Exporting {
             return ExportStep::Stopped;
         };
         let step = image.height.div_ceil(SMALL).max(1);
-        self.last = Some(Arc::new(image.thinned(step)));
-        let parcel = Parcel {
+        self.last = Some(Arc::new(image.decimated(step)));
+        let parcel = WriteJob {
             frame,
             image,
             fingerprint,
@@ -182,7 +182,7 @@ impl Exporting {
         Ok(self.done)
     }
 
-    fn take(&mut self, receipt: Receipt) -> Result<(), ExportError> {
+    fn take(&mut self, receipt: WriteResult) -> Result<(), ExportError> {
         self.spare.push(receipt.image);
         receipt.written?;
         self.done.written += 1;
@@ -191,9 +191,9 @@ impl Exporting {
 }
 
 /// Writes what arrives, in order; hangs up after the first that fails.
-fn write_all(sequence: &Sequence, parcels: &Receiver<Parcel>, receipts: &Sender<Receipt>) {
+fn write_all(sequence: &Sequence, parcels: &Receiver<WriteJob>, receipts: &Sender<WriteResult>) {
     for parcel in parcels {
-        let Parcel {
+        let WriteJob {
             frame,
             image,
             fingerprint,
@@ -201,7 +201,7 @@ fn write_all(sequence: &Sequence, parcels: &Receiver<Parcel>, receipts: &Sender<
         } = parcel;
         let written = sequence.write(frame, &image, &fingerprint, time);
         let is_over = written.is_err();
-        if receipts.send(Receipt { written, image }).is_err() || is_over {
+        if receipts.send(WriteResult { written, image }).is_err() || is_over {
             return;
         }
     }

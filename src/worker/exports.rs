@@ -38,7 +38,7 @@ impl Worker {
             mailbox.stop_running();
         }
         drop((mailbox, news));
-        self.shared.bell.notify_one();
+        self.shared.wakeup.notify_one();
         Ok(id)
     }
 
@@ -65,7 +65,7 @@ impl Worker {
             mailbox.stop_export(id);
         }
         drop((mailbox, news));
-        self.shared.bell.notify_one();
+        self.shared.wakeup.notify_one();
     }
 
     /// Gives an export up, or takes one that has ended out of the list. Frames that are written stay.

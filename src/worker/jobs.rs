@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::exporting::Exported;
 use crate::image::{Cost, Image};
-use crate::plan::{Picture, Sampling};
+use crate::plan::{RenderRequest, Sampling};
 use crate::scene::Scene;
 
 /// What the live view shall show.
@@ -17,14 +17,14 @@ pub struct LiveJob {
     /// The scene at that revision.
     pub scene: Arc<Scene>,
     /// The picture, at its full resolution.
-    pub picture: Picture,
+    pub picture: RenderRequest,
     /// Whether coarse pictures may come first, to keep up with the hand that edits.
     pub pace: Pace,
 }
 
 /// A small picture for the side: traced when no live view waits, never stopped, one sample per pixel.
 #[derive(Clone, Debug)]
-pub struct Sketch {
+pub struct ThumbnailJob {
     /// What the asker calls it.
     pub name: u64,
     /// What it shows.
@@ -50,7 +50,7 @@ pub struct StillJob {
     /// The scene at that revision.
     pub scene: Arc<Scene>,
     /// The picture.
-    pub picture: Picture,
+    pub picture: RenderRequest,
     /// Where to write it. A picture that is to be written outlives edits: it is started again when
     /// the live view is done.
     pub save_to: Option<PathBuf>,

@@ -3,12 +3,12 @@
 //! about windows: `wake` is called whenever there is something to look at.
 
 mod budget;
-mod easel;
-mod errand;
 mod exporting;
 mod exports;
+mod frame_pool;
 mod jobs;
-mod lane;
+mod render_thread;
+mod task;
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -18,18 +18,18 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 pub use budget::BUDGET;
-pub use errand::{panic_text, run_errand};
 pub use exporting::{ExportStep, Exported, Exporting};
-pub use jobs::{Activity, Event, ExportState, Frame, LiveJob, Pace, Sketch, StillJob};
+pub use jobs::{Activity, Event, ExportState, Frame, LiveJob, Pace, StillJob, ThumbnailJob};
+pub use task::{panic_text, run_in_background};
 
 use crate::image::Image;
 use crate::lab::Study;
-use crate::plan::Picture;
-use crate::trace::{PoolError, Threads, Watch};
+use crate::plan::RenderRequest;
+use crate::trace::{PoolError, RenderControl, Threads};
 
 /// The system started no threads for the lane.
 #[derive(Debug, thiserror::Error)]
-pub enum LaneError {
+pub enum RenderThreadError {
     /// Not those that trace.
     #[error(transparent)]
     Pool(#[from] PoolError),
@@ -47,17 +47,17 @@ pub struct Worker {
 
 struct Shared {
     mailbox: Mutex<Mailbox>,
-    bell: Condvar,
-    news: Mutex<News>,
+    wakeup: Condvar,
+    news: Mutex<Outbox>,
     /// Of first passes, which only quitting stops.
-    first_pass: Watch,
+    first_pass: RenderControl,
     wake: Box<dyn Fn() + Send + Sync>,
 }
 
 #[derive(Debug, Default)]
 struct Mailbox {
     live: Option<LiveJob>,
-    sketches: VecDeque<Sketch>,
+    thumbnails: VecDeque<ThumbnailJob>,
     still: Option<StillJob>,
     /// Pictures that are to be written, in order.
     saves: VecDeque<StillJob>,
@@ -74,7 +74,7 @@ struct Mailbox {
 #[derive(Debug)]
 struct Running {
     job: RunningJob,
-    watch: Arc<Watch>,
+    watch: Arc<RenderControl>,
     started: Instant,
 }
 
@@ -84,7 +84,7 @@ enum RunningJob {
         revision: u64,
     },
     Still(StillJob),
-    Sketch,
+    ThumbnailJob,
     /// A frame of the export of this name.
     Export(u64),
     /// A piece of the study.
@@ -94,10 +94,10 @@ enum RunningJob {
 }
 
 #[derive(Debug, Default)]
-struct News {
+struct Outbox {
     live: Option<Frame>,
     still: Option<Frame>,
-    sketches: Vec<(u64, Image)>,
+    thumbnails: Vec<(u64, Image)>,
     exports: Vec<ExportState>,
     study: Option<Study>,
     events: Vec<Event>,
@@ -114,24 +114,24 @@ impl Worker {
     /// frame and event.
     ///
     /// # Errors
-    /// [`LaneError`] when the system starts no threads.
+    /// [`RenderThreadError`] when the system starts no threads.
     pub fn new(
         threads: Option<usize>,
         wake: impl Fn() + Send + Sync + 'static,
-    ) -> Result<Self, LaneError> {
+    ) -> Result<Self, RenderThreadError> {
         let threads = Threads::new(threads)?;
         let shared = Arc::new(Shared {
             mailbox: Mutex::default(),
-            bell: Condvar::new(),
+            wakeup: Condvar::new(),
             news: Mutex::default(),
-            first_pass: Watch::default(),
+            first_pass: RenderControl::default(),
             wake: Box::new(wake),
         });
-        let lane = errand::spawn("glint-lane", {
+        let lane = task::spawn("glint-lane", {
             let shared = Arc::clone(&shared);
-            move || lane::run(&shared, &threads)
+            move || render_thread::run(&shared, &threads)
         });
-        let lane = Some(lane.map_err(LaneError::Thread)?);
+        let lane = Some(lane.map_err(RenderThreadError::Thread)?);
         Ok(Self { shared, lane })
     }
 
@@ -144,7 +144,7 @@ impl Worker {
         mailbox.stop_running();
         mailbox.live = Some(job);
         drop(mailbox);
-        self.shared.bell.notify_one();
+        self.shared.wakeup.notify_one();
     }
 
     /// Asks for a still picture. One to look at takes the place of any other such; one to be
@@ -173,18 +173,18 @@ impl Worker {
             mailbox.still = Some(job);
         }
         drop(mailbox);
-        self.shared.bell.notify_one();
+        self.shared.wakeup.notify_one();
     }
 
     /// Asks for small pictures, in this order, before others that wait and in place of those of the
     /// same names.
-    pub fn request_sketches(&self, sketches: Vec<Sketch>) {
+    pub fn request_sketches(&self, thumbnails: Vec<ThumbnailJob>) {
         let mut mailbox = lock(&self.shared.mailbox);
-        let waiting = std::mem::take(&mut mailbox.sketches);
-        mailbox.sketches = sketches.into();
-        let is_new = |old: &Sketch| mailbox.sketches.iter().any(|new| new.name == old.name);
-        let kept: Vec<Sketch> = waiting.into_iter().filter(|old| !is_new(old)).collect();
-        mailbox.sketches.extend(kept);
+        let waiting = std::mem::take(&mut mailbox.thumbnails);
+        mailbox.thumbnails = thumbnails.into();
+        let is_new = |old: &ThumbnailJob| mailbox.thumbnails.iter().any(|new| new.name == old.name);
+        let kept: Vec<ThumbnailJob> = waiting.into_iter().filter(|old| !is_new(old)).collect();
+        mailbox.thumbnails.extend(kept);
         if let Some(Running {
             job: RunningJob::Lab,
             ..
@@ -193,12 +193,12 @@ impl Worker {
             mailbox.stop_running();
         }
         drop(mailbox);
-        self.shared.bell.notify_one();
+        self.shared.wakeup.notify_one();
     }
 
     /// The small pictures that were finished since the last call, by name.
     pub fn take_sketches(&self) -> Vec<(u64, Image)> {
-        std::mem::take(&mut lock(&self.shared.news).sketches)
+        std::mem::take(&mut lock(&self.shared.news).thumbnails)
     }
 
     /// Gives up every still picture, waiting or running. Those that were to be written are told of
@@ -230,7 +230,7 @@ impl Worker {
     /// Measures a study, in place of any other, whenever there is nothing more urgent.
     pub fn measure(&self, study: Study) {
         self.replace_study(Some(study));
-        self.shared.bell.notify_one();
+        self.shared.wakeup.notify_one();
     }
 
     /// Gives the study up.
@@ -324,7 +324,7 @@ impl Drop for Worker {
         self.shared.first_pass.stop.store(true, Ordering::Relaxed);
         mailbox.stop_running();
         drop(mailbox);
-        self.shared.bell.notify_one();
+        self.shared.wakeup.notify_one();
         if let Some(lane) = self.lane.take() {
             // A panic on the lane was already shown as an event.
             let _ = lane.join();
@@ -345,7 +345,7 @@ impl Running {
         let total = match &self.job {
             RunningJob::Still(still) => pixels(&still.picture),
             RunningJob::Live { .. }
-            | RunningJob::Sketch
+            | RunningJob::ThumbnailJob
             | RunningJob::Export(_)
             | RunningJob::Lab
             | RunningJob::GivenUp => 0,
@@ -359,7 +359,7 @@ impl Running {
     }
 }
 
-fn pixels(picture: &Picture) -> u64 {
+fn pixels(picture: &RenderRequest) -> u64 {
     u64::from(picture.width) * u64::from(picture.height)
 }
 

@@ -1,10 +1,10 @@
 //! Clean edges: against many samples per pixel, in double precision, on the published views.
 
 use glam::DVec3;
-use glint::lanes::Real;
-use glint::plan::{Picture, Precision, Sampling};
+use glint::plan::{Precision, RenderRequest, Sampling};
 use glint::scene::{Object, Scene, Shape};
-use glint::trace::{Pass, Pixel, Rays, Tracer, Watch};
+use glint::simd::Real;
+use glint::trace::{Pass, Pixel, Rays, RenderControl, Tracer};
 
 /// A linear colour, before it is rounded to 8 bits.
 #[derive(Clone, Copy, Default)]
@@ -18,10 +18,10 @@ impl Pixel for Linear {
 
 const SIDE: u32 = 256;
 
-fn linear(scene: &Scene, picture: &Picture) -> (Vec<Linear>, Rays) {
+fn linear(scene: &Scene, picture: &RenderRequest) -> (Vec<Linear>, Rays) {
     let tracer = Tracer::new(scene, picture);
     let mut pixels = vec![Linear::default(); tracer.width() * tracer.height()];
-    let rays = tracer.pass(&mut pixels, Pass::Whole, &Watch::default());
+    let rays = tracer.pass(&mut pixels, Pass::Whole, &RenderControl::default());
     (pixels, rays.expect("not stopped"))
 }
 
@@ -36,10 +36,10 @@ struct Quality {
     rays: f64,
 }
 
-fn quality(scene: &Scene, picture: &Picture) -> Quality {
+fn quality(scene: &Scene, picture: &RenderRequest) -> Quality {
     let (truth, _) = linear(
         scene,
-        &Picture {
+        &RenderRequest {
             sampling: Sampling::Grid(64),
             precision: Precision::Double,
             ..*picture
@@ -73,10 +73,10 @@ const EIGHT_BITS: f64 = 58.9;
 /// Error of a channel, in levels of 255, that nobody sees in one pixel.
 const INVISIBLE: f64 = 8.0;
 
-fn picture(sampling: Sampling) -> Picture {
-    Picture {
+fn picture(sampling: Sampling) -> RenderRequest {
+    RenderRequest {
         sampling,
-        ..Picture::sized(SIDE, SIDE)
+        ..RenderRequest::sized(SIDE, SIDE)
     }
 }
 
@@ -191,9 +191,9 @@ fn a_grid_is_the_mean_of_its_samples() {
     let wide = |scene: &Scene, side| {
         linear(
             scene,
-            &Picture {
+            &RenderRequest {
                 sampling: Sampling::Grid(1),
-                ..Picture::sized(side, side)
+                ..RenderRequest::sized(side, side)
             },
         )
         .0
@@ -202,9 +202,9 @@ fn a_grid_is_the_mean_of_its_samples() {
         wide(&scene, 96),
         linear(
             &scene,
-            &Picture {
+            &RenderRequest {
                 sampling: Sampling::Grid(2),
-                ..Picture::sized(48, 48)
+                ..RenderRequest::sized(48, 48)
             },
         )
         .0,

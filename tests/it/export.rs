@@ -16,7 +16,7 @@ use glint::ui::Ask;
 use glint::worker::{ExportStep, Exporting, Worker};
 use image::AnimationDecoder as _;
 
-use crate::ui::{CTRL, Desk};
+use crate::ui::{CTRL, EditorHarness};
 
 const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
 
@@ -251,7 +251,7 @@ fn a_folder_that_vanishes_is_told() {
     let frames = folder.path().join("frames");
     let sequence = Sequence::new(scene, None, Pattern::default(), Format::Ppm, frames.clone());
     let mut exporting = Exporting::new(sequence.expect("frames")).expect("a folder");
-    let watch = glint::trace::Watch::default();
+    let watch = glint::trace::RenderControl::default();
     assert!(matches!(exporting.step(&watch), ExportStep::Going));
     fs::remove_dir_all(&frames).expect("removed");
     let error = loop {
@@ -442,7 +442,7 @@ fn a_job_is_a_template_with_its_scene_beside_it() {
 }
 
 /// Waits until nothing is exported any more.
-fn finish(desk: &mut Desk) {
+fn finish(desk: &mut EditorHarness) {
     let start = std::time::Instant::now();
     while desk.window.state().is_exporting() {
         assert!(
@@ -456,7 +456,7 @@ fn finish(desk: &mut Desk) {
 }
 
 /// Waits until a text is in the window.
-fn see(desk: &mut Desk, text: &str) {
+fn see(desk: &mut EditorHarness, text: &str) {
     let start = std::time::Instant::now();
     while desk.window.query_by_label_contains(text).is_none() {
         assert!(
@@ -471,7 +471,7 @@ fn see(desk: &mut Desk, text: &str) {
 #[test]
 fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
     let text = fs::read_to_string(FLIGHT).expect("readable");
-    let mut desk = Desk::with(|_| Vec::new(), Some(&text));
+    let mut desk = EditorHarness::with(|_| Vec::new(), Some(&text));
     let folder = desk.folder.path().join("frames");
     desk.press(CTRL.plus(Modifiers::SHIFT), Key::E);
     desk.type_name("folder", folder.to_str().expect("plain"));
@@ -515,7 +515,7 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
 #[test]
 fn the_window_writes_a_farm_job_and_its_scene() {
     let answer = |folder: &Path| vec![(Ask::ExportJob, Some(folder.join("job.yaml")))];
-    let mut desk = Desk::with(answer, None);
+    let mut desk = EditorHarness::with(answer, None);
     desk.choose("File", "Export farm job…");
     desk.window.get_by_label_contains("job.yaml and ");
     let template = fs::read_to_string(desk.folder.path().join("job.yaml")).expect("written");

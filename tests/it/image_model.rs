@@ -4,30 +4,30 @@ use std::collections::HashSet;
 
 use glam::DVec3;
 use glint::image::{Image, render};
-use glint::lanes::Level;
 use glint::plan::{
-    Accelerator, HighlightMethod, Methods, Picture, Precision, RayOffset, Sampling, SphereMethod,
-    TriangleMethod,
+    Accelerator, HighlightMethod, Methods, Precision, RayOffset, RenderRequest, Sampling,
+    SphereMethod, TriangleMethod,
 };
-use glint::scene::{Choice as _, Object, Projection, Scene, Shape};
-use glint::trace::{Grid, Pass, Rays, Threads, Tracer, Watch};
+use glint::scene::{Method as _, Object, Projection, Scene, Shape};
+use glint::simd::Level;
+use glint::trace::{Grid, Pass, Rays, RenderControl, Threads, Tracer};
 
 use crate::random;
 
-fn picture(scene: &Scene, picture: &Picture) -> (Image, Rays) {
-    let (image, cost) = render(scene, picture, &Watch::default()).expect("not stopped");
+fn picture(scene: &Scene, picture: &RenderRequest) -> (Image, Rays) {
+    let (image, cost) = render(scene, picture, &RenderControl::default()).expect("not stopped");
     (image, cost.rays)
 }
 
 fn small(scene: &Scene) -> Image {
-    picture(scene, &Picture::sized(160, 120)).0
+    picture(scene, &RenderRequest::sized(160, 120)).0
 }
 
 const SAMPLINGS: [Sampling; 3] = [Sampling::Centres, Sampling::Grid(2), Sampling::ADAPTIVE];
 
 /// The colour in the middle of a picture.
 fn middle(scene: &Scene) -> [u8; 3] {
-    let image = picture(scene, &Picture::sized(31, 31)).0;
+    let image = picture(scene, &RenderRequest::sized(31, 31)).0;
     let [r, g, b, _] = image.pixels[15 * 31 + 15];
     [r, g, b]
 }
@@ -40,9 +40,9 @@ fn any_number_of_threads_gives_the_same_bytes() {
                 let threads = Threads::new(Some(count)).expect("threads");
                 threads.run(|| {
                     SAMPLINGS.map(|sampling| {
-                        let wanted = Picture {
+                        let wanted = RenderRequest {
                             sampling,
-                            ..Picture::sized(201, 133)
+                            ..RenderRequest::sized(201, 133)
                         };
                         picture(&scene, &wanted).0.pixels
                     })
@@ -68,11 +68,11 @@ fn any_lanes_give_the_same_bytes() {
             .into_iter()
             .flat_map(|p| SAMPLINGS.map(|s| (p, s)))
         {
-            let at = |level| Picture {
+            let at = |level| RenderRequest {
                 precision,
                 sampling,
                 level: Some(level),
-                ..Picture::sized(203, 131)
+                ..RenderRequest::sized(203, 131)
             };
             let single = picture(&scene, &at(Level::SINGLE));
             for level in &levels {
@@ -89,7 +89,7 @@ fn any_lanes_give_the_same_bytes() {
 #[test]
 fn nested_passes_end_in_the_same_bytes_with_no_ray_more() {
     let scene = Scene::demo();
-    let wanted = Picture::sized(203, 131);
+    let wanted = RenderRequest::sized(203, 131);
     let (whole, rays) = picture(&scene, &wanted);
     let tracer = Tracer::new(&scene, &wanted);
     let mut nested = Image::new(203, 131);
@@ -99,7 +99,7 @@ fn nested_passes_end_in_the_same_bytes_with_no_ray_more() {
         let pass = nested.trace(
             &tracer,
             Pass::Centres(Grid { step, coarser }),
-            &Watch::default(),
+            &RenderControl::default(),
         );
         traced += pass.expect("not stopped");
         coarser = Some(step);
@@ -131,9 +131,9 @@ fn single_and_double_precision_differ_on_edges_only() {
     second.camera.up = DVec3::new(-0.25, 0.71, -0.65);
     let scenes = (0..50).map(random::scene).chain([Scene::demo(), second]);
     for (number, scene) in scenes.enumerate() {
-        let at = |precision| Picture {
+        let at = |precision| RenderRequest {
             precision,
-            ..Picture::sized(256, 192)
+            ..RenderRequest::sized(256, 192)
         };
         let single = picture(&scene, &at(Precision::Single)).0;
         let double = picture(&scene, &at(Precision::Double)).0;
@@ -167,9 +167,9 @@ fn the_classic_formulas_show_the_same_where_they_work() {
     };
     let classic = picture(
         &scene,
-        &Picture {
+        &RenderRequest {
             methods,
-            ..Picture::sized(160, 120)
+            ..RenderRequest::sized(160, 120)
         },
     )
     .0;
@@ -188,9 +188,9 @@ fn every_formula_draws_the_demo() {
     let changes = changed_one_at_a_time();
     assert_eq!(changes.len(), 1 + 3 + 3 + 2);
     for (word, methods) in changes {
-        let wanted = Picture {
+        let wanted = RenderRequest {
             methods,
-            ..Picture::sized(160, 120)
+            ..RenderRequest::sized(160, 120)
         };
         let other = picture(&scene, &wanted).0;
         let differ = robust.pixels.iter().zip(&other.pixels);
@@ -281,10 +281,10 @@ fn changed_ppm(scale: f64, by: DVec3, methods: Methods, precision: Precision) ->
     let at = |scene: &Scene, methods| {
         picture(
             scene,
-            &Picture {
+            &RenderRequest {
                 precision,
                 methods,
-                ..Picture::sized(320, 320)
+                ..RenderRequest::sized(320, 320)
             },
         )
         .0
@@ -441,9 +441,9 @@ fn what_is_left_out_would_not_have_shown() {
         let at = |methods| {
             picture(
                 &scene,
-                &Picture {
+                &RenderRequest {
                     methods,
-                    ..Picture::sized(256, 192)
+                    ..RenderRequest::sized(256, 192)
                 },
             )
             .0
@@ -485,7 +485,7 @@ fn degenerate_lights_and_views_stay_finite() {
 #[test]
 fn rays_are_traced_only_where_they_can_show() {
     let mut scene = Scene::demo();
-    let count = |scene: &Scene| picture(scene, &Picture::sized(160, 160)).1;
+    let count = |scene: &Scene| picture(scene, &RenderRequest::sized(160, 160)).1;
     let full = count(&scene);
     assert!(full.shadow > 0 && full.reflected > 0);
     scene.color_packs["plane"].reflective = false;
@@ -523,15 +523,15 @@ fn bundles_show_what_a_list_shows() {
     for scene in [Scene::demo(), crowd] {
         for sampling in SAMPLINGS {
             let with = |accelerator| {
-                let wanted = Picture {
+                let wanted = RenderRequest {
                     accelerator,
                     sampling,
-                    ..Picture::sized(160, 120)
+                    ..RenderRequest::sized(160, 120)
                 };
                 picture(&scene, &wanted)
             };
             let list = with(Accelerator::List);
-            assert!(list == with(Accelerator::Bundles), "{sampling:?}");
+            assert!(list == with(Accelerator::Bvh), "{sampling:?}");
             assert!(list == with(Accelerator::Auto), "{sampling:?}");
         }
     }

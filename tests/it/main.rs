@@ -3,10 +3,10 @@
 #![allow(clippy::expect_used, reason = "a test that cannot go on has failed")]
 
 mod antialias;
+mod architecture;
 mod bytes;
 mod cli;
 mod export;
-mod house;
 mod image_model;
 mod needs;
 mod numerics;

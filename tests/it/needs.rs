@@ -3,24 +3,24 @@
 
 use glam::DVec3;
 use glint::image::{Image, render};
-use glint::plan::{Model, Picture, Plan, needs};
+use glint::plan::{Model, Plan, RenderRequest, needs};
 use glint::scene::{Object, Scene, Shape};
-use glint::trace::{Rays, Watch};
+use glint::trace::{Rays, RenderControl};
 
 use crate::random;
 
 fn picture(scene: &Scene, model: Model) -> (Image, Rays) {
-    let wanted = Picture {
+    let wanted = RenderRequest {
         model,
-        ..Picture::sized(160, 120)
+        ..RenderRequest::sized(160, 120)
     };
-    let (image, cost) = render(scene, &wanted, &Watch::default()).expect("not stopped");
+    let (image, cost) = render(scene, &wanted, &RenderControl::default()).expect("not stopped");
     (image, cost.rays)
 }
 
 /// What the plan says of one rule.
 fn said(scene: &Scene, rule: &str) -> String {
-    let needs = needs(scene, &Picture::still(scene));
+    let needs = needs(scene, &RenderRequest::still(scene));
     let need = needs.into_iter().find(|need| need.rule == rule);
     need.expect("a known rule").what
 }
@@ -131,9 +131,9 @@ fn bundles_begin_where_a_list_is_too_long() {
             });
         }
         scene.light_visualization = false;
-        Plan::<f32>::new(&scene, &Picture::sized(64, 64))
+        Plan::<f32>::new(&scene, &RenderRequest::sized(64, 64))
             .volumes
-            .is_bundled()
+            .is_tree()
     };
     assert!(!crowd(128));
     assert!(crowd(129));
@@ -142,9 +142,16 @@ fn bundles_begin_where_a_list_is_too_long() {
 #[test]
 fn far_faces_of_solids_are_left_out_and_of_open_meshes_are_not() {
     let left_out = |scene: &Scene| {
-        let plan = Plan::<f32>::new(scene, &Picture::sized(64, 64));
-        let eye = plan.unseen_faces.iter().filter(|away| **away).count();
-        let lights = plan.lights.iter().flat_map(|light| &light.idle_faces);
+        let plan = Plan::<f32>::new(scene, &RenderRequest::sized(64, 64));
+        let eye = plan
+            .camera_culled_faces
+            .iter()
+            .filter(|away| **away)
+            .count();
+        let lights = plan
+            .lights
+            .iter()
+            .flat_map(|light| &light.shadow_culled_faces);
         (eye, lights.filter(|away| **away).count())
     };
     let closed = Scene::demo();

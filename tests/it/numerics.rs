@@ -8,14 +8,14 @@
 
 use glam::DVec3;
 use glint::image::{Image, render};
-use glint::lanes::{Real, Vec3};
-use glint::plan::{Picture, Sphere, SphereMethod};
+use glint::plan::{RenderRequest, Sphere, SphereMethod};
 use glint::scene::{
     Accelerator, Camera, ColorPack, Methods, Object, Precision, Projection, RayOffset, Sampling,
     Scene, Shape,
 };
+use glint::simd::{Real, Vec3};
 use glint::trace::probe::meet_sphere;
-use glint::trace::{Ray, Watch};
+use glint::trace::{Ray, RenderControl};
 
 /// A row: its name, and its check with so many tries per case.
 type Row = (&'static str, fn(u32));
@@ -194,7 +194,7 @@ fn low_over_a_planet(tries: u32) {
         .objects
         .push(object("Planet", DVec3::new(0.0, -1e6, 0.0), 1e6));
     scene.camera.position = DVec3::new(0.0, 100.0, 0.0);
-    let plan = glint::plan::needs(&scene, &Picture::sized(64, 64));
+    let plan = glint::plan::needs(&scene, &RenderRequest::sized(64, 64));
     let precision = plan.iter().find(|need| need.what == "double precision");
     assert!(precision.is_some(), "the plan must take f64: {plan:?}");
 }
@@ -224,24 +224,24 @@ fn object(name: &str, center: DVec3, radius: f64) -> Object {
 }
 
 /// A picture of one sample per pixel.
-fn plain(scene: &Scene, picture: Picture) -> Image {
-    let picture = Picture {
+fn plain(scene: &Scene, picture: RenderRequest) -> Image {
+    let picture = RenderRequest {
         sampling: Sampling::Centres,
         ..picture
     };
-    render(scene, &picture, &Watch::default())
+    render(scene, &picture, &RenderControl::default())
         .expect("not stopped")
         .0
 }
 
 fn unnormalised_cameras(_: u32) {
     let demo = Scene::demo();
-    let here = plain(&demo, Picture::sized(96, 96));
+    let here = plain(&demo, RenderRequest::sized(96, 96));
     for scale in [0.5, 3.0, 1e-9, 1e9] {
         let mut scene = demo.clone();
         scene.camera.look_at = demo.camera.look_at * scale;
         scene.camera.up = demo.camera.up * (1.0 / scale);
-        let there = plain(&scene, Picture::sized(96, 96));
+        let there = plain(&scene, RenderRequest::sized(96, 96));
         let differ = here
             .pixels
             .iter()
@@ -287,14 +287,14 @@ fn flat_bundles(_: u32) {
             ..Camera::default()
         };
         let with = |accelerator| {
-            let picture = Picture {
+            let picture = RenderRequest {
                 accelerator,
-                ..Picture::sized(13 * 8 + 1, 13 * 8 + 1)
+                ..RenderRequest::sized(13 * 8 + 1, 13 * 8 + 1)
             };
             plain(&scene, picture)
         };
         let list = with(Accelerator::List);
-        assert!(list == with(Accelerator::Bundles), "{away} away");
+        assert!(list == with(Accelerator::Bvh), "{away} away");
         let side = 13 * 8 + 1;
         let middle = list.pixels[side / 2 * side + side / 2];
         assert_ne!(middle, list.pixels[0], "the wall is in the picture");
@@ -339,13 +339,13 @@ fn contact_shadows(_: u32) {
             orthographic_height: 2e-5 * scale,
             ..Camera::default()
         };
-        let picture = Picture {
+        let picture = RenderRequest {
             precision: Precision::Single,
             methods: Methods {
                 offset,
                 ..Methods::default()
             },
-            ..Picture::sized(32, 32)
+            ..RenderRequest::sized(32, 32)
         };
         let image = plain(&scene, picture);
         image.pixels.iter().filter(|pixel| pixel[0] > 0).count()
@@ -374,9 +374,9 @@ fn hollow_balls(_: u32) {
                 scene.lights[0].intensity = 1.0;
                 scene.lights[0].marker = None;
                 scene.camera.position = center + DVec3::new(0.2, 0.1, 0.3) * radius;
-                let picture = Picture {
+                let picture = RenderRequest {
                     precision: Precision::Single,
-                    ..Picture::sized(160, 160)
+                    ..RenderRequest::sized(160, 160)
                 };
                 let image = plain(&scene, picture);
                 image.pixels.iter().filter(|pixel| pixel[0] == 0).count()
@@ -403,9 +403,9 @@ fn shaded(pack: ColorPack, light: DVec3, precision: Precision) -> [u8; 4] {
     scene.camera.position = DVec3::new(0.0, 0.0, 10.0);
     scene.camera.look_at = DVec3::new(0.0, 0.0, -1.0);
     scene.camera.up = DVec3::new(0.0, 1.0, 0.0);
-    let picture = Picture {
+    let picture = RenderRequest {
         precision,
-        ..Picture::sized(3, 3)
+        ..RenderRequest::sized(3, 3)
     };
     plain(&scene, picture).pixels[4]
 }
@@ -467,9 +467,9 @@ fn many_mirrors(_: u32) {
     scene.camera.look_at = DVec3::new(0.1, 0.0, -1.0);
     scene.camera.up = DVec3::new(0.0, 1.0, 0.0);
     let at = |precision| {
-        let picture = Picture {
+        let picture = RenderRequest {
             precision,
-            ..Picture::sized(128, 128)
+            ..RenderRequest::sized(128, 128)
         };
         plain(&scene, picture)
     };

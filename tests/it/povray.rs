@@ -6,9 +6,9 @@ use std::process::Command;
 
 use glam::DVec3;
 use glint::image::{Image, render};
-use glint::plan::{Methods, Picture, RayOffset};
+use glint::plan::{Methods, RayOffset, RenderRequest};
 use glint::scene::{ColorPack, Projection, Scene, Shape};
-use glint::trace::Watch;
+use glint::trace::RenderControl;
 
 use crate::random;
 
@@ -155,11 +155,11 @@ fn by_povray(scene: &Scene, folder: &Path) -> Image {
 }
 
 fn by_glint(scene: &Scene, methods: Methods) -> Image {
-    let picture = Picture {
+    let picture = RenderRequest {
         methods,
-        ..Picture::sized(scene.render.width, scene.render.height)
+        ..RenderRequest::sized(scene.render.width, scene.render.height)
     };
-    render(scene, &picture, &Watch::default())
+    render(scene, &picture, &RenderControl::default())
         .expect("not stopped")
         .0
 }

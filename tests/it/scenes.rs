@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use glint::plan::Picture;
+use glint::plan::RenderRequest;
 use glint::scene::{Document, RayOffset, Sampling, Scene, SceneError, Shape, check};
 use proptest::prelude::*;
 
@@ -77,7 +77,7 @@ fn what_it_is_traced_with_is_kept_and_the_default_is_not_written() {
             "{word} in {written}"
         );
     }
-    let picture = Picture::still(&document.scene);
+    let picture = RenderRequest::still(&document.scene);
     assert_eq!(picture.methods.offset, RayOffset::Relative(0.01));
     assert_eq!(picture.sampling, Sampling::Grid(3));
     let plain = Document::empty().to_text().expect("writable");

@@ -11,13 +11,13 @@ use glam::DVec3;
 use glint::animate::{CameraPath, Preset, shot};
 use glint::editor::{Action, Edit, Editor, Repeat, Time};
 use glint::image::render;
-use glint::plan::Picture;
+use glint::plan::RenderRequest;
 use glint::scene::{Animation, Document, Interpolation, Key as SceneKey, Projection, Scene, Value};
-use glint::trace::Watch;
+use glint::trace::RenderControl;
 use glint::ui::Ask;
-use glint::worker::{Sketch, Worker};
+use glint::worker::{ThumbnailJob, Worker};
 
-use crate::ui::{CTRL, Desk};
+use crate::ui::{CTRL, EditorHarness};
 
 const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
 
@@ -26,7 +26,7 @@ fn flight() -> Scene {
 }
 
 /// A window on a demo whose camera moves from key to key: so many seconds, so far to the right.
-fn moving(keys: &[(f64, f64)]) -> Desk {
+fn moving(keys: &[(f64, f64)]) -> EditorHarness {
     let mut scene = Scene::demo();
     let key = |&(time, right): &(f64, f64)| {
         let mut camera = scene.camera.clone();
@@ -39,15 +39,15 @@ fn moving(keys: &[(f64, f64)]) -> Desk {
         header: String::new(),
         scene,
     };
-    Desk::with(|_| Vec::new(), Some(&document.to_text().expect("a text")))
+    EditorHarness::with(|_| Vec::new(), Some(&document.to_text().expect("a text")))
 }
 
-fn times(desk: &Desk) -> Vec<f64> {
+fn times(desk: &EditorHarness) -> Vec<f64> {
     let keys = desk.scene().animation.keys.iter();
     keys.map(|key| (key.time * 1e3).round() / 1e3).collect()
 }
 
-fn place_of(desk: &Desk, name: &str) -> Pos2 {
+fn place_of(desk: &EditorHarness, name: &str) -> Pos2 {
     let role = if name == "Playhead" {
         Role::Slider
     } else {
@@ -58,7 +58,7 @@ fn place_of(desk: &Desk, name: &str) -> Pos2 {
 }
 
 /// Drags from a place by so much, in several moves, with keys held.
-fn drag(desk: &mut Desk, from: Pos2, by: egui::Vec2, modifiers: Modifiers) {
+fn drag(desk: &mut EditorHarness, from: Pos2, by: egui::Vec2, modifiers: Modifiers) {
     let moved = |part: u16| from + by * f32::from(part) / 6.0;
     desk.window.event(Event::ModifiersChanged(modifiers));
     desk.window.drag_at(from);
@@ -74,7 +74,7 @@ fn drag(desk: &mut Desk, from: Pos2, by: egui::Vec2, modifiers: Modifiers) {
 }
 
 /// Points on screen for a second of the timeline.
-fn points_per_second(desk: &Desk) -> f32 {
+fn points_per_second(desk: &EditorHarness) -> f32 {
     let (first, last) = (
         place_of(desk, "Key 1"),
         place_of(desk, &format!("Key {}", times(desk).len())),
@@ -85,7 +85,7 @@ fn points_per_second(desk: &Desk) -> f32 {
 
 #[test]
 fn a_flight_is_recorded_and_becomes_keys_in_one_step() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     let start = desk.scene().camera.clone();
     desk.window.key_press(Key::R);
     desk.window.step();
@@ -135,7 +135,7 @@ fn a_flight_is_recorded_and_becomes_keys_in_one_step() {
 
 #[test]
 fn keys_are_set_overwritten_and_deleted() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     desk.press(Modifiers::NONE, Key::K);
     assert_eq!(times(&desk), [0.0]);
     // With one key there is no time yet: a second one is typed.
@@ -150,7 +150,7 @@ fn keys_are_set_overwritten_and_deleted() {
             ..desk.scene().clone()
         },
     };
-    let mut desk = Desk::with(|_| Vec::new(), Some(&text.to_text().expect("a text")));
+    let mut desk = EditorHarness::with(|_| Vec::new(), Some(&text.to_text().expect("a text")));
     desk.press(Modifiers::NONE, Key::CloseBracket);
     assert_eq!(desk.editor().shown_time(), 2.0);
     // Fly away from the key, and put the view into it.
@@ -258,8 +258,8 @@ fn the_playhead_is_dragged_and_stepped_and_the_picture_follows() {
     let scene = Arc::new(desk.scene().clone());
     let there = shot(&scene, &CameraPath::new(&scene.animation.keys), 1.2);
     let size = desk.picture();
-    let expected = Picture::of(&there, size.width as u32, size.height as u32);
-    let direct = render(&there, &expected, &Watch::default())
+    let expected = RenderRequest::of(&there, size.width as u32, size.height as u32);
+    let direct = render(&there, &expected, &RenderControl::default())
         .expect("whole")
         .0;
     assert!(desk.picture() == direct, "what is shown is the frame");
@@ -435,7 +435,7 @@ fn an_object_with_keys_moves_and_its_corners_do_not_drift() {
 
 #[test]
 fn ready_made_flights_and_other_timings_are_one_step_each() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     let presets = Preset::ALL.map(|preset| preset.words().0);
     desk.window
         .get_by_role_and_label(Role::Button, "Animate")
@@ -468,7 +468,7 @@ fn ready_made_flights_and_other_timings_are_one_step_each() {
 #[test]
 fn paths_go_out_to_a_table_and_come_back() {
     let text = std::fs::read_to_string(FLIGHT).expect("readable");
-    let mut desk = Desk::with(
+    let mut desk = EditorHarness::with(
         |folder| {
             vec![
                 (Ask::ExportPath, Some(folder.join("path.csv"))),
@@ -512,7 +512,7 @@ fn a_frame_is_the_same_from_the_command_line_and_in_the_window() {
         scene,
     };
     let text = document.to_text().expect("a text");
-    let mut desk = Desk::with(|_| Vec::new(), Some(&text));
+    let mut desk = EditorHarness::with(|_| Vec::new(), Some(&text));
     let frame = 77;
     let time = desk.scene().animation.time_of(frame);
     assert!(!desk.editor().is_dirty(), "opening changes nothing");
@@ -569,7 +569,7 @@ fn the_published_flight_is_what_it_says() {
 fn small_pictures_are_plain_renders_and_come_in_their_order() {
     let scene = Arc::new(Scene::demo());
     let worker = Worker::new(Some(2), || ()).expect("a lane");
-    let sketch = |name: u64| Sketch {
+    let sketch = |name: u64| ThumbnailJob {
         name,
         scene: Arc::clone(&scene),
         size: (40, 30),
@@ -585,10 +585,12 @@ fn small_pictures_are_plain_renders_and_come_in_their_order() {
     let mut names: Vec<u64> = pictures.iter().map(|(name, _)| *name).collect();
     names.sort_unstable();
     assert_eq!(names, [1, 3, 7]);
-    let plain = Picture {
+    let plain = RenderRequest {
         sampling: glint::plan::Sampling::Centres,
-        ..Picture::of(&scene, 40, 30)
+        ..RenderRequest::of(&scene, 40, 30)
     };
-    let direct = render(&scene, &plain, &Watch::default()).expect("whole").0;
+    let direct = render(&scene, &plain, &RenderControl::default())
+        .expect("whole")
+        .0;
     assert!(pictures.iter().all(|(_, image)| *image == direct));
 }

@@ -11,9 +11,9 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use glint::editor::{Editor, Mode};
 use glint::image::{Image, render};
-use glint::plan::{Picture, Sampling};
-use glint::scene::{Choice as _, Document, Projection, Scene, Shape};
-use glint::trace::Watch;
+use glint::plan::{RenderRequest, Sampling};
+use glint::scene::{Document, Method as _, Projection, Scene, Shape};
+use glint::trace::RenderControl;
 use glint::ui::{App, Ask, Command, Dialogs, FLIGHT, SHORTCUTS, Setup};
 
 /// Dialogs that answer from a list; with none left, they do as a desktop without dialogs does.
@@ -39,12 +39,12 @@ pub const CTRL: Modifiers = Modifiers {
     ..Modifiers::COMMAND
 };
 
-pub struct Desk {
+pub struct EditorHarness {
     pub window: Harness<'static, App>,
     pub folder: tempfile::TempDir,
 }
 
-impl Desk {
+impl EditorHarness {
     pub fn new() -> Self {
         Self::with(|_| Vec::new(), None)
     }
@@ -201,14 +201,14 @@ fn radius(scene: &Scene, object: usize) -> f64 {
 
 #[test]
 fn the_window_opens_on_the_demo_and_shows_its_picture() {
-    let desk = Desk::new();
+    let desk = EditorHarness::new();
     assert_eq!(desk.scene(), &Scene::demo());
     let shown = desk.picture();
-    let smooth = Picture {
+    let smooth = RenderRequest {
         sampling: Sampling::ADAPTIVE,
-        ..Picture::sized(shown.width as u32, shown.height as u32)
+        ..RenderRequest::sized(shown.width as u32, shown.height as u32)
     };
-    let direct = render(desk.scene(), &smooth, &Watch::default())
+    let direct = render(desk.scene(), &smooth, &RenderControl::default())
         .expect("not stopped")
         .0;
     assert!(
@@ -225,7 +225,7 @@ fn the_window_opens_on_the_demo_and_shows_its_picture() {
 
 #[test]
 fn a_drag_changes_the_radius_and_one_undo_brings_it_back() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     let before = desk.picture();
     desk.click("Sphere 1");
     desk.drag("radius", 40.0);
@@ -246,7 +246,7 @@ fn a_drag_changes_the_radius_and_one_undo_brings_it_back() {
 
 #[test]
 fn a_pack_is_edited_for_all_that_use_it() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     desk.click("tetrahedron");
     desk.type_into("diffuse red", "12");
     desk.type_into("ambient hex", "#0A141E");
@@ -262,7 +262,7 @@ fn a_pack_is_edited_for_all_that_use_it() {
 
 #[test]
 fn looking_at_a_pack_changes_nothing() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     for name in [
         "tetrahedron",
         "Light 1",
@@ -285,7 +285,7 @@ fn looking_at_a_pack_changes_nothing() {
 
 #[test]
 fn a_vector_is_pasted_whole_and_a_label_resets() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     desk.click("Sphere 1");
     desk.type_into("center y", "1, -2, 3.5");
     let Shape::Sphere { center, .. } = &desk.scene().objects[0].shape else {
@@ -299,7 +299,7 @@ fn a_vector_is_pasted_whole_and_a_label_resets() {
 
 #[test]
 fn invalid_edits_are_refused_and_explained() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     desk.window
         .get_by_role_and_label(Role::Button, "Camera")
         .click();
@@ -314,7 +314,7 @@ fn invalid_edits_are_refused_and_explained() {
 
 #[test]
 fn keys_switch_projection_markers_and_resolution() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     desk.press(Modifiers::NONE, Key::O);
     assert_eq!(desk.scene().camera.projection, Projection::Orthographic);
     desk.press(Modifiers::NONE, Key::P);
@@ -347,12 +347,12 @@ fn keys_switch_projection_markers_and_resolution() {
 
 #[test]
 fn the_still_picture_stays_until_the_scene_changes() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     desk.press(Modifiers::NONE, Key::H);
     let still = render(
         desk.scene(),
-        &Picture::still(desk.scene()),
-        &Watch::default(),
+        &RenderRequest::still(desk.scene()),
+        &RenderControl::default(),
     );
     assert!(desk.picture() == still.expect("not stopped").0);
     desk.click("Sphere 2");
@@ -368,7 +368,7 @@ fn the_still_picture_stays_until_the_scene_changes() {
 
 #[test]
 fn flying_is_per_second_and_one_step() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     let start = desk.scene().camera.clone();
     desk.window.key_down(Key::W);
     desk.window.key_down(Key::ArrowRight);
@@ -394,7 +394,7 @@ fn flying_is_per_second_and_one_step() {
 
 #[test]
 fn the_right_button_looks_around() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     let start = desk.editor().orientation();
     let middle = desk.window.get_by_label("Live view").rect().center();
     let button = |pressed, pos| Event::PointerButton {
@@ -425,7 +425,7 @@ fn the_right_button_looks_around() {
 
 #[test]
 fn keys_do_nothing_while_a_text_is_edited() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     desk.window.get_by_label("Filter").focus();
     desk.settle();
     for key in [Key::O, Key::U, Key::W, Key::L] {
@@ -437,7 +437,7 @@ fn keys_do_nothing_while_a_text_is_edited() {
 
 #[test]
 fn the_outliner_filters_hides_renames_and_reorders() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     desk.window.get_by_label("Filter").focus();
     desk.window.get_by_label("Filter").type_text("sphere");
     desk.settle();
@@ -461,7 +461,7 @@ fn the_outliner_filters_hides_renames_and_reorders() {
 
 #[test]
 fn everything_can_be_added() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     for (entry, count) in [("Add Sphere", 10), ("Add Plane", 11), ("Add Triangle", 12)] {
         desk.window
             .get_by_role_and_label(Role::Button, "Add to scene")
@@ -487,7 +487,7 @@ fn a_scene_is_saved_and_opened_through_dialogs() {
             (Ask::OpenScene, Some(folder.join("mine.ron"))),
         ]
     };
-    let mut desk = Desk::with(answers, None);
+    let mut desk = EditorHarness::with(answers, None);
     desk.click("Sphere 1");
     desk.type_into("radius", "33");
     desk.press(Modifiers::COMMAND, Key::S);
@@ -514,7 +514,7 @@ fn a_scene_is_saved_and_opened_through_dialogs() {
 
 #[test]
 fn without_dialogs_a_path_is_typed() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     let path = desk.folder.path().join("typed.ron");
     desk.press(Modifiers::COMMAND, Key::S);
     let field = desk.window.get_by_label_contains("Path (this desktop");
@@ -529,7 +529,7 @@ fn without_dialogs_a_path_is_typed() {
 fn the_still_picture_is_written_to_a_file() {
     let answers =
         |folder: &std::path::Path| vec![(Ask::SaveImage, Some(folder.join("picture.png")))];
-    let mut desk = Desk::with(answers, None);
+    let mut desk = EditorHarness::with(answers, None);
     desk.press(Modifiers::COMMAND, Key::E);
     let path = desk.folder.path().join("picture.png");
     let start = Instant::now();
@@ -544,7 +544,7 @@ fn the_still_picture_is_written_to_a_file() {
 
 #[test]
 fn unsaved_changes_are_asked_about() {
-    let mut desk = Desk::with(
+    let mut desk = EditorHarness::with(
         |folder| vec![(Ask::SaveScene, Some(folder.join("kept.ron")))],
         None,
     );
@@ -570,7 +570,7 @@ fn unsaved_changes_are_asked_about() {
 fn a_refused_file_is_shown_with_its_place_and_the_document_stays() {
     let answers = |folder: &std::path::Path| vec![(Ask::OpenScene, Some(folder.join("given.ron")))];
     let text = "Scene(\n    version: 1,\n    objects: [5],\n)\n";
-    let mut desk = Desk::with(answers, Some(text));
+    let mut desk = EditorHarness::with(answers, Some(text));
     desk.window
         .get_by_label_contains("given.ron:3:15: expected Object(…)");
     assert_eq!(desk.scene(), &Scene::demo());
@@ -592,7 +592,7 @@ fn dropped_files_open() {
             std::fs::read(&self.0).map_err(|error| error.to_string())
         }
     }
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     let path = desk.folder.path().join("dropped.ron");
     let document = Document {
         header: String::new(),
@@ -610,7 +610,7 @@ fn dropped_files_open() {
 
 #[test]
 fn escape_closes_an_open_menu_and_nothing_else() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     desk.press(Modifiers::NONE, Key::L);
     desk.window
         .get_by_role_and_label(Role::Button, "File")
@@ -624,7 +624,7 @@ fn escape_closes_an_open_menu_and_nothing_else() {
 
 #[test]
 fn help_lists_every_key() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     desk.press(Modifiers::NONE, Key::F1);
     for what in SHORTCUTS
         .iter()
@@ -664,7 +664,7 @@ fn a_scene_of_thousands_shows_only_the_rows_in_sight() {
     }
     .to_text()
     .expect("text");
-    let desk = Desk::with(|_| Vec::new(), Some(&text));
+    let desk = EditorHarness::with(|_| Vec::new(), Some(&text));
     let rows = desk.window.query_all_by_label_contains("Ball").count();
     assert!((10..200).contains(&rows), "{rows}");
     let picture = desk.window.get_by_label("Live view").rect();
@@ -676,7 +676,7 @@ fn a_scene_of_thousands_shows_only_the_rows_in_sight() {
 
 #[test]
 fn escape_in_a_field_gives_up_what_was_typed_and_nothing_else() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     desk.click("Sphere 1");
     desk.window
         .get_by_role_and_label(Role::SpinButton, "radius")
@@ -699,7 +699,7 @@ fn escape_in_a_field_gives_up_what_was_typed_and_nothing_else() {
 
 #[test]
 fn a_held_key_commands_once() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     desk.click("Sphere 1");
     for repeat in [false, true, true, true] {
         desk.window
@@ -729,9 +729,9 @@ fn a_held_key_commands_once() {
 
 #[test]
 fn ctrl_flies_down_and_is_no_shortcut_in_flight() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     let start = desk.scene().camera.position;
-    let frames = |desk: &mut Desk, count| (0..count).for_each(|_| desk.window.step());
+    let frames = |desk: &mut EditorHarness, count| (0..count).for_each(|_| desk.window.step());
     desk.window.event(Event::ModifiersChanged(CTRL));
     frames(&mut desk, 30);
     desk.window.event(Event::ModifiersChanged(Modifiers::NONE));
@@ -758,7 +758,7 @@ fn ctrl_flies_down_and_is_no_shortcut_in_flight() {
 
 #[test]
 fn shortcuts_work_after_flying_into_the_still_picture() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     let start = desk.scene().camera.clone();
     desk.window.key_down(Key::W);
     (0..5).for_each(|_| desk.window.step());
@@ -772,9 +772,9 @@ fn shortcuts_work_after_flying_into_the_still_picture() {
 
 #[test]
 fn a_turn_of_the_wheel_is_one_step_and_spares_the_still_picture() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     let start = desk.scene().camera.clone();
-    let turn = |desk: &mut Desk| {
+    let turn = |desk: &mut EditorHarness| {
         let middle = desk
             .window
             .get_all_by_role(Role::Image)
@@ -808,7 +808,7 @@ fn a_turn_of_the_wheel_is_one_step_and_spares_the_still_picture() {
 
 #[test]
 fn unsaved_changes_survive_a_cancelled_open() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     desk.press(Modifiers::NONE, Key::O);
     desk.press(Modifiers::COMMAND, Key::O);
     desk.click("Don't save");
@@ -822,7 +822,7 @@ fn unsaved_changes_survive_a_cancelled_open() {
 
 #[test]
 fn a_label_brings_the_default_back() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     desk.window
         .get_by_role_and_label(Role::Button, "Camera")
         .click();
@@ -834,7 +834,7 @@ fn a_label_brings_the_default_back() {
 
 #[test]
 fn the_inspector_says_what_the_scene_needs() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     desk.window.get_by_label("Needs").click();
     desk.settle();
     desk.window.get_by_label("reflected rays, up to 1 bounce");
@@ -844,7 +844,7 @@ fn the_inspector_says_what_the_scene_needs() {
 
 #[test]
 fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     let before = desk.scene().clone();
     desk.press(CTRL, Key::L);
     desk.click("Measure");
@@ -896,7 +896,7 @@ fn the_lab_shows_where_formulas_break_and_warns_of_those_in_use() {
         "reflection_limit: 1",
         "reflection_limit: 1, triangle: \"edges\"",
     );
-    let mut desk = Desk::with(|_| Vec::new(), Some(&text));
+    let mut desk = EditorHarness::with(|_| Vec::new(), Some(&text));
     assert_eq!(desk.scene().render.triangle.word(), "edges");
     desk.press(CTRL, Key::L);
     desk.click("Stability");
@@ -913,7 +913,7 @@ fn the_lab_shows_where_formulas_break_and_warns_of_those_in_use() {
     }
     desk.window
         .get_by_label("The frame is where your scene stands.");
-    let row = |desk: &Desk, words: &str| {
+    let row = |desk: &EditorHarness, words: &str| {
         let rows = desk.window.query_all_by_label_contains(words);
         rows.last().map(|row| row.rect().center())
     };
@@ -931,8 +931,8 @@ fn the_lab_shows_where_formulas_break_and_warns_of_those_in_use() {
 
 #[test]
 fn panels_keep_their_width_while_numbers_change() {
-    let mut desk = Desk::new();
-    let left = |desk: &Desk| desk.window.get_by_label("look_at x").rect().left();
+    let mut desk = EditorHarness::new();
+    let left = |desk: &EditorHarness| desk.window.get_by_label("look_at x").rect().left();
     let before = left(&desk);
     desk.window.key_down(Key::ArrowRight);
     desk.window.key_down(Key::W);
@@ -945,7 +945,7 @@ fn panels_keep_their_width_while_numbers_change() {
 
 #[test]
 fn a_field_that_is_left_as_it_was_changes_nothing() {
-    let mut desk = Desk::new();
+    let mut desk = EditorHarness::new();
     for field in ["view angle", "distance", "yaw", "look_at x", "position y"] {
         desk.window
             .get_by_role_and_label(Role::SpinButton, field)
@@ -959,7 +959,7 @@ fn a_field_that_is_left_as_it_was_changes_nothing() {
 #[test]
 fn saving_works_from_within_a_field() {
     let text = Document::empty().to_text().expect("a text");
-    let mut desk = Desk::with(|_| Vec::new(), Some(&text));
+    let mut desk = EditorHarness::with(|_| Vec::new(), Some(&text));
     desk.window
         .get_by_role_and_label(Role::SpinButton, "position x")
         .click();

@@ -6,16 +6,16 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 use glint::image::render;
 use glint::lab::Study;
-use glint::plan::Picture;
+use glint::plan::RenderRequest;
 use glint::scene::{Object, Scene, Shape};
-use glint::trace::Watch;
+use glint::trace::RenderControl;
 use glint::worker::{Activity, BUDGET, Event, Frame, LiveJob, Pace, StillJob, Worker};
 
 /// A test that waits longer than this has lost.
 const PATIENCE: Duration = Duration::from_mins(1);
 
 fn live(revision: u64, scene: &Arc<Scene>, side: u32) -> LiveJob {
-    let picture = Picture::sized(side, side);
+    let picture = RenderRequest::sized(side, side);
     LiveJob {
         revision,
         scene: Arc::clone(scene),
@@ -25,7 +25,7 @@ fn live(revision: u64, scene: &Arc<Scene>, side: u32) -> LiveJob {
 }
 
 fn still(revision: u64, scene: &Arc<Scene>, side: u32) -> StillJob {
-    let picture = Picture::sized(side, side);
+    let picture = RenderRequest::sized(side, side);
     StillJob {
         revision,
         scene: Arc::clone(scene),
@@ -98,9 +98,13 @@ fn many_submissions_end_in_the_last_ones_picture() {
             .all(|pair| pair[0].revision <= pair[1].revision),
         "never backwards"
     );
-    let direct = render(&last, &Picture::sized(300, 300), &Watch::default())
-        .expect("not stopped")
-        .0;
+    let direct = render(
+        &last,
+        &RenderRequest::sized(300, 300),
+        &RenderControl::default(),
+    )
+    .expect("not stopped")
+    .0;
     assert_eq!(*frames.last().expect("one").image, direct);
 }
 
@@ -112,8 +116,12 @@ fn refinement_traces_every_pixel_once_and_ends_byte_equal() {
     let frames = wait_for(&worker, |frame| frame.step == 1);
     let finished = frames.last().expect("one");
     assert_eq!(finished.cost.rays.camera, 640 * 640);
-    let (direct, cost) =
-        render(&scene, &Picture::sized(640, 640), &Watch::default()).expect("not stopped");
+    let (direct, cost) = render(
+        &scene,
+        &RenderRequest::sized(640, 640),
+        &RenderControl::default(),
+    )
+    .expect("not stopped");
     assert_eq!(*finished.image, direct);
     assert_eq!(finished.cost.rays, cost.rays);
 }
@@ -197,9 +205,13 @@ fn a_picture_that_is_to_be_saved_outlives_edits() {
     });
     assert_eq!(events, [Event::Saved(path.clone())]);
     let saved = image::open(&path).expect("a picture").to_rgba8();
-    let direct = render(&slow, &Picture::sized(256, 256), &Watch::default())
-        .expect("not stopped")
-        .0;
+    let direct = render(
+        &slow,
+        &RenderRequest::sized(256, 256),
+        &RenderControl::default(),
+    )
+    .expect("not stopped")
+    .0;
     assert_eq!(
         saved.into_raw(),
         direct.pixels.concat(),

@@ -4,8 +4,8 @@ use glam::{DMat3, DVec3};
 
 use super::{Axis, Map, Tries, scattered};
 
-use crate::lanes::Vec3;
 use crate::scene::{Camera, Orientation};
+use crate::simd::Vec3;
 
 /// Angles from straight up, in degrees.
 const FROM_POLE: [f64; 8] = [45.0, 1.0, 0.1, 0.01, 1e-3, 1e-4, 1e-5, 0.0];

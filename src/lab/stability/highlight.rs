@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::{Axis, Map, Tries, scattered};
-use crate::lanes::{Exponent, Vec3};
-use crate::scene::{Choice as _, HighlightMethod};
+use crate::scene::{HighlightMethod, Method as _};
+use crate::simd::{Exponent, Vec3};
 
 const EXPONENTS: [f64; 7] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
 /// Tries in each cell for a first look.

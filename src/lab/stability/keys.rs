@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::{Axis, Map, Tries, scattered};
 use crate::animate::{CameraPath, motion_between};
-use crate::lanes::Vec3;
 use crate::scene::{Camera, Key, Orientation};
+use crate::simd::Vec3;
 
 /// How much longer one segment is than its neighbours.
 const RATIOS: [f64; 7] = [1.0, 2.0, 5.0, 1e1, 1e2, 1e3, 1e4];

@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::{Axis, Map, Tries, scales, scattered};
-use crate::lanes::{Real as _, Vec3};
 use crate::plan::Plane;
+use crate::simd::{Real as _, Vec3};
 use crate::trace::Ray;
 use crate::trace::probe::meet_plane;
 

@@ -2,12 +2,12 @@
 //! a ball and a card on a floor, at every scale and place; the ball a sphere, or a mesh.
 
 use super::{Map, Tries, places, scales};
-use crate::plan::Picture;
+use crate::plan::RenderRequest;
 use crate::scene::{
-    Camera, Choice as _, ColorPack, Light, Methods, Object, Precision, RayOffset, Sampling, Scene,
+    Camera, ColorPack, Light, Method as _, Methods, Object, Precision, RayOffset, Sampling, Scene,
     Shape,
 };
-use crate::trace::{Pass, Tracer, Watch};
+use crate::trace::{Pass, RenderControl, Tracer};
 use glam::DVec3;
 
 /// Side of the pictures in pixels.
@@ -67,18 +67,18 @@ fn maps_of(ball: Ball, [acne, leak]: [&'static str; 2]) -> Vec<Map> {
 
 /// Which pixels are lit.
 fn lit(scene: &Scene, offset: RayOffset, precision: Precision) -> Vec<bool> {
-    let picture = Picture {
+    let picture = RenderRequest {
         methods: Methods {
             offset,
             ..Methods::default()
         },
         precision,
         sampling: Sampling::Centres,
-        ..Picture::sized(SIDE, SIDE)
+        ..RenderRequest::sized(SIDE, SIDE)
     };
     let mut pixels = vec![[0.0_f32; 3]; (SIDE * SIDE) as usize];
     // Nobody stops it.
-    let _ = Tracer::new(scene, &picture).pass(&mut pixels, Pass::Whole, &Watch::default());
+    let _ = Tracer::new(scene, &picture).pass(&mut pixels, Pass::Whole, &RenderControl::default());
     pixels.iter().map(|pixel| pixel[0] > GRAZING).collect()
 }
 

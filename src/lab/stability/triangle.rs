@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use super::{Map, Tries, places, scales, scattered};
-use crate::lanes::Vec3;
 use crate::plan::{Triangle, TriangleMethod};
-use crate::scene::Choice as _;
+use crate::scene::Method as _;
+use crate::simd::Vec3;
 use crate::trace::Ray;
 use crate::trace::probe::meet_triangle;
 

@@ -3,13 +3,13 @@
 mod weak;
 
 use super::Ray;
-use crate::lanes::{Lane, Mask as _, Real, Vec3};
 use crate::plan::{Triangle, TriangleMethod};
+use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// What the watertight test needs of a ray, computed once: the axis along which the direction is
 /// largest, turned to z, and the shear that lays the ray on it.
 #[derive(Clone, Copy, Debug)]
-pub struct Shear<L: Lane> {
+pub struct Shear<L: SimdFloat> {
     /// Where the axis is x, and where it is y.
     is_x: L::Mask,
     is_y: L::Mask,
@@ -27,7 +27,7 @@ enum Axis {
     Z,
 }
 
-impl<L: Lane> Shear<L> {
+impl<L: SimdFloat> Shear<L> {
     /// The shear of a direction (not zero).
     #[inline(always)]
     pub fn new(token: L::Token, direction: Vec3<L>) -> Self {
@@ -109,7 +109,7 @@ impl<L: Lane> Shear<L> {
 
 /// The t > 0 at which the ray meets the triangle; infinity if it does not.
 #[inline(always)]
-pub fn intersect<L: Lane>(
+pub fn intersect<L: SimdFloat>(
     token: L::Token,
     method: TriangleMethod,
     ray: &Ray<L>,
@@ -130,7 +130,7 @@ pub fn intersect<L: Lane>(
 ///
 /// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
 #[inline(always)]
-fn watertight<L: Lane>(
+fn watertight<L: SimdFloat>(
     token: L::Token,
     ray: &Ray<L>,
     shear: &Shear<L>,
@@ -160,7 +160,7 @@ fn watertight<L: Lane>(
 /// How far along a ray the nearest and the farthest corner are, and how far from the ray the
 /// triangle is; zero inside.
 #[inline(always)]
-pub fn beside<L: Lane>(
+pub fn beside<L: SimdFloat>(
     token: L::Token,
     ray: &Ray<L>,
     shear: &Shear<L>,
@@ -190,7 +190,7 @@ pub fn beside<L: Lane>(
 
 /// The hit at `t`, drawn onto the triangle's plane.
 #[inline(always)]
-pub fn refine<L: Lane>(
+pub fn refine<L: SimdFloat>(
     token: L::Token,
     ray: &Ray<L>,
     triangle: &Triangle<L::Real>,
@@ -206,7 +206,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::scene::Choice as _;
+    use crate::scene::Method as _;
     use proptest::prelude::*;
 
     fn triangle(a: Vec3<f32>, b: Vec3<f32>, c: Vec3<f32>) -> Triangle<f32> {

@@ -1,14 +1,14 @@
 //! Triangle formulas that fail somewhere, kept to show where.
 
 use super::Ray;
-use crate::lanes::{Lane, Real, Vec3};
 use crate::plan::Triangle;
+use crate::simd::{Real, SimdFloat, Vec3};
 
 /// The formula of Glint's ancestor: where the ray meets the plane, then, edge by edge in clockwise
 /// order, whether the cross product with the edge points away from the normal. Every rounding of
 /// the hit moves it across the edge differently for each neighbour.
 #[inline(always)]
-pub fn edges<L: Lane>(token: L::Token, ray: &Ray<L>, triangle: &Triangle<L::Real>) -> L {
+pub fn edges<L: SimdFloat>(token: L::Token, ray: &Ray<L>, triangle: &Triangle<L::Real>) -> L {
     let n: Vec3<L> = Vec3::broadcast(token, triangle.normal);
     let [a, b, c] = triangle.corners;
     let (a, b, c) = (
@@ -31,7 +31,11 @@ pub fn edges<L: Lane>(token: L::Token, ray: &Ray<L>, triangle: &Triangle<L::Real
 /// Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", Journal of Graphics Tools
 /// 2(1), 1997; without its fixed threshold for the determinant, which fails in small scenes.
 #[inline(always)]
-pub fn moller_trumbore<L: Lane>(token: L::Token, ray: &Ray<L>, triangle: &Triangle<L::Real>) -> L {
+pub fn moller_trumbore<L: SimdFloat>(
+    token: L::Token,
+    ray: &Ray<L>,
+    triangle: &Triangle<L::Real>,
+) -> L {
     let [a, b, c] = triangle.corners;
     let (ab, ac) = (Vec3::broadcast(token, b - a), Vec3::broadcast(token, c - a));
     let across = ray.direction.cross(ac);
@@ -58,7 +62,7 @@ pub fn moller_trumbore<L: Lane>(token: L::Token, ray: &Ray<L>, triangle: &Triang
 /// Slusallek and Dachsbacher, "3D rasterization: a bridge between rasterization and ray casting",
 /// Graphics Interface 2012.
 #[inline(always)]
-pub fn edge_planes<L: Lane>(token: L::Token, ray: &Ray<L>, triangle: &Triangle<L::Real>) -> L {
+pub fn edge_planes<L: SimdFloat>(token: L::Token, ray: &Ray<L>, triangle: &Triangle<L::Real>) -> L {
     let [a, b, c] = triangle.corners;
     let a = Vec3::broadcast(token, a) - ray.origin;
     let b = Vec3::broadcast(token, b) - ray.origin;

@@ -9,8 +9,8 @@ use super::Found;
 use crate::editor::Editor;
 use crate::export::{Frames, Pattern, Sequence, Video};
 use crate::image::Format;
-use crate::scene::{Choice as _, MAX_SIDE, Sampling, Scene};
-use crate::ui::Out;
+use crate::scene::{MAX_SIDE, Method as _, Sampling, Scene};
+use crate::ui::UiRequests;
 use crate::ui::commands::Command;
 use crate::ui::status::in_words;
 use crate::ui::theme::ROW;
@@ -123,7 +123,7 @@ pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
 }
 
 /// The rows of the window.
-pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut Out) {
+pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
     ui.weak("folder");
     ui.horizontal(|ui| {
         let field = TextEdit::singleline(&mut settings.folder).align(Align2::LEFT_CENTER);

@@ -7,19 +7,19 @@ use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::Duration;
 
 use egui::{
-    Button, Context, Grid, Image as Picture, ProgressBar, RichText, TextureHandle, TextureOptions,
-    Ui, Window, vec2,
+    Button, Context, Grid, Image as RenderRequest, ProgressBar, RichText, TextureHandle,
+    TextureOptions, Ui, Window, vec2,
 };
 
 use self::fields::{FIELDS, Settings, fields, forecast, presets};
-use super::Out;
+use super::UiRequests;
 use super::pictures::Pictures;
 use super::status::in_words;
 use super::theme::{GRID, THUMB, palette};
 use super::upload::whole;
 use crate::editor::Editor;
 use crate::export::{Sequence, Video, VideoError};
-use crate::worker::{ExportState, run_errand};
+use crate::worker::{ExportState, run_in_background};
 
 /// Frames that are to be made, how many of them replace files, and all that are asked for.
 type Found = Result<(usize, usize, usize), String>;
@@ -67,12 +67,12 @@ impl Exports {
             }
             self.told.push(state.id);
             match ended {
-                Ok(()) => editor.inform(format!(
+                Ok(()) => editor.notify(format!(
                     "{} frames are in {}",
                     state.done.total,
                     state.folder.display()
                 )),
-                Err(error) => editor.complain(format!(
+                Err(error) => editor.report_error(format!(
                     "{error}; what is done stays, and exporting again goes on from there"
                 )),
             }
@@ -82,16 +82,16 @@ impl Exports {
                 let (kind, sequence, path) =
                     (video.video, video.sequence.clone(), video.path.clone());
                 let make = move || kind.make(&sequence, &path, |_| ());
-                video.making = Some(run_errand("glint-video", make));
+                video.making = Some(run_in_background("glint-video", make));
             }
         }
         self.videos.retain(|video| {
             let made = video.making.as_ref().map(Receiver::try_recv);
             match made {
-                Some(Ok(Ok(()))) => editor.inform(format!("Saved {}", video.path.display())),
-                Some(Ok(Err(error))) => editor.complain(error.to_string()),
+                Some(Ok(Ok(()))) => editor.notify(format!("Saved {}", video.path.display())),
+                Some(Ok(Err(error))) => editor.report_error(error.to_string()),
                 Some(Err(TryRecvError::Disconnected)) => {
-                    editor.complain("the video was not made".to_owned());
+                    editor.report_error("the video was not made".to_owned());
                 }
                 Some(Err(TryRecvError::Empty)) | None => return true,
             }
@@ -105,7 +105,13 @@ impl Exports {
     }
 
     /// Draws the window, if it is open.
-    pub fn show(&mut self, ctx: &Context, editor: &mut Editor, pictures: &Pictures, out: &mut Out) {
+    pub fn show(
+        &mut self,
+        ctx: &Context,
+        editor: &mut Editor,
+        pictures: &Pictures,
+        out: &mut UiRequests,
+    ) {
         if self.is_busy(pictures) {
             ctx.request_repaint_after(Duration::from_millis(100));
         }
@@ -130,7 +136,7 @@ impl Exports {
         ui: &mut Ui,
         editor: &mut Editor,
         pictures: &Pictures,
-        out: &mut Out,
+        out: &mut UiRequests,
     ) {
         let mut settings = self.settings.take().unwrap_or_else(|| Settings::of(editor));
         presets(ui, &mut settings, editor.scene());
@@ -170,7 +176,7 @@ impl Exports {
                         });
                     }
                 }
-                Err(error) => editor.complain(error.to_string()),
+                Err(error) => editor.report_error(error.to_string()),
             }
         }
         self.settings = Some(settings);
@@ -198,7 +204,7 @@ impl Exports {
         }
         self.found = Some((settings.clone(), state, None));
         let sequence = sequence.clone();
-        self.looking = Some(run_errand("glint-look", move || {
+        self.looking = Some(run_in_background("glint-look", move || {
             // A folder that is not there has no frames; looking must not make it.
             let total = sequence.frames.count();
             if !sequence.folder.exists() {
@@ -246,7 +252,7 @@ impl Exports {
         }
         let thumb = self.thumbs.iter().find(|(id, ..)| *id == state.id);
         if let Some((.., texture)) = thumb {
-            ui.add(Picture::new(texture).fit_to_exact_size(vec2(THUMB, THUMB)));
+            ui.add(RenderRequest::new(texture).fit_to_exact_size(vec2(THUMB, THUMB)));
         }
     }
 }

@@ -6,10 +6,10 @@ use super::title;
 use crate::editor::{Edit, Editor};
 use crate::scene::{Camera, Orientation, Projection};
 use crate::ui::rows::{Field, Rows, coordinate};
-use crate::ui::{Out, icons};
+use crate::ui::{UiRequests, icons};
 
 /// Every property of the camera.
-pub fn show(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     title(ui, icons::CAMERA, "Camera");
     let before = &editor.shown().camera;
     let mut camera = before.clone();

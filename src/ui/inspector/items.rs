@@ -8,12 +8,12 @@ use super::title_field;
 use crate::editor::{Edit, Item, Selection};
 use crate::scene::{ColorPack, Light, LightObj, Object, Scene, Shape};
 use crate::ui::rows::{Field, Rows, coordinate, fraction};
-use crate::ui::{Out, icons};
+use crate::ui::{UiRequests, icons};
 
 const ORIGIN: DVec3 = DVec3::new(0.0, 0.0, 0.0);
 
 /// A light and its marker.
-pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut Out) {
+pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut UiRequests) {
     title_field(ui, icons::LIGHT, Item::light(index), &before.name, out);
     let mut light = before.clone();
     let mut rows = Rows::new(ui);
@@ -83,7 +83,7 @@ fn pack_choice(rows: &mut Rows, scene: &Scene, name: &mut String) {
 }
 
 /// An object: its shape and its pack.
-pub fn object(ui: &mut Ui, scene: &Scene, index: usize, before: &Object, out: &mut Out) {
+pub fn object(ui: &mut Ui, scene: &Scene, index: usize, before: &Object, out: &mut UiRequests) {
     title_field(
         ui,
         icons::of_shape(&before.shape),
@@ -160,7 +160,7 @@ fn shape_rows(rows: &mut Rows, shape: &mut Shape) {
 }
 
 /// The colours of a pack.
-pub fn pack(ui: &mut Ui, index: usize, before: &ColorPack, out: &mut Out) {
+pub fn pack(ui: &mut Ui, index: usize, before: &ColorPack, out: &mut UiRequests) {
     let mut pack = before.clone();
     let defaults = ColorPack::default();
     let mut rows = Rows::new(ui);
@@ -204,7 +204,7 @@ pub fn pack(ui: &mut Ui, index: usize, before: &ColorPack, out: &mut Out) {
 }
 
 /// What uses a pack, each a way to it.
-pub fn used_by(ui: &mut Ui, scene: &Scene, name: &str, out: &mut Out) {
+pub fn used_by(ui: &mut Ui, scene: &Scene, name: &str, out: &mut UiRequests) {
     let mut rows = Rows::new(ui);
     rows.heading("Used by");
     let lights = scene.lights.iter().enumerate().filter(|(_, light)| {

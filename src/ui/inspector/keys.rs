@@ -9,10 +9,10 @@ use crate::scene::{
     Animation, Camera, Easing, Interpolation, Key, MAX_SECONDS, Orientation, Target,
 };
 use crate::ui::rows::{Field, Rows, coordinate};
-use crate::ui::{Out, icons};
+use crate::ui::{UiRequests, icons};
 
 /// Time, way and camera of the selected keys; what several keys do not share is not shown.
-pub fn show(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let places = &editor.timeline().selected;
     let Some(first) = places
@@ -132,7 +132,7 @@ pub fn target(editor: &Editor) -> glam::DVec3 {
     bounds.map_or(glam::DVec3::splat(0.0), |(low, high)| (low + high) * 0.5)
 }
 
-fn buttons(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let places = &editor.timeline().selected;
     let overwrite = ui.add_enabled(places.len() == 1, Button::new("Overwrite with view"));
@@ -160,7 +160,7 @@ fn buttons(ui: &mut Ui, editor: &Editor, out: &mut Out) {
 }
 
 /// A button for each value that can carry keys: sets one at the playhead, or takes it away.
-pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[(&str, Target)], out: &mut Out) {
+pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[(&str, Target)], out: &mut UiRequests) {
     let animation: &Animation = &editor.scene().animation;
     let time = editor.shown_time();
     ui.horizontal(|ui| {

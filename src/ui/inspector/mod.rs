@@ -12,12 +12,12 @@ use egui::{Align2, Id, RichText, ScrollArea, TextEdit, Ui};
 use egui_material_icons::MaterialIcon;
 
 use super::theme::{GRID, ROW};
-use super::{Out, icons};
+use super::{UiRequests, icons};
 use crate::editor::{Edit, Editor, Item, Kind, Selection};
 use crate::scene::Target;
 
 /// Shows the selection and pushes its changes.
-pub fn show(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(GRID / 2.0);
         let scene = editor.shown();
@@ -79,7 +79,7 @@ fn title(ui: &mut Ui, icon: MaterialIcon, name: &str) {
 }
 
 /// The title of an item is its name, which can be edited in place.
-fn title_field(ui: &mut Ui, icon: MaterialIcon, item: Item, name: &str, out: &mut Out) {
+fn title_field(ui: &mut Ui, icon: MaterialIcon, item: Item, name: &str, out: &mut UiRequests) {
     ui.horizontal(|ui| {
         ui.set_min_height(ROW);
         ui.label(icons::text(icon));

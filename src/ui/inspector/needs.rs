@@ -5,7 +5,7 @@ use std::sync::Arc;
 use egui::{CollapsingHeader, Id, RichText, Ui};
 
 use crate::editor::Editor;
-use crate::plan::{Need, Picture, needs};
+use crate::plan::{Need, RenderRequest, needs};
 use crate::ui::theme::GRID;
 
 /// The lines of the plan, made when the section is opened and on every edit while it is.
@@ -36,7 +36,7 @@ fn lines(ui: &Ui, editor: &Editor) -> Arc<Vec<Need>> {
         Some((of, lines)) if of == revision => lines,
         _ => {
             let scene = editor.shown();
-            let lines = Arc::new(needs(scene, &Picture::still(scene)));
+            let lines = Arc::new(needs(scene, &RenderRequest::still(scene)));
             ui.data_mut(|data| data.insert_temp(id, (revision, Arc::clone(&lines))));
             lines
         }

@@ -6,12 +6,12 @@ use glam::DVec3;
 
 use super::title;
 use crate::editor::Edit;
-use crate::scene::{Choice, MAX_REFLECTIONS, MAX_SIDE, Render, Scene};
+use crate::scene::{MAX_REFLECTIONS, MAX_SIDE, Method, Render, Scene};
 use crate::ui::rows::{Field, Rows, fraction};
-use crate::ui::{Out, icons};
+use crate::ui::{UiRequests, icons};
 
 /// What belongs to the scene as a whole.
-pub fn show(ui: &mut Ui, scene: &Scene, out: &mut Out) {
+pub fn show(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
     title(ui, icons::WORLD, "World");
     let mut ambient = scene.ambient_intensity;
     let mut background = scene.background;
@@ -48,7 +48,7 @@ pub fn show(ui: &mut Ui, scene: &Scene, out: &mut Out) {
 }
 
 /// Size and depth of the still picture.
-pub fn show_picture(ui: &mut Ui, scene: &Scene, out: &mut Out) {
+pub fn show_picture(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
     title(ui, icons::IMAGE, "Picture");
     let mut render = scene.render.clone();
     let defaults = Render::default();
@@ -130,7 +130,7 @@ pub fn show_picture(ui: &mut Ui, scene: &Scene, out: &mut Out) {
 }
 
 /// A row for a choice between ways of doing a step.
-fn formula<T: Choice>(rows: &mut Rows, name: &'static str, hint: &str, value: &mut T) {
+fn formula<T: Method>(rows: &mut Rows, name: &'static str, hint: &str, value: &mut T) {
     let ways = T::ALL.iter().map(|way| (way.value, way.word.to_owned()));
     let mut options: Vec<(T, String)> = ways.collect();
     if options.iter().all(|(option, _)| option != value) {

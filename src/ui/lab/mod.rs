@@ -15,14 +15,14 @@ pub use self::stability::stability_picture;
 use self::chart::{Chart, Spot};
 use self::look::{FACES, Face, Look};
 use self::stability::Stability;
-use super::Out;
+use super::UiRequests;
 use super::commands::Command;
 use super::raster::draw;
 use super::theme::{GRID, palette};
 use super::viewport::Place;
 use crate::editor::{Edit, Editor};
 use crate::image::Image;
-use crate::lab::{DOUBTFUL, Dot, EIGHT_BIT_FLOOR, Study, cheapest_within};
+use crate::lab::{DOUBTFUL, EIGHT_BIT_FLOOR, Measurement, Study, cheapest_within};
 use crate::plan::Model;
 use crate::scene::{Animation, Render, Scene};
 
@@ -87,7 +87,7 @@ impl Default for Lab {
             cost: Cost::Time,
             error: Error::Rmse,
             chosen: None,
-            face: Face::Picture,
+            face: Face::RenderRequest,
             look: Look::default(),
             bounds: (EIGHT_BIT_FLOOR, 100.0),
             shows_maps: false,
@@ -128,7 +128,7 @@ impl Lab {
     }
 
     /// Shows the panel.
-    pub fn show(&mut self, ui: &mut Ui, editor: &Editor, out: &mut Out) -> Option<Wish> {
+    pub fn show(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) -> Option<Wish> {
         ui.add_space(GRID / 2.0);
         let wish = ui.horizontal(|ui| self.show_head(ui, editor, out)).inner;
         if self.shows_maps {
@@ -148,7 +148,7 @@ impl Lab {
         wish
     }
 
-    fn show_head(&mut self, ui: &mut Ui, editor: &Editor, out: &mut Out) -> Option<Wish> {
+    fn show_head(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) -> Option<Wish> {
         let timeline = ui.selectable_label(false, "Timeline");
         if timeline
             .on_hover_text("Keys and playing (Ctrl+T)")
@@ -259,7 +259,7 @@ impl Lab {
         }
     }
 
-    fn show_details(&mut self, ui: &mut Ui, editor: &Editor, out: &mut Out) {
+    fn show_details(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         ui.set_width(DETAILS - GRID);
         let chosen = self
             .chosen
@@ -358,14 +358,14 @@ pub fn chart_picture(study: &Study) -> Image {
 /// The dots of a study, as far as they are measured.
 fn chart(study: Option<&Study>, axes: (Cost, Error), chosen: Option<usize>) -> Chart {
     let dots = study.map_or(&[][..], |study| &study.dots);
-    let error = |dot: &Dot| {
+    let error = |dot: &Measurement| {
         dot.failing.map_or(f64::NAN, |failing| match axes.1 {
             Error::Rmse => failing.rmse,
             Error::Max => failing.max,
             Error::Visible => failing.visible,
         })
     };
-    let cost = |dot: &Dot| match axes.0 {
+    let cost = |dot: &Measurement| match axes.0 {
         Cost::Time => dot.timing().map_or(f64::NAN, |timing| timing.median),
         Cost::Rays => dot.rays_per_pixel,
     };
@@ -405,7 +405,7 @@ fn chart(study: Option<&Study>, axes: (Cost, Error), chosen: Option<usize>) -> C
 }
 
 /// The numbers of a dot, one in each line.
-fn figures(dot: &Dot) -> String {
+fn figures(dot: &Measurement) -> String {
     let time = dot.timing().map_or("not timed yet".to_owned(), |timing| {
         let doubt = if timing.spread > DOUBTFUL {
             " (doubtful)"

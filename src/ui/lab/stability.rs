@@ -10,8 +10,8 @@ use super::heat;
 use crate::animate::motion_between;
 use crate::image::Image;
 use crate::lab::stability::{Map, maps};
-use crate::scene::{Choice as _, Orientation, Scene, Shape};
-use crate::worker::run_errand;
+use crate::scene::{Method as _, Orientation, Scene, Shape};
+use crate::worker::run_in_background;
 
 /// How many times more tries than for a first look: a second of computing.
 const EFFORT: u32 = 4;
@@ -68,7 +68,7 @@ impl Stability {
     fn fetch(&mut self, ui: &mut Ui) {
         let coming = self
             .coming
-            .get_or_insert_with(|| run_errand("glint-stability", || maps(EFFORT)));
+            .get_or_insert_with(|| run_in_background("glint-stability", || maps(EFFORT)));
         match coming.try_recv() {
             Ok(maps) => self.maps = maps,
             Err(TryRecvError::Disconnected) => self.coming = None,

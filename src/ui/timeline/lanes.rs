@@ -6,7 +6,7 @@ use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, 
 
 use crate::editor::{Edit, Editor, Time};
 use crate::scene::{Animation, Easing, Interpolation, Target};
-use crate::ui::Out;
+use crate::ui::UiRequests;
 use crate::ui::inspector::target;
 use crate::ui::theme::{GRID, TRACK, palette};
 
@@ -60,7 +60,7 @@ pub struct Drag {
 }
 
 /// Seconds, frames, and the playhead, which follows the pointer.
-pub fn ruler(ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut Out) {
+pub fn ruler(ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) {
     let (rect, response) = lane(ui, scale, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Playhead"));
     if let Some(pointer) = response.interact_pointer_pos() {
@@ -156,7 +156,13 @@ fn diamond(ui: &Ui, at: Pos2, fill: Color32, is_cut: bool) {
 }
 
 /// The camera's keys: click, Shift-click, drag, Ctrl-drag, and a menu.
-pub fn keys(ui: &mut Ui, scale: &Scale, editor: &Editor, drag: &mut Option<Drag>, out: &mut Out) {
+pub fn keys(
+    ui: &mut Ui,
+    scale: &Scale,
+    editor: &Editor,
+    drag: &mut Option<Drag>,
+    out: &mut UiRequests,
+) {
     let (rect, response) = lane(ui, scale, Sense::click());
     if response.clicked() {
         out.time(Time::SelectKeys(BTreeSet::new()));
@@ -217,7 +223,7 @@ fn pick(
     place: usize,
     editor: &Editor,
     drag: &mut Option<Drag>,
-    out: &mut Out,
+    out: &mut UiRequests,
 ) {
     let selected = &editor.timeline().selected;
     let modifiers = ui.input(|input| input.modifiers);
@@ -253,7 +259,7 @@ fn pick(
 }
 
 /// Moves what is dragged to the frame at the pointer.
-fn follow(ui: &Ui, scale: &Scale, editor: &Editor, drag: &mut Option<Drag>, out: &mut Out) {
+fn follow(ui: &Ui, scale: &Scale, editor: &Editor, drag: &mut Option<Drag>, out: &mut UiRequests) {
     let Some(held) = drag.as_ref().filter(|drag| drag.target.is_none()) else {
         return;
     };
@@ -286,7 +292,7 @@ fn pointed(ui: &Ui, scale: &Scale, animation: &Animation) -> Option<f64> {
     Some((scale.time(at.x).max(0.0) * fps).round() / fps)
 }
 
-fn menu(ui: &mut Ui, place: usize, editor: &Editor, out: &mut Out) {
+fn menu(ui: &mut Ui, place: usize, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let mut places = editor.timeline().selected.clone();
     if !places.contains(&place) {
@@ -328,7 +334,13 @@ fn menu(ui: &mut Ui, place: usize, editor: &Editor, out: &mut Out) {
 }
 
 /// The keys of lights, objects and the ambience, one lane for each value.
-pub fn tracks(ui: &mut Ui, scale: &Scale, editor: &Editor, drag: &mut Option<Drag>, out: &mut Out) {
+pub fn tracks(
+    ui: &mut Ui,
+    scale: &Scale,
+    editor: &Editor,
+    drag: &mut Option<Drag>,
+    out: &mut UiRequests,
+) {
     let animation = &editor.scene().animation;
     let colors = palette(ui.ctx());
     for track in &animation.tracks {
@@ -377,7 +389,13 @@ pub fn tracks(ui: &mut Ui, scale: &Scale, editor: &Editor, drag: &mut Option<Dra
     }
 }
 
-fn value_menu(ui: &mut Ui, animation: &Animation, target: &Target, place: usize, out: &mut Out) {
+fn value_menu(
+    ui: &mut Ui,
+    animation: &Animation,
+    target: &Target,
+    place: usize,
+    out: &mut UiRequests,
+) {
     let mut changed = animation.clone();
     let Some(track) = changed
         .tracks

@@ -13,7 +13,7 @@ use self::lanes::{Drag, Scale};
 pub use self::overlay::Overlay;
 pub use self::thumbs::Thumbs;
 pub use self::transport::actions;
-use super::Out;
+use super::UiRequests;
 use super::commands::Command;
 use super::theme::{GRID, TRACK_LABEL};
 use crate::editor::Editor;
@@ -56,7 +56,7 @@ impl Timeline {
         editor: &Editor,
         thumbs: &Thumbs,
         per_second: f64,
-        out: &mut Out,
+        out: &mut UiRequests,
     ) {
         ui.add_space(GRID / 2.0);
         ui.horizontal(|ui| {

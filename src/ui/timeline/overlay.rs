@@ -2,14 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Color32, Pos2, Rect, Sense, Painter, Shape, Stroke, Ui, pos2, vec2};
 
 use glam::DVec3;
 
 use crate::editor::{Edit, Editor, Time};
 use crate::scene::{Camera, Framing, Projection};
-use crate::trace::sight::Sight;
-use crate::ui::Out;
+use crate::trace::sight::SceneQuery;
+use crate::ui::UiRequests;
 use crate::ui::theme::palette;
 
 /// Most ticks that are drawn.
@@ -56,7 +56,7 @@ impl Lens {
 
 impl Overlay {
     /// Draws the flight over the picture at `view`, unless the picture is the flight's own.
-    pub fn show(&mut self, ui: &mut Ui, editor: &Editor, view: Rect, out: &mut Out) {
+    pub fn show(&mut self, ui: &mut Ui, editor: &Editor, view: Rect, out: &mut UiRequests) {
         let animation = &editor.scene().animation;
         if animation.keys.is_empty() || editor.looks_through() {
             self.dragged = None;
@@ -118,9 +118,9 @@ impl Overlay {
         let scene = editor.shown();
         let is_tested = places.len() * scene.objects.len() <= MOST_TESTS;
         let sight = if is_tested {
-            Sight::new(scene)
+            SceneQuery::new(scene)
         } else {
-            Sight::default()
+            SceneQuery::default()
         };
         let is_clear = |point: DVec3| {
             let from = lens.framing.project(point).map(|at| lens.framing.ray(at).0);
@@ -161,7 +161,14 @@ impl Overlay {
     }
 
     /// A key is clicked to be selected, and dragged in the plane of the view.
-    fn handle(&mut self, ui: &Ui, editor: &Editor, lens: &Lens, place: usize, out: &mut Out) {
+    fn handle(
+        &mut self,
+        ui: &Ui,
+        editor: &Editor,
+        lens: &Lens,
+        place: usize,
+        out: &mut UiRequests,
+    ) {
         let animation = &editor.scene().animation;
         let position = animation.keys[place].value.position;
         let Some(at) = lens.place(position) else {

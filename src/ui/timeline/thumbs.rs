@@ -9,7 +9,7 @@ use crate::image::Image;
 use crate::scene::Animation;
 use crate::ui::theme::{GRID, THUMB, palette};
 use crate::ui::upload::whole;
-use crate::worker::Sketch;
+use crate::worker::ThumbnailJob;
 
 /// The name of the shot's picture; keys are named by their places.
 const SHOT: u64 = u64::MAX;
@@ -45,7 +45,12 @@ impl Thumbs {
 
     /// What is to be traced now, if anything: the shot whenever it changes, the keys when the hand
     /// rests.
-    pub fn wishes(&mut self, ctx: &Context, editor: &Editor, view: Rect) -> Option<Vec<Sketch>> {
+    pub fn wishes(
+        &mut self,
+        ctx: &Context,
+        editor: &Editor,
+        view: Rect,
+    ) -> Option<Vec<ThumbnailJob>> {
         let scene = editor.scene();
         let keys = &scene.animation.keys;
         if keys.is_empty() {
@@ -69,7 +74,7 @@ impl Thumbs {
             let wanted = Some((editor.revision(), time, size.1));
             if self.asked_shot != wanted {
                 self.asked_shot = wanted;
-                wishes.push(Sketch {
+                wishes.push(ThumbnailJob {
                     name: SHOT,
                     scene: shot(scene, editor.path_of_camera(), time),
                     size,
@@ -85,7 +90,7 @@ impl Thumbs {
             self.keys.resize(keys.len(), None);
             // Of very many keys some, evenly.
             let stride = keys.len().div_ceil(MOST).max(1);
-            let sketch = |(place, key): (usize, &crate::scene::Key<_>)| Sketch {
+            let sketch = |(place, key): (usize, &crate::scene::Key<_>)| ThumbnailJob {
                 name: place as u64,
                 scene: shot(scene, editor.path_of_camera(), key.time),
                 size: pixels(THUMB),

@@ -9,10 +9,10 @@ use crate::editor::{Edit, Editor, Repeat, Time};
 use crate::scene::Animation;
 use crate::ui::commands::Command;
 use crate::ui::theme::palette;
-use crate::ui::{Out, icons};
+use crate::ui::{UiRequests, icons};
 
 /// Playing, keys, and what time it is.
-pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out: &mut Out) {
+pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out: &mut UiRequests) {
     let timeline = editor.timeline();
     let animation = &editor.scene().animation;
     let mut press = |ui: &mut Ui, icon, name: &str, command: Command| {
@@ -97,7 +97,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
     }
 }
 
-fn record_button(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+fn record_button(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let accent = palette(ui.ctx()).accent;
     if let Some((samples, seconds)) = editor.timeline().recorded() {
         let stop = Button::new((icons::text(icons::STOP).color(accent), "Stop"));
@@ -120,7 +120,7 @@ fn record_button(ui: &mut Ui, editor: &Editor, out: &mut Out) {
     }
 }
 
-fn rates(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+fn rates(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     length(ui, animation, out);
     let mut fps = animation.frames_per_second;
@@ -155,7 +155,7 @@ fn rates(ui: &mut Ui, editor: &Editor, out: &mut Out) {
 }
 
 /// How long the flight of the camera is; another length stretches it.
-fn length(ui: &mut Ui, animation: &Animation, out: &mut Out) {
+fn length(ui: &mut Ui, animation: &Animation, out: &mut UiRequests) {
     let [first, .., last] = &animation.keys[..] else {
         return;
     };
@@ -178,7 +178,7 @@ fn length(ui: &mut Ui, animation: &Animation, out: &mut Out) {
 }
 
 /// The recorded flight, and how closely the keys follow it.
-pub fn show_take(ui: &mut Ui, editor: &Editor, out: &mut Out) {
+pub fn show_take(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let Some(take) = &animation.take else { return };
     let before = editor.timeline().tolerance;

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::lanes::Real;
+use crate::simd::Real;
 
 /// How many balls are tested together: as many as the widest processor has lanes.
 pub const GROUP: usize = 16;
@@ -37,7 +37,7 @@ pub struct Balls<R> {
 
 /// The balls around bounded primitives, which are numbered from zero: spheres, then triangles.
 #[derive(Clone, Debug, Default)]
-pub struct Volumes<R> {
+pub struct Bvh<R> {
     /// The primitives' own balls first; then, level by level, balls around [`GROUP`] of the level
     /// before, up to a single group.
     pub levels: Vec<Balls<R>>,
@@ -45,7 +45,7 @@ pub struct Volumes<R> {
     pub members: Vec<u32>,
 }
 
-impl<R: Real> Volumes<R> {
+impl<R: Real> Bvh<R> {
     /// Bundles the balls if `bundled`; else lists them in their order.
     pub fn new(balls: &[Ball], bundled: bool) -> Self {
         let mut members: Vec<u32> = (0..balls.len() as u32).collect();
@@ -63,7 +63,7 @@ impl<R: Real> Volumes<R> {
     }
 
     /// Whether there are bundles.
-    pub fn is_bundled(&self) -> bool {
+    pub fn is_tree(&self) -> bool {
         self.levels.len() > 1
     }
 }
@@ -173,7 +173,7 @@ mod tests {
         #[test]
         fn every_ball_lies_in_its_bundles(places in prop::collection::vec((vector(), 0.0..5.0_f64), 1..700)) {
             let balls: Vec<Ball> = places.iter().map(|&(center, radius)| Ball { center, radius }).collect();
-            let volumes = Volumes::<f64>::new(&balls, true);
+            let volumes = Bvh::<f64>::new(&balls, true);
             let mut members = volumes.members.clone();
             members.sort_unstable();
             prop_assert_eq!(members, (0..balls.len() as u32).collect::<Vec<_>>());

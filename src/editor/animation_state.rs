@@ -16,7 +16,7 @@ const FINEST: f64 = 0.05;
 
 /// A scene, its path and its timeline, and what they come to at the time of the playhead.
 #[derive(Debug)]
-pub(super) struct Moving {
+pub(super) struct AnimationState {
     timeline: Timeline,
     /// The scene that the rest was made from.
     scene: Arc<Scene>,
@@ -29,7 +29,7 @@ pub(super) struct Moving {
     watched: Option<(Arc<Take>, Vec<Vec<Seen>>)>,
 }
 
-impl Moving {
+impl AnimationState {
     pub fn new(scene: &Arc<Scene>) -> Self {
         let mut moving = Self {
             timeline: Timeline::default(),
@@ -275,7 +275,7 @@ impl Editor {
     fn keep(&mut self, take: Take) {
         let count = take.samples.len();
         if count < 2 {
-            return self.inform("Nothing was recorded".to_owned());
+            return self.notify("Nothing was recorded".to_owned());
         }
         let seconds = take.samples.last().map_or(0.0, |last| last.0);
         let few = (FEW.0 + FEW.1 * seconds) as usize;
@@ -300,7 +300,7 @@ impl Editor {
         self.moving.timeline.playhead = 0.0;
         self.moving.timeline.stays_outside = false;
         self.show_time();
-        self.inform(format!(
+        self.notify(format!(
             "{count} samples became {said} keys, never more than {worst:.1} px off at 1024²"
         ));
     }

@@ -1,11 +1,11 @@
 //! The real number of a kernel.
 
-use super::Lane;
+use super::SimdFloat;
 
 /// A real number that kernels compute in: `f32` for speed, `f64` as the reference. By itself it is
 /// one lane.
 pub trait Real:
-    Lane<Real = Self, Mask = bool, Token = ()> + Default + PartialOrd + Send + Sync + 'static
+    SimdFloat<Real = Self, Mask = bool, Token = ()> + Default + PartialOrd + Send + Sync + 'static
 {
     /// Largest relative error of one rounding, `u` in error bounds (2⁻²⁴ for `f32`).
     const UNIT_ROUNDOFF: Self;

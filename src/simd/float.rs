@@ -4,18 +4,18 @@ use std::fmt::Debug;
 use std::marker::PhantomData;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use fearless_simd::{Select as _, Simd, SimdFloat, SimdMask};
+use fearless_simd::{Select as _, Simd, SimdMask};
 
 use super::Real;
 
 /// Most lanes that any processor has.
-pub const MOST_LANES: usize = 16;
+pub const MAX_LANES: usize = 16;
 
 /// A row of real numbers of one type, computed in step.
 ///
 /// Every operation is the correctly rounded one of IEEE 754 in every lane, so a lane's result does
 /// not depend on how many others there are. A comparison with NaN is false.
-pub trait Lane:
+pub trait SimdFloat:
     Copy
     + Debug
     + Add<Output = Self>
@@ -45,7 +45,7 @@ pub trait Lane:
     fn lane(self, index: usize) -> Self::Real;
     /// Runs `work`, which must be `#[inline(always)]`, with the processor's instructions known to
     /// the compiler: what a recursion needs, which cannot be inlined.
-    fn in_step<T>(token: Self::Token, work: impl FnOnce() -> T) -> T;
+    fn vectorize<T>(token: Self::Token, work: impl FnOnce() -> T) -> T;
     /// Square root; NaN below zero.
     fn sqrt(self) -> Self;
     /// Distance from zero.
@@ -87,7 +87,7 @@ pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output
 
 macro_rules! single_lane {
     ($type:ty) => {
-        impl Lane for $type {
+        impl SimdFloat for $type {
             type Real = Self;
             type Mask = bool;
             type Token = ();
@@ -114,7 +114,7 @@ macro_rules! single_lane {
                 self
             }
             #[inline(always)]
-            fn in_step<T>((): (), work: impl FnOnce() -> T) -> T {
+            fn vectorize<T>((): (), work: impl FnOnce() -> T) -> T {
                 work()
             }
             #[inline(always)]
@@ -199,7 +199,7 @@ fn wide_mask<S, M>(mask: M) -> WideMask<S, M> {
 
 macro_rules! wide_operation {
     ($trait:ident, $method:ident) => {
-        impl<S: Simd, V: SimdFloat<S>> $trait for Wide<S, V> {
+        impl<S: Simd, V: fearless_simd::SimdFloat<S>> $trait for Wide<S, V> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
@@ -214,7 +214,7 @@ wide_operation!(Sub, sub);
 wide_operation!(Mul, mul);
 wide_operation!(Div, div);
 
-impl<S: Simd, V: SimdFloat<S>> Neg for Wide<S, V> {
+impl<S: Simd, V: fearless_simd::SimdFloat<S>> Neg for Wide<S, V> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -222,7 +222,7 @@ impl<S: Simd, V: SimdFloat<S>> Neg for Wide<S, V> {
     }
 }
 
-impl<S: Simd, V: SimdFloat<S>> Lane for Wide<S, V>
+impl<S: Simd, V: fearless_simd::SimdFloat<S>> SimdFloat for Wide<S, V>
 where
     V::Element: Real,
 {
@@ -252,7 +252,7 @@ where
         self.vector.as_slice()[index]
     }
     #[inline(always)]
-    fn in_step<T>(token: S, work: impl FnOnce() -> T) -> T {
+    fn vectorize<T>(token: S, work: impl FnOnce() -> T) -> T {
         token.vectorize(work)
     }
     #[inline(always)]

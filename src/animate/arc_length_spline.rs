@@ -13,7 +13,7 @@ const PIECES: usize = 16;
 /// Yuksel, Schaefer and Keyser, "Parameterization and applications of Catmull–Rom curves",
 /// Computer-Aided Design 43, 2011.
 #[derive(Clone, Debug)]
-pub struct Route {
+pub struct ArcLengthSpline {
     segments: Vec<Segment>,
     /// Length up to each of the given points, in world units.
     reached: Vec<f64>,
@@ -31,7 +31,7 @@ struct Segment {
     lengths: [f64; PIECES + 1],
 }
 
-impl Route {
+impl ArcLengthSpline {
     /// A curve through `points`; at least one.
     pub fn new(points: &[DVec3], closing: Closing) -> Self {
         let mut stops: Vec<DVec3> = Vec::new();

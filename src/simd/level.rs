@@ -2,8 +2,8 @@
 
 use fearless_simd::{Simd, dispatch, f32x16, f64x8};
 
-use super::lane::Wide;
-use super::{Lane, Real};
+use super::float::Wide;
+use super::{Real, SimdFloat};
 
 /// A kind of processor.
 #[derive(Clone, Copy, Debug)]
@@ -15,30 +15,30 @@ pub struct Level {
 }
 
 /// Something to be done with lanes of any width.
-pub trait Work<R: Real> {
+pub trait WithSimd<R: Real> {
     /// What it gives.
     type Output;
     /// Does it. Must be `#[inline(always)]`, as must be all that it calls in its inner loops:
     /// what is not inlined does not know the processor's instructions.
-    fn run<L: Lane<Real = R>>(self, token: L::Token) -> Self::Output;
+    fn run<L: SimdFloat<Real = R>>(self, token: L::Token) -> Self::Output;
 }
 
 /// A real number that vectors exist of. All processors compute as many in step as the widest
 /// register that any of them has: what a processor does in several instructions is still handled
 /// as one packet, which is faster by an eighth to a quarter than packets of its own width.
-pub trait Vectored: Real {
+pub trait SimdReal: Real {
     /// How many are computed in step.
-    const IN_STEP: usize;
+    const LANES: usize;
     /// Does the work with vectors of this number.
-    fn in_vectors<S: Simd, W: Work<Self>>(simd: S, work: W) -> W::Output;
+    fn with_vectors<S: Simd, W: WithSimd<Self>>(simd: S, work: W) -> W::Output;
 }
 
 macro_rules! vectored {
     ($type:ty, $vector:ident, $width:literal) => {
-        impl Vectored for $type {
-            const IN_STEP: usize = $width;
+        impl SimdReal for $type {
+            const LANES: usize = $width;
             #[inline(always)]
-            fn in_vectors<S: Simd, W: Work<Self>>(simd: S, work: W) -> W::Output {
+            fn with_vectors<S: Simd, W: WithSimd<Self>>(simd: S, work: W) -> W::Output {
                 work.run::<Wide<S, $vector<S>>>(simd)
             }
         }
@@ -92,16 +92,16 @@ impl Level {
     }
 
     /// Does the work at this level.
-    pub fn run<R: Vectored, W: Work<R>>(self, work: W) -> W::Output {
+    pub fn run<R: SimdReal, W: WithSimd<R>>(self, work: W) -> W::Output {
         match self.vectors {
             None => work.run::<R>(()),
-            Some(level) => dispatch!(level, simd => R::in_vectors(simd, work)),
+            Some(level) => dispatch!(level, simd => R::with_vectors(simd, work)),
         }
     }
 
     /// What `--stats` calls the lanes of this number, for example `f32×16 avx2`.
-    pub fn lanes_of<R: Vectored>(self) -> String {
-        let width = self.vectors.map_or(1, |_| R::IN_STEP);
+    pub fn lanes_of<R: SimdReal>(self) -> String {
+        let width = self.vectors.map_or(1, |_| R::LANES);
         format!("{}×{width} {}", R::NAME, self.name)
     }
 }

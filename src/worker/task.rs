@@ -7,7 +7,7 @@ use std::thread::JoinHandle;
 
 /// Runs `work` on a thread of that name; what it returns arrives in the channel, which is closed
 /// without it if the thread cannot start or panics.
-pub fn run_errand<T: Send + 'static>(
+pub fn run_in_background<T: Send + 'static>(
     name: &str,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Receiver<T> {

@@ -3,7 +3,7 @@
 //! Everything is additions, multiplications, divisions and square roots, so that every lane of
 //! every machine gives the same bits. Errors are stated in levels of 255.
 
-use super::{Lane, Real, Vec3};
+use super::{Real, SimdFloat, Vec3};
 
 /// Largest whole exponent that is raised by repeated squaring; its relative error is below p·u.
 const LARGEST_SQUARED: f64 = 256.0;
@@ -56,7 +56,7 @@ impl Exponent {
     /// max(0, n·h)^p, where h is the unit vector along `half`. A `half` of no direction counts as 0.
     /// Off by at most 0.5 levels for p ≤ 10⁶.
     #[inline(always)]
-    pub fn highlight<L: Lane>(self, token: L::Token, n: Vec3<L>, half: Vec3<L>) -> L {
+    pub fn highlight<L: SimdFloat>(self, token: L::Token, n: Vec3<L>, half: Vec3<L>) -> L {
         let zero = L::splat(token, L::Real::ZERO);
         let (n_dot_half, half_square) = (n.dot(half).max(zero), half.dot(half));
         match self {
@@ -82,12 +82,12 @@ impl Exponent {
 }
 
 #[inline(always)]
-fn real<L: Lane>(token: L::Token, value: f64) -> L {
+fn real<L: SimdFloat>(token: L::Token, value: f64) -> L {
     L::splat(token, L::Real::from_f64(value))
 }
 
 #[inline(always)]
-fn whole_power<L: Lane>(token: L::Token, base: L, mut exponent: u32) -> L {
+fn whole_power<L: SimdFloat>(token: L::Token, base: L, mut exponent: u32) -> L {
     let (mut result, mut square) = (L::splat(token, L::Real::ONE), base);
     while exponent > 0 {
         if exponent & 1 == 1 {
@@ -102,14 +102,14 @@ fn whole_power<L: Lane>(token: L::Token, base: L, mut exponent: u32) -> L {
 /// -log1p(-w) = 2·artanh(w / (2 - w)) by the first terms of the series: relative error below
 /// 10⁻¹¹ for w ≤ 0.15; above, at least 0.15, which is enough for a large power to vanish.
 #[inline(always)]
-fn fall<L: Lane>(token: L::Token, w: L) -> L {
+fn fall<L: SimdFloat>(token: L::Token, w: L) -> L {
     let z = w / (real::<L>(token, 2.0) - w);
     artanh(token, z) * real(token, 2.0)
 }
 
 /// log(x) = 2⁶·log(x^(1/2⁶)) for 10⁻¹² ≤ x ≤ 1, off by at most 2⁷u; finite below.
 #[inline(always)]
-fn logarithm<L: Lane>(token: L::Token, x: L) -> L {
+fn logarithm<L: SimdFloat>(token: L::Token, x: L) -> L {
     let one = L::splat(token, L::Real::ONE);
     let mut root = x;
     for _ in 0..HALVINGS {
@@ -121,7 +121,7 @@ fn logarithm<L: Lane>(token: L::Token, x: L) -> L {
 
 /// z + z³/3 + … + z¹³/13.
 #[inline(always)]
-fn artanh<L: Lane>(token: L::Token, z: L) -> L {
+fn artanh<L: SimdFloat>(token: L::Token, z: L) -> L {
     let square = z * z;
     let mut sum: L = real(token, 1.0 / 13.0);
     let mut divisor = 11.0;
@@ -135,7 +135,7 @@ fn artanh<L: Lane>(token: L::Token, z: L) -> L {
 /// exp(x) = exp(x/2⁶)^(2⁶) for x ≤ 0 by the terms up to y¹¹ of Taylor's series; relative error below 2⁷u for
 /// x ≥ -20, absolute error below 10⁻¹² for any.
 #[inline(always)]
-fn exponential<L: Lane>(token: L::Token, x: L) -> L {
+fn exponential<L: SimdFloat>(token: L::Token, x: L) -> L {
     let y = x.max(real(token, LOWEST)) * real(token, 1.0 / f64::from(1 << HALVINGS));
     let one = L::splat(token, L::Real::ONE);
     let mut sum = one;

@@ -4,7 +4,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use glam::DVec3;
 
-use super::{Lane, Real};
+use super::{Real, SimdFloat};
 
 /// Three real numbers in the order x, y, z (or red, green, blue).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -24,7 +24,7 @@ impl<R> Vec3<R> {
     }
 }
 
-impl<L: Lane> Vec3<L> {
+impl<L: SimdFloat> Vec3<L> {
     /// The same vector in every lane.
     #[inline(always)]
     pub fn broadcast(token: L::Token, v: Vec3<L::Real>) -> Self {
@@ -151,7 +151,7 @@ impl<R> From<[R; 3]> for Vec3<R> {
     }
 }
 
-impl<L: Lane> Add for Vec3<L> {
+impl<L: SimdFloat> Add for Vec3<L> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -159,7 +159,7 @@ impl<L: Lane> Add for Vec3<L> {
     }
 }
 
-impl<L: Lane> Sub for Vec3<L> {
+impl<L: SimdFloat> Sub for Vec3<L> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -167,7 +167,7 @@ impl<L: Lane> Sub for Vec3<L> {
     }
 }
 
-impl<L: Lane> Mul<L> for Vec3<L> {
+impl<L: SimdFloat> Mul<L> for Vec3<L> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, factor: L) -> Self {
@@ -175,7 +175,7 @@ impl<L: Lane> Mul<L> for Vec3<L> {
     }
 }
 
-impl<L: Lane> Neg for Vec3<L> {
+impl<L: SimdFloat> Neg for Vec3<L> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {

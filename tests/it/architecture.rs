@@ -60,7 +60,8 @@ fn faults(rooms: &[&str], path: &str, text: &str) -> Vec<String> {
         .enumerate()
         .filter(|(_, line)| !line.trim_start().starts_with("//"))
     {
-        let mut complain = |what: String| faults.push(format!("src/{path}:{}: {what}", number + 1));
+        let mut report_error =
+            |what: String| faults.push(format!("src/{path}:{}: {what}", number + 1));
         for target in line.split("crate::").skip(1) {
             let room = target
                 .split(|c: char| !c.is_alphanumeric() && c != '_')
@@ -71,13 +72,13 @@ fn faults(rooms: &[&str], path: &str, text: &str) -> Vec<String> {
             };
             let is_between_doors = matches!((room_of(path), room), ("ui", "cli") | ("cli", "ui"));
             if there > here || is_between_doors {
-                complain(format!("{} must not import {room}", room_of(path)));
+                report_error(format!("{} must not import {room}", room_of(path)));
             }
         }
         for (tools, homes) in HOMES {
             let used = tools.iter().find(|tool| line.contains(**tool));
             if let Some(tool) = used.filter(|_| !homes.iter().any(|home| path.starts_with(home))) {
-                complain(format!("`{tool}` belongs in {}", homes.join(", ")));
+                report_error(format!("`{tool}` belongs in {}", homes.join(", ")));
             }
         }
     }

@@ -9,11 +9,11 @@ const MOST: usize = 3;
 
 /// The live pictures of late.
 #[derive(Debug, Default)]
-pub struct Easel {
+pub struct FramePool {
     handed_out: Vec<Arc<Image>>,
 }
 
-impl Easel {
+impl FramePool {
     /// A picture of this size to be painted; what it shows until then means nothing.
     pub fn canvas(&mut self, width: usize, height: usize) -> Image {
         let free = self
@@ -43,17 +43,19 @@ mod tests {
 
     #[test]
     fn a_picture_is_painted_over_when_nobody_looks_at_it() {
-        let mut easel = Easel::default();
-        let first = easel.canvas(30, 20);
+        let mut frame_pool = FramePool::default();
+        let first = frame_pool.canvas(30, 20);
         let memory = first.pixels.as_ptr();
-        let shown = easel.hand_out(first);
-        let second = easel.canvas(30, 20);
+        let shown = frame_pool.hand_out(first);
+        let second = frame_pool.canvas(30, 20);
         assert_ne!(second.pixels.as_ptr(), memory, "the first is looked at");
         drop(shown);
-        let third = easel.canvas(20, 20);
+        let third = frame_pool.canvas(20, 20);
         assert_eq!(third.pixels.as_ptr(), memory);
         assert_eq!(third.pixels.len(), 400);
-        let keep: Vec<_> = (0..9).map(|_| easel.hand_out(Image::new(1, 1))).collect();
-        assert_eq!(easel.handed_out.len(), MOST, "{}", keep.len());
+        let keep: Vec<_> = (0..9)
+            .map(|_| frame_pool.hand_out(Image::new(1, 1)))
+            .collect();
+        assert_eq!(frame_pool.handed_out.len(), MOST, "{}", keep.len());
     }
 }

@@ -5,24 +5,24 @@ use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::budget::Budget;
-use super::easel::Easel;
-use super::errand::panic_text;
+use super::frame_pool::FramePool;
+use super::task::panic_text;
 use super::{
     Event, ExportState, ExportStep, Exporting, Frame, LiveJob, Pace, Running, RunningJob, Shared,
-    Sketch, StillJob, lock,
+    StillJob, ThumbnailJob, lock,
 };
 use crate::export::save_image;
 use crate::image::{Cost, Image, render};
 use crate::lab::Study;
-use crate::plan::{Picture, Sampling};
-use crate::trace::{Grid, Pass, Rays, Threads, Tracer, Watch};
+use crate::plan::{RenderRequest, Sampling};
+use crate::trace::{Grid, Pass, Rays, RenderControl, Threads, Tracer};
 
 /// Time between two reports of a study.
 const NEWS: Duration = Duration::from_millis(250);
 
 enum Job {
     Live(LiveJob),
-    Sketch(Sketch),
+    ThumbnailJob(ThumbnailJob),
     Still(StillJob),
     Export(u64, Box<Exporting>),
     Lab(Box<Study>),
@@ -41,7 +41,7 @@ enum Outcome {
 /// Works until told to quit. A panic in a job becomes an event, and the lane lives on.
 pub(super) fn run(shared: &Shared, threads: &Threads) {
     let mut budget = Budget::new();
-    let mut easel = Easel::default();
+    let mut frame_pool = FramePool::default();
     let mut woken = Instant::now();
     while let Some((mut job, watch)) = next_job(shared) {
         let mut outcome = catch_unwind(AssertUnwindSafe(|| {
@@ -52,12 +52,12 @@ pub(super) fn run(shared: &Shared, threads: &Threads) {
                         shared,
                         job,
                         tracer: Tracer::new(&job.scene, &job.picture),
-                        easel: &mut easel,
+                        frame_pool: &mut frame_pool,
                     };
                     live.run(&watch, &mut budget, start);
                     Outcome::Ended
                 }
-                Job::Sketch(job) => {
+                Job::ThumbnailJob(job) => {
                     sketch(shared, job);
                     Outcome::Ended
                 }
@@ -88,7 +88,7 @@ pub(super) fn run(shared: &Shared, threads: &Threads) {
                 };
                 finish_frame(shared, id, *exporting, step);
             }
-            Job::Live(_) | Job::Sketch(_) | Job::Still(_) => {
+            Job::Live(_) | Job::ThumbnailJob(_) | Job::Still(_) => {
                 finish(shared, matches!(outcome, Ok(Outcome::Stopped)));
             }
         }
@@ -104,7 +104,7 @@ pub(super) fn run(shared: &Shared, threads: &Threads) {
 
 /// Waits for work: the live view, then small pictures, then the still picture to look at, then those
 /// to be written.
-fn next_job(shared: &Shared) -> Option<(Job, Arc<Watch>)> {
+fn next_job(shared: &Shared) -> Option<(Job, Arc<RenderControl>)> {
     let mut mailbox = lock(&shared.mailbox);
     loop {
         if mailbox.quit {
@@ -112,19 +112,19 @@ fn next_job(shared: &Shared) -> Option<(Job, Arc<Watch>)> {
         }
         let live = mailbox.live.take().map(Job::Live);
         let job = live
-            .or_else(|| mailbox.sketches.pop_front().map(Job::Sketch))
+            .or_else(|| mailbox.thumbnails.pop_front().map(Job::ThumbnailJob))
             .or_else(|| mailbox.still.take().map(Job::Still))
             .or_else(|| mailbox.saves.pop_front().map(Job::Still))
             .or_else(|| mailbox.next_export(&lock(&shared.news).exports))
             .or_else(|| mailbox.study.take().map(|study| Job::Lab(Box::new(study))));
         if let Some(job) = job {
-            let watch = Arc::new(Watch::default());
+            let watch = Arc::new(RenderControl::default());
             mailbox.running = Some(Running {
                 job: match &job {
                     Job::Live(live) => RunningJob::Live {
                         revision: live.revision,
                     },
-                    Job::Sketch(_) => RunningJob::Sketch,
+                    Job::ThumbnailJob(_) => RunningJob::ThumbnailJob,
                     Job::Still(still) => RunningJob::Still(still.clone()),
                     Job::Export(id, _) => RunningJob::Export(*id),
                     Job::Lab(_) => RunningJob::Lab,
@@ -135,7 +135,7 @@ fn next_job(shared: &Shared) -> Option<(Job, Arc<Watch>)> {
             return Some((job, watch));
         }
         mailbox = shared
-            .bell
+            .wakeup
             .wait(mailbox)
             .unwrap_or_else(PoisonError::into_inner);
     }
@@ -223,11 +223,11 @@ struct Live<'a> {
     shared: &'a Shared,
     job: &'a LiveJob,
     tracer: Tracer,
-    easel: &'a mut Easel,
+    frame_pool: &'a mut FramePool,
 }
 
 impl Live<'_> {
-    fn run(&mut self, watch: &Watch, budget: &mut Budget, start: Instant) {
+    fn run(&mut self, watch: &RenderControl, budget: &mut Budget, start: Instant) {
         if self.trace_centres(watch, budget, start).is_some()
             && self.job.picture.sampling != Sampling::Centres
         {
@@ -236,7 +236,12 @@ impl Live<'_> {
     }
 
     /// Traces every pixel's centre once; `None` if it was stopped.
-    fn trace_centres(&mut self, watch: &Watch, budget: &mut Budget, start: Instant) -> Option<()> {
+    fn trace_centres(
+        &mut self,
+        watch: &RenderControl,
+        budget: &mut Budget,
+        start: Instant,
+    ) -> Option<()> {
         let mut image = self.canvas();
         let first = match self.job.pace {
             Pace::Within(time) => budget.choose(image.width, image.height, time),
@@ -262,7 +267,7 @@ impl Live<'_> {
             if grid.step == 1 {
                 break;
             }
-            let thin = image.thinned(grid.step);
+            let thin = image.decimated(grid.step);
             self.publish(thin, grid.step, rays, Sampling::Centres, start);
             grid = Grid {
                 step: grid.step / 2,
@@ -273,7 +278,7 @@ impl Live<'_> {
         Some(())
     }
 
-    fn smooth(&mut self, watch: &Watch) {
+    fn smooth(&mut self, watch: &RenderControl) {
         let start = Instant::now();
         let mut image = self.canvas();
         if let Some(rays) = image.trace(&self.tracer, Pass::Whole, watch) {
@@ -282,7 +287,8 @@ impl Live<'_> {
     }
 
     fn canvas(&mut self) -> Image {
-        self.easel.canvas(self.tracer.width(), self.tracer.height())
+        self.frame_pool
+            .canvas(self.tracer.width(), self.tracer.height())
     }
 
     fn publish(
@@ -296,7 +302,7 @@ impl Live<'_> {
         let time = start.elapsed();
         self.shared.publish(Frame {
             revision: self.job.revision,
-            image: self.easel.hand_out(image),
+            image: self.frame_pool.hand_out(image),
             full_size: (self.tracer.width(), self.tracer.height()),
             step,
             sampling,
@@ -311,17 +317,17 @@ impl Live<'_> {
 }
 
 /// Small pictures are stopped by nothing but quitting.
-fn sketch(shared: &Shared, job: &Sketch) {
-    let picture = Picture {
+fn sketch(shared: &Shared, job: &ThumbnailJob) {
+    let picture = RenderRequest {
         sampling: Sampling::Centres,
-        ..Picture::of(&job.scene, job.size.0, job.size.1)
+        ..RenderRequest::of(&job.scene, job.size.0, job.size.1)
     };
     if let Some((image, _)) = render(&job.scene, &picture, &shared.first_pass) {
-        lock(&shared.news).sketches.push((job.name, image));
+        lock(&shared.news).thumbnails.push((job.name, image));
     }
 }
 
-fn still(shared: &Shared, job: &StillJob, watch: &Watch) -> Outcome {
+fn still(shared: &Shared, job: &StillJob, watch: &RenderControl) -> Outcome {
     let Some((image, cost)) = render(&job.scene, &job.picture, watch) else {
         return Outcome::Stopped;
     };

@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use super::{Model, Picture, RayOffset, SphereMethod};
+use super::{Model, RayOffset, RenderRequest, SphereMethod};
 use crate::scene::{Projection, Scene, Shape};
 
 /// A plane, its normal turned to the eye.
-pub struct Wall {
+pub struct PlaneOccluder {
     /// Of length 1.
     normal: DVec3,
     /// Any of its points.
@@ -17,7 +17,7 @@ pub struct Wall {
 /// may have moved it by.
 const ON_PLANE: f64 = 1e-12;
 
-impl Wall {
+impl PlaneOccluder {
     /// Above zero on the eye's side, below it behind the plane, zero on it.
     pub fn side(&self, point: DVec3) -> f64 {
         let height = self.normal.dot(point - self.point);
@@ -33,7 +33,7 @@ impl Wall {
 /// The planes as walls that hide every light behind them from everything that the eye can reach,
 /// and block no other light; `None` where planes have to be tested ray by ray: for parallel rays,
 /// which start on both sides, for an eye on a plane, and for formulas whose failures shall show.
-pub fn settle_planes(scene: &Scene, picture: &Picture) -> Option<Vec<Wall>> {
+pub fn classify_planes(scene: &Scene, picture: &RenderRequest) -> Option<Vec<PlaneOccluder>> {
     let camera = &scene.camera;
     let is_parallel = picture.projection.unwrap_or(camera.projection) == Projection::Orthographic;
     if is_parallel
@@ -45,7 +45,7 @@ pub fn settle_planes(scene: &Scene, picture: &Picture) -> Option<Vec<Wall>> {
     }
     let visible = scene.objects.iter().filter(|object| object.visible);
     let planes = visible.filter_map(|object| match object.shape {
-        Shape::Plane { point, normal } => Some(Wall {
+        Shape::Plane { point, normal } => Some(PlaneOccluder {
             normal: normal.try_normalize()?,
             point,
         }),
@@ -54,7 +54,7 @@ pub fn settle_planes(scene: &Scene, picture: &Picture) -> Option<Vec<Wall>> {
     planes
         .map(|plane| match plane.side(camera.position) {
             0.0 => None,
-            side if side < 0.0 => Some(Wall {
+            side if side < 0.0 => Some(PlaneOccluder {
                 normal: -plane.normal,
                 ..plane
             }),
