@@ -58,7 +58,7 @@ fn published(bencher: Bencher) {
         worker.submit(LiveJob {
             revision: revision.get(),
             scene: Arc::new(scene),
-            picture: RenderRequest {
+            request: RenderRequest {
                 sampling: Sampling::ADAPTIVE,
                 ..RenderRequest::sized(SIDE, SIDE)
             },
@@ -99,18 +99,18 @@ fn wait(worker: &Worker, woken: &Receiver<()>, revision: u64) -> Frame {
 /// up and sent on, everything is laid out, the next picture is asked for.
 #[divan::bench(sample_count = 100, sample_size = 1)]
 fn window_while_dragging(bencher: Bencher) {
-    let desk = RefCell::new(EditorHarness::new());
-    desk.borrow_mut().press();
+    let harness = RefCell::new(EditorHarness::new());
+    harness.borrow_mut().press();
     bencher
-        .with_inputs(|| desk.borrow_mut().drag())
-        .bench_local_values(|()| desk.borrow_mut().frame());
+        .with_inputs(|| harness.borrow_mut().drag())
+        .bench_local_values(|()| harness.borrow_mut().frame());
 }
 
 /// One frame of the window in which nothing has happened.
 #[divan::bench(sample_count = 100, sample_size = 1)]
 fn window_at_rest(bencher: Bencher) {
-    let mut desk = EditorHarness::new();
-    bencher.bench_local(|| desk.frame());
+    let mut harness = EditorHarness::new();
+    bencher.bench_local(|| harness.frame());
 }
 
 struct EditorHarness {
@@ -128,23 +128,23 @@ impl EditorHarness {
         let window = Harness::builder()
             .with_size([1680.0, 1120.0])
             .build_eframe(|cc| App::new(cc, setup).expect("a lane"));
-        let mut desk = Self {
+        let mut harness = Self {
             window,
             x: 800.0,
             revision: 0,
         };
         let start = Instant::now();
-        while !desk.window.state().is_settled() {
+        while !harness.window.state().is_settled() {
             assert!(start.elapsed() < Duration::from_mins(1), "no picture");
-            desk.window.step();
+            harness.window.step();
         }
-        let picture = desk.window.state().shown_picture().expect("a picture");
+        let picture = harness.window.state().shown_picture().expect("a picture");
         let side = SIDE as usize;
         assert!(
             picture.width >= side && picture.height >= side,
             "a small picture"
         );
-        desk
+        harness
     }
 
     fn press(&mut self) {

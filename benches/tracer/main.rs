@@ -42,13 +42,13 @@ fn agree() {
     );
 }
 
-fn trace(bencher: Bencher, scene: &Scene, picture: RenderRequest, threads: usize) {
+fn trace(bencher: Bencher, scene: &Scene, request: RenderRequest, threads: usize) {
     let threads = Threads::new(Some(threads)).expect("threads");
     // Over the last picture, as the window does.
     let mut image = Image::default();
     bencher.bench_local(|| {
-        let watch = RenderControl::default();
-        threads.run(|| render_into(&mut image, scene, &picture, &watch))
+        let control = RenderControl::default();
+        threads.run(|| render_into(&mut image, scene, &request, &control))
     });
 }
 

@@ -18,7 +18,7 @@ mod table;
 pub use arc_length_spline::ArcLengthSpline;
 pub use curve::{Closing, Curve};
 pub use path::CameraPath;
-pub use pose::{Motion, motion_between, pose, shot};
+pub use pose::{CameraChange, motion_between, pose, shot};
 pub use presets::Preset;
 pub use retime::{Retime, paused_seconds};
 pub use simplify::{Seen, Simplified, deviation, simplify, worst_off};

@@ -98,7 +98,7 @@ fn point(value: Value) -> DVec3 {
 
 /// How far a camera moves and turns from one frame to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Motion {
+pub struct CameraChange {
     /// World units.
     pub distance: f64,
     /// Degrees between the viewing directions, or of roll if that is more.
@@ -106,16 +106,16 @@ pub struct Motion {
 }
 
 /// The step from one camera to another.
-pub fn motion_between(from: &Camera, to: &Camera) -> Motion {
+pub fn motion_between(from: &Camera, to: &Camera) -> CameraChange {
     let (Some(a), Some(b)) = (from.basis(), to.basis()) else {
-        return Motion::default();
+        return CameraChange::default();
     };
     // Accurate for small angles and for opposite directions: Kahan, "How futile are mindless
     // assessments of roundoff in floating-point computation?", 2006, §12.
     let angle = |a: DVec3, b: DVec3| 2.0 * (a - b).length().atan2((a + b).length());
     let roll = Orientation::of(to).roll - Orientation::of(from).roll;
     let roll = (roll.to_degrees() + 180.0).rem_euclid(360.0) - 180.0;
-    Motion {
+    CameraChange {
         distance: (to.position - from.position).length(),
         turn: angle(a.z_axis, b.z_axis).to_degrees().max(roll.abs()),
     }

@@ -55,7 +55,7 @@ fn stretched(keys: &[Key<Camera>], seconds: f64) -> Vec<Key<Camera>> {
 fn lengths(keys: &[Key<Camera>]) -> Vec<f64> {
     let path = CameraPath::new(keys);
     let segment = |pair: &[Key<Camera>]| {
-        let mut sum = super::Motion::default();
+        let mut sum = super::CameraChange::default();
         if pair[0].interpolation == Interpolation::Hold {
             return sum;
         }
@@ -70,11 +70,12 @@ fn lengths(keys: &[Key<Camera>]) -> Vec<f64> {
         }
         sum
     };
-    let motions: Vec<super::Motion> = keys.windows(2).map(segment).collect();
+    let motions: Vec<super::CameraChange> = keys.windows(2).map(segment).collect();
     let way: f64 = motions.iter().map(|motion| motion.distance).sum();
     // A camera that only turns has its turns alone.
     let radian = if way > 0.0 { way * TURN_SHARE } else { 1.0 };
-    let length = |motion: &super::Motion| motion.distance.max(motion.turn.to_radians() * radian);
+    let length =
+        |motion: &super::CameraChange| motion.distance.max(motion.turn.to_radians() * radian);
     motions.iter().map(length).collect()
 }
 

@@ -8,7 +8,7 @@ use super::path::unwound;
 use crate::scene::{Camera, Orientation, Sample, Take};
 
 /// Place and angles of a sample.
-type Numbers = [f64; 6];
+type NumberRow = [f64; 6];
 
 /// The cameras of a take after a Gaussian of this width in seconds has gone over places and angles.
 /// What is before a cut is not mixed with what is after it; at the ends of each part the flight is
@@ -23,7 +23,7 @@ pub(super) fn smoothed(take: &Take, cuts: &BTreeSet<usize>, seconds: f64) -> Vec
         let [x, y, z] = sample.1.to_array();
         (sample.0, [x, y, z, angles.yaw, angles.pitch, angles.roll])
     };
-    let all: Vec<(f64, Numbers)> = take.samples.iter().zip(&angles).map(numbers).collect();
+    let all: Vec<(f64, NumberRow)> = take.samples.iter().zip(&angles).map(numbers).collect();
     let mut cameras = Vec::new();
     let mut start = 0;
     let ends = cuts.iter().map(|cut| cut + 1).chain([all.len()]);
@@ -46,12 +46,12 @@ pub(super) fn smoothed(take: &Take, cuts: &BTreeSet<usize>, seconds: f64) -> Vec
 }
 
 /// The mean around sample `n`, near samples weighing more, each for the time that it stands for.
-fn mean(part: &[(f64, Numbers)], n: usize, seconds: f64) -> Numbers {
+fn mean(part: &[(f64, NumberRow)], n: usize, seconds: f64) -> NumberRow {
     let (last, here) = (part.len() - 1, part[n].0);
     let (first_time, last_time) = (part[0].0, part[last].0);
     let mut sum = [0.0; 6];
     let mut weights = 0.0;
-    let mut add = |apart: f64, stands_for: f64, numbers: &Numbers, mirror: Option<&Numbers>| {
+    let mut add = |apart: f64, stands_for: f64, numbers: &NumberRow, mirror: Option<&NumberRow>| {
         let weight = stands_for * (-0.5 * (apart / seconds).powi(2)).exp();
         weights += weight;
         for (place, sum) in sum.iter_mut().enumerate() {

@@ -82,8 +82,8 @@ fn measure(study: &mut Study, threads: &Threads) {
     if let Ok(style) = style {
         bar.set_style(style);
     }
-    let watch = RenderControl::default();
-    while threads.run(|| study.step(&watch)) {
+    let control = RenderControl::default();
+    while threads.run(|| study.step(&control)) {
         bar.set_position((study.progress() * BAR as f64) as u64);
     }
     bar.finish_and_clear();

@@ -167,10 +167,10 @@ fn export(
     let again = "; what is done stays, and the same command goes on from there";
     let failed = |error: crate::export::ExportError| format!("{error}{again}");
     let mut exporting = Exporting::new(sequence).map_err(|error| error.to_string())?;
-    let watch = RenderControl::default();
+    let control = RenderControl::default();
     threads.run(|| {
         loop {
-            match exporting.step(&watch) {
+            match exporting.step(&control) {
                 ExportStep::Going => teller.tell(exporting.done()),
                 ExportStep::Done | ExportStep::Stopped => break,
                 ExportStep::Failed(error) => return Err(failed(error)),

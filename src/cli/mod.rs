@@ -44,11 +44,11 @@ struct Words {
     #[arg(long, requires = "screenshot")]
     exports: bool,
     #[command(subcommand)]
-    command: Option<Command>,
+    command: Option<CliCommand>,
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum CliCommand {
     /// Trace a scene into a picture
     Render(render::RenderArgs),
     /// Write the frames of an animation, going on where it was left
@@ -105,31 +105,31 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> CliAction {
     }
     match Words::try_parse_from(words) {
         Ok(Words {
-            command: Some(Command::Render(words)),
+            command: Some(CliCommand::Render(words)),
             ..
         }) => CliAction::Done(render::run(&words)),
         Ok(Words {
-            command: Some(Command::Export(words)),
+            command: Some(CliCommand::Export(words)),
             ..
         }) => CliAction::Done(export::run(&words)),
         Ok(Words {
-            command: Some(Command::Job(words)),
+            command: Some(CliCommand::Job(words)),
             ..
         }) => CliAction::Done(export::run_job(&words)),
         Ok(Words {
-            command: Some(Command::Check(words)),
+            command: Some(CliCommand::Check(words)),
             ..
         }) => CliAction::Done(check::run(&words)),
         Ok(Words {
-            command: Some(Command::Plan(words)),
+            command: Some(CliCommand::Plan(words)),
             ..
         }) => CliAction::Done(plan::run(&words)),
         Ok(Words {
-            command: Some(Command::Chart(words)),
+            command: Some(CliCommand::Chart(words)),
             ..
         }) => chart::run(&words),
         Ok(Words {
-            command: Some(Command::Stability(words)),
+            command: Some(CliCommand::Stability(words)),
             ..
         }) => stability::run(&words),
         Ok(Words {

@@ -15,7 +15,7 @@ use serde::Serialize;
 use super::{fail, refuse, say};
 use crate::animate::{CameraPath, shot};
 use crate::export::save_image;
-use crate::image::{Cost, Format, Image, render_into};
+use crate::image::{Format, Image, RenderCost, render_into};
 use crate::plan::RenderRequest;
 use crate::scene::{
     Accelerator, Document, HighlightMethod, MAX_SIDE, Method as _, Precision, Projection,
@@ -225,20 +225,20 @@ fn in_proportion(side: u32, numerator: u32, denominator: u32) -> u32 {
 /// Traces `repeat` times, with a bar on a terminal if it takes a while.
 fn trace(
     scene: Scene,
-    picture: RenderRequest,
+    request: RenderRequest,
     threads: Threads,
     repeat: usize,
-) -> Option<(Image, Vec<Cost>)> {
-    let watch = Arc::new(RenderControl::default());
-    let total = u64::from(picture.width) * u64::from(picture.height) * repeat as u64;
+) -> Option<(Image, Vec<RenderCost>)> {
+    let control = Arc::new(RenderControl::default());
+    let total = u64::from(request.width) * u64::from(request.height) * repeat as u64;
     let result = run_in_background("glint-render", {
-        let watch = Arc::clone(&watch);
+        let control = Arc::clone(&control);
         move || {
             let mut costs = Vec::new();
             // They are all the same, and may be large.
             let mut image = Image::default();
             for _ in 0..repeat {
-                let cost = threads.run(|| render_into(&mut image, &scene, &picture, &watch))?;
+                let cost = threads.run(|| render_into(&mut image, &scene, &request, &control))?;
                 costs.push(cost);
             }
             Some((image, costs))
@@ -257,13 +257,13 @@ fn trace(
                     style.iter().cloned().for_each(|style| bar.set_style(style));
                     bar
                 });
-                bar.set_position(watch.pixels.load(Ordering::Relaxed));
+                bar.set_position(control.pixels.load(Ordering::Relaxed));
             }
         }
     }
 }
 
-fn stats(image: &Image, costs: &[Cost], threads: usize) -> Stats {
+fn stats(image: &Image, costs: &[RenderCost], threads: usize) -> Stats {
     let mut millis: Vec<f64> = costs
         .iter()
         .map(|cost| cost.time.as_secs_f64() * 1e3)
@@ -275,7 +275,7 @@ fn stats(image: &Image, costs: &[Cost], threads: usize) -> Stats {
     } else {
         f64::midpoint(millis[middle - 1], millis[middle])
     };
-    let Cost { rays, lanes, .. } = costs[0].clone();
+    let RenderCost { rays, lanes, .. } = costs[0].clone();
     Stats {
         trace_ms: median,
         trace_ms_min: millis[0],

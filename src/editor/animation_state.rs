@@ -31,7 +31,7 @@ pub(super) struct AnimationState {
 
 impl AnimationState {
     pub fn new(scene: &Arc<Scene>) -> Self {
-        let mut moving = Self {
+        let mut animation_state = Self {
             timeline: Timeline::default(),
             scene: Arc::clone(scene),
             path: CameraPath::new(&scene.animation.keys),
@@ -40,8 +40,8 @@ impl AnimationState {
             revision: 1,
             watched: None,
         };
-        moving.measure();
-        moving
+        animation_state.measure();
+        animation_state
     }
 
     /// How far the keys are off the recording. The slider stands there, until it is moved.
@@ -50,7 +50,7 @@ impl AnimationState {
         let take = scene.animation.take.as_ref();
         let take = take.filter(|_| !scene.animation.keys.is_empty());
         self.timeline.worst = take.map(|take| {
-            self.watch(take);
+            self.control(take);
             let seen = self.watched.as_ref().map_or(&[][..], |(_, seen)| seen);
             worst_off(&self.path, take, seen) * MEASURED_AT
         });
@@ -61,7 +61,7 @@ impl AnimationState {
     }
 
     /// Finds out what the samples of a take see, unless that is known.
-    fn watch(&mut self, take: &Arc<Take>) {
+    fn control(&mut self, take: &Arc<Take>) {
         let is_watched = matches!(&self.watched, Some((of, _)) if Arc::ptr_eq(of, take));
         if !is_watched {
             self.watched = Some((Arc::clone(take), watched(take, &self.scene)));
@@ -191,7 +191,7 @@ impl Editor {
     pub(super) fn apply_time(&mut self, time: Time) {
         let scene = Arc::clone(&self.scene);
         let animation = &scene.animation;
-        let timeline = &mut self.moving.timeline;
+        let timeline = &mut self.animation_state.timeline;
         match time {
             Time::Seek(seconds) => {
                 timeline.seek(animation, seconds.clamp(0.0, last_time(animation)));
@@ -228,15 +228,15 @@ impl Editor {
                 timeline.selected = places;
             }
             Time::Record => {
-                let camera = self.moving.shown.camera.clone();
+                let camera = self.animation_state.shown.camera.clone();
                 self.edit(Edit::Camera(camera, "move"));
-                self.moving.timeline.record();
+                self.animation_state.timeline.record();
                 self.leave_still();
             }
             Time::Sample(now) => {
                 let angles = self.orientation();
-                let camera = &self.moving.shown.camera;
-                self.moving.timeline.sample(now, camera, angles);
+                let camera = &self.animation_state.shown.camera;
+                self.animation_state.timeline.sample(now, camera, angles);
             }
             Time::Stop => {
                 if let Some(Recording { take, .. }) = timeline.recording.take() {
@@ -251,7 +251,7 @@ impl Editor {
                         ..animation.clone()
                     };
                     self.edit(Edit::Animation(Box::new(animation), "Simplify"));
-                    self.moving.timeline.tolerance = pixels;
+                    self.animation_state.timeline.tolerance = pixels;
                 }
             }
         }
@@ -267,7 +267,7 @@ impl Editor {
     /// What moves is looked at as it moves: through the shot camera, unless the user has chosen to
     /// stay outside.
     fn show_time(&mut self) {
-        self.moving.timeline.looks_through = !self.moving.timeline.stays_outside;
+        self.animation_state.timeline.looks_through = !self.animation_state.timeline.stays_outside;
         self.leave_still();
     }
 
@@ -280,15 +280,15 @@ impl Editor {
         let seconds = take.samples.last().map_or(0.0, |last| last.0);
         let few = (FEW.0 + FEW.1 * seconds) as usize;
         let take = Arc::new(take);
-        self.moving.timeline.tolerance = 1.0;
+        self.animation_state.timeline.tolerance = 1.0;
         let mut keys = self.simplified(&take);
         // A trembling hand would leave a key in every frame.
-        while keys.len() > few && self.moving.timeline.tolerance < COARSEST {
-            self.moving.timeline.tolerance *= 1.5;
+        while keys.len() > few && self.animation_state.timeline.tolerance < COARSEST {
+            self.animation_state.timeline.tolerance *= 1.5;
             keys = self.simplified(&take);
         }
         let said = keys.len();
-        let worst = self.moving.timeline.worst.unwrap_or(0.0);
+        let worst = self.animation_state.timeline.worst.unwrap_or(0.0);
         let animation = Animation {
             keys,
             take: Some(take),
@@ -297,8 +297,8 @@ impl Editor {
         self.end_gesture();
         self.edit(Edit::Animation(Box::new(animation), "Record flight"));
         self.end_gesture();
-        self.moving.timeline.playhead = 0.0;
-        self.moving.timeline.stays_outside = false;
+        self.animation_state.timeline.playhead = 0.0;
+        self.animation_state.timeline.stays_outside = false;
         self.show_time();
         self.notify(format!(
             "{count} samples became {said} keys, never more than {worst:.1} px off at 1024²"
@@ -306,12 +306,15 @@ impl Editor {
     }
 
     fn simplified(&mut self, take: &Arc<Take>) -> Vec<Key<Camera>> {
-        let moving = &mut self.moving;
-        moving.watch(take);
-        let seen = moving.watched.as_ref().map_or(&[][..], |(_, seen)| seen);
+        let animation_state = &mut self.animation_state;
+        animation_state.control(take);
+        let seen = animation_state
+            .watched
+            .as_ref()
+            .map_or(&[][..], |(_, seen)| seen);
         let Simplified { keys, worst } =
-            simplify(take, seen, moving.timeline.tolerance / MEASURED_AT);
-        moving.timeline.worst = Some(worst * MEASURED_AT);
+            simplify(take, seen, animation_state.timeline.tolerance / MEASURED_AT);
+        animation_state.timeline.worst = Some(worst * MEASURED_AT);
         keys
     }
 }

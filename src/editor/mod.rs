@@ -91,7 +91,7 @@ pub struct Editor {
     is_dirty: bool,
     history: History,
     flight: Flight,
-    moving: AnimationState,
+    animation_state: AnimationState,
     /// What the inspector shows.
     pub selection: Selection,
     /// What the picture area shows.
@@ -114,7 +114,7 @@ impl Editor {
         let scene = Arc::new(document.scene);
         Self {
             saved: Arc::clone(&scene),
-            moving: AnimationState::new(&scene),
+            animation_state: AnimationState::new(&scene),
             scene,
             revision: 1,
             header: document.header,
@@ -137,22 +137,22 @@ impl Editor {
     /// The scene as it is on show: at the time of the playhead, through the camera that is looked
     /// through.
     pub fn shown(&self) -> &Arc<Scene> {
-        self.moving.shown()
+        self.animation_state.shown()
     }
 
     /// Grows with every change of what is on show.
     pub fn shown_revision(&self) -> u64 {
-        self.moving.revision()
+        self.animation_state.revision()
     }
 
     /// The timeline.
     pub fn timeline(&self) -> &Timeline {
-        self.moving.timeline()
+        self.animation_state.timeline()
     }
 
     /// The camera over time.
     pub fn path_of_camera(&self) -> &CameraPath {
-        self.moving.path()
+        self.animation_state.path()
     }
 
     /// The time that is on show, in seconds.
@@ -212,7 +212,9 @@ impl Editor {
         match action {
             Action::Edit(edit) => self.edit(edit),
             Action::Fly(motion) => {
-                let camera = self.flight.step(&self.moving.shown().camera, &motion);
+                let camera = self
+                    .flight
+                    .step(&self.animation_state.shown().camera, &motion);
                 self.edit(Edit::Camera(camera, "move"));
             }
             Action::Select(selection) => self.selection = selection,
@@ -221,7 +223,7 @@ impl Editor {
             Action::Show(mode) => self.mode = mode,
             Action::Time(time) => self.apply_time(time),
         }
-        self.moving.follow(&self.scene);
+        self.animation_state.follow(&self.scene);
         if matches!(self.selection, Selection::Keys) && self.timeline().selected.is_empty() {
             self.selection = Selection::Camera;
         }
@@ -317,10 +319,10 @@ impl Editor {
     fn become_other(&mut self, other: Self) {
         let revision = self.revision + 1;
         let messages = std::mem::take(&mut self.messages);
-        let moving = self.moving.start_again(&other.scene);
+        let animation_state = self.animation_state.start_again(&other.scene);
         *self = Self {
             revision,
-            moving,
+            animation_state,
             messages,
             ..other
         };
@@ -334,9 +336,9 @@ impl Editor {
             Ok(selection) => selection.unwrap_or(self.selection),
             Err(reason) => return self.report_error(reason),
         };
-        self.moving.key_tracked(&self.scene, &mut next);
+        self.animation_state.key_tracked(&self.scene, &mut next);
         if is_camera {
-            self.moving.look_at_view();
+            self.animation_state.look_at_view();
         }
         if next == *self.scene {
             return;
@@ -361,7 +363,7 @@ impl Editor {
         if let Some(there) = step(&mut self.history, here) {
             self.selection = there.selection;
             // Keys are known by their places, which may be others' now.
-            self.moving.deselect_keys();
+            self.animation_state.deselect_keys();
             self.set_scene(there.scene);
         }
     }
@@ -374,7 +376,7 @@ impl Editor {
         if self.mode == Mode::HighRes {
             self.mode = Mode::Live;
         }
-        self.moving.follow(&self.scene);
+        self.animation_state.follow(&self.scene);
     }
 }
 

@@ -70,7 +70,7 @@ impl Sequence {
 
     /// How edges are smoothed, by its word.
     pub fn antialias(&self) -> String {
-        self.scene.render.antialias.word()
+        self.scene.render.antialias.id()
     }
 
     /// What a frame shows.

@@ -25,7 +25,7 @@ pub struct Image {
 
 /// What a picture cost.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Cost {
+pub struct RenderCost {
     /// Wall time, planning included.
     pub time: Duration,
     /// Rays traced.
@@ -52,9 +52,9 @@ impl Image {
         self.pixels.resize(width * height, [0; 4]);
     }
 
-    /// Traces the pixels of `pass`; `None` if `watch` said stop.
-    pub fn trace(&mut self, tracer: &Tracer, pass: Pass, watch: &RenderControl) -> Option<Rays> {
-        tracer.pass(&mut self.pixels, pass, watch)
+    /// Traces the pixels of `pass`; `None` if `control` said stop.
+    pub fn trace(&mut self, tracer: &Tracer, pass: Pass, control: &RenderControl) -> Option<Rays> {
+        tracer.pass(&mut self.pixels, pass, control)
     }
 
     /// The picture that a pass with this step has filled: every `step`-th pixel of every
@@ -74,14 +74,14 @@ impl Image {
 }
 
 /// Traces a whole picture on the current rayon pool: the one way from a scene to pixels.
-/// `None` if `watch` said stop.
+/// `None` if `control` said stop.
 pub fn render(
     scene: &Scene,
-    picture: &RenderRequest,
-    watch: &RenderControl,
-) -> Option<(Image, Cost)> {
-    let mut image = Image::new(picture.width as usize, picture.height as usize);
-    let cost = render_into(&mut image, scene, picture, watch)?;
+    request: &RenderRequest,
+    control: &RenderControl,
+) -> Option<(Image, RenderCost)> {
+    let mut image = Image::new(request.width as usize, request.height as usize);
+    let cost = render_into(&mut image, scene, request, control)?;
     Some((image, cost))
 }
 
@@ -89,14 +89,14 @@ pub fn render(
 pub fn render_into(
     image: &mut Image,
     scene: &Scene,
-    picture: &RenderRequest,
-    watch: &RenderControl,
-) -> Option<Cost> {
+    request: &RenderRequest,
+    control: &RenderControl,
+) -> Option<RenderCost> {
     let start = Instant::now();
-    let tracer = Tracer::new(scene, picture);
+    let tracer = Tracer::new(scene, request);
     image.resize(tracer.width(), tracer.height());
-    let rays = image.trace(&tracer, Pass::Whole, watch)?;
-    Some(Cost {
+    let rays = image.trace(&tracer, Pass::Whole, control)?;
+    Some(RenderCost {
         time: start.elapsed(),
         rays,
         lanes: tracer.lanes(),

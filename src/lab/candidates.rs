@@ -101,7 +101,7 @@ pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
         .chain(GRIDS.map(Sampling::Grid))
         .chain(ADAPTIVE.map(|(contrast, depth)| Sampling::Adaptive { contrast, depth }));
     for sampling in ladder {
-        change(sampling.word(), &|render| render.antialias = sampling);
+        change(sampling.id(), &|render| render.antialias = sampling);
     }
     change("none, f64".to_owned(), &|render| {
         render.antialias = Sampling::Centres;
@@ -127,9 +127,9 @@ fn neighbours<T: Method>(
     change: &mut impl FnMut(String, &dyn Fn(&mut Render)),
     set: impl Fn(&mut Render, T),
 ) {
-    for way in &T::ALL[1..] {
-        change(format!("{prefix}{}", way.word), &|render| {
-            set(render, way.value);
+    for method in &T::ALL[1..] {
+        change(format!("{prefix}{}", method.id), &|render| {
+            set(render, method.value);
         });
     }
 }
@@ -157,13 +157,13 @@ impl Candidate {
     pub fn words(&self) -> String {
         let render = &self.render;
         let mut words = vec![
-            render.antialias.word(),
-            render.precision.word(),
-            render.sphere.word(),
-            render.triangle.word(),
-            render.offset.word(),
-            format!("specular {}", render.specular.word()),
-            format!("accelerator {}", render.accelerator.word()),
+            render.antialias.id(),
+            render.precision.id(),
+            render.sphere.id(),
+            render.triangle.id(),
+            render.offset.id(),
+            format!("specular {}", render.specular.id()),
+            format!("accelerator {}", render.accelerator.id()),
             bounces(render.reflection_limit),
         ];
         if self.model == Model::Everything {
@@ -185,7 +185,7 @@ mod tests {
     fn every_way_of_every_list_is_compared_once() {
         let scene = Scene::demo();
         let all = candidates(&scene, 64, 64);
-        let ways = Precision::ALL.len()
+        let methods = Precision::ALL.len()
             + SphereMethod::ALL.len()
             + TriangleMethod::ALL.len()
             + RayOffset::ALL.len()
@@ -194,7 +194,7 @@ mod tests {
             - 6;
         assert_eq!(
             all.len(),
-            2 + ways + 2 + 1 + GRIDS.len() + ADAPTIVE.len() + 1 + 2
+            2 + methods + 2 + 1 + GRIDS.len() + ADAPTIVE.len() + 1 + 2
         );
         let mut names: Vec<&str> = all.iter().map(|c| c.name.as_str()).collect();
         names.sort_unstable();

@@ -12,9 +12,9 @@ pub const EIGHT_BIT_FLOOR: f64 = 1.0 / (255.0 * 3.464_101_615_137_754_4);
 const VISIBLE: f32 = 4.0 / 255.0;
 
 /// Linear red, green and blue, 0–1, before they become 8 bits.
-pub type Light = [f32; 3];
+pub type LinearRgb = [f32; 3];
 
-impl Pixel for Light {
+impl Pixel for LinearRgb {
     fn of<R: Real>(red: R, green: R, blue: R) -> Self {
         [red, green, blue].map(|channel| channel.to_f64() as f32)
     }
@@ -39,7 +39,7 @@ impl ErrorMetrics {
 }
 
 /// How far `picture` is off `truth`, which is as large.
-pub fn difference(picture: &[Light], truth: &[Light]) -> ErrorMetrics {
+pub fn difference(picture: &[LinearRgb], truth: &[LinearRgb]) -> ErrorMetrics {
     let (mut squares, mut max, mut visible) = (0.0, 0.0_f32, 0_usize);
     for (a, b) in picture.iter().zip(truth) {
         let mut worst = 0.0_f32;
@@ -59,15 +59,19 @@ pub fn difference(picture: &[Light], truth: &[Light]) -> ErrorMetrics {
     }
 }
 
-/// Traces a picture as linear light on the current rayon pool; `None` if `watch` said stop.
-pub fn trace_light(tracer: &Tracer, watch: &RenderControl) -> Option<(Vec<Light>, Rays)> {
+/// Traces a picture as linear light on the current rayon pool; `None` if `control` said stop.
+pub fn trace_light(tracer: &Tracer, control: &RenderControl) -> Option<(Vec<LinearRgb>, Rays)> {
     let mut pixels = vec![[0.0; 3]; tracer.width() * tracer.height()];
-    let rays = tracer.pass(&mut pixels, Pass::Whole, watch)?;
+    let rays = tracer.pass(&mut pixels, Pass::Whole, control)?;
     Some((pixels, rays))
 }
 
 /// A picture in another size: between the centres of its pixels, colours change evenly.
-pub fn scaled(from: &[Light], (width, height): (usize, usize), to: (usize, usize)) -> Vec<Light> {
+pub fn scaled(
+    from: &[LinearRgb],
+    (width, height): (usize, usize),
+    to: (usize, usize),
+) -> Vec<LinearRgb> {
     if (width, height) == to {
         return from.to_vec();
     }
@@ -77,7 +81,7 @@ pub fn scaled(from: &[Light], (width, height): (usize, usize), to: (usize, usize
         let first = at.floor() as usize;
         (first, (first + 1).min(of - 1), at.fract())
     };
-    let mix = |a: Light, b: Light, share: f32| {
+    let mix = |a: LinearRgb, b: LinearRgb, share: f32| {
         let mut mixed = a;
         for (mixed, b) in mixed.iter_mut().zip(b) {
             *mixed += (b - *mixed) * share;
@@ -99,7 +103,7 @@ pub fn scaled(from: &[Light], (width, height): (usize, usize), to: (usize, usize
 }
 
 /// Linear light as an 8-bit picture.
-pub fn eight_bits(light: &[Light], width: usize, height: usize) -> Image {
+pub fn eight_bits(light: &[LinearRgb], width: usize, height: usize) -> Image {
     Image {
         width,
         height,
@@ -128,11 +132,11 @@ mod tests {
 
     #[test]
     fn rounding_to_eight_bits_costs_the_floor() {
-        let light: Vec<Light> = (0..100_000)
+        let light: Vec<LinearRgb> = (0..100_000)
             .map(|n| [0.0, 1.0, 2.0].map(|c| ((n as f32) * 0.618_034 + c * 0.37).fract()))
             .collect();
         let image = eight_bits(&light, 1000, 100);
-        let back: Vec<Light> = image
+        let back: Vec<LinearRgb> = image
             .pixels
             .iter()
             .map(|&[r, g, b, _]| [r, g, b].map(|level| f32::from(level) / 255.0))
@@ -143,7 +147,7 @@ mod tests {
 
     #[test]
     fn a_slope_stays_one_when_it_is_scaled() {
-        let from: Vec<Light> = (0..8 * 4).map(|n| [(n % 8) as f32, 1.0, 0.0]).collect();
+        let from: Vec<LinearRgb> = (0..8 * 4).map(|n| [(n % 8) as f32, 1.0, 0.0]).collect();
         let to = scaled(&from, (8, 4), (16, 8));
         assert_eq!(to.len(), 128);
         for (n, pixel) in to.iter().enumerate() {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::candidates::{Candidate, candidates};
-use super::measure::{ErrorMetrics, Light, difference, eight_bits, scaled, trace_light};
+use super::measure::{ErrorMetrics, LinearRgb, difference, eight_bits, scaled, trace_light};
 use crate::image::{Image, render_into};
 use crate::plan::RenderRequest;
 use crate::scene::{Precision, Sampling, Scene};
@@ -68,9 +68,9 @@ pub struct Study {
     scene: Arc<Scene>,
     size: (u32, u32),
     /// The reference and the second one, as many rows as are traced.
-    truths: [Arc<Vec<Light>>; 2],
+    truths: [Arc<Vec<LinearRgb>>; 2],
     /// There once the reference is.
-    pub yardstick: Option<Reference>,
+    pub reference: Option<Reference>,
     /// One for each candidate.
     pub dots: Vec<Measurement>,
     spent: Duration,
@@ -103,7 +103,7 @@ impl Study {
             scene,
             size: (width, height),
             truths: Default::default(),
-            yardstick: None,
+            reference: None,
             spent: Duration::ZERO,
             timed: 0,
         }
@@ -121,17 +121,17 @@ impl Study {
 
     /// Does the next piece of work on the current rayon pool: rows of a reference, a picture, or a timed
     /// run.
-    /// `false` when all is done. A piece that `watch` has stopped is done again the next time.
-    pub fn step(&mut self, watch: &RenderControl) -> bool {
+    /// `false` when all is done. A piece that `control` has stopped is done again the next time.
+    pub fn step(&mut self, control: &RenderControl) -> bool {
         let start = Instant::now();
-        let is_more = if self.yardstick.is_none() {
-            self.find_truth(watch);
+        let is_more = if self.reference.is_none() {
+            self.find_truth(control);
             true
         } else if let Some(place) = self.dots.iter().position(|dot| dot.failing.is_none()) {
-            self.look_at(place, watch);
+            self.look_at(place, control);
             true
         } else {
-            self.time_next(watch)
+            self.time_next(control)
         };
         self.spent += start.elapsed();
         is_more
@@ -157,7 +157,7 @@ impl Study {
     }
 
     /// A few rows of a reference, or what the two differ by when both are there.
-    fn find_truth(&mut self, watch: &RenderControl) {
+    fn find_truth(&mut self, control: &RenderControl) {
         let (width, height) = (self.size.0 as usize, self.size.1 as usize);
         let unfinished = self
             .truths
@@ -165,7 +165,7 @@ impl Study {
             .position(|truth| truth.len() < width * height);
         let Some(place) = unfinished else {
             let rmse = difference(&self.truths[1], &self.truths[0]).rmse / 2.0_f64.sqrt();
-            self.yardstick = Some(Reference {
+            self.reference = Some(Reference {
                 rmse,
                 picture: Arc::new(eight_bits(&self.truths[0], width, height)),
             });
@@ -180,16 +180,16 @@ impl Study {
         let rows = height.div_ceil(TRUTH_PIECES).min(height - first);
         let mut light = vec![[0.0; 3]; rows * width];
         let tracer = Tracer::new(&self.scene, &picture);
-        if tracer.rows(&mut light, first, watch).is_some() {
+        if tracer.rows(&mut light, first, control).is_some() {
             Arc::make_mut(&mut self.truths[place]).extend(light);
         }
     }
 
-    fn look_at(&mut self, place: usize, watch: &RenderControl) {
+    fn look_at(&mut self, place: usize, control: &RenderControl) {
         let candidate = &self.dots[place].candidate;
         let picture = candidate.picture(&self.scene);
         let tracer = Tracer::new(&candidate.scene(&self.scene), &picture);
-        let Some((light, rays)) = trace_light(&tracer, watch) else {
+        let Some((light, rays)) = trace_light(&tracer, control) else {
             return;
         };
         let size = (self.size.0 as usize, self.size.1 as usize);
@@ -203,7 +203,7 @@ impl Study {
 
     /// One run of the candidate that has had the fewest, in turn, so that what disturbs the machine
     /// for a while disturbs all of them.
-    fn time_next(&mut self, watch: &RenderControl) -> bool {
+    fn time_next(&mut self, control: &RenderControl) -> bool {
         let waiting = |dot: &&mut Measurement| dot.times.len() < dot.rounds();
         let Some(dot) = self
             .dots
@@ -217,7 +217,7 @@ impl Study {
         let runs = if self.timed == 0 { 2 } else { 1 };
         for _ in 0..runs {
             let start = Instant::now();
-            if draw(&dot.candidate, &self.scene, watch).is_none() {
+            if draw(&dot.candidate, &self.scene, control).is_none() {
                 return true;
             }
             self.timed += 1;
@@ -230,15 +230,15 @@ impl Study {
 }
 
 /// The finished picture, as the user would get it.
-fn draw(candidate: &Candidate, scene: &Scene, watch: &RenderControl) -> Option<Image> {
+fn draw(candidate: &Candidate, scene: &Scene, control: &RenderControl) -> Option<Image> {
     let (scene, picture) = (candidate.scene(scene), candidate.picture(scene));
     let mut image = Image::default();
     if candidate.upscale == 1 {
-        render_into(&mut image, &scene, &picture, watch)?;
+        render_into(&mut image, &scene, &picture, control)?;
         return Some(image);
     }
     let tracer = Tracer::new(&scene, &picture);
-    let (light, _) = trace_light(&tracer, watch)?;
+    let (light, _) = trace_light(&tracer, control)?;
     let size = (scene.render.width as usize, scene.render.height as usize);
     let light = scaled(&light, (tracer.width(), tracer.height()), size);
     Some(eight_bits(&light, size.0, size.1))
@@ -277,15 +277,15 @@ mod tests {
     fn a_study_measures_everything_and_its_truth_is_no_method() {
         let scene = Arc::new(Scene::demo());
         let mut study = Study::new(Arc::clone(&scene), 24, 18);
-        let watch = RenderControl::default();
+        let control = RenderControl::default();
         let mut last = 0.0;
-        while study.step(&watch) {
+        while study.step(&control) {
             let done = study.progress();
             assert!(done >= last && done <= 1.0);
             last = done;
         }
         assert_eq!(study.progress(), 1.0);
-        let truth = study.yardstick.as_ref().expect("a reference");
+        let truth = study.reference.as_ref().expect("a reference");
         assert!(truth.rmse > 0.0 && truth.rmse < 3e-4, "{:e}", truth.rmse);
         for dot in &study.dots {
             let failing = dot.failing.expect("measured");

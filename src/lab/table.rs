@@ -51,7 +51,7 @@ pub fn table(study: &Study) -> String {
         );
     }
     let (width, height) = study.size();
-    if let Some(truth) = &study.yardstick {
+    if let Some(truth) = &study.reference {
         let _ = writeln!(
             text,
             "{width}×{height}; reference: f64, 64×64 samples per pixel, itself off by {:.1e}; 8 bits cannot show less than {:.1e}",
@@ -67,7 +67,7 @@ pub fn table(study: &Study) -> String {
 pub fn csv(study: &Study, machine: &str, threads: usize) -> String {
     let front = front(&study.costs());
     let reference = study
-        .yardstick
+        .reference
         .as_ref()
         .map_or(f64::NAN, |truth| truth.rmse);
     let (width, height) = study.size();

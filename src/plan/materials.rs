@@ -31,12 +31,12 @@ pub struct Surface<R> {
 }
 
 /// One material per pack, then one per pack as a marker wears it.
-pub fn pack_materials<R: Real>(scene: &Scene, picture: &RenderRequest) -> Vec<Material<R>> {
+pub fn pack_materials<R: Real>(scene: &Scene, request: &RenderRequest) -> Vec<Material<R>> {
     let lights = scene.lights.iter().filter(|light| light.visible);
     let total_intensity: f64 = lights.map(|light| light.intensity).sum();
     let lit = scene.color_packs.values().map(|pack| Material {
         base: linear(pack.ambient * scene.ambient_intensity),
-        surface: pack_surface(pack, total_intensity, picture),
+        surface: pack_surface(pack, total_intensity, request),
     });
     let markers = scene.color_packs.values().map(|pack| Material {
         base: linear(pack.ambient),
@@ -48,15 +48,15 @@ pub fn pack_materials<R: Real>(scene: &Scene, picture: &RenderRequest) -> Vec<Ma
 fn pack_surface<R: Real>(
     pack: &ColorPack,
     total_intensity: f64,
-    picture: &RenderRequest,
+    request: &RenderRequest,
 ) -> Option<Surface<R>> {
-    let all = picture.model == Model::Everything;
+    let all = request.model == Model::Everything;
     let shines = pack.specular.abs().max_element() > 0.0;
     let mirrors = pack.reflective && (all || shines && total_intensity > 0.0);
     (all || shines || pack.diffuse.abs().max_element() > 0.0).then(|| Surface {
         diffuse: linear(pack.diffuse),
         specular: linear(pack.specular),
-        exponent: match picture.methods.highlight {
+        exponent: match request.methods.highlight {
             HighlightMethod::Auto => Exponent::new(pack.phong_exponent),
             HighlightMethod::Power => Exponent::power(pack.phong_exponent),
             HighlightMethod::Log1p => Exponent::Large(pack.phong_exponent),

@@ -15,9 +15,9 @@ mod view;
 pub use bvh::{Ball, Balls, Bvh, GROUP};
 pub use materials::{Material, Surface};
 pub use needs::{Need, needs};
-pub use pack::{Light, Plan, Plane, RayOrigin, Sphere, Triangle};
+pub use pack::{Plan, Plane, PointLight, RayOrigin, Sphere, Triangle};
 pub use precision::needs_double;
-pub use screen::{Extent, Screen};
+pub use screen::{Extent, ScreenExtents};
 pub use view::View;
 
 pub use crate::scene::{

@@ -20,11 +20,11 @@ pub struct Need {
     pub saves: String,
 }
 
-/// The decisions of the plan for `picture` of `scene`, which must pass [`crate::scene::check`].
-pub fn needs(scene: &Scene, picture: &RenderRequest) -> Vec<Need> {
-    let plan = Plan::<f64>::new(scene, picture);
+/// The decisions of the plan for `request` of `scene`, which must pass [`crate::scene::check`].
+pub fn needs(scene: &Scene, request: &RenderRequest) -> Vec<Need> {
+    let plan = Plan::<f64>::new(scene, request);
     vec![
-        precision(scene, picture),
+        precision(scene, request),
         reflections(scene, &plan),
         shadows(scene, &plan),
         planes(&plan),
@@ -33,7 +33,7 @@ pub fn needs(scene: &Scene, picture: &RenderRequest) -> Vec<Need> {
         faces(&plan),
         accelerator(&plan),
         highlights(&plan),
-        edges(picture),
+        edges(request),
     ]
 }
 
@@ -50,10 +50,10 @@ fn count(number: usize, one: &str) -> String {
     format!("{number} {one}{}", if number == 1 { "" } else { "s" })
 }
 
-fn precision(scene: &Scene, picture: &RenderRequest) -> Need {
+fn precision(scene: &Scene, request: &RenderRequest) -> Need {
     let rule = "precision";
     let double = "double precision";
-    match picture.precision {
+    match request.precision {
         Precision::Single => need(rule, "single precision", "it was asked for", "nothing more"),
         Precision::Double => need(rule, double, "it was asked for", "nothing"),
         Precision::Auto if needs_double(scene) => need(
@@ -288,9 +288,9 @@ fn highlights(plan: &Plan<f64>) -> Need {
     }
 }
 
-fn edges(picture: &RenderRequest) -> Need {
+fn edges(request: &RenderRequest) -> Need {
     let rule = "edges";
-    match picture.sampling {
+    match request.sampling {
         Sampling::Centres => need(
             rule,
             "one ray per pixel",

@@ -9,7 +9,7 @@ use super::materials::{Material, linear, pack_materials};
 use super::plane_occluders::{PlaneOccluder, classify_planes};
 use super::solids::{Corner, Solids, corner};
 use super::{
-    Accelerator, Ball, Bvh, Methods, Model, RayOffset, RenderRequest, Screen, SphereMethod,
+    Accelerator, Ball, Bvh, Methods, Model, RayOffset, RenderRequest, ScreenExtents, SphereMethod,
     TriangleMethod, View,
 };
 use crate::scene::{LightObj, Projection, Scene, Shape};
@@ -30,7 +30,7 @@ pub struct Plan<R> {
     /// Triangles.
     pub triangles: Vec<Triangle<R>>,
     /// Lights that shine.
-    pub lights: Vec<Light<R>>,
+    pub lights: Vec<PointLight<R>>,
     /// What the primitives' `material` numbers mean.
     pub materials: Vec<Material<R>>,
     /// Colour of a ray that hits nothing, 0–1.
@@ -48,7 +48,7 @@ pub struct Plan<R> {
     pub shadows_behind: bool,
     /// Where each sphere and triangle is in the picture; `None` where formulas are in use whose
     /// failures must not be hidden.
-    pub screen: Option<Screen>,
+    pub screen: Option<ScreenExtents>,
     /// Balls around the spheres, then the triangles.
     pub volumes: Bvh<R>,
     /// For each triangle, whether no camera ray needs it; empty where they all may.
@@ -106,7 +106,7 @@ pub struct Triangle<R> {
 
 /// A point light.
 #[derive(Clone, Debug)]
-pub struct Light<R> {
+pub struct PointLight<R> {
     /// Where it shines from.
     pub position: Vec3<R>,
     /// > 0.
@@ -116,24 +116,24 @@ pub struct Light<R> {
 }
 
 impl<R: Real> Plan<R> {
-    /// Packs what `picture` of `scene` can show. The scene must pass [`crate::scene::check`].
-    pub fn new(scene: &Scene, picture: &RenderRequest) -> Self {
+    /// Packs what `request` of `scene` can show. The scene must pass [`crate::scene::check`].
+    pub fn new(scene: &Scene, request: &RenderRequest) -> Self {
         let centre = scene
             .bounds()
             .map_or(scene.camera.position, |(low, high)| low * 0.5 + high * 0.5);
-        let (settled, model) = (classify_planes(scene, picture), picture.model);
+        let (settled, model) = (classify_planes(scene, request), request.model);
         let mut plan = Self {
-            view: View::new(&scene.camera, picture, centre),
+            view: View::new(&scene.camera, request, centre),
             spheres: Vec::new(),
             casting_spheres: 0,
             planes: Vec::new(),
             triangles: Vec::new(),
             lights: pack_lights(scene, centre, settled.as_deref().unwrap_or_default(), model),
-            materials: pack_materials(scene, picture),
+            materials: pack_materials(scene, request),
             background: linear(scene.background),
             reflection_limit: scene.render.reflection_limit,
-            methods: picture.methods,
-            departure: departure(scene, picture.methods.offset),
+            methods: request.methods,
+            departure: departure(scene, request.methods.offset),
             planes_cast: settled.is_none(),
             shadows_behind: model == Model::Everything,
             screen: None,
@@ -146,13 +146,13 @@ impl<R: Real> Plan<R> {
             plan.pack_markers(scene, centre);
         }
         // The classic formula hits spheres where they are not: that must show.
-        if picture.methods.sphere == SphereMethod::Stable && model == Model::Needed {
-            plan.screen = Some(Screen::new(scene, picture));
-            plan.volumes = plan.bound(picture.accelerator);
+        if request.methods.sphere == SphereMethod::Stable && model == Model::Needed {
+            plan.screen = Some(ScreenExtents::new(scene, request));
+            plan.volumes = plan.bound(request.accelerator);
             // What leaks through a face must not find that those behind it were left out.
-            let is_tight = picture.methods.triangle == TriangleMethod::Watertight;
-            if is_tight && picture.methods.offset == RayOffset::Robust {
-                plan.drop_far_faces(scene, picture, centre);
+            let is_tight = request.methods.triangle == TriangleMethod::Watertight;
+            if is_tight && request.methods.offset == RayOffset::Robust {
+                plan.drop_far_faces(scene, request, centre);
             }
         }
         plan
@@ -195,10 +195,10 @@ impl<R: Real> Plan<R> {
     }
 
     /// Finds the faces of solids that camera rays, and shadow rays to each light, can do without.
-    fn drop_far_faces(&mut self, scene: &Scene, picture: &RenderRequest, centre: DVec3) {
+    fn drop_far_faces(&mut self, scene: &Scene, request: &RenderRequest, centre: DVec3) {
         let triangles = self.triangles.iter();
         let solids = Solids::among(triangles.map(|t| t.corners.map(Vec3::to_dvec3)).collect());
-        let projection = picture.projection.unwrap_or(scene.camera.projection);
+        let projection = request.projection.unwrap_or(scene.camera.projection);
         if projection == Projection::Perspective {
             self.camera_culled_faces = solids.turned_away(scene.camera.position - centre);
         }
@@ -262,7 +262,7 @@ fn pack_lights<R: Real>(
     centre: DVec3,
     walls: &[PlaneOccluder],
     model: Model,
-) -> Vec<Light<R>> {
+) -> Vec<PointLight<R>> {
     let all = model == Model::Everything;
     let shining = scene
         .lights
@@ -270,7 +270,7 @@ fn pack_lights<R: Real>(
         .filter(|light| light.visible && (all || light.intensity > 0.0));
     shining
         .filter(|light| walls.iter().all(|wall| wall.side(light.position) >= 0.0))
-        .map(|light| Light {
+        .map(|light| PointLight {
             position: Vec3::from_dvec3(light.position - centre),
             intensity: R::from_f64(light.intensity),
             shadow_culled_faces: Vec::new(),

@@ -33,13 +33,13 @@ impl PlaneOccluder {
 /// The planes as walls that hide every light behind them from everything that the eye can reach,
 /// and block no other light; `None` where planes have to be tested ray by ray: for parallel rays,
 /// which start on both sides, for an eye on a plane, and for formulas whose failures shall show.
-pub fn classify_planes(scene: &Scene, picture: &RenderRequest) -> Option<Vec<PlaneOccluder>> {
+pub fn classify_planes(scene: &Scene, request: &RenderRequest) -> Option<Vec<PlaneOccluder>> {
     let camera = &scene.camera;
-    let is_parallel = picture.projection.unwrap_or(camera.projection) == Projection::Orthographic;
+    let is_parallel = request.projection.unwrap_or(camera.projection) == Projection::Orthographic;
     if is_parallel
-        || picture.methods.offset != RayOffset::Robust
-        || picture.methods.sphere != SphereMethod::Stable
-        || picture.model == Model::Everything
+        || request.methods.offset != RayOffset::Robust
+        || request.methods.sphere != SphereMethod::Stable
+        || request.model == Model::Everything
     {
         return None;
     }

@@ -16,7 +16,7 @@ pub struct Extent {
 
 /// The rectangles of a plan's spheres and triangles, by their places in its lists.
 #[derive(Clone, Debug)]
-pub struct Screen {
+pub struct ScreenExtents {
     /// Columns and rows of each sphere.
     pub spheres: Vec<(Extent, Extent)>,
     /// Columns and rows of each triangle.
@@ -52,14 +52,14 @@ struct Projector {
     margin: f64,
 }
 
-impl Screen {
+impl ScreenExtents {
     /// The rectangles of what `Plan::new` packs, in the same order.
-    pub fn new(scene: &Scene, picture: &RenderRequest) -> Self {
+    pub fn new(scene: &Scene, request: &RenderRequest) -> Self {
         let mut screen = Self {
             spheres: Vec::new(),
             triangles: Vec::new(),
         };
-        let Some(projector) = Projector::new(scene, picture) else {
+        let Some(projector) = Projector::new(scene, request) else {
             return screen;
         };
         for object in scene.objects.iter().filter(|object| object.visible) {
@@ -85,22 +85,22 @@ impl Screen {
 }
 
 impl Projector {
-    fn new(scene: &Scene, picture: &RenderRequest) -> Option<Self> {
+    fn new(scene: &Scene, request: &RenderRequest) -> Option<Self> {
         let camera = &scene.camera;
-        let projection = picture.projection.unwrap_or(camera.projection);
-        let height = f64::from(picture.height);
+        let projection = request.projection.unwrap_or(camera.projection);
+        let height = f64::from(request.height);
         let scale = match projection {
             Projection::Perspective => camera.projection_distance * height,
             Projection::Orthographic => height / camera.orthographic_height,
         };
-        let half = (f64::from(picture.width) / 2.0, height / 2.0);
+        let half = (f64::from(request.width) / 2.0, height / 2.0);
         Some(Self {
             position: camera.position,
             basis: camera.basis()?,
             projection,
             scale,
             half,
-            margin: match picture.sampling {
+            margin: match request.sampling {
                 Sampling::Adaptive { .. } => SMOOTH_MARGIN,
                 Sampling::Centres | Sampling::Grid(_) => MARGIN,
             },

@@ -27,15 +27,15 @@ pub struct View<R> {
 
 impl<R: Real> View<R> {
     /// Makes `camera` ready, with everything moved by `-centre`.
-    pub fn new(camera: &Camera, picture: &RenderRequest, centre: DVec3) -> Self {
+    pub fn new(camera: &Camera, request: &RenderRequest, centre: DVec3) -> Self {
         let basis = camera.basis().unwrap_or(DMat3::IDENTITY);
         let (u, v, w) = (basis.x_axis, basis.y_axis, basis.z_axis);
-        let projection = picture.projection.unwrap_or(camera.projection);
+        let projection = request.projection.unwrap_or(camera.projection);
         let (scale, forward) = match projection {
             Projection::Perspective => (1.0, -w * camera.projection_distance),
             Projection::Orthographic => (camera.orthographic_height, -w),
         };
-        let (width, height) = (f64::from(picture.width), f64::from(picture.height));
+        let (width, height) = (f64::from(request.width), f64::from(request.height));
         Self {
             origin: Vec3::from_dvec3(camera.position - centre),
             u: Vec3::from_dvec3(u * scale),
@@ -90,8 +90,8 @@ impl<R: Real> View<R> {
 mod tests {
     use super::*;
 
-    fn rays(picture: &RenderRequest, camera: &Camera, x: f64, y: f64) -> (DVec3, DVec3) {
-        let (origin, direction) = View::<f64>::new(camera, picture, DVec3::ZERO).rays((), x, y);
+    fn rays(request: &RenderRequest, camera: &Camera, x: f64, y: f64) -> (DVec3, DVec3) {
+        let (origin, direction) = View::<f64>::new(camera, request, DVec3::ZERO).rays((), x, y);
         (origin.to_dvec3(), direction.to_dvec3())
     }
 
@@ -99,11 +99,11 @@ mod tests {
     fn both_projections_look_along_the_camera_in_the_middle() {
         let camera = Camera::default();
         for projection in [Projection::Perspective, Projection::Orthographic] {
-            let picture = RenderRequest {
+            let request = RenderRequest {
                 projection: Some(projection),
                 ..RenderRequest::sized(101, 51)
             };
-            let (origin, direction) = rays(&picture, &camera, 50.5, 25.5);
+            let (origin, direction) = rays(&request, &camera, 50.5, 25.5);
             let w = camera.basis().expect("valid").z_axis;
             assert!((origin - camera.position).length() < 1e-12);
             assert!((direction + w).length() < 1e-12);

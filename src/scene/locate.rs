@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 /// One step from a value into its parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum PathStep {
     /// The named field of a struct.
     Field(&'static str),
     /// The item of a list or tuple, from 0.
@@ -16,7 +16,7 @@ pub enum Step {
 
 /// Byte offset of the value that `path` leads to, or of the last value on the way that exists:
 /// a field that was left out is reported where its struct stands.
-pub fn locate(text: &str, path: &[Step]) -> usize {
+pub fn locate(text: &str, path: &[PathStep]) -> usize {
     let mut cursor = Cursor { text, at: 0 };
     cursor.skip_preamble();
     for step in path {
@@ -31,7 +31,7 @@ pub fn locate(text: &str, path: &[Step]) -> usize {
 /// The `version` that a text claims, if it has the shape of a scene at all. Read before anything
 /// else, so that a file from the future is refused by its version and not by its new fields.
 pub fn claimed_version(text: &str) -> Option<u32> {
-    let at = locate(text, &[Step::Field("version")]);
+    let at = locate(text, &[PathStep::Field("version")]);
     let digits = text[at..].split(|c: char| !c.is_ascii_digit()).next()?;
     u32::from_str(digits).ok()
 }
@@ -179,7 +179,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Steps into the value under the cursor; false, and the cursor anywhere, if it has no such part.
-    fn enter(&mut self, step: &Step) -> bool {
+    fn enter(&mut self, step: &PathStep) -> bool {
         self.identifier();
         self.skip_space();
         if !matches!(self.peek(), Some('(' | '[' | '{')) {
@@ -203,12 +203,12 @@ impl<'a> Cursor<'a> {
     }
 
     /// With the cursor on an item: moves to its value and says whether it is the one.
-    fn item_matches(&mut self, step: &Step, index: usize) -> bool {
+    fn item_matches(&mut self, step: &PathStep, index: usize) -> bool {
         let start = self.at;
         let found = match step {
-            Step::Index(wanted) => return *wanted == index,
-            Step::Field(name) => self.identifier() == *name,
-            Step::Key(key) => {
+            PathStep::Index(wanted) => return *wanted == index,
+            PathStep::Field(name) => self.identifier() == *name,
+            PathStep::Key(key) => {
                 self.skip_value();
                 ron::from_str::<String>(self.text[start..self.at].trim()).is_ok_and(|k| k == *key)
             }
@@ -235,21 +235,21 @@ Scene(
     objects: [Object(name: "x, ]", shape: Sphere(radius: 1)), Object(name: r"y", shape: Sphere(radius: 22))],
 )"#;
 
-    fn found(path: &[Step]) -> &str {
+    fn found(path: &[PathStep]) -> &str {
         &TEXT[locate(TEXT, path)..][..2]
     }
 
     #[test]
     fn values_are_found_behind_strings_and_comments() {
-        let field = Step::Field;
-        let key = |name: &str| Step::Key(name.to_owned());
+        let field = PathStep::Field;
+        let key = |name: &str| PathStep::Key(name.to_owned());
         assert_eq!(found(&[field("version")]), "1,");
         assert_eq!(
             found(&[
                 field("color_packs"),
                 key("c"),
                 field("ambient"),
-                Step::Index(1)
+                PathStep::Index(1)
             ]),
             "5,"
         );
@@ -260,7 +260,7 @@ Scene(
         assert_eq!(
             found(&[
                 field("objects"),
-                Step::Index(1),
+                PathStep::Index(1),
                 field("shape"),
                 field("radius")
             ]),
@@ -271,12 +271,12 @@ Scene(
     #[test]
     fn what_was_left_out_is_reported_at_its_struct() {
         let path = [
-            Step::Field("objects"),
-            Step::Index(0),
-            Step::Field("color_pack"),
+            PathStep::Field("objects"),
+            PathStep::Index(0),
+            PathStep::Field("color_pack"),
         ];
         assert_eq!(found(&path), "Ob");
-        assert_eq!(found(&[Step::Field("lights")]), "Sc");
+        assert_eq!(found(&[PathStep::Field("lights")]), "Sc");
     }
 
     #[test]
@@ -293,7 +293,7 @@ Scene(
     fn no_text_makes_it_panic() {
         for end in (0..TEXT.len()).filter(|&end| TEXT.is_char_boundary(end)) {
             let cut = &TEXT[..end];
-            assert!(locate(cut, &[Step::Field("objects"), Step::Index(1)]) <= cut.len());
+            assert!(locate(cut, &[PathStep::Field("objects"), PathStep::Index(1)]) <= cut.len());
             let _ = (claimed_version(cut), has_inner_comments(cut));
         }
     }

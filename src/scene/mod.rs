@@ -9,12 +9,12 @@ mod camera;
 mod check;
 mod file;
 mod locate;
+mod methods;
 mod notation;
 mod orientation;
 mod parse_errors;
 mod recovery;
 mod shape;
-mod tracing;
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -25,15 +25,15 @@ pub use animation::{
 pub use camera::{Camera, Framing, Projection};
 pub use check::{Problem, check};
 pub use file::{Document, SceneError, read_text, write_atomic};
-pub use locate::Step;
+pub use locate::PathStep;
+pub use methods::{
+    Accelerator, HighlightMethod, MAX_GRID, MAX_HALVINGS, Method, MethodInfo, Methods, Precision,
+    RayOffset, Sampling, SphereMethod, TriangleMethod,
+};
 pub use notation::{format_number, parse_vec3};
 pub use orientation::Orientation;
 pub use recovery::{Leftover, Recovery};
 pub use shape::Shape;
-pub use tracing::{
-    Accelerator, HighlightMethod, MAX_GRID, MAX_HALVINGS, Method, MethodInfo, Methods, Precision,
-    RayOffset, Sampling, SphereMethod, TriangleMethod,
-};
 
 use glam::DVec3;
 

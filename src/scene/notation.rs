@@ -48,7 +48,7 @@ pub mod word {
         value: &T,
         serializer: S,
     ) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(&value.word())
+        serializer.serialize_str(&value.id())
     }
 
     /// Reads a word.

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::beam::{Beam, is_hidden};
 use super::sampling::Tile;
 use super::thin::SLIPPING;
-use crate::plan::{Ball, Extent, Light, Plan, Screen};
+use crate::plan::{Ball, Extent, Plan, PointLight, ScreenExtents};
 use crate::simd::{Real, SimdFloat, Vec3};
 
 /// The primitives that are worth testing, by their places in the plan's lists.
@@ -71,7 +71,7 @@ impl Candidates {
     pub fn keep_seen(
         &mut self,
         from: &Self,
-        screen: Option<&Screen>,
+        screen: Option<&ScreenExtents>,
         pixels: &Range<usize>,
         axis: Axis,
     ) {
@@ -198,7 +198,7 @@ impl LightCandidates {
         &mut self,
         token: L::Token,
         plan: &Plan<L::Real>,
-        light: &Light<L::Real>,
+        light: &PointLight<L::Real>,
         ball: &Ball,
         footprint: L::Real,
         room: &mut Room,

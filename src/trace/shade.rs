@@ -9,7 +9,7 @@ use super::mesh::EDGE_CONTRAST;
 use super::packet::{Mark, Packet, RayCone};
 use super::thin::{Footprint, thin_distance};
 use super::{Ray, Rays};
-use crate::plan::{Light, Plan, RayOrigin, Surface};
+use crate::plan::{Plan, PointLight, RayOrigin, Surface};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// How packets are painted.
@@ -136,7 +136,7 @@ impl<L: SimdFloat> Shader<'_, L> {
         mark: Option<&mut Mark<L>>,
         spot: &Spot<L>,
         index: usize,
-        light: &Light<L::Real>,
+        light: &PointLight<L::Real>,
         shadows: &LightCandidates,
         rays: &mut Rays,
     ) -> Vec3<L> {

@@ -155,14 +155,14 @@ impl Tracer {
     /// on the threads of the current rayon pool.
     ///
     /// The colours do not depend on the number of threads or lanes, or on what was traced before.
-    /// `None` if `watch` said stop; some pixels are then still the old ones.
+    /// `None` if `control` said stop; some pixels are then still the old ones.
     pub fn pass<P: Pixel>(
         &self,
         pixels: &mut [P],
         pass: Pass,
-        watch: &RenderControl,
+        control: &RenderControl,
     ) -> Option<Rays> {
-        self.trace_rows(pixels, 0, pass, watch)
+        self.trace_rows(pixels, 0, pass, control)
     }
 
     /// Traces whole rows of the picture, from `first` on, into `pixels`; see [`Self::pass`].
@@ -170,9 +170,9 @@ impl Tracer {
         &self,
         pixels: &mut [P],
         first: usize,
-        watch: &RenderControl,
+        control: &RenderControl,
     ) -> Option<Rays> {
-        self.trace_rows(pixels, first, Pass::Whole, watch)
+        self.trace_rows(pixels, first, Pass::Whole, control)
     }
 
     fn trace_rows<P: Pixel>(
@@ -180,11 +180,11 @@ impl Tracer {
         pixels: &mut [P],
         first: usize,
         pass: Pass,
-        watch: &RenderControl,
+        control: &RenderControl,
     ) -> Option<Rays> {
         match &self.kernel {
-            Kernel::Single(plan) => self.pass_of(plan, pixels, first, pass, watch),
-            Kernel::Double(plan) => self.pass_of(plan, pixels, first, pass, watch),
+            Kernel::Single(plan) => self.pass_of(plan, pixels, first, pass, control),
+            Kernel::Double(plan) => self.pass_of(plan, pixels, first, pass, control),
         }
     }
 
@@ -194,7 +194,7 @@ impl Tracer {
         pixels: &mut [P],
         first: usize,
         pass: Pass,
-        watch: &RenderControl,
+        control: &RenderControl,
     ) -> Option<Rays> {
         let seen = Candidates::all_seen(plan);
         let (grid, sampling) = match pass {
@@ -217,7 +217,7 @@ impl Tracer {
                     pixels,
                     grid,
                     sampling,
-                    watch,
+                    control,
                 };
                 self.level.run(band)
             })
@@ -236,7 +236,7 @@ struct Band<'a, R, P> {
     pixels: &'a mut [P],
     grid: Grid,
     sampling: Sampling,
-    watch: &'a RenderControl,
+    control: &'a RenderControl,
 }
 
 impl<R: SimdReal, P: Pixel> WithSimd<R> for Band<'_, R, P> {
@@ -251,7 +251,7 @@ impl<R: SimdReal, P: Pixel> WithSimd<R> for Band<'_, R, P> {
         let screen = self.plan.screen.as_ref();
         in_band.keep_seen(self.seen, screen, &self.rows, Axis::Rows);
         for left in (0..self.width).step_by(self.tile) {
-            if self.watch.stop.load(Ordering::Relaxed) {
+            if self.control.stop.load(Ordering::Relaxed) {
                 return None;
             }
             let columns = left..(left + self.tile).min(self.width);
@@ -305,7 +305,7 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
                 *pixel = P::of(red, green, blue);
             }
         }
-        self.watch
+        self.control
             .pixels
             .fetch_add((width * tile.rows.len()) as u64, Ordering::Relaxed);
     }
@@ -317,7 +317,7 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
             let pixel = P::of(traced.red[index], traced.green[index], traced.blue[index]);
             self.pixels[(row - self.rows.start) * self.width + column] = pixel;
         }
-        self.watch
+        self.control
             .pixels
             .fetch_add(traced.count as u64, Ordering::Relaxed);
     }
@@ -367,14 +367,16 @@ mod tests {
                 sampling,
                 ..RenderRequest::sized(83, 61)
             };
-            let (tracer, watch) = (Tracer::new(&scene, &picture), RenderControl::default());
+            let (tracer, control) = (Tracer::new(&scene, &picture), RenderControl::default());
             let mut whole = vec![[0_u64; 3]; 83 * 61];
-            let rays = tracer.pass(&mut whole, Pass::Whole, &watch);
+            let rays = tracer.pass(&mut whole, Pass::Whole, &control);
             let mut pieces = Vec::new();
             let mut sum = Rays::default();
             for first in (0..61).step_by(7) {
                 let mut piece = vec![[0_u64; 3]; 83 * (61 - first).min(7)];
-                sum += tracer.rows(&mut piece, first, &watch).expect("not stopped");
+                sum += tracer
+                    .rows(&mut piece, first, &control)
+                    .expect("not stopped");
                 pieces.extend(piece);
             }
             assert!(pieces == whole, "{sampling:?}");

@@ -9,7 +9,7 @@ use super::autosave::Autosave;
 use super::commands::{Command, is_about_files, pressed};
 use super::dialogs::{Dialogs, Native};
 use super::exports::Exports;
-use super::files::{Files, Next, Outcome};
+use super::files::{FileOutcome, Files, Next};
 use super::flying::Flying;
 use super::lab::Lab;
 use super::menu::Layout;
@@ -17,7 +17,7 @@ use super::outliner::Outliner;
 use super::pictures::Pictures;
 use super::screenshot::Screenshot;
 use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, TIMELINE, palette};
-use super::timeline::{Overlay, Thumbs, Timeline};
+use super::timeline::{Overlay, Thumbs, TimelinePanel};
 use super::toasts::Toasts;
 use super::viewport::{Place, describe, fit};
 use super::window::data_folder;
@@ -74,7 +74,7 @@ pub struct App {
     pub(super) files: Files,
     pub(super) outliner: Outliner,
     pub(super) lab: Lab,
-    pub(super) timeline: Timeline,
+    pub(super) timeline: TimelinePanel,
     pub(super) exports: Exports,
     pub(super) overlay: Overlay,
     pub(super) thumbs: Thumbs,
@@ -116,7 +116,7 @@ impl App {
             files: Files::new(setup.dialogs, recent.unwrap_or_default()),
             outliner: Outliner::default(),
             lab: Lab::default(),
-            timeline: Timeline::default(),
+            timeline: TimelinePanel::default(),
             exports: Exports::default(),
             overlay: Overlay::default(),
             thumbs: Thumbs::default(),
@@ -260,10 +260,10 @@ impl App {
         Some((place, response))
     }
 
-    pub(super) fn follow(&mut self, ctx: &Context, outcome: Option<Outcome>) {
+    pub(super) fn follow(&mut self, ctx: &Context, outcome: Option<FileOutcome>) {
         match outcome {
             None => {}
-            Some(Outcome::Quit) => {
+            Some(FileOutcome::Quit) => {
                 self.closing = Some(self.editor.revision());
                 if self.pictures.is_saving() {
                     self.editor
@@ -271,8 +271,8 @@ impl App {
                 }
                 ctx.request_repaint();
             }
-            Some(Outcome::ExportFolder(path)) => self.exports.choose_folder(&path),
-            Some(Outcome::SaveImage(path)) => {
+            Some(FileOutcome::ExportFolder(path)) => self.exports.choose_folder(&path),
+            Some(FileOutcome::SaveImage(path)) => {
                 self.editor.apply(Action::Show(Mode::HighRes));
                 self.pictures.request_still(&self.editor, Some(path));
             }

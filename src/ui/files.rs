@@ -37,7 +37,7 @@ pub enum Next {
 
 /// What became of the wishes, for the window to act on.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum FileOutcome {
     /// The window may close.
     Quit,
     /// The still picture is to be traced and written here.
@@ -57,14 +57,14 @@ pub struct Files {
 
 /// A desktop dialog that is open.
 struct Waiting {
-    wish: Wish,
+    wish: PathRequest,
     answer: Receiver<Option<PathBuf>>,
     since: Instant,
 }
 
 /// A path that is wanted, and what follows when it is there.
 #[derive(Clone)]
-struct Wish {
+struct PathRequest {
     ask: Ask,
     then: Option<Next>,
 }
@@ -73,7 +73,7 @@ struct Wish {
 enum Question {
     Unsaved(Next),
     Quit,
-    Path(Wish, PathPrompt),
+    Path(PathRequest, PathPrompt),
 }
 
 impl Files {
@@ -93,7 +93,7 @@ impl Files {
     }
 
     /// Does `next`, after asking about unsaved changes.
-    pub fn start(&mut self, ctx: &Context, editor: &mut Editor, next: Next) -> Option<Outcome> {
+    pub fn start(&mut self, ctx: &Context, editor: &mut Editor, next: Next) -> Option<FileOutcome> {
         if editor.is_dirty() {
             self.question = Some(Question::Unsaved(next));
             return None;
@@ -112,7 +112,7 @@ impl Files {
     }
 
     /// Writes the document to its file, or asks for one.
-    pub fn save(&mut self, ctx: &Context, editor: &mut Editor) -> Option<Outcome> {
+    pub fn save(&mut self, ctx: &Context, editor: &mut Editor) -> Option<FileOutcome> {
         self.save_then(ctx, editor, None)
     }
 
@@ -121,8 +121,8 @@ impl Files {
         ctx: &Context,
         editor: &mut Editor,
         then: Option<Next>,
-    ) -> Option<Outcome> {
-        let wish = Wish {
+    ) -> Option<FileOutcome> {
+        let wish = PathRequest {
             ask: Ask::SaveScene,
             then,
         };
@@ -136,11 +136,11 @@ impl Files {
 
     /// Asks for a path.
     pub fn ask(&mut self, ctx: &Context, editor: &Editor, ask: Ask) {
-        self.wish(ctx, editor, Wish { ask, then: None });
+        self.wish(ctx, editor, PathRequest { ask, then: None });
     }
 
     /// One dialog at a time: while one is open, further wishes are not heard.
-    fn wish(&mut self, ctx: &Context, editor: &Editor, wish: Wish) {
+    fn wish(&mut self, ctx: &Context, editor: &Editor, wish: PathRequest) {
         if self.waiting.is_none() {
             let answer = self
                 .dialogs
@@ -154,7 +154,7 @@ impl Files {
     }
 
     /// Takes answers up as they come.
-    pub fn poll(&mut self, ctx: &Context, editor: &mut Editor) -> Option<Outcome> {
+    pub fn poll(&mut self, ctx: &Context, editor: &mut Editor) -> Option<FileOutcome> {
         let Waiting {
             wish,
             answer,
@@ -186,13 +186,13 @@ impl Files {
         None
     }
 
-    fn prompt(&mut self, wish: Wish, suggested: &Path) {
+    fn prompt(&mut self, wish: PathRequest, suggested: &Path) {
         let prompt = PathPrompt::new(wish.ask.clone(), suggested);
         self.question = Some(Question::Path(wish, prompt));
     }
 
     /// Draws what is being asked.
-    pub fn show(&mut self, ui: &Ui, editor: &mut Editor) -> Option<Outcome> {
+    pub fn show(&mut self, ui: &Ui, editor: &mut Editor) -> Option<FileOutcome> {
         let ctx = ui.ctx().clone();
         let answer = match self.question.as_mut()? {
             Question::Unsaved(_) => ask_about_changes(&ctx, &editor.title()),
@@ -206,7 +206,7 @@ impl Files {
         match (question, answer) {
             (Question::Unsaved(next), Answer::Yes) => self.save_then(&ctx, editor, Some(next)),
             (Question::Unsaved(next), Answer::No) => self.go_on(&ctx, editor, next),
-            (Question::Quit, Answer::Yes) => Some(Outcome::Quit),
+            (Question::Quit, Answer::Yes) => Some(FileOutcome::Quit),
             (Question::Path(wish, prompt), Answer::Yes) => {
                 self.answered(&ctx, editor, wish, prompt.path())
             }
@@ -218,13 +218,13 @@ impl Files {
         &mut self,
         ctx: &Context,
         editor: &mut Editor,
-        wish: Wish,
+        wish: PathRequest,
         path: PathBuf,
-    ) -> Option<Outcome> {
+    ) -> Option<FileOutcome> {
         match wish.ask {
             Ask::OpenScene => self.open(editor, &path),
-            Ask::SaveImage => return Some(Outcome::SaveImage(path)),
-            Ask::ExportFolder => return Some(Outcome::ExportFolder(path)),
+            Ask::SaveImage => return Some(FileOutcome::SaveImage(path)),
+            Ask::ExportFolder => return Some(FileOutcome::ExportFolder(path)),
             Ask::ImportPath => import_path(editor, &path),
             Ask::ExportPath => export_path(editor, &path),
             Ask::ExportJob => export_job(editor, &path),
@@ -239,13 +239,13 @@ impl Files {
         None
     }
 
-    fn go_on(&mut self, ctx: &Context, editor: &mut Editor, next: Next) -> Option<Outcome> {
+    fn go_on(&mut self, ctx: &Context, editor: &mut Editor, next: Next) -> Option<FileOutcome> {
         match next {
             Next::New => editor.start_new(),
             Next::Demo => editor.start_demo(),
             Next::Choose => self.ask(ctx, editor, Ask::OpenScene),
             Next::Open(path) => self.open(editor, &path),
-            Next::Quit => return Some(Outcome::Quit),
+            Next::Quit => return Some(FileOutcome::Quit),
         }
         None
     }

@@ -58,7 +58,7 @@ impl Outliner {
                     match line {
                         Line::Single(selection, icon, name) => {
                             let rect = row(ui);
-                            let look = Look {
+                            let look = RowStyle {
                                 icon: *icon,
                                 is_bright: true,
                                 is_selected: editor.selection == *selection,
@@ -165,7 +165,7 @@ impl Outliner {
         let response = entry(
             ui,
             rect,
-            Look {
+            RowStyle {
                 icon,
                 is_bright: visible != Some(false),
                 is_selected,
@@ -258,14 +258,14 @@ fn row(ui: &mut Ui) -> Rect {
 
 /// How an entry looks.
 #[derive(Clone, Copy)]
-struct Look {
+struct RowStyle {
     icon: MaterialIcon,
     is_bright: bool,
     is_selected: bool,
 }
 
 /// An entry that can be selected and dragged.
-fn entry(ui: &mut Ui, rect: Rect, look: Look, name: &str) -> egui::Response {
+fn entry(ui: &mut Ui, rect: Rect, look: RowStyle, name: &str) -> egui::Response {
     let colors = palette(ui.ctx());
     let color = if look.is_bright {
         colors.text

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use egui::Context;
 
-use super::lab::Wish;
-use super::viewport::{Screen, low_res};
+use super::lab::LabRequest;
+use super::viewport::{Display, low_res};
 use crate::editor::{Editor, Mode};
 use crate::export::{ExportError, Sequence};
 use crate::image::Image;
@@ -55,7 +55,7 @@ impl Rhythm {
 pub struct Pictures {
     worker: Worker,
     /// The pictures on the graphics card.
-    pub screen: Screen,
+    pub screen: Display,
     rhythm: Rhythm,
     submitted: Option<(u64, (u32, u32), Pace)>,
     still_requested: Option<(u64, (u32, u32))>,
@@ -71,7 +71,7 @@ impl Pictures {
         let worker = Worker::new(None, move || wake.request_repaint())?;
         Ok(Self {
             worker,
-            screen: Screen::default(),
+            screen: Display::default(),
             rhythm: Rhythm::default(),
             submitted: None,
             still_requested: None,
@@ -145,10 +145,10 @@ impl Pictures {
     }
 
     /// Passes a wish of the lab on to the lane.
-    pub fn fulfil(&self, wish: Wish) {
+    pub fn fulfil(&self, wish: LabRequest) {
         match wish {
-            Wish::Measure(study) => self.worker.measure(*study),
-            Wish::Stop => self.worker.stop_measuring(),
+            LabRequest::Measure(study) => self.worker.measure(*study),
+            LabRequest::Stop => self.worker.stop_measuring(),
         }
     }
 
@@ -205,7 +205,7 @@ impl Pictures {
         self.worker.request_still(StillJob {
             revision: editor.shown_revision(),
             scene: editor.shown().clone(),
-            picture: RenderRequest::still(editor.shown()),
+            request: RenderRequest::still(editor.shown()),
             save_to,
         });
     }
@@ -244,7 +244,7 @@ impl Pictures {
         self.worker.submit(LiveJob {
             revision,
             scene: editor.shown().clone(),
-            picture: RenderRequest {
+            request: RenderRequest {
                 sampling: match pace {
                     Pace::Whole => Sampling::Centres,
                     Pace::Within(_) => editor.shown().render.antialias,

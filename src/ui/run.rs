@@ -5,7 +5,7 @@ use egui::Context;
 use super::app::App;
 use super::commands::{Command, is_enabled};
 use super::dialogs::Ask;
-use super::files::{Next, Outcome};
+use super::files::{FileOutcome, Next};
 use super::timeline::actions;
 use crate::editor::{Action, Edit, Editor, Mode, Selection, Time};
 use crate::scene::Projection;
@@ -106,7 +106,7 @@ impl App {
     }
 
     /// Asks for a path; nothing comes of it before it is answered.
-    fn ask(&mut self, ctx: &Context, ask: Ask) -> Option<Outcome> {
+    fn ask(&mut self, ctx: &Context, ask: Ask) -> Option<FileOutcome> {
         self.files.ask(ctx, &self.editor, ask);
         None
     }

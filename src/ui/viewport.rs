@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use egui::{
-    Color32, Context, Pos2, Rect, Response, ScrollArea, Sense, Painter, Stroke, StrokeKind,
+    Color32, Context, Painter, Pos2, Rect, Response, ScrollArea, Sense, Stroke, StrokeKind,
     TextureFilter, TextureHandle, TextureOptions, TextureWrapMode, Ui, Vec2, pos2, vec2,
 };
 
@@ -23,7 +23,7 @@ const SHARP: TextureOptions = TextureOptions {
 
 /// The newest pictures of each kind, on the graphics card.
 #[derive(Default)]
-pub struct Screen {
+pub struct Display {
     live: Option<Shown>,
     still: Option<Shown>,
 }
@@ -42,7 +42,7 @@ pub struct Place {
     pub pixels: (u32, u32),
 }
 
-impl Screen {
+impl Display {
     /// Takes up a picture, unless a newer one is shown.
     pub fn take(&mut self, ctx: &Context, frame: Frame) {
         let place = if frame.is_still {

@@ -123,7 +123,7 @@ impl Exporting {
     }
 
     /// Looks at the next frame and traces it, if it is not there as it should be.
-    pub fn step(&mut self, watch: &RenderControl) -> ExportStep {
+    pub fn step(&mut self, control: &RenderControl) -> ExportStep {
         while let Ok(receipt) = self.receipts.try_recv() {
             if let Err(error) = self.take(receipt) {
                 return ExportStep::Failed(error);
@@ -145,8 +145,8 @@ impl Exporting {
             return ExportStep::Going;
         }
         let mut image = self.spare.pop().unwrap_or_default();
-        let picture = self.sequence.picture(&shown);
-        let Some(cost) = render_into(&mut image, &shown, &picture, watch) else {
+        let request = self.sequence.picture(&shown);
+        let Some(cost) = render_into(&mut image, &shown, &request, control) else {
             self.spare.push(image);
             self.left.push_front(frame);
             return ExportStep::Stopped;

@@ -87,12 +87,12 @@ impl super::Mailbox {
     fn stop_export(&self, id: u64) {
         if let Some(Running {
             job: RunningJob::Export(running),
-            watch,
+            control,
             ..
         }) = &self.running
             && *running == id
         {
-            watch.stop.store(true, Ordering::Relaxed);
+            control.stop.store(true, Ordering::Relaxed);
         }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::exporting::Exported;
-use crate::image::{Cost, Image};
+use crate::image::{Image, RenderCost};
 use crate::plan::{RenderRequest, Sampling};
 use crate::scene::Scene;
 
@@ -17,7 +17,7 @@ pub struct LiveJob {
     /// The scene at that revision.
     pub scene: Arc<Scene>,
     /// The picture, at its full resolution.
-    pub picture: RenderRequest,
+    pub request: RenderRequest,
     /// Whether coarse pictures may come first, to keep up with the hand that edits.
     pub pace: Pace,
 }
@@ -50,7 +50,7 @@ pub struct StillJob {
     /// The scene at that revision.
     pub scene: Arc<Scene>,
     /// The picture.
-    pub picture: RenderRequest,
+    pub request: RenderRequest,
     /// Where to write it. A picture that is to be written outlives edits: it is started again when
     /// the live view is done.
     pub save_to: Option<PathBuf>,
@@ -72,7 +72,7 @@ pub struct Frame {
     /// Whether this is the still picture and not the live view.
     pub is_still: bool,
     /// What it cost so far.
-    pub cost: Cost,
+    pub cost: RenderCost,
 }
 
 /// What the lane is doing.

@@ -74,7 +74,7 @@ struct Mailbox {
 #[derive(Debug)]
 struct Running {
     job: RunningJob,
-    watch: Arc<RenderControl>,
+    control: Arc<RenderControl>,
     started: Instant,
 }
 
@@ -213,11 +213,11 @@ impl Worker {
             .collect();
         if let Some(Running {
             job: RunningJob::Still(still),
-            watch,
+            control,
             ..
         }) = &mut mailbox.running
         {
-            watch.stop.store(true, Ordering::Relaxed);
+            control.stop.store(true, Ordering::Relaxed);
             given_up.extend(still.save_to.take());
         }
         drop(mailbox);
@@ -243,11 +243,11 @@ impl Worker {
         mailbox.study = study;
         if let Some(Running {
             job: job @ RunningJob::Lab,
-            watch,
+            control,
             ..
         }) = &mut mailbox.running
         {
-            watch.stop.store(true, Ordering::Relaxed);
+            control.stop.store(true, Ordering::Relaxed);
             // What comes back from it is not wanted any more.
             *job = RunningJob::GivenUp;
         }
@@ -309,7 +309,7 @@ impl Worker {
             },
             (_, None, Some(still)) => Activity::Still {
                 done: 0,
-                total: pixels(&still.picture),
+                total: pixels(&still.request),
                 elapsed: Duration::ZERO,
             },
             (_, None, None) => Activity::Idle,
@@ -335,7 +335,7 @@ impl Drop for Worker {
 impl Mailbox {
     fn stop_running(&self) {
         if let Some(running) = &self.running {
-            running.watch.stop.store(true, Ordering::Relaxed);
+            running.control.stop.store(true, Ordering::Relaxed);
         }
     }
 }
@@ -343,14 +343,14 @@ impl Mailbox {
 impl Running {
     fn still_activity(&self) -> Activity {
         let total = match &self.job {
-            RunningJob::Still(still) => pixels(&still.picture),
+            RunningJob::Still(still) => pixels(&still.request),
             RunningJob::Live { .. }
             | RunningJob::ThumbnailJob
             | RunningJob::Export(_)
             | RunningJob::Lab
             | RunningJob::GivenUp => 0,
         };
-        let done = self.watch.pixels.load(Ordering::Relaxed);
+        let done = self.control.pixels.load(Ordering::Relaxed);
         Activity::Still {
             done,
             total,
@@ -359,8 +359,8 @@ impl Running {
     }
 }
 
-fn pixels(picture: &RenderRequest) -> u64 {
-    u64::from(picture.width) * u64::from(picture.height)
+fn pixels(request: &RenderRequest) -> u64 {
+    u64::from(request.width) * u64::from(request.height)
 }
 
 /// A panic while the lock was held left plain data behind: it is used as it is.

@@ -12,7 +12,7 @@ use super::{
     StillJob, ThumbnailJob, lock,
 };
 use crate::export::save_image;
-use crate::image::{Cost, Image, render};
+use crate::image::{Image, RenderCost, render};
 use crate::lab::Study;
 use crate::plan::{RenderRequest, Sampling};
 use crate::trace::{Grid, Pass, Rays, RenderControl, Threads, Tracer};
@@ -29,7 +29,7 @@ enum Job {
 }
 
 /// How a job ended.
-enum Outcome {
+enum JobOutcome {
     /// There is nothing more to do for it.
     Ended,
     /// It was stopped on the way.
@@ -43,7 +43,7 @@ pub(super) fn run(shared: &Shared, threads: &Threads) {
     let mut budget = Budget::new();
     let mut frame_pool = FramePool::default();
     let mut woken = Instant::now();
-    while let Some((mut job, watch)) = next_job(shared) {
+    while let Some((mut job, control)) = next_job(shared) {
         let mut outcome = catch_unwind(AssertUnwindSafe(|| {
             threads.run(|| match &mut job {
                 Job::Live(job) => {
@@ -51,23 +51,23 @@ pub(super) fn run(shared: &Shared, threads: &Threads) {
                     let mut live = Live {
                         shared,
                         job,
-                        tracer: Tracer::new(&job.scene, &job.picture),
+                        tracer: Tracer::new(&job.scene, &job.request),
                         frame_pool: &mut frame_pool,
                     };
-                    live.run(&watch, &mut budget, start);
-                    Outcome::Ended
+                    live.run(&control, &mut budget, start);
+                    JobOutcome::Ended
                 }
                 Job::ThumbnailJob(job) => {
                     sketch(shared, job);
-                    Outcome::Ended
+                    JobOutcome::Ended
                 }
-                Job::Still(job) => still(shared, job, &watch),
-                Job::Export(_, exporting) => Outcome::Export(exporting.step(&watch)),
+                Job::Still(job) => still(shared, job, &control),
+                Job::Export(_, exporting) => JobOutcome::Export(exporting.step(&control)),
                 Job::Lab(study) => {
-                    if study.step(&watch) {
-                        Outcome::Stopped
+                    if study.step(&control) {
+                        JobOutcome::Stopped
                     } else {
-                        Outcome::Ended
+                        JobOutcome::Ended
                     }
                 }
             })
@@ -83,13 +83,15 @@ pub(super) fn run(shared: &Shared, threads: &Threads) {
             }
             Job::Export(id, exporting) => {
                 let step = match &mut outcome {
-                    Ok(Outcome::Export(step)) => Some(std::mem::replace(step, ExportStep::Going)),
+                    Ok(JobOutcome::Export(step)) => {
+                        Some(std::mem::replace(step, ExportStep::Going))
+                    }
                     _ => None,
                 };
                 finish_frame(shared, id, *exporting, step);
             }
             Job::Live(_) | Job::ThumbnailJob(_) | Job::Still(_) => {
-                finish(shared, matches!(outcome, Ok(Outcome::Stopped)));
+                finish(shared, matches!(outcome, Ok(JobOutcome::Stopped)));
             }
         }
         if let Err(panic) = outcome {
@@ -118,7 +120,7 @@ fn next_job(shared: &Shared) -> Option<(Job, Arc<RenderControl>)> {
             .or_else(|| mailbox.next_export(&lock(&shared.news).exports))
             .or_else(|| mailbox.study.take().map(|study| Job::Lab(Box::new(study))));
         if let Some(job) = job {
-            let watch = Arc::new(RenderControl::default());
+            let control = Arc::new(RenderControl::default());
             mailbox.running = Some(Running {
                 job: match &job {
                     Job::Live(live) => RunningJob::Live {
@@ -129,10 +131,10 @@ fn next_job(shared: &Shared) -> Option<(Job, Arc<RenderControl>)> {
                     Job::Export(id, _) => RunningJob::Export(*id),
                     Job::Lab(_) => RunningJob::Lab,
                 },
-                watch: Arc::clone(&watch),
+                control: Arc::clone(&control),
                 started: Instant::now(),
             });
-            return Some((job, watch));
+            return Some((job, control));
         }
         mailbox = shared
             .wakeup
@@ -197,7 +199,7 @@ fn finish_frame(shared: &Shared, id: u64, mut exporting: Exporting, step: Option
 /// Publishes what a piece of a study has found, and puts the study back if there is more of it to do.
 /// One whose piece failed is given up, and so is one that is not wanted any more. Whether there is
 /// nothing left to do.
-fn finish_piece(shared: &Shared, study: Study, outcome: Option<&Outcome>) -> bool {
+fn finish_piece(shared: &Shared, study: Study, outcome: Option<&JobOutcome>) -> bool {
     let mut mailbox = lock(&shared.mailbox);
     let is_wanted = matches!(
         mailbox.running.take(),
@@ -210,7 +212,7 @@ fn finish_piece(shared: &Shared, study: Study, outcome: Option<&Outcome>) -> boo
         return true;
     };
     lock(&shared.news).study = Some(study.clone());
-    let is_done = matches!(outcome, Outcome::Ended);
+    let is_done = matches!(outcome, JobOutcome::Ended);
     if !is_done {
         mailbox.study = Some(study);
     }
@@ -227,18 +229,18 @@ struct Live<'a> {
 }
 
 impl Live<'_> {
-    fn run(&mut self, watch: &RenderControl, budget: &mut Budget, start: Instant) {
-        if self.trace_centres(watch, budget, start).is_some()
-            && self.job.picture.sampling != Sampling::Centres
+    fn run(&mut self, control: &RenderControl, budget: &mut Budget, start: Instant) {
+        if self.trace_centres(control, budget, start).is_some()
+            && self.job.request.sampling != Sampling::Centres
         {
-            self.smooth(watch);
+            self.smooth(control);
         }
     }
 
     /// Traces every pixel's centre once; `None` if it was stopped.
     fn trace_centres(
         &mut self,
-        watch: &RenderControl,
+        control: &RenderControl,
         budget: &mut Budget,
         start: Instant,
     ) -> Option<()> {
@@ -254,12 +256,12 @@ impl Live<'_> {
         };
         loop {
             let is_first = grid.step == first;
-            let watch = if is_first {
+            let control = if is_first {
                 &self.shared.first_pass
             } else {
-                watch
+                control
             };
-            let new = image.trace(&self.tracer, Pass::Centres(grid), watch)?;
+            let new = image.trace(&self.tracer, Pass::Centres(grid), control)?;
             rays += new;
             if is_first {
                 budget.learn(new.camera, start.elapsed());
@@ -278,11 +280,11 @@ impl Live<'_> {
         Some(())
     }
 
-    fn smooth(&mut self, watch: &RenderControl) {
+    fn smooth(&mut self, control: &RenderControl) {
         let start = Instant::now();
         let mut image = self.canvas();
-        if let Some(rays) = image.trace(&self.tracer, Pass::Whole, watch) {
-            self.publish(image, 1, rays, self.job.picture.sampling, start);
+        if let Some(rays) = image.trace(&self.tracer, Pass::Whole, control) {
+            self.publish(image, 1, rays, self.job.request.sampling, start);
         }
     }
 
@@ -307,7 +309,7 @@ impl Live<'_> {
             step,
             sampling,
             is_still: false,
-            cost: Cost {
+            cost: RenderCost {
                 time,
                 rays,
                 lanes: self.tracer.lanes(),
@@ -318,18 +320,18 @@ impl Live<'_> {
 
 /// Small pictures are stopped by nothing but quitting.
 fn sketch(shared: &Shared, job: &ThumbnailJob) {
-    let picture = RenderRequest {
+    let request = RenderRequest {
         sampling: Sampling::Centres,
         ..RenderRequest::of(&job.scene, job.size.0, job.size.1)
     };
-    if let Some((image, _)) = render(&job.scene, &picture, &shared.first_pass) {
+    if let Some((image, _)) = render(&job.scene, &request, &shared.first_pass) {
         lock(&shared.news).thumbnails.push((job.name, image));
     }
 }
 
-fn still(shared: &Shared, job: &StillJob, watch: &RenderControl) -> Outcome {
-    let Some((image, cost)) = render(&job.scene, &job.picture, watch) else {
-        return Outcome::Stopped;
+fn still(shared: &Shared, job: &StillJob, control: &RenderControl) -> JobOutcome {
+    let Some((image, cost)) = render(&job.scene, &job.request, control) else {
+        return JobOutcome::Stopped;
     };
     let image = Arc::new(image);
     shared.publish(Frame {
@@ -337,7 +339,7 @@ fn still(shared: &Shared, job: &StillJob, watch: &RenderControl) -> Outcome {
         full_size: (image.width, image.height),
         image: Arc::clone(&image),
         step: 1,
-        sampling: job.picture.sampling,
+        sampling: job.request.sampling,
         is_still: true,
         cost,
     });
@@ -347,7 +349,7 @@ fn still(shared: &Shared, job: &StillJob, watch: &RenderControl) -> Outcome {
             Err(error) => Event::Failed(error.to_string()),
         });
     }
-    Outcome::Ended
+    JobOutcome::Ended
 }
 
 impl Shared {

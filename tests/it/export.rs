@@ -251,11 +251,11 @@ fn a_folder_that_vanishes_is_told() {
     let frames = folder.path().join("frames");
     let sequence = Sequence::new(scene, None, Pattern::default(), Format::Ppm, frames.clone());
     let mut exporting = Exporting::new(sequence.expect("frames")).expect("a folder");
-    let watch = glint::trace::RenderControl::default();
-    assert!(matches!(exporting.step(&watch), ExportStep::Going));
+    let control = glint::trace::RenderControl::default();
+    assert!(matches!(exporting.step(&control), ExportStep::Going));
     fs::remove_dir_all(&frames).expect("removed");
     let error = loop {
-        match exporting.step(&watch) {
+        match exporting.step(&control) {
             ExportStep::Failed(error) => break error,
             ExportStep::Going => {}
             other => panic!("{other:?}"),
@@ -442,88 +442,92 @@ fn a_job_is_a_template_with_its_scene_beside_it() {
 }
 
 /// Waits until nothing is exported any more.
-fn finish(desk: &mut EditorHarness) {
+fn finish(harness: &mut EditorHarness) {
     let start = std::time::Instant::now();
-    while desk.window.state().is_exporting() {
+    while harness.window.state().is_exporting() {
         assert!(
             start.elapsed() < Duration::from_mins(1),
             "the export never ended"
         );
         sleep(Duration::from_millis(5));
-        desk.window.step();
+        harness.window.step();
     }
-    desk.settle();
+    harness.settle();
 }
 
 /// Waits until a text is in the window.
-fn see(desk: &mut EditorHarness, text: &str) {
+fn see(harness: &mut EditorHarness, text: &str) {
     let start = std::time::Instant::now();
-    while desk.window.query_by_label_contains(text).is_none() {
+    while harness.window.query_by_label_contains(text).is_none() {
         assert!(
             start.elapsed() < Duration::from_mins(1),
             "{text} never came"
         );
         sleep(Duration::from_millis(5));
-        desk.window.step();
+        harness.window.step();
     }
 }
 
 #[test]
 fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
     let text = fs::read_to_string(FLIGHT).expect("readable");
-    let mut desk = EditorHarness::with(|_| Vec::new(), Some(&text));
-    let folder = desk.folder.path().join("frames");
-    desk.press(CTRL.plus(Modifiers::SHIFT), Key::E);
-    desk.type_name("folder", folder.to_str().expect("plain"));
-    desk.type_name("frames", "1-40:3");
-    desk.type_into("export width", "48");
-    desk.type_into("export height", "48");
-    desk.window
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let folder = harness.folder.path().join("frames");
+    harness.press(CTRL.plus(Modifiers::SHIFT), Key::E);
+    harness.type_name("folder", folder.to_str().expect("plain"));
+    harness.type_name("frames", "1-40:3");
+    harness.type_into("export width", "48");
+    harness.type_into("export height", "48");
+    harness
+        .window
         .get_by_label_contains("rayTrace1.ppm … rayTrace40.ppm");
-    see(&mut desk, "14 frames to make");
-    desk.window.get_by_label("gif").click();
-    desk.settle();
-    desk.click("Start export");
+    see(&mut harness, "14 frames to make");
+    harness.window.get_by_label("gif").click();
+    harness.settle();
+    harness.click("Start export");
     // The scene is edited while it is exported.
     for frame in 0..20 {
-        desk.window
+        harness
+            .window
             .key_press(if frame % 2 == 0 { Key::U } else { Key::I });
-        desk.window.step();
+        harness.window.step();
     }
-    desk.press(Modifiers::NONE, Key::U);
-    assert!(!desk.scene().light_visualization);
-    finish(&mut desk);
+    harness.press(Modifiers::NONE, Key::U);
+    assert!(!harness.scene().light_visualization);
+    finish(&mut harness);
     let mut made = files(&folder);
     assert!(
         made.remove("frames.gif")
             .is_some_and(|gif| gif.starts_with(b"GIF89a"))
     );
-    let alone = desk.folder.path().join("alone");
+    let alone = harness.folder.path().join("alone");
     done(&mut export(&alone, &["--frames", "1-40:3"]));
     assert!(
         made == files(&alone),
         "the same bytes, as the scene was at the start"
     );
-    desk.window.get_by_label_contains("14 frames are in");
-    desk.click("Remove");
+    harness.window.get_by_label_contains("14 frames are in");
+    harness.click("Remove");
     // With the lights' markers off, the frames that show one are others.
-    see(&mut desk, "replace older files");
-    desk.type_name("frames", "nonsense");
-    desk.window.get_by_label_contains("expected frames such as");
+    see(&mut harness, "replace older files");
+    harness.type_name("frames", "nonsense");
+    harness
+        .window
+        .get_by_label_contains("expected frames such as");
 }
 
 #[test]
 fn the_window_writes_a_farm_job_and_its_scene() {
     let answer = |folder: &Path| vec![(Ask::ExportJob, Some(folder.join("job.yaml")))];
-    let mut desk = EditorHarness::with(answer, None);
-    desk.choose("File", "Export farm job…");
-    desk.window.get_by_label_contains("job.yaml and ");
-    let template = fs::read_to_string(desk.folder.path().join("job.yaml")).expect("written");
+    let mut harness = EditorHarness::with(answer, None);
+    harness.choose("File", "Export farm job…");
+    harness.window.get_by_label_contains("job.yaml and ");
+    let template = fs::read_to_string(harness.folder.path().join("job.yaml")).expect("written");
     assert!(template.contains("\"job.ron\"") && template.contains("\"1\""));
-    let scene = Document::load(&desk.folder.path().join("job.ron"))
+    let scene = Document::load(&harness.folder.path().join("job.ron"))
         .expect("a scene")
         .scene;
-    assert_eq!(&scene, desk.scene());
+    assert_eq!(&scene, harness.scene());
 }
 
 #[test]

@@ -206,7 +206,7 @@ fn changed_one_at_a_time() -> Vec<(String, Methods)> {
     let default = Methods::default();
     let spheres = SphereMethod::ALL[1..].iter().map(|way| {
         (
-            way.word,
+            way.id,
             Methods {
                 sphere: way.value,
                 ..default
@@ -215,7 +215,7 @@ fn changed_one_at_a_time() -> Vec<(String, Methods)> {
     });
     let triangles = TriangleMethod::ALL[1..].iter().map(|way| {
         (
-            way.word,
+            way.id,
             Methods {
                 triangle: way.value,
                 ..default
@@ -224,7 +224,7 @@ fn changed_one_at_a_time() -> Vec<(String, Methods)> {
     });
     let offsets = RayOffset::ALL[1..].iter().map(|way| {
         (
-            way.word,
+            way.id,
             Methods {
                 offset: way.value,
                 ..default
@@ -233,7 +233,7 @@ fn changed_one_at_a_time() -> Vec<(String, Methods)> {
     });
     let highlights = HighlightMethod::ALL[1..].iter().map(|way| {
         (
-            way.word,
+            way.id,
             Methods {
                 highlight: way.value,
                 ..default

@@ -224,10 +224,10 @@ fn object(name: &str, center: DVec3, radius: f64) -> Object {
 }
 
 /// A picture of one sample per pixel.
-fn plain(scene: &Scene, picture: RenderRequest) -> Image {
+fn plain(scene: &Scene, request: RenderRequest) -> Image {
     let picture = RenderRequest {
         sampling: Sampling::Centres,
-        ..picture
+        ..request
     };
     render(scene, &picture, &RenderControl::default())
         .expect("not stopped")

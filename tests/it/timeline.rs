@@ -26,7 +26,7 @@ fn flight() -> Scene {
 }
 
 /// A window on a demo whose camera moves from key to key: so many seconds, so far to the right.
-fn moving(keys: &[(f64, f64)]) -> EditorHarness {
+fn animation(keys: &[(f64, f64)]) -> EditorHarness {
     let mut scene = Scene::demo();
     let key = |&(time, right): &(f64, f64)| {
         let mut camera = scene.camera.clone();
@@ -42,63 +42,65 @@ fn moving(keys: &[(f64, f64)]) -> EditorHarness {
     EditorHarness::with(|_| Vec::new(), Some(&document.to_text().expect("a text")))
 }
 
-fn times(desk: &EditorHarness) -> Vec<f64> {
-    let keys = desk.scene().animation.keys.iter();
+fn times(harness: &EditorHarness) -> Vec<f64> {
+    let keys = harness.scene().animation.keys.iter();
     keys.map(|key| (key.time * 1e3).round() / 1e3).collect()
 }
 
-fn place_of(desk: &EditorHarness, name: &str) -> Pos2 {
+fn place_of(harness: &EditorHarness, name: &str) -> Pos2 {
     let role = if name == "Playhead" {
         Role::Slider
     } else {
         Role::Button
     };
-    let widget = desk.window.get_by_role_and_label(role, name);
+    let widget = harness.window.get_by_role_and_label(role, name);
     widget.rect().center()
 }
 
 /// Drags from a place by so much, in several moves, with keys held.
-fn drag(desk: &mut EditorHarness, from: Pos2, by: egui::Vec2, modifiers: Modifiers) {
+fn drag(harness: &mut EditorHarness, from: Pos2, by: egui::Vec2, modifiers: Modifiers) {
     let moved = |part: u16| from + by * f32::from(part) / 6.0;
-    desk.window.event(Event::ModifiersChanged(modifiers));
-    desk.window.drag_at(from);
-    desk.window.step();
+    harness.window.event(Event::ModifiersChanged(modifiers));
+    harness.window.drag_at(from);
+    harness.window.step();
     for part in 1..=6 {
-        desk.window.hover_at(moved(part));
-        desk.window.step();
+        harness.window.hover_at(moved(part));
+        harness.window.step();
     }
-    desk.window.drop_at(from + by);
-    desk.window.step();
-    desk.window.event(Event::ModifiersChanged(Modifiers::NONE));
-    desk.settle();
+    harness.window.drop_at(from + by);
+    harness.window.step();
+    harness
+        .window
+        .event(Event::ModifiersChanged(Modifiers::NONE));
+    harness.settle();
 }
 
 /// Points on screen for a second of the timeline.
-fn points_per_second(desk: &EditorHarness) -> f32 {
+fn points_per_second(harness: &EditorHarness) -> f32 {
     let (first, last) = (
-        place_of(desk, "Key 1"),
-        place_of(desk, &format!("Key {}", times(desk).len())),
+        place_of(harness, "Key 1"),
+        place_of(harness, &format!("Key {}", times(harness).len())),
     );
-    let seconds = times(desk)[times(desk).len() - 1] - times(desk)[0];
+    let seconds = times(harness)[times(harness).len() - 1] - times(harness)[0];
     (last.x - first.x) / seconds as f32
 }
 
 #[test]
 fn a_flight_is_recorded_and_becomes_keys_in_one_step() {
-    let mut desk = EditorHarness::new();
-    let start = desk.scene().camera.clone();
-    desk.window.key_press(Key::R);
-    desk.window.step();
-    desk.window.key_down(Key::W);
-    (0..60).for_each(|_| desk.window.step());
-    desk.window.key_down(Key::ArrowRight);
-    (0..60).for_each(|_| desk.window.step());
-    desk.window.key_up(Key::W);
-    desk.window.key_up(Key::ArrowRight);
-    (0..5).for_each(|_| desk.window.step());
-    let end = desk.scene().camera.clone();
-    desk.press(Modifiers::NONE, Key::T);
-    let animation = desk.scene().animation.clone();
+    let mut harness = EditorHarness::new();
+    let start = harness.scene().camera.clone();
+    harness.window.key_press(Key::R);
+    harness.window.step();
+    harness.window.key_down(Key::W);
+    (0..60).for_each(|_| harness.window.step());
+    harness.window.key_down(Key::ArrowRight);
+    (0..60).for_each(|_| harness.window.step());
+    harness.window.key_up(Key::W);
+    harness.window.key_up(Key::ArrowRight);
+    (0..5).for_each(|_| harness.window.step());
+    let end = harness.scene().camera.clone();
+    harness.press(Modifiers::NONE, Key::T);
+    let animation = harness.scene().animation.clone();
     let take = animation.take.clone().expect("a take");
     assert!(
         (120..140).contains(&take.samples.len()),
@@ -114,12 +116,12 @@ fn a_flight_is_recorded_and_becomes_keys_in_one_step() {
     let last = path.at(seconds).expect("a camera").position;
     assert!((first - start.position).length() < 2.0, "{first:?}");
     assert!((last - end.position).length() < 2.0, "{last:?}");
-    assert!(desk.editor().looks_through(), "the flight is shown");
-    desk.window.get_by_label_contains("samples → ");
-    assert_eq!(desk.editor().undo_label(), Some("Record flight"));
+    assert!(harness.editor().looks_through(), "the flight is shown");
+    harness.window.get_by_label_contains("samples → ");
+    assert_eq!(harness.editor().undo_label(), Some("Record flight"));
     // The slider makes other keys of the same take.
     let mut editor = Editor::demo();
-    let text = desk.editor().to_text().expect("a text");
+    let text = harness.editor().to_text().expect("a text");
     editor.recover(Document::from_text(&text).expect("a scene"), None);
     editor.apply(Action::Time(Time::Simplify(0.1)));
     let fine = editor.scene().animation.keys.len();
@@ -129,57 +131,60 @@ fn a_flight_is_recorded_and_becomes_keys_in_one_step() {
     assert!(editor.timeline().worst.expect("measured") <= 100.0);
     assert_eq!(editor.scene().animation.take.as_deref(), Some(&*take));
     // One step back is before the recording.
-    desk.press(Modifiers::COMMAND, Key::Z);
-    assert!(desk.scene().animation.is_still());
+    harness.press(Modifiers::COMMAND, Key::Z);
+    assert!(harness.scene().animation.is_still());
 }
 
 #[test]
 fn keys_are_set_overwritten_and_deleted() {
-    let mut desk = EditorHarness::new();
-    desk.press(Modifiers::NONE, Key::K);
-    assert_eq!(times(&desk), [0.0]);
+    let mut harness = EditorHarness::new();
+    harness.press(Modifiers::NONE, Key::K);
+    assert_eq!(times(&harness), [0.0]);
     // With one key there is no time yet: a second one is typed.
-    let mut later = desk.scene().animation.clone();
+    let mut later = harness.scene().animation.clone();
     later
         .keys
-        .push(SceneKey::new(2.0, desk.scene().camera.clone()));
+        .push(SceneKey::new(2.0, harness.scene().camera.clone()));
     let text = Document {
         header: String::new(),
         scene: Scene {
             animation: later,
-            ..desk.scene().clone()
+            ..harness.scene().clone()
         },
     };
-    let mut desk = EditorHarness::with(|_| Vec::new(), Some(&text.to_text().expect("a text")));
-    desk.press(Modifiers::NONE, Key::CloseBracket);
-    assert_eq!(desk.editor().shown_time(), 2.0);
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text.to_text().expect("a text")));
+    harness.press(Modifiers::NONE, Key::CloseBracket);
+    assert_eq!(harness.editor().shown_time(), 2.0);
     // Fly away from the key, and put the view into it.
-    desk.window.key_down(Key::D);
-    (0..30).for_each(|_| desk.window.step());
-    desk.window.key_up(Key::D);
-    desk.settle();
-    assert!(!desk.editor().looks_through(), "flying leaves the shot");
-    let view = desk.scene().camera.clone();
-    assert_ne!(view.position, desk.scene().animation.keys[1].value.position);
-    desk.press(Modifiers::NONE, Key::K);
-    assert_eq!(times(&desk), [0.0, 2.0], "the key there is overwritten");
-    assert_eq!(desk.scene().animation.keys[1].value, view);
-    assert_eq!(desk.editor().undo_label(), Some("Add key"));
+    harness.window.key_down(Key::D);
+    (0..30).for_each(|_| harness.window.step());
+    harness.window.key_up(Key::D);
+    harness.settle();
+    assert!(!harness.editor().looks_through(), "flying leaves the shot");
+    let view = harness.scene().camera.clone();
+    assert_ne!(
+        view.position,
+        harness.scene().animation.keys[1].value.position
+    );
+    harness.press(Modifiers::NONE, Key::K);
+    assert_eq!(times(&harness), [0.0, 2.0], "the key there is overwritten");
+    assert_eq!(harness.scene().animation.keys[1].value, view);
+    assert_eq!(harness.editor().undo_label(), Some("Add key"));
     // The key is selected: its numbers are in the inspector.
-    desk.type_into("time", "3.5");
-    assert_eq!(times(&desk), [0.0, 3.5]);
-    desk.type_into("position x", "12");
-    assert_eq!(desk.scene().animation.keys[1].value.position.x, 12.0);
-    desk.press(Modifiers::NONE, Key::Delete);
-    assert_eq!(times(&desk), [0.0]);
+    harness.type_into("time", "3.5");
+    assert_eq!(times(&harness), [0.0, 3.5]);
+    harness.type_into("position x", "12");
+    assert_eq!(harness.scene().animation.keys[1].value.position.x, 12.0);
+    harness.press(Modifiers::NONE, Key::Delete);
+    assert_eq!(times(&harness), [0.0]);
     for expected in [
         vec![0.0, 3.5],
         vec![0.0, 3.5],
         vec![0.0, 2.0],
         vec![0.0, 2.0],
     ] {
-        desk.press(Modifiers::COMMAND, Key::Z);
-        assert_eq!(times(&desk), expected);
+        harness.press(Modifiers::COMMAND, Key::Z);
+        assert_eq!(times(&harness), expected);
     }
 }
 
@@ -214,65 +219,78 @@ fn keys_made_anew_keep_the_time_that_the_flight_was_given() {
 
 #[test]
 fn keys_are_dragged_copied_and_picked_with_the_mouse() {
-    let mut desk = moving(&[(0.0, 0.0), (1.0, 30.0), (2.0, 10.0), (4.0, 60.0)]);
-    let second = points_per_second(&desk);
-    let at = place_of(&desk, "Key 2");
-    drag(&mut desk, at, vec2(0.5 * second, 0.0), Modifiers::NONE);
-    assert_eq!(times(&desk), [0.0, 1.5, 2.0, 4.0]);
-    assert_eq!(desk.editor().undo_label(), Some("Move keys"));
-    let at = place_of(&desk, "Key 2");
-    drag(&mut desk, at, vec2(1.5 * second, 0.0), CTRL);
-    assert_eq!(times(&desk), [0.0, 1.5, 2.0, 3.0, 4.0], "a copy");
-    assert_eq!(desk.editor().undo_label(), Some("Copy keys"));
-    let keys = &desk.scene().animation.keys;
+    let mut harness = animation(&[(0.0, 0.0), (1.0, 30.0), (2.0, 10.0), (4.0, 60.0)]);
+    let second = points_per_second(&harness);
+    let at = place_of(&harness, "Key 2");
+    drag(&mut harness, at, vec2(0.5 * second, 0.0), Modifiers::NONE);
+    assert_eq!(times(&harness), [0.0, 1.5, 2.0, 4.0]);
+    assert_eq!(harness.editor().undo_label(), Some("Move keys"));
+    let at = place_of(&harness, "Key 2");
+    drag(&mut harness, at, vec2(1.5 * second, 0.0), CTRL);
+    assert_eq!(times(&harness), [0.0, 1.5, 2.0, 3.0, 4.0], "a copy");
+    assert_eq!(harness.editor().undo_label(), Some("Copy keys"));
+    let keys = &harness.scene().animation.keys;
     assert_eq!(keys[1].value, keys[3].value);
     // Two keys together; the later one replaces what it lands on.
-    desk.click("Key 2");
-    desk.window
+    harness.click("Key 2");
+    harness
+        .window
         .get_by_label("Key 3")
         .click_modifiers(Modifiers::SHIFT);
-    desk.settle();
-    assert_eq!(desk.editor().timeline().selected.len(), 2);
-    let at = place_of(&desk, "Key 2");
-    drag(&mut desk, at, vec2(1.0 * second, 0.0), Modifiers::NONE);
-    assert_eq!(times(&desk), [0.0, 2.5, 3.0, 4.0]);
+    harness.settle();
+    assert_eq!(harness.editor().timeline().selected.len(), 2);
+    let at = place_of(&harness, "Key 2");
+    drag(&mut harness, at, vec2(1.0 * second, 0.0), Modifiers::NONE);
+    assert_eq!(times(&harness), [0.0, 2.5, 3.0, 4.0]);
     // None goes before the start.
-    let at = place_of(&desk, "Key 2");
-    drag(&mut desk, at, vec2(-9.0 * second, 0.0), Modifiers::NONE);
-    assert_eq!(times(&desk)[0], 0.0);
+    let at = place_of(&harness, "Key 2");
+    drag(&mut harness, at, vec2(-9.0 * second, 0.0), Modifiers::NONE);
+    assert_eq!(times(&harness)[0], 0.0);
     for _ in 0..4 {
-        desk.press(Modifiers::COMMAND, Key::Z);
+        harness.press(Modifiers::COMMAND, Key::Z);
     }
-    assert_eq!(times(&desk), [0.0, 1.0, 2.0, 4.0], "one step for each drag");
+    assert_eq!(
+        times(&harness),
+        [0.0, 1.0, 2.0, 4.0],
+        "one step for each drag"
+    );
 }
 
 #[test]
 fn the_playhead_is_dragged_and_stepped_and_the_picture_follows() {
-    let mut desk = moving(&[(0.0, 0.0), (2.0, 60.0)]);
-    let at_rest = desk.picture();
-    let second = points_per_second(&desk);
-    let start = Pos2::new(place_of(&desk, "Key 1").x, place_of(&desk, "Playhead").y);
-    drag(&mut desk, start, vec2(1.23 * second, 0.0), Modifiers::NONE);
-    assert_eq!(desk.editor().shown_time(), 1.2, "it snaps to frames");
-    assert!(desk.picture() != at_rest);
-    let scene = Arc::new(desk.scene().clone());
+    let mut harness = animation(&[(0.0, 0.0), (2.0, 60.0)]);
+    let at_rest = harness.picture();
+    let second = points_per_second(&harness);
+    let start = Pos2::new(
+        place_of(&harness, "Key 1").x,
+        place_of(&harness, "Playhead").y,
+    );
+    drag(
+        &mut harness,
+        start,
+        vec2(1.23 * second, 0.0),
+        Modifiers::NONE,
+    );
+    assert_eq!(harness.editor().shown_time(), 1.2, "it snaps to frames");
+    assert!(harness.picture() != at_rest);
+    let scene = Arc::new(harness.scene().clone());
     let there = shot(&scene, &CameraPath::new(&scene.animation.keys), 1.2);
-    let size = desk.picture();
+    let size = harness.picture();
     let expected = RenderRequest::of(&there, size.width as u32, size.height as u32);
     let direct = render(&there, &expected, &RenderControl::default())
         .expect("whole")
         .0;
-    assert!(desk.picture() == direct, "what is shown is the frame");
-    assert_eq!(desk.editor().undo_label(), None, "looking is no edit");
-    desk.press(Modifiers::NONE, Key::Period);
-    assert!((desk.editor().shown_time() - 1.3).abs() < 1e-12);
-    desk.press(Modifiers::NONE, Key::Comma);
-    desk.press(Modifiers::NONE, Key::Comma);
-    assert!((desk.editor().shown_time() - 1.1).abs() < 1e-12);
-    desk.press(Modifiers::NONE, Key::End);
-    assert_eq!(desk.editor().shown_time(), 2.0);
-    desk.press(Modifiers::NONE, Key::Home);
-    assert_eq!(desk.editor().shown_time(), 0.0);
+    assert!(harness.picture() == direct, "what is shown is the frame");
+    assert_eq!(harness.editor().undo_label(), None, "looking is no edit");
+    harness.press(Modifiers::NONE, Key::Period);
+    assert!((harness.editor().shown_time() - 1.3).abs() < 1e-12);
+    harness.press(Modifiers::NONE, Key::Comma);
+    harness.press(Modifiers::NONE, Key::Comma);
+    assert!((harness.editor().shown_time() - 1.1).abs() < 1e-12);
+    harness.press(Modifiers::NONE, Key::End);
+    assert_eq!(harness.editor().shown_time(), 2.0);
+    harness.press(Modifiers::NONE, Key::Home);
+    assert_eq!(harness.editor().shown_time(), 0.0);
 }
 
 #[test]
@@ -308,106 +326,109 @@ fn playing_is_real_time_whatever_the_frames() {
 
 #[test]
 fn the_window_plays_and_pauses() {
-    let mut desk = moving(&[(0.0, 0.0), (20.0, 60.0)]);
-    desk.window.key_press(Key::G);
-    (0..61).for_each(|_| desk.window.step());
-    let playhead = desk.editor().timeline().playhead;
+    let mut harness = animation(&[(0.0, 0.0), (20.0, 60.0)]);
+    harness.window.key_press(Key::G);
+    (0..61).for_each(|_| harness.window.step());
+    let playhead = harness.editor().timeline().playhead;
     assert!(
         (0.9..1.1).contains(&playhead),
         "a second of steps: {playhead}"
     );
-    assert!(desk.editor().looks_through());
-    desk.window.get_by_label_contains(" of 10 fps");
-    desk.press(Modifiers::NONE, Key::G);
-    assert!(!desk.editor().timeline().is_playing);
+    assert!(harness.editor().looks_through());
+    harness.window.get_by_label_contains(" of 10 fps");
+    harness.press(Modifiers::NONE, Key::G);
+    assert!(!harness.editor().timeline().is_playing);
     assert_eq!(
-        desk.editor().timeline().playhead,
-        desk.editor().shown_time()
+        harness.editor().timeline().playhead,
+        harness.editor().shown_time()
     );
-    desk.press(Modifiers::NONE, Key::C);
-    assert!(!desk.editor().looks_through());
-    assert_eq!(desk.editor().shown().camera, desk.scene().camera);
+    harness.press(Modifiers::NONE, Key::C);
+    assert!(!harness.editor().looks_through());
+    assert_eq!(harness.editor().shown().camera, harness.scene().camera);
     // From outside it plays too, and one may fly meanwhile.
-    desk.window.key_press(Key::G);
-    desk.window.key_down(Key::S);
-    (0..30).for_each(|_| desk.window.step());
-    desk.window.key_up(Key::S);
-    desk.window.step();
-    let timeline = desk.editor().timeline();
+    harness.window.key_press(Key::G);
+    harness.window.key_down(Key::S);
+    (0..30).for_each(|_| harness.window.step());
+    harness.window.key_up(Key::S);
+    harness.window.step();
+    let timeline = harness.editor().timeline();
     assert!(timeline.is_playing && !timeline.looks_through);
     assert!(timeline.playhead > playhead);
-    desk.press(Modifiers::NONE, Key::C);
-    assert!(desk.editor().looks_through());
+    harness.press(Modifiers::NONE, Key::C);
+    assert!(harness.editor().looks_through());
 }
 
 #[test]
 fn a_key_is_dragged_in_the_view() {
-    let mut desk = moving(&[(0.0, -60.0), (2.0, 40.0)]);
+    let mut harness = animation(&[(0.0, -60.0), (2.0, 40.0)]);
     // From farther back the flight is in sight.
-    desk.window.key_down(Key::S);
-    (0..60).for_each(|_| desk.window.step());
-    desk.window.key_up(Key::S);
-    desk.settle();
-    let before = desk.scene().animation.keys[1].value.clone();
-    let at = place_of(&desk, "Key 2 in the view");
-    drag(&mut desk, at, vec2(0.0, -60.0), Modifiers::NONE);
-    let after = desk.scene().animation.keys[1].value.clone();
-    assert_eq!(desk.editor().undo_label(), Some("Move key in the view"));
+    harness.window.key_down(Key::S);
+    (0..60).for_each(|_| harness.window.step());
+    harness.window.key_up(Key::S);
+    harness.settle();
+    let before = harness.scene().animation.keys[1].value.clone();
+    let at = place_of(&harness, "Key 2 in the view");
+    drag(&mut harness, at, vec2(0.0, -60.0), Modifiers::NONE);
+    let after = harness.scene().animation.keys[1].value.clone();
+    assert_eq!(harness.editor().undo_label(), Some("Move key in the view"));
     let moved = after.position - before.position;
-    let view = desk.scene().camera.basis().expect("a basis");
+    let view = harness.scene().camera.basis().expect("a basis");
     assert!(moved.dot(view.y_axis) > 5.0, "up in the view: {moved:?}");
     assert!(
         moved.dot(view.z_axis).abs() < 1e-6 * moved.length(),
         "in its plane"
     );
     assert_eq!(after.look_at, before.look_at);
-    let there = place_of(&desk, "Key 2 in the view");
+    let there = place_of(&harness, "Key 2 in the view");
     assert!(
         (there - (at + vec2(0.0, -60.0))).length() < 2.0,
         "{there:?} from {at:?}"
     );
-    desk.press(Modifiers::COMMAND, Key::Z);
-    assert_eq!(desk.scene().animation.keys[1].value, before, "one step");
+    harness.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(harness.scene().animation.keys[1].value, before, "one step");
 }
 
 #[test]
 fn what_has_keys_is_keyed_by_changing_it() {
-    let mut desk = moving(&[(0.0, 0.0), (2.0, 0.0)]);
-    desk.click("Light 1");
-    desk.click("key intensity");
-    assert_eq!(desk.scene().animation.tracks.len(), 1);
-    desk.press(Modifiers::NONE, Key::End);
-    desk.type_into("intensity", "0.8");
-    let track = &desk.scene().animation.tracks[0];
+    let mut harness = animation(&[(0.0, 0.0), (2.0, 0.0)]);
+    harness.click("Light 1");
+    harness.click("key intensity");
+    assert_eq!(harness.scene().animation.tracks.len(), 1);
+    harness.press(Modifiers::NONE, Key::End);
+    harness.type_into("intensity", "0.8");
+    let track = &harness.scene().animation.tracks[0];
     let values: Vec<(f64, Value)> = track.keys.iter().map(|key| (key.time, key.value)).collect();
     assert_eq!(
         values,
         [(0.0, Value::Number(0.2)), (2.0, Value::Number(0.8))]
     );
     assert_eq!(
-        desk.scene().lights[0].intensity,
+        harness.scene().lights[0].intensity,
         0.2,
         "the scene's own stays"
     );
-    assert_eq!(desk.editor().shown().lights[0].intensity, 0.8);
+    assert_eq!(harness.editor().shown().lights[0].intensity, 0.8);
     // Other fields of the same light are no keys.
-    desk.type_into("position x", "90");
-    assert_eq!(desk.scene().lights[0].position.x, 90.0);
-    assert_eq!(desk.scene().lights[0].intensity, 0.2);
-    assert_eq!(desk.scene().animation.tracks[0].keys.len(), 2);
-    desk.press(Modifiers::NONE, Key::Home);
+    harness.type_into("position x", "90");
+    assert_eq!(harness.scene().lights[0].position.x, 90.0);
+    assert_eq!(harness.scene().lights[0].intensity, 0.2);
+    assert_eq!(harness.scene().animation.tracks[0].keys.len(), 2);
+    harness.press(Modifiers::NONE, Key::Home);
     for _ in 0..10 {
-        desk.press(Modifiers::NONE, Key::Period);
+        harness.press(Modifiers::NONE, Key::Period);
     }
     assert!(
-        (desk.editor().shown().lights[0].intensity - 0.5).abs() < 1e-9,
+        (harness.editor().shown().lights[0].intensity - 0.5).abs() < 1e-9,
         "halfway"
     );
     // Keys follow a new name, and go with the light.
-    desk.type_name("name", "Sun");
-    assert_eq!(desk.scene().animation.tracks[0].target.owner(), Some("Sun"));
-    desk.press(Modifiers::NONE, Key::Delete);
-    assert!(desk.scene().animation.tracks.is_empty());
+    harness.type_name("name", "Sun");
+    assert_eq!(
+        harness.scene().animation.tracks[0].target.owner(),
+        Some("Sun")
+    );
+    harness.press(Modifiers::NONE, Key::Delete);
+    assert!(harness.scene().animation.tracks.is_empty());
 }
 
 #[test]
@@ -435,40 +456,42 @@ fn an_object_with_keys_moves_and_its_corners_do_not_drift() {
 
 #[test]
 fn ready_made_flights_and_other_timings_are_one_step_each() {
-    let mut desk = EditorHarness::new();
+    let mut harness = EditorHarness::new();
     let presets = Preset::ALL.map(|preset| preset.words().0);
-    desk.window
+    harness
+        .window
         .get_by_role_and_label(Role::Button, "Animate")
         .click();
-    desk.settle();
-    desk.window
+    harness.settle();
+    harness
+        .window
         .get_by_label_contains("Ready-made flight")
         .click();
-    desk.settle();
+    harness.settle();
     for name in presets {
-        desk.window.get_by_label(name);
+        harness.window.get_by_label(name);
     }
-    desk.click("Turntable");
-    assert_eq!(desk.scene().animation.keys.len(), 5);
+    harness.click("Turntable");
+    assert_eq!(harness.scene().animation.keys.len(), 5);
     assert!(matches!(
-        desk.scene().animation.keys[0].interpolation,
+        harness.scene().animation.keys[0].interpolation,
         Interpolation::Orbit { .. }
     ));
-    assert_eq!(desk.editor().undo_label(), Some("Turntable"));
-    desk.type_into("length of the flight", "12");
-    assert_eq!(times(&desk), [0.0, 3.0, 6.0, 9.0, 12.0]);
-    assert_eq!(desk.editor().undo_label(), Some("Stretch"));
-    desk.press(Modifiers::COMMAND, Key::Z);
-    desk.press(CTRL, Key::A);
-    assert_eq!(desk.editor().timeline().selected.len(), 5);
-    desk.press(Modifiers::COMMAND, Key::Z);
-    assert!(desk.scene().animation.is_still());
+    assert_eq!(harness.editor().undo_label(), Some("Turntable"));
+    harness.type_into("length of the flight", "12");
+    assert_eq!(times(&harness), [0.0, 3.0, 6.0, 9.0, 12.0]);
+    assert_eq!(harness.editor().undo_label(), Some("Stretch"));
+    harness.press(Modifiers::COMMAND, Key::Z);
+    harness.press(CTRL, Key::A);
+    assert_eq!(harness.editor().timeline().selected.len(), 5);
+    harness.press(Modifiers::COMMAND, Key::Z);
+    assert!(harness.scene().animation.is_still());
 }
 
 #[test]
 fn paths_go_out_to_a_table_and_come_back() {
     let text = std::fs::read_to_string(FLIGHT).expect("readable");
-    let mut desk = EditorHarness::with(
+    let mut harness = EditorHarness::with(
         |folder| {
             vec![
                 (Ask::ExportPath, Some(folder.join("path.csv"))),
@@ -478,25 +501,26 @@ fn paths_go_out_to_a_table_and_come_back() {
         },
         Some(&text),
     );
-    let before = desk.scene().animation.keys.clone();
-    desk.choose("Animate", "Export path…");
-    let table = std::fs::read_to_string(desk.folder.path().join("path.csv")).expect("written");
+    let before = harness.scene().animation.keys.clone();
+    harness.choose("Animate", "Export path…");
+    let table = std::fs::read_to_string(harness.folder.path().join("path.csv")).expect("written");
     assert_eq!(table.lines().count(), 1 + before.len());
-    desk.choose("Animate", "Import path…");
-    let after = &desk.scene().animation.keys;
+    harness.choose("Animate", "Import path…");
+    let after = &harness.scene().animation.keys;
     assert_eq!(after.len(), before.len());
     for (was, is) in before.iter().zip(after) {
         assert_eq!((was.time, was.value.position), (is.time, is.value.position));
         assert!((was.value.look_at - is.value.look_at).length() < 1e-9);
     }
-    let broken = desk.folder.path().join("broken.csv");
+    let broken = harness.folder.path().join("broken.csv");
     std::fs::write(&broken, "time,x,y,z\n0,1,2,3\n0,1,2,3\n").expect("written");
-    let kept = desk.scene().animation.keys.clone();
-    desk.choose("Animate", "Import path…");
-    desk.window
+    let kept = harness.scene().animation.keys.clone();
+    harness.choose("Animate", "Import path…");
+    harness
+        .window
         .get_by_label_contains("keys must be in order of time");
     assert_eq!(
-        desk.scene().animation.keys,
+        harness.scene().animation.keys,
         kept,
         "a bad table changes nothing"
     );
@@ -512,22 +536,22 @@ fn a_frame_is_the_same_from_the_command_line_and_in_the_window() {
         scene,
     };
     let text = document.to_text().expect("a text");
-    let mut desk = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
     let frame = 77;
-    let time = desk.scene().animation.time_of(frame);
-    assert!(!desk.editor().is_dirty(), "opening changes nothing");
-    desk.press(Modifiers::NONE, Key::Home);
+    let time = harness.scene().animation.time_of(frame);
+    assert!(!harness.editor().is_dirty(), "opening changes nothing");
+    harness.press(Modifiers::NONE, Key::Home);
     for _ in 1..frame {
-        desk.window.key_press(Key::Period);
-        desk.window.step();
+        harness.window.key_press(Key::Period);
+        harness.window.step();
     }
-    desk.settle();
-    assert_eq!(desk.editor().shown_time(), time);
-    desk.press(Modifiers::NONE, Key::H);
-    let picture = desk.picture();
+    harness.settle();
+    assert_eq!(harness.editor().shown_time(), time);
+    harness.press(Modifiers::NONE, Key::H);
+    let picture = harness.picture();
     assert_eq!((picture.width, picture.height), (160, 120));
-    let file = desk.folder.path().join("given.ron");
-    let output = desk.folder.path().join("frame.ppm");
+    let file = harness.folder.path().join("given.ron");
+    let output = harness.folder.path().join("frame.ppm");
     let status = Command::new(env!("CARGO_BIN_EXE_glint"))
         .args(["render", "--frame", "77", "-o"])
         .args([&output, &file])

@@ -19,7 +19,7 @@ fn live(revision: u64, scene: &Arc<Scene>, side: u32) -> LiveJob {
     LiveJob {
         revision,
         scene: Arc::clone(scene),
-        picture,
+        request: picture,
         pace: Pace::Within(BUDGET),
     }
 }
@@ -29,7 +29,7 @@ fn still(revision: u64, scene: &Arc<Scene>, side: u32) -> StillJob {
     StillJob {
         revision,
         scene: Arc::clone(scene),
-        picture,
+        request: picture,
         save_to: None,
     }
 }

@@ -16,7 +16,7 @@ const HALF_LEVEL: f64 = 0.5 / 255.0;
 pub fn maps(effort: u32) -> Vec<Map> {
     HighlightMethod::ALL
         .iter()
-        .map(|way| {
+        .map(|method| {
             let across = Axis {
                 name: "exponent",
                 values: EXPONENTS.to_vec(),
@@ -27,11 +27,14 @@ pub fn maps(effort: u32) -> Vec<Map> {
             };
             Map::measure(
                 ("highlight", "off by more than half a level of 255"),
-                (way.word.to_owned(), way.value == HighlightMethod::default()),
+                (
+                    method.id.to_owned(),
+                    method.value == HighlightMethod::default(),
+                ),
                 (across, up),
                 |p, _| {
                     let tries =
-                        (0..TRIES * u64::from(effort)).filter_map(|n| fails(way.value, n, p));
+                        (0..TRIES * u64::from(effort)).filter_map(|n| fails(method.value, n, p));
                     Tries::count(tries)
                 },
             )

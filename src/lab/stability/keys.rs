@@ -35,7 +35,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
         name: "flight",
         values: vec![1.0],
     };
-    let way = |name: &'static str, is_default, leaves: fn(&[f64; 4]) -> bool| {
+    let method = |name: &'static str, is_default, leaves: fn(&[f64; 4]) -> bool| {
         Map::measure(
             ("path between keys", "overshoots a key"),
             (name.to_owned(), is_default),
@@ -58,8 +58,8 @@ pub fn maps(effort: u32) -> Vec<Map> {
         )
     };
     vec![
-        way("centripetal", true, path_overshoots),
-        way("uniform", false, uniform_overshoots),
+        method("centripetal", true, path_overshoots),
+        method("uniform", false, uniform_overshoots),
         turn("yaw and pitch", true, path_loses_direction),
         turn("straight f32", false, lerp_loses_direction),
         turn("acos-slerp f32", false, slerp_loses_direction),

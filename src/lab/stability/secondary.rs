@@ -20,7 +20,7 @@ const BEYOND: f64 = 1e6;
 
 /// What the ball is made of.
 #[derive(Clone, Copy, PartialEq)]
-enum Ball {
+enum BallKind {
     Sphere,
     Mesh,
 }
@@ -28,12 +28,12 @@ enum Ball {
 /// Two maps for each way and ball: lit points that are dark (acne), and points in shadow that are
 /// lit (leak). Pixels beside an edge of a shadow or of a thing are not tried.
 pub fn maps() -> Vec<Map> {
-    let mut maps = maps_of(Ball::Sphere, ["shadow acne", "shadow leak"]);
-    maps.extend(maps_of(Ball::Mesh, ["mesh acne", "mesh leak"]));
+    let mut maps = maps_of(BallKind::Sphere, ["shadow acne", "shadow leak"]);
+    maps.extend(maps_of(BallKind::Mesh, ["mesh acne", "mesh leak"]));
     maps
 }
 
-fn maps_of(ball: Ball, [acne, leak]: [&'static str; 2]) -> Vec<Map> {
+fn maps_of(ball: BallKind, [acne, leak]: [&'static str; 2]) -> Vec<Map> {
     let at_home = scene(ball, 0.0, 1.0);
     let truth = lit(&at_home, RayOffset::Robust, Precision::Double);
     let facing = lit(&at_home, RayOffset::Fixed(BEYOND), Precision::Double);
@@ -54,13 +54,13 @@ fn maps_of(ball: Ball, [acne, leak]: [&'static str; 2]) -> Vec<Map> {
             },
         )
     };
-    let acne = RayOffset::ALL.iter().map(|way| {
+    let acne = RayOffset::ALL.iter().map(|method| {
         let failure = "lit point that is dark";
-        map(acne, failure, way.value, way.word, &bright)
+        map(acne, failure, method.value, method.id, &bright)
     });
-    let leak = RayOffset::ALL.iter().map(|way| {
+    let leak = RayOffset::ALL.iter().map(|method| {
         let failure = "point in shadow that is lit";
-        map(leak, failure, way.value, way.word, &shadowed)
+        map(leak, failure, method.value, method.id, &shadowed)
     });
     acne.chain(leak).collect()
 }
@@ -95,7 +95,7 @@ fn is_inner(lit: &[bool], place: usize) -> bool {
 }
 
 /// A floor, a ball on it, a thin card beside it, and one light; so large, so many sizes away.
-fn scene(ball: Ball, away: f64, scale: f64) -> Scene {
+fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
     let place = |x: f64, y: f64, z: f64| {
         (DVec3::new(x, y, z) + DVec3::new(0.6, -0.64, 0.48) * away) * scale
     };
@@ -135,14 +135,14 @@ fn scene(ball: Ball, away: f64, scale: f64) -> Scene {
         ),
     ];
     match ball {
-        Ball::Sphere => scene.objects.push(object(
+        BallKind::Sphere => scene.objects.push(object(
             "Ball",
             Shape::Sphere {
                 center: place(0.0, 0.5, 0.0),
                 radius: 0.5 * scale,
             },
         )),
-        Ball::Mesh => {
+        BallKind::Mesh => {
             for (n, face) in super::triangle::ball().into_iter().enumerate() {
                 let corner = |v: DVec3| place(v.x * 0.5, v.y * 0.5 + 0.5, v.z * 0.5);
                 let [a, b, c] = face.map(corner);

@@ -17,27 +17,31 @@ const TRIES: u64 = 400;
 /// One map for each method: hits where the ray passes by, misses where it does not. Rays within a
 /// tenth of a radius of the edge are not tried.
 pub fn maps(effort: u32) -> Vec<Map> {
-    let ways = SphereMethod::ALL.iter();
-    ways.map(|way| {
-        let across = Axis {
-            name: "radii away",
-            values: DISTANCES.to_vec(),
-        };
-        Map::measure(
-            (
-                "sphere",
-                "hit where it passes by or missed where it does not",
-            ),
-            (way.word.to_owned(), way.value == SphereMethod::default()),
-            (across, scales()),
-            |distance, scale| {
-                let tries =
-                    (0..TRIES * u64::from(effort)).map(|n| fails(way.value, n, distance, scale));
-                Tries::count(tries)
-            },
-        )
-    })
-    .collect()
+    let methods = SphereMethod::ALL.iter();
+    methods
+        .map(|method| {
+            let across = Axis {
+                name: "radii away",
+                values: DISTANCES.to_vec(),
+            };
+            Map::measure(
+                (
+                    "sphere",
+                    "hit where it passes by or missed where it does not",
+                ),
+                (
+                    method.id.to_owned(),
+                    method.value == SphereMethod::default(),
+                ),
+                (across, scales()),
+                |distance, scale| {
+                    let tries = (0..TRIES * u64::from(effort))
+                        .map(|n| fails(method.value, n, distance, scale));
+                    Tries::count(tries)
+                },
+            )
+        })
+        .collect()
 }
 
 fn fails(method: SphereMethod, number: u64, distance: f64, scale: f64) -> bool {

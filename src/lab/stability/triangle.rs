@@ -19,26 +19,30 @@ const INSIDE: DVec3 = DVec3::new(0.11, -0.07, 0.05);
 /// One map for each method.
 pub fn maps(effort: u32) -> Vec<Map> {
     let ball = ball();
-    let ways = TriangleMethod::ALL.iter();
-    ways.map(|way| {
-        Map::measure(
-            (
-                "triangle",
-                "ray from inside a closed mesh that meets nothing",
-            ),
-            (way.word.to_owned(), way.value == TriangleMethod::default()),
-            (places(), scales()),
-            |away, scale| {
-                let mesh: Vec<Triangle<f32>> =
-                    ball.iter().map(|&face| placed(face, away, scale)).collect();
-                let origin = Vec3::<f32>::from_dvec3((INSIDE + AWAY * away) * scale);
-                let tries = (0..TRIES * u64::from(effort))
-                    .filter_map(|n| leaks(way.value, &mesh, origin, n));
-                Tries::count(tries)
-            },
-        )
-    })
-    .collect()
+    let methods = TriangleMethod::ALL.iter();
+    methods
+        .map(|method| {
+            Map::measure(
+                (
+                    "triangle",
+                    "ray from inside a closed mesh that meets nothing",
+                ),
+                (
+                    method.id.to_owned(),
+                    method.value == TriangleMethod::default(),
+                ),
+                (places(), scales()),
+                |away, scale| {
+                    let mesh: Vec<Triangle<f32>> =
+                        ball.iter().map(|&face| placed(face, away, scale)).collect();
+                    let origin = Vec3::<f32>::from_dvec3((INSIDE + AWAY * away) * scale);
+                    let tries = (0..TRIES * u64::from(effort))
+                        .filter_map(|n| leaks(method.value, &mesh, origin, n));
+                    Tries::count(tries)
+                },
+            )
+        })
+        .collect()
 }
 
 /// Whether the ray leaks; `None` for a target that has no direction.

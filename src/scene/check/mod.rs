@@ -7,7 +7,7 @@ use std::collections::HashSet;
 
 use glam::DVec3;
 
-use super::locate::Step;
+use super::locate::PathStep;
 use super::notation::format_number;
 use super::{Camera, LightObj, MAX_REFLECTIONS, MAX_SIDE, Render, Scene, Shape, VERSION};
 
@@ -28,7 +28,7 @@ const MIN_TRIANGLE_RATIO: f64 = 1e-9;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
     /// The way from the scene to the offending value.
-    pub path: Vec<Step>,
+    pub path: Vec<PathStep>,
     /// What is wrong, as a sentence without its full stop.
     pub sentence: String,
 }
@@ -223,30 +223,30 @@ fn check_pack_exists(at: &At, scene: &Scene, name: &str) -> Check {
 }
 
 /// A place in the scene, with the checks that values of the same kind share.
-struct At(Vec<Step>);
+struct At(Vec<PathStep>);
 
 impl At {
-    fn then(&self, step: Step) -> Self {
+    fn then(&self, step: PathStep) -> Self {
         Self(self.0.iter().cloned().chain([step]).collect())
     }
 
     fn field(&self, name: &'static str) -> Self {
-        self.then(Step::Field(name))
+        self.then(PathStep::Field(name))
     }
 
     fn index(&self, index: usize) -> Self {
-        self.then(Step::Index(index))
+        self.then(PathStep::Index(index))
     }
 
     fn key(&self, key: &str) -> Self {
-        self.then(Step::Key(key.to_owned()))
+        self.then(PathStep::Key(key.to_owned()))
     }
 
     fn name(&self) -> String {
         match self.0.last() {
-            Some(Step::Field(name)) => (*name).to_owned(),
-            Some(Step::Index(index)) => format!("item {}", index + 1),
-            Some(Step::Key(key)) => format!("{key:?}"),
+            Some(PathStep::Field(name)) => (*name).to_owned(),
+            Some(PathStep::Index(index)) => format!("item {}", index + 1),
+            Some(PathStep::Key(key)) => format!("{key:?}"),
             None => "the scene".to_owned(),
         }
     }

@@ -353,7 +353,7 @@ mod tests {
             (Vec3::new(0.2, 0.2, 1.0), Vec3::new(0.0, 0.0, 1.0)),
         ] {
             let ray = Ray { origin, direction };
-            for method in TriangleMethod::ALL.iter().map(|way| way.value) {
+            for method in TriangleMethod::ALL.iter().map(|method| method.value) {
                 assert_eq!(
                     intersect((), method, &ray, &Shear::new((), direction), &t),
                     f32::INFINITY
@@ -377,9 +377,9 @@ mod tests {
             let ray = Ray { origin, direction: Vec3::from_dvec3(direction.expect("assumed")) };
             let exact = (target - origin).length();
             let shear = Shear::new((), ray.direction);
-            for way in TriangleMethod::ALL {
-                let found = intersect((), way.value, &ray, &shear, &t);
-                prop_assert!((found - exact).abs() < 1e-4 * (1.0 + exact), "{}: {found} {exact}", way.word);
+            for method in TriangleMethod::ALL {
+                let found = intersect((), method.value, &ray, &shear, &t);
+                prop_assert!((found - exact).abs() < 1e-4 * (1.0 + exact), "{}: {found} {exact}", method.id);
             }
             let new = intersect((), TriangleMethod::Watertight, &ray, &shear, &t);
             let on_plane = (refine((), &ray, &t, new) - a).dot(t.normal).abs();

@@ -168,10 +168,10 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
                 .accessible_name(format!("export {name}"));
         }
         ComboBox::from_id_salt("export antialias")
-            .selected_text(settings.antialias.word())
+            .selected_text(settings.antialias.id())
             .show_ui(ui, |ui| {
-                for way in Sampling::ALL {
-                    ui.selectable_value(&mut settings.antialias, way.value, way.word);
+                for method in Sampling::ALL {
+                    ui.selectable_value(&mut settings.antialias, method.value, method.id);
                 }
             });
         for format in [Format::Ppm, Format::Png] {

@@ -131,13 +131,15 @@ pub fn show_picture(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
 
 /// A row for a choice between ways of doing a step.
 fn formula<T: Method>(rows: &mut Rows, name: &'static str, hint: &str, value: &mut T) {
-    let ways = T::ALL.iter().map(|way| (way.value, way.word.to_owned()));
-    let mut options: Vec<(T, String)> = ways.collect();
+    let methods = T::ALL
+        .iter()
+        .map(|method| (method.value, method.id.to_owned()));
+    let mut options: Vec<(T, String)> = methods.collect();
     if options.iter().all(|(option, _)| option != value) {
-        options.push((*value, value.word()));
+        options.push((*value, value.id()));
     }
     let lines = T::ALL.iter();
-    let lines = lines.map(|way| format!("\n{}: {} ({})", way.word, way.what, way.source));
+    let lines = lines.map(|method| format!("\n{}: {} ({})", method.id, method.what, method.source));
     rows.choice(
         name,
         &format!("{hint}{}", lines.collect::<String>()),

@@ -24,7 +24,7 @@ pub struct Chart {
     /// What the axis upwards measures.
     pub error: &'static str,
     /// The dots.
-    pub spots: Vec<Spot>,
+    pub spots: Vec<ChartDot>,
     /// Lines across: name and height.
     pub levels: Vec<(&'static str, f64)>,
     /// The dot that is looked at.
@@ -33,7 +33,7 @@ pub struct Chart {
 
 /// One dot.
 #[derive(Clone, Debug)]
-pub struct Spot {
+pub struct ChartDot {
     /// Its name.
     pub name: String,
     /// To the right; NaN if it is not measured.

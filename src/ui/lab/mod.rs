@@ -2,8 +2,8 @@
 //! at and adopted.
 
 mod chart;
+mod comparison;
 mod heat;
-mod look;
 mod stability;
 
 use std::sync::Arc;
@@ -12,8 +12,8 @@ use egui::{Button, DragValue, Key, Response, RichText, Ui};
 
 pub use self::stability::stability_picture;
 
-use self::chart::{Chart, Spot};
-use self::look::{FACES, Face, Look};
+use self::chart::{Chart, ChartDot};
+use self::comparison::{Comparison, FACES, Face};
 use self::stability::Stability;
 use super::UiRequests;
 use super::commands::Command;
@@ -34,7 +34,7 @@ const PICTURE: (u32, u32) = (800, 480);
 const DETAILS: f32 = 300.0;
 
 /// What the lab asks of the lane.
-pub enum Wish {
+pub enum LabRequest {
     /// Measure this.
     Measure(Box<Study>),
     /// Give the measuring up.
@@ -43,14 +43,14 @@ pub enum Wish {
 
 /// What the axis to the right measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Cost {
+enum CostAxis {
     Time,
     Rays,
 }
 
 /// What the axis upwards measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Error {
+enum ErrorAxis {
     Rmse,
     Max,
     Visible,
@@ -65,11 +65,11 @@ pub struct Lab {
     is_running: bool,
     /// Counts the studies.
     number: u64,
-    cost: Cost,
-    error: Error,
+    cost: CostAxis,
+    error: ErrorAxis,
     chosen: Option<usize>,
     face: Face,
-    look: Look,
+    look: Comparison,
     /// The bounds for the cheapest dot: RMSE and milliseconds.
     bounds: (f64, f64),
     /// Whether the maps are shown in place of the chart.
@@ -84,11 +84,11 @@ impl Default for Lab {
             study: None,
             is_running: false,
             number: 0,
-            cost: Cost::Time,
-            error: Error::Rmse,
+            cost: CostAxis::Time,
+            error: ErrorAxis::Rmse,
             chosen: None,
             face: Face::RenderRequest,
-            look: Look::default(),
+            look: Comparison::default(),
             bounds: (EIGHT_BIT_FLOOR, 100.0),
             shows_maps: false,
             stability: Stability::default(),
@@ -128,7 +128,12 @@ impl Lab {
     }
 
     /// Shows the panel.
-    pub fn show(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) -> Option<Wish> {
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        editor: &Editor,
+        out: &mut UiRequests,
+    ) -> Option<LabRequest> {
         ui.add_space(GRID / 2.0);
         let wish = ui.horizontal(|ui| self.show_head(ui, editor, out)).inner;
         if self.shows_maps {
@@ -148,7 +153,12 @@ impl Lab {
         wish
     }
 
-    fn show_head(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) -> Option<Wish> {
+    fn show_head(
+        &mut self,
+        ui: &mut Ui,
+        editor: &Editor,
+        out: &mut UiRequests,
+    ) -> Option<LabRequest> {
         let timeline = ui.selectable_label(false, "Timeline");
         if timeline
             .on_hover_text("Keys and playing (Ctrl+T)")
@@ -180,7 +190,7 @@ impl Lab {
             let done = self.study.as_ref().map_or(0.0, |study| study.progress());
             if ui.button("Cancel measuring").clicked() {
                 self.is_running = false;
-                wish = Some(Wish::Stop);
+                wish = Some(LabRequest::Stop);
             }
             let left = self.study.as_ref().and_then(|study| study.remaining());
             let left = left.map_or(String::new(), |left| {
@@ -197,17 +207,17 @@ impl Lab {
             self.chosen = None;
             self.number += 1;
             self.is_running = true;
-            wish = Some(Wish::Measure(study));
+            wish = Some(LabRequest::Measure(study));
         }
         ui.separator();
         for (cost, name, hint) in [
             (
-                Cost::Time,
+                CostAxis::Time,
                 "time",
                 "Milliseconds per picture: the median of interleaved runs",
             ),
             (
-                Cost::Rays,
+                CostAxis::Rays,
                 "rays",
                 "Rays per pixel: the same on every machine",
             ),
@@ -218,13 +228,17 @@ impl Lab {
         ui.separator();
         for (error, name, hint) in [
             (
-                Error::Rmse,
+                ErrorAxis::Rmse,
                 "RMSE",
                 "Root of the mean square of the error, linear, 0–1",
             ),
-            (Error::Max, "worst", "The worst channel of all pixels, 0–1"),
             (
-                Error::Visible,
+                ErrorAxis::Max,
+                "worst",
+                "The worst channel of all pixels, 0–1",
+            ),
+            (
+                ErrorAxis::Visible,
                 "visible",
                 "Share of the pixels that are off by more than 4/255",
             ),
@@ -311,7 +325,7 @@ impl Lab {
         let place_of_dot = self.chosen.filter(|_| self.is_open)?;
         let study = self.study.as_ref()?;
         let picture = study.dots.get(place_of_dot)?.picture.as_ref()?;
-        let reference = &study.yardstick.as_ref()?.picture;
+        let reference = &study.reference.as_ref()?.picture;
         let is_flipped = !ui.text_edit_focused() && ui.input(|input| input.key_down(Key::B));
         let face = if is_flipped {
             Face::Reference
@@ -347,7 +361,7 @@ impl Lab {
 
 /// A picture of the chart of time and RMSE, as the window would draw it.
 pub fn chart_picture(study: &Study) -> Image {
-    let chart = chart(Some(study), (Cost::Time, Error::Rmse), None);
+    let chart = chart(Some(study), (CostAxis::Time, ErrorAxis::Rmse), None);
     draw(PICTURE.0, PICTURE.1, 2.0, |ui| {
         egui::Frame::new().inner_margin(2.0 * GRID).show(ui, |ui| {
             chart.show(ui);
@@ -356,20 +370,20 @@ pub fn chart_picture(study: &Study) -> Image {
 }
 
 /// The dots of a study, as far as they are measured.
-fn chart(study: Option<&Study>, axes: (Cost, Error), chosen: Option<usize>) -> Chart {
+fn chart(study: Option<&Study>, axes: (CostAxis, ErrorAxis), chosen: Option<usize>) -> Chart {
     let dots = study.map_or(&[][..], |study| &study.dots);
     let error = |dot: &Measurement| {
         dot.failing.map_or(f64::NAN, |failing| match axes.1 {
-            Error::Rmse => failing.rmse,
-            Error::Max => failing.max,
-            Error::Visible => failing.visible,
+            ErrorAxis::Rmse => failing.rmse,
+            ErrorAxis::Max => failing.max,
+            ErrorAxis::Visible => failing.visible,
         })
     };
     let cost = |dot: &Measurement| match axes.0 {
-        Cost::Time => dot.timing().map_or(f64::NAN, |timing| timing.median),
-        Cost::Rays => dot.rays_per_pixel,
+        CostAxis::Time => dot.timing().map_or(f64::NAN, |timing| timing.median),
+        CostAxis::Rays => dot.rays_per_pixel,
     };
-    let spots = dots.iter().map(|dot| Spot {
+    let spots = dots.iter().map(|dot| ChartDot {
         name: dot.candidate.name.clone(),
         cost: cost(dot),
         // A logarithm has no zero.
@@ -377,12 +391,12 @@ fn chart(study: Option<&Study>, axes: (Cost, Error), chosen: Option<usize>) -> C
             .filter(|error| *error != 0.0)
             .unwrap_or(f64::NAN),
         words: format!("{}\n{}", dot.candidate.words(), figures(dot)),
-        is_doubtful: axes.0 == Cost::Time
+        is_doubtful: axes.0 == CostAxis::Time
             && dot.timing().is_some_and(|timing| timing.spread > DOUBTFUL),
     });
-    let truth = study.and_then(|study| study.yardstick.as_ref());
+    let truth = study.and_then(|study| study.reference.as_ref());
     let levels = match (axes.1, truth) {
-        (Error::Rmse, Some(truth)) => vec![
+        (ErrorAxis::Rmse, Some(truth)) => vec![
             ("8 bits show no less", EIGHT_BIT_FLOOR),
             ("the reference's own error", truth.rmse),
         ],
@@ -390,13 +404,13 @@ fn chart(study: Option<&Study>, axes: (Cost, Error), chosen: Option<usize>) -> C
     };
     Chart {
         cost: match axes.0 {
-            Cost::Time => "ms per picture",
-            Cost::Rays => "rays per pixel",
+            CostAxis::Time => "ms per picture",
+            CostAxis::Rays => "rays per pixel",
         },
         error: match axes.1 {
-            Error::Rmse => "RMSE",
-            Error::Max => "worst",
-            Error::Visible => "share > 4/255",
+            ErrorAxis::Rmse => "RMSE",
+            ErrorAxis::Max => "worst",
+            ErrorAxis::Visible => "share > 4/255",
         },
         spots: spots.collect(),
         levels,

@@ -131,10 +131,10 @@ fn headline(map: &Map) -> String {
 fn is_used(scene: &Scene, map: &Map) -> bool {
     let render = &scene.render;
     let word = match map.subject {
-        "sphere" => render.sphere.word(),
-        "triangle" => render.triangle.word(),
-        "highlight" => render.specular.word(),
-        "shadow acne" | "shadow leak" | "mesh acne" | "mesh leak" => render.offset.word(),
+        "sphere" => render.sphere.id(),
+        "triangle" => render.triangle.id(),
+        "highlight" => render.specular.id(),
+        "shadow acne" | "shadow leak" | "mesh acne" | "mesh leak" => render.offset.id(),
         // There is one way of doing the rest.
         _ => return map.is_default,
     };

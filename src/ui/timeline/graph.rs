@@ -3,8 +3,8 @@
 use egui::{Ui, Vec2b, vec2};
 use egui_plot::{HoverPosition, Line, MarkerShape, Plot, PlotPoint, PlotPoints, Points};
 
-use super::lanes::Scale;
-use crate::animate::{CameraPath, Motion, motion_between};
+use super::tracks_area::Scale;
+use crate::animate::{CameraChange, CameraPath, motion_between};
 use crate::editor::Editor;
 use crate::scene::{Animation, Camera, Interpolation, Key};
 use crate::ui::theme::{GRAPH, palette};
@@ -26,12 +26,12 @@ const DIZZY: f64 = 120.0;
 #[derive(Default)]
 pub struct Graph {
     made_for: Option<(Vec<Key<Camera>>, f64)>,
-    steps: Vec<Step>,
+    steps: Vec<PaceStep>,
 }
 
 /// From one frame to the next.
 #[derive(Clone, Copy, Debug)]
-struct Step {
+struct PaceStep {
     time: f64,
     /// World units per second.
     speed: f64,
@@ -46,10 +46,10 @@ impl Graph {
     pub fn show(&mut self, ui: &mut Ui, scale: &Scale, editor: &Editor) {
         self.follow(editor);
         let colors = palette(ui.ctx());
-        let highest = |of: fn(&Step) -> f64| self.steps.iter().map(of).fold(0.0, f64::max);
+        let highest = |of: fn(&PaceStep) -> f64| self.steps.iter().map(of).fold(0.0, f64::max);
         let (fastest, sharpest) = (highest(|step| step.speed), highest(|step| step.turn));
-        let line = |of: fn(&Step) -> f64, most: f64| {
-            let at = |step: &Step| [step.time, if most > 0.0 { of(step) / most } else { 0.0 }];
+        let line = |of: fn(&PaceStep) -> f64, most: f64| {
+            let at = |step: &PaceStep| [step.time, if most > 0.0 { of(step) / most } else { 0.0 }];
             self.steps.iter().map(at).collect::<Vec<[f64; 2]>>()
         };
         let rough = self.steps.iter().filter(|step| step.is_rough).count();
@@ -88,7 +88,7 @@ impl Graph {
                     plot.line(Line::new("speed", speed).color(colors.curve));
                     let turn = line(|step| step.turn, sharpest);
                     plot.line(Line::new("turn", turn).color(colors.muted));
-                    let at = |step: &Step| [step.time, 1.0];
+                    let at = |step: &PaceStep| [step.time, 1.0];
                     let rough = self.steps.iter().filter(|step| step.is_rough);
                     let rough: Vec<[f64; 2]> = rough.map(at).collect();
                     let marks = Points::new("jump", PlotPoints::from(rough));
@@ -127,19 +127,19 @@ impl Graph {
     }
 }
 
-fn steps(animation: &Animation, path: &CameraPath) -> Vec<Step> {
+fn steps(animation: &Animation, path: &CameraPath) -> Vec<PaceStep> {
     let (count, fps) = (animation.frame_count(), animation.frames_per_second);
     let stride = count.div_ceil(MOST).max(1);
     let frames: Vec<u64> = (1..=count).step_by(stride as usize).collect();
     let motion = |pair: &[u64]| {
         let [from, to] = [pair[0], pair[1]].map(|frame| path.at(animation.time_of(frame)));
-        let still = Motion::default();
+        let still = CameraChange::default();
         from.zip(to)
             .map_or(still, |(from, to)| motion_between(&from, &to))
     };
-    let motions: Vec<Motion> = frames.windows(2).map(motion).collect();
+    let motions: Vec<CameraChange> = frames.windows(2).map(motion).collect();
     let each = motions.len().max(1) as f64;
-    let mean = |of: fn(&Motion) -> f64| motions.iter().map(of).sum::<f64>() / each;
+    let mean = |of: fn(&CameraChange) -> f64| motions.iter().map(of).sum::<f64>() / each;
     let (mean_distance, mean_turn) = (mean(|m| m.distance), mean(|m| m.turn));
     // What rounding alone moves is no motion.
     let far = animation
@@ -157,7 +157,7 @@ fn steps(animation: &Animation, path: &CameraPath) -> Vec<Step> {
                 && pair[1].time <= time + 1e-6
         });
         let beside = [place.checked_sub(1), Some(place + 1)];
-        let is_jump = |of: fn(&Motion) -> f64, mean: f64| {
+        let is_jump = |of: fn(&CameraChange) -> f64, mean: f64| {
             let here = of(&motions[place]);
             let beside = beside
                 .into_iter()
@@ -165,12 +165,12 @@ fn steps(animation: &Animation, path: &CameraPath) -> Vec<Step> {
                 .filter_map(|near| motions.get(near));
             here > JUMP * mean && beside.map(of).any(|near| here > JUMP * near)
         };
-        let Motion { distance, turn } = motions[place];
+        let CameraChange { distance, turn } = motions[place];
         let distance = if distance > noise { distance } else { 0.0 };
         let turn = if turn > NOISE_TURN { turn } else { 0.0 };
         let is_jump = is_jump(|m| m.distance, mean_distance)
             || is_jump(|m| m.turn, mean_turn.max(SEEN / JUMP));
-        Step {
+        PaceStep {
             time,
             speed: if is_cut { 0.0 } else { distance * per_second },
             turn: if is_cut { 0.0 } else { turn * per_second },

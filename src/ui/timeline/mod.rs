@@ -1,17 +1,17 @@
 //! The timeline: playing, recording, keys on a line of time, and what they do to speed.
 
 mod graph;
-mod lanes;
 mod overlay;
 mod thumbs;
+mod tracks_area;
 mod transport;
 
 use egui::{ScrollArea, Ui};
 
 use self::graph::Graph;
-use self::lanes::{Drag, Scale};
 pub use self::overlay::Overlay;
 pub use self::thumbs::Thumbs;
+use self::tracks_area::{Drag, Scale};
 pub use self::transport::actions;
 use super::UiRequests;
 use super::commands::Command;
@@ -25,7 +25,7 @@ const LEAST: f64 = 4.0;
 const BEHIND: f64 = 0.08;
 
 /// What the panel remembers.
-pub struct Timeline {
+pub struct TimelinePanel {
     /// Whether it is shown.
     pub is_open: bool,
     /// Whether speed and turns are shown below the keys.
@@ -36,7 +36,7 @@ pub struct Timeline {
     graph: Graph,
 }
 
-impl Default for Timeline {
+impl Default for TimelinePanel {
     fn default() -> Self {
         Self {
             is_open: true,
@@ -48,7 +48,7 @@ impl Default for Timeline {
     }
 }
 
-impl Timeline {
+impl TimelinePanel {
     /// Shows the panel. `per_second` is how many pictures a second have been on screen.
     pub fn show(
         &mut self,
@@ -94,12 +94,12 @@ impl Timeline {
                 width: ui.max_rect().right() - 2.0 * GRID - left,
                 end: self.end,
             };
-            lanes::ruler(ui, &scale, editor, out);
+            tracks_area::ruler(ui, &scale, editor, out);
             if !animation.keys.is_empty() {
                 thumbs.show(ui, &scale, animation);
-                lanes::keys(ui, &scale, editor, &mut self.drag, out);
+                tracks_area::keys(ui, &scale, editor, &mut self.drag, out);
             }
-            lanes::tracks(ui, &scale, editor, &mut self.drag, out);
+            tracks_area::tracks(ui, &scale, editor, &mut self.drag, out);
             if self.shows_graph && animation.keys.len() > 1 {
                 self.graph.show(ui, &scale, editor);
             }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Color32, Pos2, Rect, Sense, Painter, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use glam::DVec3;
 
@@ -36,12 +36,12 @@ pub struct Overlay {
 }
 
 /// From the scene to the screen.
-struct Lens {
+struct ViewProjection {
     framing: Framing,
     view: Rect,
 }
 
-impl Lens {
+impl ViewProjection {
     fn place(&self, point: DVec3) -> Option<Pos2> {
         let [x, y] = self.framing.project(point)?;
         let height = self.view.height();
@@ -65,7 +65,7 @@ impl Overlay {
         let Some(framing) = editor.shown().camera.framing() else {
             return;
         };
-        let lens = Lens { framing, view };
+        let lens = ViewProjection { framing, view };
         self.follow(editor, &lens);
         let painter = ui.painter().with_clip_rect(view);
         let colors = palette(ui.ctx());
@@ -93,7 +93,7 @@ impl Overlay {
         }
     }
 
-    fn follow(&mut self, editor: &Editor, lens: &Lens) {
+    fn follow(&mut self, editor: &Editor, lens: &ViewProjection) {
         let key = (editor.shown_revision(), editor.revision());
         if self.made_for == Some(key) {
             return;
@@ -132,7 +132,7 @@ impl Overlay {
             .collect();
     }
 
-    fn draw_way(&self, painter: &Painter, lens: &Lens, color: Color32) {
+    fn draw_way(&self, painter: &Painter, lens: &ViewProjection, color: Color32) {
         let places: Vec<(Option<Pos2>, bool)> = self
             .ticks
             .iter()
@@ -165,7 +165,7 @@ impl Overlay {
         &mut self,
         ui: &Ui,
         editor: &Editor,
-        lens: &Lens,
+        lens: &ViewProjection,
         place: usize,
         out: &mut UiRequests,
     ) {
@@ -211,7 +211,13 @@ impl Overlay {
 }
 
 /// A pyramid from the eye to the frame of the picture, or the frame alone where rays run side by side.
-fn draw_camera(painter: &Painter, lens: &Lens, camera: &Camera, size: f64, color: Color32) {
+fn draw_camera(
+    painter: &Painter,
+    lens: &ViewProjection,
+    camera: &Camera,
+    size: f64,
+    color: Color32,
+) {
     let Some(framing) = camera.framing() else {
         return;
     };

@@ -76,13 +76,13 @@ pub fn compose(picture: &Image, reference: &Image, face: Face) -> Image {
 
 /// A face on the graphics card.
 #[derive(Default)]
-pub struct Look {
+pub struct Comparison {
     texture: Option<TextureHandle>,
     /// The dot, the face, and the study it is of.
     shown: Option<(usize, Face, u64)>,
 }
 
-impl Look {
+impl Comparison {
     /// Draws a face into the place of the live view. Under the pointer, it tells the pixel.
     pub fn show(
         &mut self,

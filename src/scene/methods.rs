@@ -11,20 +11,20 @@ pub trait Method: Copy + PartialEq + Debug + Sized + 'static {
     const ALL: &'static [MethodInfo<Self>];
 
     /// What the command line and the file call it.
-    fn word(self) -> String {
-        let way = Self::ALL.iter().find(|way| way.value == self);
-        way.map_or(String::new(), |way| way.word.to_owned())
+    fn id(self) -> String {
+        let method = Self::ALL.iter().find(|method| method.value == self);
+        method.map_or(String::new(), |method| method.id.to_owned())
     }
 
     /// The way of this word.
     ///
     /// # Errors
     /// A sentence with the words that there are.
-    fn parse(word: &str) -> Result<Self, String> {
-        let way = Self::ALL.iter().find(|way| way.word == word);
-        way.map(|way| way.value).ok_or_else(|| {
-            let words: Vec<&str> = Self::ALL.iter().map(|way| way.word).collect();
-            format!("expected {}", words.join(", "))
+    fn parse(id: &str) -> Result<Self, String> {
+        let method = Self::ALL.iter().find(|method| method.id == id);
+        method.map(|method| method.value).ok_or_else(|| {
+            let ids: Vec<&str> = Self::ALL.iter().map(|method| method.id).collect();
+            format!("expected {}", ids.join(", "))
         })
     }
 }
@@ -35,22 +35,22 @@ pub struct MethodInfo<T> {
     /// The choice.
     pub value: T,
     /// What the command line and the file call it.
-    pub word: &'static str,
+    pub id: &'static str,
     /// What it does.
     pub what: &'static str,
     /// Where it comes from.
     pub source: &'static str,
 }
 
-const fn way<T>(
+const fn method<T>(
     value: T,
-    word: &'static str,
+    id: &'static str,
     what: &'static str,
     source: &'static str,
 ) -> MethodInfo<T> {
     MethodInfo {
         value,
-        word,
+        id,
         what,
         source,
     }
@@ -72,14 +72,14 @@ pub enum Precision {
 
 impl Method for Precision {
     const ALL: &'static [MethodInfo<Self>] = &[
-        way(
+        method(
             Self::Auto,
             "auto",
             "f32 unless it would show",
             "Glint's plan",
         ),
-        way(Self::Single, "f32", "single precision", "IEEE 754"),
-        way(Self::Double, "f64", "double precision", "IEEE 754"),
+        method(Self::Single, "f32", "single precision", "IEEE 754"),
+        method(Self::Double, "f64", "double precision", "IEEE 754"),
     ];
 }
 
@@ -95,13 +95,13 @@ pub enum SphereMethod {
 
 impl Method for SphereMethod {
     const ALL: &'static [MethodInfo<Self>] = &[
-        way(
+        method(
             Self::Stable,
             "stable",
             "discriminant from the perpendicular: error grows with distance / radius",
             "Haines, Günther and Akenine-Möller, Ray Tracing Gems, 2019, ch. 7",
         ),
-        way(
+        method(
             Self::Classic,
             "classic",
             "(d·x)² - x·x + R²: error grows with the square of distance / radius",
@@ -126,25 +126,25 @@ pub enum TriangleMethod {
 
 impl Method for TriangleMethod {
     const ALL: &'static [MethodInfo<Self>] = &[
-        way(
+        method(
             Self::Watertight,
             "watertight",
             "shear, then 2D edge functions: nothing leaks between neighbours",
             "Woop, Benthin and Wald, JCGT 2(1), 2013",
         ),
-        way(
+        method(
             Self::Edges,
             "edges",
             "hit of the plane, then a cross product per edge: leaks along edges",
             SEED,
         ),
-        way(
+        method(
             Self::MollerTrumbore,
             "moller-trumbore",
             "barycentric coordinates by Cramer's rule: leaks along edges",
             "Möller and Trumbore, Journal of Graphics Tools 2(1), 1997",
         ),
-        way(
+        method(
             Self::EdgePlanes,
             "edge-planes",
             "planes through the ray's origin and each edge: leaks at corners",
@@ -170,25 +170,25 @@ pub enum RayOffset {
 
 impl Method for RayOffset {
     const ALL: &'static [MethodInfo<Self>] = &[
-        way(
+        method(
             Self::Robust,
             "robust",
             "at the hit, which the own primitive does not shadow; a few roundings off in a mesh",
             "Glint",
         ),
-        way(
+        method(
             Self::Fixed(0.1),
             "fixed:0.1",
             "so many world units along the new ray: fits scenes of one size",
             SEED,
         ),
-        way(
+        method(
             Self::Relative(1e-4),
             "relative:0.0001",
             "such a share of the scene's diagonal along the new ray",
             "common practice",
         ),
-        way(
+        method(
             Self::WachterBinder,
             "wachter-binder",
             "256 roundings of the hit's coordinates along the normal",
@@ -196,7 +196,7 @@ impl Method for RayOffset {
         ),
     ];
 
-    fn word(self) -> String {
+    fn id(self) -> String {
         match self {
             Self::Robust => "robust".to_owned(),
             Self::Fixed(distance) => format!("fixed:{distance}"),
@@ -205,14 +205,14 @@ impl Method for RayOffset {
         }
     }
 
-    fn parse(word: &str) -> Result<Self, String> {
+    fn parse(id: &str) -> Result<Self, String> {
         let length = |number: &str| {
             let number = number.parse::<f64>().ok();
             number.filter(|d| d.is_finite() && *d >= 0.0)
         };
-        let found = match word.split_once(':') {
-            None if word == "robust" => Some(Self::Robust),
-            None if word == "wachter-binder" => Some(Self::WachterBinder),
+        let found = match id.split_once(':') {
+            None if id == "robust" => Some(Self::Robust),
+            None if id == "wachter-binder" => Some(Self::WachterBinder),
             Some(("fixed", number)) => length(number).map(Self::Fixed),
             Some(("relative", number)) => length(number).map(Self::Relative),
             _ => None,
@@ -237,14 +237,14 @@ pub enum HighlightMethod {
 
 impl Method for HighlightMethod {
     const ALL: &'static [MethodInfo<Self>] = &[
-        way(
+        method(
             Self::Auto,
             "auto",
             "the power up to 256, exp and log1p above",
             "Glint's plan",
         ),
-        way(Self::Power, "pow", "(n·h)^p: error grows with p", SEED),
-        way(
+        method(Self::Power, "pow", "(n·h)^p: error grows with p", SEED),
+        method(
             Self::Log1p,
             "log1p",
             "exp(p·log1p(-|n - h|²/2)): keeps what 1 - n·h has lost",
@@ -267,14 +267,14 @@ pub enum Accelerator {
 
 impl Method for Accelerator {
     const ALL: &'static [MethodInfo<Self>] = &[
-        way(
+        method(
             Self::Auto,
             "auto",
             "a list up to 128 spheres and triangles, bundles above",
             "Glint's plan",
         ),
-        way(Self::List, "list", "each by each, per tile", "Glint"),
-        way(
+        method(Self::List, "list", "each by each, per tile", "Glint"),
+        method(
             Self::Bvh,
             "bvh",
             "bundles of 16 along a Morton curve",
@@ -320,14 +320,14 @@ impl Default for Sampling {
 
 impl Method for Sampling {
     const ALL: &'static [MethodInfo<Self>] = &[
-        way(
+        method(
             Self::ADAPTIVE,
             "adaptive",
             "corners, and more where they see different things",
             "Whitted, CACM 23(6), 1980",
         ),
-        way(Self::Centres, "none", "one ray per pixel", SEED),
-        way(
+        method(Self::Centres, "none", "one ray per pixel", SEED),
+        method(
             Self::Grid(4),
             "grid:4",
             "so many times so many rays in every pixel",
@@ -335,7 +335,7 @@ impl Method for Sampling {
         ),
     ];
 
-    fn word(self) -> String {
+    fn id(self) -> String {
         match self {
             Self::Centres => "none".to_owned(),
             Self::Grid(side) => format!("grid:{side}"),
@@ -344,8 +344,8 @@ impl Method for Sampling {
         }
     }
 
-    fn parse(word: &str) -> Result<Self, String> {
-        let mut parts = word.split(':');
+    fn parse(id: &str) -> Result<Self, String> {
+        let mut parts = id.split(':');
         let found = match (parts.next(), parts.next(), parts.next(), parts.next()) {
             (Some("none"), None, ..) => Some(Self::Centres),
             (Some("adaptive"), None, ..) => Some(Self::ADAPTIVE),
@@ -390,10 +390,10 @@ mod tests {
 
     fn words_are_read_back<T: Method + Default>() {
         assert_eq!(T::ALL[0].value, T::default());
-        for way in T::ALL {
-            assert_eq!(way.value.word(), way.word);
-            assert_eq!(T::parse(way.word), Ok(way.value));
-            assert!(!way.what.is_empty() && !way.source.is_empty());
+        for method in T::ALL {
+            assert_eq!(method.value.id(), method.id);
+            assert_eq!(T::parse(method.id), Ok(method.value));
+            assert!(!method.what.is_empty() && !method.source.is_empty());
         }
         for wrong in [
             "",
@@ -421,11 +421,11 @@ mod tests {
         words_are_read_back::<Accelerator>();
         words_are_read_back::<Sampling>();
         assert_eq!(
-            Sampling::parse("adaptive:0.3:2").map(Sampling::word),
+            Sampling::parse("adaptive:0.3:2").map(Sampling::id),
             Ok("adaptive:0.3:2".to_owned())
         );
         assert_eq!(
-            RayOffset::parse("relative:0.5").map(RayOffset::word),
+            RayOffset::parse("relative:0.5").map(RayOffset::id),
             Ok("relative:0.5".to_owned())
         );
     }
