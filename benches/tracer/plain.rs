@@ -8,7 +8,7 @@ use glint::scene::{ColorPack, Projection, Scene, Shape};
 
 type V = DVec3;
 
-/// The seed's "distance away constant".
+/// The original program's "distance away constant".
 const AWAY: f64 = 0.1;
 
 trait Thing {

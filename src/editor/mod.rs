@@ -44,7 +44,7 @@ pub enum Mode {
     /// The live view at the resolution of the screen.
     #[default]
     Live,
-    /// The live view at 64 pixels, as in Glint's ancestor.
+    /// The live view at 64 pixels, as in the original program.
     LowRes,
     /// The still picture; back to [`Mode::Live`] when the scene changes.
     HighRes,

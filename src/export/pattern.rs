@@ -73,7 +73,7 @@ fn digits_of(text: &str) -> Option<usize> {
 }
 
 impl Default for Pattern {
-    /// The names of the program that Glint grew from.
+    /// The names of the original program.
     fn default() -> Self {
         Self {
             before: "rayTrace".to_owned(),

@@ -17,7 +17,7 @@ const GIF_SPEED: i32 = 10;
 /// How a video is encoded; its ending says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Video {
-    /// H.264 in MP4, by ffmpeg, with the settings of the program that Glint grew from.
+    /// H.264 in MP4, by ffmpeg, with the settings of the original program.
     H264,
     /// `ProRes` 4444 in MOV, by ffmpeg.
     ProRes,

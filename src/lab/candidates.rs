@@ -25,7 +25,7 @@ const GRIDS: [u32; 7] = [2, 3, 4, 6, 8, 12, 16];
 const ADAPTIVE: [(f64, u32); 5] = [(0.3, 1), (0.1, 1), (0.3, 3), (0.1, 2), (0.03, 3)];
 
 /// The ways of tracing `scene`, in `width × height` pixels: the plan's choice first, the scene's own
-/// settings if they differ, the way of the program that Glint grew from, what differs from the plan
+/// settings if they differ, the way of the original program, what differs from the plan
 /// in one thing, and the ladder of samplings.
 pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
     let plan = Candidate {
@@ -53,7 +53,7 @@ pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
         });
     }
     all.push(Candidate {
-        name: "the seed's way".to_owned(),
+        name: "the original program".to_owned(),
         render: Render {
             antialias: Sampling::Centres,
             precision: Precision::Single,

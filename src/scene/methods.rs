@@ -56,7 +56,7 @@ const fn method<T>(
     }
 }
 
-const SEED: &str = "the program that Glint grew from";
+const ORIGINAL: &str = "the original program";
 
 /// The real type of the kernel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -105,7 +105,7 @@ impl Method for SphereMethod {
             Self::Classic,
             "classic",
             "(d·x)² - x·x + R²: error grows with the square of distance / radius",
-            SEED,
+            ORIGINAL,
         ),
     ];
 }
@@ -136,7 +136,7 @@ impl Method for TriangleMethod {
             Self::Edges,
             "edges",
             "hit of the plane, then a cross product per edge: leaks along edges",
-            SEED,
+            ORIGINAL,
         ),
         method(
             Self::MollerTrumbore,
@@ -180,7 +180,7 @@ impl Method for RayOffset {
             Self::Fixed(0.1),
             "fixed:0.1",
             "so many world units along the new ray: fits scenes of one size",
-            SEED,
+            ORIGINAL,
         ),
         method(
             Self::Relative(1e-4),
@@ -243,7 +243,7 @@ impl Method for HighlightMethod {
             "the power up to 256, exp and log1p above",
             "Glint's plan",
         ),
-        method(Self::Power, "pow", "(n·h)^p: error grows with p", SEED),
+        method(Self::Power, "pow", "(n·h)^p: error grows with p", ORIGINAL),
         method(
             Self::Log1p,
             "log1p",
@@ -326,7 +326,7 @@ impl Method for Sampling {
             "corners, and more where they see different things",
             "Whitted, CACM 23(6), 1980",
         ),
-        method(Self::Centres, "none", "one ray per pixel", SEED),
+        method(Self::Centres, "none", "one ray per pixel", ORIGINAL),
         method(
             Self::Grid(4),
             "grid:4",

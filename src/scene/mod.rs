@@ -2,7 +2,7 @@
 //!
 //! A new field gets a line here (with its default), a check in `check.rs` and, if a person edits it,
 //! a row in the inspector. Colours are 0–255, lengths are world units, angles appear nowhere: the
-//! camera stores direction vectors, as in the program that Glint grew from.
+//! camera stores direction vectors, as in the original program.
 
 mod animation;
 mod camera;

@@ -10,12 +10,12 @@ use super::Camera;
 const MAX_PITCH: f64 = 89.9 * PI / 180.0;
 
 /// The angles of a camera in radians: R = Yaw · Pitch · Roll applied to a camera that looks along
-/// -z with +y up, with the matrices of the program that Glint grew from (roll first).
+/// -z with +y up, with the matrices of the original program (roll first).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Orientation {
     /// Turn to the right about the world's y axis, from -π to π.
     pub yaw: f64,
-    /// Upward tilt, from -π/2 to π/2 (the ancestor's angle b, negated).
+    /// Upward tilt, from -π/2 to π/2 (the original program's angle b, negated).
     pub pitch: f64,
     /// Lean to the right about the viewing direction, from -π to π.
     pub roll: f64,

@@ -39,7 +39,7 @@ fn stable<L: SimdFloat>(x: Vec3<L>, d: Vec3<L>, radius: L) -> Roots<L> {
     (b - half_chord, b + half_chord)
 }
 
-/// t = -d·x ± √((d·x)² - x·x + R²), the formula of Glint's ancestor. Needs |d| = 1; loses all
+/// t = -d·x ± √((d·x)² - x·x + R²), the formula of the original program. Needs |d| = 1; loses all
 /// digits of R² when the centre is more than 4096 radii away (single precision).
 #[inline(always)]
 fn classic<L: SimdFloat>(x: Vec3<L>, d: Vec3<L>, radius: L) -> Roots<L> {

@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn low_res_is_the_ancestors_64() {
+    fn low_res_is_64_pixels() {
         assert_eq!(low_res((700, 700)), (64, 64));
         assert_eq!(low_res((1920, 1080)), (64, 36));
         assert_eq!(low_res((1, 5000)), (1, 64));

@@ -80,7 +80,7 @@ fn picture(sampling: Sampling) -> RenderRequest {
     }
 }
 
-/// The demo from both cameras that the seed's report publishes.
+/// The demo from both cameras that the original report publishes.
 fn published() -> [Scene; 2] {
     let first = Scene::demo();
     let mut second = first.clone();

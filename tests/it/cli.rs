@@ -304,7 +304,7 @@ fn chart_prints_the_front_and_writes_every_figure() {
     assert!(run.status.success(), "{run:?}");
     let said = String::from_utf8_lossy(&run.stdout).into_owned();
     assert!(
-        said.contains("the seed's way") && said.contains("16×16; reference: f64"),
+        said.contains("the original program") && said.contains("16×16; reference: f64"),
         "{said}"
     );
     assert!(said.lines().any(|line| line.starts_with("* ")), "{said}");

@@ -4,7 +4,7 @@ use super::Ray;
 use crate::plan::Triangle;
 use crate::simd::{Real, SimdFloat, Vec3};
 
-/// The formula of Glint's ancestor: where the ray meets the plane, then, edge by edge in clockwise
+/// The formula of the original program: where the ray meets the plane, then, edge by edge in clockwise
 /// order, whether the cross product with the edge points away from the normal. Every rounding of
 /// the hit moves it across the edge differently for each neighbour.
 #[inline(always)]

@@ -92,7 +92,7 @@ pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
         for (name, hint, format, antialias, half) in [
             (
                 "PPM",
-                "As the program that Glint grew from: one sample, rayTrace%d.ppm",
+                "As the original program: one sample, rayTrace%d.ppm",
                 Format::Ppm,
                 Sampling::Centres,
                 false,
