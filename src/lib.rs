@@ -25,6 +25,8 @@
 
 // The blank lines keep the formatter from sorting what is in order of dependence.
 
+pub mod files;
+
 pub mod scene;
 
 pub mod animate;

@@ -8,9 +8,10 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{CliAction, fail, refuse, say};
+use crate::files::write_atomic;
 use crate::image::Format;
 use crate::lab::{Study, cheapest_within, csv, table};
-use crate::scene::{Document, write_atomic};
+use crate::scene::Document;
 use crate::trace::{RenderControl, Threads};
 
 /// Steps of the progress bar.

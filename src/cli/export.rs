@@ -11,8 +11,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{fail, refuse, say};
 use crate::export::{Frames, Pattern, Sequence, Video, job_template};
+use crate::files::write_atomic;
 use crate::image::Format;
-use crate::scene::{Document, MAX_SIDE, Method as _, Sampling, Scene, write_atomic};
+use crate::scene::{Document, MAX_SIDE, Method as _, Sampling, Scene};
 use crate::trace::{RenderControl, Threads};
 use crate::worker::{ExportStep, Exported, Exporting};
 

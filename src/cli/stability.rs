@@ -7,9 +7,9 @@ use std::process::ExitCode;
 use clap::Args;
 
 use super::{CliAction, fail, refuse, say};
+use crate::files::write_atomic;
 use crate::image::Format;
 use crate::lab::stability::{cells_csv, maps, summary};
-use crate::scene::write_atomic;
 
 #[derive(Debug, Args)]
 pub struct StabilityArgs {

@@ -109,7 +109,7 @@ fn high_res_ends_with_the_next_change() {
 fn a_file_that_is_refused_leaves_the_document_alone() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("bad.ron");
-    crate::scene::write_atomic(&path, b"Scene(version: 1, objects: 5)").expect("written");
+    crate::files::write_atomic(&path, b"Scene(version: 1, objects: 5)").expect("written");
     let mut editor = Editor::demo();
     editor.apply(Action::Edit(Edit::Ambient(0.25)));
     let error = editor.open(&path).expect_err("refused").to_string();

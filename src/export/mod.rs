@@ -17,8 +17,8 @@ pub use pattern::Pattern;
 pub use sequence::Sequence;
 pub use video::{Video, VideoError};
 
+use crate::files::write_atomic;
 use crate::image::{Format, FormatError, Image};
-use crate::scene::write_atomic;
 
 /// Why a picture could not be written.
 #[derive(Debug, thiserror::Error)]

@@ -24,7 +24,7 @@ pub use animation::{
 };
 pub use camera::{Camera, Framing, Projection};
 pub use check::{Problem, check};
-pub use file::{Document, SceneError, read_text, write_atomic};
+pub use file::{Document, SceneError, read_text};
 pub use locate::PathStep;
 pub use methods::{
     Accelerator, HighlightMethod, MAX_GRID, MAX_HALVINGS, Method, MethodInfo, Methods, Precision,

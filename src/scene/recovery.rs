@@ -6,7 +6,8 @@ use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::file::{Document, write_atomic};
+use super::file::Document;
+use crate::files::write_atomic;
 
 /// First line of a recovery file: the path of the document follows.
 const MARK: &str = "// unsaved changes of: ";

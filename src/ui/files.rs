@@ -12,8 +12,9 @@ use super::prompts::{Answer, PathPrompt, ask_about_changes, ask_to_quit};
 use crate::animate::{from_table, from_text, to_table, to_text};
 use crate::editor::{Action, Edit, Editor};
 use crate::export::{Pattern, Sequence, job_template};
+use crate::files::write_atomic;
 use crate::image::Format;
-use crate::scene::{Animation, read_text, write_atomic};
+use crate::scene::{Animation, read_text};
 
 /// A dialog that comes back empty sooner than a hand can cancel it was never shown.
 const NO_DIALOG: Duration = Duration::from_millis(400);
