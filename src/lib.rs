@@ -33,6 +33,8 @@ pub mod animate;
 
 pub mod simd;
 
+pub mod primitive;
+
 pub mod plan;
 
 pub mod trace;

@@ -13,7 +13,7 @@ use divan::{Bencher, black_box};
 use glam::DVec3;
 use glint::image::{Image, render, render_into};
 use glint::plan::{Precision, RenderRequest, Sampling};
-use glint::scene::{Object, Scene, Shape};
+use glint::scene::{Object, Scene, Shape, Sphere};
 use glint::simd::Level;
 use glint::trace::{RenderControl, Threads};
 
@@ -115,10 +115,10 @@ fn spheres_512(bencher: Bencher, count: u32) {
         scene.objects.push(Object {
             name: format!("Ball {n}"),
             color_pack: "sphere 1".to_owned(),
-            shape: Shape::Sphere {
+            shape: Shape::Sphere(Sphere {
                 center,
                 radius: 80.0 / side,
-            },
+            }),
             visible: true,
         });
     }

@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 use glint::image::Image;
-use glint::scene::{ColorPack, Projection, Scene, Shape};
+use glint::scene::{ColorPack, Plane, Projection, Scene, Shape, Sphere, Triangle};
 
 type V = DVec3;
 
@@ -76,13 +76,13 @@ struct World<'a> {
 fn thing(shape: &Shape) -> Box<dyn Thing> {
     let unit = |v: V| v.try_normalize().expect("a direction");
     match *shape {
-        Shape::Sphere { center, radius } => Box::new(Ball { center, radius }),
-        Shape::Plane { point, normal } => Box::new(Flat {
+        Shape::Sphere(Sphere { center, radius }) => Box::new(Ball { center, radius }),
+        Shape::Plane(Plane { point, normal }) => Box::new(Flat {
             point,
             normal: unit(normal),
             corners: None,
         }),
-        Shape::Triangle { a, b, c } => {
+        Shape::Triangle(Triangle { a, b, c }) => {
             let normal = unit((c - a).cross(b - a));
             Box::new(Flat {
                 point: a,

@@ -294,18 +294,16 @@ fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
 
 /// From a shape to where its copy stands: two things in one place would shadow each other.
 fn beside(scene: &Scene, shape: &Shape) -> DVec3 {
-    match (shape.bounds(), shape) {
-        (Some((low, high)), _) => DVec3::new((high - low).abs().max_element(), 0.0, 0.0),
-        (None, Shape::Plane { normal, .. }) => {
-            let extent = scene
-                .bounds()
-                .map_or(1.0, |(low, high)| (high - low).length());
-            normal
-                .try_normalize()
-                .map_or(DVec3::new(0.0, 0.0, 0.0), |n| n * (extent / 20.0))
-        }
-        (None, _) => DVec3::new(0.0, 0.0, 0.0),
+    if let Some((low, high)) = shape.bounds() {
+        return DVec3::new((high - low).abs().max_element(), 0.0, 0.0);
     }
+    let normal = shape
+        .endless_plane()
+        .and_then(|(_, normal)| normal.try_normalize());
+    let extent = scene
+        .bounds()
+        .map_or(1.0, |(low, high)| (high - low).length());
+    normal.map_or(DVec3::ZERO, |normal| normal * (extent / 20.0))
 }
 
 fn delete(scene: &mut Scene, item: Item) -> Result<(), String> {

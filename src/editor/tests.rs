@@ -1,12 +1,12 @@
 use glam::DVec3;
 
 use super::*;
-use crate::scene::Shape;
+use crate::scene::{Shape, Sphere};
 use proptest::prelude::*;
 
 fn radius_edit(editor: &Editor, radius: f64) -> Action {
     let mut object = editor.scene().objects[0].clone();
-    if let Shape::Sphere { radius: r, .. } = &mut object.shape {
+    if let Shape::Sphere(Sphere { radius: r, .. }) = &mut object.shape {
         *r = radius;
     }
     Action::Edit(Edit::Object(0, object, "radius"))
@@ -35,10 +35,10 @@ fn a_drag_is_one_step_and_two_drags_are_two() {
     editor.apply(Action::Undo);
     assert_eq!(
         editor.scene().objects[0].shape,
-        Shape::Sphere {
+        Shape::Sphere(Sphere {
             center: DVec3::new(125.0, 50.0, -150.0),
             radius: 53.0
-        }
+        })
     );
     assert_eq!(steps(&mut editor), 1);
     assert!(!editor.is_dirty(), "undone to the saved state");

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::animate::Seen;
 use crate::scene::{Animation, Camera, Framing, Orientation, Scene, Take};
-use crate::trace::sight::SceneQuery;
+use crate::trace::SceneQuery;
 
 /// Side of the grid of places at which a picture is watched for how far it is off.
 const WATCHED: u32 = 5;

@@ -5,6 +5,7 @@
 
 use glam::DVec3;
 
+use crate::primitive::Ball;
 use crate::simd::Real;
 
 /// How many balls are tested together: as many as the widest processor has lanes.
@@ -12,15 +13,6 @@ pub const GROUP: usize = 16;
 
 /// Above so many, testing the bundles costs less than testing every primitive's own ball.
 pub const LARGEST_LIST: usize = 128;
-
-/// A ball in double precision.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ball {
-    /// Its middle.
-    pub center: DVec3,
-    /// ≥ 0.
-    pub radius: f64,
-}
 
 /// Balls, component by component, filled up to whole groups with balls that nothing meets.
 #[derive(Clone, Debug, Default)]
@@ -35,27 +27,30 @@ pub struct Balls<R> {
     pub radius: Vec<R>,
 }
 
-/// The balls around bounded primitives, which are numbered from zero: spheres, then triangles.
+/// The balls around the primitives that end.
 #[derive(Clone, Debug, Default)]
 pub struct Bvh<R> {
     /// The primitives' own balls first; then, level by level, balls around [`GROUP`] of the level
     /// before, up to a single group.
     pub levels: Vec<Balls<R>>,
-    /// The primitive in each ball of the first level.
+    /// The number of the primitive in each ball of the first level.
     pub members: Vec<u32>,
 }
 
 impl<R: Real> Bvh<R> {
-    /// Bundles the balls if `bundled`; else lists them in their order.
-    pub fn new(balls: &[Ball], bundled: bool) -> Self {
-        let mut members: Vec<u32> = (0..balls.len() as u32).collect();
-        if bundled {
+    /// Builds a tree of the balls, each with the number of its primitive; else lists them in their order.
+    pub fn new(balls: &[(u32, Ball)], is_tree: bool) -> Self {
+        let mut sorted = balls.to_vec();
+        if is_tree {
             let keys = curve(balls);
-            members.sort_by_key(|&member| keys[member as usize]);
+            let mut order: Vec<usize> = (0..balls.len()).collect();
+            order.sort_by_key(|&index| keys[index]);
+            sorted = order.into_iter().map(|index| balls[index]).collect();
         }
-        let mut level: Vec<Ball> = members.iter().map(|&m| balls[m as usize]).collect();
+        let members = sorted.iter().map(|&(member, _)| member).collect();
+        let mut level: Vec<Ball> = sorted.into_iter().map(|(_, ball)| ball).collect();
         let mut levels = vec![Balls::of(&level)];
-        while bundled && level.len() > GROUP {
+        while is_tree && level.len() > GROUP {
             level = level.chunks(GROUP).map(Ball::around_balls).collect();
             levels.push(Balls::of(&level));
         }
@@ -85,64 +80,17 @@ impl<R: Real> Balls<R> {
     }
 }
 
-impl Ball {
-    /// The smallest ball around a triangle.
-    pub fn around_triangle([a, b, c]: [DVec3; 3]) -> Self {
-        let squares =
-            [(a, b, c), (b, c, a), (c, a, b)].map(|(p, q, r)| ((q - p).dot(q - p), p, q, r));
-        let longest = squares.iter().fold(
-            squares[0],
-            |best, &side| if side.0 > best.0 { side } else { best },
-        );
-        let (square, p, q, r) = longest;
-        let middle = (p + q) * 0.5;
-        if (r - middle).dot(r - middle) * 4.0 <= square {
-            return Self {
-                center: middle,
-                radius: square.sqrt() * 0.5,
-            };
-        }
-        // Acute: the circle through the corners. From p, with sides u and v and n = u × v, its
-        // centre is (|v|²(n × u) + |u|²(v × n)) / 2|n|².
-        let (u, v) = (q - p, r - p);
-        let n = u.cross(v);
-        let from_p = (n.cross(u) * v.dot(v) + v.cross(n) * u.dot(u)) * (0.5 / n.dot(n));
-        Self {
-            center: p + from_p,
-            radius: from_p.length(),
-        }
-    }
-
-    /// A ball around balls, of which there is at least one.
-    fn around_balls(balls: &[Self]) -> Self {
-        let (mut low, mut high) = (DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY));
-        for ball in balls {
-            let reach = DVec3::splat(ball.radius);
-            low = low.min(ball.center - reach);
-            high = high.max(ball.center + reach);
-        }
-        let center = low * 0.5 + high * 0.5;
-        let radius = balls
-            .iter()
-            .map(|ball| (ball.center - center).length() + ball.radius);
-        Self {
-            center,
-            radius: radius.fold(0.0, f64::max),
-        }
-    }
-}
-
 /// The place of each ball's centre on a curve that fills the box around them, neighbours in space
 /// mostly being neighbours on it (Morton 1966).
-fn curve(balls: &[Ball]) -> Vec<u64> {
+fn curve(balls: &[(u32, Ball)]) -> Vec<u64> {
     let (mut low, mut high) = (DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY));
-    for ball in balls {
+    for (_, ball) in balls {
         low = low.min(ball.center);
         high = high.max(ball.center);
     }
     let side = (high - low).abs().max_element().max(f64::MIN_POSITIVE);
     let last_cell = f64::from((1_u32 << CELL_BITS) - 1);
-    let place = |ball: &Ball| {
+    let place = |(_, ball): &(u32, Ball)| {
         let cell = (ball.center - low) * (last_cell / side);
         cell.to_array()
             .iter()
@@ -172,13 +120,13 @@ mod tests {
     proptest! {
         #[test]
         fn every_ball_lies_in_its_bundles(places in prop::collection::vec((vector(), 0.0..5.0_f64), 1..700)) {
-            let balls: Vec<Ball> = places.iter().map(|&(center, radius)| Ball { center, radius }).collect();
+            let balls: Vec<(u32, Ball)> = (0..).zip(places).map(|(number, (center, radius))| (number, Ball { center, radius })).collect();
             let volumes = Bvh::<f64>::new(&balls, true);
             let mut members = volumes.members.clone();
             members.sort_unstable();
             prop_assert_eq!(members, (0..balls.len() as u32).collect::<Vec<_>>());
             for (place, &member) in volumes.members.iter().enumerate() {
-                let own = balls[member as usize];
+                let (_, own) = balls[member as usize];
                 let mut place = place;
                 for level in &volumes.levels[1..] {
                     place /= GROUP;
@@ -189,14 +137,5 @@ mod tests {
             prop_assert!(volumes.levels.last().is_some_and(|top| top.x.len() == GROUP));
         }
 
-        #[test]
-        fn the_ball_of_a_triangle_is_tight(a in vector(), b in vector(), c in vector()) {
-            prop_assume!((b - a).cross(c - a).length() > 1e-3);
-            let ball = Ball::around_triangle([a, b, c]);
-            let reach = [a, b, c].map(|corner| (corner - ball.center).length());
-            let touching = reach.iter().filter(|r| (*r / ball.radius - 1.0).abs() < 1e-6).count();
-            prop_assert!(reach.iter().all(|r| *r <= ball.radius * (1.0 + 1e-9)), "{reach:?} {ball:?}");
-            prop_assert!(touching >= 2);
-        }
     }
 }

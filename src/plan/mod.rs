@@ -8,16 +8,14 @@ mod needs;
 mod pack;
 mod plane_occluders;
 mod precision;
-mod screen;
 mod solids;
 mod view;
 
-pub use bvh::{Ball, Balls, Bvh, GROUP};
+pub use bvh::{Balls, Bvh, GROUP};
 pub use materials::{Material, Surface};
 pub use needs::{Need, needs};
-pub use pack::{Plan, Plane, PointLight, RayOrigin, Sphere, Triangle};
+pub use pack::{Plan, PointLight, RayOrigin};
 pub use precision::needs_double;
-pub use screen::{Extent, ScreenExtents};
 pub use view::View;
 
 pub use crate::scene::{

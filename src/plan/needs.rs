@@ -127,7 +127,7 @@ fn shadows(scene: &Scene, plan: &Plan<f64>) -> Need {
 
 fn planes(plan: &Plan<f64>) -> Need {
     let rule = "planes";
-    match (plan.planes.len(), plan.planes_cast) {
+    match (plan.primitives.planes.len(), plan.planes_cast) {
         (0, _) => need(
             rule,
             "no planes",
@@ -151,7 +151,7 @@ fn planes(plan: &Plan<f64>) -> Need {
 
 fn markers(scene: &Scene, plan: &Plan<f64>) -> Need {
     let rule = "markers";
-    let drawn = plan.spheres.len() - plan.casting_spheres;
+    let drawn = plan.primitives.spheres.len() - plan.casting_spheres;
     let made = scene
         .lights
         .iter()
@@ -199,7 +199,7 @@ fn hidden(scene: &Scene) -> Need {
 
 fn faces(plan: &Plan<f64>) -> Need {
     let rule = "faces";
-    let all = plan.triangles.len();
+    let all = plan.primitives.triangles.len();
     let set = |flags: &[bool]| flags.iter().filter(|flag| **flag).count();
     let unseen = set(&plan.camera_culled_faces);
     let idle: usize = plan
@@ -228,13 +228,13 @@ fn faces(plan: &Plan<f64>) -> Need {
 
 fn accelerator(plan: &Plan<f64>) -> Need {
     let rule = "accelerator";
-    let bounded = plan.spheres.len() + plan.triangles.len();
+    let bounded = plan.primitives.bounded();
     if plan.screen.is_none() {
         let why = "formulas that are known to fail were asked for, and shall show it";
         return need(rule, "every primitive for every ray", why, "nothing");
     }
     let what = count(bounded, "bounded primitive");
-    if plan.volumes.is_tree() {
+    if plan.bvh.is_tree() {
         need(
             rule,
             format!("{what} in bundles of bundles"),

@@ -1,18 +1,20 @@
 //! The scene as flat lists of one kind each.
 
-use std::collections::HashMap;
-
 use glam::DVec3;
 
 use super::bvh::LARGEST_LIST;
 use super::materials::{Material, linear, pack_materials};
 use super::plane_occluders::{PlaneOccluder, classify_planes};
-use super::solids::{Corner, Solids, corner};
+use super::solids::Solids;
 use super::{
-    Accelerator, Ball, Bvh, Methods, Model, RayOffset, RenderRequest, ScreenExtents, SphereMethod,
+    Accelerator, Bvh, Methods, Model, RayOffset, RenderRequest, Sampling, SphereMethod,
     TriangleMethod, View,
 };
-use crate::scene::{LightObj, Projection, Scene, Shape};
+use crate::primitive::{
+    Ball, KINDS, Kind, Packing, Primitive, Primitives, Projector, Rectangle, Visit,
+    count_corner_users,
+};
+use crate::scene::{Camera, LightObj, Projection, Scene, Shape, Sphere};
 use crate::simd::{Real, Vec3};
 
 /// A scene and a view of it, ready to be traced. Coordinates are relative to the scene's middle,
@@ -21,14 +23,10 @@ use crate::simd::{Real, Vec3};
 pub struct Plan<R> {
     /// Primary rays.
     pub view: View<R>,
-    /// Spheres: first those that cast shadows, then the markers of the lights.
-    pub spheres: Vec<Sphere<R>>,
-    /// How many of [`Self::spheres`] cast shadows.
+    /// Everything that rays can meet. The last spheres are the markers of the lights.
+    pub primitives: Primitives<R>,
+    /// How many spheres cast shadows; the others are markers.
     pub casting_spheres: usize,
-    /// Planes.
-    pub planes: Vec<Plane<R>>,
-    /// Triangles.
-    pub triangles: Vec<Triangle<R>>,
     /// Lights that shine.
     pub lights: Vec<PointLight<R>>,
     /// What the primitives' `material` numbers mean.
@@ -40,17 +38,17 @@ pub struct Plan<R> {
     /// The formulas to trace with.
     pub methods: Methods,
     /// Where shadow and reflection rays start.
-    pub departure: RayOrigin<R>,
+    pub ray_origin: RayOrigin<R>,
     /// Whether planes must be tested for shadows. What a perspective eye reaches, directly or in
     /// mirrors, lies on its side of every plane, so a plane blocks a light for all points or none.
     pub planes_cast: bool,
     /// Whether shadow rays are traced even where a surface faces away from the light.
     pub shadows_behind: bool,
-    /// Where each sphere and triangle is in the picture; `None` where formulas are in use whose
-    /// failures must not be hidden.
-    pub screen: Option<ScreenExtents>,
-    /// Balls around the spheres, then the triangles.
-    pub volumes: Bvh<R>,
+    /// Where each primitive that ends is in the picture, kind by kind; `None` where formulas are in use
+    /// whose failures must not be hidden.
+    pub screen: Option<[Vec<Rectangle>; KINDS]>,
+    /// Balls around the primitives that end.
+    pub bvh: Bvh<R>,
     /// For each triangle, whether no camera ray needs it; empty where they all may.
     pub camera_culled_faces: Vec<bool>,
 }
@@ -66,44 +64,6 @@ pub enum RayOrigin<R> {
     Roundings,
 }
 
-/// A ball.
-#[derive(Clone, Copy, Debug)]
-pub struct Sphere<R> {
-    /// Its middle.
-    pub center: Vec3<R>,
-    /// > 0.
-    pub radius: R,
-    /// Index into [`Plan::materials`].
-    pub material: u32,
-}
-
-/// An endless plane: the points p with normal · p = offset.
-#[derive(Clone, Copy, Debug)]
-pub struct Plane<R> {
-    /// Unit normal.
-    pub normal: Vec3<R>,
-    /// Distance from the scene's middle along the normal.
-    pub offset: R,
-    /// Index into [`Plan::materials`].
-    pub material: u32,
-}
-
-/// A flat triangle.
-#[derive(Clone, Copy, Debug)]
-pub struct Triangle<R> {
-    /// The corners.
-    pub corners: [Vec3<R>; 3],
-    /// Unit normal, outwards for corners that are clockwise seen from outside.
-    pub normal: Vec3<R>,
-    /// Whether it shares a corner with another triangle. Its neighbours then shadow it at the seam
-    /// unless secondary rays start a few roundings off the surface.
-    pub in_mesh: bool,
-    /// Its smallest altitude.
-    pub thickness: R,
-    /// Index into [`Plan::materials`].
-    pub material: u32,
-}
-
 /// A point light.
 #[derive(Clone, Debug)]
 pub struct PointLight<R> {
@@ -115,40 +75,50 @@ pub struct PointLight<R> {
     pub shadow_culled_faces: Vec<bool>,
 }
 
+/// Pixels added around everything for the rounding of the kernel.
+const MARGIN: f64 = 1.0;
+/// The same where rays also look beside themselves: a pixel, as wide as in the middle of the
+/// picture, where the picture's rays are closest to each other.
+const SMOOTH_MARGIN: f64 = 4.0;
+
 impl<R: Real> Plan<R> {
     /// Packs what `request` of `scene` can show. The scene must pass [`crate::scene::check`].
     pub fn new(scene: &Scene, request: &RenderRequest) -> Self {
         let centre = scene
             .bounds()
             .map_or(scene.camera.position, |(low, high)| low * 0.5 + high * 0.5);
-        let (settled, model) = (classify_planes(scene, request), request.model);
+        let (occluders, model) = (classify_planes(scene, request), request.model);
+        // The classic formula hits spheres where they are not: that must show.
+        let may_cull = request.methods.sphere == SphereMethod::Stable && model == Model::Needed;
         let mut plan = Self {
             view: View::new(&scene.camera, request, centre),
-            spheres: Vec::new(),
+            primitives: Primitives::default(),
             casting_spheres: 0,
-            planes: Vec::new(),
-            triangles: Vec::new(),
-            lights: pack_lights(scene, centre, settled.as_deref().unwrap_or_default(), model),
+            lights: pack_lights(
+                scene,
+                centre,
+                occluders.as_deref().unwrap_or_default(),
+                model,
+            ),
             materials: pack_materials(scene, request),
             background: linear(scene.background),
             reflection_limit: scene.render.reflection_limit,
             methods: request.methods,
-            departure: departure(scene, request.methods.offset),
-            planes_cast: settled.is_none(),
+            ray_origin: ray_origin(scene, request.methods.offset),
+            planes_cast: occluders.is_none(),
             shadows_behind: model == Model::Everything,
-            screen: None,
-            volumes: Bvh::default(),
+            screen: may_cull.then(Default::default),
+            bvh: Bvh::default(),
             camera_culled_faces: Vec::new(),
         };
-        plan.pack_objects(scene, centre);
-        plan.casting_spheres = plan.spheres.len();
-        if scene.light_visualization {
-            plan.pack_markers(scene, centre);
-        }
-        // The classic formula hits spheres where they are not: that must show.
-        if request.methods.sphere == SphereMethod::Stable && model == Model::Needed {
-            plan.screen = Some(ScreenExtents::new(scene, request));
-            plan.volumes = plan.bound(request.accelerator);
+        let projector = if may_cull {
+            projector(scene, request)
+        } else {
+            None
+        };
+        plan.pack(scene, centre, projector.as_ref());
+        if may_cull {
+            plan.bvh = plan.bound(request.accelerator);
             // What leaks through a face must not find that those behind it were left out.
             let is_tight = request.methods.triangle == TriangleMethod::Watertight;
             if is_tight && request.methods.offset == RayOffset::Robust {
@@ -158,45 +128,44 @@ impl<R: Real> Plan<R> {
         plan
     }
 
-    fn pack_objects(&mut self, scene: &Scene, centre: DVec3) {
-        let corner_users = count_corner_users(scene);
+    /// Packs the visible objects, then the markers.
+    fn pack(&mut self, scene: &Scene, centre: DVec3, projector: Option<&Projector>) {
+        let packing = Packing {
+            centre,
+            corner_users: &count_corner_users(scene),
+            projector,
+        };
         for object in scene.objects.iter().filter(|object| object.visible) {
             let material = material_number(scene, &object.color_pack);
-            match object.shape {
-                Shape::Sphere { center, radius } => self.spheres.push(Sphere {
-                    center: Vec3::from_dvec3(center - centre),
-                    radius: R::from_f64(radius),
-                    material,
-                }),
-                Shape::Plane { point, normal } => {
-                    let Some(normal) = normal.try_normalize() else {
-                        continue;
-                    };
-                    self.planes.push(Plane {
-                        normal: Vec3::from_dvec3(normal),
-                        offset: R::from_f64(normal.dot(point - centre)),
-                        material,
-                    });
-                }
-                Shape::Triangle { a, b, c } => {
-                    let Some(normal) = (c - a).cross(b - a).try_normalize() else {
-                        continue;
-                    };
-                    self.triangles.push(Triangle {
-                        corners: [a, b, c].map(|corner| Vec3::from_dvec3(corner - centre)),
-                        normal: Vec3::from_dvec3(normal),
-                        in_mesh: [a, b, c].iter().any(|p| corner_users[&corner(*p)] > 1),
-                        thickness: R::from_f64(thickness([a, b, c])),
-                        material,
-                    });
-                }
+            self.push(&object.shape, material, &packing);
+        }
+        self.casting_spheres = self.primitives.spheres.len();
+        if scene.light_visualization {
+            let first_marker_material = scene.color_packs.len() as u32;
+            for light in scene.lights.iter().filter(|light| light.visible) {
+                let Some(LightObj { radius, color_pack }) = &light.marker else {
+                    continue;
+                };
+                let marker = Sphere {
+                    center: light.position,
+                    radius: *radius,
+                };
+                let material = first_marker_material + material_number(scene, color_pack);
+                self.push(&marker.into(), material, &packing);
             }
+        }
+    }
+
+    fn push(&mut self, shape: &Shape, material: u32, packing: &Packing) {
+        let place = self.primitives.push(shape, material, packing);
+        if let (Some((kind, rectangle)), Some(screen)) = (place, &mut self.screen) {
+            screen[kind as usize].push(rectangle);
         }
     }
 
     /// Finds the faces of solids that camera rays, and shadow rays to each light, can do without.
     fn drop_far_faces(&mut self, scene: &Scene, request: &RenderRequest, centre: DVec3) {
-        let triangles = self.triangles.iter();
+        let triangles = self.primitives.triangles.iter();
         let solids = Solids::among(triangles.map(|t| t.corners.map(Vec3::to_dvec3)).collect());
         let projection = request.projection.unwrap_or(scene.camera.projection);
         if projection == Projection::Perspective {
@@ -208,40 +177,44 @@ impl<R: Real> Plan<R> {
     }
 
     fn bound(&self, accelerator: Accelerator) -> Bvh<R> {
-        let spheres = self.spheres.iter().map(|sphere| Ball {
-            center: sphere.center.to_dvec3(),
-            radius: sphere.radius.to_f64(),
-        });
-        let triangles = self
-            .triangles
-            .iter()
-            .map(|triangle| Ball::around_triangle(triangle.corners.map(Vec3::to_dvec3)));
-        let balls: Vec<Ball> = spheres.chain(triangles).collect();
-        let bundled = match accelerator {
-            Accelerator::Auto => balls.len() > LARGEST_LIST,
+        let mut balls = BallsOf(Vec::new());
+        self.primitives.visit(&mut balls);
+        let is_tree = match accelerator {
+            Accelerator::Auto => balls.0.len() > LARGEST_LIST,
             Accelerator::List => false,
             Accelerator::Bvh => true,
         };
-        Bvh::new(&balls, bundled)
-    }
-
-    fn pack_markers(&mut self, scene: &Scene, centre: DVec3) {
-        let first_marker_material = scene.color_packs.len();
-        for light in scene.lights.iter().filter(|light| light.visible) {
-            let Some(LightObj { radius, color_pack }) = &light.marker else {
-                continue;
-            };
-            let pack = material_number(scene, color_pack) as usize;
-            self.spheres.push(Sphere {
-                center: Vec3::from_dvec3(light.position - centre),
-                radius: R::from_f64(*radius),
-                material: number(first_marker_material + pack),
-            });
-        }
+        Bvh::new(&balls.0, is_tree)
     }
 }
 
-fn departure<R: Real>(scene: &Scene, offset: RayOffset) -> RayOrigin<R> {
+/// The balls around all primitives that end, with their numbers.
+struct BallsOf(Vec<(u32, Ball)>);
+
+impl<R: Real> Visit<R> for BallsOf {
+    fn visit<P: Primitive<R>>(&mut self, _kind: Kind, primitives: &[P], first: usize) {
+        let balls = primitives.iter().enumerate();
+        let balls = balls.filter_map(|(index, primitive)| {
+            let ball = primitive.ball()?;
+            Some(((first + index) as u32, ball))
+        });
+        self.0.extend(balls);
+    }
+}
+
+fn projector(scene: &Scene, request: &RenderRequest) -> Option<Projector> {
+    let camera = Camera {
+        projection: request.projection.unwrap_or(scene.camera.projection),
+        ..scene.camera.clone()
+    };
+    let margin = match request.sampling {
+        Sampling::Adaptive { .. } => SMOOTH_MARGIN,
+        Sampling::Centres | Sampling::Grid(_) => MARGIN,
+    };
+    Projector::new(&camera, (request.width, request.height), margin)
+}
+
+fn ray_origin<R: Real>(scene: &Scene, offset: RayOffset) -> RayOrigin<R> {
     let along = |distance| RayOrigin::Along(R::from_f64(distance));
     match offset {
         RayOffset::Robust => RayOrigin::AtHit,
@@ -260,7 +233,7 @@ fn departure<R: Real>(scene: &Scene, offset: RayOffset) -> RayOrigin<R> {
 fn pack_lights<R: Real>(
     scene: &Scene,
     centre: DVec3,
-    walls: &[PlaneOccluder],
+    occluders: &[PlaneOccluder],
     model: Model,
 ) -> Vec<PointLight<R>> {
     let all = model == Model::Everything;
@@ -269,7 +242,11 @@ fn pack_lights<R: Real>(
         .iter()
         .filter(|light| light.visible && (all || light.intensity > 0.0));
     shining
-        .filter(|light| walls.iter().all(|wall| wall.side(light.position) >= 0.0))
+        .filter(|light| {
+            occluders
+                .iter()
+                .all(|plane| plane.side(light.position) >= 0.0)
+        })
         .map(|light| PointLight {
             position: Vec3::from_dvec3(light.position - centre),
             intensity: R::from_f64(light.intensity),
@@ -278,32 +255,8 @@ fn pack_lights<R: Real>(
         .collect()
 }
 
-/// Twice the area over the longest side.
-fn thickness([a, b, c]: [DVec3; 3]) -> f64 {
-    let sides = [b - a, c - b, a - c].map(DVec3::length);
-    let longest = sides[0].max(sides[1]).max(sides[2]);
-    (b - a).cross(c - a).length() / longest
-}
-
 fn material_number(scene: &Scene, pack: &str) -> u32 {
-    number(scene.color_packs.get_index_of(pack).unwrap_or_default())
-}
-
-fn number(index: usize) -> u32 {
-    index as u32
-}
-
-/// How many visible triangles meet at each corner.
-fn count_corner_users(scene: &Scene) -> HashMap<Corner, usize> {
-    let mut users = HashMap::new();
-    for object in scene.objects.iter().filter(|object| object.visible) {
-        if let Shape::Triangle { a, b, c } = object.shape {
-            for point in [a, b, c] {
-                *users.entry(corner(point)).or_insert(0) += 1;
-            }
-        }
-    }
-    users
+    scene.color_packs.get_index_of(pack).unwrap_or_default() as u32
 }
 
 #[cfg(test)]
@@ -318,13 +271,22 @@ mod tests {
     fn hidden_markers_and_objects_are_in_no_list() {
         let mut scene = Scene::demo();
         let full = plan(&scene);
-        assert_eq!((full.spheres.len(), full.casting_spheres), (4, 2));
+        assert_eq!(
+            (full.primitives.spheres.len(), full.casting_spheres),
+            (4, 2)
+        );
         scene.light_visualization = false;
-        assert_eq!(plan(&scene).spheres.len(), 2);
+        assert_eq!(plan(&scene).primitives.spheres.len(), 2);
         scene.objects[0].visible = false;
         scene.objects[2].visible = false;
         let sparse = plan(&scene);
-        assert_eq!((sparse.spheres.len(), sparse.triangles.len()), (1, 5));
+        assert_eq!(
+            (
+                sparse.primitives.spheres.len(),
+                sparse.primitives.triangles.len()
+            ),
+            (1, 5)
+        );
     }
 
     #[test]
@@ -367,6 +329,7 @@ mod tests {
         let mut scene = Scene::demo();
         assert!(
             plan(&scene)
+                .primitives
                 .triangles
                 .iter()
                 .all(|triangle| triangle.in_mesh)
@@ -374,6 +337,7 @@ mod tests {
         scene.objects.truncate(3);
         assert!(
             plan(&scene)
+                .primitives
                 .triangles
                 .iter()
                 .all(|triangle| !triangle.in_mesh)
@@ -393,7 +357,12 @@ mod tests {
         }
         moved.camera.position = moved.camera.position + by;
         let (here, there) = (plan(&scene), plan(&moved));
-        for (a, b) in here.spheres.iter().zip(&there.spheres) {
+        for (a, b) in here
+            .primitives
+            .spheres
+            .iter()
+            .zip(&there.primitives.spheres)
+        {
             assert_eq!(a.center, b.center);
         }
     }

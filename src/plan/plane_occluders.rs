@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Model, RayOffset, RenderRequest, SphereMethod};
-use crate::scene::{Projection, Scene, Shape};
+use crate::scene::{Projection, Scene};
 
 /// A plane, its normal turned to the eye.
 pub struct PlaneOccluder {
@@ -44,12 +44,12 @@ pub fn classify_planes(scene: &Scene, request: &RenderRequest) -> Option<Vec<Pla
         return None;
     }
     let visible = scene.objects.iter().filter(|object| object.visible);
-    let planes = visible.filter_map(|object| match object.shape {
-        Shape::Plane { point, normal } => Some(PlaneOccluder {
+    let planes = visible.filter_map(|object| {
+        let (point, normal) = object.shape.endless_plane()?;
+        Some(PlaneOccluder {
             normal: normal.try_normalize()?,
             point,
-        }),
-        Shape::Sphere { .. } | Shape::Triangle { .. } => None,
+        })
     });
     planes
         .map(|plane| match plane.side(camera.position) {

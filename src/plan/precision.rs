@@ -1,8 +1,6 @@
 //! Which real type a scene needs: single precision wherever its errors stay invisible.
 
-use glam::DVec3;
-
-use crate::scene::{Scene, Shape};
+use crate::scene::Scene;
 
 /// Largest ratio of a sphere's distance to its radius in single precision: the perpendicular
 /// discriminant is then off by at most 3.2·u·ρ ≈ 1/1000 of the radius.
@@ -24,8 +22,8 @@ pub fn needs_double(scene: &Scene) -> bool {
     let extent = (high - low).length().max((eye - centre).length());
     let visible = scene.objects.iter().filter(|object| object.visible);
     visible.map(|object| &object.shape).any(|shape| {
-        is_grazed(shape, eye)
-            || match feature(shape) {
+        shape.height_per_radius(eye) < MIN_HEIGHT_PER_RADIUS
+            || match shape.feature() {
                 None => false,
                 Some((at, size)) => {
                     (eye - at).length() > MAX_DISTANCE_PER_RADIUS * size
@@ -35,30 +33,10 @@ pub fn needs_double(scene: &Scene) -> bool {
     })
 }
 
-/// Whether the eye is all but on a sphere.
-fn is_grazed(shape: &Shape, eye: DVec3) -> bool {
-    match *shape {
-        Shape::Sphere { center, radius } => {
-            ((eye - center).length() - radius).abs() < MIN_HEIGHT_PER_RADIUS * radius
-        }
-        Shape::Plane { .. } | Shape::Triangle { .. } => false,
-    }
-}
-
-/// Where a bounded shape is and how small its smallest measure.
-fn feature(shape: &Shape) -> Option<(DVec3, f64)> {
-    match *shape {
-        Shape::Sphere { center, radius } => Some((center, radius)),
-        Shape::Plane { .. } => None,
-        Shape::Triangle { a, b, c } => {
-            let longest = (b - a).length().max((c - a).length()).max((c - b).length());
-            Some((a, (b - a).cross(c - a).length() / longest))
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
 
     #[test]

@@ -5,6 +5,8 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
+use crate::primitive::{Corner, corner};
+
 /// Most faces of a solid: its corners are held against each of its faces.
 const MOST_FACES: usize = 256;
 /// Share of a solid's size by which a point must be before or behind a face to count as such: more
@@ -18,9 +20,6 @@ pub struct Solids {
     /// For each solid its faces, by their places in the list.
     solids: Vec<Vec<usize>>,
 }
-
-/// The bits of a corner's coordinates.
-pub type Corner = [u64; 3];
 
 impl Solids {
     /// Finds the closed convex solids among the triangles.
@@ -64,12 +63,6 @@ fn plane([a, b, c]: &[DVec3; 3]) -> (DVec3, f64, f64) {
     let normal = across.try_normalize().unwrap_or(across);
     let size = (*b - *a).length() + (*c - *a).length() + a.abs().max_element();
     (normal, normal.dot(*a), MARGIN * size)
-}
-
-/// A corner as a key: corners are one where their coordinates are equal.
-pub fn corner(point: DVec3) -> Corner {
-    // Adding zero makes one zero of the two.
-    point.to_array().map(|part| (part + 0.0).to_bits())
 }
 
 /// Triangles that hang together by common corners.
@@ -131,7 +124,7 @@ fn is_convex(triangles: &[[DVec3; 3]], faces: &[usize]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Scene, Shape};
+    use crate::scene::{Scene, Shape, Triangle};
 
     /// The demo's pyramid.
     fn pyramid() -> Vec<[DVec3; 3]> {
@@ -139,7 +132,7 @@ mod tests {
         let shapes = scene.objects.iter().map(|object| &object.shape);
         shapes
             .filter_map(|shape| match *shape {
-                Shape::Triangle { a, b, c } => Some([a, b, c]),
+                Shape::Triangle(Triangle { a, b, c }) => Some([a, b, c]),
                 _ => None,
             })
             .collect()

@@ -64,23 +64,20 @@ impl<R: Real> View<R> {
     /// Origin and unit direction of the rays through the places (x, y) of the picture, in pixels
     /// from its left and upper edge. The centre of the first pixel is (½, ½).
     #[inline(always)]
-    pub fn rays<L: SimdFloat<Real = R>>(&self, token: L::Token, x: L, y: L) -> (Vec3<L>, Vec3<L>) {
+    pub fn rays<L: SimdFloat<Real = R>>(&self, x: L, y: L) -> (Vec3<L>, Vec3<L>) {
         let (half_width, half_height) = self.half;
-        let pixel = L::splat(token, self.pixel);
-        let across = (x - L::splat(token, half_width)) * pixel;
-        let upwards = (L::splat(token, half_height) - y) * pixel;
-        let right: Vec3<L> = Vec3::broadcast(token, self.u) * across;
-        let offset = right + Vec3::broadcast(token, self.v) * upwards;
-        let origin = Vec3::broadcast(token, self.origin);
-        let forward = Vec3::broadcast(token, self.forward);
+        let pixel = x.like(self.pixel);
+        let across = (x - x.like(half_width)) * pixel;
+        let upwards = (x.like(half_height) - y) * pixel;
+        let right = Vec3::broadcast(x.token(), self.u) * across;
+        let offset = right + right.like(self.v) * upwards;
+        let origin = right.like(self.origin);
+        let forward = right.like(self.forward);
         match self.projection {
             Projection::Orthographic => (origin + offset, forward),
             Projection::Perspective => {
                 let direction = forward + offset;
-                (
-                    origin,
-                    direction * (L::splat(token, R::ONE) / direction.length()),
-                )
+                (origin, direction * (x.like(R::ONE) / direction.length()))
             }
         }
     }
@@ -91,7 +88,7 @@ mod tests {
     use super::*;
 
     fn rays(request: &RenderRequest, camera: &Camera, x: f64, y: f64) -> (DVec3, DVec3) {
-        let (origin, direction) = View::<f64>::new(camera, request, DVec3::ZERO).rays((), x, y);
+        let (origin, direction) = View::<f64>::new(camera, request, DVec3::ZERO).rays(x, y);
         (origin.to_dvec3(), direction.to_dvec3())
     }
 

@@ -260,7 +260,7 @@ fn read_bounded(path: &Path) -> Result<Vec<u8>, SceneError> {
 
 fn options() -> ron::Options {
     ron::Options::default()
-        .with_default_extension(Extensions::IMPLICIT_SOME)
+        .with_default_extension(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_VARIANT_NEWTYPES)
         .with_recursion_limit(MAX_DEPTH)
 }
 

@@ -33,7 +33,7 @@ pub use methods::{
 pub use notation::{format_number, parse_vec3};
 pub use orientation::Orientation;
 pub use recovery::{Leftover, Recovery};
-pub use shape::Shape;
+pub use shape::{Describe, Field, FieldValue, Plane, Shape, Sphere, Triangle};
 
 use glam::DVec3;
 

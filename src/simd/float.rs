@@ -35,6 +35,18 @@ pub trait SimdFloat:
 
     /// The same number in every lane.
     fn splat(token: Self::Token, value: Self::Real) -> Self;
+    /// The proof that the processor has these lanes: every row carries it.
+    fn token(self) -> Self::Token;
+    /// A number in as many lanes as this row has.
+    #[inline(always)]
+    fn like(self, value: Self::Real) -> Self {
+        Self::splat(self.token(), value)
+    }
+    /// The nearest number that the real type has, in as many lanes as this row has.
+    #[inline(always)]
+    fn like_f64(self, value: f64) -> Self {
+        self.like(Self::Real::from_f64(value))
+    }
     /// `number(i)` in lane i.
     fn from_fn(token: Self::Token, number: impl FnMut(usize) -> Self::Real) -> Self;
     /// The first [`Self::WIDTH`] numbers of a slice that has as many.
@@ -97,6 +109,8 @@ macro_rules! single_lane {
             fn splat((): (), value: Self) -> Self {
                 value
             }
+            #[inline(always)]
+            fn token(self) {}
             #[inline(always)]
             fn from_fn((): (), mut number: impl FnMut(usize) -> Self) -> Self {
                 number(0)
@@ -234,6 +248,10 @@ where
     #[inline(always)]
     fn splat(token: S, value: Self::Real) -> Self {
         wide(V::splat(token, value))
+    }
+    #[inline(always)]
+    fn token(self) -> S {
+        self.vector.token()
     }
     #[inline(always)]
     fn from_fn(token: S, number: impl FnMut(usize) -> Self::Real) -> Self {

@@ -56,25 +56,25 @@ impl Exponent {
     /// max(0, n·h)^p, where h is the unit vector along `half`. A `half` of no direction counts as 0.
     /// Off by at most 0.5 levels for p ≤ 10⁶.
     #[inline(always)]
-    pub fn highlight<L: SimdFloat>(self, token: L::Token, n: Vec3<L>, half: Vec3<L>) -> L {
-        let zero = L::splat(token, L::Real::ZERO);
+    pub fn highlight<L: SimdFloat>(self, n: Vec3<L>, half: Vec3<L>) -> L {
+        let zero = n.x.like(L::Real::ZERO);
         let (n_dot_half, half_square) = (n.dot(half).max(zero), half.dot(half));
         match self {
             // (n·h)² needs no square root.
             Self::Whole(p) if p.is_multiple_of(2) => {
                 let square = (n_dot_half * n_dot_half / half_square).max(zero);
-                whole_power(token, square, p / 2)
+                whole_power(square, p / 2)
             }
-            Self::Whole(p) => whole_power(token, (n_dot_half / half_square.sqrt()).max(zero), p),
+            Self::Whole(p) => whole_power((n_dot_half / half_square.sqrt()).max(zero), p),
             Self::Mixed(whole, fraction) => {
                 let base = (n_dot_half / half_square.sqrt()).max(zero);
-                let exponent = real::<L>(token, fraction) * logarithm(token, base);
-                whole_power(token, base, whole) * exponential(token, exponent)
+                let exponent = base.like_f64(fraction) * logarithm(base);
+                whole_power(base, whole) * exponential(exponent)
             }
             Self::Large(p) => {
-                let off = n - half * (L::splat(token, L::Real::ONE) / half_square.sqrt());
-                let w = off.dot(off) * real(token, 0.5);
-                let power = exponential(token, -real::<L>(token, p) * fall(token, w));
+                let off = n - half * (half_square.like(L::Real::ONE) / half_square.sqrt());
+                let w = off.dot(off) * half_square.like_f64(0.5);
+                let power = exponential(-w.like_f64(p) * fall(w));
                 L::select(zero.less(n_dot_half), power, zero)
             }
         }
@@ -82,13 +82,8 @@ impl Exponent {
 }
 
 #[inline(always)]
-fn real<L: SimdFloat>(token: L::Token, value: f64) -> L {
-    L::splat(token, L::Real::from_f64(value))
-}
-
-#[inline(always)]
-fn whole_power<L: SimdFloat>(token: L::Token, base: L, mut exponent: u32) -> L {
-    let (mut result, mut square) = (L::splat(token, L::Real::ONE), base);
+fn whole_power<L: SimdFloat>(base: L, mut exponent: u32) -> L {
+    let (mut result, mut square) = (base.like(L::Real::ONE), base);
     while exponent > 0 {
         if exponent & 1 == 1 {
             result = result * square;
@@ -102,31 +97,31 @@ fn whole_power<L: SimdFloat>(token: L::Token, base: L, mut exponent: u32) -> L {
 /// -log1p(-w) = 2·artanh(w / (2 - w)) by the first terms of the series: relative error below
 /// 10⁻¹¹ for w ≤ 0.15; above, at least 0.15, which is enough for a large power to vanish.
 #[inline(always)]
-fn fall<L: SimdFloat>(token: L::Token, w: L) -> L {
-    let z = w / (real::<L>(token, 2.0) - w);
-    artanh(token, z) * real(token, 2.0)
+fn fall<L: SimdFloat>(w: L) -> L {
+    let z = w / (w.like_f64(2.0) - w);
+    artanh(z) * z.like_f64(2.0)
 }
 
 /// log(x) = 2⁶·log(x^(1/2⁶)) for 10⁻¹² ≤ x ≤ 1, off by at most 2⁷u; finite below.
 #[inline(always)]
-fn logarithm<L: SimdFloat>(token: L::Token, x: L) -> L {
-    let one = L::splat(token, L::Real::ONE);
+fn logarithm<L: SimdFloat>(x: L) -> L {
+    let one = x.like(L::Real::ONE);
     let mut root = x;
     for _ in 0..HALVINGS {
         root = root.sqrt();
     }
     let z = (root - one) / (root + one);
-    artanh(token, z) * real(token, f64::from(2 << HALVINGS))
+    artanh(z) * z.like_f64(f64::from(2 << HALVINGS))
 }
 
 /// z + z³/3 + … + z¹³/13.
 #[inline(always)]
-fn artanh<L: SimdFloat>(token: L::Token, z: L) -> L {
+fn artanh<L: SimdFloat>(z: L) -> L {
     let square = z * z;
-    let mut sum: L = real(token, 1.0 / 13.0);
+    let mut sum = z.like_f64(1.0 / 13.0);
     let mut divisor = 11.0;
     while divisor > 0.0 {
-        sum = sum * square + real(token, 1.0 / divisor);
+        sum = sum * square + z.like_f64(1.0 / divisor);
         divisor -= 2.0;
     }
     sum * z
@@ -135,13 +130,13 @@ fn artanh<L: SimdFloat>(token: L::Token, z: L) -> L {
 /// exp(x) = exp(x/2⁶)^(2⁶) for x ≤ 0 by the terms up to y¹¹ of Taylor's series; relative error below 2⁷u for
 /// x ≥ -20, absolute error below 10⁻¹² for any.
 #[inline(always)]
-fn exponential<L: SimdFloat>(token: L::Token, x: L) -> L {
-    let y = x.max(real(token, LOWEST)) * real(token, 1.0 / f64::from(1 << HALVINGS));
-    let one = L::splat(token, L::Real::ONE);
+fn exponential<L: SimdFloat>(x: L) -> L {
+    let y = x.max(x.like_f64(LOWEST)) * x.like_f64(1.0 / f64::from(1 << HALVINGS));
+    let one = x.like(L::Real::ONE);
     let mut sum = one;
     let mut divisor = 11.0;
     while divisor > 0.0 {
-        sum = sum * y * real(token, 1.0 / divisor) + one;
+        sum = sum * y * y.like_f64(1.0 / divisor) + one;
         divisor -= 1.0;
     }
     for _ in 0..HALVINGS {
@@ -172,7 +167,7 @@ mod tests {
     }
 
     fn ours(p: f64) -> f64 {
-        worst_level(p, |n, h| Exponent::new(p).highlight((), n, h))
+        worst_level(p, |n, h| Exponent::new(p).highlight(n, h))
     }
 
     #[test]
@@ -197,11 +192,9 @@ mod tests {
             for i in 0..400 {
                 let angle = (4.0 / f64::sqrt(p)).min(1.57) * f64::from(i) / 400.0;
                 let half = (n * angle.cos() + across * angle.sin()) * 1.7;
-                let error: f64 = Exponent::new(p).highlight(
-                    (),
-                    Vec3::<f64>::from_dvec3(n),
-                    Vec3::from_dvec3(half),
-                ) - angle.cos().powf(p);
+                let error: f64 = Exponent::new(p)
+                    .highlight(Vec3::<f64>::from_dvec3(n), Vec3::from_dvec3(half))
+                    - angle.cos().powf(p);
                 assert!(error.abs() < 1e-9, "p = {p}, angle {angle}: {error:e}");
             }
         }
@@ -211,12 +204,12 @@ mod tests {
     fn zero_is_flat_and_the_dark_side_is_dark() {
         let n = Vec3::new(0.0_f32, 0.0, 1.0);
         let half = Vec3::new(0.954, 0.0, 0.3);
-        assert_eq!(Exponent::new(0.0).highlight((), n, half), 1.0);
+        assert_eq!(Exponent::new(0.0).highlight(n, half), 1.0);
         for p in [15.0, 16.0, 16.5, 1e4] {
-            assert_eq!(Exponent::new(p).highlight((), n, -half), 0.0);
+            assert_eq!(Exponent::new(p).highlight(n, -half), 0.0);
             let nowhere = Vec3::splat(0.0);
             assert_eq!(
-                Exponent::new(p).highlight((), n, nowhere),
+                Exponent::new(p).highlight(n, nowhere),
                 0.0,
                 "no half-vector"
             );

@@ -35,6 +35,12 @@ impl<L: SimdFloat> Vec3<L> {
         )
     }
 
+    /// A vector in as many lanes as this one has.
+    #[inline(always)]
+    pub fn like(self, v: Vec3<L::Real>) -> Self {
+        Self::broadcast(self.x.token(), v)
+    }
+
     /// The same number three times.
     #[inline(always)]
     pub fn splat(value: L) -> Self {

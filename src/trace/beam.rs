@@ -1,16 +1,11 @@
-//! Bundles of rays, and what they can meet at all. Whatever a beam does not meet, no ray in it
+//! Beams of rays, and what they can meet at all. Whatever a beam does not meet, no ray in it
 //! would have hit: leaving it out changes no pixel.
 
 use glam::DVec3;
 
-use super::packet::Packet;
-use crate::plan::{Ball, Balls, Bvh, GROUP};
+use crate::plan::{Balls, Bvh, GROUP};
+use crate::primitive::{Ball, CAUTION, FAR_CAUTION, Ray};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
-
-/// Share by which balls and angles are taken larger than computed, for the rounding of the kernel.
-const CAUTION: f64 = 1e-3;
-/// Share of a distance, for the same reason.
-const FAR_CAUTION: f64 = 1e-5;
 
 /// Rays that start within a ball and go in directions within a cone, up to some distance.
 #[derive(Clone, Copy, Debug)]
@@ -101,73 +96,56 @@ impl<R: Real> Beam<R> {
             L::load(token, &balls.y[first..]),
             L::load(token, &balls.z[first..]),
         );
-        let axis = Vec3::broadcast(token, self.axis);
-        let q = center - Vec3::broadcast(token, self.origin);
+        let axis = center.like(self.axis);
+        let q = center - center.like(self.origin);
         let along = q.dot(axis);
         let across = q - axis * along;
         let height = across.length();
-        let radius = (L::load(token, &balls.radius[first..]) + L::splat(token, self.spread))
-            * L::splat(token, R::from_f64(1.0 + CAUTION));
-        let room = radius + (along.abs() + height) * L::splat(token, R::from_f64(FAR_CAUTION));
-        let outside = height * L::splat(token, self.cosine) - along * L::splat(token, self.sine);
+        let radius = (L::load(token, &balls.radius[first..]) + along.like(self.spread))
+            * along.like_f64(1.0 + CAUTION);
+        let room = radius + (along.abs() + height) * along.like_f64(FAR_CAUTION);
+        let outside = height * along.like(self.cosine) - along * along.like(self.sine);
         let is_met = outside.at_most(room)
             & (-room).at_most(along)
-            & along.at_most(L::splat(token, self.reach) + room);
+            & along.at_most(along.like(self.reach) + room);
         is_met.bits()
     }
 
-    /// Lists the members of `volumes` that it meets, in order; `stack` is room to work in.
+    /// Lists the members of `bvh` that it meets, in order; `stack` is room to work in.
     #[inline(always)]
     pub fn gather<L: SimdFloat<Real = R>>(
         &self,
         token: L::Token,
-        volumes: &Bvh<R>,
+        bvh: &Bvh<R>,
         stack: &mut Vec<(usize, usize)>,
         met: &mut Vec<u32>,
     ) {
         met.clear();
         stack.clear();
-        let top = volumes.levels.len() - 1;
-        for group in (0..volumes.levels[top].x.len() / GROUP).rev() {
+        let top = bvh.levels.len() - 1;
+        for group in (0..bvh.levels[top].x.len() / GROUP).rev() {
             stack.push((top, group));
         }
         while let Some((level, group)) = stack.pop() {
             let from = group * GROUP;
             for first in (from..from + GROUP).step_by(L::WIDTH) {
-                let mut bits = self.meets::<L>(token, &volumes.levels[level], first);
+                let mut bits = self.meets::<L>(token, &bvh.levels[level], first);
                 while bits != 0 {
                     let place = first + bits.trailing_zeros() as usize;
                     bits &= bits - 1;
                     if level == 0 {
-                        met.push(volumes.members[place]);
+                        met.push(bvh.members[place]);
                     } else {
                         stack.push((level - 1, place));
                     }
                 }
             }
         }
-        // Bundles come in an order of their own; surfaces at the same distance must not care.
-        if volumes.is_tree() {
+        // A tree has an order of its own; surfaces at the same distance must not care.
+        if bvh.is_tree() {
             met.sort_unstable();
         }
     }
-}
-
-/// Whether a ball lies wholly behind a sphere, seen from a light: nothing in it is lit.
-pub fn is_hidden(light: DVec3, sphere: &Ball, ball: &Ball) -> bool {
-    let towards = sphere.center - light;
-    let length = towards.length();
-    let sine = sphere.radius * (1.0 - CAUTION) / length;
-    if sine >= 1.0 {
-        return false;
-    }
-    let axis = towards * (1.0 / length);
-    let q = ball.center - light;
-    let along = q.dot(axis);
-    let height = (q - axis * along).length();
-    let radius = ball.radius * (1.0 + CAUTION) + along.abs() * FAR_CAUTION;
-    let cosine = (1.0 - sine * sine).sqrt();
-    along * sine - height * cosine >= radius && along - radius >= length
 }
 
 /// The box around points, lane by lane.
@@ -213,28 +191,29 @@ impl<L: SimdFloat> Bounds<L> {
     }
 }
 
-/// The beam of the rays of packets; `None` if they go everywhere, or there are none.
+/// The beam of rays, where each mask is set; `None` if they go everywhere, or there are none.
 #[inline(always)]
-pub fn beam_around<L: SimdFloat>(token: L::Token, packets: &[Packet<L>]) -> Option<Beam<L::Real>> {
+pub fn beam_around<L: SimdFloat>(
+    token: L::Token,
+    rays: impl Iterator<Item = (L::Mask, Ray<L>)> + Clone,
+) -> Option<Beam<L::Real>> {
     let (mut origins, mut directions) = (Bounds::new(token), Bounds::new(token));
-    for packet in packets {
-        origins.add(packet.active, packet.rays.origin);
-        directions.add(packet.active, packet.rays.direction);
+    for (active, rays) in rays.clone() {
+        origins.add(active, rays.origin);
+        directions.add(active, rays.direction);
     }
     let axis = directions.ball()?.center.try_normalize()?;
     let shared = Vec3::broadcast(token, Vec3::from_dvec3(axis));
     let mut chord = L::splat(token, L::Real::ZERO);
-    for packet in packets {
-        let off = packet.rays.direction - shared;
-        chord = L::select(packet.active, chord.max(off.dot(off)), chord);
+    for (active, rays) in rays {
+        let off = rays.direction - shared;
+        chord = L::select(active, chord.max(off.dot(off)), chord);
     }
     Beam::from_ball(&origins.ball()?, axis, chord.greatest().to_f64().sqrt())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::Ray;
-    use super::super::hit::Nearest;
     use super::*;
     use proptest::prelude::*;
 
@@ -248,7 +227,9 @@ mod tests {
     }
 
     fn is_met(beam: Option<Beam<f64>>, ball: Ball) -> bool {
-        beam.is_none_or(|beam| beam.meets::<f64>((), &Bvh::new(&[ball], false).levels[0], 0) != 0)
+        beam.is_none_or(|beam| {
+            beam.meets::<f64>((), &Bvh::new(&[(0, ball)], false).levels[0], 0) != 0
+        })
     }
 
     proptest! {
@@ -267,25 +248,10 @@ mod tests {
             let rays: Vec<Ray<f64>> = origins.iter().zip(&turns)
                 .filter_map(|(&origin, &turn)| Some(Ray { origin: Vec3::from_dvec3(origin), direction: Vec3::from_dvec3((axis + turn).try_normalize()?) })).collect();
             prop_assume!(!rays.is_empty());
-            let near = Nearest { t: 0.0, number: 0.0 };
-            let packets: Vec<Packet<f64>> = rays.iter().map(|&rays| Packet { rays, active: true, near, color: Vec3::splat(0.0) }).collect();
-            let beam = beam_around((), &packets);
+                        let beam = beam_around((), rays.iter().map(|&rays| (true, rays)));
             let on_ray = rays[pick % rays.len()].at(at).to_dvec3();
             let ball = Ball { center: on_ray + off * (size * 0.999 / off.length().max(1.0)), radius: size };
             prop_assert!(is_met(beam, ball));
-        }
-
-        #[test]
-        fn what_is_hidden_is_in_shadow(light in vector(5.0), center in vector(5.0), radius in 0.1..3.0_f64, beyond in 1.0..4.0_f64,
-                                       aside in vector(1.0), size in 0.0..0.5_f64, inside in vector(1.0)) {
-            let place = light + (center - light) * beyond + aside * (radius * beyond);
-            let (sphere, ball) = (Ball { center, radius }, Ball { center: place, radius: size * radius });
-            prop_assume!(is_hidden(light, &sphere, &ball));
-            let point = within(&ball, inside);
-            let to_light = (light - point).try_normalize().expect("apart");
-            let along = (center - point).dot(to_light);
-            let beside = (center - point - to_light * along).length();
-            prop_assert!(beside < radius && along > 0.0 && along < (light - point).length());
         }
 
         #[test]
@@ -311,8 +277,6 @@ mod tests {
         assert!(!is_met(beam, at(-3.0, 0.0, 1.0)));
         assert!(!is_met(beam, at(14.0, 0.0, 1.0)));
         assert!(is_met(beam, at(5.0, 1.4, 1.0)));
-        assert!(is_hidden(light, &at(5.0, 0.0, 2.0), &at(10.0, 0.5, 1.0)));
-        assert!(!is_hidden(light, &at(5.0, 0.0, 2.0), &at(10.0, 3.5, 1.0)));
         let up = Beam::<f64>::from_ball(&at(0.0, 1.0, 0.1), DVec3::Y, 0.1).expect("narrow");
         assert!(
             !up.crosses(Vec3::new(0.0, 1.0, 0.0), 0.0),

@@ -1,8 +1,8 @@
 //! Rays that travel in step, and what goes with them.
 
-use super::Ray;
-use super::hit::{NOTHING, Nearest, Start};
-use crate::plan::Plan;
+use super::footprint::RayCone;
+use super::intersect::{IgnoredPrimitive, Kernel, NOTHING, Nearest};
+use crate::primitive::Ray;
 use crate::simd::{Real, SimdFloat, Vec3};
 
 /// Rays that are traced in step, what they meet and what they bring back.
@@ -20,29 +20,20 @@ pub struct Packet<L: SimdFloat> {
 
 /// Where mirrored rays come from.
 #[derive(Clone, Copy)]
-pub struct Link<L: SimdFloat> {
-    /// Place of the packet in the stage before.
-    pub parent: usize,
+pub struct ReflectionParent<L: SimdFloat> {
+    /// Index of the packet in the bounce before.
+    pub packet: usize,
     /// What they start on.
-    pub start: Start<L>,
+    pub ignored: IgnoredPrimitive<L>,
     /// What their colours are multiplied by.
     pub filter: Vec3<L>,
 }
 
-/// How wide a pixel is: where the rays start, and how much wider at distance 1.
+/// What samples know of the edges around them.
 #[derive(Clone, Copy, Debug)]
-pub struct RayCone<L> {
-    /// Scene units.
-    pub width: L,
-    /// Scene units per scene unit.
-    pub spread: L,
-}
-
-/// What samples know of their surroundings.
-#[derive(Clone, Copy, Debug)]
-pub struct Mark<L> {
+pub struct EdgeInfo<L> {
     /// How wide a pixel is along the rays.
-    pub trail: RayCone<L>,
+    pub cone: RayCone<L>,
     /// The sum of 2ⁱ over the lights i that shine on what was hit.
     pub lit: L,
     /// How many pixels away the next thing is that may slip between samples; infinity for none.
@@ -52,27 +43,27 @@ pub struct Mark<L> {
 impl<L: SimdFloat> Packet<L> {
     /// Rays that have met nothing yet.
     #[inline(always)]
-    pub fn new(token: L::Token, plan: &Plan<L::Real>, rays: Ray<L>, active: L::Mask) -> Self {
+    pub fn new(kernel: Kernel<L>, rays: Ray<L>, active: L::Mask) -> Self {
         Self {
             rays,
             active,
             near: Nearest {
-                t: L::splat(token, L::Real::INFINITY),
-                number: L::splat(token, L::Real::from_f64(NOTHING)),
+                t: kernel.infinity(),
+                number: kernel.splat(NOTHING),
             },
-            color: Vec3::broadcast(token, plan.background),
+            color: Vec3::broadcast(kernel.token, kernel.plan.background),
         }
     }
 }
 
-impl<L: SimdFloat> Mark<L> {
-    /// Of rays that have met nothing yet.
+impl<L: SimdFloat> EdgeInfo<L> {
+    /// What is known of rays that have met nothing yet.
     #[inline(always)]
-    pub fn new(token: L::Token, trail: RayCone<L>) -> Self {
+    pub fn new(cone: RayCone<L>) -> Self {
         Self {
-            trail,
-            lit: L::splat(token, L::Real::ZERO),
-            near: L::splat(token, L::Real::INFINITY),
+            cone,
+            lit: cone.width.like(L::Real::ZERO),
+            near: cone.width.like(L::Real::INFINITY),
         }
     }
 }

@@ -3,6 +3,15 @@
 
 use crate::simd::{Real, Vec3};
 
+/// What a trace finds out about its samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edges {
+    /// Colours alone.
+    Ignored,
+    /// Also what is needed to smooth edges: signatures, and what may slip between samples.
+    Noted,
+}
+
 /// Places in the picture to be traced, in pixels from its left and upper edge; filled up to whole
 /// packets.
 #[derive(Clone, Debug, Default)]
@@ -81,7 +90,7 @@ impl<R: Real> Traced<R> {
     }
 
     /// Becomes so many views of nothing but this colour.
-    pub fn fill(&mut self, count: usize, length: usize, edges: bool, color: Vec3<R>) {
+    pub fn fill(&mut self, count: usize, length: usize, edges: Edges, color: Vec3<R>) {
         self.resize(count, length, edges);
         self.red.fill(color.x);
         self.green.fill(color.y);
@@ -91,12 +100,12 @@ impl<R: Real> Traced<R> {
     }
 
     /// Makes room for so many samples, `length` with those that fill the last packet up.
-    pub fn resize(&mut self, count: usize, length: usize, edges: bool) {
+    pub fn resize(&mut self, count: usize, length: usize, edges: Edges) {
         self.count = count;
         for column in [&mut self.red, &mut self.green, &mut self.blue] {
             column.resize(length, R::ZERO);
         }
-        let marked = if edges { length } else { 0 };
+        let marked = if edges == Edges::Noted { length } else { 0 };
         self.near.resize(marked, R::ZERO);
         self.signature.resize(marked, 0);
     }

@@ -3,111 +3,107 @@
 //! Rays that travel in step may hit different things: each thing that was hit is shaded for its own
 //! rays, and the results are put together.
 
-use super::cull::{Candidates, LightCandidates};
-use super::hit::{Hit, NOTHING, Paths, Start, blocked, refine};
-use super::mesh::EDGE_CONTRAST;
-use super::packet::{Mark, Packet, RayCone};
-use super::thin::{Footprint, thin_distance};
-use super::{Ray, Rays};
-use crate::plan::{Plan, PointLight, RayOrigin, Surface};
-use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
+use super::candidates::Candidates;
+use super::cull::LightCandidates;
+use super::footprint::{Footprint, RayCone};
+use super::intersect::{IgnoredPrimitive, Kernel, NOTHING, Paths};
+use super::packet::{EdgeInfo, Packet};
+use super::stats::Rays;
+use super::surface::Hit;
+use super::thresholds::EDGE_CONTRAST;
+use crate::plan::{PointLight, RayOrigin, Surface};
+use crate::primitive::Ray;
+use crate::simd::{Mask as _, SimdFloat, Vec3};
 
-/// How packets are painted.
+/// Lights that an edge tells apart: sums of so many powers of two are exact in any real type.
+const LIGHT_BITS: usize = 20;
+
+/// How packets are shaded.
 pub struct Shader<'a, L: SimdFloat> {
-    /// The lanes.
-    pub token: L::Token,
-    /// The plan.
-    pub plan: &'a Plan<L::Real>,
+    /// Lanes and plan.
+    pub kernel: Kernel<'a, L>,
     /// Whether mirrors send rays on.
     pub may_mirror: bool,
+    /// What rays can meet, or just miss, that may slip between samples.
+    pub thin: &'a Candidates,
+    /// What can stand before each light.
+    pub lights: &'a [LightCandidates],
 }
 
 /// Rays that a mirror sends on.
 pub struct Mirrored<L: SimdFloat> {
     /// Where there are some.
-    pub where_: L::Mask,
+    pub active: L::Mask,
     /// What their colours are multiplied by.
     pub filter: Vec3<L>,
     /// The rays.
     pub paths: Paths<L>,
-    /// How wide a pixel is along them, where marks are wanted.
-    pub trail: Option<RayCone<L>>,
+    /// How wide a pixel is along them, where edges are noted.
+    pub cone: Option<RayCone<L>>,
 }
 
-/// The hits on one primitive.
-struct Spot<'a, L: SimdFloat> {
+/// The hits of one packet on one primitive.
+struct ShadingPoint<'a, L: SimdFloat> {
     hit: Hit<L>,
     surface: &'a Surface<L::Real>,
     /// The rays that made them.
     here: L::Mask,
-    /// Where those came from.
+    /// Where those were going.
     view: Vec3<L>,
-    /// How large a pixel is here, where marks are wanted.
+    /// How large a pixel is here, where edges are noted.
     footprint: Option<Footprint<L>>,
 }
 
-impl<L: SimdFloat> Shader<'_, L> {
-    /// Colours what the packet has met, and marks it if a mark is wanted, by what is `thin`. Gives the
-    /// rays that mirrors send on.
+/// One of the plan's lights.
+struct LightSource<'a, R> {
+    index: usize,
+    light: &'a PointLight<R>,
+    candidates: &'a LightCandidates,
+}
+
+impl<'a, L: SimdFloat> Shader<'a, L> {
+    /// Colours what the packet has met, and notes its edges if they are wanted. Gives the rays that
+    /// mirrors send on.
     #[inline(always)]
-    pub fn paint(
+    pub fn shade(
         &self,
         packet: &mut Packet<L>,
-        start: Start<L>,
-        mut mark: Option<&mut Mark<L>>,
-        thin: &Candidates,
-        shadows: &[LightCandidates],
+        ignored: IgnoredPrimitive<L>,
+        mut edge: Option<&mut EdgeInfo<L>>,
         rays: &mut Rays,
     ) -> Option<Mirrored<L>> {
-        let (token, plan) = (self.token, self.plan);
+        let kernel = self.kernel;
         let mut mirrored: Option<Mirrored<L>> = None;
-        if let Some(mark) = &mut mark {
+        if let Some(edge) = &mut edge {
             let paths = Paths {
                 rays: packet.rays,
-                start,
+                ignored,
             };
-            mark.near = thin_distance(token, plan, thin, &paths, mark.trail, packet.near.t);
+            edge.near = kernel.thin_distance(self.thin, &paths, edge.cone, packet.near.t);
         }
-        let nothing = L::splat(token, L::Real::from_f64(NOTHING));
+
+        // Each primitive that was hit, for all rays that have hit it.
+        let nothing = kernel.splat(NOTHING);
         let mut left = (nothing.less(packet.near.number) & packet.active).bits();
         while left != 0 {
             let number = packet.near.number.lane(left.trailing_zeros() as usize);
-            let here = packet.near.number.same(L::splat(token, number)) & packet.active;
+            let here = packet.near.number.same(nothing.like(number)) & packet.active;
             left &= !here.bits();
-            let mut hit = refine(token, plan, &packet.rays, packet.near.t, number);
-            let material = &plan.materials[hit.material as usize];
-            let mut color = Vec3::broadcast(token, material.base);
+            let hit = kernel.refine(&packet.rays, &packet.near, number);
+            let material = &kernel.plan.materials[hit.material as usize];
+            let mut color = Vec3::broadcast(kernel.token, material.base);
             if let Some(surface) = &material.surface {
-                let view = packet.rays.direction;
-                // Both sides of everything are lit: the normal faces the viewer.
-                let away = L::splat(token, L::Real::ZERO).less(hit.normal.dot(view));
-                hit.normal = Vec3::select(away, -hit.normal, hit.normal);
-                let footprint = match &mark {
-                    None => None,
-                    Some(mark) => {
-                        let cosine = hit.normal.dot(view);
-                        Some(Footprint::new(
-                            token,
-                            mark.trail,
-                            packet.near.t,
-                            cosine,
-                            hit.radius,
-                        ))
-                    }
-                };
-                let spot = Spot {
-                    hit,
-                    surface,
-                    here,
-                    view,
-                    footprint,
-                };
-                for (index, (light, shadows)) in plan.lights.iter().zip(shadows).enumerate() {
-                    color =
-                        color + self.light(mark.as_deref_mut(), &spot, index, light, shadows, rays);
+                let point = self.shading_point(packet, hit, surface, here, edge.as_deref());
+                for (index, light) in kernel.plan.lights.iter().enumerate() {
+                    let light = LightSource {
+                        index,
+                        light,
+                        candidates: &self.lights[index],
+                    };
+                    color = color + self.light(edge.as_deref_mut(), &point, &light, rays);
                 }
                 if let Some(filter) = surface.mirror.filter(|_| self.may_mirror) {
-                    mirrored = Some(join(token, mirrored, self.mirror(&spot, filter)));
+                    mirrored = Some(join(kernel, mirrored, self.mirror(&point, filter)));
                 }
             }
             packet.color = Vec3::select(here, color, packet.color);
@@ -115,123 +111,154 @@ impl<L: SimdFloat> Shader<'_, L> {
         mirrored
     }
 
-    /// r = d - 2(d·n)n
+    /// Both sides of everything are lit: the normal is turned to the viewer.
     #[inline(always)]
-    fn mirror(&self, spot: &Spot<L>, filter: Vec3<L::Real>) -> Mirrored<L> {
-        let along = spot.view.dot(spot.hit.normal);
-        let direction = spot.view - spot.hit.normal * (along + along);
-        let paths = spot.hit.leave(self.token, self.plan.departure, direction);
+    fn shading_point(
+        &self,
+        packet: &Packet<L>,
+        mut hit: Hit<L>,
+        surface: &'a Surface<L::Real>,
+        here: L::Mask,
+        edge: Option<&EdgeInfo<L>>,
+    ) -> ShadingPoint<'a, L> {
+        let view = packet.rays.direction;
+        let normal = hit.surface.normal;
+        let away = self.kernel.splat(0.0).less(normal.dot(view));
+        hit.surface.normal = Vec3::select(away, -normal, normal);
+        let footprint = match edge {
+            None => None,
+            Some(edge) => {
+                let cosine = hit.surface.normal.dot(view);
+                let radius = hit.surface.radius;
+                Some(Footprint::new(edge.cone, packet.near.t, cosine, radius))
+            }
+        };
+        ShadingPoint {
+            hit,
+            surface,
+            here,
+            view,
+            footprint,
+        }
+    }
+
+    /// r = d - 2(d·n)n, the direction of perfect reflection; Whitted, "An improved illumination model
+    /// for shaded display", CACM 23(6), 1980.
+    #[inline(always)]
+    fn mirror(&self, point: &ShadingPoint<L>, filter: Vec3<L::Real>) -> Mirrored<L> {
+        let normal = point.hit.surface.normal;
+        let along = point.view.dot(normal);
+        let direction = point.view - normal * (along + along);
         Mirrored {
-            where_: spot.here,
-            filter: Vec3::broadcast(self.token, filter),
-            paths,
-            trail: spot.footprint.as_ref().map(Footprint::mirrored),
+            active: point.here,
+            filter: normal.like(filter),
+            paths: self.kernel.spawn(&point.hit, direction),
+            cone: point.footprint.as_ref().map(Footprint::mirrored),
         }
     }
 
     /// What one light adds: intensity · (n·l · diffuse + (n·h)^p · specular), if nothing is between.
+    ///
+    /// Blinn, "Models of light reflection for computer synthesized pictures", SIGGRAPH 1977, with h
+    /// halfway between the directions to the light and to the viewer.
     #[inline(always)]
     fn light(
         &self,
-        mark: Option<&mut Mark<L>>,
-        spot: &Spot<L>,
-        index: usize,
-        light: &PointLight<L::Real>,
-        shadows: &LightCandidates,
+        edge: Option<&mut EdgeInfo<L>>,
+        point: &ShadingPoint<L>,
+        source: &LightSource<L::Real>,
         rays: &mut Rays,
     ) -> Vec3<L> {
-        let (token, plan, hit) = (self.token, self.plan, &spot.hit);
-        let zero = L::splat(token, L::Real::ZERO);
-        let one = L::splat(token, L::Real::ONE);
+        let (kernel, hit) = (self.kernel, &point.hit);
+        let (light, candidates) = (source.light, source.candidates);
+        let zero = kernel.splat(0.0);
+        let one = kernel.splat(1.0);
         let dark = Vec3::splat(zero);
-        let to_light = Vec3::broadcast(token, light.position) - hit.point;
-        let distance = to_light.length();
+
         // A light in the surface has no direction: NaN is not above zero, and it adds nothing.
+        let to_light = hit.surface.point.like(light.position) - hit.surface.point;
+        let distance = to_light.length();
         let l = to_light * (one / distance);
-        let cosine = hit.normal.dot(l);
-        let lit_side = spot.here & zero.less(cosine);
-        let facing = if plan.shadows_behind {
-            spot.here
+        let cosine = hit.surface.normal.dot(l);
+        let lit_side = point.here & zero.less(cosine);
+        let facing = if kernel.plan.shadows_behind {
+            point.here
         } else {
             lit_side
         };
         if !facing.any() {
             return dark;
         }
+
+        // Shadows: whatever stands before the light, and whatever thin thing nearly does.
         rays.shadow += u64::from(facing.bits().count_ones());
-        let mut mark = mark.zip(spot.footprint.as_ref());
+        let mut edge = edge.zip(point.footprint.as_ref());
         let mut lit = lit_side;
-        if !shadows.casters.is_empty() {
-            let paths = hit.leave(token, plan.departure, l);
-            let reach = match plan.departure {
+        if !candidates.casters.is_empty() {
+            let paths = kernel.spawn(hit, l);
+            let reach = match kernel.plan.ray_origin {
                 RayOrigin::AtHit | RayOrigin::Roundings => distance,
-                RayOrigin::Along(start) => distance - L::splat(token, start),
+                RayOrigin::Along(start) => distance - distance.like(start),
             };
-            if let Some((mark, footprint)) = &mut mark {
-                let trail = footprint.shadow(token);
-                let near = thin_distance(token, plan, &shadows.thin, &paths, trail, reach);
+            if let Some((edge, footprint)) = &mut edge {
+                let cone = footprint.shadow();
+                let near = kernel.thin_distance(&candidates.thin, &paths, cone, reach);
                 // Of light that nobody sees, the shadow is not seen either.
-                let diffuse = spot.surface.diffuse;
+                let diffuse = point.surface.diffuse;
                 let brightest = (diffuse.x + diffuse.y + diffuse.z) * light.intensity;
-                let visible = L::splat(token, L::Real::from_f64(EDGE_CONTRAST))
-                    .less(cosine * L::splat(token, brightest));
-                mark.near = L::select(facing & visible, near.min(mark.near), mark.near);
+                let visible = kernel
+                    .splat(EDGE_CONTRAST)
+                    .less(cosine * cosine.like(brightest));
+                edge.near = L::select(facing & visible, near.min(edge.near), edge.near);
             }
-            if shadows.is_umbra {
+            if candidates.is_umbra {
                 return dark;
             }
-            lit = lit & !blocked(token, plan, &shadows.casters, &paths, reach, facing);
+            lit = lit & !kernel.blocked(&candidates.casters, &paths, reach, facing);
             if !lit.any() {
                 return dark;
             }
         }
-        let matte = Vec3::broadcast(token, spot.surface.diffuse) * cosine;
-        let exponent = spot.surface.exponent;
-        let half = l - spot.view;
-        let highlight = exponent.highlight(token, hit.normal, half);
-        let color = matte + Vec3::broadcast(token, spot.surface.specular) * highlight;
-        if let Some((mark, footprint)) = mark {
-            let bit = L::splat(
-                token,
-                L::Real::from_f64(f64::from(1_u32 << (index % LIGHT_BITS))),
-            );
-            mark.lit = L::select(lit, mark.lit + bit, mark.lit);
+
+        // The colour of the light that arrives.
+        let matte = l.like(point.surface.diffuse) * cosine;
+        let exponent = point.surface.exponent;
+        let half = l - point.view;
+        let highlight = exponent.highlight(hit.surface.normal, half);
+        let color = matte + l.like(point.surface.specular) * highlight;
+        if let Some((edge, footprint)) = edge {
+            let bit = kernel.splat(f64::from(1_u32 << (source.index % LIGHT_BITS)));
+            edge.lit = L::select(lit, edge.lit + bit, edge.lit);
             if let Some(size) = exponent.size() {
-                let off = (hit.normal - half * (one / half.length())).length();
-                let near = footprint.highlight_distance(token, size, off, distance);
-                mark.near = L::select(lit, near.min(mark.near), mark.near);
+                let off = (hit.surface.normal - half * (one / half.length())).length();
+                let near = footprint.highlight_distance(size, off, distance);
+                edge.near = L::select(lit, near.min(edge.near), edge.near);
             }
         }
-        Vec3::select(lit, color * L::splat(token, light.intensity), dark)
+        Vec3::select(lit, color * distance.like(light.intensity), dark)
     }
 }
-
-/// Lights that a mark tells apart: sums of so many powers of two are exact in any real type.
-const LIGHT_BITS: usize = 20;
 
 /// Puts the rays of several mirrors into one row.
 #[inline(always)]
 fn join<L: SimdFloat>(
-    token: L::Token,
+    kernel: Kernel<L>,
     before: Option<Mirrored<L>>,
     new: Mirrored<L>,
 ) -> Mirrored<L> {
     let Some(before) = before else { return new };
-    let is_new = new.where_;
+    let is_new = new.active;
+    let (ours, theirs) = (new.paths, before.paths);
     let rays = Ray {
-        origin: Vec3::select(is_new, new.paths.rays.origin, before.paths.rays.origin),
-        direction: Vec3::select(
-            is_new,
-            new.paths.rays.direction,
-            before.paths.rays.direction,
-        ),
+        origin: Vec3::select(is_new, ours.rays.origin, theirs.rays.origin),
+        direction: Vec3::select(is_new, ours.rays.direction, theirs.rays.direction),
     };
-    let start = new.paths.start.over(token, is_new, before.paths.start);
+    let ignored = ours.ignored.over(kernel.token, is_new, theirs.ignored);
     Mirrored {
-        where_: before.where_ | is_new,
+        active: before.active | is_new,
         filter: Vec3::select(is_new, new.filter, before.filter),
-        paths: Paths { rays, start },
-        trail: match (new.trail, before.trail) {
+        paths: Paths { rays, ignored },
+        cone: match (new.cone, before.cone) {
             (Some(new), Some(before)) => Some(RayCone {
                 width: L::select(is_new, new.width, before.width),
                 spread: L::select(is_new, new.spread, before.spread),

@@ -21,9 +21,9 @@ use crate::scene::Shape;
 /// The symbol of a shape.
 pub fn of_shape(shape: &Shape) -> MaterialIcon {
     match shape {
-        Shape::Sphere { .. } => SPHERE,
-        Shape::Plane { .. } => PLANE,
-        Shape::Triangle { .. } => TRIANGLE,
+        Shape::Sphere(_) => SPHERE,
+        Shape::Plane(_) => PLANE,
+        Shape::Triangle(_) => TRIANGLE,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use glint::plan::{Precision, RenderRequest, Sampling};
-use glint::scene::{Object, Scene, Shape};
+use glint::scene::{Object, Scene, Shape, Sphere, Triangle};
 use glint::simd::Real;
 use glint::trace::{Pass, Pixel, Rays, RenderControl, Tracer};
 
@@ -126,19 +126,19 @@ fn poles() -> Scene {
         let wide = DVec3::new(0.25, 0.0, 0.0);
         add(
             format!("Pole {n} left"),
-            Shape::Triangle {
+            Shape::Triangle(Triangle {
                 a: foot,
                 b: top,
                 c: foot + wide,
-            },
+            }),
         );
         add(
             format!("Pole {n} right"),
-            Shape::Triangle {
+            Shape::Triangle(Triangle {
                 a: foot + wide,
                 b: top,
                 c: top + wide,
-            },
+            }),
         );
     }
     for n in 0..40 {
@@ -149,10 +149,10 @@ fn poles() -> Scene {
         );
         add(
             format!("Ball {n}"),
-            Shape::Sphere {
+            Shape::Sphere(Sphere {
                 center,
                 radius: 0.25,
-            },
+            }),
         );
     }
     scene

@@ -8,7 +8,7 @@ use glint::plan::{
     Accelerator, HighlightMethod, Methods, Precision, RayOffset, RenderRequest, Sampling,
     SphereMethod, TriangleMethod,
 };
-use glint::scene::{Method as _, Object, Projection, Scene, Shape};
+use glint::scene::{Method as _, Object, Plane, Projection, Scene, Shape, Sphere, Triangle};
 use glint::simd::Level;
 use glint::trace::{Grid, Pass, Rays, RenderControl, Threads, Tracer};
 
@@ -251,19 +251,19 @@ fn placed(scale: f64, by: DVec3) -> Scene {
     let place = |v: DVec3| v * scale + by;
     for object in &mut scene.objects {
         object.shape = match object.shape {
-            Shape::Sphere { center, radius } => Shape::Sphere {
+            Shape::Sphere(Sphere { center, radius }) => Shape::Sphere(Sphere {
                 center: place(center),
                 radius: radius * scale,
-            },
-            Shape::Plane { point, normal } => Shape::Plane {
+            }),
+            Shape::Plane(Plane { point, normal }) => Shape::Plane(Plane {
                 point: place(point),
                 normal,
-            },
-            Shape::Triangle { a, b, c } => Shape::Triangle {
+            }),
+            Shape::Triangle(Triangle { a, b, c }) => Shape::Triangle(Triangle {
                 a: place(a),
                 b: place(b),
                 c: place(c),
-            },
+            }),
         };
     }
     for light in &mut scene.lights {
@@ -344,10 +344,10 @@ fn ball() -> Scene {
     scene.objects.push(glint::scene::Object {
         name: "Ball".to_owned(),
         color_pack: "pack 1".to_owned(),
-        shape: Shape::Sphere {
+        shape: Shape::Sphere(Sphere {
             center: DVec3::new(0.0, 0.0, 0.0),
             radius: 1.0,
-        },
+        }),
         visible: true,
     });
     scene
@@ -369,10 +369,10 @@ fn a_blocked_light_leaves_ambient_and_a_marker_blocks_nothing() {
     let mut blocker = scene.objects[0].clone();
     blocker.name = "Blocker".to_owned();
     scene.lights[0].position = DVec3::new(10.0, 0.0, 10.0);
-    blocker.shape = Shape::Sphere {
+    blocker.shape = Shape::Sphere(Sphere {
         center: DVec3::new(5.0, 0.0, 5.5),
         radius: 1.0,
-    };
+    });
     let lit = middle(&scene);
     scene.objects.push(blocker);
     assert_eq!(
@@ -410,10 +410,10 @@ fn a_mirror_adds_the_sum_of_intensities_even_in_shadow() {
 #[test]
 fn a_camera_inside_a_ball_sees_its_lit_wall() {
     let mut scene = ball();
-    scene.objects[0].shape = Shape::Sphere {
+    scene.objects[0].shape = Shape::Sphere(Sphere {
         center: DVec3::new(0.0, 0.0, 0.0),
         radius: 100.0,
-    };
+    });
     assert_eq!(
         middle(&scene),
         [70, 65, 90],
@@ -469,10 +469,10 @@ fn degenerate_lights_and_views_stay_finite() {
         [20, 40, 60],
         "a light in the surface adds nothing"
     );
-    scene.objects[0].shape = Shape::Plane {
+    scene.objects[0].shape = Shape::Plane(Plane {
         point: DVec3::new(0.0, 0.0, 0.0),
         normal: DVec3::new(0.0, 1.0, 0.0),
-    };
+    });
     scene.camera.projection = Projection::Orthographic;
     scene.background = DVec3::new(1.0, 2.0, 3.0);
     assert_eq!(
@@ -513,10 +513,10 @@ fn bundles_show_what_a_list_shows() {
         crowd.objects.push(Object {
             name: format!("Speck {n}"),
             color_pack: "pack 0".to_owned(),
-            shape: Shape::Sphere {
+            shape: Shape::Sphere(Sphere {
                 center: DVec3::new(place(1.7), place(2.3), place(3.1)),
                 radius: 2.5,
-            },
+            }),
             visible: true,
         });
     }

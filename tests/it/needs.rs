@@ -4,7 +4,7 @@
 use glam::DVec3;
 use glint::image::{Image, render};
 use glint::plan::{Model, Plan, RenderRequest, needs};
-use glint::scene::{Object, Scene, Shape};
+use glint::scene::{Object, Scene, Shape, Sphere};
 use glint::trace::{Rays, RenderControl};
 
 use crate::random;
@@ -123,16 +123,16 @@ fn bundles_begin_where_a_list_is_too_long() {
             scene.objects.push(Object {
                 name: format!("Ball {n}"),
                 color_pack: pack.clone(),
-                shape: Shape::Sphere {
+                shape: Shape::Sphere(Sphere {
                     center: DVec3::new(n as f64, 0.0, -50.0),
                     radius: 0.4,
-                },
+                }),
                 visible: true,
             });
         }
         scene.light_visualization = false;
         Plan::<f32>::new(&scene, &RenderRequest::sized(64, 64))
-            .volumes
+            .bvh
             .is_tree()
     };
     assert!(!crowd(128));

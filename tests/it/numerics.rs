@@ -2,20 +2,29 @@
 //! check can. Every row runs with few tries in `cargo test` and with all of them in CI.
 //!
 //! Rows that need the inside of a kernel are tested beside it: refined hits and planets in
-//! `trace/sphere.rs`, leaks in `trace/triangle`, grazing planes in `trace/plane.rs`, highlights in
-//! `lanes/highlight.rs`, mouse moves in `editor/fly.rs`, paths in `animate/tests`; shadow rays at
+//! `primitive/sphere.rs`, leaks in `primitive/triangle`, grazing planes in `primitive/plane.rs`, highlights in
+//! `simd/highlight.rs`, mouse moves in `editor/fly.rs`, paths in `animate/tests`; shadow rays at
 //! every scale and place, of single shapes and of meshes, are maps of the lab.
 
 use glam::DVec3;
 use glint::image::{Image, render};
-use glint::plan::{RenderRequest, Sphere, SphereMethod};
+use glint::plan::{RenderRequest, SphereMethod};
+use glint::primitive::{PackedSphere, Primitive as _, Ray};
 use glint::scene::{
-    Accelerator, Camera, ColorPack, Methods, Object, Precision, Projection, RayOffset, Sampling,
-    Scene, Shape,
+    Accelerator, Camera, ColorPack, Methods, Object, Plane, Precision, Projection, RayOffset,
+    Sampling, Scene, Shape, Sphere, Triangle,
 };
 use glint::simd::{Real, Vec3};
-use glint::trace::probe::meet_sphere;
-use glint::trace::{Ray, RenderControl};
+use glint::trace::RenderControl;
+
+/// The t > 0 at which the ray meets the sphere; infinity if it does not.
+fn meet_sphere<R: Real>(method: SphereMethod, ray: &Ray<R>, sphere: &PackedSphere<R>) -> R {
+    let methods = Methods {
+        sphere: method,
+        ..Methods::default()
+    };
+    sphere.meet(ray, &methods)
+}
 
 /// A row: its name, and its check with so many tries per case.
 type Row = (&'static str, fn(u32));
@@ -66,13 +75,13 @@ fn share(n: u32, stream: u32) -> f64 {
 }
 
 /// A ray from `ratio` radii away past a unit ball at `miss` radii from its middle.
-fn aimed<R: Real>(n: u32, ratio: f64, miss: f64) -> (Ray<R>, Sphere<R>) {
+fn aimed<R: Real>(n: u32, ratio: f64, miss: f64) -> (Ray<R>, PackedSphere<R>) {
     let (a, b) = (share(n, 0) * std::f64::consts::TAU, share(n, 1) * 3.0 - 1.5);
     let towards = DVec3::new(a.cos() * b.cos(), b.sin(), a.sin() * b.cos());
     let c = share(n, 2) * std::f64::consts::TAU;
     let aside = towards.cross(DVec3::new(c.cos(), 0.3, c.sin()));
     let aside = aside.try_normalize().expect("not along the ray");
-    let sphere = Sphere {
+    let sphere = PackedSphere {
         center: Vec3::from_dvec3(towards * ratio + aside * miss),
         radius: R::ONE,
         material: 0,
@@ -85,7 +94,7 @@ fn aimed<R: Real>(n: u32, ratio: f64, miss: f64) -> (Ray<R>, Sphere<R>) {
 }
 
 /// The exact way to the ball of the rounded numbers.
-fn truth(ray: &Ray<f32>, sphere: &Sphere<f32>) -> f64 {
+fn truth(ray: &Ray<f32>, sphere: &PackedSphere<f32>) -> f64 {
     let (c, d) = (sphere.center.to_dvec3(), ray.direction.to_dvec3());
     let d = d.try_normalize().expect("a direction");
     let b = d.dot(c);
@@ -206,8 +215,8 @@ fn over<R: Real>(y: f64, direction: DVec3) -> Ray<R> {
     }
 }
 
-fn ball<R: Real>() -> Sphere<R> {
-    Sphere {
+fn ball<R: Real>() -> PackedSphere<R> {
+    PackedSphere {
         center: Vec3::from_dvec3(DVec3::splat(0.0)),
         radius: R::ONE,
         material: 0,
@@ -218,7 +227,7 @@ fn object(name: &str, center: DVec3, radius: f64) -> Object {
     Object {
         name: name.to_owned(),
         color_pack: "pack 1".to_owned(),
-        shape: Shape::Sphere { center, radius },
+        shape: Shape::Sphere(Sphere { center, radius }),
         visible: true,
     }
 }
@@ -269,11 +278,11 @@ fn flat_bundles(_: u32) {
             let (x, y) = (n % 12, n / 12);
             for (half, far) in [("a", corner(x, y + 1)), ("b", corner(x + 1, y))] {
                 scene.objects.push(Object {
-                    shape: Shape::Triangle {
+                    shape: Shape::Triangle(Triangle {
                         a: corner(x, y),
                         b: corner(x + 1, y + 1),
                         c: far,
-                    },
+                    }),
                     ..object(&format!("{n} {half}"), DVec3::splat(0.0), 1.0)
                 });
             }
@@ -312,15 +321,15 @@ fn contact_shadows(_: u32) {
         scene.ambient_intensity = 0.0;
         let place = |x: f64, y: f64, z: f64| DVec3::new(x, y, z) * scale;
         let shapes = [
-            Shape::Plane {
+            Shape::Plane(Plane {
                 point: DVec3::splat(0.0),
                 normal: DVec3::new(0.0, 1.0, 0.0),
-            },
-            Shape::Triangle {
+            }),
+            Shape::Triangle(Triangle {
                 a: place(0.0, 0.0, -0.5),
                 b: place(0.0, 1.0, 0.0),
                 c: place(0.0, 0.0, 0.5),
-            },
+            }),
         ];
         for (shape, name) in shapes.into_iter().zip(["Floor", "Card"]) {
             scene.objects.push(Object {
@@ -451,10 +460,10 @@ fn many_mirrors(_: u32) {
     for (name, z) in [("Front", -2.0), ("Back", 2.0)] {
         scene.objects.push(Object {
             color_pack: "mirror".to_owned(),
-            shape: Shape::Plane {
+            shape: Shape::Plane(Plane {
                 point: DVec3::new(0.0, 0.0, z),
                 normal: DVec3::new(0.02, 0.0, 1.0),
-            },
+            }),
             ..object(name, DVec3::splat(0.0), 1.0)
         });
     }

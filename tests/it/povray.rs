@@ -7,7 +7,7 @@ use std::process::Command;
 use glam::DVec3;
 use glint::image::{Image, render};
 use glint::plan::{Methods, RayOffset, RenderRequest};
-use glint::scene::{ColorPack, Projection, Scene, Shape};
+use glint::scene::{ColorPack, Plane, Projection, Scene, Shape, Sphere, Triangle};
 use glint::trace::RenderControl;
 
 use crate::random;
@@ -53,14 +53,14 @@ fn translate(scene: &Scene) -> String {
     for object in &scene.objects {
         let texture = texture(&scene.color_packs[&object.color_pack], total);
         let _ = match &object.shape {
-            Shape::Sphere { center, radius } => {
+            Shape::Sphere(Sphere { center, radius }) => {
                 writeln!(
                     pov,
                     "sphere {{ {}, {radius:?} {texture} }}",
                     vector(*center)
                 )
             }
-            Shape::Plane { point, normal } => {
+            Shape::Plane(Plane { point, normal }) => {
                 let n = normal.try_normalize().expect("checked");
                 writeln!(
                     pov,
@@ -69,7 +69,7 @@ fn translate(scene: &Scene) -> String {
                     n.dot(*point)
                 )
             }
-            Shape::Triangle { a, b, c } => {
+            Shape::Triangle(Triangle { a, b, c }) => {
                 writeln!(
                     pov,
                     "triangle {{ {}, {}, {} {texture} }}",

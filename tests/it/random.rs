@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use glint::scene::{
-    Camera, ColorPack, Light, LightObj, Object, Projection, Render, Scene, Shape, check,
+    Camera, ColorPack, Light, LightObj, Object, Plane, Projection, Render, Scene, Shape, Sphere,
+    Triangle, check,
 };
 
 /// `SplitMix64` (Steele, Lea and Flood 2014): a test must give the same scenes everywhere.
@@ -92,24 +93,24 @@ fn add_objects(scene: &mut Scene, dice: &mut Dice) {
     for _ in 0..8 {
         let center = dice.vector(-60.0, 60.0);
         add(
-            Shape::Sphere {
+            Shape::Sphere(Sphere {
                 center,
                 radius: dice.real(4.0, 22.0),
-            },
+            }),
             dice,
         );
     }
     for _ in 0..8 {
         let a = dice.vector(-70.0, 70.0);
         let (b, c) = (a + dice.vector(-40.0, 40.0), a + dice.vector(-40.0, 40.0));
-        add(Shape::Triangle { a, b, c }, dice);
+        add(Shape::Triangle(Triangle { a, b, c }), dice);
     }
     let tilt = DVec3::new(dice.real(-0.2, 0.2), 1.0, dice.real(-0.2, 0.2));
     add(
-        Shape::Plane {
+        Shape::Plane(Plane {
             point: DVec3::new(0.0, -60.0, 0.0),
             normal: tilt,
-        },
+        }),
         dice,
     );
 }

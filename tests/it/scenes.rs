@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use glint::plan::RenderRequest;
-use glint::scene::{Document, RayOffset, Sampling, Scene, SceneError, Shape, check};
+use glint::scene::{
+    Document, Plane, RayOffset, Sampling, Scene, SceneError, Shape, Sphere, Triangle, check,
+};
 use proptest::prelude::*;
 
 fn files_in(folder: &str) -> Vec<PathBuf> {
@@ -147,14 +149,18 @@ fn published_scenes_are_valid_and_saved_as_they_stand() {
 fn the_demo_has_every_number_of_the_report() {
     let demo = Scene::demo();
     let vector = |[x, y, z]: [f64; 3]| DVec3::new(x, y, z);
-    let sphere = |center, radius| Shape::Sphere {
-        center: vector(center),
-        radius,
+    let sphere = |center, radius| {
+        Shape::Sphere(Sphere {
+            center: vector(center),
+            radius,
+        })
     };
-    let triangle = |a, b, c| Shape::Triangle {
-        a: vector(a),
-        b: vector(b),
-        c: vector(c),
+    let triangle = |a, b, c| {
+        Shape::Triangle(Triangle {
+            a: vector(a),
+            b: vector(b),
+            c: vector(c),
+        })
     };
     let (p, q, r, s, top) = (
         [175.0, 5.0, -75.0],
@@ -214,10 +220,10 @@ fn the_demo_has_every_number_of_the_report() {
         ),
         (
             "Plane",
-            Shape::Plane {
+            Shape::Plane(Plane {
                 point: vector([0.0; 3]),
                 normal: vector([0.0, 1.0, 0.0]),
-            },
+            }),
             [255.0, 128.0, 128.0],
             true,
         ),

@@ -12,7 +12,7 @@ use egui_kittest::kittest::Queryable as _;
 use glint::editor::{Editor, Mode};
 use glint::image::{Image, render};
 use glint::plan::{RenderRequest, Sampling};
-use glint::scene::{Document, Method as _, Projection, Scene, Shape};
+use glint::scene::{Document, Method as _, Projection, Scene, Shape, Sphere};
 use glint::trace::RenderControl;
 use glint::ui::{App, Ask, Command, Dialogs, FLIGHT, SHORTCUTS, Setup};
 
@@ -194,7 +194,7 @@ impl EditorHarness {
 
 fn radius(scene: &Scene, object: usize) -> f64 {
     match scene.objects[object].shape {
-        Shape::Sphere { radius, .. } => radius,
+        Shape::Sphere(Sphere { radius, .. }) => radius,
         _ => panic!("not a sphere"),
     }
 }
@@ -291,7 +291,7 @@ fn a_vector_is_pasted_whole_and_a_label_resets() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
     harness.type_into("center y", "1, -2, 3.5");
-    let Shape::Sphere { center, .. } = &harness.scene().objects[0].shape else {
+    let Shape::Sphere(Sphere { center, .. }) = &harness.scene().objects[0].shape else {
         panic!("a sphere")
     };
     assert_eq!(center.to_array(), [1.0, -2.0, 3.5]);
@@ -665,10 +665,10 @@ fn a_scene_of_thousands_shows_only_the_rows_in_sight() {
         scene.objects.push(glint::scene::Object {
             name: format!("Ball {n} with a name that is rather longer than the panel is wide"),
             color_pack: "pack 1".to_owned(),
-            shape: Shape::Sphere {
+            shape: Shape::Sphere(Sphere {
                 center: glam::DVec3::new(f64::from(n), 0.0, 0.0),
                 radius: 0.4,
-            },
+            }),
             visible: n % 3 != 0,
         });
     }
@@ -736,7 +736,7 @@ fn a_held_key_commands_once() {
         .event(Event::ModifiersChanged(Modifiers::NONE));
     harness.settle();
     assert_eq!(harness.scene().objects.len(), 10);
-    let Shape::Sphere { center, radius } = &harness.scene().objects[1].shape else {
+    let Shape::Sphere(Sphere { center, radius }) = &harness.scene().objects[1].shape else {
         panic!("a sphere")
     };
     assert_eq!(

@@ -7,7 +7,7 @@ use glam::DVec3;
 use glint::image::render;
 use glint::lab::Study;
 use glint::plan::RenderRequest;
-use glint::scene::{Object, Scene, Shape};
+use glint::scene::{Object, Scene, Shape, Sphere};
 use glint::trace::RenderControl;
 use glint::worker::{Activity, BUDGET, Event, Frame, LiveJob, Pace, StillJob, Worker};
 
@@ -67,10 +67,10 @@ fn slow_scene() -> Arc<Scene> {
         scene.objects.push(Object {
             name: format!("Ball {n}"),
             color_pack: "sphere 1".to_owned(),
-            shape: Shape::Sphere {
+            shape: Shape::Sphere(Sphere {
                 center,
                 radius: 3.0,
-            },
+            }),
             visible: true,
         });
     }

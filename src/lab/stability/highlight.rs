@@ -60,7 +60,7 @@ fn fails(method: HighlightMethod, number: u64, p: f64) -> Option<bool> {
         Vec3::<f32>::from_dvec3(normal),
         Vec3::<f32>::from_dvec3(half),
     );
-    let found = f64::from(exponent.highlight((), normal, half));
+    let found = f64::from(exponent.highlight(normal, half));
     // The truth belongs to the rounded numbers, made unit vectors exactly.
     let (n, h) = (
         normal.to_dvec3().try_normalize()?,

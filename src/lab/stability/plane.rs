@@ -3,10 +3,9 @@
 use glam::DVec3;
 
 use super::{Axis, Map, Tries, scales, scattered};
-use crate::plan::Plane;
+use crate::primitive::{PackedPlane, Primitive as _, Ray};
+use crate::scene::Methods;
 use crate::simd::{Real as _, Vec3};
-use crate::trace::Ray;
-use crate::trace::probe::meet_plane;
 
 /// Angles between ray and plane, in degrees.
 const ANGLES: [f64; 6] = [45.0, 10.0, 1.0, 0.1, 0.01, 0.001];
@@ -38,7 +37,7 @@ fn fails(number: u64, angle: f64, scale: f64) -> Option<bool> {
         .try_normalize()?;
     let (sine, cosine) = angle.to_radians().sin_cos();
     let direction = along * cosine - normal * sine;
-    let plane = Plane {
+    let plane = PackedPlane {
         normal: Vec3::<f32>::from_dvec3(normal),
         offset: (-scale * (1.0 + scattered(number, 6))) as f32,
         material: 0,
@@ -47,7 +46,7 @@ fn fails(number: u64, angle: f64, scale: f64) -> Option<bool> {
         origin: Vec3::<f32>::from_dvec3(along * (scale * random(7))),
         direction: Vec3::from_dvec3(direction),
     };
-    let found = f64::from(meet_plane(&ray, &plane));
+    let found = f64::from(plane.meet(&ray, &Methods::default()));
     let (n, o, d) = (
         plane.normal.to_dvec3(),
         ray.origin.to_dvec3(),

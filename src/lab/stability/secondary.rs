@@ -4,8 +4,8 @@
 use super::{Map, Tries, places, scales};
 use crate::plan::RenderRequest;
 use crate::scene::{
-    Camera, ColorPack, Light, Method as _, Methods, Object, Precision, RayOffset, Sampling, Scene,
-    Shape,
+    Camera, ColorPack, Light, Method as _, Methods, Object, Plane, Precision, RayOffset, Sampling,
+    Scene, Shape, Sphere, Triangle,
 };
 use crate::trace::{Pass, RenderControl, Tracer};
 use glam::DVec3;
@@ -120,27 +120,27 @@ fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
     scene.objects = vec![
         object(
             "Floor",
-            Shape::Plane {
+            Shape::Plane(Plane {
                 point: place(0.0, 0.0, 0.0),
                 normal: DVec3::new(0.0, 1.0, 0.0),
-            },
+            }),
         ),
         object(
             "Card",
-            Shape::Triangle {
+            Shape::Triangle(Triangle {
                 a: place(0.7, 0.0, 0.1),
                 b: place(0.9, 0.8, -0.1),
                 c: place(1.1, 0.0, -0.3),
-            },
+            }),
         ),
     ];
     match ball {
         BallKind::Sphere => scene.objects.push(object(
             "Ball",
-            Shape::Sphere {
+            Shape::Sphere(Sphere {
                 center: place(0.0, 0.5, 0.0),
                 radius: 0.5 * scale,
-            },
+            }),
         )),
         BallKind::Mesh => {
             for (n, face) in super::triangle::ball().into_iter().enumerate() {
@@ -149,7 +149,7 @@ fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
                 let name = format!("Face {n}");
                 scene
                     .objects
-                    .push(object(&name, Shape::Triangle { a, b, c }));
+                    .push(object(&name, Shape::Triangle(Triangle { a, b, c })));
             }
         }
     }

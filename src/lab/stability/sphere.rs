@@ -3,11 +3,9 @@
 use glam::DVec3;
 
 use super::{Axis, Map, Tries, scales, scattered};
-use crate::plan::{Sphere, SphereMethod};
-use crate::scene::Method as _;
+use crate::primitive::{PackedSphere, Primitive as _, Ray};
+use crate::scene::{Method as _, Methods, SphereMethod};
 use crate::simd::Vec3;
-use crate::trace::Ray;
-use crate::trace::probe::meet_sphere;
 
 /// Distances in radii; beyond, the ray's own numbers are too coarse for the sphere.
 const DISTANCES: [f64; 7] = [3.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
@@ -61,14 +59,19 @@ fn fails(method: SphereMethod, number: u64, distance: f64, scale: f64) -> bool {
         1.1 + scattered(number, 3)
     } * if is_hit { scattered(number, 4) } else { 1.0 };
     let center = (towards * distance + aside * beside) * scale;
-    let sphere = Sphere {
+    let sphere = PackedSphere {
         center: Vec3::<f32>::from_dvec3(center),
         radius: scale as f32,
         material: 0,
     };
     let ray = Ray {
-        origin: Vec3::splat(0.0),
+        origin: Vec3::splat(0.0_f32),
         direction: Vec3::from_dvec3(towards),
     };
-    meet_sphere(method, &ray, &sphere).is_finite() != is_hit
+    let methods = Methods {
+        sphere: method,
+        ..Methods::default()
+    };
+    let t: f32 = sphere.meet(&ray, &methods);
+    t.is_finite() != is_hit
 }

@@ -3,11 +3,9 @@
 use glam::DVec3;
 
 use super::{Map, Tries, places, scales, scattered};
-use crate::plan::{Triangle, TriangleMethod};
-use crate::scene::Method as _;
+use crate::primitive::{PackedTriangle, Primitive as _, Ray};
+use crate::scene::{Method as _, Methods, TriangleMethod};
 use crate::simd::Vec3;
-use crate::trace::Ray;
-use crate::trace::probe::meet_triangle;
 
 /// Tries in each cell for a first look.
 const TRIES: u64 = 300;
@@ -33,7 +31,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
                 ),
                 (places(), scales()),
                 |away, scale| {
-                    let mesh: Vec<Triangle<f32>> =
+                    let mesh: Vec<PackedTriangle<f32>> =
                         ball.iter().map(|&face| placed(face, away, scale)).collect();
                     let origin = Vec3::<f32>::from_dvec3((INSIDE + AWAY * away) * scale);
                     let tries = (0..TRIES * u64::from(effort))
@@ -48,7 +46,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
 /// Whether the ray leaks; `None` for a target that has no direction.
 fn leaks(
     method: TriangleMethod,
-    mesh: &[Triangle<f32>],
+    mesh: &[PackedTriangle<f32>],
     origin: Vec3<f32>,
     number: u64,
 ) -> Option<bool> {
@@ -64,15 +62,19 @@ fn leaks(
         origin,
         direction: Vec3::from_dvec3(direction),
     };
-    let is_hit = |face: &Triangle<f32>| meet_triangle(method, &ray, face).is_finite();
+    let methods = Methods {
+        triangle: method,
+        ..Methods::default()
+    };
+    let is_hit = |face: &PackedTriangle<f32>| face.meet(&ray, &methods).is_finite();
     Some(!mesh.iter().any(is_hit))
 }
 
-fn placed(corners: [DVec3; 3], away: f64, scale: f64) -> Triangle<f32> {
+fn placed(corners: [DVec3; 3], away: f64, scale: f64) -> PackedTriangle<f32> {
     let place = |corner: DVec3| Vec3::<f32>::from_dvec3((corner + AWAY * away) * scale);
     let [a, b, c] = corners.map(place);
     let normal = (c - a).to_dvec3().cross((b - a).to_dvec3());
-    Triangle {
+    PackedTriangle {
         corners: [a, b, c],
         normal: Vec3::from_dvec3(normal.try_normalize().unwrap_or(normal)),
         in_mesh: true,

@@ -9,7 +9,9 @@ use glam::DVec3;
 
 use super::locate::PathStep;
 use super::notation::format_number;
-use super::{Camera, LightObj, MAX_REFLECTIONS, MAX_SIDE, Render, Scene, Shape, VERSION};
+use super::{
+    Camera, Field, FieldValue, LightObj, MAX_REFLECTIONS, MAX_SIDE, Render, Scene, Shape, VERSION,
+};
 
 /// Largest coordinate or length, in world units: f32 squares of it are still finite.
 const MAX_COORDINATE: f64 = 1e12;
@@ -21,8 +23,6 @@ const PROJECTION_DISTANCES: (f64, f64) = (1e-3, 1e5);
 const MAX_PIXELS: u64 = 1 << 28;
 /// Longest name, in characters.
 const MAX_NAME: usize = 200;
-/// Smallest ratio of a triangle's height to its longest side; below it rounding decides what is hit.
-const MIN_TRIANGLE_RATIO: f64 = 1e-9;
 
 /// Why a scene is refused, and where in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -131,30 +131,21 @@ fn check_lights(at: &At, scene: &Scene) -> Check {
 }
 
 fn check_shape(at: &At, shape: &Shape) -> Check {
-    match shape {
-        Shape::Sphere { center, radius } => {
-            at.field("center").point(*center)?;
-            at.field("radius").positive(*radius)
+    let mut result = Ok(());
+    shape.clone().fields(&mut |Field { name, value, .. }| {
+        if result.is_ok() {
+            let at = at.field(name);
+            result = match value {
+                FieldValue::Point(point) => at.point(*point),
+                FieldValue::Direction(direction) => at.direction(*direction),
+                FieldValue::Length(length) => at.positive(*length),
+            };
         }
-        Shape::Plane { point, normal } => {
-            at.field("point").point(*point)?;
-            at.field("normal").direction(*normal)
-        }
-        Shape::Triangle { a, b, c } => {
-            for (name, corner) in [("a", a), ("b", b), ("c", c)] {
-                at.field(name).point(*corner)?;
-            }
-            let longest = (*b - *a)
-                .length()
-                .max((*c - *a).length())
-                .max((*c - *b).length());
-            let twice_area = (*b - *a).cross(*c - *a).length();
-            if twice_area > MIN_TRIANGLE_RATIO * longest * longest {
-                return Ok(());
-            }
-            at.refuse("the triangle has no area: its corners lie on one line".to_owned())
-        }
-    }
+    });
+    result?;
+    shape
+        .problem()
+        .map_or(Ok(()), |sentence| at.refuse(sentence))
 }
 
 fn check_render(at: &At, render: &Render) -> Check {

@@ -6,11 +6,9 @@ use glam::DVec3;
 
 use super::title_field;
 use crate::editor::{Edit, Item, Selection};
-use crate::scene::{ColorPack, Light, LightObj, Object, Scene, Shape};
+use crate::scene::{self, ColorPack, FieldValue, Light, LightObj, Object, Scene, Shape};
 use crate::ui::rows::{Field, Rows, coordinate, fraction};
 use crate::ui::{UiRequests, icons};
-
-const ORIGIN: DVec3 = DVec3::new(0.0, 0.0, 0.0);
 
 /// A light and its marker.
 pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut UiRequests) {
@@ -19,7 +17,7 @@ pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut
     let mut rows = Rows::new(ui);
     rows.vector(
         &coordinate("position", "Where it shines from, in world units"),
-        ORIGIN,
+        DVec3::ZERO,
         &mut light.position,
     );
     rows.number(
@@ -50,7 +48,8 @@ pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut
         });
     }
     if let Some(marker) = &mut light.marker {
-        rows.number(&radius(5.0), &mut marker.radius);
+        let radius = length("radius", "In world units, greater than 0", 5.0);
+        rows.number(&radius, &mut marker.radius);
         pack_choice(&mut rows, scene, &mut marker.color_pack);
     }
     if let Some(field) = rows.changed().filter(|_| light != *before) {
@@ -58,10 +57,10 @@ pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut
     }
 }
 
-fn radius(default: f64) -> Field {
+fn length(name: &'static str, hint: &'static str, default: f64) -> Field {
     Field {
-        name: "radius",
-        hint: "In world units, greater than 0",
+        name,
+        hint,
         unit: "",
         default,
         range: 1e-9..=1e12,
@@ -123,40 +122,13 @@ pub fn object(ui: &mut Ui, scene: &Scene, index: usize, before: &Object, out: &m
 }
 
 fn shape_rows(rows: &mut Rows, shape: &mut Shape) {
-    match shape {
-        Shape::Sphere { center, radius: r } => {
-            rows.vector(
-                &coordinate("center", "The middle of the ball, in world units"),
-                ORIGIN,
-                center,
-            );
-            rows.number(&radius(50.0), r);
+    shape.fields(&mut |scene::Field { name, hint, value }| match value {
+        FieldValue::Point(point) => rows.vector(&coordinate(name, hint), DVec3::ZERO, point),
+        FieldValue::Direction(direction) => {
+            rows.vector(&coordinate(name, hint), DVec3::Y, direction);
         }
-        Shape::Plane { point, normal } => {
-            rows.vector(
-                &coordinate("point", "Any point on the plane"),
-                ORIGIN,
-                point,
-            );
-            rows.vector(
-                &coordinate(
-                    "normal",
-                    "Direction across the plane; its length does not matter",
-                ),
-                DVec3::new(0.0, 1.0, 0.0),
-                normal,
-            );
-        }
-        Shape::Triangle { a, b, c } => {
-            for (name, corner) in [("a", a), ("b", b), ("c", c)] {
-                rows.vector(
-                    &coordinate(name, "A corner; clockwise seen from outside"),
-                    ORIGIN,
-                    corner,
-                );
-            }
-        }
-    }
+        FieldValue::Length(length) => rows.number(&self::length(name, hint, 50.0), length),
+    });
 }
 
 /// The colours of a pack.

@@ -10,7 +10,7 @@ use super::heat;
 use crate::animate::motion_between;
 use crate::image::Image;
 use crate::lab::stability::{Map, maps};
-use crate::scene::{Method as _, Orientation, Scene, Shape};
+use crate::scene::{Method as _, Orientation, Scene, Shape, Sphere};
 use crate::worker::run_in_background;
 
 /// How many times more tries than for a first look: a second of computing.
@@ -153,7 +153,7 @@ fn standing(scene: &Scene, map: &Map) -> Option<(f64, f64)> {
                 .objects
                 .iter()
                 .filter_map(|object| match object.shape {
-                    Shape::Sphere { center, radius } => {
+                    Shape::Sphere(Sphere { center, radius }) => {
                         Some(((center - eye).length() / radius, radius))
                     }
                     _ => None,

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use crate::editor::{Edit, Editor, Time};
 use crate::scene::{Camera, Framing, Projection};
-use crate::trace::sight::SceneQuery;
+use crate::trace::SceneQuery;
 use crate::ui::UiRequests;
 use crate::ui::theme::palette;
 

@@ -1,29 +1,131 @@
 //! Ray against sphere.
 
-use super::Ray;
-use crate::plan::{Sphere, SphereMethod};
+use glam::DVec3;
+
+use super::ball::Ball;
+use super::kind::{Approach, Packing, Primitive, SurfacePoint};
+use super::projector::{Projector, Rectangle};
+use super::ray::Ray;
+use crate::scene::{Methods, Sphere, SphereMethod};
 use crate::simd::{Real, SimdFloat, Vec3};
+
+/// A ball.
+#[derive(Clone, Copy, Debug)]
+pub struct PackedSphere<R> {
+    /// Its middle.
+    pub center: Vec3<R>,
+    /// > 0.
+    pub radius: R,
+    /// Index of its material.
+    pub material: u32,
+}
 
 /// Distances along the ray to where its line enters and leaves a sphere; NaN if it passes by.
 type Roots<L> = (L, L);
 
-/// The smallest t > 0 at which the ray meets the sphere; infinity if it does not.
-#[inline(always)]
-pub fn intersect<L: SimdFloat>(
-    token: L::Token,
-    method: SphereMethod,
-    ray: &Ray<L>,
-    sphere: &Sphere<L::Real>,
-) -> L {
-    let x = ray.origin - Vec3::broadcast(token, sphere.center);
-    let radius = L::splat(token, sphere.radius);
-    let (near, far) = match method {
-        SphereMethod::Stable => stable(x, ray.direction, radius),
-        SphereMethod::Classic => classic(x, ray.direction, radius),
-    };
-    let zero = L::splat(token, L::Real::ZERO);
-    let behind = L::select(zero.less(far), far, L::splat(token, L::Real::INFINITY));
-    L::select(zero.less(near), near, behind)
+impl<R: Real> Primitive<R> for PackedSphere<R> {
+    type Description = Sphere;
+    type Prepared<L: SimdFloat<Real = R>> = ();
+    const IS_CURVED: bool = true;
+
+    fn pack(description: &Sphere, material: u32, packing: &Packing) -> Option<Self> {
+        Some(Self {
+            center: Vec3::from_dvec3(description.center - packing.centre),
+            radius: R::from_f64(description.radius),
+            material,
+        })
+    }
+
+    fn rectangle(description: &Sphere, projector: &Projector) -> Option<Rectangle> {
+        Some(projector.ball(description.center, description.radius))
+    }
+
+    fn ball(&self) -> Option<Ball> {
+        Some(Ball {
+            center: self.center.to_dvec3(),
+            radius: self.radius.to_f64(),
+        })
+    }
+
+    fn material(&self) -> u32 {
+        self.material
+    }
+
+    fn thickness(&self) -> R {
+        self.radius + self.radius
+    }
+
+    fn reach(&self) -> (Vec3<R>, R) {
+        (self.center, self.radius)
+    }
+
+    fn hides(&self, light: DVec3, ball: &Ball) -> bool {
+        self.ball().is_some_and(|own| own.hides(light, ball))
+    }
+
+    #[inline(always)]
+    fn prepare<L: SimdFloat<Real = R>>(_directions: Vec3<L>) {}
+
+    #[inline(always)]
+    fn intersect<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, (): &(), methods: &Methods) -> L {
+        let x = rays.origin - rays.origin.like(self.center);
+        let radius = x.x.like(self.radius);
+        let (near, far) = match methods.sphere {
+            SphereMethod::Stable => stable(x, rays.direction, radius),
+            SphereMethod::Classic => classic(x, rays.direction, radius),
+        };
+        let zero = near.like(R::ZERO);
+        let behind = L::select(zero.less(far), far, near.like(R::INFINITY));
+        L::select(zero.less(near), near, behind)
+    }
+
+    /// t = -2·d·(p - c), or infinity. The root at t = 0 is the start itself and never counts, however
+    /// it is rounded.
+    #[inline(always)]
+    fn exit<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>) -> L {
+        let outwards = rays.origin - rays.origin.like(self.center);
+        let half = -rays.direction.dot(outwards);
+        let zero = half.like(R::ZERO);
+        L::select(zero.less(half), half + half, half.like(R::INFINITY))
+    }
+
+    /// p = c + (p - c)·R/|p - c|: the point is then off by a few roundings of R, however far the ray has
+    /// come. The normal points outwards.
+    #[inline(always)]
+    fn refine<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, t: L) -> SurfacePoint<L> {
+        let center = rays.origin.like(self.center);
+        let radius = t.like(self.radius);
+        let outwards = rays.at(t) - center;
+        // 1/|p - c| by one step of Newton's method from 1/R, which |p - c| all but is.
+        let per_radius = t.like(R::ONE / self.radius);
+        let near = outwards * per_radius;
+        let correction = t.like_f64(1.5) - near.dot(near) * t.like_f64(0.5);
+        let normal = near * correction;
+        SurfacePoint {
+            point: center + normal * radius,
+            normal,
+            radius: self.radius,
+            slack: t.like(R::ZERO),
+        }
+    }
+
+    #[inline(always)]
+    fn approach<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, (): &()) -> Approach<L> {
+        let x = rays.origin - rays.origin.like(self.center);
+        let along = -rays.direction.dot(x);
+        let distance = (x + rays.direction * along).length();
+        Approach {
+            from: along,
+            to: along,
+            distance: distance - along.like(self.radius),
+        }
+    }
+
+    /// A ball begins before its middle.
+    #[inline(always)]
+    fn margin<L: SimdFloat<Real = R>>(&self, width: L) -> L {
+        width.like(self.thickness())
+    }
 }
 
 /// disc = R² - |x + b·d|² with b = -d·x: the square of the ray's distance from the centre is not a
@@ -48,61 +150,14 @@ fn classic<L: SimdFloat>(x: Vec3<L>, d: Vec3<L>, radius: L) -> Roots<L> {
     (-dx - half_chord, -dx + half_chord)
 }
 
-/// Where a ray that starts on the sphere meets it again: t = -2·d·(p - c), or infinity. The root
-/// at t = 0 is the start itself and never counts, however it is rounded.
-#[inline(always)]
-pub fn leave<L: SimdFloat>(token: L::Token, ray: &Ray<L>, sphere: &Sphere<L::Real>) -> L {
-    let outwards = ray.origin - Vec3::broadcast(token, sphere.center);
-    let half = -ray.direction.dot(outwards);
-    let zero = L::splat(token, L::Real::ZERO);
-    L::select(
-        zero.less(half),
-        half + half,
-        L::splat(token, L::Real::INFINITY),
-    )
-}
-
-/// How far along its line a ray is nearest to the sphere's centre, and how far from the surface
-/// that is; below zero inside.
-#[inline(always)]
-pub fn beside<L: SimdFloat>(token: L::Token, ray: &Ray<L>, sphere: &Sphere<L::Real>) -> (L, L) {
-    let x = ray.origin - Vec3::broadcast(token, sphere.center);
-    let along = -ray.direction.dot(x);
-    let distance = (x + ray.direction * along).length();
-    (along, distance - L::splat(token, sphere.radius))
-}
-
-/// The hit at `t`, drawn onto the surface, p = c + (p - c)·R/|p - c|: point and outward unit
-/// normal. The point is then off by a few roundings of R, however far the ray has come.
-#[inline(always)]
-pub fn refine<L: SimdFloat>(
-    token: L::Token,
-    ray: &Ray<L>,
-    sphere: &Sphere<L::Real>,
-    t: L,
-) -> (Vec3<L>, Vec3<L>) {
-    let center = Vec3::broadcast(token, sphere.center);
-    let radius = L::splat(token, sphere.radius);
-    let outwards = ray.at(t) - center;
-    // 1/|p - c| by one step of Newton's method from 1/R, which |p - c| all but is.
-    let per_radius = L::splat(token, L::Real::ONE / sphere.radius);
-    let near = outwards * per_radius;
-    let correction = L::splat(token, L::Real::from_f64(1.5))
-        - near.dot(near) * L::splat(token, L::Real::from_f64(0.5));
-    let normal = near * correction;
-    (center + normal * radius, normal)
-}
-
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
     use proptest::prelude::*;
 
     /// A ray from `ratio` radii away past a unit sphere at `miss` radii from its centre, turned by
     /// three angles so that no axis is special; the exact entry distance beside it.
-    fn aimed(ratio: f64, miss: f64, turn: [f64; 3]) -> (Ray<f32>, Sphere<f32>, f64) {
+    fn aimed(ratio: f64, miss: f64, turn: [f64; 3]) -> (Ray<f32>, PackedSphere<f32>, f64) {
         let d = DVec3::new(
             turn[0].cos() * turn[1].cos(),
             turn[1].sin(),
@@ -113,7 +168,7 @@ mod tests {
             .try_normalize()
             .expect("not along d");
         let center = d * ratio + side * miss;
-        let sphere = Sphere {
+        let sphere = PackedSphere {
             center: Vec3::from_dvec3(center),
             radius: 1.0_f32,
             material: 0,
@@ -133,6 +188,19 @@ mod tests {
         (ray, sphere, t)
     }
 
+    fn meet(sphere: SphereMethod, ray: &Ray<f32>, target: &PackedSphere<f32>) -> f32 {
+        let methods = Methods {
+            sphere,
+            ..Methods::default()
+        };
+        target.meet(ray, &methods)
+    }
+
+    fn refined(ray: &Ray<f32>, sphere: &PackedSphere<f32>, t: f32) -> (Vec3<f32>, Vec3<f32>) {
+        let SurfacePoint { point, normal, .. } = sphere.refine(ray, t);
+        (point, normal)
+    }
+
     fn turns(n: u32) -> [f64; 3] {
         [2.4, 1.7, 0.9].map(|speed| f64::from(n) * speed)
     }
@@ -144,7 +212,7 @@ mod tests {
             tries
                 .filter(|&(n, miss)| {
                     let (ray, sphere, _) = aimed(4096.0, miss, turns(n));
-                    intersect((), method, &ray, &sphere).is_finite() != (miss < 1.0)
+                    meet(method, &ray, &sphere).is_finite() != (miss < 1.0)
                 })
                 .count()
         };
@@ -162,7 +230,7 @@ mod tests {
                 .map(|n| {
                     let miss = 0.99 * f64::from(n % 97) / 97.0;
                     let (ray, sphere, exact) = aimed(ratio, miss, turns(n));
-                    (f64::from(intersect((), SphereMethod::Stable, &ray, &sphere)) - exact).abs()
+                    (f64::from(meet(SphereMethod::Stable, &ray, &sphere)) - exact).abs()
                 })
                 .collect();
             errors.sort_by(f64::total_cmp);
@@ -179,7 +247,7 @@ mod tests {
     fn a_planet_is_hit_at_the_right_height() {
         for height in [1e-1, 1e-3, 1e-5, 1e-7_f64] {
             let radius = 1e6;
-            let sphere = Sphere {
+            let sphere = PackedSphere {
                 center: Vec3::new(0.0_f32, 0.0, 0.0),
                 radius: radius as f32,
                 material: 0,
@@ -194,8 +262,8 @@ mod tests {
                 origin: Vec3::new(0.0, y, 0.0),
                 direction,
             };
-            let t = intersect((), SphereMethod::Stable, &ray, &sphere);
-            let (point, normal) = refine((), &ray, &sphere, t);
+            let t = meet(SphereMethod::Stable, &ray, &sphere);
+            let (point, normal) = refined(&ray, &sphere, t);
             let on_surface = (point.to_dvec3().length() - radius).abs() / radius;
             assert!(
                 on_surface <= 4.0 * f64::from(f32::UNIT_ROUNDOFF),
@@ -207,7 +275,7 @@ mod tests {
 
     #[test]
     fn what_is_no_number_is_a_miss() {
-        let sphere = Sphere {
+        let sphere = PackedSphere {
             center: Vec3::new(0.0, 0.0, f32::NAN),
             radius: 1.0,
             material: 0,
@@ -217,7 +285,7 @@ mod tests {
             direction: Vec3::new(0.0, 0.0, 1.0),
         };
         for method in [SphereMethod::Stable, SphereMethod::Classic] {
-            assert_eq!(intersect((), method, &ray, &sphere), f32::INFINITY);
+            assert_eq!(meet(method, &ray, &sphere), f32::INFINITY);
         }
     }
 
@@ -225,9 +293,9 @@ mod tests {
         #[test]
         fn a_refined_hit_lies_on_the_surface(ratio in 1.1..1e4_f64, miss in 0.0..0.95_f64, turn in prop::array::uniform3(0.0..6.0_f64)) {
             let (ray, sphere, _) = aimed(ratio, miss, turn);
-            let t = intersect((), SphereMethod::Stable, &ray, &sphere);
+            let t = meet(SphereMethod::Stable, &ray, &sphere);
             prop_assert!(t.is_finite());
-            let (point, normal) = refine((), &ray, &sphere, t);
+            let (point, normal) = refined(&ray, &sphere, t);
             let off = ((point - sphere.center).to_dvec3().length() - 1.0).abs();
             prop_assert!(off <= 4.0 * f64::from(f32::UNIT_ROUNDOFF) * (1.0 + ratio), "{off:e}");
             prop_assert!(normal.dot(ray.direction) < 1e-3, "the entry faces the ray");
@@ -237,9 +305,9 @@ mod tests {
         fn from_the_wall_only_the_far_side_is_met(turn in prop::array::uniform3(0.0..6.0_f64), d in prop::array::uniform3(-1.0..1.0_f64)) {
             let Some(d) = DVec3::from(d).try_normalize() else { return Ok(()) };
             let (ray, sphere, _) = aimed(3.0, 0.2, turn);
-            let (point, normal) = refine((), &ray, &sphere, intersect((), SphereMethod::Stable, &ray, &sphere));
+            let (point, normal) = refined(&ray, &sphere, meet(SphereMethod::Stable, &ray, &sphere));
             let onwards = Ray { origin: point, direction: Vec3::from_dvec3(d) };
-            let t = leave((), &onwards, &sphere);
+            let t = sphere.exit(&onwards);
             prop_assert_eq!(t.is_finite(), normal.dot(onwards.direction) < 0.0);
         }
     }

@@ -6,12 +6,14 @@ use std::sync::atomic::Ordering;
 use rayon::iter::{IndexedParallelIterator as _, ParallelIterator as _};
 use rayon::slice::ParallelSliceMut as _;
 
-use super::cull::{Axis, Candidates};
-use super::mesh::Limits;
+use super::candidates::{Candidates, Span};
+use super::engine::Engine;
+use super::intersect::Kernel;
+use super::lattice::Limits;
+use super::sampler::Sampler;
 use super::samples::Traced;
-use super::sampling::{Colors, Sampler, Tile};
-use super::stage::Engine;
-use super::{Rays, RenderControl};
+use super::stats::{Rays, RenderControl};
+use super::tile::{Tile, TileColors};
 use crate::plan::{Plan, Precision, RenderRequest, Sampling, needs_double};
 use crate::scene::Scene;
 use crate::simd::{Level, Real, SimdFloat, SimdReal, WithSimd};
@@ -87,20 +89,20 @@ pub struct Tracer {
     tile: usize,
     sampling: Sampling,
     level: Level,
-    kernel: Kernel,
+    plan: PlanOf,
 }
 
 #[derive(Debug)]
-enum Kernel {
+enum PlanOf {
     Single(Box<Plan<f32>>),
     Double(Box<Plan<f64>>),
 }
 
-impl Kernel {
+impl PlanOf {
     fn tile_side(&self, pixels: u64) -> usize {
         let primitives = match self {
-            Self::Single(plan) => plan.spheres.len() + plan.triangles.len(),
-            Self::Double(plan) => plan.spheres.len() + plan.triangles.len(),
+            Self::Single(plan) => plan.primitives.bounded(),
+            Self::Double(plan) => plan.primitives.bounded(),
         };
         if primitives as u64 * PIXELS_PER_PRIMITIVE <= pixels {
             LARGE_TILE
@@ -118,18 +120,18 @@ impl Tracer {
             Precision::Single => false,
             Precision::Double => true,
         };
-        let kernel = if double {
-            Kernel::Double(Box::new(Plan::new(scene, picture)))
+        let plan = if double {
+            PlanOf::Double(Box::new(Plan::new(scene, picture)))
         } else {
-            Kernel::Single(Box::new(Plan::new(scene, picture)))
+            PlanOf::Single(Box::new(Plan::new(scene, picture)))
         };
         Self {
             width: picture.width as usize,
             height: picture.height as usize,
-            tile: kernel.tile_side(u64::from(picture.width) * u64::from(picture.height)),
+            tile: plan.tile_side(u64::from(picture.width) * u64::from(picture.height)),
             sampling: picture.sampling,
             level: picture.level.unwrap_or_else(Level::widest),
-            kernel,
+            plan,
         }
     }
 
@@ -145,9 +147,9 @@ impl Tracer {
 
     /// The real type and how many of it are computed in step, for example `f32×16 avx2`.
     pub fn lanes(&self) -> String {
-        match self.kernel {
-            Kernel::Single(_) => self.level.lanes_of::<f32>(),
-            Kernel::Double(_) => self.level.lanes_of::<f64>(),
+        match self.plan {
+            PlanOf::Single(_) => self.level.lanes_of::<f32>(),
+            PlanOf::Double(_) => self.level.lanes_of::<f64>(),
         }
     }
 
@@ -182,9 +184,9 @@ impl Tracer {
         pass: Pass,
         control: &RenderControl,
     ) -> Option<Rays> {
-        match &self.kernel {
-            Kernel::Single(plan) => self.pass_of(plan, pixels, first, pass, control),
-            Kernel::Double(plan) => self.pass_of(plan, pixels, first, pass, control),
+        match &self.plan {
+            PlanOf::Single(plan) => self.pass_of(plan, pixels, first, pass, control),
+            PlanOf::Double(plan) => self.pass_of(plan, pixels, first, pass, control),
         }
     }
 
@@ -244,12 +246,13 @@ impl<R: SimdReal, P: Pixel> WithSimd<R> for Band<'_, R, P> {
 
     #[inline(always)]
     fn run<L: SimdFloat<Real = R>>(mut self, token: L::Token) -> Option<Rays> {
-        let mut engine = Engine::<L>::new(self.plan);
+        let plan = self.plan;
+        let mut engine = Engine::<L>::new(Kernel { token, plan });
         let mut sampler = Sampler::new();
-        let mut colors = Colors::default();
+        let mut colors = TileColors::default();
         let (mut in_band, mut in_tile) = (Candidates::default(), Candidates::default());
         let screen = self.plan.screen.as_ref();
-        in_band.keep_seen(self.seen, screen, &self.rows, Axis::Rows);
+        in_band.keep_seen(self.seen, screen, &self.rows, Span::Rows);
         for left in (0..self.width).step_by(self.tile) {
             if self.control.stop.load(Ordering::Relaxed) {
                 return None;
@@ -259,27 +262,26 @@ impl<R: SimdReal, P: Pixel> WithSimd<R> for Band<'_, R, P> {
                 columns,
                 rows: self.rows.clone(),
             };
-            in_tile.keep_seen(&in_band, screen, &tile.columns, Axis::Columns);
+            in_tile.keep_seen(&in_band, screen, &tile.columns, Span::Columns);
             if screen.is_some() {
                 in_tile.drop_unseen_planes(self.plan, &tile);
             }
             match self.sampling {
                 Sampling::Centres if self.grid == Grid::ALL => {
-                    let traced = sampler.all(token, &mut engine, &in_tile, &tile, (0.5, 0.5));
+                    let traced = sampler.all(&mut engine, &in_tile, &tile, (0.5, 0.5));
                     self.fill(&tile, tile.columns.len(), traced.channels());
                 }
                 Sampling::Centres => {
-                    let traced =
-                        sampler.centres(token, &mut engine, &in_tile, self.grid.pixels(&tile));
+                    let traced = sampler.centres(&mut engine, &in_tile, self.grid.pixels(&tile));
                     self.scatter(&tile, traced);
                 }
                 Sampling::Grid(side) => {
-                    sampler.grid(token, &mut engine, &in_tile, &tile, side, &mut colors);
+                    sampler.grid(&mut engine, &in_tile, &tile, side, &mut colors);
                     self.fill(&tile, colors.stride, colors.channels());
                 }
                 Sampling::Adaptive { contrast, depth } => {
                     let limits = Limits::new(contrast, depth);
-                    sampler.adaptive(token, &mut engine, &in_tile, &tile, limits, &mut colors);
+                    sampler.adaptive(&mut engine, &in_tile, &tile, limits, &mut colors);
                     self.fill(&tile, colors.stride, colors.channels());
                 }
             }

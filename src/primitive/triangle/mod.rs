@@ -2,9 +2,51 @@
 
 mod weak;
 
-use super::Ray;
-use crate::plan::{Triangle, TriangleMethod};
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use super::ball::Ball;
+use super::kind::{Approach, Corner, Packing, Primitive, SurfacePoint};
+use super::projector::{Projector, Rectangle};
+use super::ray::Ray;
+use crate::scene::{Methods, Scene, Shape, Triangle, TriangleMethod};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
+
+/// A flat triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct PackedTriangle<R> {
+    /// The corners.
+    pub corners: [Vec3<R>; 3],
+    /// Unit normal, outwards for corners that are clockwise seen from outside.
+    pub normal: Vec3<R>,
+    /// Whether it shares a corner with another triangle. Its neighbours then shadow it at the seam
+    /// unless secondary rays start a few roundings off the surface.
+    pub in_mesh: bool,
+    /// Its smallest altitude.
+    pub thickness: R,
+    /// Index of its material.
+    pub material: u32,
+}
+
+/// A corner as a key: corners are one where their coordinates are equal.
+pub fn corner(point: DVec3) -> Corner {
+    // Adding zero makes one zero of the two.
+    point.to_array().map(|part| (part + 0.0).to_bits())
+}
+
+/// How many visible triangles meet at each corner.
+pub fn count_corner_users(scene: &Scene) -> HashMap<Corner, usize> {
+    let mut users = HashMap::new();
+    for object in scene.objects.iter().filter(|object| object.visible) {
+        if let Shape::Triangle(triangle) = &object.shape {
+            for point in triangle.corners() {
+                *users.entry(corner(point)).or_insert(0) += 1;
+            }
+        }
+    }
+    users
+}
 
 /// What the watertight test needs of a ray, computed once: the axis along which the direction is
 /// largest, turned to z, and the shear that lays the ray on it.
@@ -13,15 +55,15 @@ pub struct Shear<L: SimdFloat> {
     /// Where the axis is x, and where it is y.
     is_x: L::Mask,
     is_y: L::Mask,
-    /// The axis, where all lanes agree on it.
-    common: Option<Axis>,
+    /// The major axis, where all lanes agree on it.
+    common: Option<MajorAxis>,
     x: L,
     y: L,
     z: L,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Axis {
+enum MajorAxis {
     X,
     Y,
     Z,
@@ -30,11 +72,11 @@ enum Axis {
 impl<L: SimdFloat> Shear<L> {
     /// The shear of a direction (not zero).
     #[inline(always)]
-    pub fn new(token: L::Token, direction: Vec3<L>) -> Self {
+    pub fn new(direction: Vec3<L>) -> Self {
         let (x, y, z) = (direction.x.abs(), direction.y.abs(), direction.z.abs());
         let is_x = y.less(x) & z.less(x);
         let is_y = !is_x & z.less(y);
-        let one = L::splat(token, L::Real::ONE);
+        let one = direction.x.like(L::Real::ONE);
         let mut shear = Self {
             is_x,
             is_y,
@@ -45,9 +87,9 @@ impl<L: SimdFloat> Shear<L> {
         };
         let all = one.same(one).bits();
         shear.common = match (is_x.bits(), is_y.bits()) {
-            (0, 0) => Some(Axis::Z),
-            (xs, _) if xs == all => Some(Axis::X),
-            (0, ys) if ys == all => Some(Axis::Y),
+            (0, 0) => Some(MajorAxis::Z),
+            (xs, _) if xs == all => Some(MajorAxis::X),
+            (0, ys) if ys == all => Some(MajorAxis::Y),
             _ => None,
         };
         let [across, upwards, along] = shear.turned(direction);
@@ -64,9 +106,9 @@ impl<L: SimdFloat> Shear<L> {
     #[inline(always)]
     fn turned(&self, v: Vec3<L>) -> [L; 3] {
         match self.common {
-            Some(Axis::X) => [v.y, v.z, v.x],
-            Some(Axis::Y) => [v.z, v.x, v.y],
-            Some(Axis::Z) => [v.x, v.y, v.z],
+            Some(MajorAxis::X) => [v.y, v.z, v.x],
+            Some(MajorAxis::Y) => [v.z, v.x, v.y],
+            Some(MajorAxis::Z) => [v.x, v.y, v.z],
             None => [
                 self.pick(v.y, v.z, v.x),
                 self.pick(v.z, v.x, v.y),
@@ -84,11 +126,8 @@ impl<L: SimdFloat> Shear<L> {
     /// Which way an edge between two sheared corners turns around the ray, and the square of its
     /// distance from the ray.
     #[inline(always)]
-    fn edge_beside(&self, token: L::Token, from: [L; 3], to: [L; 3]) -> (L, L) {
-        let (zero, one) = (
-            L::splat(token, L::Real::ZERO),
-            L::splat(token, L::Real::ONE),
-        );
+    fn edge_beside(&self, from: [L; 3], to: [L; 3]) -> (L, L) {
+        let (zero, one) = (self.x.like(L::Real::ZERO), self.x.like(L::Real::ONE));
         let (x, y) = (to[0] - from[0], to[1] - from[1]);
         let share = -(from[0] * x + from[1] * y) / (x * x + y * y);
         let share = share.max(zero).min(one);
@@ -107,20 +146,111 @@ impl<L: SimdFloat> Shear<L> {
     }
 }
 
-/// The t > 0 at which the ray meets the triangle; infinity if it does not.
-#[inline(always)]
-pub fn intersect<L: SimdFloat>(
-    token: L::Token,
-    method: TriangleMethod,
-    ray: &Ray<L>,
-    shear: &Shear<L>,
-    triangle: &Triangle<L::Real>,
-) -> L {
-    match method {
-        TriangleMethod::Watertight => watertight(token, ray, shear, triangle),
-        TriangleMethod::Edges => weak::edges(token, ray, triangle),
-        TriangleMethod::MollerTrumbore => weak::moller_trumbore(token, ray, triangle),
-        TriangleMethod::EdgePlanes => weak::edge_planes(token, ray, triangle),
+impl<R: Real> Primitive<R> for PackedTriangle<R> {
+    type Description = Triangle;
+    type Prepared<L: SimdFloat<Real = R>> = Shear<L>;
+
+    fn pack(description: &Triangle, material: u32, packing: &Packing) -> Option<Self> {
+        let Triangle { a, b, c } = *description;
+        let normal = (c - a).cross(b - a).try_normalize()?;
+        let is_shared = |point: &DVec3| {
+            let users = packing.corner_users.get(&corner(*point));
+            users.is_some_and(|users| *users > 1)
+        };
+        Some(Self {
+            corners: [a, b, c].map(|corner| Vec3::from_dvec3(corner - packing.centre)),
+            normal: Vec3::from_dvec3(normal),
+            in_mesh: [a, b, c].iter().any(is_shared),
+            thickness: R::from_f64(description.thickness()),
+            material,
+        })
+    }
+
+    fn rectangle(description: &Triangle, projector: &Projector) -> Option<Rectangle> {
+        Some(projector.triangle(description.corners()))
+    }
+
+    fn ball(&self) -> Option<Ball> {
+        Some(Ball::around_triangle(self.corners.map(Vec3::to_dvec3)))
+    }
+
+    fn material(&self) -> u32 {
+        self.material
+    }
+
+    fn thickness(&self) -> R {
+        self.thickness
+    }
+
+    fn reach(&self) -> (Vec3<R>, R) {
+        let [a, b, c] = self.corners;
+        (a, (b - a).length().max((c - a).length()))
+    }
+
+    #[inline(always)]
+    fn prepare<L: SimdFloat<Real = R>>(directions: Vec3<L>) -> Shear<L> {
+        Shear::new(directions)
+    }
+
+    #[inline(always)]
+    fn intersect<L: SimdFloat<Real = R>>(
+        &self,
+        rays: &Ray<L>,
+        shear: &Shear<L>,
+        methods: &Methods,
+    ) -> L {
+        match methods.triangle {
+            TriangleMethod::Watertight => watertight(rays, shear, self),
+            TriangleMethod::Edges => weak::edges(rays, self),
+            TriangleMethod::MollerTrumbore => weak::moller_trumbore(rays, self),
+            TriangleMethod::EdgePlanes => weak::edge_planes(rays, self),
+        }
+    }
+
+    #[inline(always)]
+    fn refine<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, t: L) -> SurfacePoint<L> {
+        let normal = rays.origin.like(self.normal);
+        let point = rays.at(t);
+        let point = point - normal * normal.dot(point - rays.origin.like(self.corners[0]));
+        // The neighbours in a mesh meet the triangle at its edges: 4u·(|p| + |o| + t) is what the
+        // computation of the point can be off by.
+        let slack = if self.in_mesh {
+            let reach = point.max_abs() + rays.origin.max_abs() + t;
+            reach * t.like(R::UNIT_ROUNDOFF * R::from_f64(4.0))
+        } else {
+            t.like(R::ZERO)
+        };
+        SurfacePoint {
+            point,
+            normal,
+            radius: R::INFINITY,
+            slack,
+        }
+    }
+
+    /// From the nearest corner to the farthest; the distance inside is zero.
+    #[inline(always)]
+    fn approach<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, shear: &Shear<L>) -> Approach<L> {
+        let [a, b, c] = self.corners;
+        let a = shear.apply(rays.origin.like(a) - rays.origin);
+        let b = shear.apply(rays.origin.like(b) - rays.origin);
+        let c = shear.apply(rays.origin.like(c) - rays.origin);
+        let (ab, bc, ca) = (
+            shear.edge_beside(a, b),
+            shear.edge_beside(b, c),
+            shear.edge_beside(c, a),
+        );
+        let zero = shear.x.like(R::ZERO);
+        // Inside, all edges turn the same way around the ray.
+        let turns = (ab.0.min(bc.0).min(ca.0), ab.0.max(bc.0).max(ca.0));
+        let inside = zero.less(turns.0) | turns.1.less(zero);
+        let nearest = ab.1.min(bc.1).min(ca.1).max(zero).sqrt();
+        let (t, u, v) = (a[2] * shear.z, b[2] * shear.z, c[2] * shear.z);
+        Approach {
+            from: t.min(u).min(v),
+            to: t.max(u).max(v),
+            distance: L::select(inside, zero, nearest),
+        }
     }
 }
 
@@ -131,23 +261,22 @@ pub fn intersect<L: SimdFloat>(
 /// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
 #[inline(always)]
 fn watertight<L: SimdFloat>(
-    token: L::Token,
     ray: &Ray<L>,
     shear: &Shear<L>,
-    triangle: &Triangle<L::Real>,
+    triangle: &PackedTriangle<L::Real>,
 ) -> L {
     // Written out: what runs in a closure of the standard library does not know the lanes.
     let [a, b, c] = triangle.corners;
-    let a = shear.apply(Vec3::broadcast(token, a) - ray.origin);
-    let b = shear.apply(Vec3::broadcast(token, b) - ray.origin);
-    let c = shear.apply(Vec3::broadcast(token, c) - ray.origin);
+    let a = shear.apply(ray.origin.like(a) - ray.origin);
+    let b = shear.apply(ray.origin.like(b) - ray.origin);
+    let c = shear.apply(ray.origin.like(c) - ray.origin);
     let u = c[0] * b[1] - c[1] * b[0];
     let v = a[0] * c[1] - a[1] * c[0];
     let w = b[0] * a[1] - b[1] * a[0];
-    let zero = L::splat(token, L::Real::ZERO);
+    let zero = u.like(L::Real::ZERO);
     let none_negative = zero.at_most(u) & zero.at_most(v) & zero.at_most(w);
     let none_positive = u.at_most(zero) & v.at_most(zero) & w.at_most(zero);
-    let infinity = L::splat(token, L::Real::INFINITY);
+    let infinity = u.like(L::Real::INFINITY);
     let inside = none_negative | none_positive;
     if !inside.any() {
         return infinity;
@@ -157,65 +286,27 @@ fn watertight<L: SimdFloat>(
     L::select(inside & zero.less(t), t, infinity)
 }
 
-/// How far along a ray the nearest and the farthest corner are, and how far from the ray the
-/// triangle is; zero inside.
-#[inline(always)]
-pub fn beside<L: SimdFloat>(
-    token: L::Token,
-    ray: &Ray<L>,
-    shear: &Shear<L>,
-    triangle: &Triangle<L::Real>,
-) -> (L, L, L) {
-    let [a, b, c] = triangle.corners;
-    let a = shear.apply(Vec3::broadcast(token, a) - ray.origin);
-    let b = shear.apply(Vec3::broadcast(token, b) - ray.origin);
-    let c = shear.apply(Vec3::broadcast(token, c) - ray.origin);
-    let (ab, bc, ca) = (
-        shear.edge_beside(token, a, b),
-        shear.edge_beside(token, b, c),
-        shear.edge_beside(token, c, a),
-    );
-    let zero = L::splat(token, L::Real::ZERO);
-    // Inside, all edges turn the same way around the ray.
-    let turns = (ab.0.min(bc.0).min(ca.0), ab.0.max(bc.0).max(ca.0));
-    let inside = zero.less(turns.0) | turns.1.less(zero);
-    let nearest = ab.1.min(bc.1).min(ca.1).max(zero).sqrt();
-    let (t, u, v) = (a[2] * shear.z, b[2] * shear.z, c[2] * shear.z);
-    (
-        t.min(u).min(v),
-        t.max(u).max(v),
-        L::select(inside, zero, nearest),
-    )
-}
-
-/// The hit at `t`, drawn onto the triangle's plane.
-#[inline(always)]
-pub fn refine<L: SimdFloat>(
-    token: L::Token,
-    ray: &Ray<L>,
-    triangle: &Triangle<L::Real>,
-    t: L,
-) -> Vec3<L> {
-    let normal = Vec3::broadcast(token, triangle.normal);
-    let point = ray.at(t);
-    point - normal * normal.dot(point - Vec3::broadcast(token, triangle.corners[0]))
-}
-
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
     use crate::scene::Method as _;
     use proptest::prelude::*;
 
-    fn triangle(a: Vec3<f32>, b: Vec3<f32>, c: Vec3<f32>) -> Triangle<f32> {
+    fn met(triangle: TriangleMethod, ray: &Ray<f32>, target: &PackedTriangle<f32>) -> f32 {
+        let methods = Methods {
+            triangle,
+            ..Methods::default()
+        };
+        target.meet(ray, &methods)
+    }
+
+    fn triangle(a: Vec3<f32>, b: Vec3<f32>, c: Vec3<f32>) -> PackedTriangle<f32> {
         let normal = (c - a)
             .to_dvec3()
             .cross((b - a).to_dvec3())
             .try_normalize()
             .expect("has area");
-        Triangle {
+        PackedTriangle {
             corners: [a, b, c],
             normal: Vec3::from_dvec3(normal),
             in_mesh: true,
@@ -226,7 +317,7 @@ mod tests {
 
     /// A closed ball of triangles around the origin: an octahedron, each face split `depth` times
     /// in four.
-    fn ball(depth: u32) -> Vec<Triangle<f32>> {
+    fn ball(depth: u32) -> Vec<PackedTriangle<f32>> {
         let unit = |v: DVec3| v.try_normalize().expect("not zero");
         let axis = |x, y, z| DVec3::new(x, y, z);
         let mut faces = Vec::new();
@@ -267,7 +358,7 @@ mod tests {
     /// Of `n` rays from inside aimed at corners (or points on edges), how many meet nothing.
     fn leaks(
         method: TriangleMethod,
-        mesh: &[Triangle<f32>],
+        mesh: &[PackedTriangle<f32>],
         origin: Vec3<f32>,
         n: usize,
         at_corners: bool,
@@ -288,10 +379,7 @@ mod tests {
                     origin,
                     direction: Vec3::from_dvec3(target),
                 };
-                let shear = Shear::new((), ray.direction);
-                !mesh
-                    .iter()
-                    .any(|t| intersect((), method, &ray, &shear, t).is_finite())
+                !mesh.iter().any(|t| met(method, &ray, t).is_finite())
             })
             .count()
     }
@@ -354,10 +442,7 @@ mod tests {
         ] {
             let ray = Ray { origin, direction };
             for method in TriangleMethod::ALL.iter().map(|method| method.value) {
-                assert_eq!(
-                    intersect((), method, &ray, &Shear::new((), direction), &t),
-                    f32::INFINITY
-                );
+                assert_eq!(met(method, &ray, &t), f32::INFINITY);
             }
         }
     }
@@ -376,13 +461,12 @@ mod tests {
             prop_assume!(direction.is_some_and(|d| d.dot(t.normal.to_dvec3()).abs() > 0.05));
             let ray = Ray { origin, direction: Vec3::from_dvec3(direction.expect("assumed")) };
             let exact = (target - origin).length();
-            let shear = Shear::new((), ray.direction);
             for method in TriangleMethod::ALL {
-                let found = intersect((), method.value, &ray, &shear, &t);
+                let found = met(method.value, &ray, &t);
                 prop_assert!((found - exact).abs() < 1e-4 * (1.0 + exact), "{}: {found} {exact}", method.id);
             }
-            let new = intersect((), TriangleMethod::Watertight, &ray, &shear, &t);
-            let on_plane = (refine((), &ray, &t, new) - a).dot(t.normal).abs();
+            let new = met(TriangleMethod::Watertight, &ray, &t);
+            let on_plane = (t.refine(&ray, new).point - a).dot(t.normal).abs();
             prop_assert!(on_plane < 2e-6);
         }
     }

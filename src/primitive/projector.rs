@@ -2,8 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{RenderRequest, Sampling};
-use crate::scene::{Projection, Scene, Shape};
+use crate::scene::{Camera, Projection};
 
 /// A range of pixels in one direction, ends included; may lie outside the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,20 +13,15 @@ pub struct Extent {
     pub to: f32,
 }
 
-/// The rectangles of a plan's spheres and triangles, by their places in its lists.
-#[derive(Clone, Debug)]
-pub struct ScreenExtents {
-    /// Columns and rows of each sphere.
-    pub spheres: Vec<(Extent, Extent)>,
-    /// Columns and rows of each triangle.
-    pub triangles: Vec<(Extent, Extent)>,
+/// A rectangle of pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rectangle {
+    /// From left to right.
+    pub columns: Extent,
+    /// From top to bottom.
+    pub rows: Extent,
 }
 
-/// Pixels added on every side for the rounding of the kernel.
-const MARGIN: f64 = 1.0;
-/// The same where rays also look beside themselves: a pixel, as wide as in the middle of the
-/// picture, where the picture's rays are closest to each other.
-const SMOOTH_MARGIN: f64 = 4.0;
 /// What may be anywhere.
 const ANYWHERE: Extent = Extent {
     from: f32::NEG_INFINITY,
@@ -41,8 +35,9 @@ impl Extent {
     }
 }
 
-/// The camera in double precision.
-struct Projector {
+/// A camera in double precision, and the size of its picture.
+#[derive(Clone, Debug)]
+pub struct Projector {
     position: DVec3,
     basis: DMat3,
     projection: Projection,
@@ -52,58 +47,22 @@ struct Projector {
     margin: f64,
 }
 
-impl ScreenExtents {
-    /// The rectangles of what `Plan::new` packs, in the same order.
-    pub fn new(scene: &Scene, request: &RenderRequest) -> Self {
-        let mut screen = Self {
-            spheres: Vec::new(),
-            triangles: Vec::new(),
-        };
-        let Some(projector) = Projector::new(scene, request) else {
-            return screen;
-        };
-        for object in scene.objects.iter().filter(|object| object.visible) {
-            match object.shape {
-                Shape::Sphere { center, radius } => {
-                    screen.spheres.push(projector.sphere(center, radius));
-                }
-                Shape::Triangle { a, b, c } => {
-                    screen.triangles.push(projector.triangle([a, b, c]));
-                }
-                Shape::Plane { .. } => {}
-            }
-        }
-        if scene.light_visualization {
-            let lights = scene.lights.iter().filter(|light| light.visible);
-            let markers = lights.filter_map(|light| Some((light.position, light.marker.as_ref()?)));
-            screen
-                .spheres
-                .extend(markers.map(|(at, marker)| projector.sphere(at, marker.radius)));
-        }
-        screen
-    }
-}
-
 impl Projector {
-    fn new(scene: &Scene, request: &RenderRequest) -> Option<Self> {
-        let camera = &scene.camera;
-        let projection = request.projection.unwrap_or(camera.projection);
-        let height = f64::from(request.height);
-        let scale = match projection {
+    /// The projector of a picture of `width × height` pixels, with `margin` pixels added to every
+    /// rectangle on every side; `None` if the camera has no basis.
+    pub fn new(camera: &Camera, (width, height): (u32, u32), margin: f64) -> Option<Self> {
+        let height = f64::from(height);
+        let scale = match camera.projection {
             Projection::Perspective => camera.projection_distance * height,
             Projection::Orthographic => height / camera.orthographic_height,
         };
-        let half = (f64::from(request.width) / 2.0, height / 2.0);
         Some(Self {
             position: camera.position,
             basis: camera.basis()?,
-            projection,
+            projection: camera.projection,
             scale,
-            half,
-            margin: match request.sampling {
-                Sampling::Adaptive { .. } => SMOOTH_MARGIN,
-                Sampling::Centres | Sampling::Grid(_) => MARGIN,
-            },
+            half: (f64::from(width) / 2.0, height / 2.0),
+            margin,
         })
     }
 
@@ -113,7 +72,8 @@ impl Projector {
         [seen.x, seen.y, -seen.z]
     }
 
-    fn sphere(&self, center: DVec3, radius: f64) -> (Extent, Extent) {
+    /// The rectangle around a ball.
+    pub fn ball(&self, center: DVec3, radius: f64) -> Rectangle {
         let [x, y, depth] = self.seen(center);
         let range = match self.projection {
             Projection::Orthographic => {
@@ -121,13 +81,14 @@ impl Projector {
             }
             Projection::Perspective => tangents,
         };
-        (
-            self.columns(range(x, depth, radius)),
-            self.rows(range(y, depth, radius)),
-        )
+        Rectangle {
+            columns: self.columns(range(x, depth, radius)),
+            rows: self.rows(range(y, depth, radius)),
+        }
     }
 
-    fn triangle(&self, corners: [DVec3; 3]) -> (Extent, Extent) {
+    /// The rectangle around a triangle.
+    pub fn triangle(&self, corners: [DVec3; 3]) -> Rectangle {
         let seen = corners.map(|corner| self.seen(corner));
         let size = seen
             .iter()
@@ -141,7 +102,10 @@ impl Projector {
             }
             Projection::Perspective => None,
         };
-        (self.columns(range(0)), self.rows(range(1)))
+        Rectangle {
+            columns: self.columns(range(0)),
+            rows: self.rows(range(1)),
+        }
     }
 
     fn extent(&self, from: f64, to: f64) -> Extent {

@@ -1,32 +1,18 @@
-//! The samples of a tile that its pixels share, and when a cell between them is halved.
+//! The samples of a tile that its pixels share, and when a cell between them is subdivided.
 
-use super::cull::Candidates;
 use super::samples::{Samples, Traced};
-use super::sampling::{Colors, Tile};
-use super::stage::Engine;
+use super::thresholds::{EDGE_CONTRAST, FINEST, NEAR, STRONG_CONTRAST};
+use super::tile::{Tile, TileColors};
 use crate::plan::MAX_HALVINGS;
 use crate::simd::{Real, SimdFloat};
 
-/// Steps of the finest grid in a pixel: where something thinner than two pixels is, or a strong edge,
-/// it is halved once more than elsewhere.
-pub const FINEST: usize = 1 << (MAX_HALVINGS + 1);
-/// Difference of the corners of a cell, summed over the channels, above which it is halved the last
-/// time: an edge along the finest cells may move by half of one, and must not
-/// show that.
-const STRONG_CONTRAST: f64 = 0.6;
-/// The same where the corners see different things: four levels of 255, which nobody sees.
-pub const EDGE_CONTRAST: f64 = 4.0 / 255.0;
-/// A thing can be in a cell without being nearer than this to a corner, in sides of the cell: half
-/// its diagonal, and a little for the rounding.
-pub const NEAR: f64 = 0.75;
-
 /// Samples on the finest grid of a tile that are shared by the cells around them.
 #[derive(Debug)]
-pub struct Mesh<R> {
+pub struct Lattice<R> {
     /// Points from one row of the grid to the next.
     stride: usize,
-    /// 1 + the place of each point's sample, 0 where there is none.
-    places: Vec<u32>,
+    /// 1 + the index of each point's sample, 0 where there is none.
+    indices: Vec<u32>,
     /// The points that have a sample, in order of their samples.
     points: Vec<u32>,
     colors: [Vec<R>; 3],
@@ -51,14 +37,14 @@ pub fn range<R: Real>(a: R, b: R, c: R, d: R) -> R {
     a.max(b).max(c.max(d)) - a.min(b).min(c.min(d))
 }
 
-/// When cells are halved.
+/// When cells are subdivided.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits<R> {
-    /// Difference of the corners of a cell, summed over the channels, above which it is halved.
+    /// Difference of the corners of a cell, summed over the channels, above which it is subdivided.
     contrast: R,
     /// The same where they see different things.
     edge_contrast: R,
-    /// How often a pixel is halved, not counting the last time.
+    /// How often a pixel is subdivided, not counting the last time.
     depth: u32,
 }
 
@@ -72,7 +58,7 @@ impl<R: Real> Limits<R> {
         }
     }
 
-    /// How often a pixel is halved at most.
+    /// How often a pixel is subdivided at most.
     pub fn finest_depth(self) -> u32 {
         self.depth + 1
     }
@@ -92,12 +78,12 @@ impl<R: Real> Limits<R> {
     }
 }
 
-impl<R: Real> Mesh<R> {
+impl<R: Real> Lattice<R> {
     /// No samples.
     pub fn new() -> Self {
         Self {
             stride: 0,
-            places: Vec::new(),
+            indices: Vec::new(),
             points: Vec::new(),
             colors: [Vec::new(), Vec::new(), Vec::new()],
             signature: Vec::new(),
@@ -108,13 +94,13 @@ impl<R: Real> Mesh<R> {
     /// Forgets the tile before, and starts with the corners of the pixels.
     pub fn start(&mut self, tile: &Tile, corners: &Traced<R>) {
         for &point in &self.points {
-            self.places[point as usize] = 0;
+            self.indices[point as usize] = 0;
         }
         self.points.clear();
         self.stride = tile.width() * FINEST + 1;
         let points = self.stride * (tile.rows.len() * FINEST + 1);
-        if self.places.len() < points {
-            self.places.resize(points, 0);
+        if self.indices.len() < points {
+            self.indices.resize(points, 0);
         }
         for row in 0..=tile.rows.len() {
             for column in 0..=tile.width() {
@@ -126,40 +112,22 @@ impl<R: Real> Mesh<R> {
         }
         self.signature.clear();
         self.near.clear();
-        self.take(corners);
-    }
-
-    /// Adds what was seen at the points that were wanted last.
-    fn take(&mut self, traced: &Traced<R>) {
-        for (all, new) in self.colors.iter_mut().zip(traced.channels()) {
-            all.extend_from_slice(&new[..traced.count]);
-        }
-        self.signature
-            .extend_from_slice(&traced.signature[..traced.count]);
-        self.near.extend_from_slice(&traced.near[..traced.count]);
+        self.take_results(corners);
     }
 
     /// Makes sure that there will be a sample at a point of the grid.
     #[inline(always)]
     fn want(&mut self, x: usize, y: usize) {
         let point = y * self.stride + x;
-        if self.places[point] == 0 {
+        if self.indices[point] == 0 {
             self.points.push(point as u32);
-            self.places[point] = self.points.len() as u32;
+            self.indices[point] = self.points.len() as u32;
         }
     }
 
-    /// Traces the samples that are wanted and not there yet.
+    /// `samples` become those that are wanted and not there yet.
     #[inline(always)]
-    pub fn sample<L: SimdFloat<Real = R>>(
-        &mut self,
-        token: L::Token,
-        engine: &mut Engine<L>,
-        seen: &Candidates,
-        tile: &Tile,
-        samples: &mut Samples<R>,
-        traced: &mut Traced<R>,
-    ) {
+    pub fn wanted_samples<L: SimdFloat<Real = R>>(&self, tile: &Tile, samples: &mut Samples<R>) {
         samples.clear();
         let step = 1.0 / FINEST as f64;
         for &point in &self.points[self.signature.len()..] {
@@ -170,15 +138,23 @@ impl<R: Real> Mesh<R> {
             );
         }
         samples.pad(L::WIDTH);
-        engine.trace(token, samples, seen, true, traced);
-        self.take(traced);
+    }
+
+    /// Adds what was seen at the points that were wanted last.
+    pub fn take_results(&mut self, traced: &Traced<R>) {
+        for (all, new) in self.colors.iter_mut().zip(traced.channels()) {
+            all.extend_from_slice(&new[..traced.count]);
+        }
+        self.signature
+            .extend_from_slice(&traced.signature[..traced.count]);
+        self.near.extend_from_slice(&traced.near[..traced.count]);
     }
 
     /// The samples at the corners of a cell.
     #[inline(always)]
     pub fn corners(&self, cell: Cell) -> [usize; 4] {
         let Cell { x, y, side } = cell;
-        let at = |x: u16, y: u16| self.places[y as usize * self.stride + x as usize] as usize - 1;
+        let at = |x: u16, y: u16| self.indices[y as usize * self.stride + x as usize] as usize - 1;
         [
             at(x, y),
             at(x + side, y),
@@ -210,7 +186,13 @@ impl<R: Real> Mesh<R> {
 
     /// Adds the mean of a cell's corners to its pixel, by its area.
     #[inline(always)]
-    pub fn pour(&self, cell: Cell, corners: [usize; 4], pixel: usize, colors: &mut Colors<R>) {
+    pub fn accumulate(
+        &self,
+        cell: Cell,
+        corners: [usize; 4],
+        pixel: usize,
+        colors: &mut TileColors<R>,
+    ) {
         let side = f64::from(cell.side) / FINEST as f64;
         let share = R::from_f64(side * side / 4.0);
         for (sum, channel) in colors.channels.iter_mut().zip(&self.colors) {
@@ -221,7 +203,7 @@ impl<R: Real> Mesh<R> {
 
     /// Puts the four quarters of a cell into `cells`, and wants their corners.
     #[inline(always)]
-    pub fn halve(&mut self, cell: Cell, cells: &mut Vec<Cell>) {
+    pub fn subdivide(&mut self, cell: Cell, cells: &mut Vec<Cell>) {
         let side = cell.side / 2;
         for (right, down) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
             cells.push(Cell {

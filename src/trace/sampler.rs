@@ -2,29 +2,13 @@
 
 use std::ops::Range;
 
-use super::cull::Candidates;
-use super::mesh::{Cell, FINEST, Limits, Mesh, NEAR, range};
-use super::samples::{Samples, Traced};
-use super::stage::Engine;
+use super::candidates::Candidates;
+use super::engine::Engine;
+use super::lattice::{Cell, Lattice, Limits, range};
+use super::samples::{Edges, Samples, Traced};
+use super::thresholds::{FINEST, NEAR};
+use super::tile::{Tile, TileColors};
 use crate::simd::{Real, SimdFloat};
-
-/// A rectangle of pixels.
-#[derive(Clone, Debug)]
-pub struct Tile {
-    /// From left to right.
-    pub columns: Range<usize>,
-    /// From top to bottom.
-    pub rows: Range<usize>,
-}
-
-/// Linear red, green and blue of the pixels of a tile, row by row.
-#[derive(Debug, Default)]
-pub struct Colors<R> {
-    /// 0–1.
-    pub channels: [Vec<R>; 3],
-    /// Places from one row to the next.
-    pub stride: usize,
-}
 
 /// What sampling leaves behind for the next tile to use again.
 pub struct Sampler<L: SimdFloat> {
@@ -35,31 +19,9 @@ pub struct Sampler<L: SimdFloat> {
     /// Of the pixels of a tile.
     contrast: Vec<L::Real>,
     wanting: Vec<bool>,
-    mesh: Mesh<L::Real>,
+    lattice: Lattice<L::Real>,
     cells: Vec<Cell>,
     split: Vec<Cell>,
-}
-
-impl Tile {
-    /// Pixels in a row.
-    pub fn width(&self) -> usize {
-        self.columns.len()
-    }
-}
-
-impl<R: Real> Colors<R> {
-    /// Red, green and blue.
-    pub fn channels(&self) -> [&[R]; 3] {
-        self.channels.each_ref().map(Vec::as_slice)
-    }
-
-    fn clear(&mut self, stride: usize, length: usize) {
-        self.stride = stride;
-        for channel in &mut self.channels {
-            channel.clear();
-            channel.resize(length, R::ZERO);
-        }
-    }
 }
 
 impl<L: SimdFloat> Sampler<L> {
@@ -71,7 +33,7 @@ impl<L: SimdFloat> Sampler<L> {
             traced: Traced::default(),
             contrast: Vec::new(),
             wanting: Vec::new(),
-            mesh: Mesh::new(),
+            lattice: Lattice::new(),
             cells: Vec::new(),
             split: Vec::new(),
         }
@@ -81,7 +43,6 @@ impl<L: SimdFloat> Sampler<L> {
     #[inline(always)]
     pub fn centres(
         &mut self,
-        token: L::Token,
         engine: &mut Engine<L>,
         seen: &Candidates,
         pixels: impl Iterator<Item = (usize, usize)>,
@@ -92,7 +53,7 @@ impl<L: SimdFloat> Sampler<L> {
             self.samples.push(centre(column), centre(row));
         }
         self.samples.pad(L::WIDTH);
-        engine.trace(token, &self.samples, seen, false, &mut self.traced);
+        engine.trace(&self.samples, seen, Edges::Ignored, &mut self.traced);
         &self.traced
     }
 
@@ -101,14 +62,13 @@ impl<L: SimdFloat> Sampler<L> {
     #[inline(always)]
     pub fn all(
         &mut self,
-        token: L::Token,
         engine: &mut Engine<L>,
         seen: &Candidates,
         tile: &Tile,
         (x, y): (f64, f64),
     ) -> &Traced<L::Real> {
         self.lay_out(tile.columns.clone(), tile.rows.clone(), (x, y));
-        engine.trace(token, &self.samples, seen, false, &mut self.traced);
+        engine.trace(&self.samples, seen, Edges::Ignored, &mut self.traced);
         &self.traced
     }
 
@@ -127,19 +87,18 @@ impl<L: SimdFloat> Sampler<L> {
     #[inline(always)]
     pub fn grid(
         &mut self,
-        token: L::Token,
         engine: &mut Engine<L>,
         seen: &Candidates,
         tile: &Tile,
         side: u32,
-        colors: &mut Colors<L::Real>,
+        colors: &mut TileColors<L::Real>,
     ) {
         colors.clear(tile.width(), tile.width() * tile.rows.len());
         let share = L::Real::from_f64(1.0 / f64::from(side * side));
         let middle = |part: u32| (f64::from(part) + 0.5) / f64::from(side);
         for part in 0..side * side {
             let place = (middle(part % side), middle(part / side));
-            let traced = self.all(token, engine, seen, tile, place);
+            let traced = self.all(engine, seen, tile, place);
             for (sum, new) in colors.channels.iter_mut().zip(traced.channels()) {
                 for (sum, new) in sum.iter_mut().zip(new) {
                     *sum = *sum + *new * share;
@@ -148,50 +107,44 @@ impl<L: SimdFloat> Sampler<L> {
         }
     }
 
-    /// The means of pixels that are halved as long as their corners differ; corners are shared.
+    /// The means of pixels that are subdivided as long as their corners differ; corners are shared.
     ///
     /// Whitted, "An improved illumination model for shaded display", CACM 23(6), 1980; here with
     /// the things that were hit and lit, beside the colours, to tell the corners apart.
     #[inline(always)]
     pub fn adaptive(
         &mut self,
-        token: L::Token,
         engine: &mut Engine<L>,
         seen: &Candidates,
         tile: &Tile,
         limits: Limits<L::Real>,
-        colors: &mut Colors<L::Real>,
+        colors: &mut TileColors<L::Real>,
     ) {
         let columns = tile.columns.start..tile.columns.end + 1;
         let rows = tile.rows.start..tile.rows.end + 1;
         self.lay_out(columns, rows, (0.0, 0.0));
-        engine.trace(token, &self.samples, seen, true, &mut self.traced);
+        engine.trace(&self.samples, seen, Edges::Noted, &mut self.traced);
         self.judge(tile, limits, colors);
         if self.split.is_empty() {
             return;
         }
-        self.mesh.start(tile, &self.traced);
+        self.lattice.start(tile, &self.traced);
         for depth in 1..=limits.finest_depth() {
             self.cells.clear();
             for &cell in &self.split {
-                self.mesh.halve(cell, &mut self.cells);
+                self.lattice.subdivide(cell, &mut self.cells);
             }
-            self.mesh.sample(
-                token,
-                engine,
-                seen,
-                tile,
-                &mut self.samples,
-                &mut self.traced,
-            );
+            self.lattice.wanted_samples::<L>(tile, &mut self.samples);
+            engine.trace(&self.samples, seen, Edges::Noted, &mut self.traced);
+            self.lattice.take_results(&self.traced);
             self.split.clear();
             for &cell in &self.cells {
-                let corners = self.mesh.corners(cell);
-                if self.mesh.is_split(cell, corners, depth, limits) {
+                let corners = self.lattice.corners(cell);
+                if self.lattice.is_split(cell, corners, depth, limits) {
                     self.split.push(cell);
                 } else {
                     let pixel = cell.y as usize / FINEST * colors.stride + cell.x as usize / FINEST;
-                    self.mesh.pour(cell, corners, pixel, colors);
+                    self.lattice.accumulate(cell, corners, pixel, colors);
                 }
             }
             if self.split.is_empty() {
@@ -204,7 +157,7 @@ impl<L: SimdFloat> Sampler<L> {
     /// smooth nearly everywhere, so this is what their smoothing costs: one loop over the whole tile,
     /// with a pixel at the end of each row that is none.
     #[inline(always)]
-    fn judge(&mut self, tile: &Tile, limits: Limits<L::Real>, colors: &mut Colors<L::Real>) {
+    fn judge(&mut self, tile: &Tile, limits: Limits<L::Real>, colors: &mut TileColors<L::Real>) {
         let stride = tile.width() + 1;
         let length = stride * tile.rows.len() - 1;
         colors.clear(stride, length);

@@ -1,0 +1,125 @@
+//! What every kind of primitive can do. Kernels are generic over it, so that each scan is compiled for
+//! its kind.
+
+use std::collections::HashMap;
+use std::fmt::Debug;
+
+use glam::DVec3;
+
+use super::ball::Ball;
+use super::projector::{Projector, Rectangle};
+use super::ray::Ray;
+use crate::scene::{Describe, Methods};
+use crate::simd::{Real, SimdFloat, Vec3};
+
+/// The bits of a corner's coordinates.
+pub type Corner = [u64; 3];
+
+/// What packing needs to know of the scene.
+pub struct Packing<'a> {
+    /// What coordinates are made relative to.
+    pub centre: DVec3,
+    /// How many visible triangles meet at each corner.
+    pub corner_users: &'a HashMap<Corner, usize>,
+    /// Where things are in the picture; `None` if nothing may be left out.
+    pub projector: Option<&'a Projector>,
+}
+
+/// A refined hit.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoint<L: SimdFloat> {
+    /// On the surface.
+    pub point: Vec3<L>,
+    /// Unit normal of the surface, on either side.
+    pub normal: Vec3<L>,
+    /// Radius of curvature of the surface; infinity if it is flat.
+    pub radius: L::Real,
+    /// How far the point may be off along the normal: 0, or a few roundings where it matters. A
+    /// number even where there is none: the compiler multiplies with it in either case, and what it
+    /// would find in its place may be a number so small that the processor stumbles over it.
+    pub slack: L,
+}
+
+/// How close rays come to a primitive.
+#[derive(Clone, Copy, Debug)]
+pub struct Approach<L> {
+    /// Where along the rays it begins.
+    pub from: L,
+    /// Where along the rays it ends.
+    pub to: L,
+    /// How far from the rays it is, in scene units; not above 0 inside.
+    pub distance: L,
+}
+
+/// A primitive, packed for the kernels.
+pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
+    /// What it is in the scene.
+    type Description: Describe;
+    /// What its test needs of the directions of rays, computed once for all primitives of the kind.
+    type Prepared<L: SimdFloat<Real = R>>: Copy;
+
+    /// Whether rays that start on it can meet it again elsewhere, see [`Self::exit`].
+    const IS_CURVED: bool = false;
+
+    /// The packed form; `None` for what no ray can meet.
+    fn pack(description: &Self::Description, material: u32, packing: &Packing) -> Option<Self>;
+
+    /// Where it is in the picture; `None` for what never ends.
+    fn rectangle(description: &Self::Description, projector: &Projector) -> Option<Rectangle>;
+
+    /// A ball around it; `None` for what never ends.
+    fn ball(&self) -> Option<Ball>;
+
+    /// Index of its material.
+    fn material(&self) -> u32;
+
+    /// Its smallest measure in scene units; infinity for what is never narrower than a pixel.
+    fn thickness(&self) -> R;
+
+    /// A point of it, and how far from there it reaches.
+    fn reach(&self) -> (Vec3<R>, R);
+
+    /// Whether nothing in `ball` is lit by `light` because of it alone. It may say no where it is so.
+    fn hides(&self, _light: DVec3, _ball: &Ball) -> bool {
+        false
+    }
+
+    /// What the test needs of unit directions.
+    fn prepare<L: SimdFloat<Real = R>>(directions: Vec3<L>) -> Self::Prepared<L>;
+
+    /// The smallest t > 0 at which the rays meet it; infinity where they do not.
+    fn intersect<L: SimdFloat<Real = R>>(
+        &self,
+        rays: &Ray<L>,
+        prepared: &Self::Prepared<L>,
+        methods: &Methods,
+    ) -> L;
+
+    /// Where rays that start on it meet it again; infinity for what is flat.
+    #[inline(always)]
+    fn exit<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>) -> L {
+        rays.origin.x.like(R::INFINITY)
+    }
+
+    /// The hits at `t`, drawn onto the surface.
+    fn refine<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, t: L) -> SurfacePoint<L>;
+
+    /// How close rays come to it.
+    fn approach<L: SimdFloat<Real = R>>(
+        &self,
+        rays: &Ray<L>,
+        prepared: &Self::Prepared<L>,
+    ) -> Approach<L>;
+
+    /// How far behind the end of rays it may begin and still be close to them, where a pixel is so wide.
+    #[inline(always)]
+    fn margin<L: SimdFloat<Real = R>>(&self, width: L) -> L {
+        width
+    }
+
+    /// [`Self::intersect`] for a single test.
+    #[inline(always)]
+    fn meet<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, methods: &Methods) -> L {
+        self.intersect(rays, &Self::prepare(rays.direction), methods)
+    }
+}

@@ -1,0 +1,126 @@
+//! All primitives of a scene, in one list for each kind.
+
+use super::kind::{Packing, Primitive};
+use super::plane::PackedPlane;
+use super::projector::Rectangle;
+use super::sphere::PackedSphere;
+use super::triangle::PackedTriangle;
+use crate::scene::Shape;
+use crate::simd::Real;
+
+/// Work on every list, compiled for each kind.
+pub trait Visit<R: Real> {
+    /// Works on one list; `first` is the number of its first primitive.
+    fn visit<P: Primitive<R>>(&mut self, kind: Kind, primitives: &[P], first: usize);
+}
+
+/// Work on one primitive, compiled for each kind.
+pub trait WithPrimitive<R: Real> {
+    /// What it gives.
+    type Output;
+    /// Works on the primitive.
+    fn run<P: Primitive<R>>(self, primitive: &P) -> Self::Output;
+}
+
+macro_rules! kinds {
+    ($($kind:ident in $list:ident: $packed:ident),*) => {
+        /// The kinds of primitives, in the order of their numbers.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Kind {
+            $(#[doc = concat!("See [`", stringify!($packed), "`].")] $kind),*
+        }
+
+        /// How many kinds there are.
+        pub const KINDS: usize = [$(Kind::$kind),*].len();
+
+        /// Every primitive has a number, exact in any real type: the kinds follow each other.
+        #[derive(Clone, Debug)]
+        pub struct Primitives<R> {
+            $(#[doc = concat!("Every [`", stringify!($packed), "`].")] pub $list: Vec<$packed<R>>),*
+        }
+
+        impl<R> Default for Primitives<R> {
+            fn default() -> Self {
+                Self { $($list: Vec::new()),* }
+            }
+        }
+
+        impl<R: Real> Primitives<R> {
+            /// Adds a shape; where it is in the picture, if there is a projector and it ends anywhere.
+            pub fn push(&mut self, shape: &Shape, material: u32, packing: &Packing) -> Option<(Kind, Rectangle)> {
+                match shape {
+                    $(Shape::$kind(description) => {
+                        self.$list.push($packed::pack(description, material, packing)?);
+                        let rectangle = $packed::<R>::rectangle(description, packing.projector?)?;
+                        Some((Kind::$kind, rectangle))
+                    }),*
+                }
+            }
+
+            /// How many there are of each kind.
+            pub fn counts(&self) -> [usize; KINDS] {
+                [$(self.$list.len()),*]
+            }
+
+            /// Visits the lists in order.
+            #[inline(always)]
+            pub fn visit(&self, visitor: &mut impl Visit<R>) {
+                let mut first = 0;
+                $(
+                    visitor.visit(Kind::$kind, &self.$list, first);
+                    first += self.$list.len();
+                )*
+                let _ = first;
+            }
+
+            /// Works on the primitive of a number that there is.
+            ///
+            /// # Panics
+            /// If there is no primitive of this number.
+            #[inline(always)]
+            pub fn with<W: WithPrimitive<R>>(&self, number: usize, work: W) -> W::Output {
+                let mut index = number;
+                $(
+                    if index < self.$list.len() {
+                        return work.run(&self.$list[index]);
+                    }
+                    index -= self.$list.len();
+                )*
+                unreachable!("there is no primitive {index} behind the last")
+            }
+        }
+    };
+}
+
+kinds! {
+    Sphere in spheres: PackedSphere,
+    Plane in planes: PackedPlane,
+    Triangle in triangles: PackedTriangle
+}
+
+impl<R: Real> Primitives<R> {
+    /// The number of the first primitive of each kind.
+    pub fn firsts(&self) -> [usize; KINDS] {
+        let mut next = 0;
+        self.counts().map(|count| {
+            let first = next;
+            next += count;
+            first
+        })
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.counts().iter().sum()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// How many have an end.
+    pub fn bounded(&self) -> usize {
+        self.len() - self.planes.len()
+    }
+}

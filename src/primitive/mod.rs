@@ -1,0 +1,29 @@
+//! The primitives as the kernels meet them: one file each, with its competing formulas side by side.
+//!
+//! A new one is a file here that implements [`Primitive`], and its line in `list.rs`; its description is
+//! in [`crate::scene`]. Each kernel is written once, for any real type and any number of lanes.
+
+mod ray;
+
+mod ball;
+
+mod projector;
+
+mod kind;
+
+mod sphere;
+
+mod plane;
+
+mod triangle;
+
+mod list;
+
+pub use ball::{Ball, CAUTION, FAR_CAUTION};
+pub use kind::{Approach, Corner, Packing, Primitive, SurfacePoint};
+pub use list::{KINDS, Kind, Primitives, Visit, WithPrimitive};
+pub use plane::PackedPlane;
+pub use projector::{Extent, Projector, Rectangle};
+pub use ray::Ray;
+pub use sphere::PackedSphere;
+pub use triangle::{PackedTriangle, corner, count_corner_users};

@@ -1,0 +1,66 @@
+//! The endless plane.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::{Describe, Field, FieldValue};
+use crate::scene::notation;
+
+/// An endless plane.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Plane {
+    /// Any point on it.
+    #[serde(with = "notation::vector")]
+    pub point: DVec3,
+    /// Across it; any length but zero.
+    #[serde(with = "notation::vector")]
+    pub normal: DVec3,
+}
+
+impl Describe for Plane {
+    const KIND: &'static str = "Plane";
+
+    fn example(at: DVec3, _size: f64) -> Self {
+        Self {
+            point: at,
+            normal: DVec3::Y,
+        }
+    }
+
+    fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Field<'a>)) {
+        visit(Field {
+            name: "point",
+            hint: "Any point on the plane",
+            value: FieldValue::Point(&mut self.point),
+        });
+        visit(Field {
+            name: "normal",
+            hint: "Direction across the plane; its length does not matter",
+            value: FieldValue::Direction(&mut self.normal),
+        });
+    }
+
+    fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        None
+    }
+
+    fn position(&self) -> DVec3 {
+        self.point
+    }
+
+    fn moved(&self, by: DVec3) -> Self {
+        Self {
+            point: self.point + by,
+            ..*self
+        }
+    }
+
+    fn feature(&self) -> Option<(DVec3, f64)> {
+        None
+    }
+
+    fn endless_plane(&self) -> Option<(DVec3, DVec3)> {
+        Some((self.point, self.normal))
+    }
+}

@@ -1,0 +1,309 @@
+//! One depth of reflection: the packets of a tile, what they can meet, and what they see.
+
+use super::beam::{Bounds, beam_around};
+use super::candidates::Candidates;
+use super::cull::{LightCandidates, Scratch};
+use super::footprint::RayCone;
+use super::intersect::{IgnoredPrimitive, Kernel, Paths};
+use super::packet::{EdgeInfo, Packet, ReflectionParent};
+use super::samples::{Samples, Traced};
+use super::shade::Shader;
+use super::stats::Rays;
+use super::thresholds::{LARGEST_STRETCH, SLIPPING};
+use crate::plan::Plan;
+use crate::primitive::Ray;
+use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
+
+/// One bounce: its packets, and what they can meet.
+pub struct Bounce<L: SimdFloat> {
+    packets: Vec<Packet<L>>,
+    /// One for each packet, in bounces of mirrored rays.
+    parents: Vec<ReflectionParent<L>>,
+    /// One for each packet, where edges are noted.
+    edges: Vec<EdgeInfo<L>>,
+    /// What the rays can meet.
+    seen: Candidates,
+    /// Those of them that may slip between samples.
+    thin: Candidates,
+    lights: Vec<LightCandidates>,
+    signatures: Vec<[u32; MAX_LANES]>,
+}
+
+impl<L: SimdFloat> Bounce<L> {
+    /// A bounce without packets.
+    pub fn new(plan: &Plan<L::Real>) -> Self {
+        let light = LightCandidates {
+            casters: Candidates::all_casting(plan),
+            thin: Candidates::default(),
+            is_umbra: false,
+        };
+        Self {
+            packets: Vec::new(),
+            parents: Vec::new(),
+            edges: Vec::new(),
+            seen: Candidates::default(),
+            thin: Candidates::default(),
+            lights: vec![light; plan.lights.len()],
+            signatures: Vec::new(),
+        }
+    }
+
+    /// Forgets the packets.
+    pub fn clear(&mut self) {
+        self.packets.clear();
+        self.parents.clear();
+        self.edges.clear();
+    }
+
+    /// Whether there are no packets.
+    pub fn is_empty(&self) -> bool {
+        self.packets.is_empty()
+    }
+
+    /// Becomes the rays from the camera through the samples, which can meet what is in `seen`.
+    #[inline(always)]
+    pub fn start(
+        &mut self,
+        kernel: Kernel<L>,
+        samples: &Samples<L::Real>,
+        seen: &Candidates,
+        with_edges: bool,
+    ) {
+        let (token, view) = (kernel.token, &kernel.plan.view);
+        self.clear();
+        self.seen.clone_from(seen);
+        let lane_number = L::from_fn(token, |lane| L::Real::from_f64(lane as f64));
+        for first in (0..samples.x.len()).step_by(L::WIDTH) {
+            let x = L::load(token, &samples.x[first..]);
+            let y = L::load(token, &samples.y[first..]);
+            let (origin, direction) = view.rays(x, y);
+            let wanted = L::Real::from_f64((samples.count - first) as f64);
+            let active = lane_number.less(lane_number.like(wanted));
+            let rays = Ray { origin, direction };
+            self.packets.push(Packet::new(kernel, rays, active));
+        }
+        if with_edges {
+            let (width, spread) = view.footprint();
+            let cone = RayCone {
+                width: L::splat(token, width),
+                spread: L::splat(token, spread),
+            };
+            self.edges.resize(self.packets.len(), EdgeInfo::new(cone));
+        }
+    }
+
+    /// What the rays of a packet start on.
+    #[inline(always)]
+    fn ignored_by(&self, packet: usize) -> IgnoredPrimitive<L> {
+        match self.parents.get(packet) {
+            None => IgnoredPrimitive::Nothing,
+            Some(parent) => parent.ignored,
+        }
+    }
+
+    /// Finds what the packets meet, and what can cast shadows there. Whether there is anything.
+    #[inline(always)]
+    pub fn find(&mut self, kernel: Kernel<L>, scratch: &mut Scratch) -> bool {
+        if self.seen.is_empty() {
+            return false;
+        }
+        let plan = kernel.plan;
+        let infinity = kernel.infinity();
+        let mut bounds = Bounds::new(kernel.token);
+        for index in 0..self.packets.len() {
+            let ignored = self.ignored_by(index);
+            let packet = &mut self.packets[index];
+            let rays = packet.rays;
+            packet.near = kernel.nearest(&self.seen, &Paths { rays, ignored });
+            let hit = packet.near.t.less(infinity) & packet.active;
+            bounds.add(hit, rays.at(packet.near.t));
+        }
+        self.find_thin(plan);
+        let Some(ball) = bounds.ball() else {
+            return !self.thin.is_empty();
+        };
+        if plan.screen.is_some() {
+            // Room for what passes beside the rays to the lights, closer than a pixel.
+            let footprint = self.widest(kernel) * L::Real::from_f64(LARGEST_STRETCH);
+            for (between, light) in self.lights.iter_mut().zip(&plan.lights) {
+                kernel.keep_between(between, light, (&ball, footprint), scratch);
+            }
+        }
+        true
+    }
+
+    /// Finds what rays from the camera can meet, or just miss, between samples; nothing without
+    /// edges. For mirrored rays, [`Self::aim`] knows.
+    fn find_thin(&mut self, plan: &Plan<L::Real>) {
+        if self.edges.is_empty() {
+            self.thin.clear();
+        } else if self.parents.is_empty() {
+            let slipping = L::Real::from_f64(SLIPPING);
+            self.thin.keep_narrow(&self.seen, plan, |center, radius| {
+                plan.view.width_at(center, radius) * slipping
+            });
+        }
+    }
+
+    /// The widest pixel at what was hit; zero without edges.
+    #[inline(always)]
+    fn widest(&self, kernel: Kernel<L>) -> L::Real {
+        let mut widest = kernel.splat(0.0);
+        for (edge, packet) in self.edges.iter().zip(&self.packets) {
+            let hit = packet.near.t.less(kernel.infinity()) & packet.active;
+            let width = edge.cone.width_at(packet.near.t);
+            widest = L::select(hit, widest.max(width), widest);
+        }
+        widest.greatest()
+    }
+
+    /// Shades the packets; `next` gets the rays that mirrors send on.
+    #[inline(always)]
+    pub fn shade(&mut self, kernel: Kernel<L>, may_mirror: bool, next: &mut Self, rays: &mut Rays) {
+        for index in 0..self.packets.len() {
+            let ignored = self.ignored_by(index);
+            let shader = Shader {
+                kernel,
+                may_mirror,
+                thin: &self.thin,
+                lights: &self.lights,
+            };
+            let edge = self.edges.get_mut(index);
+            let Some(mirrored) = shader.shade(&mut self.packets[index], ignored, edge, rays) else {
+                continue;
+            };
+            rays.reflected += u64::from(mirrored.active.bits().count_ones());
+            let paths = mirrored.paths;
+            next.packets
+                .push(Packet::new(kernel, paths.rays, mirrored.active));
+            next.parents.push(ReflectionParent {
+                packet: index,
+                ignored: paths.ignored,
+                filter: mirrored.filter,
+            });
+            if let Some(cone) = mirrored.cone {
+                next.edges.push(EdgeInfo::new(cone));
+            }
+        }
+    }
+
+    /// Finds what mirrored rays can meet.
+    #[inline(always)]
+    pub fn aim(&mut self, kernel: Kernel<L>, scratch: &mut Scratch) {
+        let plan = kernel.plan;
+        let rays = self
+            .packets
+            .iter()
+            .map(|packet| (packet.active, packet.rays));
+        let beam = if plan.screen.is_some() {
+            beam_around(kernel.token, rays)
+        } else {
+            None
+        };
+        let Some(beam) = beam else {
+            self.seen = Candidates::all(plan);
+            self.thin.clone_from(&self.seen);
+            return;
+        };
+        // Room for what passes beside the rays, closer than a pixel.
+        let (mut width, mut spread) = (kernel.splat(0.0), kernel.splat(0.0));
+        for (edge, packet) in self.edges.iter().zip(&self.packets) {
+            width = L::select(packet.active, width.max(edge.cone.width), width);
+            spread = L::select(packet.active, spread.max(edge.cone.spread), spread);
+        }
+        let (width, spread) = (width.greatest(), spread.greatest());
+        let beam = beam.widened(width, spread);
+        let start_plane = self.start_plane(plan);
+        kernel.keep_met(&mut self.seen, &beam, start_plane, scratch);
+        if !self.edges.is_empty() {
+            let slipping = L::Real::from_f64(SLIPPING);
+            self.thin.keep_narrow(&self.seen, plan, |center, radius| {
+                (width + spread * beam.distance(center, radius)) * slipping
+            });
+        }
+    }
+
+    /// The plane that all rays start on, if they all start on one.
+    fn start_plane(&self, plan: &Plan<L::Real>) -> Option<usize> {
+        let IgnoredPrimitive::Shared(first) = self.parents.first()?.ignored else {
+            return None;
+        };
+        let is_shared = self.parents.iter().all(
+            |parent| matches!(parent.ignored, IgnoredPrimitive::Shared(start) if start == first),
+        );
+        let plane = first.checked_sub(plan.primitives.spheres.len())?;
+        (is_shared && plane < plan.primitives.planes.len()).then_some(plane)
+    }
+
+    /// Adds the colours that the mirrored rays brought back.
+    #[inline(always)]
+    pub fn take_colors(&mut self, mirrored: &Self) {
+        for (packet, parent) in mirrored.packets.iter().zip(&mirrored.parents) {
+            let own = &mut self.packets[parent.packet];
+            let added = parent.filter.filter(clamped(packet.color));
+            own.color = Vec3::select(packet.active, own.color + added, own.color);
+        }
+    }
+
+    /// Adds what the mirrored rays know of their edges.
+    #[inline(always)]
+    pub fn take_edges(&mut self, mirrored: &Self) {
+        for (index, edge) in mirrored.edges.iter().enumerate() {
+            let active = mirrored.packets[index].active;
+            let parent = mirrored.parents[index].packet;
+            let own = &mut self.edges[parent];
+            own.near = L::select(active, edge.near.min(own.near), own.near);
+            let active = active.bits();
+            let theirs = &mirrored.signatures[index];
+            for (lane, own) in self.signatures[parent].iter_mut().enumerate() {
+                if active >> lane & 1 == 1 {
+                    *own = own.rotate_left(11) ^ theirs[lane];
+                }
+            }
+        }
+    }
+
+    /// Notes what each ray has hit, and which lights shine on it.
+    #[inline(always)]
+    pub fn sign(&mut self) {
+        self.signatures.clear();
+        for (packet, edge) in self.packets.iter().zip(&self.edges) {
+            let mut numbers = [L::Real::ZERO; MAX_LANES];
+            let mut lit = numbers;
+            packet.near.number.store(&mut numbers);
+            edge.lit.store(&mut lit);
+            let mut signature = [0; MAX_LANES];
+            for lane in 0..L::WIDTH {
+                // Odd multipliers spread the small numbers over all bits.
+                let number = (numbers[lane] + L::Real::ONE).nearest();
+                let lit = lit[lane].nearest();
+                signature[lane] = number.wrapping_mul(0x9E37_79B1) ^ lit.wrapping_mul(0x85EB_CA6B);
+            }
+            self.signatures.push(signature);
+        }
+    }
+
+    /// Writes what was seen, sample by sample.
+    #[inline(always)]
+    pub fn store(&self, traced: &mut Traced<L::Real>) {
+        for (index, packet) in self.packets.iter().enumerate() {
+            let first = index * L::WIDTH;
+            let color = clamped(packet.color);
+            color.x.store(&mut traced.red[first..]);
+            color.y.store(&mut traced.green[first..]);
+            color.z.store(&mut traced.blue[first..]);
+        }
+        for (index, edge) in self.edges.iter().enumerate() {
+            let first = index * L::WIDTH;
+            edge.near.store(&mut traced.near[first..]);
+            traced.signature[first..first + L::WIDTH]
+                .copy_from_slice(&self.signatures[index][..L::WIDTH]);
+        }
+    }
+}
+
+/// A colour within 0–1.
+#[inline(always)]
+pub fn clamped<L: SimdFloat>(color: Vec3<L>) -> Vec3<L> {
+    color.clamp(color.x.like(L::Real::ZERO), color.x.like(L::Real::ONE))
+}

@@ -1,0 +1,175 @@
+//! The primitives that are worth testing.
+
+use std::ops::Range;
+
+use crate::plan::Plan;
+use crate::primitive::{Extent, KINDS, Kind, Primitive, Rectangle, Visit};
+use crate::simd::{Real, Vec3};
+
+/// The primitives that are worth testing: for each kind, indices into the plan's list.
+#[derive(Clone, Debug, Default)]
+pub struct Candidates {
+    lists: [Vec<u32>; KINDS],
+}
+
+/// Direction of a range of pixels.
+#[derive(Clone, Copy, Debug)]
+pub enum Span {
+    /// From left to right.
+    Columns,
+    /// From top to bottom.
+    Rows,
+}
+
+/// What is left out of a list of primitives.
+#[derive(Clone, Copy, Debug)]
+pub enum Omit<'a> {
+    /// Nothing.
+    Nothing,
+    /// The markers of lights, and triangles whose flag is set.
+    MarkersAndFaces(&'a [bool]),
+}
+
+impl Candidates {
+    /// Everything there is, markers included.
+    pub fn all<R: Real>(plan: &Plan<R>) -> Self {
+        Self {
+            lists: plan
+                .primitives
+                .counts()
+                .map(|count| (0..count as u32).collect()),
+        }
+    }
+
+    /// Everything that camera rays may meet first.
+    pub fn all_seen<R: Real>(plan: &Plan<R>) -> Self {
+        let mut all = Self::all(plan);
+        all.lists[Kind::Triangle as usize]
+            .retain(|&index| !is_set(&plan.camera_culled_faces, index));
+        all
+    }
+
+    /// Everything that casts shadows.
+    pub fn all_casting<R: Real>(plan: &Plan<R>) -> Self {
+        let mut all = Self::all(plan);
+        all.lists[Kind::Sphere as usize].truncate(plan.casting_spheres);
+        if !plan.planes_cast {
+            all.lists[Kind::Plane as usize].clear();
+        }
+        all
+    }
+
+    /// Indices of one kind.
+    #[inline(always)]
+    pub fn of(&self, kind: Kind) -> &[u32] {
+        &self.lists[kind as usize]
+    }
+
+    /// Indices of the planes, to be changed.
+    pub fn planes_mut(&mut self) -> &mut Vec<u32> {
+        &mut self.lists[Kind::Plane as usize]
+    }
+
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        for list in &mut self.lists {
+            list.clear();
+        }
+    }
+
+    /// Whether there is nothing to test.
+    pub fn is_empty(&self) -> bool {
+        self.lists.iter().all(Vec::is_empty)
+    }
+
+    /// Becomes those of `from` that can be seen in these columns (or rows).
+    pub fn keep_seen(
+        &mut self,
+        from: &Self,
+        screen: Option<&[Vec<Rectangle>; KINDS]>,
+        pixels: &Range<usize>,
+        span: Span,
+    ) {
+        let Some(screen) = screen else {
+            return self.clone_from(from);
+        };
+        let meets = |rectangle: &Rectangle| {
+            let extent: Extent = match span {
+                Span::Columns => rectangle.columns,
+                Span::Rows => rectangle.rows,
+            };
+            extent.meets(pixels.start, pixels.end)
+        };
+        for ((list, from), rectangles) in self.lists.iter_mut().zip(&from.lists).zip(screen) {
+            list.clear();
+            // What never ends has no rectangle.
+            if rectangles.is_empty() {
+                list.extend_from_slice(from);
+            } else {
+                let seen = from
+                    .iter()
+                    .filter(|&&index| meets(&rectangles[index as usize]));
+                list.extend(seen);
+            }
+        }
+    }
+
+    /// Becomes those of `from` that are narrower than `width`, which is given the primitive's place and
+    /// reach.
+    pub fn keep_narrow<R: Real>(
+        &mut self,
+        from: &Self,
+        plan: &Plan<R>,
+        width: impl Fn(Vec3<R>, R) -> R,
+    ) {
+        plan.primitives.visit(&mut Narrow {
+            from,
+            to: self,
+            width,
+        });
+    }
+
+    /// Becomes the primitives of these numbers, kind by kind. Planes are none of them.
+    pub fn sort_by_kind<R: Real>(&mut self, plan: &Plan<R>, numbers: &[u32], omit: Omit) {
+        self.clear();
+        let firsts = plan.primitives.firsts();
+        for &number in numbers {
+            let later = firsts.iter().filter(|&&first| first <= number as usize);
+            let kind = later.count() - 1;
+            let index = number - firsts[kind] as u32;
+            let is_omitted = match omit {
+                Omit::Nothing => false,
+                Omit::MarkersAndFaces(faces) => {
+                    (kind == Kind::Sphere as usize && index as usize >= plan.casting_spheres)
+                        || (kind == Kind::Triangle as usize && is_set(faces, index))
+                }
+            };
+            if !is_omitted {
+                self.lists[kind].push(index);
+            }
+        }
+    }
+}
+
+struct Narrow<'a, W> {
+    from: &'a Candidates,
+    to: &'a mut Candidates,
+    width: W,
+}
+
+impl<R: Real, W: Fn(Vec3<R>, R) -> R> Visit<R> for Narrow<'_, W> {
+    fn visit<P: Primitive<R>>(&mut self, kind: Kind, primitives: &[P], _first: usize) {
+        let narrow = self.from.of(kind).iter().filter(|&&index| {
+            let primitive = &primitives[index as usize];
+            let (at, reach) = primitive.reach();
+            primitive.thickness() < (self.width)(at, reach)
+        });
+        let list = &mut self.to.lists[kind as usize];
+        list.clear();
+        list.extend(narrow);
+    }
+}
+
+fn is_set(flags: &[bool], index: u32) -> bool {
+    flags.get(index as usize) == Some(&true)
+}

@@ -1,0 +1,104 @@
+//! The rays of a tile, bounce by bounce: what all of them meet first; then, knowing where that is, the
+//! light that falls on it; then the rays that mirrors send on, as the next bounce.
+
+use super::bounce::{Bounce, clamped};
+use super::candidates::Candidates;
+use super::cull::Scratch;
+use super::intersect::Kernel;
+use super::samples::{Edges, Samples, Traced};
+use super::stats::Rays;
+use crate::simd::SimdFloat;
+
+/// What traces the samples of a tile.
+pub struct Engine<'a, L: SimdFloat> {
+    kernel: Kernel<'a, L>,
+    bounces: Vec<Bounce<L>>,
+    scratch: Scratch,
+    /// Rays traced so far.
+    pub rays: Rays,
+}
+
+impl<'a, L: SimdFloat> Engine<'a, L> {
+    /// An engine for a plan.
+    pub fn new(kernel: Kernel<'a, L>) -> Self {
+        Self {
+            kernel,
+            bounces: Vec::new(),
+            scratch: Scratch::default(),
+            rays: Rays::default(),
+        }
+    }
+
+    /// Traces the samples, which can meet what is in `seen`.
+    pub fn trace(
+        &mut self,
+        samples: &Samples<L::Real>,
+        seen: &Candidates,
+        edges: Edges,
+        traced: &mut Traced<L::Real>,
+    ) {
+        // A function of its own: it is long, and called from several places.
+        L::vectorize(
+            self.kernel.token,
+            #[inline(always)]
+            || self.trace_vectorized(samples, seen, edges, traced),
+        );
+    }
+
+    #[inline(always)]
+    fn trace_vectorized(
+        &mut self,
+        samples: &Samples<L::Real>,
+        seen: &Candidates,
+        edges: Edges,
+        traced: &mut Traced<L::Real>,
+    ) {
+        let kernel = self.kernel;
+        let (count, length) = (samples.count, samples.x.len());
+        self.rays.camera += count as u64;
+        if seen.is_empty() {
+            return traced.fill(count, length, edges, clamped(kernel.plan.background));
+        }
+        let with_edges = edges == Edges::Noted;
+        traced.resize(count, length, edges);
+        self.grow(0);
+        self.bounces[0].start(kernel, samples, seen, with_edges);
+
+        // Forth: each bounce sends the next one on its way.
+        let mut depth = 0;
+        loop {
+            self.grow(depth + 1);
+            let (bounces, deeper) = self.bounces.split_at_mut(depth + 1);
+            let (bounce, next) = (&mut bounces[depth], &mut deeper[0]);
+            next.clear();
+            let may_mirror = (depth as u32) < kernel.plan.reflection_limit;
+            if bounce.find(kernel, &mut self.scratch) {
+                bounce.shade(kernel, may_mirror, next, &mut self.rays);
+            }
+            if next.is_empty() {
+                break;
+            }
+            next.aim(kernel, &mut self.scratch);
+            depth += 1;
+        }
+        if with_edges {
+            for bounce in &mut self.bounces[..=depth] {
+                bounce.sign();
+            }
+        }
+
+        // And back: each bounce takes what the next one has seen.
+        for depth in (1..=depth).rev() {
+            let (bounces, deeper) = self.bounces.split_at_mut(depth);
+            bounces[depth - 1].take_colors(&deeper[0]);
+            bounces[depth - 1].take_edges(&deeper[0]);
+        }
+        self.bounces[0].store(traced);
+    }
+
+    fn grow(&mut self, depth: usize) {
+        while self.bounces.len() <= depth {
+            self.bounces.push(Bounce::new(self.kernel.plan));
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! How large a pixel is: along rays, and on what they meet.
+
+use super::thresholds::{GRAZING, HIGHLIGHT_REACH, SLIPPING};
+use crate::simd::{Real, SimdFloat};
+
+/// How wide a pixel is along rays: where they start, and how much wider at distance 1.
+#[derive(Clone, Copy, Debug)]
+pub struct RayCone<L> {
+    /// Scene units.
+    pub width: L,
+    /// Scene units per scene unit.
+    pub spread: L,
+}
+
+/// A pixel as it lies on a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Footprint<L> {
+    /// Across the ray.
+    cone: RayCone<L>,
+    /// Along the surface.
+    length: L,
+    /// How far the surface's normal turns over that length.
+    turn: L,
+}
+
+impl<L: SimdFloat> RayCone<L> {
+    /// How wide a pixel is at `t`.
+    #[inline(always)]
+    pub fn width_at(&self, t: L) -> L {
+        self.width + self.spread * t
+    }
+}
+
+impl<L: SimdFloat> Footprint<L> {
+    /// The pixel around a ray that has gone as far as `t` and meets a surface of this radius of
+    /// curvature (infinity: flat) at this cosine.
+    #[inline(always)]
+    pub fn new(cone: RayCone<L>, t: L, cosine: L, radius: L::Real) -> Self {
+        let width = cone.width_at(t);
+        let length = width / cosine.abs().max(t.like_f64(GRAZING));
+        Self {
+            cone: RayCone { width, ..cone },
+            length,
+            turn: length * t.like(L::Real::ONE / radius),
+        }
+    }
+
+    /// How wide a pixel is along the mirrored ray: a curved mirror spreads it.
+    #[inline(always)]
+    pub fn mirrored(&self) -> RayCone<L> {
+        RayCone {
+            spread: self.cone.spread + self.turn + self.turn,
+            ..self.cone
+        }
+    }
+
+    /// The cone of the rays that go on from the surface to a light: no wider there than here.
+    #[inline(always)]
+    pub fn shadow(&self) -> RayCone<L> {
+        RayCone {
+            width: self.length,
+            spread: self.length.like(L::Real::ZERO),
+        }
+    }
+
+    /// How many pixels away a highlight is: half-vector and normal differ by `off`, its exponent
+    /// is 1/`size`², and the light is at this distance. Infinity for one that is wider than
+    /// [`SLIPPING`] pixels.
+    #[inline(always)]
+    pub fn highlight_distance(&self, size: f64, off: L, light_distance: L) -> L {
+        let half = off.like_f64(0.5);
+        let per_pixel = self.turn + (self.cone.spread + self.length / light_distance) * half;
+        let beside = off - off.like_f64(HIGHLIGHT_REACH * size);
+        let sharp = off.like_f64(size / SLIPPING).less(per_pixel);
+        pixels(sharp, beside, per_pixel)
+    }
+}
+
+/// `beside / width` where the mask is set; infinity elsewhere, and inside, where a sample sees the
+/// thing itself.
+#[inline(always)]
+pub fn pixels<L: SimdFloat>(mask: L::Mask, beside: L, width: L) -> L {
+    let outside = mask & beside.like(L::Real::ZERO).less(beside);
+    L::select(outside, beside / width, beside.like(L::Real::INFINITY))
+}

@@ -1,0 +1,48 @@
+//! What is counted, and how a trace is stopped.
+
+use std::ops::{Add, AddAssign};
+use std::sync::atomic::{AtomicBool, AtomicU64};
+
+/// How many rays were traced, by what they were for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rays {
+    /// From the camera.
+    pub camera: u64,
+    /// From a surface to a light.
+    pub shadow: u64,
+    /// From a mirror.
+    pub reflected: u64,
+}
+
+impl Rays {
+    /// All of them.
+    pub fn total(self) -> u64 {
+        self.camera + self.shadow + self.reflected
+    }
+}
+
+impl AddAssign for Rays {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl Add for Rays {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self {
+            camera: self.camera + other.camera,
+            shadow: self.shadow + other.shadow,
+            reflected: self.reflected + other.reflected,
+        }
+    }
+}
+
+/// What a running trace and its caller tell each other.
+#[derive(Debug, Default)]
+pub struct RenderControl {
+    /// Set by the caller to end the trace within a part of a tile.
+    pub stop: AtomicBool,
+    /// Pixels traced so far.
+    pub pixels: AtomicU64,
+}

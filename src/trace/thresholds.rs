@@ -1,0 +1,24 @@
+//! What is thin, grazing or visible: every threshold of smooth edges, with its reason.
+
+use crate::plan::MAX_HALVINGS;
+
+/// Widest thing, in pixels, that may slip between samples.
+pub const SLIPPING: f64 = 2.0;
+/// Cosine below which a surface seen at a grazing angle does not stretch a pixel any further: what
+/// [`LARGEST_STRETCH`] promises.
+pub const GRAZING: f64 = 0.25;
+/// How much longer than wide a pixel on a surface can be.
+pub const LARGEST_STRETCH: f64 = 1.0 / GRAZING;
+/// Half the width of a highlight of exponent p, in units of 1/√p: it has fallen to 1 % there.
+pub const HIGHLIGHT_REACH: f64 = 3.0;
+/// Steps of the finest grid in a pixel: where something thinner than two pixels is, or a strong edge,
+/// the pixel is divided once more than elsewhere.
+pub const FINEST: usize = 1 << (MAX_HALVINGS + 1);
+/// Difference of the corners of a cell, summed over the channels, above which it is divided the last
+/// time: an edge along the finest cells may move by half of one, and must not show that.
+pub const STRONG_CONTRAST: f64 = 0.6;
+/// The same where the corners see different things: four levels of 255, which nobody sees.
+pub const EDGE_CONTRAST: f64 = 4.0 / 255.0;
+/// A thing can be in a cell without being nearer than this to a corner, in sides of the cell: half
+/// its diagonal, and a little for the rounding.
+pub const NEAR: f64 = 0.75;
