@@ -10,11 +10,11 @@ use std::sync::Arc;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
+use glint::export::{ExportStep, Exporting};
 use glint::export::{Pattern, Sequence};
 use glint::image::Format;
 use glint::scene::{Document, Sampling};
 use glint::trace::{RenderControl, Threads};
-use glint::worker::{ExportStep, Exporting};
 
 const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
 

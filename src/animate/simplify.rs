@@ -62,7 +62,7 @@ pub fn simplify(take: &Take, seen: &[Vec<Seen>], tolerance: f64) -> Simplified {
     let cuts = cuts(take);
     let search = Search {
         take,
-        cameras: steady(take, &cuts, seen, tolerance / 2.0),
+        cameras: smoothed_cameras(take, &cuts, seen, tolerance / 2.0),
         seen,
         tolerance,
         cuts,
@@ -77,7 +77,12 @@ pub fn simplify(take: &Take, seen: &[Vec<Seen>], tolerance: f64) -> Simplified {
 }
 
 /// The cameras of a take, as smooth as the tolerance allows.
-fn steady(take: &Take, cuts: &BTreeSet<usize>, seen: &[Vec<Seen>], tolerance: f64) -> Vec<Camera> {
+fn smoothed_cameras(
+    take: &Take,
+    cuts: &BTreeSet<usize>,
+    seen: &[Vec<Seen>],
+    tolerance: f64,
+) -> Vec<Camera> {
     let is_near = |cameras: &Vec<Camera>| {
         let mut pairs = cameras.iter().zip(seen);
         pairs.all(|(camera, seen)| deviation(camera, seen) <= tolerance)

@@ -10,12 +10,12 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{fail, refuse, say};
+use crate::export::{ExportStep, Exported, Exporting};
 use crate::export::{Frames, Pattern, Sequence, Video, job_template};
 use crate::files::write_atomic;
 use crate::image::Format;
 use crate::scene::{Document, MAX_SIDE, Method as _, Sampling, Scene};
 use crate::trace::{RenderControl, Threads};
-use crate::worker::{ExportStep, Exported, Exporting};
 
 /// What is exported, for a folder and for a job.
 #[derive(Debug, Args)]

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::timeline::{MEASURED_AT, Recording, Time, Timeline, watched};
+use super::timeline::{MEASURED_AT, Recording, Time, Timeline};
 use super::{Edit, Editor, Mode, Selection};
 use crate::animate::{CameraPath, Seen, Simplified, pose, shot, simplify, worst_off};
 use crate::scene::{Animation, Camera, Key, Scene, Take, Target};
@@ -13,6 +13,25 @@ const FEW: (f64, f64) = (8.0, 2.5);
 const COARSEST: f64 = 32.0;
 /// The finest tolerance of the slider, in pixels.
 const FINEST: f64 = 0.05;
+
+/// What waits for the survey of a take.
+#[derive(Clone, Debug)]
+enum Pending {
+    /// A flight that was recorded becomes keys.
+    Keep(Arc<Take>),
+    /// The keys of the take are made anew, as near as so many pixels.
+    Simplify(Arc<Take>, f64),
+    /// How far the keys are off is measured.
+    Measure(Arc<Take>),
+}
+
+impl Pending {
+    fn take(&self) -> &Arc<Take> {
+        match self {
+            Self::Keep(take) | Self::Simplify(take, _) | Self::Measure(take) => take,
+        }
+    }
+}
 
 /// A scene, its path and its timeline, and what they come to at the time of the playhead.
 #[derive(Debug)]
@@ -25,8 +44,10 @@ pub(super) struct AnimationState {
     /// Time and camera that `shown` was made for.
     made_for: (f64, bool),
     revision: u64,
-    /// What the samples of a take saw, once it was asked for.
-    watched: Option<(Arc<Take>, Vec<Vec<Seen>>)>,
+    /// What the samples of a take see: to find out takes rays, which are not traced here.
+    survey: Option<(Arc<Take>, Vec<Vec<Seen>>)>,
+    /// What is done with the survey once it is there.
+    pending: Option<Pending>,
 }
 
 impl AnimationState {
@@ -38,34 +59,42 @@ impl AnimationState {
             shown: pose(scene, 0.0),
             made_for: (0.0, false),
             revision: 1,
-            watched: None,
+            survey: None,
+            pending: None,
         };
         animation_state.measure();
         animation_state
     }
 
-    /// How far the keys are off the recording. The slider stands there, until it is moved.
+    /// Measures how far the keys are off the recording, as soon as it is known what that saw. The slider
+    /// stands there, until it is moved.
     fn measure(&mut self) {
-        let scene = Arc::clone(&self.scene);
-        let take = scene.animation.take.as_ref();
-        let take = take.filter(|_| !scene.animation.keys.is_empty());
-        self.timeline.worst = take.map(|take| {
-            self.control(take);
-            let seen = self.watched.as_ref().map_or(&[][..], |(_, seen)| seen);
-            worst_off(&self.path, take, seen) * MEASURED_AT
-        });
-        if let Some(worst) = self.timeline.worst.filter(|worst| worst.is_finite()) {
+        let animation = &self.scene.animation;
+        let take = animation.take.as_ref();
+        let take = take.filter(|_| !animation.keys.is_empty()).cloned();
+        self.timeline.worst = None;
+        // A recorded flight that waits is not to be forgotten.
+        self.pending
+            .take_if(|pending| matches!(pending, Pending::Measure(_)));
+        let Some(take) = take else {
+            return;
+        };
+        let Some(seen) = self.seen_by(&take) else {
+            self.pending.get_or_insert(Pending::Measure(take));
+            return;
+        };
+        let worst = worst_off(&self.path, &take, seen) * MEASURED_AT;
+        self.timeline.worst = Some(worst);
+        if worst.is_finite() {
             // As the slider shows it: a hundredth more or less is no wish of the user's.
             self.timeline.tolerance = (worst.max(FINEST) * 100.0).ceil() / 100.0;
         }
     }
 
-    /// Finds out what the samples of a take see, unless that is known.
-    fn control(&mut self, take: &Arc<Take>) {
-        let is_watched = matches!(&self.watched, Some((of, _)) if Arc::ptr_eq(of, take));
-        if !is_watched {
-            self.watched = Some((Arc::clone(take), watched(take, &self.scene)));
-        }
+    /// What the samples of a take see, if that is known.
+    fn seen_by(&self, take: &Arc<Take>) -> Option<&[Vec<Seen>]> {
+        let (of, seen) = self.survey.as_ref()?;
+        Arc::ptr_eq(of, take).then_some(seen.as_slice())
     }
 
     /// No key is selected any more.
@@ -240,18 +269,14 @@ impl Editor {
             }
             Time::Stop => {
                 if let Some(Recording { take, .. }) = timeline.recording.take() {
-                    self.keep(take);
+                    self.stop_recording(take);
                 }
             }
+            Time::Surveyed(take, seen) => self.survey_arrived(take, seen),
             Time::Simplify(pixels) => {
                 timeline.tolerance = pixels;
                 if let Some(take) = animation.take.clone() {
-                    let animation = Animation {
-                        keys: in_the_time_of(&animation.keys, self.simplified(&take)),
-                        ..animation.clone()
-                    };
-                    self.edit(Edit::Animation(Box::new(animation), "Simplify"));
-                    self.animation_state.timeline.tolerance = pixels;
+                    self.after_survey(Pending::Simplify(take, pixels));
                 }
             }
         }
@@ -271,15 +296,76 @@ impl Editor {
         self.leave_still();
     }
 
-    /// Keeps a recorded flight, and makes its keys.
-    fn keep(&mut self, take: Take) {
-        let count = take.samples.len();
-        if count < 2 {
+    /// The take whose survey is waited for: someone is to trace it, and to answer with
+    /// [`Time::Surveyed`].
+    pub fn wanted_survey(&self) -> Option<&Arc<Take>> {
+        self.animation_state.pending.as_ref().map(Pending::take)
+    }
+
+    /// Whether a recorded flight is about to become keys.
+    pub fn is_making_keys(&self) -> bool {
+        matches!(self.animation_state.pending, Some(Pending::Keep(_)))
+    }
+
+    /// Does what waits, at once if what the take saw is known.
+    fn after_survey(&mut self, pending: Pending) {
+        if self.animation_state.seen_by(pending.take()).is_some() {
+            self.finish_pending(pending);
+        } else if !self.is_making_keys() {
+            self.animation_state.pending = Some(pending);
+        }
+    }
+
+    fn survey_arrived(&mut self, take: Arc<Take>, seen: Vec<Vec<Seen>>) {
+        let state = &mut self.animation_state;
+        let pending = state
+            .pending
+            .take_if(|pending| Arc::ptr_eq(pending.take(), &take));
+        state.survey = Some((take, seen));
+        if let Some(pending) = pending {
+            self.finish_pending(pending);
+        }
+    }
+
+    fn finish_pending(&mut self, pending: Pending) {
+        match pending {
+            Pending::Keep(take) => self.keep(take),
+            Pending::Simplify(take, pixels) => {
+                let animation = &self.scene.animation;
+                // An edit on the way may have replaced the take.
+                if !animation
+                    .take
+                    .as_ref()
+                    .is_some_and(|own| Arc::ptr_eq(own, &take))
+                {
+                    return;
+                }
+                self.animation_state.timeline.tolerance = pixels;
+                let old = Arc::clone(&self.scene);
+                let animation = Animation {
+                    keys: in_the_time_of(&old.animation.keys, self.simplified(&take)),
+                    ..old.animation.clone()
+                };
+                self.edit(Edit::Animation(Box::new(animation), "Simplify"));
+                self.animation_state.timeline.tolerance = pixels;
+            }
+            Pending::Measure(_) => self.animation_state.measure(),
+        }
+    }
+
+    /// A recorded flight is kept, and made into keys as soon as it is known what it saw.
+    fn stop_recording(&mut self, take: Take) {
+        if take.samples.len() < 2 {
             return self.notify("Nothing was recorded".to_owned());
         }
+        self.after_survey(Pending::Keep(Arc::new(take)));
+    }
+
+    /// Keeps a recorded flight, and makes its keys.
+    fn keep(&mut self, take: Arc<Take>) {
+        let count = take.samples.len();
         let seconds = take.samples.last().map_or(0.0, |last| last.0);
         let few = (FEW.0 + FEW.1 * seconds) as usize;
-        let take = Arc::new(take);
         self.animation_state.timeline.tolerance = 1.0;
         let mut keys = self.simplified(&take);
         // A trembling hand would leave a key in every frame.
@@ -305,16 +391,13 @@ impl Editor {
         ));
     }
 
+    /// Keys in place of a take whose survey is known.
     fn simplified(&mut self, take: &Arc<Take>) -> Vec<Key<Camera>> {
-        let animation_state = &mut self.animation_state;
-        animation_state.control(take);
-        let seen = animation_state
-            .watched
-            .as_ref()
-            .map_or(&[][..], |(_, seen)| seen);
+        let state = &mut self.animation_state;
+        let seen = state.seen_by(take).unwrap_or_default();
         let Simplified { keys, worst } =
-            simplify(take, seen, animation_state.timeline.tolerance / MEASURED_AT);
-        animation_state.timeline.worst = Some(worst * MEASURED_AT);
+            simplify(take, seen, state.timeline.tolerance / MEASURED_AT);
+        state.timeline.worst = Some(worst * MEASURED_AT);
         keys
     }
 }

@@ -177,7 +177,7 @@ impl Editor {
 
     /// Whether there are changes that no file has.
     pub fn is_dirty(&self) -> bool {
-        self.is_dirty
+        self.is_dirty || self.is_making_keys()
     }
 
     /// What the document is called: its file name, or `demo` or `untitled`.

@@ -1,13 +1,11 @@
 //! Where on the line of time the editor is: the playhead, playing, recording.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use crate::animate::Seen;
-use crate::scene::{Animation, Camera, Framing, Orientation, Scene, Take};
-use crate::trace::SceneQuery;
+use crate::scene::{Animation, Camera, Orientation, Take};
 
-/// Side of the grid of places at which a picture is watched for how far it is off.
-const WATCHED: u32 = 5;
 /// The picture that a deviation is told for, in pixels.
 pub const MEASURED_AT: f64 = 1024.0;
 
@@ -48,6 +46,8 @@ pub enum Time {
     Sample(f64),
     /// Make keys of what was recorded.
     Stop,
+    /// What the samples of a take see, which was asked for, see [`super::Editor::wanted_survey`].
+    Surveyed(Arc<Take>, Vec<Vec<Seen>>),
     /// Make keys of the take anew: off by so many pixels of a picture 1024 high at most.
     Simplify(f64),
 }
@@ -183,41 +183,4 @@ impl Timeline {
             recording.take.push(now - start, camera, angles);
         }
     }
-}
-
-/// What every sample of a take sees of the scene, at a grid of places.
-pub(super) fn watched(take: &Take, scene: &Scene) -> Vec<Vec<Seen>> {
-    let sight = SceneQuery::new(scene);
-    let aspect = f64::from(scene.render.width) / f64::from(scene.render.height);
-    let last = f64::from(WATCHED - 1);
-    let at = |n: u32| {
-        let (x, y) = (f64::from(n % WATCHED), f64::from(n / WATCHED));
-        [(x / last - 0.5) * aspect, y / last - 0.5]
-    };
-    let look = |framing: &Framing, at: [f64; 2]| {
-        let (origin, direction) = framing.ray(at);
-        let distance = sight.distance(origin, direction);
-        let is_sky = distance.is_infinite();
-        Seen {
-            at,
-            what: if is_sky {
-                direction
-            } else {
-                origin + direction * distance
-            },
-            is_sky,
-        }
-    };
-    let camera = |sample: usize| {
-        let framing = take.camera(sample).and_then(|camera| camera.framing());
-        framing.map_or(Vec::new(), |framing| {
-            let all = (0..WATCHED * WATCHED).map(|n| look(&framing, at(n)));
-            // Rays that run side by side all see the same place of the sky.
-            let is_flat = framing
-                .project_direction(framing.ray([0.0, 0.0]).1)
-                .is_none();
-            all.filter(|seen| !(seen.is_sky && is_flat)).collect()
-        })
-    };
-    (0..take.samples.len()).map(camera).collect()
 }

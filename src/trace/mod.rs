@@ -45,7 +45,7 @@ mod threads;
 
 mod query;
 
-pub use query::SceneQuery;
+pub use query::{SceneQuery, survey, visible};
 pub use stats::{Rays, RenderControl};
 pub use threads::{PoolError, Threads};
 pub use tracer::{Grid, Pass, Pixel, Tracer};

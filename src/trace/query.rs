@@ -1,10 +1,16 @@
-//! What a single ray sees, in double precision and without a picture: for what is drawn over the
-//! picture and for the depth of what the picture shows.
+//! What single rays see, in double precision and without a picture: for what is drawn over the picture
+//! and for the depth of what the picture shows.
+//!
+//! Every ray tests every object: the render thread asks, in pieces that can be stopped.
+
+use std::sync::atomic::Ordering;
 
 use glam::DVec3;
 
+use super::stats::RenderControl;
+use crate::animate::Seen;
 use crate::primitive::{Kind, Packing, Primitive, Primitives, Ray, Visit, count_corner_users};
-use crate::scene::{Methods, Scene};
+use crate::scene::{Camera, Framing, Methods, Scene, Take};
 use crate::simd::Vec3;
 
 /// The visible objects of a scene; markers of lights are not among them.
@@ -69,21 +75,87 @@ impl SceneQuery {
     }
 }
 
+/// Side of the grid of places at which a picture is surveyed for how far another is off.
+const SURVEYED: u32 = 5;
+
+/// What every sample of a recorded flight sees of the scene, at a grid of places in its picture. `None`
+/// if `control` said stop.
+pub fn survey(take: &Take, scene: &Scene, control: &RenderControl) -> Option<Vec<Vec<Seen>>> {
+    let query = SceneQuery::new(scene);
+    let aspect = f64::from(scene.render.width) / f64::from(scene.render.height);
+    let sample = |sample: usize| {
+        let framing = take.camera(sample).and_then(|camera| camera.framing());
+        framing.map_or(Vec::new(), |framing| query.look(&framing, aspect))
+    };
+    let samples = (0..take.samples.len()).map(|index| {
+        let is_stopped = control.stop.load(Ordering::Relaxed);
+        (!is_stopped).then(|| sample(index))
+    });
+    samples.collect()
+}
+
+/// For each point, whether nothing stands between it and the camera. `None` if `control` said stop.
+pub fn visible(
+    scene: &Scene,
+    camera: &Camera,
+    points: &[DVec3],
+    control: &RenderControl,
+) -> Option<Vec<(DVec3, bool)>> {
+    let query = SceneQuery::new(scene);
+    let framing = camera.framing();
+    let is_visible = |point: DVec3| {
+        framing.is_some_and(|framing| {
+            let from = framing.project(point).map(|at| framing.ray(at).0);
+            from.is_some_and(|from| query.is_clear(from, point))
+        })
+    };
+    let points = points.iter().map(|&point| {
+        let is_stopped = control.stop.load(Ordering::Relaxed);
+        (!is_stopped).then(|| (point, is_visible(point)))
+    });
+    points.collect()
+}
+
+impl SceneQuery {
+    /// What is seen at a grid of places.
+    fn look(&self, framing: &Framing, aspect: f64) -> Vec<Seen> {
+        let last = f64::from(SURVEYED - 1);
+        // Rays that run side by side all see the same place of the sky.
+        let is_parallel = framing
+            .project_direction(framing.ray([0.0, 0.0]).1)
+            .is_none();
+        let all = (0..SURVEYED * SURVEYED).map(|n| {
+            let (x, y) = (f64::from(n % SURVEYED), f64::from(n / SURVEYED));
+            let at = [(x / last - 0.5) * aspect, y / last - 0.5];
+            let (origin, direction) = framing.ray(at);
+            let distance = self.distance(origin, direction);
+            let is_sky = distance.is_infinite();
+            let what = if is_sky {
+                direction
+            } else {
+                origin + direction * distance
+            };
+            Seen { at, what, is_sky }
+        });
+        all.filter(|seen| !(seen.is_sky && is_parallel)).collect()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn the_demo_is_seen_where_it_is() {
-        let sight = SceneQuery::new(&Scene::demo());
+        let query = SceneQuery::new(&Scene::demo());
         let down = DVec3::new(0.0, -1.0, 0.0);
         // Sphere 1: centre (125, 50, -150), radius 50, on the plane y = 0.
         let above = DVec3::new(125.0, 300.0, -150.0);
-        assert!((sight.distance(above, down) - 200.0).abs() < 1e-9);
-        assert!(sight.is_clear(above, DVec3::new(125.0, 100.0, -150.0)));
-        assert!(!sight.is_clear(above, DVec3::new(125.0, 99.0, -150.0)));
+        assert!((query.distance(above, down) - 200.0).abs() < 1e-9);
+        assert!(query.is_clear(above, DVec3::new(125.0, 100.0, -150.0)));
+        assert!(!query.is_clear(above, DVec3::new(125.0, 99.0, -150.0)));
         let ground = DVec3::new(1000.0, 30.0, 1000.0);
-        assert_eq!(sight.distance(ground, down), 30.0);
-        assert_eq!(sight.distance(ground, -down), f64::INFINITY);
+        assert_eq!(query.distance(ground, down), 30.0);
+        assert_eq!(query.distance(ground, -down), f64::INFINITY);
     }
 }

@@ -24,7 +24,7 @@ use super::window::data_folder;
 use super::{UiRequests, help, inspector, menu, status, theme};
 use crate::editor::{Action, Editor, Mode, Time};
 use crate::image::Image;
-use crate::worker::RenderThreadError;
+use crate::worker::{Answer, RenderThreadError};
 
 /// Where the list of recent files is kept between runs.
 const RECENT_KEY: &str = "recent files";
@@ -153,7 +153,7 @@ impl App {
 
     /// Whether the picture on screen is the finished one of the newest scene.
     pub fn is_settled(&self) -> bool {
-        self.pictures.is_settled(&self.editor)
+        self.pictures.is_settled(&self.editor) && self.editor.wanted_survey().is_none()
     }
 
     /// Whether frames are being exported, or a video of them made.
@@ -321,7 +321,15 @@ impl eframe::App for App {
         self.pictures.poll(ctx, &mut self.editor);
         let is_measuring = self.pictures.is_measuring();
         self.lab.follow(is_measuring, self.pictures.take_study());
-        self.thumbs.take(ctx, self.pictures.take_sketches());
+        self.thumbs.take(ctx, self.pictures.take_thumbnails());
+        for answer in self.pictures.take_answers() {
+            match answer {
+                Answer::Survey(take, seen) => {
+                    self.editor.apply(Action::Time(Time::Surveyed(take, seen)));
+                }
+                Answer::Visible(revision, ticks) => self.overlay.take_visible(revision, ticks),
+            }
+        }
         self.exports.follow(&mut self.editor, &self.pictures);
         self.pass_time(ctx);
         self.close_if_meant(ctx);
@@ -372,6 +380,7 @@ impl eframe::App for App {
             .flying
             .step(ui, flown, keys_are_free, self.editor.scene());
         out.actions.extend(motion.map(Action::Fly));
+        let questions = std::mem::take(&mut out.questions);
         for action in out.actions {
             self.editor.apply(action);
         }
@@ -386,6 +395,7 @@ impl eframe::App for App {
         let outcome = self.files.show(ui, &mut self.editor);
         self.follow(&ctx, outcome);
         help::show(&ctx, &mut self.shortcuts_open);
+        self.pictures.ask(&self.editor, questions);
         let is_gesture = ui.input(|input| input.pointer.any_down()) || self.flying.is_gesture(&ctx);
         if !is_gesture {
             self.editor.end_gesture();
@@ -398,11 +408,12 @@ impl eframe::App for App {
         if let Some((place, _)) = picture {
             self.pictures.submit(&self.editor, place.pixels);
             if let Some(wishes) = self.thumbs.wishes(&ctx, &self.editor, place.rect) {
-                self.pictures.request_sketches(wishes);
+                self.pictures.request_thumbnails(wishes);
             }
         }
+        let is_settled = self.is_settled();
         if let Some(screenshot) = &mut self.screenshot
-            && screenshot.tick(&ctx, self.pictures.is_settled(&self.editor))
+            && screenshot.tick(&ctx, is_settled)
         {
             self.closing = Some(self.editor.revision());
         }

@@ -35,12 +35,15 @@ pub use lab::{chart_picture, stability_picture};
 pub use window::{NoWindow, run};
 
 use crate::editor::{Action, Edit, Selection, Time};
+use crate::worker::Question;
 
 /// What panels ask for while they are drawn; done when all of them are.
 #[derive(Debug, Default)]
 struct UiRequests {
     actions: Vec<Action>,
     commands: Vec<commands::Command>,
+    /// What takes rays to answer.
+    questions: Vec<Question>,
 }
 
 impl UiRequests {

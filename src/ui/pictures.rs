@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use egui::Context;
@@ -13,9 +14,10 @@ use crate::export::{ExportError, Sequence};
 use crate::image::Image;
 use crate::lab::Study;
 use crate::plan::{RenderRequest, Sampling};
+use crate::scene::Take;
 use crate::worker::{
-    Activity, BUDGET, Event, ExportState, Frame, LiveJob, Pace, RenderThreadError, StillJob,
-    ThumbnailJob, Worker,
+    Activity, Answer, BUDGET, Event, ExportState, Frame, LiveJob, Pace, QueryJob, Question,
+    RenderThreadError, StillJob, ThumbnailJob, Worker,
 };
 
 /// Time over which pictures per second are counted.
@@ -59,6 +61,8 @@ pub struct Pictures {
     rhythm: Rhythm,
     submitted: Option<(u64, (u32, u32), Pace)>,
     still_requested: Option<(u64, (u32, u32))>,
+    /// The take whose survey was asked for.
+    surveyed: Option<Arc<Take>>,
 }
 
 impl Pictures {
@@ -75,6 +79,7 @@ impl Pictures {
             rhythm: Rhythm::default(),
             submitted: None,
             still_requested: None,
+            surveyed: None,
         })
     }
 
@@ -100,13 +105,41 @@ impl Pictures {
     }
 
     /// Asks for small pictures, each in place of one of its name that waits.
-    pub fn request_sketches(&self, thumbnails: Vec<ThumbnailJob>) {
-        self.worker.request_sketches(thumbnails);
+    pub fn request_thumbnails(&self, jobs: Vec<ThumbnailJob>) {
+        self.worker.request_thumbnails(jobs);
+    }
+
+    /// Asks what takes rays to answer: the panels' questions, and what a recorded flight has seen.
+    pub fn ask(&mut self, editor: &Editor, questions: Vec<Question>) {
+        for question in questions {
+            let scene = Arc::clone(editor.shown());
+            self.worker.ask(QueryJob { scene, question });
+        }
+        let wanted = editor.wanted_survey();
+        let is_asked = match (wanted, &self.surveyed) {
+            (Some(wanted), Some(asked)) => Arc::ptr_eq(wanted, asked),
+            (None, None) => true,
+            _ => false,
+        };
+        if is_asked {
+            return;
+        }
+        self.surveyed = wanted.cloned();
+        if let Some(take) = wanted {
+            let scene = Arc::clone(editor.scene());
+            let question = Question::Survey(Arc::clone(take));
+            self.worker.ask(QueryJob { scene, question });
+        }
+    }
+
+    /// The answers that have come.
+    pub fn take_answers(&self) -> Vec<Answer> {
+        self.worker.take_answers()
     }
 
     /// The small pictures that are finished.
-    pub fn take_sketches(&self) -> Vec<(u64, Image)> {
-        self.worker.take_sketches()
+    pub fn take_thumbnails(&self) -> Vec<(u64, Image)> {
+        self.worker.take_thumbnails()
     }
 
     /// Puts an export into the queue.

@@ -1,13 +1,49 @@
-//! What is asked of the lane, and what it tells.
+//! What is asked of the render thread, and what it tells.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::exporting::Exported;
+use glam::DVec3;
+
+use crate::animate::Seen;
+use crate::export::Exported;
 use crate::image::{Image, RenderCost};
 use crate::plan::{RenderRequest, Sampling};
-use crate::scene::Scene;
+use crate::scene::{Camera, Scene, Take};
+
+/// The kinds of work, the most urgent first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum JobKind {
+    /// The live view.
+    Live,
+    /// A question to the scene.
+    Query,
+    /// A small picture for the side.
+    Thumbnail,
+    /// A still picture to look at.
+    Still,
+    /// A still picture to be written.
+    Save,
+    /// A frame of an export.
+    Export,
+    /// A piece of the lab's study.
+    Lab,
+}
+
+impl JobKind {
+    /// Whether a new job of this kind stops one that runs: if it is more urgent, or takes its place.
+    /// Small pictures are done before anything could be gained by stopping them.
+    pub fn preempts(self, running: Self) -> bool {
+        let replaces = self == running && self.is_replaced();
+        running != Self::Thumbnail && (self < running || replaces)
+    }
+
+    /// Whether a new job of this kind takes the place of the one before.
+    pub fn is_replaced(self) -> bool {
+        matches!(self, Self::Live | Self::Still | Self::Lab)
+    }
+}
 
 /// What the live view shall show.
 #[derive(Clone, Debug)]
@@ -20,6 +56,33 @@ pub struct LiveJob {
     pub request: RenderRequest,
     /// Whether coarse pictures may come first, to keep up with the hand that edits.
     pub pace: Pace,
+}
+
+/// A question to a scene that takes rays to answer.
+#[derive(Clone, Debug)]
+pub struct QueryJob {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// What is asked; an older question of the same sort is dropped.
+    pub question: Question,
+}
+
+/// What can be asked.
+#[derive(Clone, Debug)]
+pub enum Question {
+    /// What every sample of a recorded flight sees.
+    Survey(Arc<Take>),
+    /// Which points the camera sees; the number is the asker's.
+    Visible(u64, Box<Camera>, Vec<DVec3>),
+}
+
+/// The answer to a [`Question`].
+#[derive(Clone, Debug)]
+pub enum Answer {
+    /// What the samples of this take see, see [`crate::trace::survey`].
+    Survey(Arc<Take>, Vec<Vec<Seen>>),
+    /// For the question of this number: whether nothing stands before each point.
+    Visible(u64, Vec<(DVec3, bool)>),
 }
 
 /// A small picture for the side: traced when no live view waits, never stopped, one sample per pixel.
@@ -56,6 +119,13 @@ pub struct StillJob {
     pub save_to: Option<PathBuf>,
 }
 
+impl StillJob {
+    /// How many pixels the picture has.
+    pub fn pixels(&self) -> u64 {
+        u64::from(self.request.width) * u64::from(self.request.height)
+    }
+}
+
 /// A picture to look at.
 #[derive(Clone, Debug)]
 pub struct Frame {
@@ -75,7 +145,7 @@ pub struct Frame {
     pub cost: RenderCost,
 }
 
-/// What the lane is doing.
+/// What the render thread is doing.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Activity {
     /// Nothing that anybody waits for; perhaps measuring.
@@ -105,7 +175,7 @@ pub struct ExportState {
     pub folder: PathBuf,
     /// How many frames are done.
     pub done: Exported,
-    /// Time that the lane has spent on it; what it waited does not count.
+    /// Time that the render thread has spent on it; what it waited does not count.
     pub busy: Duration,
     /// Whether it waits until it is told to go on.
     pub is_paused: bool,
@@ -115,7 +185,7 @@ pub struct ExportState {
     pub ended: Option<Result<(), String>>,
 }
 
-/// What happened on the lane that the user should know.
+/// What happened on the render thread that the user should know.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
     /// A still picture was written to this file.

@@ -9,14 +9,15 @@ use std::time::Duration;
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
+use glint::export::{ExportStep, Exporting};
 use glint::export::{Frames, Pattern, Sequence};
 use glint::image::Format;
 use glint::scene::{Document, Scene};
 use glint::ui::Ask;
-use glint::worker::{ExportStep, Exporting, Worker};
+use glint::worker::Worker;
 use image::AnimationDecoder as _;
 
-use crate::ui::{CTRL, EditorHarness};
+use crate::harness::{CTRL, EditorHarness};
 
 const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
 

@@ -7,6 +7,7 @@ mod architecture;
 mod bytes;
 mod cli;
 mod export;
+mod harness;
 mod image_model;
 mod needs;
 mod numerics;

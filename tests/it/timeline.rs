@@ -17,7 +17,7 @@ use glint::trace::RenderControl;
 use glint::ui::Ask;
 use glint::worker::{ThumbnailJob, Worker};
 
-use crate::ui::{CTRL, EditorHarness};
+use crate::harness::{CTRL, EditorHarness, survey_flight};
 
 const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
 
@@ -124,6 +124,7 @@ fn a_flight_is_recorded_and_becomes_keys_in_one_step() {
     let text = harness.editor().to_text().expect("a text");
     editor.recover(Document::from_text(&text).expect("a scene"), None);
     editor.apply(Action::Time(Time::Simplify(0.1)));
+    survey_flight(&mut editor);
     let fine = editor.scene().animation.keys.len();
     editor.apply(Action::Time(Time::Simplify(100.0)));
     let coarse = editor.scene().animation.keys.len();
@@ -192,6 +193,7 @@ fn keys_are_set_overwritten_and_deleted() {
 fn keys_made_anew_keep_the_time_that_the_flight_was_given() {
     let mut editor = Editor::demo();
     editor.recover(Document::load(FLIGHT.as_ref()).expect("a scene"), None);
+    survey_flight(&mut editor);
     let said = editor.timeline().worst.expect("a recording");
     assert!(
         (1.0..200.0).contains(&said),
@@ -598,12 +600,12 @@ fn small_pictures_are_plain_renders_and_come_in_their_order() {
         scene: Arc::clone(&scene),
         size: (40, 30),
     };
-    worker.request_sketches(vec![sketch(3), sketch(1)]);
-    worker.request_sketches(vec![sketch(7)]);
+    worker.request_thumbnails(vec![sketch(3), sketch(1)]);
+    worker.request_thumbnails(vec![sketch(7)]);
     let start = std::time::Instant::now();
     let mut pictures = Vec::new();
     while pictures.len() < 3 && start.elapsed().as_secs() < 60 {
-        pictures.extend(worker.take_sketches());
+        pictures.extend(worker.take_thumbnails());
         std::thread::sleep(std::time::Duration::from_millis(1));
     }
     let mut names: Vec<u64> = pictures.iter().map(|(name, _)| *name).collect();

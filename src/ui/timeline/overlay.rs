@@ -8,14 +8,12 @@ use glam::DVec3;
 
 use crate::editor::{Edit, Editor, Time};
 use crate::scene::{Camera, Framing, Projection};
-use crate::trace::SceneQuery;
 use crate::ui::UiRequests;
 use crate::ui::theme::palette;
+use crate::worker::Question;
 
 /// Most ticks that are drawn.
 const MOST_TICKS: u64 = 1500;
-/// Most tests of whether a tick is hidden, in ticks times objects: more would hold the window up.
-const MOST_TESTS: usize = 300_000;
 /// Length of a drawn camera, as a share of the flight's extent.
 const CAMERA_SHARE: f64 = 0.06;
 /// How near to a key the pointer must be, in points.
@@ -66,7 +64,7 @@ impl Overlay {
             return;
         };
         let lens = ViewProjection { framing, view };
-        self.follow(editor, &lens);
+        self.update(editor, out);
         let painter = ui.painter().with_clip_rect(view);
         let colors = palette(ui.ctx());
         let thin = Stroke::new(1.0, colors.text.gamma_multiply(0.6));
@@ -93,7 +91,7 @@ impl Overlay {
         }
     }
 
-    fn follow(&mut self, editor: &Editor, lens: &ViewProjection) {
+    fn update(&mut self, editor: &Editor, out: &mut UiRequests) {
         let key = (editor.shown_revision(), editor.revision());
         if self.made_for == Some(key) {
             return;
@@ -115,21 +113,22 @@ impl Overlay {
             .step_by(stride)
             .map(|sample| sample.1)
             .collect();
-        let scene = editor.shown();
-        let is_tested = places.len() * scene.objects.len() <= MOST_TESTS;
-        let sight = if is_tested {
-            SceneQuery::new(scene)
-        } else {
-            SceneQuery::default()
-        };
-        let is_clear = |point: DVec3| {
-            let from = lens.framing.project(point).map(|at| lens.framing.ray(at).0);
-            from.is_some_and(|from| sight.is_clear(from, point))
-        };
-        self.ticks = places
-            .into_iter()
-            .map(|point| (point, is_clear(point)))
-            .collect();
+        // What is hidden is found out elsewhere; until then, ticks that were there stay as they were.
+        let known = |index: usize| self.ticks.get(index).is_none_or(|(_, is_clear)| *is_clear);
+        let ticks = places.iter().enumerate();
+        self.ticks = ticks.map(|(index, &point)| (point, known(index))).collect();
+        let camera = Box::new(editor.shown().camera.clone());
+        out.questions.push(Question::Visible(key.0, camera, places));
+    }
+
+    /// Takes up which ticks are hidden in the picture of this revision.
+    pub fn take_visible(&mut self, revision: u64, ticks: Vec<(DVec3, bool)>) {
+        if self
+            .made_for
+            .is_some_and(|(made_for, _)| made_for == revision)
+        {
+            self.ticks = ticks;
+        }
     }
 
     fn draw_way(&self, painter: &Painter, lens: &ViewProjection, color: Color32) {

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::time::Duration;
 
-use super::task::spawn;
-use crate::export::{ExportError, Hash, Manifest, Sequence};
+use super::error::ExportError;
+use super::manifest::{Hash, Manifest};
+use super::sequence::Sequence;
 use crate::image::{Image, render_into};
 use crate::trace::RenderControl;
 
@@ -59,8 +60,8 @@ pub struct Exporting {
     sequence: Arc<Sequence>,
     manifest: Manifest,
     left: VecDeque<u64>,
-    parcels: Option<SyncSender<WriteJob>>,
-    receipts: Receiver<WriteResult>,
+    jobs: Option<SyncSender<WriteJob>>,
+    results: Receiver<WriteResult>,
     spare: Vec<Image>,
     done: Exported,
     last: Option<Arc<Image>>,
@@ -82,12 +83,14 @@ impl Exporting {
     pub fn new(sequence: Sequence) -> Result<Self, ExportError> {
         let manifest = sequence.manifest()?;
         let sequence = Arc::new(sequence);
-        let (parcels, to_write) = sync_channel::<WriteJob>(WAITING);
-        let (to_return, receipts) = channel();
-        let writer = spawn("glint-writer", {
-            let sequence = Arc::clone(&sequence);
-            move || write_all(&sequence, &to_write, &to_return)
-        });
+        let (jobs, to_write) = sync_channel::<WriteJob>(WAITING);
+        let (to_return, results) = channel();
+        let writer = std::thread::Builder::new()
+            .name("glint-writer".to_owned())
+            .spawn({
+                let sequence = Arc::clone(&sequence);
+                move || write_all(&sequence, &to_write, &to_return)
+            });
         writer.map_err(|source| ExportError::Disk {
             path: sequence.folder.clone(),
             source,
@@ -100,8 +103,8 @@ impl Exporting {
                 ..Exported::default()
             },
             sequence,
-            parcels: Some(parcels),
-            receipts,
+            jobs: Some(jobs),
+            results,
             spare: Vec::new(),
             last: None,
         })
@@ -124,8 +127,8 @@ impl Exporting {
 
     /// Looks at the next frame and traces it, if it is not there as it should be.
     pub fn step(&mut self, control: &RenderControl) -> ExportStep {
-        while let Ok(receipt) = self.receipts.try_recv() {
-            if let Err(error) = self.take(receipt) {
+        while let Ok(result) = self.results.try_recv() {
+            if let Err(error) = self.take(result) {
                 return ExportStep::Failed(error);
             }
         }
@@ -153,15 +156,15 @@ impl Exporting {
         };
         let step = image.height.div_ceil(SMALL).max(1);
         self.last = Some(Arc::new(image.decimated(step)));
-        let parcel = WriteJob {
+        let job = WriteJob {
             frame,
             image,
             fingerprint,
             time: cost.time,
         };
-        // It hangs up only after a frame that failed, whose receipt tells why.
-        if let Some(parcels) = &self.parcels
-            && parcels.send(parcel).is_err()
+        // It hangs up only after a frame that failed, whose result tells why.
+        if let Some(jobs) = &self.jobs
+            && jobs.send(job).is_err()
         {
             return self
                 .finish()
@@ -175,33 +178,33 @@ impl Exporting {
     /// # Errors
     /// [`ExportError`] of the first frame that was not written.
     pub fn finish(&mut self) -> Result<Exported, ExportError> {
-        self.parcels = None;
-        while let Ok(receipt) = self.receipts.recv() {
-            self.take(receipt)?;
+        self.jobs = None;
+        while let Ok(result) = self.results.recv() {
+            self.take(result)?;
         }
         Ok(self.done)
     }
 
-    fn take(&mut self, receipt: WriteResult) -> Result<(), ExportError> {
-        self.spare.push(receipt.image);
-        receipt.written?;
+    fn take(&mut self, result: WriteResult) -> Result<(), ExportError> {
+        self.spare.push(result.image);
+        result.written?;
         self.done.written += 1;
         Ok(())
     }
 }
 
 /// Writes what arrives, in order; hangs up after the first that fails.
-fn write_all(sequence: &Sequence, parcels: &Receiver<WriteJob>, receipts: &Sender<WriteResult>) {
-    for parcel in parcels {
+fn write_all(sequence: &Sequence, jobs: &Receiver<WriteJob>, results: &Sender<WriteResult>) {
+    for job in jobs {
         let WriteJob {
             frame,
             image,
             fingerprint,
             time,
-        } = parcel;
+        } = job;
         let written = sequence.write(frame, &image, &fingerprint, time);
         let is_over = written.is_err();
-        if receipts.send(WriteResult { written, image }).is_err() || is_over {
+        if results.send(WriteResult { written, image }).is_err() || is_over {
             return;
         }
     }

@@ -1,0 +1,34 @@
+//! Why something could not be exported.
+
+use std::io;
+use std::path::PathBuf;
+
+use crate::image::FormatError;
+
+/// Why a picture could not be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExportError {
+    /// The file name says no known format.
+    #[error(transparent)]
+    Format(#[from] FormatError),
+    /// The picture could not be encoded.
+    #[error("cannot encode {path}: {source}", path = .path.display())]
+    Encode {
+        /// The file.
+        path: PathBuf,
+        /// What the encoder said.
+        source: image::ImageError,
+    },
+    /// The scene cannot be put into words, which its fingerprint is made of.
+    #[error("the scene cannot be written: {0}")]
+    Unwritable(#[from] ron::Error),
+    /// The disk said no.
+    #[error("cannot write {path}: {source}", path = .path.display())]
+    Disk {
+        /// The file.
+        path: PathBuf,
+        /// What the system answered.
+        source: io::Error,
+    },
+}

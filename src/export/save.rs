@@ -1,0 +1,44 @@
+//! Single pictures on disk.
+
+use std::path::{Path, PathBuf};
+
+use super::error::ExportError;
+use crate::files::write_atomic;
+use crate::image::{Format, Image};
+
+/// Writes a picture in the format of the file's ending, whole or not at all.
+///
+/// # Errors
+/// [`ExportError`]; a file that was at `path` is then untouched.
+pub fn save_image(image: &Image, path: &Path) -> Result<(), ExportError> {
+    let format = Format::of_path(path)?;
+    let bytes = image.encode(format).map_err(|source| ExportError::Encode {
+        path: path.to_owned(),
+        source,
+    })?;
+    write_atomic(path, &bytes).map_err(|source| ExportError::Disk {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+/// `wanted`, or the first of `NAME-2`, `NAME-3`, … that no file has yet.
+pub fn free_path(wanted: &Path) -> PathBuf {
+    let stem = wanted
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let ending = wanted
+        .extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let mut path = wanted.to_owned();
+    let mut number = 2_u32;
+    while path.exists() {
+        path = wanted.with_file_name(format!("{stem}-{number}.{ending}"));
+        number += 1;
+    }
+    path
+}

@@ -1,0 +1,212 @@
+//! The handle on the render thread.
+
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Condvar, Mutex};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use super::jobs::{
+    Activity, Answer, Event, Frame, JobKind, LiveJob, QueryJob, StillJob, ThumbnailJob,
+};
+use super::mailbox::{Job, Running};
+use super::render_thread;
+use super::shared::{Outbox, Shared};
+use super::task::spawn;
+use crate::image::Image;
+use crate::lab::Study;
+use crate::trace::{PoolError, RenderControl, Threads};
+
+/// The system started no threads to trace with.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderThreadError {
+    /// Not those that trace.
+    #[error(transparent)]
+    Pool(#[from] PoolError),
+    /// Not the one that shares out the work.
+    #[error("cannot start the render thread: {0}")]
+    Thread(#[source] std::io::Error),
+}
+
+/// The handle on the render thread. Dropping it ends the thread.
+#[derive(Debug)]
+pub struct Worker {
+    pub(super) shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Worker {
+    /// Starts the render thread with `threads` tracing threads. `wake` is called from it after every
+    /// frame and event.
+    ///
+    /// # Errors
+    /// [`RenderThreadError`] when the system starts no threads.
+    pub fn new(
+        threads: Option<usize>,
+        wake: impl Fn() + Send + Sync + 'static,
+    ) -> Result<Self, RenderThreadError> {
+        let threads = Threads::new(threads)?;
+        let shared = Arc::new(Shared {
+            mailbox: Mutex::default(),
+            wakeup: Condvar::new(),
+            outbox: Mutex::<Outbox>::default(),
+            until_quit: RenderControl::default(),
+            wake: Box::new(wake),
+        });
+        let thread = spawn("glint-render-thread", {
+            let shared = Arc::clone(&shared);
+            move || render_thread::run(&shared, &threads)
+        });
+        let thread = Some(thread.map_err(RenderThreadError::Thread)?);
+        Ok(Self { shared, thread })
+    }
+
+    pub(super) fn put(&self, job: Job) {
+        self.shared.mailbox().put(job);
+        self.shared.wakeup.notify_one();
+    }
+
+    /// Asks for a live picture in place of any that waits; finer passes over an older one end
+    /// within a few milliseconds. A still picture of an older revision is given up, unless it is
+    /// to be written.
+    pub fn submit(&self, job: LiveJob) {
+        self.put(Job::Live(job));
+    }
+
+    /// Asks for a still picture. One to look at takes the place of any other such; one to be
+    /// written waits its turn and is never given up.
+    pub fn request_still(&self, job: StillJob) {
+        self.put(Job::Still(job));
+    }
+
+    /// Asks for small pictures, in this order and in place of those of the same names.
+    pub fn request_thumbnails(&self, jobs: Vec<ThumbnailJob>) {
+        for job in jobs {
+            self.put(Job::Thumbnail(job));
+        }
+    }
+
+    /// The small pictures that were finished since the last call, by name.
+    pub fn take_thumbnails(&self) -> Vec<(u64, Image)> {
+        std::mem::take(&mut self.shared.outbox().thumbnails)
+    }
+
+    /// Asks a question, in place of an older one of the same sort.
+    pub fn ask(&self, job: QueryJob) {
+        self.put(Job::Query(job));
+    }
+
+    /// The answers since the last call.
+    pub fn take_answers(&self) -> Vec<Answer> {
+        std::mem::take(&mut self.shared.outbox().answers)
+    }
+
+    /// Gives up every still picture, waiting or running. Those that were to be written are told of
+    /// as events.
+    pub fn cancel_still(&self) {
+        let mut mailbox = self.shared.mailbox();
+        let running = mailbox.running.as_ref();
+        let running = running.and_then(|running| running.save_to.clone());
+        mailbox.give_up(JobKind::Still);
+        let waiting = mailbox.give_up(JobKind::Save).into_iter();
+        let waiting = waiting.filter_map(|job| match job {
+            Job::Still(still) => still.save_to,
+            _ => None,
+        });
+        drop(mailbox);
+        for path in waiting.chain(running) {
+            self.shared
+                .tell(Event::Failed(format!("{} was not written", path.display())));
+        }
+    }
+
+    /// Measures a study, in place of any other, whenever there is nothing more urgent.
+    pub fn measure(&self, study: Study) {
+        self.stop_measuring();
+        self.put(Job::Lab(Box::new(study)));
+    }
+
+    /// Gives the study up.
+    pub fn stop_measuring(&self) {
+        self.shared.mailbox().give_up(JobKind::Lab);
+        self.shared.outbox().study = None;
+    }
+
+    /// Whether a study is being measured, or waits for that. What it has found by the time this is
+    /// false can be taken.
+    pub fn is_measuring(&self) -> bool {
+        self.shared.mailbox().has(JobKind::Lab)
+    }
+
+    /// The study as far as it is measured, if it has got on since the last call.
+    pub fn take_study(&self) -> Option<Study> {
+        self.shared.outbox().study.take()
+    }
+
+    /// Whether a picture is being written, or waits for that.
+    pub fn is_saving(&self) -> bool {
+        self.shared.mailbox().has(JobKind::Save)
+    }
+
+    /// The newest live picture, then the newest still one, if there are any that were not taken yet.
+    pub fn take_frame(&self) -> Option<Frame> {
+        let mut outbox = self.shared.outbox();
+        outbox.live.take().or_else(|| outbox.still.take())
+    }
+
+    /// What happened since the last call, in order.
+    pub fn take_events(&self) -> Vec<Event> {
+        std::mem::take(&mut self.shared.outbox().events)
+    }
+
+    /// What the render thread is doing, or is about to.
+    pub fn activity(&self) -> Activity {
+        let mailbox = self.shared.mailbox();
+        let running = mailbox.running.as_ref();
+        match running.map(|running| (running.kind, running)) {
+            Some((JobKind::Live, Running { revision, .. })) => {
+                return Activity::Live {
+                    revision: *revision,
+                };
+            }
+            Some((JobKind::Still | JobKind::Save, running)) => {
+                return Activity::Still {
+                    done: running.control.pixels.load(Ordering::Relaxed),
+                    total: running.pixels,
+                    elapsed: running.started.elapsed(),
+                };
+            }
+            _ => {}
+        }
+        let still = mailbox
+            .waiting(JobKind::Still)
+            .or_else(|| mailbox.waiting(JobKind::Save));
+        match (mailbox.waiting(JobKind::Live), still) {
+            (Some(Job::Live(live)), _) => Activity::Live {
+                revision: live.revision,
+            },
+            (_, Some(Job::Still(still))) => Activity::Still {
+                done: 0,
+                total: still.pixels(),
+                elapsed: Duration::ZERO,
+            },
+            _ => Activity::Idle,
+        }
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        let mut mailbox = self.shared.mailbox();
+        mailbox.quit = true;
+        self.shared.until_quit.stop.store(true, Ordering::Relaxed);
+        if let Some(running) = &mut mailbox.running {
+            running.give_up();
+        }
+        drop(mailbox);
+        self.shared.wakeup.notify_one();
+        if let Some(thread) = self.thread.take() {
+            // A panic on the thread was already shown as an event.
+            let _ = thread.join();
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! A live picture on its way: coarse first, finer while there is time, clean edges last.
+
+use std::time::Instant;
+
+use super::budget::Budget;
+use super::frame_pool::FramePool;
+use super::jobs::{Frame, LiveJob, Pace};
+use super::shared::Shared;
+use crate::image::{Image, RenderCost};
+use crate::plan::Sampling;
+use crate::trace::{Grid, Pass, Rays, RenderControl, Tracer};
+
+/// A live picture on its way: a coarse pass that always completes, so that there is always
+/// something new to show; then finer ones until a newer job comes, and clean edges last.
+pub struct Live<'a> {
+    /// Where it publishes.
+    pub shared: &'a Shared,
+    /// What was asked for.
+    pub job: &'a LiveJob,
+    /// What traces it.
+    pub tracer: Tracer,
+    /// Memory of pictures before.
+    pub frame_pool: &'a mut FramePool,
+}
+
+impl Live<'_> {
+    /// Traces and publishes until it is complete or stopped.
+    pub fn run(&mut self, control: &RenderControl, budget: &mut Budget, start: Instant) {
+        if self.trace_centres(control, budget, start).is_some()
+            && self.job.request.sampling != Sampling::Centres
+        {
+            self.smooth(control);
+        }
+    }
+
+    /// Traces every pixel's centre once; `None` if it was stopped.
+    fn trace_centres(
+        &mut self,
+        control: &RenderControl,
+        budget: &mut Budget,
+        start: Instant,
+    ) -> Option<()> {
+        let mut image = self.canvas();
+        let first = match self.job.pace {
+            Pace::Within(time) => budget.choose(image.width, image.height, time),
+            Pace::Whole => 1,
+        };
+        let mut rays = Rays::default();
+        let mut grid = Grid {
+            step: first,
+            coarser: None,
+        };
+        loop {
+            let is_first = grid.step == first;
+            let control = if is_first {
+                &self.shared.until_quit
+            } else {
+                control
+            };
+            let new = image.trace(&self.tracer, Pass::Centres(grid), control)?;
+            rays += new;
+            if is_first {
+                budget.learn(new.camera, start.elapsed());
+            }
+            if grid.step == 1 {
+                break;
+            }
+            let thin = image.decimated(grid.step);
+            self.publish(thin, grid.step, rays, Sampling::Centres, start);
+            grid = Grid {
+                step: grid.step / 2,
+                coarser: Some(grid.step),
+            };
+        }
+        self.publish(image, 1, rays, Sampling::Centres, start);
+        Some(())
+    }
+
+    fn smooth(&mut self, control: &RenderControl) {
+        let start = Instant::now();
+        let mut image = self.canvas();
+        if let Some(rays) = image.trace(&self.tracer, Pass::Whole, control) {
+            self.publish(image, 1, rays, self.job.request.sampling, start);
+        }
+    }
+
+    fn canvas(&mut self) -> Image {
+        self.frame_pool
+            .canvas(self.tracer.width(), self.tracer.height())
+    }
+
+    fn publish(
+        &mut self,
+        image: Image,
+        step: usize,
+        rays: Rays,
+        sampling: Sampling,
+        start: Instant,
+    ) {
+        let time = start.elapsed();
+        self.shared.publish(Frame {
+            revision: self.job.revision,
+            image: self.frame_pool.hand_out(image),
+            full_size: (self.tracer.width(), self.tracer.height()),
+            step,
+            sampling,
+            is_still: false,
+            cost: RenderCost {
+                time,
+                rays,
+                lanes: self.tracer.lanes(),
+            },
+        });
+    }
+}

@@ -1,0 +1,208 @@
+//! The window without a display, and hands for it.
+
+use std::collections::VecDeque;
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant};
+
+use egui::accesskit::Role;
+use egui::{Context, Event, Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use glint::editor::{Action, Editor, Time};
+use glint::image::Image;
+use glint::scene::{Scene, Shape, Sphere};
+use glint::trace::{RenderControl, survey};
+use glint::ui::{App, Ask, Dialogs, Setup};
+
+/// Dialogs that answer from a list; with none left, they do as a desktop without dialogs does.
+pub struct Scripted(VecDeque<(Ask, Option<PathBuf>)>);
+
+impl Dialogs for Scripted {
+    fn ask(&mut self, _: &Context, ask: &Ask, _: PathBuf) -> Receiver<Option<PathBuf>> {
+        let (sender, receiver) = channel();
+        let answer = self.0.pop_front().map(|(expected, answer)| {
+            assert_eq!(expected, *ask);
+            answer
+        });
+        sender
+            .send(answer.flatten())
+            .expect("the receiver is there");
+        receiver
+    }
+}
+
+/// The control key as a keyboard sends it: on Linux it is also the command key.
+pub const CTRL: Modifiers = Modifiers {
+    ctrl: true,
+    ..Modifiers::COMMAND
+};
+
+pub struct EditorHarness {
+    pub window: Harness<'static, App>,
+    pub folder: tempfile::TempDir,
+}
+
+impl EditorHarness {
+    pub fn new() -> Self {
+        Self::with(|_| Vec::new(), None)
+    }
+
+    /// A window with dialogs that answer as listed, on a scene text (or the demo).
+    pub fn with(
+        answers: impl FnOnce(&std::path::Path) -> Vec<(Ask, Option<PathBuf>)>,
+        scene: Option<&str>,
+    ) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let dialogs = Box::new(Scripted(answers(folder.path()).into()));
+        let scene = scene.map(|text| {
+            let path = folder.path().join("given.ron");
+            std::fs::write(&path, text).expect("written");
+            path
+        });
+        let window = Harness::builder()
+            .with_size([1280.0, 800.0])
+            .with_step_dt(1.0 / 60.0)
+            .with_max_steps(32)
+            .build_eframe(move |cc| {
+                App::new(
+                    cc,
+                    Setup {
+                        scene,
+                        dialogs,
+                        data_folder: None,
+                        screenshot: None,
+                        exports: false,
+                    },
+                )
+                .expect("a lane")
+            });
+        let mut harness = Self { window, folder };
+        harness.settle();
+        harness
+    }
+
+    /// Steps until the picture on screen is the finished one of the newest scene.
+    pub fn settle(&mut self) {
+        let start = Instant::now();
+        self.window.step();
+        self.window.step();
+        while !self.window.state().is_settled() {
+            assert!(
+                start.elapsed() < Duration::from_mins(1),
+                "the picture never came"
+            );
+            std::thread::sleep(Duration::from_millis(2));
+            self.window.step();
+        }
+        self.window.step();
+    }
+
+    pub fn editor(&self) -> &Editor {
+        self.window.state().editor()
+    }
+
+    pub fn scene(&self) -> &Scene {
+        self.editor().scene()
+    }
+
+    pub fn picture(&self) -> Image {
+        self.window
+            .state()
+            .shown_picture()
+            .expect("a picture")
+            .clone()
+    }
+
+    pub fn click(&mut self, name: &str) {
+        self.window.get_by_label(name).click();
+        self.settle();
+    }
+
+    pub fn press(&mut self, modifiers: Modifiers, key: Key) {
+        self.window.key_press_modifiers(modifiers, key);
+        self.settle();
+    }
+
+    /// Opens a menu and chooses an entry of it.
+    pub fn choose(&mut self, menu: &str, entry: &str) {
+        self.window
+            .get_by_role_and_label(Role::Button, menu)
+            .click();
+        self.settle();
+        self.click(entry);
+    }
+
+    /// Types a number over the one in a field.
+    pub fn type_into(&mut self, field: &str, text: &str) {
+        self.window
+            .get_by_role_and_label(Role::SpinButton, field)
+            .click();
+        self.settle();
+        self.window.event(Event::Text(text.to_owned()));
+        self.settle();
+        self.press(Modifiers::NONE, Key::Enter);
+    }
+
+    /// Types a name over the one in a field.
+    pub fn type_name(&mut self, field: &str, text: &str) {
+        self.window
+            .get_by_role_and_label(Role::TextInput, field)
+            .click();
+        self.settle();
+        self.press(CTRL, Key::A);
+        self.window.event(Event::Text(text.to_owned()));
+        self.settle();
+        self.press(Modifiers::NONE, Key::Enter);
+    }
+
+    /// Double-clicks a label, which brings its default back.
+    pub fn double_click(&mut self, label: &str) {
+        let at = self
+            .window
+            .get_by_role_and_label(Role::Label, label)
+            .rect()
+            .center();
+        // Long enough after any other click, with which it would count as three.
+        (0..60).for_each(|_| self.window.step());
+        for _ in 0..2 {
+            self.window.drag_at(at);
+            self.window.drop_at(at);
+        }
+        self.settle();
+    }
+
+    /// Drags a number field sideways in several moves.
+    pub fn drag(&mut self, field: &str, points: f32) {
+        let start = self
+            .window
+            .get_by_role_and_label(Role::SpinButton, field)
+            .rect()
+            .center();
+        self.window.drag_at(start);
+        self.window.step();
+        for part in 1..=5 {
+            self.window
+                .hover_at(start + egui::vec2(points * part as f32 / 5.0, 0.0));
+            self.window.step();
+        }
+        self.window.drop_at(start + egui::vec2(points, 0.0));
+        self.settle();
+    }
+}
+
+/// The radius of an object that is a sphere.
+pub fn radius(scene: &Scene, object: usize) -> f64 {
+    match scene.objects[object].shape {
+        Shape::Sphere(Sphere { radius, .. }) => radius,
+        _ => panic!("not a sphere"),
+    }
+}
+
+/// Answers what the editor wants to know of its recorded flight, as the window does.
+pub fn survey_flight(editor: &mut Editor) {
+    while let Some(take) = editor.wanted_survey().cloned() {
+        let seen = survey(&take, editor.scene(), &RenderControl::default()).expect("not stopped");
+        editor.apply(Action::Time(Time::Surveyed(take, seen)));
+    }
+}

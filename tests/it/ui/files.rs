@@ -1,0 +1,181 @@
+//! Files: opening, saving, and what is asked before something is lost.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use glint::scene::{Document, Scene};
+use glint::ui::Ask;
+
+use crate::harness::{CTRL, EditorHarness, radius};
+
+#[test]
+fn a_scene_is_saved_and_opened_through_dialogs() {
+    let answers = |folder: &std::path::Path| {
+        let path = folder.join("mine");
+        vec![
+            (Ask::SaveScene, Some(path)),
+            (Ask::OpenScene, Some(folder.join("mine.ron"))),
+        ]
+    };
+    let mut harness = EditorHarness::with(answers, None);
+    harness.click("Sphere 1");
+    harness.type_into("radius", "33");
+    harness.press(Modifiers::COMMAND, Key::S);
+    let path = harness.folder.path().join("mine.ron");
+    let saved = Document::load(&path).expect("valid");
+    assert_eq!(radius(&saved.scene, 0), 33.0);
+    assert!(saved.header.starts_with("// The demo scene"));
+    assert!(!harness.editor().is_dirty());
+    assert_eq!(harness.editor().title(), "mine.ron");
+    harness.press(Modifiers::COMMAND, Key::N);
+    assert!(harness.scene().objects.is_empty());
+    harness.press(Modifiers::COMMAND, Key::O);
+    assert_eq!(harness.scene(), &saved.scene);
+    harness.choose("File", "Open demo");
+    harness
+        .window
+        .get_by_role_and_label(Role::Button, "File")
+        .click();
+    harness.settle();
+    harness.window.get_by_label_contains("Open recent").click();
+    harness.settle();
+    harness.click("mine.ron");
+    assert_eq!(harness.scene(), &saved.scene);
+}
+
+#[test]
+fn without_dialogs_a_path_is_typed() {
+    let mut harness = EditorHarness::new();
+    let path = harness.folder.path().join("typed.ron");
+    harness.press(Modifiers::COMMAND, Key::S);
+    let field = harness.window.get_by_label_contains("Path (this desktop");
+    field.set_text_value_accesskit(path.to_str().expect("text"));
+    harness.settle();
+    harness.click("Save file");
+    assert!(path.exists());
+    assert_eq!(harness.editor().path(), Some(path.as_path()));
+}
+
+#[test]
+fn the_still_picture_is_written_to_a_file() {
+    let answers =
+        |folder: &std::path::Path| vec![(Ask::SaveImage, Some(folder.join("picture.png")))];
+    let mut harness = EditorHarness::with(answers, None);
+    harness.press(Modifiers::COMMAND, Key::E);
+    let path = harness.folder.path().join("picture.png");
+    let start = Instant::now();
+    while !path.exists() && start.elapsed() < Duration::from_secs(30) {
+        harness.window.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    harness.settle();
+    let saved = image::open(path).expect("a picture").to_rgba8();
+    assert_eq!(saved.into_raw(), harness.picture().pixels.concat());
+}
+
+#[test]
+fn unsaved_changes_are_asked_about() {
+    let mut harness = EditorHarness::with(
+        |folder| vec![(Ask::SaveScene, Some(folder.join("kept.ron")))],
+        None,
+    );
+    harness.press(Modifiers::NONE, Key::O);
+    harness.press(Modifiers::COMMAND, Key::N);
+    harness.window.get_by_label("Save changes to demo?");
+    harness.click("Keep editing");
+    assert!(harness.editor().is_dirty());
+    harness.press(Modifiers::COMMAND, Key::N);
+    harness.click("Save changes");
+    assert!(harness.folder.path().join("kept.ron").exists());
+    assert!(
+        harness.scene().objects.is_empty(),
+        "then the new scene is there"
+    );
+    harness.choose("Add", "Add ColorPack");
+    harness.press(Modifiers::COMMAND, Key::N);
+    harness.click("Don't save");
+    assert_eq!(harness.scene(), &Scene::empty());
+}
+
+#[test]
+fn a_refused_file_is_shown_with_its_place_and_the_document_stays() {
+    let answers = |folder: &std::path::Path| vec![(Ask::OpenScene, Some(folder.join("given.ron")))];
+    let text = "Scene(\n    version: 1,\n    objects: [5],\n)\n";
+    let mut harness = EditorHarness::with(answers, Some(text));
+    harness
+        .window
+        .get_by_label_contains("given.ron:3:15: expected Object(…)");
+    assert_eq!(harness.scene(), &Scene::demo());
+    harness.click("Dismiss");
+    harness.press(Modifiers::COMMAND, Key::O);
+    harness.window.get_by_label_contains("given.ron:3:15");
+    assert_eq!(harness.scene(), &Scene::demo());
+}
+
+#[test]
+fn dropped_files_open() {
+    #[derive(Debug)]
+    struct OnDisk(PathBuf);
+    impl egui::DroppedFile for OnDisk {
+        fn path(&self) -> &std::path::Path {
+            &self.0
+        }
+        fn bytes(&self) -> Result<Vec<u8>, String> {
+            std::fs::read(&self.0).map_err(|error| error.to_string())
+        }
+    }
+    let mut harness = EditorHarness::new();
+    let path = harness.folder.path().join("dropped.ron");
+    let document = Document {
+        header: String::new(),
+        scene: Scene::empty(),
+    };
+    document.save(&path).expect("saved");
+    harness
+        .window
+        .input_mut()
+        .dropped_files
+        .push(std::sync::Arc::new(OnDisk(path)));
+    harness.settle();
+    assert_eq!(harness.scene(), &Scene::empty());
+    assert_eq!(harness.editor().title(), "dropped.ron");
+}
+
+#[test]
+fn unsaved_changes_survive_a_cancelled_open() {
+    let mut harness = EditorHarness::new();
+    harness.press(Modifiers::NONE, Key::O);
+    harness.press(Modifiers::COMMAND, Key::O);
+    harness.click("Don't save");
+    harness.window.get_by_label("Open scene");
+    harness.press(Modifiers::NONE, Key::Escape);
+    assert!(
+        harness.editor().is_dirty(),
+        "nothing took the document's place"
+    );
+}
+
+#[test]
+fn saving_works_from_within_a_field() {
+    let text = Document::empty().to_text().expect("a text");
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    harness
+        .window
+        .get_by_role_and_label(Role::SpinButton, "position x")
+        .click();
+    harness.settle();
+    harness.window.event(Event::Text("12.5".to_owned()));
+    harness.settle();
+    harness.press(CTRL, Key::S);
+    harness.settle();
+    assert!(!harness.editor().is_dirty());
+    let file = harness.folder.path().join("given.ron");
+    let saved = Document::load(&file).expect("a scene").scene;
+    assert_eq!(
+        saved.camera.position.x, 12.5,
+        "what was typed is in the file"
+    );
+}

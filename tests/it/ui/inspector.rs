@@ -1,0 +1,180 @@
+//! The inspector: every number, colour and name.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use glint::scene::{Scene, Shape, Sphere};
+
+use crate::harness::{EditorHarness, radius};
+
+#[test]
+fn a_drag_changes_the_radius_and_one_undo_brings_it_back() {
+    let mut harness = EditorHarness::new();
+    let before = harness.picture();
+    harness.click("Sphere 1");
+    harness.drag("radius", 40.0);
+    assert!(
+        radius(harness.scene(), 0) > 55.0,
+        "{}",
+        radius(harness.scene(), 0)
+    );
+    assert!(harness.picture() != before, "the edit is traced");
+    assert_eq!(harness.editor().undo_label(), Some("Sphere 1: radius"));
+    harness.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(harness.scene(), &Scene::demo());
+    assert_eq!(harness.editor().undo_label(), None, "a drag is one step");
+    assert!(harness.picture() == before);
+    harness.press(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+    assert!(radius(harness.scene(), 0) > 55.0);
+}
+
+#[test]
+fn a_pack_is_edited_for_all_that_use_it() {
+    let mut harness = EditorHarness::new();
+    harness.click("tetrahedron");
+    harness.type_into("diffuse red", "12");
+    harness.type_into("ambient hex", "#0A141E");
+    harness.type_into("phong", "64");
+    harness.click("reflective");
+    let pack = &harness.scene().color_packs["tetrahedron"];
+    assert_eq!(pack.diffuse.to_array(), [12.0, 255.0, 255.0]);
+    assert_eq!(pack.ambient.to_array(), [10.0, 20.0, 30.0]);
+    assert_eq!((pack.phong_exponent, pack.reflective), (64.0, true));
+    harness.click("Go to Triangle 3");
+    harness
+        .window
+        .get_by_role_and_label(Role::SpinButton, "a x");
+}
+
+#[test]
+fn looking_at_a_pack_changes_nothing() {
+    let mut harness = EditorHarness::new();
+    for name in [
+        "tetrahedron",
+        "Light 1",
+        "Sphere 2",
+        "Triangle 1",
+        "Plane",
+        "World",
+        "Picture",
+        "Camera",
+    ] {
+        harness
+            .window
+            .get_all_by_label(name)
+            .next()
+            .expect("a row")
+            .click();
+        harness.settle();
+        assert!(!harness.editor().is_dirty(), "{name}");
+    }
+}
+
+#[test]
+fn a_vector_is_pasted_whole_and_a_label_resets() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    harness.type_into("center y", "1, -2, 3.5");
+    let Shape::Sphere(Sphere { center, .. }) = &harness.scene().objects[0].shape else {
+        panic!("a sphere")
+    };
+    assert_eq!(center.to_array(), [1.0, -2.0, 3.5]);
+    harness.type_into("radius", "7");
+    harness.double_click("radius");
+    assert_eq!(radius(harness.scene(), 0), 50.0);
+}
+
+#[test]
+fn invalid_edits_are_refused_and_explained() {
+    let mut harness = EditorHarness::new();
+    harness
+        .window
+        .get_by_role_and_label(Role::Button, "Camera")
+        .click();
+    harness.settle();
+    harness.type_into("up x", "-0.25, -0.25, -0.93");
+    assert_eq!(harness.scene(), &Scene::demo());
+    harness
+        .window
+        .get_by_label_contains("up must not be parallel to look_at");
+    harness.click("Dismiss");
+    assert!(harness.window.query_by_label_contains("parallel").is_none());
+}
+
+#[test]
+fn escape_in_a_field_gives_up_what_was_typed_and_nothing_else() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    harness
+        .window
+        .get_by_role_and_label(Role::SpinButton, "radius")
+        .click();
+    harness.settle();
+    harness.window.event(Event::Text("3".to_owned()));
+    harness.settle();
+    harness.press(Modifiers::NONE, Key::Escape);
+    assert_eq!(harness.scene(), &Scene::demo());
+    harness.press(Modifiers::NONE, Key::F2);
+    harness.window.event(Event::Text("q".to_owned()));
+    harness.settle();
+    harness.press(Modifiers::NONE, Key::Escape);
+    assert_eq!(harness.scene(), &Scene::demo());
+    harness.window.get_by_label("Filter").focus();
+    harness.settle();
+    harness.press(Modifiers::NONE, Key::Escape);
+    assert!(harness.window.query_by_label("Quit Glint?").is_none());
+}
+
+#[test]
+fn a_label_brings_the_default_back() {
+    let mut harness = EditorHarness::new();
+    harness
+        .window
+        .get_by_role_and_label(Role::Button, "Camera")
+        .click();
+    harness.settle();
+    harness.type_into("up x", "0.5, 0.5, 0.5");
+    harness.double_click("up");
+    assert_eq!(harness.scene(), &Scene::demo());
+}
+
+#[test]
+fn the_inspector_says_what_the_scene_needs() {
+    let mut harness = EditorHarness::new();
+    harness.window.get_by_label("Needs").click();
+    harness.settle();
+    harness
+        .window
+        .get_by_label("reflected rays, up to 1 bounce");
+    harness
+        .window
+        .get_by_label("because everything the camera can reach is on its side of every plane");
+}
+
+#[test]
+fn panels_keep_their_width_while_numbers_change() {
+    let mut harness = EditorHarness::new();
+    let left = |harness: &EditorHarness| harness.window.get_by_label("look_at x").rect().left();
+    let before = left(&harness);
+    harness.window.key_down(Key::ArrowRight);
+    harness.window.key_down(Key::W);
+    // Past the back, where one of the numbers is nearly nothing.
+    for _ in 0..300 {
+        harness.window.step();
+        assert_eq!(left(&harness), before);
+    }
+}
+
+#[test]
+fn a_field_that_is_left_as_it_was_changes_nothing() {
+    let mut harness = EditorHarness::new();
+    for field in ["view angle", "distance", "yaw", "look_at x", "position y"] {
+        harness
+            .window
+            .get_by_role_and_label(Role::SpinButton, field)
+            .click();
+        harness.settle();
+        harness.press(Modifiers::NONE, Key::Enter);
+        assert!(!harness.editor().is_dirty(), "{field}");
+    }
+}

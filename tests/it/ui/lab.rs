@@ -1,0 +1,98 @@
+//! The lab: dots, maps, and adopting a setting.
+
+use std::time::{Duration, Instant};
+
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use glint::plan::Sampling;
+use glint::scene::Method as _;
+
+use crate::harness::{CTRL, EditorHarness};
+
+#[test]
+fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
+    let mut harness = EditorHarness::new();
+    let before = harness.scene().clone();
+    harness.press(CTRL, Key::L);
+    harness.click("Measure");
+    let start = Instant::now();
+    while harness.window.query_by_label("Cancel measuring").is_some() {
+        assert!(start.elapsed() < Duration::from_mins(2), "never measured");
+        std::thread::sleep(Duration::from_millis(50));
+        harness.window.step();
+    }
+    assert!(
+        harness.window.query_by_label("Use this").is_none(),
+        "no dot is chosen"
+    );
+    // Of all ways, plain adaptive sampling or one of its neighbours is the cheapest within 8 bits.
+    harness.click("Cheapest within");
+    harness.window.get_by_label("Lab picture");
+    assert!(harness.window.query_by_label("stale").is_none());
+    harness.click("×64");
+    let steps = harness.editor().undo_label().map(str::to_owned);
+    harness.click("Use this");
+    assert_eq!(steps, None);
+    assert_eq!(
+        harness.editor().undo_label(),
+        Some("Render: settings from the lab")
+    );
+    let sampling = harness.scene().render.antialias;
+    assert!(
+        matches!(sampling, Sampling::Adaptive { .. }),
+        "{sampling:?}"
+    );
+    assert!(
+        harness.window.query_by_label("stale").is_none(),
+        "settings are what is compared"
+    );
+    harness.press(Modifiers::NONE, Key::Escape);
+    assert!(harness.window.query_by_label("Lab picture").is_none());
+    harness.press(CTRL, Key::Z);
+    assert_eq!(*harness.scene(), before);
+    harness.press(Modifiers::NONE, Key::O);
+    harness.window.get_by_label("stale");
+    harness.press(CTRL, Key::L);
+    assert!(harness.window.query_by_label("Measure").is_none());
+}
+
+#[test]
+fn the_lab_shows_where_formulas_break_and_warns_of_those_in_use() {
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/demo.ron"));
+    let text = text.expect("the demo").replace(
+        "reflection_limit: 1",
+        "reflection_limit: 1, triangle: \"edges\"",
+    );
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    assert_eq!(harness.scene().render.triangle.id(), "edges");
+    harness.press(CTRL, Key::L);
+    harness.click("Stability");
+    let start = Instant::now();
+    while harness
+        .window
+        .query_all_by_label_contains("stable")
+        .next()
+        .is_none()
+    {
+        assert!(start.elapsed() < Duration::from_mins(1), "no maps");
+        std::thread::sleep(Duration::from_millis(20));
+        harness.window.step();
+    }
+    harness
+        .window
+        .get_by_label("The frame is where your scene stands.");
+    let row = |harness: &EditorHarness, words: &str| {
+        let rows = harness.window.query_all_by_label_contains(words);
+        rows.last().map(|row| row.rect().center())
+    };
+    for (method, warned) in [("edges", true), ("watertight", false)] {
+        let at = row(&harness, method).expect("a row");
+        harness.window.drag_at(at);
+        harness.window.drop_at(at);
+        harness.settle();
+        let mut warnings = harness
+            .window
+            .query_all_by_label_contains("Your scene uses this");
+        assert_eq!(warnings.next().is_some(), warned, "{method}");
+    }
+}

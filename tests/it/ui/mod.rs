@@ -1,0 +1,8 @@
+//! The window, headless: its widgets are driven by the names that screen readers hear.
+
+mod files;
+mod inspector;
+mod lab;
+mod outliner;
+mod shortcuts;
+mod viewport;

@@ -1,0 +1,87 @@
+//! The outliner: filtering, hiding, renaming, adding.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use glam::DVec3;
+use glint::scene::{Document, Scene, Shape, Sphere};
+
+use crate::harness::EditorHarness;
+
+#[test]
+fn the_outliner_filters_hides_renames_and_reorders() {
+    let mut harness = EditorHarness::new();
+    harness.window.get_by_label("Filter").focus();
+    harness.window.get_by_label("Filter").type_text("sphere");
+    harness.settle();
+    assert!(harness.window.query_by_label("Plane").is_none());
+    assert!(harness.window.query_by_label("Sphere 2").is_some());
+    harness.click("Hide Sphere 2");
+    assert!(!harness.scene().objects[1].visible);
+    harness.click("Sphere 1");
+    harness.press(Modifiers::ALT, Key::ArrowDown);
+    assert_eq!(harness.scene().objects[1].name, "Sphere 1");
+    harness.press(Modifiers::NONE, Key::F2);
+    harness
+        .window
+        .event(Event::Text("Sphere of glass".to_owned()));
+    harness.settle();
+    harness.press(Modifiers::NONE, Key::Enter);
+    assert_eq!(harness.scene().objects[1].name, "Sphere of glass");
+    harness.press(Modifiers::COMMAND, Key::D);
+    assert_eq!(harness.scene().objects.len(), 10);
+    harness.press(Modifiers::NONE, Key::Delete);
+    assert_eq!(harness.scene().objects.len(), 9);
+}
+
+#[test]
+fn everything_can_be_added() {
+    let mut harness = EditorHarness::new();
+    for (entry, count) in [("Add Sphere", 10), ("Add Plane", 11), ("Add Triangle", 12)] {
+        harness
+            .window
+            .get_by_role_and_label(Role::Button, "Add to scene")
+            .click();
+        harness.settle();
+        harness.click(entry);
+        assert_eq!(harness.scene().objects.len(), count);
+    }
+    harness
+        .window
+        .get_by_role_and_label(Role::Button, "Add to scene")
+        .click();
+    harness.settle();
+    harness.click("Add Light");
+    assert_eq!(harness.scene().lights.len(), 3);
+}
+
+#[test]
+fn a_scene_of_thousands_shows_only_the_rows_in_sight() {
+    let mut scene = Scene::empty();
+    for n in 0..3000_u32 {
+        scene.objects.push(glint::scene::Object {
+            name: format!("Ball {n} with a name that is rather longer than the panel is wide"),
+            color_pack: "pack 1".to_owned(),
+            shape: Shape::Sphere(Sphere {
+                center: DVec3::new(f64::from(n), 0.0, 0.0),
+                radius: 0.4,
+            }),
+            visible: n % 3 != 0,
+        });
+    }
+    scene.render.width = 40;
+    let text = Document {
+        header: String::new(),
+        scene,
+    }
+    .to_text()
+    .expect("text");
+    let harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let rows = harness.window.query_all_by_label_contains("Ball").count();
+    assert!((10..200).contains(&rows), "{rows}");
+    let picture = harness.window.get_by_label("Live view").rect();
+    assert!(
+        picture.left() > 200.0 && picture.right() < 980.0,
+        "{picture:?}: panels keep their width"
+    );
+}

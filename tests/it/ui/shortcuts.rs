@@ -1,0 +1,91 @@
+//! Keys: who gets them, and what Escape leaves.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use glint::editor::Mode;
+use glint::scene::{Scene, Shape, Sphere};
+use glint::ui::{Command, FLIGHT, SHORTCUTS};
+
+use crate::harness::EditorHarness;
+
+#[test]
+fn keys_do_nothing_while_a_text_is_edited() {
+    let mut harness = EditorHarness::new();
+    harness.window.get_by_label("Filter").focus();
+    harness.settle();
+    for key in [Key::O, Key::U, Key::W, Key::L] {
+        harness.press(Modifiers::NONE, key);
+    }
+    assert_eq!(harness.scene(), &Scene::demo());
+    assert_eq!(harness.editor().mode, Mode::Live);
+}
+
+#[test]
+fn escape_closes_an_open_menu_and_nothing_else() {
+    let mut harness = EditorHarness::new();
+    harness.press(Modifiers::NONE, Key::L);
+    harness
+        .window
+        .get_by_role_and_label(Role::Button, "File")
+        .click();
+    harness.settle();
+    assert!(harness.window.query_by_label("Save as…").is_some());
+    harness.press(Modifiers::NONE, Key::Escape);
+    assert!(harness.window.query_by_label("Save as…").is_none());
+    assert_eq!(harness.editor().mode, Mode::LowRes);
+}
+
+#[test]
+fn help_lists_every_key() {
+    let mut harness = EditorHarness::new();
+    harness.press(Modifiers::NONE, Key::F1);
+    for what in SHORTCUTS
+        .iter()
+        .map(|shortcut| shortcut.what)
+        .chain(FLIGHT.iter().map(|key| key.what))
+    {
+        assert!(
+            harness.window.query_all_by_label(what).next().is_some(),
+            "{what}"
+        );
+    }
+    assert!(
+        SHORTCUTS
+            .iter()
+            .any(|shortcut| shortcut.command == Command::HighRes)
+    );
+}
+
+#[test]
+fn a_held_key_commands_once() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    for repeat in [false, true, true, true] {
+        harness
+            .window
+            .event(Event::ModifiersChanged(Modifiers::COMMAND));
+        harness.window.event(Event::Key {
+            key: Key::D,
+            physical_key: None,
+            pressed: true,
+            repeat,
+            modifiers: Modifiers::COMMAND,
+        });
+        harness.window.step();
+    }
+    harness.window.key_up_modifiers(Modifiers::COMMAND, Key::D);
+    harness
+        .window
+        .event(Event::ModifiersChanged(Modifiers::NONE));
+    harness.settle();
+    assert_eq!(harness.scene().objects.len(), 10);
+    let Shape::Sphere(Sphere { center, radius }) = &harness.scene().objects[1].shape else {
+        panic!("a sphere")
+    };
+    assert_eq!(
+        (center.x, *radius),
+        (225.0, 50.0),
+        "the copy stands beside the original"
+    );
+}

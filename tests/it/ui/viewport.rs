@@ -1,0 +1,233 @@
+//! The picture: modes, projections, flying.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use glint::editor::Mode;
+use glint::image::render;
+use glint::plan::{RenderRequest, Sampling};
+use glint::scene::{Projection, Scene};
+use glint::trace::RenderControl;
+
+use crate::harness::{CTRL, EditorHarness};
+
+#[test]
+fn the_window_opens_on_the_demo_and_shows_its_picture() {
+    let harness = EditorHarness::new();
+    assert_eq!(harness.scene(), &Scene::demo());
+    let shown = harness.picture();
+    let smooth = RenderRequest {
+        sampling: Sampling::ADAPTIVE,
+        ..RenderRequest::sized(shown.width as u32, shown.height as u32)
+    };
+    let direct = render(harness.scene(), &smooth, &RenderControl::default())
+        .expect("not stopped")
+        .0;
+    assert!(
+        shown == direct,
+        "the live view and a plain render are the same bytes"
+    );
+    assert!(
+        shown.width >= 500 && shown.width == shown.height,
+        "{}×{}",
+        shown.width,
+        shown.height
+    );
+}
+
+#[test]
+fn keys_switch_projection_markers_and_resolution() {
+    let mut harness = EditorHarness::new();
+    harness.press(Modifiers::NONE, Key::O);
+    assert_eq!(harness.scene().camera.projection, Projection::Orthographic);
+    harness.press(Modifiers::NONE, Key::P);
+    assert_eq!(harness.scene().camera.projection, Projection::Perspective);
+    harness.press(Modifiers::NONE, Key::U);
+    assert!(!harness.scene().light_visualization);
+    harness.press(Modifiers::NONE, Key::I);
+    assert!(harness.scene().light_visualization);
+    harness.press(Modifiers::NONE, Key::L);
+    assert_eq!(
+        (
+            harness.editor().mode,
+            harness.picture().width,
+            harness.picture().height
+        ),
+        (Mode::LowRes, 64, 64)
+    );
+    harness.press(Modifiers::NONE, Key::H);
+    assert_eq!(
+        (harness.editor().mode, harness.picture().width),
+        (Mode::HighRes, 1024)
+    );
+    harness.press(Modifiers::NONE, Key::Escape);
+    assert_eq!(harness.editor().mode, Mode::Live);
+    harness.press(Modifiers::NONE, Key::Escape);
+    harness.window.get_by_label("Quit Glint?");
+    harness.click("Stay");
+    assert!(harness.window.query_by_label("Quit Glint?").is_none());
+}
+
+#[test]
+fn the_still_picture_stays_until_the_scene_changes() {
+    let mut harness = EditorHarness::new();
+    harness.press(Modifiers::NONE, Key::H);
+    let still = render(
+        harness.scene(),
+        &RenderRequest::still(harness.scene()),
+        &RenderControl::default(),
+    );
+    assert!(harness.picture() == still.expect("not stopped").0);
+    harness.click("Sphere 2");
+    assert_eq!(
+        harness.editor().mode,
+        Mode::HighRes,
+        "looking elsewhere keeps it"
+    );
+    harness.type_into("radius", "30");
+    assert_eq!(harness.editor().mode, Mode::Live);
+    assert!(harness.picture().width < 1024);
+}
+
+#[test]
+fn flying_is_per_second_and_one_step() {
+    let mut harness = EditorHarness::new();
+    let start = harness.scene().camera.clone();
+    harness.window.key_down(Key::W);
+    harness.window.key_down(Key::ArrowRight);
+    for _ in 0..30 {
+        harness.window.step();
+    }
+    harness.window.key_up(Key::W);
+    harness.window.key_up(Key::ArrowRight);
+    harness.settle();
+    let end = harness.scene().camera.clone();
+    let flown = (end.position - start.position).length();
+    // Half a second at a quarter of the scene's extent (about 320) per second.
+    assert!((20.0..80.0).contains(&flown), "{flown}");
+    assert!(
+        end.look_at.x > start.look_at.try_normalize().expect("a direction").x,
+        "turned right"
+    );
+    assert_eq!(harness.editor().undo_label(), Some("Camera: move"));
+    harness.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(harness.scene().camera, start);
+    assert_eq!(harness.editor().undo_label(), None);
+}
+
+#[test]
+fn the_right_button_looks_around() {
+    let mut harness = EditorHarness::new();
+    let start = harness.editor().orientation();
+    let middle = harness.window.get_by_label("Live view").rect().center();
+    let button = |pressed, pos| Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Secondary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    harness.window.hover_at(middle);
+    harness.window.step();
+    harness.window.event(button(true, middle));
+    harness.window.step();
+    for n in 1..=4 {
+        harness
+            .window
+            .hover_at(middle + egui::vec2(10.0 * n as f32, -5.0 * n as f32));
+        harness.window.step();
+    }
+    harness
+        .window
+        .event(button(false, middle + egui::vec2(40.0, -20.0)));
+    harness.settle();
+    let end = harness.editor().orientation();
+    assert!(
+        end.yaw > start.yaw + 0.1 && end.pitch > start.pitch + 0.05,
+        "{start:?} {end:?}"
+    );
+    assert!((end.roll - start.roll).abs() < 1e-9);
+}
+
+#[test]
+fn ctrl_flies_down_and_is_no_shortcut_in_flight() {
+    let mut harness = EditorHarness::new();
+    let start = harness.scene().camera.position;
+    let frames =
+        |harness: &mut EditorHarness, count| (0..count).for_each(|_| harness.window.step());
+    harness.window.event(Event::ModifiersChanged(CTRL));
+    frames(&mut harness, 30);
+    harness
+        .window
+        .event(Event::ModifiersChanged(Modifiers::NONE));
+    harness.settle();
+    assert!(
+        harness.scene().camera.position.y < start.y - 5.0,
+        "by itself, after a moment"
+    );
+    let height = harness.scene().camera.position.y;
+    harness.window.key_down(Key::D);
+    frames(&mut harness, 5);
+    harness.window.event(Event::ModifiersChanged(CTRL));
+    harness.window.key_down_modifiers(CTRL, Key::D);
+    frames(&mut harness, 10);
+    harness.window.key_up(Key::D);
+    harness
+        .window
+        .event(Event::ModifiersChanged(Modifiers::NONE));
+    harness.settle();
+    assert_eq!(harness.scene().objects.len(), 9, "no duplicate");
+    assert!(
+        harness.scene().camera.position.y < height,
+        "down at once in flight"
+    );
+}
+
+#[test]
+fn shortcuts_work_after_flying_into_the_still_picture() {
+    let mut harness = EditorHarness::new();
+    let start = harness.scene().camera.clone();
+    harness.window.key_down(Key::W);
+    (0..5).for_each(|_| harness.window.step());
+    harness.press(Modifiers::NONE, Key::H);
+    harness.window.key_up(Key::W);
+    harness.settle();
+    assert_eq!(harness.editor().mode, Mode::HighRes);
+    harness.press(CTRL, Key::Z);
+    assert_eq!(harness.scene().camera, start);
+}
+
+#[test]
+fn a_turn_of_the_wheel_is_one_step_and_spares_the_still_picture() {
+    let mut harness = EditorHarness::new();
+    let start = harness.scene().camera.clone();
+    let turn = |harness: &mut EditorHarness| {
+        let middle = harness
+            .window
+            .get_all_by_role(Role::Image)
+            .next()
+            .expect("a picture")
+            .rect()
+            .center();
+        harness.window.hover_at(middle);
+        harness.window.step();
+        harness.window.event(Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Line,
+            delta: egui::vec2(0.0, 1.0),
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Wheel,
+            modifiers: Modifiers::NONE,
+        });
+        (0..40).for_each(|_| harness.window.step());
+        harness.settle();
+    };
+    turn(&mut harness);
+    assert_ne!(harness.scene().camera.position, start.position);
+    harness.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(harness.scene().camera, start);
+    harness.press(Modifiers::NONE, Key::H);
+    turn(&mut harness);
+    assert_eq!(
+        (harness.editor().mode, &harness.scene().camera),
+        (Mode::HighRes, &start)
+    );
+}
