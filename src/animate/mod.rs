@@ -5,14 +5,22 @@
 //! directions are yaw, pitch and roll, turned the shorter way. At the time of a key, everything is
 //! exactly what the key says.
 
-mod arc_length_spline;
 mod curve;
+
+mod arc_length_spline;
+
 mod path;
+
 mod pose;
+
 mod presets;
+
 mod retime;
-mod simplify;
+
 mod smoothing;
+
+mod simplify;
+
 mod table;
 
 pub use arc_length_spline::ArcLengthSpline;

@@ -2,11 +2,17 @@
 //! code is 0 for done, 1 for failed work, 2 for wrong words or a wrong file.
 
 mod chart;
+
 mod check;
-mod export;
+
 mod fallback;
+
 mod plan;
+
 mod render;
+
+mod export;
+
 mod stability;
 
 use std::ffi::OsString;

@@ -1,30 +1,15 @@
 //! The changes that can be made to a scene, each with its name in the history.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
-use crate::scene::{Animation, Camera, ColorPack, Light, LightObj, Object, Render, Scene, Shape};
+use crate::scene::{
+    Animation, Camera, ColorPack, Light, LightObj, List, Object, Render, Scene, Shape,
+};
 
-use super::Selection;
-
-/// A list of the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Kind {
-    /// [`Scene::lights`].
-    Light,
-    /// [`Scene::objects`].
-    Object,
-    /// [`Scene::color_packs`].
-    Pack,
-}
-
-/// One entry of a list of the scene, by its place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Item {
-    /// Which list.
-    pub kind: Kind,
-    /// Place in the list, from 0.
-    pub index: usize,
-}
+use super::item::{Item, Kind};
+use super::selection::Selection;
 
 /// A change of the scene. The `&'static str` names the field that changed: edits of one field
 /// during one gesture are one step in the history.
@@ -41,7 +26,7 @@ pub enum Edit {
     /// Other settings of the still picture.
     Render(Render, &'static str),
     /// Other keys; the name is what was done to them.
-    Animation(Box<Animation>, &'static str),
+    Animation(Arc<Animation>, &'static str),
     /// Another object in this place.
     Object(usize, Object, &'static str),
     /// Another light in this place.
@@ -66,51 +51,12 @@ pub enum Edit {
     MakePackUnique(usize),
 }
 
-impl Item {
-    /// The object in this place.
-    pub const fn object(index: usize) -> Self {
-        Self {
-            kind: Kind::Object,
-            index,
-        }
-    }
-
-    /// The light in this place.
-    pub const fn light(index: usize) -> Self {
-        Self {
-            kind: Kind::Light,
-            index,
-        }
-    }
-
-    /// The pack in this place.
-    pub const fn pack(index: usize) -> Self {
-        Self {
-            kind: Kind::Pack,
-            index,
-        }
-    }
-
-    /// Its name, if the scene has it.
-    pub fn name(self, scene: &Scene) -> Option<&str> {
-        match self.kind {
-            Kind::Light => scene
-                .lights
-                .get(self.index)
-                .map(|light| light.name.as_str()),
-            Kind::Object => scene
-                .objects
-                .get(self.index)
-                .map(|object| object.name.as_str()),
-            Kind::Pack => scene
-                .color_packs
-                .get_index(self.index)
-                .map(|(name, _)| name.as_str()),
-        }
-    }
-}
-
 impl Edit {
+    /// Other keys; `what` is what was done to them.
+    pub fn animation(animation: Animation, what: &'static str) -> Self {
+        Self::Animation(Arc::new(animation), what)
+    }
+
     /// What the step is called in the history.
     pub fn label(&self, scene: &Scene) -> String {
         let name = |item: Item| item.name(scene).unwrap_or_default().to_owned();
@@ -150,11 +96,11 @@ impl Edit {
             Self::Ambient(intensity) => scene.ambient_intensity = intensity,
             Self::LightVisualization(visible) => scene.light_visualization = visible,
             Self::Render(render, _) => scene.render = render,
-            Self::Animation(animation, _) => scene.animation = *animation,
+            Self::Animation(animation, _) => scene.animation = animation,
             Self::Object(index, object, _) => replace(&mut scene.objects, index, object),
             Self::Light(index, light, _) => replace(&mut scene.lights, index, light),
             Self::Pack(index, pack, _) => {
-                if let Some((_, place)) = scene.color_packs.get_index_mut(index) {
+                if let Some((_, place)) = scene.packs_mut().get_index_mut(index) {
                     *place = pack;
                 }
             }
@@ -176,7 +122,7 @@ fn select(item: Item) -> Option<Selection> {
     Some(Selection::Item(item))
 }
 
-fn replace<T>(list: &mut [T], index: usize, value: T) {
+fn replace<T: Clone>(list: &mut List<T>, index: usize, value: T) {
     if let Some(place) = list.get_mut(index) {
         *place = value;
     }
@@ -257,7 +203,7 @@ fn add_light(scene: &mut Scene, position: DVec3) -> Item {
 
 fn add_pack(scene: &mut Scene) -> Item {
     let name = free_pack_name(scene, "pack 1");
-    let (index, _) = scene.color_packs.insert_full(name, ColorPack::default());
+    let (index, _) = scene.packs_mut().insert_full(name, ColorPack::default());
     Item::pack(index)
 }
 
@@ -283,7 +229,7 @@ fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
         Kind::Pack => {
             let (name, pack) = scene.color_packs.get_index(index)?;
             let (name, pack) = (free_pack_name(scene, name), pack.clone());
-            scene.color_packs.shift_insert(index + 1, name, pack);
+            scene.packs_mut().shift_insert(index + 1, name, pack);
         }
     }
     Some(Item {
@@ -311,11 +257,11 @@ fn delete(scene: &mut Scene, item: Item) -> Result<(), String> {
     match kind {
         Kind::Object if index < scene.objects.len() => {
             let name = scene.objects.remove(index).name;
-            scene.animation.follow(false, &name, None);
+            scene.animation_mut().follow_name(false, &name, None);
         }
         Kind::Light if index < scene.lights.len() => {
             let name = scene.lights.remove(index).name;
-            scene.animation.follow(true, &name, None);
+            scene.animation_mut().follow_name(true, &name, None);
         }
         Kind::Pack => {
             let name = item.name(scene).unwrap_or_default().to_owned();
@@ -326,7 +272,7 @@ fn delete(scene: &mut Scene, item: Item) -> Result<(), String> {
                     users.join(", ")
                 ));
             }
-            scene.color_packs.shift_remove_index(index);
+            scene.packs_mut().shift_remove_index(index);
         }
         Kind::Object | Kind::Light => {}
     }
@@ -344,11 +290,11 @@ fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), String> {
     match item.kind {
         Kind::Object => {
             to.clone_into(&mut scene.objects[item.index].name);
-            scene.animation.follow(false, &from, Some(to));
+            scene.animation_mut().follow_name(false, &from, Some(to));
         }
         Kind::Light => {
             to.clone_into(&mut scene.lights[item.index].name);
-            scene.animation.follow(true, &from, Some(to));
+            scene.animation_mut().follow_name(true, &from, Some(to));
         }
         Kind::Pack if scene.color_packs.contains_key(to) => {
             return Err(format!(
@@ -356,9 +302,9 @@ fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), String> {
             ));
         }
         Kind::Pack => {
-            let pack = scene.color_packs.shift_remove(&from).unwrap_or_default();
+            let pack = scene.packs_mut().shift_remove(&from).unwrap_or_default();
             scene
-                .color_packs
+                .packs_mut()
                 .shift_insert(item.index, to.to_owned(), pack);
             let markers = scene
                 .lights
@@ -398,7 +344,7 @@ fn move_item(scene: &mut Scene, item: Item, to: usize) -> Item {
             let light = scene.lights.remove(index);
             scene.lights.insert(to, light);
         }
-        Kind::Pack => scene.color_packs.move_index(index, to),
+        Kind::Pack => scene.packs_mut().move_index(index, to),
     }
     Item { kind, index: to }
 }

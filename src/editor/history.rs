@@ -1,67 +1,155 @@
-//! Undo and redo: whole scenes, which share what did not change only as `Arc`s; a scene is small.
+//! Undo and redo: whole scenes, which share what did not change.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::Selection;
+use super::selection::Selection;
 use crate::scene::Scene;
 
 /// Steps that can be taken back; older ones are forgotten.
-const DEPTH: usize = 500;
+const MOST_STEPS: usize = 500;
+/// Memory that steps may keep for themselves, in bytes; older ones are forgotten, but for the last.
+const MOST_BYTES: usize = 128 << 20;
 
 /// A state to return to.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
+    /// The scene.
     pub scene: Arc<Scene>,
+    /// What was selected in it.
     pub selection: Selection,
+}
+
+/// A step that was done, or taken back.
+#[derive(Debug)]
+struct Step {
+    label: String,
+    /// The state on the other side of it.
+    there: Snapshot,
+    /// What the two states do not share.
+    bytes: usize,
 }
 
 /// The steps before and after the present, each with the name of what was done.
 #[derive(Debug, Default)]
 pub struct History {
-    done: Vec<(String, Snapshot)>,
-    undone: Vec<(String, Snapshot)>,
+    done: VecDeque<Step>,
+    undone: Vec<Step>,
     /// The name of the step that edits are still joined to.
     gesture: Option<String>,
 }
 
 impl History {
-    /// Notes that `before` was left by doing `label`. During a gesture, edits of the same name are
-    /// one step.
-    pub fn record(&mut self, label: String, before: Snapshot) {
+    /// Notes that `before` was left for `after` by doing `label`. During a gesture, edits of the same
+    /// name are one step.
+    pub fn record(&mut self, label: String, before: Snapshot, after: &Scene) {
         self.undone.clear();
         if self.gesture.as_ref() == Some(&label) {
             return;
         }
-        if self.done.len() == DEPTH {
-            self.done.remove(0);
-        }
         self.gesture = Some(label.clone());
-        self.done.push((label, before));
+        let bytes = before.scene.bytes_apart(after);
+        self.done.push_back(Step {
+            label,
+            there: before,
+            bytes,
+        });
+        let mut bytes: usize = self.done.iter().map(|step| step.bytes).sum();
+        while self.done.len() > MOST_STEPS || (bytes > MOST_BYTES && self.done.len() > 1) {
+            let forgotten = self.done.pop_front();
+            bytes -= forgotten.map_or(0, |step| step.bytes);
+        }
     }
 
+    /// The next edit is a step of its own.
     pub fn end_gesture(&mut self) {
         self.gesture = None;
     }
 
+    /// The name of the last step.
     pub fn undo_label(&self) -> Option<&str> {
-        self.done.last().map(|(label, _)| label.as_str())
+        self.done.back().map(|step| step.label.as_str())
     }
 
+    /// The name of the step that was taken back last.
     pub fn redo_label(&self) -> Option<&str> {
-        self.undone.last().map(|(label, _)| label.as_str())
+        self.undone.last().map(|step| step.label.as_str())
     }
 
+    /// Takes the last step back from `here`.
     pub fn undo(&mut self, here: Snapshot) -> Option<Snapshot> {
         self.gesture = None;
-        let (label, there) = self.done.pop()?;
-        self.undone.push((label, here));
-        Some(there)
+        let step = self.done.pop_back()?;
+        self.undone.push(Step {
+            there: here,
+            ..step
+        });
+        Some(step.there)
     }
 
+    /// Does the step again that was taken back last.
     pub fn redo(&mut self, here: Snapshot) -> Option<Snapshot> {
         self.gesture = None;
-        let (label, there) = self.undone.pop()?;
-        self.done.push((label, here));
-        Some(there)
+        let step = self.undone.pop()?;
+        self.done.push_back(Step {
+            there: here,
+            ..step
+        });
+        Some(step.there)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Object, Shape};
+    use glam::DVec3;
+
+    fn snapshot(scene: &Scene) -> Snapshot {
+        Snapshot {
+            scene: Arc::new(scene.clone()),
+            selection: Selection::default(),
+        }
+    }
+
+    /// As many objects as a file can hold, or so.
+    fn large() -> Scene {
+        let mut scene = Scene::empty();
+        let shape = Shape::examples(DVec3::ZERO, 1.0).remove(0);
+        scene.objects = (0..100_000)
+            .map(|number| Object {
+                name: format!("Object {number}"),
+                color_pack: "pack 1".to_owned(),
+                shape: shape.clone(),
+                visible: true,
+            })
+            .collect();
+        scene
+    }
+
+    #[test]
+    fn moving_an_object_keeps_little_and_changing_all_is_forgotten_early() {
+        let mut history = History::default();
+        let mut scene = large();
+        for step in 0..600 {
+            let before = snapshot(&scene);
+            let shape = scene.objects[777].shape.moved(DVec3::X);
+            scene.objects[777].shape = shape;
+            history.end_gesture();
+            history.record(format!("Move {step}"), before, &scene);
+        }
+        assert_eq!(history.done.len(), MOST_STEPS);
+        let bytes: usize = history.done.iter().map(|step| step.bytes).sum();
+        assert!(bytes < 50 << 20, "{bytes} bytes for {MOST_STEPS} steps");
+        for step in 0..12 {
+            let before = snapshot(&scene);
+            for object in scene.objects.iter_mut() {
+                object.visible = !object.visible;
+            }
+            history.end_gesture();
+            history.record(format!("Hide {step}"), before, &scene);
+        }
+        let bytes: usize = history.done.iter().map(|step| step.bytes).sum();
+        assert!(bytes <= MOST_BYTES && history.done.len() < 12, "{bytes}");
     }
 }

@@ -1,6 +1,7 @@
 use glam::DVec3;
 
 use super::*;
+use crate::scene::{Scene, check};
 use crate::scene::{Shape, Sphere};
 use proptest::prelude::*;
 

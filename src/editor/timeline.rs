@@ -46,7 +46,7 @@ pub enum Time {
     Sample(f64),
     /// Make keys of what was recorded.
     Stop,
-    /// What the samples of a take see, which was asked for, see [`super::Editor::wanted_survey`].
+    /// What the samples of a take see, which was asked for, see `Editor::wanted_survey`.
     Surveyed(Arc<Take>, Vec<Vec<Seen>>),
     /// Make keys of the take anew: off by so many pixels of a picture 1024 high at most.
     Simplify(f64),

@@ -2,7 +2,7 @@
 //!
 //! <https://github.com/OpenJobDescription/openjd-specifications>, version 2023-09 with task chunking.
 
-use super::Sequence;
+use super::sequence::Sequence;
 
 /// Frames that one task makes, unless the farm says otherwise.
 const CHUNK: u32 = 10;

@@ -6,12 +6,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::error::ExportError;
+use super::frames::Frames;
 use super::manifest::{Hash, Manifest, add_note};
-use super::{ExportError, Frames, Pattern};
+use super::pattern::Pattern;
 use crate::animate::{CameraPath, shot};
 use crate::image::{Format, Image};
 use crate::plan::RenderRequest;
-use crate::scene::{Animation, Method as _, Scene};
+use crate::scene::{Method as _, Scene};
 
 /// What is exported, and where to.
 #[derive(Clone, Debug)]
@@ -100,7 +102,7 @@ impl Sequence {
     /// [`ExportError::Unwritable`], for a scene that has no text.
     pub fn fingerprint(&self, shown: &Scene) -> Result<Hash, ExportError> {
         let still = Scene {
-            animation: Animation::default(),
+            animation: Arc::default(),
             ..shown.clone()
         };
         let text = ron::to_string(&still)?;

@@ -9,7 +9,7 @@ use std::time::Duration;
 use image::codecs::gif::{GifEncoder, Repeat};
 use image::{Delay, Frame, RgbaImage};
 
-use super::Sequence;
+use super::sequence::Sequence;
 
 /// Speed of the GIF encoder's search for colours, 1 (slow) to 30.
 const GIF_SPEED: i32 = 10;

@@ -7,7 +7,7 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::codecs::pnm::{PnmEncoder, PnmSubtype, SampleEncoding};
 use image::{ExtendedColorType, ImageEncoder as _, ImageError};
 
-use super::Image;
+use super::buffer::Image;
 
 /// A file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

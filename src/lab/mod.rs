@@ -4,10 +4,15 @@
 //! and tests pick it up.
 
 mod candidates;
+
 mod measure;
+
 mod pareto_front;
+
 pub mod stability;
+
 mod study;
+
 mod table;
 
 pub use candidates::{Candidate, candidates};

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::{HighlightMethod, Model, RenderRequest};
-use crate::scene::{ColorPack, Scene};
+use super::request::{Model, RenderRequest};
+use crate::scene::{ColorPack, HighlightMethod, Scene};
 use crate::simd::{Exponent, Real, Vec3};
 
 /// A material with everything multiplied in that is the same for all its points. Colours are 0–1.

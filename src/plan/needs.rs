@@ -3,8 +3,11 @@
 use serde::Serialize;
 
 use super::bvh::LARGEST_LIST;
-use super::{Material, Plan, Precision, RenderRequest, Sampling, needs_double};
-use crate::scene::{Object, Scene};
+use super::materials::Material;
+use super::pack::Plan;
+use super::precision::needs_double;
+use super::request::RenderRequest;
+use crate::scene::{Object, Precision, Sampling, Scene};
 use crate::simd::Exponent;
 
 /// One decision of the plan.

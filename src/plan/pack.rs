@@ -2,19 +2,21 @@
 
 use glam::DVec3;
 
+use super::bvh::Bvh;
 use super::bvh::LARGEST_LIST;
 use super::materials::{Material, linear, pack_materials};
 use super::plane_occluders::{PlaneOccluder, classify_planes};
+use super::request::{Model, RenderRequest};
 use super::solids::Solids;
-use super::{
-    Accelerator, Bvh, Methods, Model, RayOffset, RenderRequest, Sampling, SphereMethod,
-    TriangleMethod, View,
-};
+use super::view::View;
 use crate::primitive::{
     Ball, KINDS, Kind, Packing, Primitive, Primitives, Projector, Rectangle, Visit,
     count_corner_users,
 };
-use crate::scene::{Camera, LightObj, Projection, Scene, Shape, Sphere};
+use crate::scene::{
+    Accelerator, Camera, LightObj, Methods, Projection, RayOffset, Sampling, Scene, Shape, Sphere,
+    SphereMethod, TriangleMethod,
+};
 use crate::simd::{Real, Vec3};
 
 /// A scene and a view of it, ready to be traced. Coordinates are relative to the scene's middle,
@@ -349,10 +351,10 @@ mod tests {
         let scene = Scene::demo();
         let mut moved = scene.clone();
         let by = DVec3::new(1e6, -3e6, 2e6);
-        for object in &mut moved.objects {
+        for object in moved.objects.iter_mut() {
             object.shape = object.shape.moved(by);
         }
-        for light in &mut moved.lights {
+        for light in moved.lights.iter_mut() {
             light.position = light.position + by;
         }
         moved.camera.position = moved.camera.position + by;

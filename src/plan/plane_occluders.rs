@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::{Model, RayOffset, RenderRequest, SphereMethod};
-use crate::scene::{Projection, Scene};
+use super::request::{Model, RenderRequest};
+use crate::scene::{Projection, RayOffset, Scene, SphereMethod};
 
 /// A plane, its normal turned to the eye.
 pub struct PlaneOccluder {

@@ -7,8 +7,9 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use glam::DVec3;
 
+use super::camera::{Camera, Projection};
 use super::notation;
-use super::{Camera, Light, Orientation, Projection, Scene};
+use super::orientation::Orientation;
 
 /// Longest animation, in seconds: a day.
 pub const MAX_SECONDS: f64 = 86_400.0;
@@ -95,7 +96,7 @@ pub struct Track {
 /// What a track can move.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Target {
-    /// [`Scene::ambient_intensity`].
+    /// [`super::Scene::ambient_intensity`].
     AmbientIntensity,
     /// Brightness of the named light.
     LightIntensity(String),
@@ -162,6 +163,14 @@ impl Default for Animation {
 }
 
 impl Animation {
+    /// About how many bytes it takes, without the recording, which copies share.
+    pub fn bytes(&self) -> usize {
+        let tracks = self.tracks.iter().map(|track| track.keys.len());
+        size_of::<Self>()
+            + self.keys.len() * size_of::<Key<Camera>>()
+            + tracks.sum::<usize>() * size_of::<Key<Value>>()
+    }
+
     /// Whether nothing moves.
     pub fn is_still(&self) -> bool {
         self.keys.is_empty() && self.tracks.is_empty()
@@ -231,44 +240,6 @@ impl Easing {
 }
 
 impl Target {
-    /// The value in a scene; `None` if the scene has no such light or object.
-    pub fn get(&self, scene: &Scene) -> Option<Value> {
-        let light = |name: &String| scene.lights.iter().find(|light| light.name == *name);
-        Some(match self {
-            Self::AmbientIntensity => Value::Number(scene.ambient_intensity),
-            Self::LightIntensity(name) => Value::Number(light(name)?.intensity),
-            Self::LightPosition(name) => Value::Point(light(name)?.position),
-            Self::ObjectPosition(name) => {
-                let object = scene.objects.iter().find(|object| object.name == *name)?;
-                Value::Point(object.shape.position())
-            }
-        })
-    }
-
-    /// Puts a value into a scene; one of the wrong kind, or for what is not there, changes nothing.
-    pub fn set(&self, scene: &mut Scene, value: Value) {
-        match (self, value) {
-            (Self::AmbientIntensity, Value::Number(number)) => scene.ambient_intensity = number,
-            (Self::LightIntensity(name), Value::Number(number)) => {
-                if let Some(light) = light(scene, name) {
-                    light.intensity = number;
-                }
-            }
-            (Self::LightPosition(name), Value::Point(point)) => {
-                if let Some(light) = light(scene, name) {
-                    light.position = point;
-                }
-            }
-            (Self::ObjectPosition(name), Value::Point(point)) => {
-                let mut objects = scene.objects.iter_mut();
-                if let Some(object) = objects.find(|object| object.name == *name) {
-                    object.shape = object.shape.moved(point - object.shape.position());
-                }
-            }
-            _ => {}
-        }
-    }
-
     /// The light or object that it moves.
     pub fn owner(&self) -> Option<&str> {
         match self {
@@ -345,10 +316,6 @@ impl Take {
             angle(angles.roll),
         ));
     }
-}
-
-fn light<'s>(scene: &'s mut Scene, name: &str) -> Option<&'s mut Light> {
-    scene.lights.iter_mut().find(|light| light.name == name)
 }
 
 fn nine_digits(value: f64) -> f64 {

@@ -11,8 +11,11 @@ use ron::ser::PrettyConfig;
 use super::check::{Problem, check};
 use super::locate::{claimed_version, has_inner_comments, header, locate};
 use super::parse_errors::sentence;
-use super::{Scene, VERSION};
+use super::whole::{Scene, VERSION};
 use crate::files::write_atomic;
+
+/// The RON text of the demo scene, as embedded in the program.
+pub const DEMO_TEXT: &str = include_str!("../../scenes/demo.ron");
 
 /// Longest scene file that is read, in bytes: room for about 200,000 objects.
 const MAX_BYTES: u64 = 32 << 20;
@@ -96,6 +99,22 @@ impl fmt::Display for Refusal {
             f,
             "{name}:{line}:{column}: {sentence}\n {number} | {excerpt}\n {margin} | {caret}"
         )
+    }
+}
+
+impl Scene {
+    /// The demo scene: two spheres, a tetrahedron and a mirror under two lights.
+    ///
+    /// # Panics
+    /// Never: a test reads the embedded text.
+    #[expect(
+        clippy::expect_used,
+        reason = "the embedded text is tested to be a valid scene"
+    )]
+    pub fn demo() -> Self {
+        Document::from_text(DEMO_TEXT)
+            .expect("the embedded demo scene is valid")
+            .scene
     }
 }
 
@@ -310,4 +329,31 @@ fn refuse(name: &str, text: &str, at: usize, sentence: String) -> SceneError {
             .collect(),
         indent,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::List;
+
+    #[test]
+    fn what_a_file_leaves_out_is_what_the_demo_has() {
+        let demo = Scene::demo();
+        let sparse = Document::from_text("Scene(version: 1, objects: [])")
+            .expect("valid")
+            .scene;
+        let mut expected = Scene {
+            objects: List::new(),
+            ..demo
+        };
+        for light in expected.lights.iter_mut() {
+            light.marker = None;
+        }
+        assert_eq!(sparse, expected);
+    }
+
+    #[test]
+    fn the_empty_scene_is_valid() {
+        assert_eq!(check(&Scene::empty()), Ok(()));
+    }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-use super::Camera;
+use super::camera::Camera;
 
 /// Steepest pitch: short of straight up, where yaw would lose its meaning.
 const MAX_PITCH: f64 = 89.9 * PI / 180.0;

@@ -5,13 +5,14 @@
 //! reciprocal: the same input gives the same bits on every machine.
 
 mod float;
-mod highlight;
+
 mod level;
-mod real;
+
 mod vec3;
 
-pub use float::{MAX_LANES, Mask, SimdFloat};
+mod highlight;
+
+pub use float::{MAX_LANES, Mask, Real, SimdFloat};
 pub use highlight::Exponent;
 pub use level::{Level, SimdReal, WithSimd};
-pub use real::Real;
 pub use vec3::Vec3;

@@ -308,12 +308,9 @@ fn import_path(editor: &mut Editor, path: &Path) {
             let animation = Animation {
                 keys,
                 take: None,
-                ..editor.scene().animation.clone()
+                ..Animation::clone(&editor.scene().animation)
             };
-            editor.apply(Action::Edit(Edit::Animation(
-                Box::new(animation),
-                "Import path",
-            )));
+            editor.apply(Action::Edit(Edit::animation(animation, "Import path")));
             editor.notify(format!("{count} keys from {}", path.display()));
         }
         Err(error) => editor.report_error(format!("{}: {error}", path.display())),

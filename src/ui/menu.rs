@@ -214,9 +214,9 @@ fn preset_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
             let changed = Animation {
                 keys,
                 take: None,
-                ..editor.scene().animation.clone()
+                ..Animation::clone(&editor.scene().animation)
             };
-            out.edit(Edit::Animation(Box::new(changed), name));
+            out.edit(Edit::animation(changed, name));
             out.time(Time::Seek(0.0));
         }
     }
@@ -245,9 +245,9 @@ fn retime_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     if let Some((retime, name)) = retimed {
         let changed = Animation {
             keys: retime.apply(&animation.keys),
-            ..animation.clone()
+            ..Animation::clone(animation)
         };
-        out.edit(Edit::Animation(Box::new(changed), name));
+        out.edit(Edit::animation(changed, name));
     }
 }
 

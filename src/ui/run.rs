@@ -84,7 +84,7 @@ impl App {
                     .scene()
                     .animation
                     .without_keys(&editor.timeline().selected);
-                Action::Edit(Edit::Animation(Box::new(kept), "Delete keys"))
+                Action::Edit(Edit::animation(kept, "Delete keys"))
             }
             on_item => match (on_item, editor.selection) {
                 (Command::Rename, Selection::Item(item)) => {

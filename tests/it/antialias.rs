@@ -170,11 +170,11 @@ fn what_is_narrower_than_a_pixel_does_not_slip_through() {
 #[test]
 fn a_highlight_smaller_than_a_pixel_is_found() {
     let mut scene = Scene::demo();
-    for pack in scene.color_packs.values_mut() {
+    for pack in scene.packs_mut().values_mut() {
         pack.phong_exponent = 3e4;
         pack.reflective = false;
     }
-    for light in &mut scene.lights {
+    for light in scene.lights.iter_mut() {
         light.intensity = 1.0;
         light.marker = None;
     }

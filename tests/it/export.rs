@@ -174,7 +174,7 @@ fn after_an_edit_only_the_frames_that_change_are_made_again() {
     assert!(again(&scene).contains("202 frames written"));
     // The last key moves: what is before its neighbours stays.
     let last = scene.animation.keys.len() - 1;
-    scene.animation.keys[last].value.position.y += 1.0;
+    scene.animation_mut().keys[last].value.position.y += 1.0;
     let said = again(&scene);
     let made: u32 = said
         .split_whitespace()
@@ -188,7 +188,7 @@ fn after_an_edit_only_the_frames_that_change_are_made_again() {
         "all of them show the sky's colour"
     );
     // The recording is not in the picture.
-    scene.animation.take = None;
+    scene.animation_mut().take = None;
     assert!(again(&scene).contains("0 frames written, 202 there already"));
 }
 

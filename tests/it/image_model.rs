@@ -249,7 +249,7 @@ fn changed_one_at_a_time() -> Vec<(String, Methods)> {
 fn placed(scale: f64, by: DVec3) -> Scene {
     let mut scene = Scene::demo();
     let place = |v: DVec3| v * scale + by;
-    for object in &mut scene.objects {
+    for object in scene.objects.iter_mut() {
         object.shape = match object.shape {
             Shape::Sphere(Sphere { center, radius }) => Shape::Sphere(Sphere {
                 center: place(center),
@@ -266,7 +266,7 @@ fn placed(scale: f64, by: DVec3) -> Scene {
             }),
         };
     }
-    for light in &mut scene.lights {
+    for light in scene.lights.iter_mut() {
         light.position = place(light.position);
         if let Some(marker) = &mut light.marker {
             marker.radius *= scale;
@@ -337,7 +337,7 @@ fn ball() -> Scene {
     scene.lights[0].position = DVec3::new(0.0, 0.0, 20.0);
     scene.lights[0].intensity = 0.5;
     scene.lights[0].marker.as_mut().expect("a marker").radius = 0.5;
-    let pack = &mut scene.color_packs["pack 1"];
+    let pack = &mut scene.packs_mut()["pack 1"];
     pack.ambient = DVec3::new(40.0, 80.0, 120.0);
     pack.diffuse = DVec3::new(100.0, 50.0, 0.0);
     pack.specular = DVec3::new(0.0, 0.0, 60.0);
@@ -389,7 +389,7 @@ fn a_marker_is_full_ambient_and_nothing_else() {
     let mut scene = ball();
     scene.lights[0].position = DVec3::new(0.0, 0.0, 5.0);
     assert_eq!(middle(&scene), [255, 255, 0]);
-    scene.color_packs["light"].ambient = DVec3::new(10.0, 20.0, 30.0);
+    scene.packs_mut()["light"].ambient = DVec3::new(10.0, 20.0, 30.0);
     assert_eq!(middle(&scene), [10, 20, 30]);
 }
 
@@ -397,8 +397,8 @@ fn a_marker_is_full_ambient_and_nothing_else() {
 fn a_mirror_adds_the_sum_of_intensities_even_in_shadow() {
     let mut scene = ball();
     scene.background = DVec3::new(200.0, 0.0, 0.0);
-    scene.color_packs["pack 1"].reflective = true;
-    scene.color_packs["pack 1"].specular = DVec3::new(255.0, 255.0, 255.0);
+    scene.packs_mut()["pack 1"].reflective = true;
+    scene.packs_mut()["pack 1"].specular = DVec3::new(255.0, 255.0, 255.0);
     // Behind the ball: no diffuse, no highlight, but the mirror stays: 0.5·ambient + 0.5·200.
     scene.lights[0].position = DVec3::new(0.0, 0.0, -50.0);
     scene.light_visualization = false;
@@ -488,11 +488,11 @@ fn rays_are_traced_only_where_they_can_show() {
     let count = |scene: &Scene| picture(scene, &RenderRequest::sized(160, 160)).1;
     let full = count(&scene);
     assert!(full.shadow > 0 && full.reflected > 0);
-    scene.color_packs["plane"].reflective = false;
+    scene.packs_mut()["plane"].reflective = false;
     let matte = count(&scene);
     assert_eq!(matte.reflected, 0);
     assert!(matte.shadow < full.shadow);
-    for light in &mut scene.lights {
+    for light in scene.lights.iter_mut() {
         light.intensity = 0.0;
     }
     assert_eq!(

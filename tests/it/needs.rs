@@ -40,7 +40,7 @@ fn what_is_left_out_is_not_missed() {
         demo(|scene| scene.lights[1].position = DVec3::new(100.0, -20.0, -50.0)),
         demo(|scene| {
             scene
-                .color_packs
+                .packs_mut()
                 .values_mut()
                 .for_each(|pack| pack.specular = DVec3::new(0.0, 0.0, 0.0));
         }),
@@ -88,14 +88,14 @@ fn a_dark_or_hidden_light_costs_no_ray() {
 fn without_mirrors_nothing_is_reflected_and_one_brings_it_back() {
     let matte = demo(|scene| {
         scene
-            .color_packs
+            .packs_mut()
             .values_mut()
             .for_each(|pack| pack.reflective = false);
     });
     assert_eq!(picture(&matte, Model::Needed).1.reflected, 0);
     assert_eq!(said(&matte, "reflections"), "no reflected rays");
     let black = demo(|scene| {
-        for pack in scene.color_packs.values_mut() {
+        for pack in scene.packs_mut().values_mut() {
             pack.specular = DVec3::new(0.0, 0.0, 0.0);
         }
     });
@@ -105,10 +105,10 @@ fn without_mirrors_nothing_is_reflected_and_one_brings_it_back() {
     assert_eq!(said(&flat, "reflections"), "no reflected rays");
     let one = demo(|scene| {
         scene
-            .color_packs
+            .packs_mut()
             .values_mut()
             .for_each(|pack| pack.reflective = false);
-        scene.color_packs["sphere 1"].reflective = true;
+        scene.packs_mut()["sphere 1"].reflective = true;
     });
     assert!(picture(&one, Model::Needed).1.reflected > 0);
     assert!(said(&one, "reflections").starts_with("reflected rays"));
@@ -174,7 +174,7 @@ fn far_faces_of_solids_are_left_out_and_of_open_meshes_are_not() {
 
 #[test]
 fn large_exponents_are_told() {
-    let with = |p: f64| demo(|scene| scene.color_packs["plane"].phong_exponent = p);
+    let with = |p: f64| demo(|scene| scene.packs_mut()["plane"].phong_exponent = p);
     assert_eq!(said(&with(256.0), "highlights"), "repeated squaring");
     assert!(said(&with(257.0), "highlights").contains("log1p"));
     assert!(said(&with(16.5), "highlights").contains("fractions"));

@@ -404,7 +404,7 @@ fn shaded(pack: ColorPack, light: DVec3, precision: Precision) -> [u8; 4] {
     let mut scene = Scene::empty();
     scene.ambient_intensity = 0.0;
     scene.background = DVec3::new(9.0, 9.0, 9.0);
-    scene.color_packs["pack 1"] = pack;
+    scene.packs_mut()["pack 1"] = pack;
     scene.objects.push(object("Ball", DVec3::splat(0.0), 1.0));
     scene.lights[0].position = light;
     scene.lights[0].intensity = 1.0;
@@ -456,7 +456,7 @@ fn many_mirrors(_: u32) {
     mirror.specular = DVec3::splat(255.0);
     mirror.ambient = DVec3::splat(2.0);
     mirror.diffuse = DVec3::splat(0.0);
-    scene.color_packs.insert("mirror".to_owned(), mirror);
+    scene.packs_mut().insert("mirror".to_owned(), mirror);
     for (name, z) in [("Front", -2.0), ("Back", 2.0)] {
         scene.objects.push(Object {
             color_pack: "mirror".to_owned(),

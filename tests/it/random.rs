@@ -41,7 +41,7 @@ impl Dice {
 pub fn scene(seed: u64) -> Scene {
     let dice = &mut Dice(seed.wrapping_mul(7919) + 1);
     let mut scene = Scene::empty();
-    scene.color_packs.clear();
+    scene.packs_mut().clear();
     scene.ambient_intensity = dice.real(0.2, 0.6);
     scene.background = dice.vector(0.0, 120.0);
     scene.light_visualization = dice.chance(0.7);
@@ -52,12 +52,12 @@ pub fn scene(seed: u64) -> Scene {
         ..Render::default()
     };
     scene
-        .color_packs
+        .packs_mut()
         .insert("light".to_owned(), pack(dice, false));
     for number in 0..6 {
         let reflective = number < 2;
         scene
-            .color_packs
+            .packs_mut()
             .insert(format!("pack {number}"), pack(dice, reflective));
     }
     add_objects(&mut scene, dice);

@@ -33,8 +33,8 @@ fn animation(keys: &[(f64, f64)]) -> EditorHarness {
         camera.position.x += right;
         SceneKey::new(time, camera)
     };
-    scene.animation.keys = keys.iter().map(key).collect();
-    scene.animation.frames_per_second = 10.0;
+    scene.animation_mut().keys = keys.iter().map(key).collect();
+    scene.animation_mut().frames_per_second = 10.0;
     let document = Document {
         header: String::new(),
         scene,
@@ -143,7 +143,7 @@ fn keys_are_set_overwritten_and_deleted() {
     assert_eq!(times(&harness), [0.0]);
     // With one key there is no time yet: a second one is typed.
     let mut later = harness.scene().animation.clone();
-    later
+    Arc::make_mut(&mut later)
         .keys
         .push(SceneKey::new(2.0, harness.scene().camera.clone()));
     let text = Document {
@@ -306,11 +306,11 @@ fn playing_is_real_time_whatever_the_frames() {
     ] {
         let mut editor = Editor::demo();
         let mut scene = Scene::demo();
-        scene.animation.keys = vec![
+        scene.animation_mut().keys = vec![
             SceneKey::new(0.0, scene.camera.clone()),
             SceneKey::new(2.0, scene.camera.clone()),
         ];
-        let animation = Box::new(scene.animation);
+        let animation = scene.animation;
         editor.apply(Action::Edit(Edit::Animation(animation, "keys")));
         editor.apply(Action::Time(Time::Repeat(repeat)));
         editor.apply(Action::Time(Time::Play(true)));
@@ -442,9 +442,15 @@ fn an_object_with_keys_moves_and_its_corners_do_not_drift() {
     let own = scene.objects[index].shape.clone();
     let from = own.position();
     let to = from + DVec3::new(0.1, 33.3, -7.7);
-    scene.animation = scene.animation.with_value(&target, 0.0, Value::Point(from));
-    scene.animation = scene.animation.with_value(&target, 2.0, Value::Point(to));
-    let animation = Box::new(scene.animation);
+    scene.animation = scene
+        .animation
+        .with_value(&target, 0.0, Value::Point(from))
+        .into();
+    scene.animation = scene
+        .animation
+        .with_value(&target, 2.0, Value::Point(to))
+        .into();
+    let animation = scene.animation;
     editor.apply(Action::Edit(Edit::Animation(animation, "keys")));
     for step in 0..30 {
         editor.apply(Action::Time(Time::Seek(f64::from(step) / 14.0)));

@@ -243,7 +243,7 @@ fn a_fault_in_the_tracer_is_shown_and_the_lane_lives_on() {
     let worker = Worker::new(Some(1), || {}).expect("a lane");
     // A scene that no file and no edit can make: an object without its pack has no material.
     let mut broken = Scene::demo();
-    broken.color_packs.clear();
+    broken.packs_mut().clear();
     worker.submit(live(1, &Arc::new(broken), 64));
     let mut events = Vec::new();
     wait_until("the fault", || {

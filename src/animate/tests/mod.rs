@@ -167,7 +167,7 @@ fn every_preset_starts_where_the_camera_is_and_looks_at_the_target() {
             let keys = preset.keys(&start, target, 4.0);
             assert!((keys[0].value.position - place).length() < 1e-12);
             let mut scene = Scene::demo();
-            scene.animation.keys = keys;
+            scene.animation_mut().keys = keys;
             assert_eq!(
                 crate::scene::check(&scene),
                 Ok(()),

@@ -133,9 +133,9 @@ fn the_tolerance_is_kept_through_pauses_and_kinks() {
 fn a_take_is_replayed_bit_by_bit_from_its_file() {
     let take = take();
     let mut scene = Scene::demo();
-    scene.animation.take = Some(Arc::new(take.clone()));
+    scene.animation_mut().take = Some(Arc::new(take.clone()));
     let key = |n: usize| Key::new(take.samples[n].0, take.camera(n).expect("a sample"));
-    scene.animation.keys = (0..take.samples.len()).map(key).collect();
+    scene.animation_mut().keys = (0..take.samples.len()).map(key).collect();
     let text = Document {
         header: String::new(),
         scene,
@@ -247,7 +247,7 @@ fn tracks_move_lights_objects_and_the_ambience() {
         keys: vec![Key::new(1.0, values[0]), Key::new(3.0, values[1])],
     };
     let (from, to) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(5.0, 2.0, -3.0));
-    scene.animation.tracks = vec![
+    scene.animation_mut().tracks = vec![
         track(
             Target::AmbientIntensity,
             [Value::Number(0.1), Value::Number(0.5)],

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{Axis, Map, Tries, scattered};
+use super::map::{Axis, Map, Tries, scattered};
 
 use crate::scene::{Camera, Orientation};
 use crate::simd::Vec3;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Axis, Map, Tries, scattered};
+use super::map::{Axis, Map, Tries, scattered};
 use crate::scene::{HighlightMethod, Method as _};
 use crate::simd::{Exponent, Vec3};
 

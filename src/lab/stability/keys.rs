@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Axis, Map, Tries, scattered};
+use super::map::{Axis, Map, Tries, scattered};
 use crate::animate::{CameraPath, motion_between};
 use crate::scene::{Camera, Key, Orientation};
 use crate::simd::Vec3;

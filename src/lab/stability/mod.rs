@@ -1,140 +1,25 @@
 //! Where formulas break: the rate at which each method fails, over the scale of a scene, its
 //! distance from the origin, and whatever else it is sensitive to.
 
-mod camera;
-mod highlight;
-mod keys;
-mod plane;
-mod secondary;
+mod map;
+
 mod sphere;
+
 mod triangle;
 
+mod plane;
+
+mod highlight;
+
+mod secondary;
+
+mod camera;
+
+mod keys;
+
+pub use map::{Axis, Map, Tries};
+
 use std::fmt::Write as _;
-
-/// Scales of a scene whose size is one.
-const SCALES: [f64; 12] = [
-    1e-4, 1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7,
-];
-/// Distances of a scene from the origin, in sizes of it.
-const PLACES: [f64; 8] = [0.0, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
-
-/// What a map's axis is.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Axis {
-    /// What it measures.
-    pub name: &'static str,
-    /// Its marks.
-    pub values: Vec<f64>,
-}
-
-/// So many tries, and how many of them failed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tries {
-    /// How many there were.
-    pub tries: u64,
-    /// How many failed.
-    pub failures: u64,
-}
-
-impl Tries {
-    /// Share that failed; NaN without a try.
-    pub fn rate(self) -> f64 {
-        self.failures as f64 / self.tries as f64
-    }
-
-    /// What the true rate is below with a certainty of 95 %: 3/n where nothing failed (the rule of
-    /// three), Wilson's bound elsewhere.
-    ///
-    /// Wilson, "Probable inference", JASA 22, 1927.
-    pub fn bound(self) -> f64 {
-        let (n, rate) = (self.tries as f64, self.rate());
-        if self.failures == 0 {
-            return (3.0 / n).min(1.0);
-        }
-        let z = 1.645_f64;
-        let middle = rate + z * z / (2.0 * n);
-        let spread = z * (rate * (1.0 - rate) / n + z * z / (4.0 * n * n)).sqrt();
-        ((middle + spread) / (1.0 + z * z / n)).min(1.0)
-    }
-
-    fn count(tries: impl IntoIterator<Item = bool>) -> Self {
-        let mut sum = Self::default();
-        for is_failure in tries {
-            sum.tries += 1;
-            sum.failures += u64::from(is_failure);
-        }
-        sum
-    }
-}
-
-/// The failure rate of one method over two axes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Map {
-    /// What is tried.
-    pub subject: &'static str,
-    /// The method's word.
-    pub method: String,
-    /// Whether it is the default.
-    pub is_default: bool,
-    /// What counts as a failure.
-    pub failure: &'static str,
-    /// From left to right.
-    pub across: Axis,
-    /// From bottom to top.
-    pub up: Axis,
-    /// Row by row from the bottom.
-    pub cells: Vec<Tries>,
-}
-
-impl Map {
-    fn measure(
-        (subject, failure): (&'static str, &'static str),
-        (method, is_default): (String, bool),
-        (across, up): (Axis, Axis),
-        mut try_at: impl FnMut(f64, f64) -> Tries,
-    ) -> Self {
-        let mut cells = Vec::new();
-        for &y in &up.values {
-            for &x in &across.values {
-                cells.push(try_at(x, y));
-            }
-        }
-        Self {
-            subject,
-            method,
-            is_default,
-            failure,
-            across,
-            up,
-            cells,
-        }
-    }
-
-    /// All tries together.
-    pub fn total(&self) -> Tries {
-        let mut sum = Tries::default();
-        for cell in &self.cells {
-            sum.tries += cell.tries;
-            sum.failures += cell.failures;
-        }
-        sum
-    }
-
-    /// The cell with the highest rate, and where it is.
-    pub fn worst(&self) -> Option<(f64, f64, Tries)> {
-        let width = self.across.values.len();
-        let place = (0..self.cells.len()).max_by(|&a, &b| {
-            let rates = (self.cells[a].rate(), self.cells[b].rate());
-            // Of equals, the first: the mildest circumstances.
-            rates.0.total_cmp(&rates.1).then(b.cmp(&a))
-        })?;
-        Some((
-            self.across.values[place % width],
-            self.up.values[place / width],
-            self.cells[place],
-        ))
-    }
-}
 
 /// All maps in single precision, `effort` times as many tries as for a first look.
 pub fn maps(effort: u32) -> Vec<Map> {
@@ -208,33 +93,9 @@ pub fn cells_csv(maps: &[Map]) -> String {
     text
 }
 
-fn scales() -> Axis {
-    Axis {
-        name: "scale",
-        values: SCALES.to_vec(),
-    }
-}
-
-fn places() -> Axis {
-    Axis {
-        name: "sizes from the origin",
-        values: PLACES.to_vec(),
-    }
-}
-
-/// Directions and shares without a pattern, the same every time.
-fn scattered(number: u64, stream: u64) -> f64 {
-    // Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
-    let mut bits = (number + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15)
-        ^ stream.wrapping_mul(0xD1B5_4A32_D192_ED03);
-    bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    bits ^= bits >> 31;
-    (bits >> 11) as f64 / (1_u64 << 53) as f64
-}
-
 #[cfg(test)]
 mod tests {
+    use super::map::scattered;
     use super::*;
 
     #[test]

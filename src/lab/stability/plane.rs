@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Axis, Map, Tries, scales, scattered};
+use super::map::{Axis, Map, Tries, scales, scattered};
 use crate::primitive::{PackedPlane, Primitive as _, Ray};
 use crate::scene::Methods;
 use crate::simd::{Real as _, Vec3};

@@ -1,11 +1,11 @@
 //! Shadow rays that hit the surface that they start on, or miss what stands close to it: pictures of
 //! a ball and a card on a floor, at every scale and place; the ball a sphere, or a mesh.
 
-use super::{Map, Tries, places, scales};
+use super::map::{Map, Tries, places, scales};
 use crate::plan::RenderRequest;
 use crate::scene::{
-    Camera, ColorPack, Light, Method as _, Methods, Object, Plane, Precision, RayOffset, Sampling,
-    Scene, Shape, Sphere, Triangle,
+    Camera, ColorPack, Light, List, Method as _, Methods, Object, Plane, Precision, RayOffset,
+    Sampling, Scene, Shape, Sphere, Triangle,
 };
 use crate::trace::{Pass, RenderControl, Tracer};
 use glam::DVec3;
@@ -109,7 +109,7 @@ fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
         reflective: false,
         ..ColorPack::default()
     };
-    scene.color_packs.insert("chalk".to_owned(), chalk);
+    scene.packs_mut().insert("chalk".to_owned(), chalk);
     scene.background = black;
     let object = |name: &str, shape| Object {
         name: name.to_owned(),
@@ -117,7 +117,7 @@ fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
         shape,
         visible: true,
     };
-    scene.objects = vec![
+    scene.objects = List::from(vec![
         object(
             "Floor",
             Shape::Plane(Plane {
@@ -133,7 +133,7 @@ fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
                 c: place(1.1, 0.0, -0.3),
             }),
         ),
-    ];
+    ]);
     match ball {
         BallKind::Sphere => scene.objects.push(object(
             "Ball",
@@ -153,13 +153,13 @@ fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
             }
         }
     }
-    scene.lights = vec![Light {
+    scene.lights = List::from(vec![Light {
         name: "Light".to_owned(),
         position: place(1.6, 1.9, 1.3),
         intensity: 1.0,
         visible: true,
         marker: None,
-    }];
+    }]);
     scene.camera = Camera {
         position: place(0.4, 1.3, 2.6),
         look_at: DVec3::new(0.0, -0.4, -1.0),

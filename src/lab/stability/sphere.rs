@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Axis, Map, Tries, scales, scattered};
+use super::map::{Axis, Map, Tries, scales, scattered};
 use crate::primitive::{PackedSphere, Primitive as _, Ray};
 use crate::scene::{Method as _, Methods, SphereMethod};
 use crate::simd::Vec3;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Map, Tries, places, scales, scattered};
+use super::map::{Map, Tries, places, scales, scattered};
 use crate::primitive::{PackedTriangle, Primitive as _, Ray};
 use crate::scene::{Method as _, Methods, TriangleMethod};
 use crate::simd::Vec3;

@@ -1,150 +1,22 @@
 //! Ray against triangle. Both sides are hit.
 
+mod packed;
+
+mod watertight;
+
 mod weak;
 
-use std::collections::HashMap;
+pub use packed::{PackedTriangle, corner, count_corner_users};
+use watertight::{Shear, watertight};
 
 use glam::DVec3;
 
 use super::ball::Ball;
-use super::kind::{Approach, Corner, Packing, Primitive, SurfacePoint};
+use super::kind::{Approach, Packing, Primitive, SurfacePoint};
 use super::projector::{Projector, Rectangle};
 use super::ray::Ray;
-use crate::scene::{Methods, Scene, Shape, Triangle, TriangleMethod};
-use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
-
-/// A flat triangle.
-#[derive(Clone, Copy, Debug)]
-pub struct PackedTriangle<R> {
-    /// The corners.
-    pub corners: [Vec3<R>; 3],
-    /// Unit normal, outwards for corners that are clockwise seen from outside.
-    pub normal: Vec3<R>,
-    /// Whether it shares a corner with another triangle. Its neighbours then shadow it at the seam
-    /// unless secondary rays start a few roundings off the surface.
-    pub in_mesh: bool,
-    /// Its smallest altitude.
-    pub thickness: R,
-    /// Index of its material.
-    pub material: u32,
-}
-
-/// A corner as a key: corners are one where their coordinates are equal.
-pub fn corner(point: DVec3) -> Corner {
-    // Adding zero makes one zero of the two.
-    point.to_array().map(|part| (part + 0.0).to_bits())
-}
-
-/// How many visible triangles meet at each corner.
-pub fn count_corner_users(scene: &Scene) -> HashMap<Corner, usize> {
-    let mut users = HashMap::new();
-    for object in scene.objects.iter().filter(|object| object.visible) {
-        if let Shape::Triangle(triangle) = &object.shape {
-            for point in triangle.corners() {
-                *users.entry(corner(point)).or_insert(0) += 1;
-            }
-        }
-    }
-    users
-}
-
-/// What the watertight test needs of a ray, computed once: the axis along which the direction is
-/// largest, turned to z, and the shear that lays the ray on it.
-#[derive(Clone, Copy, Debug)]
-pub struct Shear<L: SimdFloat> {
-    /// Where the axis is x, and where it is y.
-    is_x: L::Mask,
-    is_y: L::Mask,
-    /// The major axis, where all lanes agree on it.
-    common: Option<MajorAxis>,
-    x: L,
-    y: L,
-    z: L,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum MajorAxis {
-    X,
-    Y,
-    Z,
-}
-
-impl<L: SimdFloat> Shear<L> {
-    /// The shear of a direction (not zero).
-    #[inline(always)]
-    pub fn new(direction: Vec3<L>) -> Self {
-        let (x, y, z) = (direction.x.abs(), direction.y.abs(), direction.z.abs());
-        let is_x = y.less(x) & z.less(x);
-        let is_y = !is_x & z.less(y);
-        let one = direction.x.like(L::Real::ONE);
-        let mut shear = Self {
-            is_x,
-            is_y,
-            common: None,
-            x: one,
-            y: one,
-            z: one,
-        };
-        let all = one.same(one).bits();
-        shear.common = match (is_x.bits(), is_y.bits()) {
-            (0, 0) => Some(MajorAxis::Z),
-            (xs, _) if xs == all => Some(MajorAxis::X),
-            (0, ys) if ys == all => Some(MajorAxis::Y),
-            _ => None,
-        };
-        let [across, upwards, along] = shear.turned(direction);
-        let reciprocal = one / along;
-        Self {
-            x: across * reciprocal,
-            y: upwards * reciprocal,
-            z: reciprocal,
-            ..shear
-        }
-    }
-
-    /// The components in cyclic order, the axis last.
-    #[inline(always)]
-    fn turned(&self, v: Vec3<L>) -> [L; 3] {
-        match self.common {
-            Some(MajorAxis::X) => [v.y, v.z, v.x],
-            Some(MajorAxis::Y) => [v.z, v.x, v.y],
-            Some(MajorAxis::Z) => [v.x, v.y, v.z],
-            None => [
-                self.pick(v.y, v.z, v.x),
-                self.pick(v.z, v.x, v.y),
-                self.pick(v.x, v.y, v.z),
-            ],
-        }
-    }
-
-    /// The number that belongs to each lane's axis.
-    #[inline(always)]
-    fn pick(&self, x: L, y: L, z: L) -> L {
-        L::select(self.is_x, x, L::select(self.is_y, y, z))
-    }
-
-    /// Which way an edge between two sheared corners turns around the ray, and the square of its
-    /// distance from the ray.
-    #[inline(always)]
-    fn edge_beside(&self, from: [L; 3], to: [L; 3]) -> (L, L) {
-        let (zero, one) = (self.x.like(L::Real::ZERO), self.x.like(L::Real::ONE));
-        let (x, y) = (to[0] - from[0], to[1] - from[1]);
-        let share = -(from[0] * x + from[1] * y) / (x * x + y * y);
-        let share = share.max(zero).min(one);
-        let (x_near, y_near) = (from[0] + x * share, from[1] + y * share);
-        // The sheared plane is not across the ray: without the part along it.
-        let along = (x_near * self.x + y_near * self.y) / self.z;
-        let square = x_near * x_near + y_near * y_near - along * along;
-        (from[0] * y - from[1] * x, square)
-    }
-
-    /// A corner relative to the ray's origin: sheared x and y, and its depth along the axis.
-    #[inline(always)]
-    fn apply(&self, corner: Vec3<L>) -> [L; 3] {
-        let [x, y, depth] = self.turned(corner);
-        [x - self.x * depth, y - self.y * depth, depth]
-    }
-}
+use crate::scene::{Methods, Triangle, TriangleMethod};
+use crate::simd::{Real, SimdFloat, Vec3};
 
 impl<R: Real> Primitive<R> for PackedTriangle<R> {
     type Description = Triangle;
@@ -252,38 +124,6 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
             distance: L::select(inside, zero, nearest),
         }
     }
-}
-
-/// Shear the corners so that the ray is the z axis, then three 2D edge functions. Each is computed
-/// from per-corner values, so two triangles get the same number, up to sign, on a shared edge: no
-/// ray slips between them. No multiplication here may be fused with an addition.
-///
-/// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
-#[inline(always)]
-fn watertight<L: SimdFloat>(
-    ray: &Ray<L>,
-    shear: &Shear<L>,
-    triangle: &PackedTriangle<L::Real>,
-) -> L {
-    // Written out: what runs in a closure of the standard library does not know the lanes.
-    let [a, b, c] = triangle.corners;
-    let a = shear.apply(ray.origin.like(a) - ray.origin);
-    let b = shear.apply(ray.origin.like(b) - ray.origin);
-    let c = shear.apply(ray.origin.like(c) - ray.origin);
-    let u = c[0] * b[1] - c[1] * b[0];
-    let v = a[0] * c[1] - a[1] * c[0];
-    let w = b[0] * a[1] - b[1] * a[0];
-    let zero = u.like(L::Real::ZERO);
-    let none_negative = zero.at_most(u) & zero.at_most(v) & zero.at_most(w);
-    let none_positive = u.at_most(zero) & v.at_most(zero) & w.at_most(zero);
-    let infinity = u.like(L::Real::INFINITY);
-    let inside = none_negative | none_positive;
-    if !inside.any() {
-        return infinity;
-    }
-    // All three zero is a triangle seen edge-on: 0/0 fails the comparison.
-    let t = (u * a[2] + v * b[2] + w * c[2]) * shear.z / (u + v + w);
-    L::select(inside & zero.less(t), t, infinity)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Triangle formulas that fail somewhere, kept to show where.
 
-use super::PackedTriangle;
+use super::packed::PackedTriangle;
 use crate::primitive::ray::Ray;
 use crate::simd::{Real, SimdFloat, Vec3};
 

@@ -1,14 +1,17 @@
 //! Whether an animation means something.
 
-use super::super::animation::MAX_KEYS;
-use super::super::{Animation, Interpolation, Key, Lens, MAX_SECONDS, Take, Target, Track, Value};
-use super::{At, Check, PROJECTION_DISTANCES, Scene, check_camera};
+use super::camera::{PROJECTION_DISTANCES, check_camera};
+use super::place::{At, Check};
+use crate::scene::animation::{
+    Animation, Interpolation, Key, Lens, MAX_KEYS, MAX_SECONDS, Take, Target, Track, Value,
+};
 use crate::scene::notation::format_number;
+use crate::scene::whole::Scene;
 
 /// Least time between two keys, in seconds: slopes between them are still numbers.
 const MIN_GAP: f64 = 0.999_999e-6;
 
-pub(super) fn check_animation(at: &At, scene: &Scene) -> Check {
+pub fn check_animation(at: &At, scene: &Scene) -> Check {
     let animation: &Animation = &scene.animation;
     at.field("frames_per_second")
         .within(animation.frames_per_second, 1.0, 240.0)?;
@@ -78,7 +81,8 @@ fn check_track(at: &At, scene: &Scene, track: &Track) -> Check {
     }
     check_keys(&at, &track.keys)?;
     for (index, key) in track.keys.iter().enumerate() {
-        let at = at.index(index).field("value");
+        let here = at.index(index);
+        let at = here.field("value");
         match (key.value, sample) {
             (Value::Number(number), Value::Number(_)) => at.within(number, 0.0, 1.0)?,
             (Value::Point(point), Value::Point(_)) => at.point(point)?,

@@ -1,55 +1,69 @@
 //! Whether a scene means something: the checks that a file passes before it is loaded and an edit
 //! before it is applied. Every refusal names the field, what it must be and what it is.
 
+mod place;
+
+mod camera;
+
 mod animation;
 
+pub use place::Problem;
+
 use std::collections::HashSet;
+use std::sync::Arc;
 
-use glam::DVec3;
+use camera::check_camera;
+use place::{At, Check};
 
-use super::locate::PathStep;
-use super::notation::format_number;
-use super::{
-    Camera, Field, FieldValue, LightObj, MAX_REFLECTIONS, MAX_SIDE, Render, Scene, Shape, VERSION,
-};
+use super::object::{LightObj, Object};
+use super::render::{MAX_REFLECTIONS, MAX_SIDE, Render};
+use super::shape::{Field, FieldValue, Shape};
+use super::whole::{Scene, VERSION};
 
-/// Largest coordinate or length, in world units: f32 squares of it are still finite.
-const MAX_COORDINATE: f64 = 1e12;
 /// Largest Phong exponent; the highlight is then a few ten-thousandths of a degree wide.
 const MAX_EXPONENT: f64 = 1e7;
-/// Projection distances (image heights) between which directions keep single-precision meaning.
-const PROJECTION_DISTANCES: (f64, f64) = (1e-3, 1e5);
 /// Most pixels in a picture: 1 GiB of 8-bit RGBA.
 const MAX_PIXELS: u64 = 1 << 28;
 /// Longest name, in characters.
 const MAX_NAME: usize = 200;
-
-/// Why a scene is refused, and where in it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Problem {
-    /// The way from the scene to the offending value.
-    pub path: Vec<PathStep>,
-    /// What is wrong, as a sentence without its full stop.
-    pub sentence: String,
-}
-
-type Check = Result<(), Problem>;
 
 /// Refuses a scene that cannot be traced as it stands, naming the first problem in file order.
 ///
 /// # Errors
 /// The [`Problem`], which a file turns into line and column.
 pub fn check(scene: &Scene) -> Result<(), Problem> {
-    let root = At(Vec::new());
+    check_since(scene, None)
+}
+
+/// [`check`] for a scene that was made from a valid one: what the two share is not looked at again.
+///
+/// # Errors
+/// The [`Problem`], as a sentence for the user.
+pub fn check_edit(scene: &Scene, valid: &Scene) -> Result<(), Problem> {
+    check_since(scene, Some(valid))
+}
+
+fn check_since(scene: &Scene, valid: Option<&Scene>) -> Result<(), Problem> {
+    let root = At::root();
     check_version(&root, scene.version)?;
     root.field("background").color(scene.background)?;
     root.field("ambient_intensity")
         .within(scene.ambient_intensity, 0.0, 1.0)?;
     check_camera(&root.field("camera"), &scene.camera)?;
-    check_packs(&root.field("color_packs"), scene)?;
-    check_objects(&root.field("objects"), scene)?;
+    let has_same_packs =
+        valid.is_some_and(|valid| Arc::ptr_eq(&valid.color_packs, &scene.color_packs));
+    if !has_same_packs {
+        check_packs(&root.field("color_packs"), scene)?;
+    }
+    check_objects(&root.field("objects"), scene, valid)?;
     check_lights(&root.field("lights"), scene)?;
     check_render(&root.field("render"), &scene.render)?;
+    let is_same_flight = valid.is_some_and(|valid| {
+        Arc::ptr_eq(&valid.animation, &scene.animation) && valid.names_are_those_of(scene)
+    });
+    if is_same_flight {
+        return Ok(());
+    }
     animation::check_animation(&root.field("animation"), scene)
 }
 
@@ -64,24 +78,8 @@ fn check_version(root: &At, version: u32) -> Check {
     }
 }
 
-fn check_camera(at: &At, camera: &Camera) -> Check {
-    at.field("position").point(camera.position)?;
-    at.field("look_at").direction(camera.look_at)?;
-    at.field("up").direction(camera.up)?;
-    if camera.basis().is_none() {
-        return at
-            .field("up")
-            .refuse("up must not be parallel to look_at".to_owned());
-    }
-    let (nearest, farthest) = PROJECTION_DISTANCES;
-    at.field("projection_distance")
-        .within(camera.projection_distance, nearest, farthest)?;
-    at.field("orthographic_height")
-        .positive(camera.orthographic_height)
-}
-
 fn check_packs(at: &At, scene: &Scene) -> Check {
-    for (name, pack) in &scene.color_packs {
+    for (name, pack) in scene.color_packs.iter() {
         let at = at.key(name);
         check_name(&at, name)?;
         at.field("ambient").color(pack.ambient)?;
@@ -93,20 +91,64 @@ fn check_packs(at: &At, scene: &Scene) -> Check {
     Ok(())
 }
 
-fn check_objects(at: &At, scene: &Scene) -> Check {
+fn check_objects(at: &At, scene: &Scene, valid: Option<&Scene>) -> Check {
+    let changes = valid
+        .filter(|valid| valid.has_packs_of(scene))
+        .and_then(|valid| Some((valid, scene.objects.changes(&valid.objects)?)));
+    let Some((valid, changes)) = changes else {
+        for (index, object) in scene.objects.iter().enumerate() {
+            check_object(&at.index(index), scene, object)?;
+        }
+        return check_object_names(at, scene);
+    };
+    let mut is_renamed = false;
+    for (index, object) in changes {
+        check_object(&at.index(index), scene, object)?;
+        is_renamed |= valid.objects[index].name != object.name;
+    }
+    if is_renamed {
+        check_object_names(at, scene)?;
+    }
+    Ok(())
+}
+
+fn check_object(at: &At, scene: &Scene, object: &Object) -> Check {
+    check_name(&at.field("name"), &object.name)?;
+    check_pack_exists(&at.field("color_pack"), scene, &object.color_pack)?;
+    check_shape(&at.field("shape"), &object.shape)
+}
+
+fn check_object_names(at: &At, scene: &Scene) -> Check {
     let mut names = HashSet::new();
     for (index, object) in scene.objects.iter().enumerate() {
-        let at = at.index(index);
-        check_name(&at.field("name"), &object.name)?;
         if !names.insert(&object.name) {
             return at
+                .index(index)
                 .field("name")
                 .refuse(format!("there is another object named {:?}", object.name));
         }
-        check_pack_exists(&at.field("color_pack"), scene, &object.color_pack)?;
-        check_shape(&at.field("shape"), &object.shape)?;
     }
     Ok(())
+}
+
+impl Scene {
+    /// Whether another scene has packs of the same names.
+    fn has_packs_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.color_packs, &other.color_packs)
+            || self.color_packs.keys().eq(other.color_packs.keys())
+    }
+
+    /// Whether what tracks can move is named alike, as far as that can be told without looking at all
+    /// of it.
+    fn names_are_those_of(&self, other: &Self) -> bool {
+        let changes = other.objects.changes(&self.objects);
+        let is_named_alike = |(index, object): (usize, &Object)| {
+            self.objects.get(index).map(|own| &own.name) == Some(&object.name)
+        };
+        let lights = self.lights.iter().map(|light| &light.name);
+        changes.is_some_and(|changes| changes.into_iter().all(is_named_alike))
+            && lights.eq(other.lights.iter().map(|light| &light.name))
+    }
 }
 
 fn check_lights(at: &At, scene: &Scene) -> Check {
@@ -211,118 +253,4 @@ fn check_pack_exists(at: &At, scene: &Scene, name: &str) -> Check {
             known.join(", ")
         ),
     })
-}
-
-/// A place in the scene, with the checks that values of the same kind share.
-struct At(Vec<PathStep>);
-
-impl At {
-    fn then(&self, step: PathStep) -> Self {
-        Self(self.0.iter().cloned().chain([step]).collect())
-    }
-
-    fn field(&self, name: &'static str) -> Self {
-        self.then(PathStep::Field(name))
-    }
-
-    fn index(&self, index: usize) -> Self {
-        self.then(PathStep::Index(index))
-    }
-
-    fn key(&self, key: &str) -> Self {
-        self.then(PathStep::Key(key.to_owned()))
-    }
-
-    fn name(&self) -> String {
-        match self.0.last() {
-            Some(PathStep::Field(name)) => (*name).to_owned(),
-            Some(PathStep::Index(index)) => format!("item {}", index + 1),
-            Some(PathStep::Key(key)) => format!("{key:?}"),
-            None => "the scene".to_owned(),
-        }
-    }
-
-    fn refuse(&self, sentence: String) -> Check {
-        Err(Problem {
-            path: self.0.clone(),
-            sentence,
-        })
-    }
-
-    fn finite(&self, values: &[f64]) -> Check {
-        match values.iter().find(|value| !value.is_finite()) {
-            Some(value) => self.refuse(format!("{} must be finite, found {value}", self.name())),
-            None => Ok(()),
-        }
-    }
-
-    fn within(&self, value: f64, least: f64, most: f64) -> Check {
-        self.finite(&[value])?;
-        if (least..=most).contains(&value) {
-            return Ok(());
-        }
-        self.refuse(format!(
-            "{} must be between {} and {}, found {}",
-            self.name(),
-            format_number(least),
-            format_number(most),
-            format_number(value)
-        ))
-    }
-
-    fn positive(&self, value: f64) -> Check {
-        self.finite(&[value])?;
-        if value > 0.0 && value <= MAX_COORDINATE {
-            return Ok(());
-        }
-        let bound = if value > 0.0 {
-            "at most 1e12"
-        } else {
-            "greater than 0"
-        };
-        self.refuse(format!(
-            "{} must be {bound}, found {}",
-            self.name(),
-            format_number(value)
-        ))
-    }
-
-    fn point(&self, value: DVec3) -> Check {
-        self.finite(&value.to_array())?;
-        if value.abs().max_element() <= MAX_COORDINATE {
-            return Ok(());
-        }
-        self.refuse(format!(
-            "{} must lie within 1e12 of the origin, found {}",
-            self.name(),
-            format_number(value.abs().max_element())
-        ))
-    }
-
-    fn direction(&self, value: DVec3) -> Check {
-        self.point(value)?;
-        match value.try_normalize() {
-            Some(_) => Ok(()),
-            None => self.refuse(format!(
-                "{} must have a direction, found (0, 0, 0)",
-                self.name()
-            )),
-        }
-    }
-
-    fn color(&self, value: DVec3) -> Check {
-        self.finite(&value.to_array())?;
-        match value
-            .to_array()
-            .into_iter()
-            .find(|channel| !(0.0..=255.0).contains(channel))
-        {
-            None => Ok(()),
-            Some(channel) => self.refuse(format!(
-                "{} must have channels between 0 and 255, found {}",
-                self.name(),
-                format_number(channel)
-            )),
-        }
-    }
 }

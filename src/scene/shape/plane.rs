@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Describe, Field, FieldValue};
+use super::describe::{Describe, Field, FieldValue};
 use crate::scene::notation;
 
 /// An endless plane.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Describe, Field, FieldValue};
+use super::describe::{Describe, Field, FieldValue};
 use crate::scene::notation;
 
 /// Smallest ratio of a triangle's height to its longest side; below it rounding decides what is hit.

@@ -65,7 +65,7 @@ impl Settings {
         let mut scene = scene.clone();
         (scene.render.width, scene.render.height) = (self.width, self.height);
         scene.render.antialias = self.antialias;
-        scene.animation.frames_per_second = self.fps;
+        scene.animation_mut().frames_per_second = self.fps;
         crate::scene::check(&scene).map_err(|problem| problem.sentence)?;
         let frames = Frames::parse(&self.frames)?;
         let pattern = Pattern::parse(&self.name)?;

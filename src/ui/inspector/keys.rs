@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     };
     if key.time != first.time {
         let (moved, new) = animation.with_moved(places, key.time - first.time, false);
-        out.edit(Edit::Animation(Box::new(moved), "Key: time"));
+        out.edit(Edit::animation(moved, "Key: time"));
         return out.time(Time::SelectKeys(new));
     }
     let changed = animation.with_each(places, |each| {
@@ -60,7 +60,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         "pace" => "Key: pace",
         _ => "Key: camera",
     };
-    out.edit(Edit::Animation(Box::new(changed), label));
+    out.edit(Edit::animation(changed, label));
 }
 
 fn time_field() -> Field {
@@ -140,7 +140,7 @@ fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     if overwrite.on_hover_text(hint).clicked() {
         let view = editor.shown().camera.clone();
         let changed = animation.with_each(places, |key| key.value = view.clone());
-        out.edit(Edit::Animation(Box::new(changed), "Overwrite key"));
+        out.edit(Edit::animation(changed, "Overwrite key"));
     }
     let go = ui.add_enabled(places.len() == 1, Button::new("Go there"));
     let key = places
@@ -154,7 +154,7 @@ fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
     if ui.button("Delete").clicked() {
         let kept = animation.without_keys(places);
-        out.edit(Edit::Animation(Box::new(kept), "Delete keys"));
+        out.edit(Edit::animation(kept, "Delete keys"));
         out.time(Time::SelectKeys(std::collections::BTreeSet::new()));
     }
 }
@@ -185,7 +185,7 @@ pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[(&str, Target)], out: &
                     value.map(|value| animation.with_value(target, time, value))
                 };
                 if let Some(changed) = changed {
-                    out.edit(Edit::Animation(Box::new(changed), "Key value"));
+                    out.edit(Edit::animation(changed, "Key value"));
                 }
             }
         }

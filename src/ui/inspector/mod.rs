@@ -1,9 +1,13 @@
 //! The panel on the right: every property of what is selected.
 
 mod camera;
+
 mod items;
+
 mod keys;
+
 mod needs;
+
 mod world;
 
 pub use keys::target;

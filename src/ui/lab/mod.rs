@@ -2,8 +2,11 @@
 //! at and adopted.
 
 mod chart;
+
 mod comparison;
+
 mod heat;
+
 mod stability;
 
 use std::sync::Arc;
@@ -24,7 +27,7 @@ use crate::editor::{Edit, Editor};
 use crate::image::Image;
 use crate::lab::{DOUBTFUL, EIGHT_BIT_FLOOR, Measurement, Study, cheapest_within};
 use crate::plan::Model;
-use crate::scene::{Animation, Render, Scene};
+use crate::scene::{Render, Scene};
 
 /// Longer side of the pictures that are measured, in pixels: a study then takes seconds.
 const SIDE: u32 = 256;
@@ -344,7 +347,7 @@ impl Lab {
                 reflection_limit: scene.render.reflection_limit,
                 ..Render::default()
             },
-            animation: Animation::default(),
+            animation: Arc::default(),
             ..scene.clone()
         };
         self.study.as_ref().is_some_and(|study| {

@@ -117,7 +117,7 @@ impl Graph {
             keys,
             frames_per_second,
             ..
-        } = &editor.scene().animation;
+        } = &*editor.scene().animation;
         let is_same =
             |made: &(Vec<Key<Camera>>, f64)| made.0 == *keys && made.1 == *frames_per_second;
         if !self.made_for.as_ref().is_some_and(is_same) {

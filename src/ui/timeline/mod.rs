@@ -1,9 +1,13 @@
 //! The timeline: playing, recording, keys on a line of time, and what they do to speed.
 
-mod graph;
 mod overlay;
-mod thumbs;
+
 mod tracks_area;
+
+mod graph;
+
+mod thumbs;
+
 mod transport;
 
 use egui::{ScrollArea, Ui};

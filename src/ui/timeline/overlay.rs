@@ -205,7 +205,7 @@ impl Overlay {
         self.dragged = Some((dragged, depth));
         let to = origin + direction * depth;
         let moved = animation.with_each(&BTreeSet::from([place]), |key| key.value.position = to);
-        out.edit(Edit::Animation(Box::new(moved), "Move key in the view"));
+        out.edit(Edit::animation(moved, "Move key in the view"));
     }
 }
 

@@ -1,6 +1,7 @@
 //! Time from left to right: the ruler, the camera's keys, and those of other values.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
@@ -51,7 +52,7 @@ pub struct Drag {
     /// What they are keys of; `None` for the camera.
     target: Option<Target>,
     /// The animation before.
-    before: Animation,
+    before: Arc<Animation>,
     /// Places of the camera's keys.
     places: BTreeSet<usize>,
     /// Time of the key that the pointer holds.
@@ -247,7 +248,7 @@ fn pick(
         } else {
             BTreeSet::from([place])
         };
-        let before = editor.scene().animation.clone();
+        let before = Arc::clone(&editor.scene().animation);
         *drag = Some(Drag {
             target: None,
             from: before.keys[place].time,
@@ -270,13 +271,13 @@ fn follow(ui: &Ui, scale: &Scale, editor: &Editor, drag: &mut Option<Drag>, out:
     let (moved, new) = held
         .before
         .with_moved(&held.places, to - held.from, held.are_copies);
-    if moved != editor.scene().animation {
+    if moved != *editor.scene().animation {
         let label = if held.are_copies {
             "Copy keys"
         } else {
             "Move keys"
         };
-        out.edit(Edit::Animation(Box::new(moved), label));
+        out.edit(Edit::animation(moved, label));
     }
     if new != editor.timeline().selected {
         out.time(Time::SelectKeys(new));
@@ -313,20 +314,20 @@ fn menu(ui: &mut Ui, place: usize, editor: &Editor, out: &mut UiRequests) {
     ] {
         if ui.radio(key.interpolation == way, way.name()).clicked() {
             let changed = animation.with_each(&places, |key| key.interpolation = way);
-            out.edit(Edit::Animation(Box::new(changed), "Key: way"));
+            out.edit(Edit::animation(changed, "Key: way"));
         }
     }
     ui.separator();
     for easing in Easing::ALL {
         if ui.radio(key.easing == easing, easing.name()).clicked() {
             let changed = animation.with_each(&places, |key| key.easing = easing);
-            out.edit(Edit::Animation(Box::new(changed), "Key: pace"));
+            out.edit(Edit::animation(changed, "Key: pace"));
         }
     }
     ui.separator();
     if ui.button("Delete").clicked() {
-        out.edit(Edit::Animation(
-            Box::new(animation.without_keys(&places)),
+        out.edit(Edit::animation(
+            animation.without_keys(&places),
             "Delete keys",
         ));
         out.time(Time::SelectKeys(BTreeSet::new()));
@@ -366,7 +367,7 @@ pub fn tracks(
             if response.drag_started() {
                 *drag = Some(Drag {
                     target: Some(track.target.clone()),
-                    before: animation.clone(),
+                    before: Arc::clone(animation),
                     places: BTreeSet::new(),
                     from: key.time,
                     are_copies: false,
@@ -384,8 +385,8 @@ pub fn tracks(
         return;
     };
     let moved = held.before.with_value_moved(&target, held.from, to);
-    if moved != *animation {
-        out.edit(Edit::Animation(Box::new(moved), "Move key"));
+    if moved != **animation {
+        out.edit(Edit::animation(moved, "Move key"));
     }
 }
 
@@ -420,6 +421,6 @@ fn value_menu(
         changed = animation.without_value(target, time);
     }
     if changed != *animation {
-        out.edit(Edit::Animation(Box::new(changed), "Key value"));
+        out.edit(Edit::animation(changed, "Key value"));
     }
 }

@@ -134,9 +134,9 @@ fn rates(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     if drag.on_hover_text(hint).changed() && fps.is_finite() {
         let changed = Animation {
             frames_per_second: fps,
-            ..animation.clone()
+            ..Animation::clone(animation)
         };
-        out.edit(Edit::Animation(Box::new(changed), "Frames per second"));
+        out.edit(Edit::animation(changed, "Frames per second"));
     }
     let mut speed = editor.timeline().speed;
     let drag = DragValue::new(&mut speed)
@@ -171,9 +171,9 @@ fn length(ui: &mut Ui, animation: &Animation, out: &mut UiRequests) {
     if drag.on_hover_text(hint).changed() && seconds.is_finite() {
         let changed = Animation {
             keys: Retime::Stretch(seconds).apply(&animation.keys),
-            ..animation.clone()
+            ..Animation::clone(animation)
         };
-        out.edit(Edit::Animation(Box::new(changed), "Stretch"));
+        out.edit(Edit::animation(changed, "Stretch"));
     }
 }
 
@@ -216,9 +216,9 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     {
         let changed = Animation {
             take: None,
-            ..animation.clone()
+            ..Animation::clone(animation)
         };
-        out.edit(Edit::Animation(Box::new(changed), "Forget the recording"));
+        out.edit(Edit::animation(changed, "Forget the recording"));
     }
 }
 
@@ -267,7 +267,7 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action>
             let view = editor.shown().camera.clone();
             let (changed, place) = animation.with_key(time, view);
             vec![
-                Action::Edit(Edit::Animation(Box::new(changed), "Add key")),
+                Action::Edit(Edit::animation(changed, "Add key")),
                 Action::Time(Time::SelectKeys(BTreeSet::from([place]))),
             ]
         }

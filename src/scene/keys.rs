@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use crate::scene::{Animation, Camera, Key, Target, Track, Value};
+use super::animation::{Animation, Key, Target, Track, Value};
+use super::camera::Camera;
 
 /// Keys nearer to each other than this share of a frame are one.
 const SAME: f64 = 0.25;
@@ -169,7 +170,7 @@ impl Animation {
     }
 
     /// What belongs to a light or object follows its new name, or goes with it.
-    pub(super) fn follow(&mut self, is_light: bool, name: &str, to: Option<&str>) {
+    pub fn follow_name(&mut self, is_light: bool, name: &str, to: Option<&str>) {
         let is_meant = |target: &Target| {
             let lights = matches!(target, Target::LightIntensity(_) | Target::LightPosition(_));
             lights == is_light && target.owner() == Some(name)

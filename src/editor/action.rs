@@ -1,0 +1,46 @@
+//! What panels ask for, and what the user is told.
+
+use super::edit::Edit;
+use super::fly::Motion;
+use super::selection::Selection;
+use super::timeline::Time;
+
+/// What the picture area shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mode {
+    /// The live view at the resolution of the screen.
+    #[default]
+    Live,
+    /// The live view at 64 pixels, as in the original program.
+    LowRes,
+    /// The still picture; back to [`Mode::Live`] when the scene changes.
+    HighRes,
+}
+
+/// Something that a panel asks for.
+#[derive(Clone, Debug)]
+pub enum Action {
+    /// Change the scene.
+    Edit(Edit),
+    /// Move the camera as part of a flight.
+    Fly(Motion),
+    /// Show something in the inspector.
+    Select(Selection),
+    /// Step back in the history.
+    Undo,
+    /// Step forward in the history.
+    Redo,
+    /// Show something else in the picture area.
+    Show(Mode),
+    /// Something about the timeline.
+    Time(Time),
+}
+
+/// Something the user should read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Message {
+    /// Whether something went wrong.
+    pub is_error: bool,
+    /// What happened and, for errors, what to do.
+    pub text: String,
+}

@@ -1,0 +1,321 @@
+//! The open document: [`Editor::apply`] is the one place that changes it.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::action::{Action, Message, Mode};
+use super::animation_state::AnimationState;
+use super::edit::Edit;
+use super::fly::Flight;
+use super::history::{History, Snapshot};
+use super::selection::Selection;
+use super::timeline::Timeline;
+use crate::animate::CameraPath;
+use crate::scene::{DEMO_TEXT, Document, Orientation, Scene, SceneError, check_edit};
+
+/// The open document and everything about working on it.
+#[derive(Debug)]
+pub struct Editor {
+    pub(super) scene: Arc<Scene>,
+    revision: u64,
+    header: String,
+    path: Option<PathBuf>,
+    /// What the document is called while it has no file.
+    name: &'static str,
+    saved: Arc<Scene>,
+    is_dirty: bool,
+    history: History,
+    flight: Flight,
+    pub(super) animation_state: AnimationState,
+    /// What the inspector shows.
+    pub selection: Selection,
+    /// What the picture area shows.
+    pub mode: Mode,
+    /// What the user should read, oldest first; the window takes them away.
+    pub messages: Vec<Message>,
+}
+
+impl Editor {
+    /// Opens the demo scene, as a new document.
+    pub fn demo() -> Self {
+        let document = Document::from_text(DEMO_TEXT).unwrap_or_else(|_| Document::empty());
+        Self {
+            name: "demo",
+            ..Self::new(document, None)
+        }
+    }
+
+    fn new(document: Document, path: Option<PathBuf>) -> Self {
+        let scene = Arc::new(document.scene);
+        Self {
+            saved: Arc::clone(&scene),
+            animation_state: AnimationState::new(&scene),
+            scene,
+            revision: 1,
+            header: document.header,
+            path,
+            name: "untitled",
+            is_dirty: false,
+            history: History::default(),
+            flight: Flight::default(),
+            selection: Selection::default(),
+            mode: Mode::default(),
+            messages: Vec::new(),
+        }
+    }
+
+    /// The scene as it is now.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// The scene as it is on show: at the time of the playhead, through the camera that is looked
+    /// through.
+    pub fn shown(&self) -> &Arc<Scene> {
+        self.animation_state.shown()
+    }
+
+    /// Grows with every change of what is on show.
+    pub fn shown_revision(&self) -> u64 {
+        self.animation_state.revision()
+    }
+
+    /// The timeline.
+    pub fn timeline(&self) -> &Timeline {
+        self.animation_state.timeline()
+    }
+
+    /// The camera over time.
+    pub fn path_of_camera(&self) -> &CameraPath {
+        self.animation_state.path()
+    }
+
+    /// The time that is on show, in seconds.
+    pub fn shown_time(&self) -> f64 {
+        self.timeline().shown_time(&self.scene.animation)
+    }
+
+    /// Whether the picture is that of the shot camera.
+    pub fn looks_through(&self) -> bool {
+        self.timeline().looks_through && !self.scene.animation.keys.is_empty()
+    }
+
+    /// Grows with every change of the scene.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// The file of the document, if it has one.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    /// Whether there are changes that no file has.
+    pub fn is_dirty(&self) -> bool {
+        self.is_dirty || self.is_making_keys()
+    }
+
+    /// What the document is called: its file name, or `demo` or `untitled`.
+    pub fn title(&self) -> String {
+        match &self.path {
+            Some(path) => path
+                .file_name()
+                .unwrap_or(path.as_os_str())
+                .to_string_lossy()
+                .into_owned(),
+            None => self.name.to_owned(),
+        }
+    }
+
+    /// The name of the step that undo would take back.
+    pub fn undo_label(&self) -> Option<&str> {
+        self.history.undo_label()
+    }
+
+    /// The name of the step that redo would bring again.
+    pub fn redo_label(&self) -> Option<&str> {
+        self.history.redo_label()
+    }
+
+    /// The angles of the camera, from its vectors.
+    pub fn orientation(&self) -> Orientation {
+        self.flight.orientation(&self.shown().camera)
+    }
+
+    /// Does what a panel asked for.
+    pub fn apply(&mut self, action: Action) {
+        match action {
+            Action::Edit(edit) => self.edit(edit),
+            Action::Fly(motion) => {
+                let camera = self
+                    .flight
+                    .step(&self.animation_state.shown().camera, &motion);
+                self.edit(Edit::Camera(camera, "move"));
+            }
+            Action::Select(selection) => self.selection = selection,
+            Action::Undo => self.travel(History::undo),
+            Action::Redo => self.travel(History::redo),
+            Action::Show(mode) => self.mode = mode,
+            Action::Time(time) => self.apply_time(time),
+        }
+        self.animation_state.follow(&self.scene);
+        if matches!(self.selection, Selection::Keys) && self.timeline().selected.is_empty() {
+            self.selection = Selection::Camera;
+        }
+    }
+
+    /// Ends the gesture: the next edit is a step of its own in the history.
+    pub fn end_gesture(&mut self) {
+        self.history.end_gesture();
+    }
+
+    /// Starts a document from an empty scene.
+    pub fn start_new(&mut self) {
+        self.replace(Document::empty(), None);
+    }
+
+    /// Starts a document from the demo scene.
+    pub fn start_demo(&mut self) {
+        self.become_other(Self::demo());
+    }
+
+    /// Opens a file in place of the document; the document stays if that fails.
+    ///
+    /// # Errors
+    /// Why the file was refused.
+    pub fn open(&mut self, path: &Path) -> Result<(), SceneError> {
+        let document = Document::load(path)?;
+        self.replace(document, Some(absolute(path)));
+        Ok(())
+    }
+
+    /// Writes the document to `path`, which becomes its file.
+    ///
+    /// # Errors
+    /// Why it could not be written; the document then still counts as changed.
+    pub fn save(&mut self, path: &Path) -> Result<(), SceneError> {
+        let backup = self.document().save(path)?;
+        self.path = Some(absolute(path));
+        self.saved = Arc::clone(&self.scene);
+        self.is_dirty = false;
+        let kept = backup.map_or(String::new(), |backup| {
+            format!(
+                "; the file had comments inside, so it was kept as {}",
+                backup.display()
+            )
+        });
+        self.notify(format!("Saved {}{kept}", path.display()));
+        Ok(())
+    }
+
+    /// Takes up unsaved work that another run of the program left behind.
+    pub fn recover(&mut self, document: Document, path: Option<PathBuf>) {
+        self.replace(document, path);
+        self.saved = Arc::new(Scene::empty());
+        self.is_dirty = true;
+    }
+
+    /// The text of the document as it would be saved.
+    ///
+    /// # Errors
+    /// [`SceneError::Unwritable`], for a scene that has no text.
+    pub fn to_text(&self) -> Result<String, SceneError> {
+        self.document().to_text()
+    }
+
+    fn document(&self) -> Document {
+        Document {
+            header: self.header.clone(),
+            scene: Scene::clone(&self.scene),
+        }
+    }
+
+    /// Tells the user something.
+    pub fn notify(&mut self, text: String) {
+        self.messages.push(Message {
+            is_error: false,
+            text,
+        });
+    }
+
+    /// Tells the user that something went wrong.
+    pub fn report_error(&mut self, text: String) {
+        self.messages.push(Message {
+            is_error: true,
+            text,
+        });
+    }
+
+    fn replace(&mut self, document: Document, path: Option<PathBuf>) {
+        self.become_other(Self::new(document, path));
+    }
+
+    /// Takes another document's place; what is traced and what is said goes on.
+    fn become_other(&mut self, other: Self) {
+        let revision = self.revision + 1;
+        let messages = std::mem::take(&mut self.messages);
+        let animation_state = self.animation_state.start_again(&other.scene);
+        *self = Self {
+            revision,
+            animation_state,
+            messages,
+            ..other
+        };
+    }
+
+    pub(super) fn edit(&mut self, edit: Edit) {
+        let label = edit.label(&self.scene);
+        let is_camera = matches!(edit, Edit::Camera(..));
+        let mut next = Scene::clone(&self.scene);
+        let selection = match edit.apply(&mut next) {
+            Ok(selection) => selection.unwrap_or(self.selection),
+            Err(reason) => return self.report_error(reason),
+        };
+        self.animation_state.key_tracked(&self.scene, &mut next);
+        if is_camera {
+            self.animation_state.look_at_view();
+        }
+        if next == *self.scene {
+            return;
+        }
+        if let Err(problem) = check_edit(&next, &self.scene) {
+            return self.report_error(format!("{label}: {}", problem.sentence));
+        }
+        let before = Snapshot {
+            scene: Arc::clone(&self.scene),
+            selection: self.selection,
+        };
+        self.history.record(label, before, &next);
+        self.selection = selection;
+        self.set_scene(Arc::new(next));
+    }
+
+    fn travel(&mut self, step: fn(&mut History, Snapshot) -> Option<Snapshot>) {
+        let here = Snapshot {
+            scene: Arc::clone(&self.scene),
+            selection: self.selection,
+        };
+        if let Some(there) = step(&mut self.history, here) {
+            self.selection = there.selection;
+            // Keys are known by their places, which may be others' now.
+            self.animation_state.deselect_keys();
+            self.set_scene(there.scene);
+        }
+    }
+
+    fn set_scene(&mut self, scene: Arc<Scene>) {
+        self.is_dirty = *scene != *self.saved;
+        self.scene = scene;
+        self.revision += 1;
+        self.selection = self.selection.within(&self.scene);
+        if self.mode == Mode::HighRes {
+            self.mode = Mode::Live;
+        }
+        self.animation_state.follow(&self.scene);
+    }
+}
+
+/// The path that means the same file wherever the program works next.
+fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}

@@ -1,0 +1,223 @@
+//! What the timeline's actions do to the document: playing, recording, keys made of a recording.
+
+use std::sync::Arc;
+
+use super::action::Mode;
+use super::animation_state::Pending;
+use super::document::Editor;
+use super::edit::Edit;
+use super::selection::Selection;
+use super::timeline::{MEASURED_AT, Recording, Time};
+use crate::animate::{Seen, Simplified, simplify};
+use crate::scene::{Animation, Camera, Key, Take};
+
+/// Keys that a recording becomes, at first, and for each second: about as many as a hand can edit.
+const FEW: (f64, f64) = (8.0, 2.5);
+/// Where the search for a tolerance ends, in pixels.
+const COARSEST: f64 = 32.0;
+impl Editor {
+    pub(super) fn apply_time(&mut self, time: Time) {
+        let scene = Arc::clone(&self.scene);
+        let animation = &scene.animation;
+        let timeline = &mut self.animation_state.timeline;
+        match time {
+            Time::Seek(seconds) => {
+                timeline.seek(animation, seconds.clamp(0.0, last_time(animation)));
+                self.show_time();
+            }
+            Time::Step(frames) => {
+                let frame = animation.frame_at(timeline.playhead);
+                let last = animation.frame_count();
+                let frame = frame.saturating_add_signed(frames).clamp(1, last);
+                timeline.is_playing = false;
+                timeline.seek(animation, animation.time_of(frame));
+                self.show_time();
+            }
+            Time::Play(is_playing) => {
+                timeline.play(is_playing, animation);
+                if is_playing {
+                    self.show_time();
+                }
+            }
+            Time::Tick(seconds) => timeline.tick(seconds, animation.duration()),
+            Time::Repeat(repeat) => timeline.repeat = repeat,
+            Time::Speed(speed) => timeline.speed = speed,
+            Time::LookThrough(looks_through) => {
+                timeline.looks_through = looks_through;
+                timeline.stays_outside = !looks_through;
+                self.leave_still();
+            }
+            Time::SelectKeys(places) => {
+                self.selection = if places.is_empty() {
+                    Selection::Camera
+                } else {
+                    Selection::Keys
+                };
+                timeline.selected = places;
+            }
+            Time::Record => {
+                let camera = self.animation_state.shown.camera.clone();
+                self.edit(Edit::Camera(camera, "move"));
+                self.animation_state.timeline.record();
+                self.leave_still();
+            }
+            Time::Sample(now) => {
+                let angles = self.orientation();
+                let camera = &self.animation_state.shown.camera;
+                self.animation_state.timeline.sample(now, camera, angles);
+            }
+            Time::Stop => {
+                if let Some(Recording { take, .. }) = timeline.recording.take() {
+                    self.stop_recording(take);
+                }
+            }
+            Time::Surveyed(take, seen) => self.survey_arrived(take, seen),
+            Time::Simplify(pixels) => {
+                timeline.tolerance = pixels;
+                if let Some(take) = animation.take.clone() {
+                    self.after_survey(Pending::Simplify(take, pixels));
+                }
+            }
+        }
+    }
+
+    /// A still picture is of another time.
+    fn leave_still(&mut self) {
+        if self.mode == Mode::HighRes {
+            self.mode = Mode::Live;
+        }
+    }
+
+    /// What moves is looked at as it moves: through the shot camera, unless the user has chosen to
+    /// stay outside.
+    fn show_time(&mut self) {
+        self.animation_state.timeline.looks_through = !self.animation_state.timeline.stays_outside;
+        self.leave_still();
+    }
+
+    /// The take whose survey is waited for: someone is to trace it, and to answer with
+    /// [`Time::Surveyed`].
+    pub fn wanted_survey(&self) -> Option<&Arc<Take>> {
+        self.animation_state.pending.as_ref().map(Pending::take)
+    }
+
+    /// Whether a recorded flight is about to become keys.
+    pub fn is_making_keys(&self) -> bool {
+        matches!(self.animation_state.pending, Some(Pending::Keep(_)))
+    }
+
+    /// Does what waits, at once if what the take saw is known.
+    fn after_survey(&mut self, pending: Pending) {
+        if self.animation_state.seen_by(pending.take()).is_some() {
+            self.finish_pending(pending);
+        } else if !self.is_making_keys() {
+            self.animation_state.pending = Some(pending);
+        }
+    }
+
+    fn survey_arrived(&mut self, take: Arc<Take>, seen: Vec<Vec<Seen>>) {
+        let state = &mut self.animation_state;
+        let pending = state
+            .pending
+            .take_if(|pending| Arc::ptr_eq(pending.take(), &take));
+        state.survey = Some((take, seen));
+        if let Some(pending) = pending {
+            self.finish_pending(pending);
+        }
+    }
+
+    fn finish_pending(&mut self, pending: Pending) {
+        match pending {
+            Pending::Keep(take) => self.keep(take),
+            Pending::Simplify(take, pixels) => {
+                let animation = &self.scene.animation;
+                // An edit on the way may have replaced the take.
+                if !animation
+                    .take
+                    .as_ref()
+                    .is_some_and(|own| Arc::ptr_eq(own, &take))
+                {
+                    return;
+                }
+                self.animation_state.timeline.tolerance = pixels;
+                let old = Arc::clone(&self.scene);
+                let animation = Animation {
+                    keys: in_the_time_of(&old.animation.keys, self.simplified(&take)),
+                    ..Animation::clone(&old.animation)
+                };
+                self.edit(Edit::animation(animation, "Simplify"));
+                self.animation_state.timeline.tolerance = pixels;
+            }
+            Pending::Measure(_) => self.animation_state.measure(),
+        }
+    }
+
+    /// A recorded flight is kept, and made into keys as soon as it is known what it saw.
+    fn stop_recording(&mut self, take: Take) {
+        if take.samples.len() < 2 {
+            return self.notify("Nothing was recorded".to_owned());
+        }
+        self.after_survey(Pending::Keep(Arc::new(take)));
+    }
+
+    /// Keeps a recorded flight, and makes its keys.
+    fn keep(&mut self, take: Arc<Take>) {
+        let count = take.samples.len();
+        let seconds = take.samples.last().map_or(0.0, |last| last.0);
+        let few = (FEW.0 + FEW.1 * seconds) as usize;
+        self.animation_state.timeline.tolerance = 1.0;
+        let mut keys = self.simplified(&take);
+        // A trembling hand would leave a key in every frame.
+        while keys.len() > few && self.animation_state.timeline.tolerance < COARSEST {
+            self.animation_state.timeline.tolerance *= 1.5;
+            keys = self.simplified(&take);
+        }
+        let said = keys.len();
+        let worst = self.animation_state.timeline.worst.unwrap_or(0.0);
+        let animation = Animation {
+            keys,
+            take: Some(take),
+            ..Animation::clone(&self.scene.animation)
+        };
+        self.end_gesture();
+        self.edit(Edit::animation(animation, "Record flight"));
+        self.end_gesture();
+        self.animation_state.timeline.playhead = 0.0;
+        self.animation_state.timeline.stays_outside = false;
+        self.show_time();
+        self.notify(format!(
+            "{count} samples became {said} keys, never more than {worst:.1} px off at 1024²"
+        ));
+    }
+
+    /// Keys in place of a take whose survey is known.
+    fn simplified(&mut self, take: &Arc<Take>) -> Vec<Key<Camera>> {
+        let state = &mut self.animation_state;
+        let seen = state.seen_by(take).unwrap_or_default();
+        let Simplified { keys, worst } =
+            simplify(take, seen, state.timeline.tolerance / MEASURED_AT);
+        state.timeline.worst = Some(worst * MEASURED_AT);
+        keys
+    }
+}
+
+/// New keys for a flight that had been given another length.
+fn in_the_time_of(old: &[Key<Camera>], new: Vec<Key<Camera>>) -> Vec<Key<Camera>> {
+    let ([first, .., last], [start, .., end]) = (old, &new[..]) else {
+        return new;
+    };
+    let scale = (last.time - first.time) / (end.time - start.time);
+    let (from, to) = (start.time, first.time);
+    let at = |time: f64| to + (time - from) * scale;
+    let keys = new.into_iter();
+    keys.map(|key| Key {
+        time: at(key.time),
+        ..key
+    })
+    .collect()
+}
+
+/// How far the playhead goes.
+fn last_time(animation: &Animation) -> f64 {
+    animation.time_of(animation.frame_count())
+}

@@ -1,0 +1,180 @@
+//! A place in the scene, and the checks that values of the same kind share.
+
+use glam::DVec3;
+
+use crate::scene::locate::PathStep;
+use crate::scene::notation::format_number;
+
+/// Largest coordinate or length, in world units: f32 squares of it are still finite.
+const MAX_COORDINATE: f64 = 1e12;
+
+/// Why a scene is refused, and where in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// The way from the scene to the offending value.
+    pub path: Vec<PathStep>,
+    /// What is wrong, as a sentence without its full stop.
+    pub sentence: String,
+}
+
+/// What a check finds.
+pub type Check = Result<(), Problem>;
+
+/// A place in the scene, with the checks that values of the same kind share. The way to it is only
+/// written down when something is refused.
+pub struct At<'a> {
+    above: Option<&'a Self>,
+    step: Place<'a>,
+}
+
+/// One step of the way.
+#[derive(Clone, Copy)]
+enum Place<'a> {
+    Root,
+    Field(&'static str),
+    Index(usize),
+    Key(&'a str),
+}
+
+impl<'a> At<'a> {
+    /// The scene itself.
+    pub fn root() -> Self {
+        Self {
+            above: None,
+            step: Place::Root,
+        }
+    }
+
+    fn then(&'a self, step: Place<'a>) -> Self {
+        Self {
+            above: Some(self),
+            step,
+        }
+    }
+
+    /// A field of it.
+    pub fn field(&'a self, name: &'static str) -> Self {
+        self.then(Place::Field(name))
+    }
+
+    /// An item of it, from 0.
+    pub fn index(&'a self, index: usize) -> Self {
+        self.then(Place::Index(index))
+    }
+
+    /// The value of a key of it.
+    pub fn key(&'a self, key: &'a str) -> Self {
+        self.then(Place::Key(key))
+    }
+
+    fn name(&self) -> String {
+        match self.step {
+            Place::Root => "the scene".to_owned(),
+            Place::Field(name) => name.to_owned(),
+            Place::Index(index) => format!("item {}", index + 1),
+            Place::Key(key) => format!("{key:?}"),
+        }
+    }
+
+    fn path(&self) -> Vec<PathStep> {
+        let mut path = self.above.map_or(Vec::new(), At::path);
+        path.extend(match self.step {
+            Place::Root => None,
+            Place::Field(name) => Some(PathStep::Field(name)),
+            Place::Index(index) => Some(PathStep::Index(index)),
+            Place::Key(key) => Some(PathStep::Key(key.to_owned())),
+        });
+        path
+    }
+
+    /// Refuses it with a sentence without its full stop.
+    pub fn refuse(&self, sentence: String) -> Check {
+        Err(Problem {
+            path: self.path(),
+            sentence,
+        })
+    }
+
+    /// Numbers, not infinite ones.
+    pub fn finite(&self, values: &[f64]) -> Check {
+        match values.iter().find(|value| !value.is_finite()) {
+            Some(value) => self.refuse(format!("{} must be finite, found {value}", self.name())),
+            None => Ok(()),
+        }
+    }
+
+    /// Finite, and between two numbers.
+    pub fn within(&self, value: f64, least: f64, most: f64) -> Check {
+        self.finite(&[value])?;
+        if (least..=most).contains(&value) {
+            return Ok(());
+        }
+        self.refuse(format!(
+            "{} must be between {} and {}, found {}",
+            self.name(),
+            format_number(least),
+            format_number(most),
+            format_number(value)
+        ))
+    }
+
+    /// A length.
+    pub fn positive(&self, value: f64) -> Check {
+        self.finite(&[value])?;
+        if value > 0.0 && value <= MAX_COORDINATE {
+            return Ok(());
+        }
+        let bound = if value > 0.0 {
+            "at most 1e12"
+        } else {
+            "greater than 0"
+        };
+        self.refuse(format!(
+            "{} must be {bound}, found {}",
+            self.name(),
+            format_number(value)
+        ))
+    }
+
+    /// A place in the world.
+    pub fn point(&self, value: DVec3) -> Check {
+        self.finite(&value.to_array())?;
+        if value.abs().max_element() <= MAX_COORDINATE {
+            return Ok(());
+        }
+        self.refuse(format!(
+            "{} must lie within 1e12 of the origin, found {}",
+            self.name(),
+            format_number(value.abs().max_element())
+        ))
+    }
+
+    /// A direction of any length but zero.
+    pub fn direction(&self, value: DVec3) -> Check {
+        self.point(value)?;
+        match value.try_normalize() {
+            Some(_) => Ok(()),
+            None => self.refuse(format!(
+                "{} must have a direction, found (0, 0, 0)",
+                self.name()
+            )),
+        }
+    }
+
+    /// A colour, 0–255 per channel.
+    pub fn color(&self, value: DVec3) -> Check {
+        self.finite(&value.to_array())?;
+        match value
+            .to_array()
+            .into_iter()
+            .find(|channel| !(0.0..=255.0).contains(channel))
+        {
+            None => Ok(()),
+            Some(channel) => self.refuse(format!(
+                "{} must have channels between 0 and 255, found {}",
+                self.name(),
+                format_number(channel)
+            )),
+        }
+    }
+}

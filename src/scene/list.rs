@@ -1,0 +1,369 @@
+//! Lists that share what did not change: a copy costs nothing, and a change of one item copies a
+//! chunk of its neighbours and a table of chunks, however long the list is.
+
+use std::ops::{Index, IndexMut};
+use std::sync::Arc;
+
+use serde::de::{Deserialize, Deserializer};
+use serde::ser::{Serialize, Serializer};
+
+/// Most items of a chunk: one is copied when an item of it changes.
+const MOST: usize = 128;
+
+/// Bytes of text that an item may have elsewhere.
+const TEXT: usize = 32;
+
+/// A list of the scene.
+#[derive(Clone, Debug)]
+pub struct List<T> {
+    chunks: Arc<Vec<Chunk<T>>>,
+}
+
+#[derive(Clone, Debug)]
+struct Chunk<T> {
+    /// Index of its first item.
+    start: usize,
+    /// At least one.
+    items: Arc<Vec<T>>,
+}
+
+impl<T: Clone> List<T> {
+    /// Nothing.
+    pub fn new() -> Self {
+        Self {
+            chunks: Arc::new(Vec::new()),
+        }
+    }
+
+    /// How many items there are.
+    pub fn len(&self) -> usize {
+        let last = self.chunks.last();
+        last.map_or(0, |chunk| chunk.start + chunk.items.len())
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.chunks.is_empty()
+    }
+
+    /// The item at `index`, if there is one.
+    pub fn get(&self, index: usize) -> Option<&T> {
+        let chunk = &self.chunks.get(self.chunk_of(index)?)?;
+        chunk.items.get(index - chunk.start)
+    }
+
+    /// The item at `index`, if there is one, to be changed.
+    pub fn get_mut(&mut self, index: usize) -> Option<&mut T> {
+        let chunk = self.chunk_of(index)?;
+        let chunk = Arc::make_mut(&mut self.chunks).get_mut(chunk)?;
+        Arc::make_mut(&mut chunk.items).get_mut(index - chunk.start)
+    }
+
+    /// The chunk that an index is in, or would be.
+    fn chunk_of(&self, index: usize) -> Option<usize> {
+        let after = self.chunks.partition_point(|chunk| chunk.start <= index);
+        after.checked_sub(1)
+    }
+
+    /// The first item.
+    pub fn first(&self) -> Option<&T> {
+        self.get(0)
+    }
+
+    /// The last item.
+    pub fn last(&self) -> Option<&T> {
+        self.chunks.last().and_then(|chunk| chunk.items.last())
+    }
+
+    /// All items in order.
+    pub fn iter(&self) -> Iter<'_, T> {
+        Iter {
+            chunks: self.chunks.iter(),
+            items: [].iter(),
+        }
+    }
+
+    /// All items in order, to be changed: every chunk is copied that is shared.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
+        let chunks = Arc::make_mut(&mut self.chunks).iter_mut();
+        chunks.flat_map(|chunk| Arc::make_mut(&mut chunk.items).iter_mut())
+    }
+
+    /// Adds an item behind the last.
+    pub fn push(&mut self, item: T) {
+        self.insert(self.len(), item);
+    }
+
+    /// Puts an item before the one at `index` ≤ [`Self::len`].
+    ///
+    /// # Panics
+    /// If there is no such place.
+    pub fn insert(&mut self, index: usize, item: T) {
+        assert!(index <= self.len(), "no place {index} in the list");
+        let Some(at) = self.chunk_of(index) else {
+            *self = std::iter::once(item).collect();
+            return;
+        };
+        let chunks = Arc::make_mut(&mut self.chunks);
+        let chunk = &mut chunks[at];
+        let items = Arc::make_mut(&mut chunk.items);
+        items.insert(index - chunk.start, item);
+        if items.len() > MOST {
+            // Whoever fills a list from one end leaves full chunks behind.
+            let half = if index + 1 == chunk.start + items.len() {
+                MOST
+            } else {
+                MOST / 2
+            };
+            let second = Arc::new(items.split_off(half));
+            let start = chunk.start + half;
+            chunks.insert(
+                at + 1,
+                Chunk {
+                    start,
+                    items: second,
+                },
+            );
+        }
+        renumber(chunks, at);
+    }
+
+    /// Takes the item at `index` out.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn remove(&mut self, index: usize) -> T {
+        assert!(index < self.len(), "no item {index} in the list");
+        let at = self.chunk_of(index).unwrap_or_default();
+        let chunks = Arc::make_mut(&mut self.chunks);
+        let chunk = &mut chunks[at];
+        let items = Arc::make_mut(&mut chunk.items);
+        let item = items.remove(index - chunk.start);
+        if items.is_empty() {
+            chunks.remove(at);
+        }
+        renumber(chunks, at.saturating_sub(1));
+        item
+    }
+
+    /// Keeps the first `count` items.
+    pub fn truncate(&mut self, count: usize) {
+        *self = self.iter().take(count).cloned().collect();
+    }
+
+    /// Keeps the items that are wanted.
+    pub fn retain(&mut self, mut is_wanted: impl FnMut(&T) -> bool) {
+        *self = self
+            .iter()
+            .filter(|item| is_wanted(item))
+            .cloned()
+            .collect();
+    }
+
+    /// Forgets all items.
+    pub fn clear(&mut self) {
+        *self = Self::new();
+    }
+
+    /// About how many bytes this list has that another one does not share.
+    pub fn bytes_apart(&self, other: &Self) -> usize {
+        let items = self
+            .changes(other)
+            .map_or(self.len(), |changes| changes.len());
+        let table = if Arc::ptr_eq(&self.chunks, &other.chunks) {
+            0
+        } else {
+            self.chunks.len()
+        };
+        items * (size_of::<T>() + TEXT) + table * size_of::<Chunk<T>>()
+    }
+
+    /// Pairs of an index and its item, of all items that are not known to be those of `other` in the
+    /// same places; `None` if the lists are not laid out alike.
+    pub fn changes<'a>(&'a self, other: &'a Self) -> Option<Vec<(usize, &'a T)>> {
+        if Arc::ptr_eq(&self.chunks, &other.chunks) {
+            return Some(Vec::new());
+        }
+        if self.chunks.len() != other.chunks.len() {
+            return None;
+        }
+        let mut changes = Vec::new();
+        for (own, their) in self.chunks.iter().zip(other.chunks.iter()) {
+            if (own.start, own.items.len()) != (their.start, their.items.len()) {
+                return None;
+            }
+            if !Arc::ptr_eq(&own.items, &their.items) {
+                changes.extend((own.start..).zip(own.items.iter()));
+            }
+        }
+        Some(changes)
+    }
+}
+
+/// Counts the items of chunks from `first` on anew.
+fn renumber<T>(chunks: &mut [Chunk<T>], first: usize) {
+    let mut start = chunks.get(first).map_or(0, |chunk| chunk.start);
+    if first == 0 {
+        start = 0;
+    }
+    for chunk in chunks.iter_mut().skip(first) {
+        chunk.start = start;
+        start += chunk.items.len();
+    }
+}
+
+/// The items of a [`List`] in order.
+#[derive(Clone, Debug)]
+pub struct Iter<'a, T> {
+    chunks: std::slice::Iter<'a, Chunk<T>>,
+    items: std::slice::Iter<'a, T>,
+}
+
+impl<'a, T> Iterator for Iter<'a, T> {
+    type Item = &'a T;
+
+    fn next(&mut self) -> Option<&'a T> {
+        loop {
+            if let Some(item) = self.items.next() {
+                return Some(item);
+            }
+            self.items = self.chunks.next()?.items.iter();
+        }
+    }
+}
+
+impl<T: Clone> Default for List<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<T: Clone + PartialEq> PartialEq for List<T> {
+    /// Chunks that are shared are not looked into.
+    fn eq(&self, other: &Self) -> bool {
+        match self.changes(other) {
+            Some(changes) => changes
+                .into_iter()
+                .all(|(index, item)| other.get(index) == Some(item)),
+            None => self.len() == other.len() && self.iter().eq(other.iter()),
+        }
+    }
+}
+
+impl<T: Clone> Index<usize> for List<T> {
+    type Output = T;
+    #[expect(clippy::expect_used, reason = "what indexing is for")]
+    fn index(&self, index: usize) -> &T {
+        self.get(index).expect("an item at the index")
+    }
+}
+
+impl<T: Clone> IndexMut<usize> for List<T> {
+    #[expect(clippy::expect_used, reason = "what indexing is for")]
+    fn index_mut(&mut self, index: usize) -> &mut T {
+        self.get_mut(index).expect("an item at the index")
+    }
+}
+
+impl<T: Clone> FromIterator<T> for List<T> {
+    fn from_iter<I: IntoIterator<Item = T>>(items: I) -> Self {
+        let mut items = items.into_iter();
+        let mut chunks = Vec::new();
+        let mut start = 0;
+        loop {
+            let chunk: Vec<T> = items.by_ref().take(MOST).collect();
+            let count = chunk.len();
+            if count == 0 {
+                break;
+            }
+            let items = Arc::new(chunk);
+            chunks.push(Chunk { start, items });
+            start += count;
+        }
+        Self {
+            chunks: Arc::new(chunks),
+        }
+    }
+}
+
+impl<T: Clone> Extend<T> for List<T> {
+    fn extend<I: IntoIterator<Item = T>>(&mut self, items: I) {
+        for item in items {
+            self.push(item);
+        }
+    }
+}
+
+impl<T: Clone> From<Vec<T>> for List<T> {
+    fn from(items: Vec<T>) -> Self {
+        items.into_iter().collect()
+    }
+}
+
+impl<'a, T: Clone> IntoIterator for &'a List<T> {
+    type Item = &'a T;
+    type IntoIter = Iter<'a, T>;
+    fn into_iter(self) -> Iter<'a, T> {
+        self.iter()
+    }
+}
+
+impl<T: Clone + Serialize> Serialize for List<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        // A list tells its length before its items.
+        let items: Vec<&T> = self.iter().collect();
+        items.serialize(serializer)
+    }
+}
+
+impl<'de, T: Clone + Deserialize<'de>> Deserialize<'de> for List<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Vec::deserialize(deserializer).map(Self::from)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// A list does what a vector does, whatever is done to it, and copies keep what they had.
+        #[test]
+        fn a_list_is_a_vector_that_shares(start in 0..400_usize, steps in prop::collection::vec((0..5_u8, 0..1000_usize), 0..60)) {
+            let mut list: List<usize> = (0..start).collect();
+            let mut vector: Vec<usize> = (0..start).collect();
+            let (copy, kept) = (list.clone(), vector.clone());
+            for (step, number) in steps {
+                let index = number % vector.len().max(1);
+                match step {
+                    0 => { list.push(number); vector.push(number); }
+                    1 => { let at = number % (vector.len() + 1); list.insert(at, number); vector.insert(at, number); }
+                    2 if !vector.is_empty() => { prop_assert_eq!(list.remove(index), vector.remove(index)); }
+                    3 if !vector.is_empty() => { list[index] = number; vector[index] = number; }
+                    4 => { list.retain(|item| item % 7 != 3); vector.retain(|item| item % 7 != 3); }
+                    _ => {}
+                }
+                prop_assert_eq!(list.len(), vector.len());
+                prop_assert!(list.iter().eq(vector.iter()));
+                prop_assert!((0..vector.len()).all(|index| list.get(index) == vector.get(index)));
+                prop_assert_eq!(list.get(vector.len()), None);
+                prop_assert_eq!(list.last(), vector.last());
+            }
+            prop_assert!(copy.iter().eq(kept.iter()), "a copy has changed");
+            prop_assert_eq!(list == copy, vector == kept);
+        }
+    }
+
+    #[test]
+    fn a_change_touches_one_chunk() {
+        let before: List<u32> = (0..100_000).collect();
+        let mut after = before.clone();
+        after[77_777] = 0;
+        let changes = after.changes(&before).expect("laid out alike");
+        assert!(changes.len() <= MOST && changes.contains(&(77_777, &0)));
+        let shared = after.chunks.iter().zip(before.chunks.iter());
+        let copied = shared.filter(|(a, b)| !Arc::ptr_eq(&a.items, &b.items));
+        assert_eq!(copied.count(), 1);
+    }
+}

@@ -1,0 +1,73 @@
+//! Colour packs: the materials.
+
+use std::fmt;
+use std::sync::Arc;
+
+use glam::DVec3;
+use indexmap::IndexMap;
+use serde::de::{Deserializer, Error, MapAccess, Visitor};
+use serde::{Deserialize, Serialize};
+
+use super::notation;
+
+/// A material: colours are 0–255 per channel.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ColorPack {
+    /// Colour without any light, scaled by the scene's ambient intensity.
+    #[serde(with = "notation::vector")]
+    pub ambient: DVec3,
+    /// Colour of matte reflection.
+    #[serde(with = "notation::vector")]
+    pub diffuse: DVec3,
+    /// Colour of the highlight, and of the mirror image if reflective.
+    #[serde(with = "notation::vector")]
+    pub specular: DVec3,
+    /// Sharpness of the highlight: 0 is flat, 16 soft, 1000 a pinpoint.
+    #[serde(with = "notation::number")]
+    pub phong_exponent: f64,
+    /// Whether the surface mirrors the scene.
+    pub reflective: bool,
+}
+
+impl Default for ColorPack {
+    fn default() -> Self {
+        Self {
+            ambient: DVec3::new(255.0, 128.0, 128.0),
+            diffuse: DVec3::new(255.0, 128.0, 128.0),
+            specular: DVec3::new(255.0, 255.0, 255.0),
+            phong_exponent: 16.0,
+            reflective: false,
+        }
+    }
+}
+
+/// Reads the map of colour packs, refusing a name that comes twice.
+pub fn read_packs<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Arc<IndexMap<String, ColorPack>>, D::Error> {
+    deserializer.deserialize_map(Packs).map(Arc::new)
+}
+
+struct Packs;
+
+impl<'de> Visitor<'de> for Packs {
+    type Value = IndexMap<String, ColorPack>;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a map from names to ColorPack")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+        let mut packs = IndexMap::new();
+        while let Some(name) = map.next_key::<String>()? {
+            if packs.contains_key(&name) {
+                return Err(A::Error::custom(format!(
+                    "there is another color pack named {name:?}"
+                )));
+            }
+            packs.insert(name, map.next_value()?);
+        }
+        Ok(packs)
+    }
+}

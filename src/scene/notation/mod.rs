@@ -1,0 +1,48 @@
+//! How values are written in the file.
+
+pub mod number;
+
+pub mod vector;
+
+pub mod method;
+
+use glam::DVec3;
+
+/// Whether a value need not be written.
+pub fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+/// The shortest text that reads back as `value`, without `.0` on whole numbers.
+pub fn format_number(value: f64) -> String {
+    format!("{value}")
+}
+
+/// Reads `1, 2, 3`, `(1, 2, 3)` or `1 2 3`; `None` if that is not three finite numbers.
+pub fn parse_vec3(text: &str) -> Option<DVec3> {
+    let inner = text
+        .trim()
+        .trim_start_matches(['(', '['])
+        .trim_end_matches([')', ']']);
+    let numbers: Option<Vec<f64>> = inner
+        .split([',', ' ', ';', '\t'])
+        .filter(|part| !part.is_empty())
+        .map(|part| part.parse().ok().filter(|number: &f64| number.is_finite()))
+        .collect();
+    <[f64; 3]>::try_from(numbers?).ok().map(DVec3::from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vectors_are_pasted_in_many_ways() {
+        for text in ["1, 2, -3.5", "(1,2,-3.5)", " 1 2 -3.5 ", "[1; 2; -3.5]"] {
+            assert_eq!(parse_vec3(text), Some(DVec3::new(1.0, 2.0, -3.5)), "{text}");
+        }
+        for text in ["", "1, 2", "1, 2, 3, 4", "1, x, 3", "1, inf, 3"] {
+            assert_eq!(parse_vec3(text), None, "{text}");
+        }
+    }
+}

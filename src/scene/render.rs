@@ -1,0 +1,99 @@
+//! How a picture is made.
+
+use serde::{Deserialize, Serialize};
+
+use super::methods::{
+    Accelerator, HighlightMethod, Methods, Precision, RayOffset, Sampling, SphereMethod,
+    TriangleMethod,
+};
+use super::notation;
+
+/// Largest picture side, in pixels.
+pub const MAX_SIDE: u32 = 16_384;
+
+/// Deepest chain of reflections that a scene may ask for.
+pub const MAX_REFLECTIONS: u32 = 32;
+
+/// How the picture is made. What it is traced with is written to the file only where it differs from
+/// the default, which is what the scene needs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Render {
+    /// Width in pixels, 1–[`MAX_SIDE`].
+    pub width: u32,
+    /// Height in pixels, 1–[`MAX_SIDE`].
+    pub height: u32,
+    /// How often light may be mirrored on its way to the eye, 0–[`MAX_REFLECTIONS`].
+    pub reflection_limit: u32,
+    /// How edges are smoothed.
+    #[serde(
+        with = "notation::method",
+        skip_serializing_if = "notation::is_default"
+    )]
+    pub antialias: Sampling,
+    /// The real type of the kernel.
+    #[serde(
+        with = "notation::method",
+        skip_serializing_if = "notation::is_default"
+    )]
+    pub precision: Precision,
+    /// Ray against sphere.
+    #[serde(
+        with = "notation::method",
+        skip_serializing_if = "notation::is_default"
+    )]
+    pub sphere: SphereMethod,
+    /// Ray against triangle.
+    #[serde(
+        with = "notation::method",
+        skip_serializing_if = "notation::is_default"
+    )]
+    pub triangle: TriangleMethod,
+    /// Where shadow and reflection rays start.
+    #[serde(
+        with = "notation::method",
+        skip_serializing_if = "notation::is_default"
+    )]
+    pub offset: RayOffset,
+    /// The power of a highlight.
+    #[serde(
+        with = "notation::method",
+        skip_serializing_if = "notation::is_default"
+    )]
+    pub specular: HighlightMethod,
+    /// How primitives are found.
+    #[serde(
+        with = "notation::method",
+        skip_serializing_if = "notation::is_default"
+    )]
+    pub accelerator: Accelerator,
+}
+
+impl Render {
+    /// The formulas.
+    pub fn methods(&self) -> Methods {
+        Methods {
+            sphere: self.sphere,
+            triangle: self.triangle,
+            offset: self.offset,
+            highlight: self.specular,
+        }
+    }
+}
+
+impl Default for Render {
+    fn default() -> Self {
+        Self {
+            width: 1024,
+            height: 1024,
+            reflection_limit: 1,
+            antialias: Sampling::default(),
+            precision: Precision::default(),
+            sphere: SphereMethod::default(),
+            triangle: TriangleMethod::default(),
+            offset: RayOffset::default(),
+            specular: HighlightMethod::default(),
+            accelerator: Accelerator::default(),
+        }
+    }
+}

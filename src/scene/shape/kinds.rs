@@ -1,0 +1,85 @@
+//! The list of all kinds.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::describe::{Describe, Field};
+use super::plane::Plane;
+use super::sphere::Sphere;
+use super::triangle::Triangle;
+
+macro_rules! shapes {
+    ($($kind:ident: $article:literal),*) => {
+        /// A primitive: all numbers in world units.
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub enum Shape {
+            $(#[doc = $article] $kind($kind)),*
+        }
+
+        $(impl From<$kind> for Shape {
+            fn from(shape: $kind) -> Self {
+                Self::$kind(shape)
+            }
+        })*
+
+        impl Shape {
+            /// One shape of every kind, of the given size around `at`: what *Add* offers.
+            pub fn examples(at: DVec3, size: f64) -> Vec<Self> {
+                vec![$(Self::$kind($kind::example(at, size))),*]
+            }
+
+            /// The name of the kind, as the file writes it.
+            pub fn kind(&self) -> &'static str {
+                match self { $(Self::$kind(_) => $kind::KIND),* }
+            }
+
+            /// Shows every property to `visit`, in the order of the file.
+            pub fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Field<'a>)) {
+                match self { $(Self::$kind(shape) => shape.fields(visit)),* }
+            }
+
+            /// What is wrong with the properties together, see [`Describe::problem`].
+            pub fn problem(&self) -> Option<String> {
+                match self { $(Self::$kind(shape) => shape.problem()),* }
+            }
+
+            /// Smallest and largest corner of the box around it; `None` for what never ends.
+            pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+                match self { $(Self::$kind(shape) => shape.bounds()),* }
+            }
+
+            /// Where it is, see [`Describe::position`].
+            pub fn position(&self) -> DVec3 {
+                match self { $(Self::$kind(shape) => shape.position()),* }
+            }
+
+            /// The same shape, moved.
+            #[must_use]
+            pub fn moved(&self, by: DVec3) -> Self {
+                match self { $(Self::$kind(shape) => Self::$kind(shape.moved(by))),* }
+            }
+
+            /// A point of it and its smallest measure, see [`Describe::feature`].
+            pub fn feature(&self) -> Option<(DVec3, f64)> {
+                match self { $(Self::$kind(shape) => shape.feature()),* }
+            }
+
+            /// See [`Describe::height_per_radius`].
+            pub fn height_per_radius(&self, point: DVec3) -> f64 {
+                match self { $(Self::$kind(shape) => shape.height_per_radius(point)),* }
+            }
+
+            /// See [`Describe::endless_plane`].
+            pub fn endless_plane(&self) -> Option<(DVec3, DVec3)> {
+                match self { $(Self::$kind(shape) => shape.endless_plane()),* }
+            }
+        }
+    };
+}
+
+shapes! {
+    Sphere: "A ball.",
+    Plane: "An endless plane.",
+    Triangle: "A flat triangle."
+}

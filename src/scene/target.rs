@@ -1,0 +1,49 @@
+//! What tracks move in a scene.
+
+use super::animation::{Target, Value};
+use super::object::Light;
+use super::whole::Scene;
+
+impl Target {
+    /// The value in a scene; `None` if the scene has no such light or object.
+    pub fn get(&self, scene: &Scene) -> Option<Value> {
+        let light = |name: &String| scene.lights.iter().find(|light| light.name == *name);
+        Some(match self {
+            Self::AmbientIntensity => Value::Number(scene.ambient_intensity),
+            Self::LightIntensity(name) => Value::Number(light(name)?.intensity),
+            Self::LightPosition(name) => Value::Point(light(name)?.position),
+            Self::ObjectPosition(name) => {
+                let object = scene.objects.iter().find(|object| object.name == *name)?;
+                Value::Point(object.shape.position())
+            }
+        })
+    }
+
+    /// Puts a value into a scene; one of the wrong kind, or for what is not there, changes nothing.
+    pub fn set(&self, scene: &mut Scene, value: Value) {
+        match (self, value) {
+            (Self::AmbientIntensity, Value::Number(number)) => scene.ambient_intensity = number,
+            (Self::LightIntensity(name), Value::Number(number)) => {
+                if let Some(light) = light(scene, name) {
+                    light.intensity = number;
+                }
+            }
+            (Self::LightPosition(name), Value::Point(point)) => {
+                if let Some(light) = light(scene, name) {
+                    light.position = point;
+                }
+            }
+            (Self::ObjectPosition(name), Value::Point(point)) => {
+                let mut objects = scene.objects.iter_mut();
+                if let Some(object) = objects.find(|object| object.name == *name) {
+                    object.shape = object.shape.moved(point - object.shape.position());
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+fn light<'s>(scene: &'s mut Scene, name: &str) -> Option<&'s mut Light> {
+    scene.lights.iter_mut().find(|light| light.name == name)
+}

@@ -1,0 +1,184 @@
+//! The scene itself.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+
+use super::animation::Animation;
+use super::camera::Camera;
+use super::list::List;
+use super::material::{ColorPack, read_packs};
+use super::notation;
+use super::object::{Light, LightObj, Object, default_intensity, yes};
+use super::render::Render;
+
+/// The scene-file version that this program writes and the newest that it reads.
+pub const VERSION: u32 = 1;
+
+/// Everything that makes a picture. A copy shares what is not changed. What a file leaves out has the value that the demo scene has.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// Version of the file format, see [`VERSION`].
+    pub version: u32,
+    /// Colour of a ray that hits nothing, 0–255.
+    #[serde(default)]
+    #[serde(with = "notation::vector")]
+    pub background: DVec3,
+    /// How much of every pack's ambient colour is seen without any light, 0–1.
+    #[serde(default = "default_ambient_intensity", with = "notation::number")]
+    pub ambient_intensity: f64,
+    /// Whether the markers of the lights are part of the picture.
+    #[serde(default = "yes")]
+    pub light_visualization: bool,
+    /// Where the picture is taken from.
+    #[serde(default)]
+    pub camera: Camera,
+    /// Materials by name, shared by the objects that name them; the order is the file's.
+    #[serde(default = "default_packs", deserialize_with = "read_packs")]
+    pub color_packs: Arc<IndexMap<String, ColorPack>>,
+    /// The things that are seen, mirrored and cast shadows.
+    pub objects: List<Object>,
+    /// The lights.
+    #[serde(default = "default_lights")]
+    pub lights: List<Light>,
+    /// How the picture is made.
+    #[serde(default)]
+    pub render: Render,
+    /// What moves, and when. Written with a layout of its own, one key in a line.
+    #[serde(default, skip_serializing)]
+    pub animation: Arc<Animation>,
+}
+
+impl Scene {
+    /// An empty scene with the demo's camera and a pack and a light to start from.
+    pub fn empty() -> Self {
+        let mut light = default_lights().remove(0);
+        light.marker = Some(LightObj::default());
+        Self {
+            version: VERSION,
+            background: DVec3::new(0.0, 0.0, 0.0),
+            ambient_intensity: default_ambient_intensity(),
+            light_visualization: true,
+            camera: Camera::default(),
+            color_packs: Arc::new(IndexMap::from([
+                ("pack 1".to_owned(), ColorPack::default()),
+                ("light".to_owned(), light_pack()),
+            ])),
+            objects: List::new(),
+            lights: List::from(vec![light]),
+            render: Render::default(),
+            animation: Arc::default(),
+        }
+    }
+
+    /// The colour packs, to be changed; copied if they are shared.
+    pub fn packs_mut(&mut self) -> &mut IndexMap<String, ColorPack> {
+        Arc::make_mut(&mut self.color_packs)
+    }
+
+    /// What moves, to be changed; copied if it is shared.
+    pub fn animation_mut(&mut self) -> &mut Animation {
+        Arc::make_mut(&mut self.animation)
+    }
+
+    /// About how many bytes this scene has that another one does not share.
+    pub fn bytes_apart(&self, other: &Self) -> usize {
+        let packs = if Arc::ptr_eq(&self.color_packs, &other.color_packs) {
+            0
+        } else {
+            self.color_packs.len() * size_of::<ColorPack>()
+        };
+        let animation = if Arc::ptr_eq(&self.animation, &other.animation) {
+            0
+        } else {
+            self.animation.bytes()
+        };
+        let lists =
+            self.objects.bytes_apart(&other.objects) + self.lights.bytes_apart(&other.lights);
+        size_of::<Self>() + packs + animation + lists
+    }
+
+    /// Smallest and largest corner of the box around everything visible that has an end, lights
+    /// included; `None` if there is nothing.
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        let visible = self.objects.iter().filter(|object| object.visible);
+        let lights = self.lights.iter().filter(|light| light.visible);
+        let boxes = visible
+            .filter_map(|object| object.shape.bounds())
+            .chain(lights.map(|light| (light.position, light.position)));
+        boxes.reduce(|(low, high), (other_low, other_high)| {
+            (low.min(other_low), high.max(other_high))
+        })
+    }
+
+    /// The names of the objects and lights that use the pack `name`, in outliner order.
+    pub fn users_of_pack(&self, name: &str) -> Vec<&str> {
+        let lights = self.lights.iter().filter(|light| {
+            light
+                .marker
+                .as_ref()
+                .is_some_and(|marker| marker.color_pack == name)
+        });
+        let objects = self
+            .objects
+            .iter()
+            .filter(|object| object.color_pack == name);
+        lights
+            .map(|light| light.name.as_str())
+            .chain(objects.map(|o| o.name.as_str()))
+            .collect()
+    }
+}
+
+fn default_ambient_intensity() -> f64 {
+    0.5
+}
+
+fn light_pack() -> ColorPack {
+    let yellow = DVec3::new(255.0, 255.0, 0.0);
+    ColorPack {
+        ambient: yellow,
+        diffuse: yellow,
+        ..ColorPack::default()
+    }
+}
+
+fn default_packs() -> Arc<IndexMap<String, ColorPack>> {
+    let matte = |x, y, z| ColorPack {
+        ambient: DVec3::new(x, y, z),
+        diffuse: DVec3::new(x, y, z),
+        ..ColorPack::default()
+    };
+    Arc::new(IndexMap::from([
+        ("sphere 1".to_owned(), matte(255.0, 128.0, 255.0)),
+        ("sphere 2".to_owned(), matte(255.0, 128.0, 128.0)),
+        ("tetrahedron".to_owned(), matte(128.0, 255.0, 255.0)),
+        (
+            "plane".to_owned(),
+            ColorPack {
+                reflective: true,
+                ..ColorPack::default()
+            },
+        ),
+        ("light".to_owned(), light_pack()),
+    ]))
+}
+
+/// The demo's two lights without markers: a file that leaves its lights out need not have the pack
+/// that the markers would name.
+fn default_lights() -> List<Light> {
+    let light = |name: &str, x, y, z| Light {
+        name: name.to_owned(),
+        position: DVec3::new(x, y, z),
+        intensity: default_intensity(),
+        marker: None,
+        visible: true,
+    };
+    List::from(vec![
+        light("Light 1", 100.0, 100.0, -50.0),
+        light("Light 2", 231.0, 63.0, -127.0),
+    ])
+}
