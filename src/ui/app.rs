@@ -7,7 +7,6 @@ use egui::{CentralPanel, Context, Frame, Margin, Panel, Theme, Ui, ViewportComma
 
 use super::autosave::Autosave;
 use super::commands::{Command, is_about_files, pressed};
-use super::dialogs::{Dialogs, Native};
 use super::exports::Exports;
 use super::files::{FileOutcome, Files, Next};
 use super::flying::Flying;
@@ -15,13 +14,14 @@ use super::lab::Lab;
 use super::menu::Layout;
 use super::outliner::Outliner;
 use super::pictures::Pictures;
+use super::requests::UiRequests;
 use super::screenshot::Screenshot;
+use super::setup::Setup;
 use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, TIMELINE, palette};
 use super::timeline::{Overlay, Thumbs, TimelinePanel};
 use super::toasts::Toasts;
 use super::viewport::{Place, describe, fit};
-use super::window::data_folder;
-use super::{UiRequests, help, inspector, menu, status, theme};
+use super::{help, inspector, menu, status, theme};
 use crate::editor::{Action, Editor, Mode, Time};
 use crate::image::Image;
 use crate::worker::{Answer, RenderThreadError};
@@ -30,42 +30,6 @@ use crate::worker::{Answer, RenderThreadError};
 const RECENT_KEY: &str = "recent files";
 /// Where the choice of the theme is kept between runs.
 const THEME_KEY: &str = "theme";
-
-/// What the program gives the window.
-pub struct Setup {
-    /// The scene to open; the demo if there is none.
-    pub scene: Option<PathBuf>,
-    /// How paths are asked for.
-    pub dialogs: Box<dyn Dialogs>,
-    /// Where unsaved work is kept; `None` keeps none.
-    pub data_folder: Option<PathBuf>,
-    /// A picture to be made of the window, which then closes.
-    pub screenshot: Option<Screenshot>,
-    /// Whether the window of exports is open at first.
-    pub exports: bool,
-}
-
-impl Setup {
-    /// The desktop's dialogs and data folder.
-    pub fn native(scene: Option<PathBuf>) -> Self {
-        Self {
-            scene,
-            dialogs: Box::new(Native),
-            data_folder: data_folder(),
-            screenshot: None,
-            exports: false,
-        }
-    }
-
-    /// A window that shows the scene, has its picture taken and closes.
-    pub fn for_screenshot(scene: Option<PathBuf>, screenshot: Screenshot) -> Self {
-        Self {
-            data_folder: None,
-            screenshot: Some(screenshot),
-            ..Self::native(scene)
-        }
-    }
-}
 
 /// The window.
 pub struct App {

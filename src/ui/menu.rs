@@ -4,10 +4,12 @@ use std::path::PathBuf;
 
 use egui::{Button, Context, MenuBar, Theme, Ui};
 
+use super::add::add_menu;
 use super::commands::{Command, is_enabled, key_of};
+use super::icons;
 use super::inspector::target;
-use super::outliner::add_menu;
-use super::{UiRequests, icons};
+use super::menu_entry::{ITEM_COMMANDS, entry};
+use super::requests::UiRequests;
 use crate::animate::{Preset, Retime};
 use crate::editor::{Edit, Editor, Mode, Selection, Time};
 use crate::scene::{Animation, Projection};
@@ -27,15 +29,6 @@ pub struct Layout {
     /// Whether the still picture is shown one pixel to one pixel, with scroll bars.
     pub actual_size: bool,
 }
-
-/// What can be done to the selected item.
-pub const ITEM_COMMANDS: [(&str, Command); 5] = [
-    ("Rename", Command::Rename),
-    ("Duplicate", Command::Duplicate),
-    ("Move up", Command::MoveUp),
-    ("Move down", Command::MoveDown),
-    ("Delete", Command::Delete),
-];
 
 /// Shows the bar.
 pub fn show(
@@ -69,19 +62,6 @@ pub fn show(
             switches(ui, editor, out);
         });
     });
-}
-
-/// A menu entry with its key.
-pub fn entry(ui: &mut Ui, text: &str, command: Command, enabled: bool, out: &mut UiRequests) {
-    let key = key_of(ui, &command).unwrap_or_default();
-    let button = Button::new(text).shortcut_text(key);
-    if ui
-        .add_enabled(enabled, button)
-        .accessible_name(text)
-        .clicked()
-    {
-        out.commands.push(command);
-    }
 }
 
 fn file_menu(ui: &mut Ui, recent: &[PathBuf], out: &mut UiRequests) {

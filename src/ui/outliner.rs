@@ -9,9 +9,12 @@ use egui_material_icons::MaterialIcon;
 
 use glam::DVec3;
 
+use super::add::add_menu;
+use super::icons;
 use super::inspector::name_field;
+use super::menu_entry::{ITEM_COMMANDS, entry as menu_entry};
+use super::requests::UiRequests;
 use super::theme::{GRID, ROW, palette};
-use super::{UiRequests, icons, menu};
 use crate::editor::{Edit, Editor, Item, Kind, Selection};
 use crate::scene::{Scene, Shape};
 
@@ -181,8 +184,8 @@ impl Outliner {
         reorder(ui, &response, item, out);
         response.context_menu(|ui| {
             out.select(Selection::Item(item));
-            for (text, command) in menu::ITEM_COMMANDS {
-                menu::entry(ui, text, command, true, out);
+            for (text, command) in ITEM_COMMANDS {
+                menu_entry(ui, text, command, true, out);
             }
         });
         if let Some(visible) = visible {
@@ -335,60 +338,4 @@ fn eye(ui: &mut Ui, scene: &Scene, item: Item, name: &str, visible: bool, out: &
         }
         Kind::Pack => {}
     }
-}
-
-/// What can be added, placed in front of the camera.
-pub fn add_menu(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
-    let (at, size) = in_front_of_camera(scene);
-    for shape in Shape::examples(at, size) {
-        let name = format!("Add {}", shape.kind());
-        if ui
-            .add(Button::new((icons::text(icons::of_shape(&shape)), &name)))
-            .accessible_name(name)
-            .clicked()
-        {
-            out.edit(Edit::AddObject(shape));
-        }
-    }
-    let others = [
-        (
-            icons::LIGHT,
-            "Add Light",
-            Edit::AddLight(at + DVec3::new(0.0, size, 0.0)),
-        ),
-        (icons::PACK, "Add ColorPack", Edit::AddPack),
-    ];
-    for (icon, name, edit) in others {
-        if ui
-            .add(Button::new((icons::text(icon), name)))
-            .accessible_name(name)
-            .clicked()
-        {
-            out.edit(edit);
-        }
-    }
-}
-
-/// Where a new thing goes, and how large it is: in the middle of the picture, a fifth of its height.
-fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
-    let camera = &scene.camera;
-    let look = camera
-        .look_at
-        .try_normalize()
-        .unwrap_or(DVec3::new(0.0, 0.0, -1.0));
-    let extent = scene
-        .bounds()
-        .map_or(0.0, |(low, high)| (high - low).length());
-    let distance = if extent > 0.0 { extent / 2.0 } else { 100.0 };
-    let height = match camera.projection {
-        crate::scene::Projection::Perspective => distance / camera.projection_distance,
-        crate::scene::Projection::Orthographic => camera.orthographic_height,
-    };
-    // Whole numbers read better in the inspector, where the scene is large enough for them.
-    let tidy = |x: f64| if distance > 10.0 { x.round() } else { x };
-    let at = camera.position + look * distance;
-    (
-        DVec3::new(tidy(at.x), tidy(at.y), tidy(at.z)),
-        tidy(height / 5.0).max(1e-6),
-    )
 }

@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use egui::{Align, Layout, ProgressBar, RichText, Ui};
 
-use super::UiRequests;
 use super::commands::Command;
+use super::requests::UiRequests;
 use super::theme::palette;
 use crate::worker::Activity;
 

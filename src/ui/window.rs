@@ -8,8 +8,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use eframe::NativeOptions;
 use egui::{IconData, ViewportBuilder};
 
-use super::app::{App, Setup};
+use super::app::App;
 use super::screenshot::Screenshot;
+use super::setup::{APP_ID, Setup};
 use crate::export::ExportError;
 use crate::worker::panic_text;
 
@@ -17,8 +18,6 @@ use crate::worker::panic_text;
 const SIZE: [f32; 2] = [1280.0, 800.0];
 /// Below this the panels leave no room for the picture.
 const MIN_SIZE: [f32; 2] = [760.0, 480.0];
-/// The name under which the system keeps the window's settings.
-const APP_ID: &str = "glint";
 /// The icon, traced by Glint from `assets/icon.ron`.
 const ICON: &[u8] = include_bytes!("../../assets/icon.png");
 
@@ -77,11 +76,6 @@ pub fn run(
         Err(panic) if is_open.load(Ordering::Relaxed) => std::panic::resume_unwind(panic),
         Err(panic) => Err(NoWindow::Unavailable(in_words(panic_text(panic.as_ref())))),
     }
-}
-
-/// The folder in which the system keeps the program's data.
-pub fn data_folder() -> Option<PathBuf> {
-    eframe::storage_dir(APP_ID)
 }
 
 fn options(persist_window: bool) -> NativeOptions {

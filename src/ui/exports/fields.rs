@@ -10,8 +10,8 @@ use crate::editor::Editor;
 use crate::export::{Frames, Pattern, Sequence, Video};
 use crate::image::Format;
 use crate::scene::{MAX_SIDE, Method as _, Sampling, Scene};
-use crate::ui::UiRequests;
 use crate::ui::commands::Command;
+use crate::ui::requests::UiRequests;
 use crate::ui::status::in_words;
 use crate::ui::theme::ROW;
 

@@ -12,8 +12,8 @@ use egui::{
 };
 
 use self::fields::{FIELDS, Settings, fields, forecast, presets};
-use super::UiRequests;
 use super::pictures::Pictures;
+use super::requests::UiRequests;
 use super::status::in_words;
 use super::theme::{GRID, THUMB, palette};
 use super::upload::whole;

@@ -5,8 +5,9 @@ use egui::Ui;
 use super::title;
 use crate::editor::{Edit, Editor};
 use crate::scene::{Camera, Orientation, Projection};
+use crate::ui::icons;
+use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, coordinate};
-use crate::ui::{UiRequests, icons};
 
 /// Every property of the camera.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {

@@ -7,8 +7,9 @@ use glam::DVec3;
 use super::title_field;
 use crate::editor::{Edit, Item, Selection};
 use crate::scene::{self, ColorPack, FieldValue, Light, LightObj, Object, Scene, Shape};
+use crate::ui::icons;
+use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, coordinate, fraction};
-use crate::ui::{UiRequests, icons};
 
 /// A light and its marker.
 pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut UiRequests) {

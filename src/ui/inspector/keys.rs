@@ -8,8 +8,9 @@ use crate::editor::{Edit, Editor, Time};
 use crate::scene::{
     Animation, Camera, Easing, Interpolation, Key, MAX_SECONDS, Orientation, Target,
 };
+use crate::ui::icons;
+use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, coordinate};
-use crate::ui::{UiRequests, icons};
 
 /// Time, way and camera of the selected keys; what several keys do not share is not shown.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {

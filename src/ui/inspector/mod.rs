@@ -15,8 +15,9 @@ pub use keys::target;
 use egui::{Align2, Id, RichText, ScrollArea, TextEdit, Ui};
 use egui_material_icons::MaterialIcon;
 
+use super::icons;
+use super::requests::UiRequests;
 use super::theme::{GRID, ROW};
-use super::{UiRequests, icons};
 use crate::editor::{Edit, Editor, Item, Kind, Selection};
 use crate::scene::Target;
 

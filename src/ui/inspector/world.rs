@@ -7,8 +7,9 @@ use glam::DVec3;
 use super::title;
 use crate::editor::Edit;
 use crate::scene::{MAX_REFLECTIONS, MAX_SIDE, Method, Render, Scene};
+use crate::ui::icons;
+use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, fraction};
-use crate::ui::{UiRequests, icons};
 
 /// What belongs to the scene as a whole.
 pub fn show(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use crate::editor::{Edit, Editor, Time};
 use crate::scene::{Camera, Framing, Projection};
-use crate::ui::UiRequests;
+use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
 use crate::worker::Question;
 

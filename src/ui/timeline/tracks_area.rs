@@ -7,8 +7,8 @@ use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, 
 
 use crate::editor::{Edit, Editor, Time};
 use crate::scene::{Animation, Easing, Interpolation, Target};
-use crate::ui::UiRequests;
 use crate::ui::inspector::target;
+use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, TRACK, palette};
 
 /// Half the width of a key.

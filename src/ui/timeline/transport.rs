@@ -8,8 +8,9 @@ use crate::animate::{Retime, paused_seconds};
 use crate::editor::{Edit, Editor, Repeat, Time};
 use crate::scene::Animation;
 use crate::ui::commands::Command;
+use crate::ui::icons;
+use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
-use crate::ui::{UiRequests, icons};
 
 /// Playing, keys, and what time it is.
 pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out: &mut UiRequests) {

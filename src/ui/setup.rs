@@ -1,0 +1,50 @@
+//! What the program gives the window.
+
+use std::path::PathBuf;
+
+use super::dialogs::{Dialogs, Native};
+use super::screenshot::Screenshot;
+
+/// The name under which the system keeps the window's settings.
+pub const APP_ID: &str = "glint";
+
+/// What the program gives the window.
+pub struct Setup {
+    /// The scene to open; the demo if there is none.
+    pub scene: Option<PathBuf>,
+    /// How paths are asked for.
+    pub dialogs: Box<dyn Dialogs>,
+    /// Where unsaved work is kept; `None` keeps none.
+    pub data_folder: Option<PathBuf>,
+    /// A picture to be made of the window, which then closes.
+    pub screenshot: Option<Screenshot>,
+    /// Whether the window of exports is open at first.
+    pub exports: bool,
+}
+
+impl Setup {
+    /// The desktop's dialogs and data folder.
+    pub fn native(scene: Option<PathBuf>) -> Self {
+        Self {
+            scene,
+            dialogs: Box::new(Native),
+            data_folder: data_folder(),
+            screenshot: None,
+            exports: false,
+        }
+    }
+
+    /// A window that shows the scene, has its picture taken and closes.
+    pub fn for_screenshot(scene: Option<PathBuf>, screenshot: Screenshot) -> Self {
+        Self {
+            data_folder: None,
+            screenshot: Some(screenshot),
+            ..Self::native(scene)
+        }
+    }
+}
+
+/// The folder in which the system keeps the program's data.
+fn data_folder() -> Option<PathBuf> {
+    eframe::storage_dir(APP_ID)
+}
