@@ -1,42 +1,44 @@
 //! Glint's program: the command line, or else the window.
 
-use std::path::Path;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use glint::cli::{CliAction, fail, picture_instead_of_window};
+use glint::cli::{CliAction, CliError, picture_instead_of_window};
 use glint::export::save_image;
-use glint::image::Image;
 use glint::ui::NoWindow;
 use glint::{cli, ui};
 
 fn main() -> ExitCode {
-    match cli::run(std::env::args_os()) {
-        CliAction::Done(code) => code,
-        CliAction::Chart { study, path } => save(&ui::chart_picture(&study), &path),
-        CliAction::Stability { maps, path } => save(&ui::stability_picture(&maps), &path),
+    let result = match cli::run(std::env::args_os()) {
+        CliAction::Done(code) => return code,
+        CliAction::Chart { study, path } => {
+            save_image(&ui::chart_picture(&study), &path).map_err(CliError::from)
+        }
+        CliAction::Stability { maps, path } => {
+            save_image(&ui::stability_picture(&maps), &path).map_err(CliError::from)
+        }
         CliAction::Editor {
             scene,
             screenshot,
             exports,
-        } => {
-            let is_screenshot = screenshot.is_some();
-            match ui::run(scene.clone(), screenshot, exports) {
-                Ok(()) => ExitCode::SUCCESS,
-                Err(NoWindow::Unavailable(reason)) if is_screenshot => {
-                    fail(&format!("no window: {reason}"))
-                }
-                Err(NoWindow::Unavailable(reason)) => {
-                    picture_instead_of_window(scene.as_deref(), &reason)
-                }
-                Err(error) => fail(&error.to_string()),
-            }
-        }
-    }
+        } => open_editor(scene, screenshot, exports),
+    };
+    result.map_or_else(|error| error.report(), |()| ExitCode::SUCCESS)
 }
 
-fn save(picture: &Image, path: &Path) -> ExitCode {
-    match save_image(picture, path) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => fail(&error.to_string()),
+/// Opens the window, or explains why there is none and traces a picture instead.
+fn open_editor(
+    scene: Option<PathBuf>,
+    screenshot: Option<PathBuf>,
+    exports: bool,
+) -> Result<(), CliError> {
+    let is_screenshot = screenshot.is_some();
+    match ui::run(scene.clone(), screenshot, exports) {
+        Ok(()) => Ok(()),
+        Err(NoWindow::Unavailable(reason)) if is_screenshot => {
+            Err(CliError::failed(format!("no window: {reason}")))
+        }
+        Err(NoWindow::Unavailable(reason)) => picture_instead_of_window(scene.as_deref(), &reason),
+        Err(error) => Err(CliError::failed(error)),
     }
 }

@@ -1,14 +1,14 @@
 //! `glint chart`: what every way of tracing a scene costs, and how far it is off.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{CliAction, fail, refuse, say};
-use crate::files::write_atomic;
+use super::action::CliAction;
+use super::error::{CliError, say};
+use crate::export::write_text;
 use crate::image::Format;
 use crate::lab::{Study, cheapest_within, csv, table};
 use crate::scene::Document;
@@ -42,38 +42,26 @@ pub struct ChartArgs {
 }
 
 /// Measures, prints the table, and writes what was asked for. The picture is left to whoever can draw.
-pub fn run(words: &ChartArgs) -> CliAction {
+///
+/// # Errors
+/// [`CliError`]: a scene that is none, a picture in no known format, or a file that cannot be written.
+pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
     // A name that cannot be written is known before the first ray.
-    if let Some(Err(error)) = words.png.as_deref().map(Format::of_path) {
-        return CliAction::Done(refuse(&error.to_string()));
-    }
-    let scene = match Document::load(&words.scene) {
-        Ok(document) => document.scene,
-        Err(error) => return CliAction::Done(refuse(&error.to_string())),
-    };
-    let threads = match Threads::new(words.threads.map(usize::from)) {
-        Ok(threads) => threads,
-        Err(error) => return CliAction::Done(fail(&error.to_string())),
-    };
-    let mut study = Study::of_side(Arc::new(scene), words.side);
+    args.png.as_deref().map(Format::of_path).transpose()?;
+    let scene = Document::load(&args.scene)?.scene;
+    let threads = Threads::new(args.threads.map(usize::from))?;
+    let mut study = Study::of_side(Arc::new(scene), args.side);
     measure(&mut study, &threads);
     say(table(&study).trim_end());
-    if words.within.is_some() || words.budget.is_some() {
-        say(&advice(&study, words.within, words.budget));
+    if args.within.is_some() || args.budget.is_some() {
+        say(&advice(&study, args.within, args.budget));
     }
-    if let Some(path) = &words.csv {
-        let text = csv(&study, &machine(), threads.count());
-        if let Err(error) = write_atomic(path, text.as_bytes()) {
-            return CliAction::Done(fail(&format!("cannot write {}: {error}", path.display())));
-        }
+    if let Some(path) = &args.csv {
+        write_text(path, &csv(&study, &machine(), threads.count()))?;
     }
-    match &words.png {
-        Some(path) => CliAction::Chart {
-            study: Box::new(study),
-            path: path.clone(),
-        },
-        None => CliAction::Done(ExitCode::SUCCESS),
-    }
+    let study = Box::new(study);
+    let path = args.png.clone();
+    Ok(path.map(|path| CliAction::Chart { study, path }))
 }
 
 fn measure(study: &mut Study, threads: &Threads) {

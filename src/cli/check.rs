@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 
-use super::{WRONG, report_error, say};
+use super::error::{WRONG, report_error, say};
 use crate::scene::{Document, Scene};
 
 #[derive(Debug, Args)]
@@ -16,9 +16,9 @@ pub struct CheckArgs {
 }
 
 /// One line per valid file on stdout, one message per refused file on stderr.
-pub fn run(words: &CheckArgs) -> ExitCode {
+pub fn run(args: &CheckArgs) -> ExitCode {
     let mut code = ExitCode::SUCCESS;
-    for path in &words.scenes {
+    for path in &args.scenes {
         match Document::load(path) {
             Ok(document) => say(&format!(
                 "{}: ok, {}",

@@ -2,15 +2,15 @@
 //! farm.
 
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{fail, refuse, say};
-use crate::export::{ExportStep, Exported, Exporting};
+use super::error::{CliError, say};
+use super::render::sized;
+use crate::export::{ExportError, ExportStep, Exported, Exporting};
 use crate::export::{Frames, Pattern, Sequence, Video, job_template};
 use crate::files::write_atomic;
 use crate::image::Format;
@@ -81,63 +81,49 @@ fn format_of(word: &str) -> Result<Format, String> {
 }
 
 impl What {
-    fn sequence(&self, folder: PathBuf) -> Result<Sequence, String> {
-        let document = Document::load(&self.scene).map_err(|error| error.to_string())?;
-        let mut scene: Scene = document.scene;
+    fn sequence(&self, folder: PathBuf) -> Result<Sequence, CliError> {
+        let mut scene: Scene = Document::load(&self.scene)?.scene;
         let render = &mut scene.render;
         (render.width, render.height) =
-            super::render::sized((render.width, render.height), (self.width, self.height));
+            sized((render.width, render.height), (self.width, self.height));
         render.antialias = self.antialias.unwrap_or(render.antialias);
         let (frames, name) = (self.frames.clone(), self.name.clone());
         Sequence::new(Arc::new(scene), frames, name, self.format, folder)
-            .map_err(|sentence| format!("{}: {sentence}", self.scene.display()))
+            .map_err(|error| CliError::usage(format!("{}: {error}", self.scene.display())))
     }
 }
 
 /// Writes the frames that are not there as they should be, then the video.
-pub fn run(words: &ExportArgs) -> ExitCode {
-    let video = match words
-        .video
-        .as_deref()
-        .map(|path| (path, Video::of_path(path)))
-    {
-        None => None,
-        Some((path, Ok(video))) => Some((path, video)),
-        Some((_, Err(error))) => return refuse(&error.to_string()),
-    };
-    let sequence = match words.what.sequence(words.output.clone()) {
-        Ok(sequence) => sequence,
-        Err(sentence) => return refuse(&sentence),
-    };
-    if words.dry_run {
+///
+/// # Errors
+/// [`CliError`]: arguments that fit no scene, or frames that cannot be written.
+pub fn run(args: &ExportArgs) -> Result<(), CliError> {
+    let video = args.video.as_deref();
+    let video = video.map(|path| Video::of_path(path).map(|video| (path, video)));
+    let video = video.transpose().map_err(CliError::usage)?;
+    let sequence = args.what.sequence(args.output.clone())?;
+    if args.dry_run {
         return tell_missing(&sequence);
     }
-    let threads = match Threads::new(words.threads.map(usize::from)) {
-        Ok(threads) => threads,
-        Err(error) => return fail(&error.to_string()),
-    };
+    let threads = Threads::new(args.threads.map(usize::from))?;
     let start = Instant::now();
-    let teller = ProgressReporter::new(&sequence, words.openjd);
-    let done = match export(sequence.clone(), &threads, &teller) {
-        Ok(done) => done,
-        Err(sentence) => return fail(&sentence),
-    };
-    teller.end();
+    let reporter = ProgressReporter::new(&sequence, args.openjd);
+    let done = export(sequence.clone(), &threads, &reporter)?;
+    reporter.end();
     if let Some((path, video)) = video {
-        teller.say_status("encoding");
-        if let Err(error) = video.make(&sequence, path, |_| ()) {
-            return fail(&error.to_string());
-        }
+        reporter.say_status("encoding");
+        let made = video.make(&sequence, path, |_| ());
+        made.map_err(CliError::failed)?;
     }
     let seconds = start.elapsed().as_secs_f64();
     say(&format!(
         "{}: {} written, {} there already, {seconds:.1} s, {:.1} frames/s",
-        words.output.display(),
+        args.output.display(),
         counted(done.written),
         done.kept,
         done.total as f64 / seconds
     ));
-    ExitCode::SUCCESS
+    Ok(())
 }
 
 fn counted(frames: usize) -> String {
@@ -145,11 +131,8 @@ fn counted(frames: usize) -> String {
     format!("{frames} frame{s}")
 }
 
-fn tell_missing(sequence: &Sequence) -> ExitCode {
-    let missing = match sequence.missing() {
-        Ok(missing) => missing,
-        Err(error) => return fail(&error.to_string()),
-    };
+fn tell_missing(sequence: &Sequence) -> Result<(), CliError> {
+    let missing = sequence.missing()?;
     let total = sequence.frames.count();
     let frames: Vec<String> = missing.iter().map(u64::to_string).collect();
     let set = Frames::parse(&frames.join(",")).map_or(String::new(), |set| format!(": {set}"));
@@ -157,22 +140,22 @@ fn tell_missing(sequence: &Sequence) -> ExitCode {
         "{} of {total} to make{set}",
         counted(missing.len())
     ));
-    ExitCode::SUCCESS
+    Ok(())
 }
 
 fn export(
     sequence: Sequence,
     threads: &Threads,
-    teller: &ProgressReporter,
-) -> Result<Exported, String> {
+    reporter: &ProgressReporter,
+) -> Result<Exported, CliError> {
     let again = "; what is done stays, and the same command goes on from there";
-    let failed = |error: crate::export::ExportError| format!("{error}{again}");
-    let mut exporting = Exporting::new(sequence).map_err(|error| error.to_string())?;
+    let failed = |error: ExportError| CliError::failed(format!("{error}{again}"));
+    let mut exporting = Exporting::new(sequence)?;
     let control = RenderControl::default();
     threads.run(|| {
         loop {
             match exporting.step(&control) {
-                ExportStep::Going => teller.tell(exporting.done()),
+                ExportStep::Going => reporter.tell(exporting.done()),
                 ExportStep::Done | ExportStep::Stopped => break,
                 ExportStep::Failed(error) => return Err(failed(error)),
             }
@@ -228,31 +211,26 @@ impl ProgressReporter {
 }
 
 /// Writes the template of a job, and the scene beside it.
-pub fn run_job(words: &JobArgs) -> ExitCode {
-    let sequence = match words.what.sequence(PathBuf::from("frames")) {
-        Ok(sequence) => sequence,
-        Err(sentence) => return refuse(&sentence),
-    };
-    let scene = &words.what.scene;
+///
+/// # Errors
+/// [`CliError`]: arguments that fit no scene, or a file that cannot be written.
+pub fn run_job(args: &JobArgs) -> Result<(), CliError> {
+    let sequence = args.what.sequence(PathBuf::from("frames"))?;
+    let scene = &args.what.scene;
     let stem = scene.file_stem().unwrap_or_default().to_string_lossy();
     let file = scene.file_name().unwrap_or_default().to_string_lossy();
     let text = job_template(&sequence, &stem, &file);
-    match write_atomic(&words.output, text.as_bytes()).and_then(|()| beside(scene, &words.output)) {
-        Ok(()) => {
-            let frames = sequence.frames.count();
-            say(&format!(
-                "{}: a job of {}",
-                words.output.display(),
-                counted(frames)
-            ));
-            ExitCode::SUCCESS
-        }
-        Err(error) => fail(&format!("cannot write {}: {error}", words.output.display())),
-    }
+    let written = write_atomic(&args.output, text.as_bytes());
+    let written = written.and_then(|()| copy_beside(scene, &args.output));
+    let path = args.output.display();
+    written.map_err(|error| CliError::failed(format!("cannot write {path}: {error}")))?;
+    let frames = counted(sequence.frames.count());
+    say(&format!("{path}: a job of {frames}"));
+    Ok(())
 }
 
 /// Copies the scene into the template's folder, unless it is there.
-fn beside(scene: &Path, template: &Path) -> std::io::Result<()> {
+fn copy_beside(scene: &Path, template: &Path) -> std::io::Result<()> {
     let Some(name) = scene.file_name() else {
         return Ok(());
     };

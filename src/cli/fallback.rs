@@ -1,9 +1,8 @@
 //! What `glint [SCENE]` does where no window can be opened: says why, and traces a picture instead.
 
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
-use super::{fail, refuse, say};
+use super::error::{CliError, say};
 use crate::export::{free_path, save_image};
 use crate::image::render;
 use crate::plan::RenderRequest;
@@ -15,14 +14,17 @@ const PACKAGES: &str = "libgl1 libx11-6 libx11-xcb1 libxcursor1 libxi6 libxkbcom
 
 /// Explains in two lines why there is no window, then traces the scene to `SCENE.png` in the
 /// current folder (`SCENE-2.png` if there is one already).
-pub fn picture_instead_of_window(scene: Option<&Path>, reason: &str) -> ExitCode {
-    let (scene, name) = match scene.map(|path| (Document::load(path), path)) {
+///
+/// # Errors
+/// [`CliError`]: a scene that is none, or a picture that cannot be written.
+pub fn picture_instead_of_window(scene: Option<&Path>, reason: &str) -> Result<(), CliError> {
+    let (scene, name) = match scene {
         None => (Scene::demo(), PathBuf::from("demo.png")),
-        Some((Ok(document), path)) => {
+        Some(path) => {
             let stem = path.file_stem().unwrap_or(path.as_os_str());
-            (document.scene, Path::new(stem).with_extension("png"))
+            let name = Path::new(stem).with_extension("png");
+            (Document::load(path)?.scene, name)
         }
-        Some((Err(error), _)) => return refuse(&error.to_string()),
     };
     {
         use std::io::Write as _;
@@ -32,31 +34,17 @@ pub fn picture_instead_of_window(scene: Option<&Path>, reason: &str) -> ExitCode
              glint: `glint render` and `glint check` need none of these; tracing the scene to a picture instead."
         );
     }
-    let traced = Threads::new(None).map(|threads| {
-        threads.run(|| {
-            render(
-                &scene,
-                &RenderRequest::still(&scene),
-                &RenderControl::default(),
-            )
-        })
-    });
-    let image = match traced {
-        Ok(Some((image, _))) => image,
-        Ok(None) => return fail("the trace ended without a picture"),
-        Err(error) => return fail(&error.to_string()),
-    };
+    let request = RenderRequest::still(&scene);
+    let threads = Threads::new(None)?;
+    let traced = threads.run(|| render(&scene, &request, &RenderControl::default()));
+    let (image, _) = traced.ok_or_else(|| CliError::failed("the trace ended without a picture"))?;
     let path = free_path(&name);
-    match save_image(&image, &path) {
-        Ok(()) => {
-            say(&format!(
-                "{}: {}×{}",
-                path.display(),
-                image.width,
-                image.height
-            ));
-            ExitCode::SUCCESS
-        }
-        Err(error) => fail(&error.to_string()),
-    }
+    save_image(&image, &path)?;
+    say(&format!(
+        "{}: {}×{}",
+        path.display(),
+        image.width,
+        image.height
+    ));
+    Ok(())
 }

@@ -1,11 +1,13 @@
 //! The command line: parses words, prints lines. Results go to stdout, errors to stderr; the exit
 //! code is 0 for done, 1 for failed work, 2 for wrong words or a wrong file.
 
-mod chart;
+mod error;
+
+mod action;
+
+mod settings;
 
 mod check;
-
-mod fallback;
 
 mod plan;
 
@@ -13,7 +15,11 @@ mod render;
 
 mod export;
 
+mod chart;
+
 mod stability;
+
+mod fallback;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -21,16 +27,12 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
 
+pub use action::CliAction;
+pub use error::CliError;
+use error::WRONG;
 pub use fallback::picture_instead_of_window;
 
 use crate::image::Format;
-use crate::lab::Study;
-use crate::lab::stability::Map;
-
-/// Exit code when the work failed.
-const FAILED: u8 = 1;
-/// Exit code when the words or the file were wrong.
-const WRONG: u8 = 2;
 
 #[derive(Debug, Parser)]
 #[command(
@@ -71,95 +73,58 @@ enum CliCommand {
     Stability(stability::StabilityArgs),
 }
 
-/// What the command line asked for.
-#[derive(Debug)]
-pub enum CliAction {
-    /// Open the editor.
-    Editor {
-        /// The scene file; the demo if there is none.
-        scene: Option<PathBuf>,
-        /// Where to write a picture of the window, which then closes.
-        screenshot: Option<PathBuf>,
-        /// Whether the window of exports is opened first.
-        exports: bool,
-    },
-    /// Draw the chart of a study into this file.
-    Chart {
-        /// The study.
-        study: Box<Study>,
-        /// The picture file; its ending is known to be good.
-        path: PathBuf,
-    },
-    /// Draw these maps into this file.
-    Stability {
-        /// The maps.
-        maps: Vec<Map>,
-        /// The picture file; its ending is known to be good.
-        path: PathBuf,
-    },
-    /// Nothing more: the command ran and ends with this code.
-    Done(ExitCode),
-}
-
 /// Reads the command line and runs its command, if it has one.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> CliAction {
     let words: Vec<OsString> = words.into_iter().collect();
+    let done = |result: Result<(), CliError>| {
+        CliAction::Done(result.map_or_else(|error| error.report(), |()| ExitCode::SUCCESS))
+    };
     if let Some(name) = unknown_command(&words) {
-        return CliAction::Done(refuse(&format!(
+        return done(Err(CliError::usage(format!(
             "there is no command {name:?}; there are render, export, job, check, plan, chart and stability, and `glint SCENE` opens the editor"
-        )));
+        ))));
     }
-    match Words::try_parse_from(words) {
-        Ok(Words {
-            command: Some(CliCommand::Render(words)),
-            ..
-        }) => CliAction::Done(render::run(&words)),
-        Ok(Words {
-            command: Some(CliCommand::Export(words)),
-            ..
-        }) => CliAction::Done(export::run(&words)),
-        Ok(Words {
-            command: Some(CliCommand::Job(words)),
-            ..
-        }) => CliAction::Done(export::run_job(&words)),
-        Ok(Words {
-            command: Some(CliCommand::Check(words)),
-            ..
-        }) => CliAction::Done(check::run(&words)),
-        Ok(Words {
-            command: Some(CliCommand::Plan(words)),
-            ..
-        }) => CliAction::Done(plan::run(&words)),
-        Ok(Words {
-            command: Some(CliCommand::Chart(words)),
-            ..
-        }) => chart::run(&words),
-        Ok(Words {
-            command: Some(CliCommand::Stability(words)),
-            ..
-        }) => stability::run(&words),
-        Ok(Words {
-            command: None,
-            scene,
-            screenshot,
-            exports,
-        }) => match screenshot.as_deref().map(Format::of_path) {
-            Some(Err(error)) => CliAction::Done(refuse(&error.to_string())),
-            _ => CliAction::Editor {
-                scene,
-                screenshot,
-                exports,
-            },
-        },
+    let words = match Words::try_parse_from(words) {
+        Ok(words) => words,
         Err(error) => {
             // Help and version are "errors" of exit code 0 that go to stdout.
             let _ = error.print();
-            CliAction::Done(if error.use_stderr() {
+            return CliAction::Done(if error.use_stderr() {
                 WRONG.into()
             } else {
                 ExitCode::SUCCESS
-            })
+            });
         }
+    };
+    let result = match &words.command {
+        Some(CliCommand::Render(args)) => render::run(args).map(|()| None),
+        Some(CliCommand::Export(args)) => export::run(args).map(|()| None),
+        Some(CliCommand::Job(args)) => export::run_job(args).map(|()| None),
+        Some(CliCommand::Check(args)) => return CliAction::Done(check::run(args)),
+        Some(CliCommand::Plan(args)) => plan::run(args).map(|()| None),
+        Some(CliCommand::Chart(args)) => chart::run(args),
+        Some(CliCommand::Stability(args)) => stability::run(args),
+        None => words.editor().map(Some),
+    };
+    match result {
+        Ok(Some(action)) => action,
+        Ok(None) => done(Ok(())),
+        Err(error) => done(Err(error)),
+    }
+}
+
+impl Words {
+    fn editor(self) -> Result<CliAction, CliError> {
+        // A name that cannot be written is known before the window opens.
+        self.screenshot
+            .as_deref()
+            .map(Format::of_path)
+            .transpose()?;
+        Ok(CliAction::Editor {
+            scene: self.scene,
+            screenshot: self.screenshot,
+            exports: self.exports,
+        })
     }
 }
 
@@ -172,28 +137,6 @@ fn unknown_command(words: &[OsString]) -> Option<String> {
     let is_command = Words::command().find_subcommand(first).is_some() || first == "help";
     (is_plain(first) && is_plain(second) && !is_command)
         .then(|| first.to_string_lossy().into_owned())
-}
-
-/// One result line on stdout. A reader that went away is no fault of ours.
-fn say(line: &str) {
-    use std::io::Write as _;
-    let _ = writeln!(std::io::stdout(), "{line}");
-}
-
-fn report_error(error: &str) {
-    use std::io::Write as _;
-    let _ = writeln!(std::io::stderr(), "error: {error}");
-}
-
-fn refuse(error: &str) -> ExitCode {
-    report_error(error);
-    WRONG.into()
-}
-
-/// Says on stderr why the work failed, and gives the exit code for that.
-pub fn fail(error: &str) -> ExitCode {
-    report_error(error);
-    FAILED.into()
 }
 
 #[cfg(test)]

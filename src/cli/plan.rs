@@ -1,11 +1,10 @@
 //! `glint plan`: what a scene needs, and why.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Args;
 
-use super::{fail, refuse, say};
+use super::error::{CliError, say};
 use crate::plan::{RenderRequest, needs};
 use crate::scene::Document;
 
@@ -19,20 +18,15 @@ pub struct PlanArgs {
 }
 
 /// One line per rule of the plan on stdout.
-pub fn run(words: &PlanArgs) -> ExitCode {
-    let scene = match Document::load(&words.scene) {
-        Ok(document) => document.scene,
-        Err(error) => return refuse(&error.to_string()),
-    };
+///
+/// # Errors
+/// [`CliError::Usage`] for a scene that is none.
+pub fn run(args: &PlanArgs) -> Result<(), CliError> {
+    let scene = Document::load(&args.scene)?.scene;
     let needs = needs(&scene, &RenderRequest::still(&scene));
-    if words.json {
-        return match serde_json::to_string_pretty(&needs) {
-            Ok(json) => {
-                say(&json);
-                ExitCode::SUCCESS
-            }
-            Err(error) => fail(&error.to_string()),
-        };
+    if args.json {
+        say(&serde_json::to_string_pretty(&needs)?);
+        return Ok(());
     }
     for need in needs {
         say(&format!(
@@ -40,5 +34,5 @@ pub fn run(words: &PlanArgs) -> ExitCode {
             need.rule, need.what, need.why, need.saves
         ));
     }
-    ExitCode::SUCCESS
+    Ok(())
 }

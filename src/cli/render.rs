@@ -2,7 +2,6 @@
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::RecvTimeoutError;
@@ -12,15 +11,13 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
-use super::{fail, refuse, say};
+use super::error::{CliError, say};
+use super::settings::SettingArgs;
 use crate::animate::{CameraPath, shot};
 use crate::export::save_image;
 use crate::image::{Format, Image, RenderCost, render_into};
 use crate::plan::RenderRequest;
-use crate::scene::{
-    Accelerator, Document, HighlightMethod, MAX_SIDE, Method as _, Precision, Projection,
-    RayOffset, Render, Sampling, Scene, SphereMethod, TriangleMethod,
-};
+use crate::scene::{Document, MAX_SIDE, Projection, Scene};
 use crate::simd::Level;
 use crate::trace::{RenderControl, Threads};
 use crate::worker::run_in_background;
@@ -44,28 +41,8 @@ pub struct RenderArgs {
     /// Projection in place of the scene's own
     #[arg(long)]
     camera: Option<CameraArg>,
-    /// How edges are smoothed: none, adaptive, or grid:N for N×N samples in every pixel [default: the
-    /// scene's own, as for all that follow]
-    #[arg(long, value_parser = Sampling::parse)]
-    antialias: Option<Sampling>,
-    /// Real type of the tracer: auto takes f32 unless it would show, f32, f64
-    #[arg(long, value_parser = Precision::parse)]
-    precision: Option<Precision>,
-    /// Where shadow and reflection rays start: robust, fixed:DISTANCE, relative:SHARE, wachter-binder
-    #[arg(long, value_parser = RayOffset::parse)]
-    offset: Option<RayOffset>,
-    /// Sphere formula: stable, classic
-    #[arg(long, value_parser = SphereMethod::parse)]
-    sphere: Option<SphereMethod>,
-    /// Triangle formula: watertight, edges, moller-trumbore, edge-planes
-    #[arg(long, value_parser = TriangleMethod::parse)]
-    triangle: Option<TriangleMethod>,
-    /// Highlight formula: auto, pow, log1p
-    #[arg(long, value_parser = HighlightMethod::parse)]
-    specular: Option<HighlightMethod>,
-    /// How primitives are found: auto takes bundles (bvh) where there are many, list, bvh
-    #[arg(long, value_parser = Accelerator::parse)]
-    accelerator: Option<Accelerator>,
+    #[command(flatten)]
+    settings: SettingArgs,
     /// Lanes of the tracer; all give the same picture [default: the widest of this processor]
     #[arg(long, value_name = "LEVEL", value_parser = lanes)]
     lanes: Option<Level>,
@@ -118,46 +95,34 @@ fn lanes(word: &str) -> Result<Level, String> {
 }
 
 /// Traces and writes the picture, then prints what was asked for.
-pub fn run(words: &RenderArgs) -> ExitCode {
+///
+/// # Errors
+/// [`CliError`]: a scene that is none, a frame that it does not have, or a picture that cannot be written.
+pub fn run(args: &RenderArgs) -> Result<(), CliError> {
     // A name that cannot be written is known before the first ray.
-    if let Some(Err(error)) = words.output.as_deref().map(Format::of_path) {
-        return refuse(&error.to_string());
+    args.output.as_deref().map(Format::of_path).transpose()?;
+    let mut scene = Document::load(&args.scene)?.scene;
+    let threads = Threads::new(args.threads.map(usize::from))?;
+    if let Some(frame) = args.frame {
+        let place = |sentence| CliError::usage(format!("{}: {sentence}", args.scene.display()));
+        scene = at_frame(scene, frame).map_err(place)?;
     }
-    let mut scene = match Document::load(&words.scene) {
-        Ok(document) => document.scene,
-        Err(error) => return refuse(&error.to_string()),
-    };
-    let threads = match Threads::new(words.threads.map(usize::from)) {
-        Ok(threads) => threads,
-        Err(error) => return fail(&error.to_string()),
-    };
-    if let Some(frame) = words.frame {
-        scene = match at_frame(scene, frame) {
-            Ok(scene) => scene,
-            Err(sentence) => return refuse(&format!("{}: {sentence}", words.scene.display())),
-        };
-    }
-    words.adjust(&mut scene.render);
-    let picture = words.picture(&scene);
+    args.settings.apply(&mut scene.render);
+    let request = args.request(&scene);
     let count = threads.count();
-    let Some((image, costs)) = trace(scene, picture, threads, words.repeat.get()) else {
-        return fail("the trace ended without a picture");
-    };
-    if let Some(path) = &words.output
-        && let Err(error) = save_image(&image, path)
-    {
-        return fail(&error.to_string());
+    let traced = trace(scene, request, threads, args.repeat.get());
+    let (image, costs) =
+        traced.ok_or_else(|| CliError::failed("the trace ended without a picture"))?;
+    if let Some(path) = &args.output {
+        save_image(&image, path)?;
     }
     let stats = stats(&image, &costs, count);
-    match (&words.output, words.stats) {
-        (_, true) => match serde_json::to_string(&stats) {
-            Ok(json) => say(&json),
-            Err(error) => return fail(&error.to_string()),
-        },
+    match (&args.output, args.stats) {
+        (_, true) => say(&serde_json::to_string(&stats)?),
         (Some(path), false) => say(&summary(path, &stats)),
         (None, false) => {}
     }
-    ExitCode::SUCCESS
+    Ok(())
 }
 
 fn frame(word: &str) -> Result<u64, String> {
@@ -180,18 +145,7 @@ fn at_frame(scene: Scene, frame: u64) -> Result<Scene, String> {
 }
 
 impl RenderArgs {
-    /// Puts what was asked for in place of the scene's own.
-    fn adjust(&self, render: &mut Render) {
-        render.antialias = self.antialias.unwrap_or(render.antialias);
-        render.precision = self.precision.unwrap_or(render.precision);
-        render.offset = self.offset.unwrap_or(render.offset);
-        render.sphere = self.sphere.unwrap_or(render.sphere);
-        render.triangle = self.triangle.unwrap_or(render.triangle);
-        render.specular = self.specular.unwrap_or(render.specular);
-        render.accelerator = self.accelerator.unwrap_or(render.accelerator);
-    }
-
-    fn picture(&self, scene: &Scene) -> RenderRequest {
+    fn request(&self, scene: &Scene) -> RenderRequest {
         let own = (scene.render.width, scene.render.height);
         let (width, height) = sized(own, (self.width, self.height));
         RenderRequest {

@@ -2,12 +2,12 @@
 
 use std::num::NonZeroU32;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Args;
 
-use super::{CliAction, fail, refuse, say};
-use crate::files::write_atomic;
+use super::action::CliAction;
+use super::error::{CliError, say};
+use crate::export::write_text;
 use crate::image::Format;
 use crate::lab::stability::{cells_csv, maps, summary};
 
@@ -25,19 +25,17 @@ pub struct StabilityArgs {
 }
 
 /// Tries, prints the summary, and writes what was asked for. The picture is left to whoever can draw.
-pub fn run(words: &StabilityArgs) -> CliAction {
-    if let Some(Err(error)) = words.png.as_deref().map(Format::of_path) {
-        return CliAction::Done(refuse(&error.to_string()));
-    }
-    let maps = maps(words.effort.get());
+///
+/// # Errors
+/// [`CliError`]: a picture in no known format, or a file that cannot be written.
+pub fn run(args: &StabilityArgs) -> Result<Option<CliAction>, CliError> {
+    // A name that cannot be written is known before the first ray.
+    args.png.as_deref().map(Format::of_path).transpose()?;
+    let maps = maps(args.effort.get());
     say(summary(&maps).trim_end());
-    if let Some(path) = &words.csv
-        && let Err(error) = write_atomic(path, cells_csv(&maps).as_bytes())
-    {
-        return CliAction::Done(fail(&format!("cannot write {}: {error}", path.display())));
+    if let Some(path) = &args.csv {
+        write_text(path, &cells_csv(&maps))?;
     }
-    match words.png.clone() {
-        Some(path) => CliAction::Stability { maps, path },
-        None => CliAction::Done(ExitCode::SUCCESS),
-    }
+    let path = args.png.clone();
+    Ok(path.map(|path| CliAction::Stability { maps, path }))
 }

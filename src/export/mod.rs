@@ -24,6 +24,6 @@ pub use frames::Frames;
 pub use job::job_template;
 pub use manifest::{Hash, MANIFEST, Manifest};
 pub use pattern::Pattern;
-pub use save::{free_path, save_image};
+pub use save::{free_path, save_image, write_text};
 pub use sequence::Sequence;
 pub use video::{Video, VideoError};

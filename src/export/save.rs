@@ -22,6 +22,17 @@ pub fn save_image(image: &Image, path: &Path) -> Result<(), ExportError> {
     })
 }
 
+/// Writes a text file, whole or not at all.
+///
+/// # Errors
+/// [`ExportError::Disk`]; a file that was at `path` is then untouched.
+pub fn write_text(path: &Path, text: &str) -> Result<(), ExportError> {
+    write_atomic(path, text.as_bytes()).map_err(|source| ExportError::Disk {
+        path: path.to_owned(),
+        source,
+    })
+}
+
 /// `wanted`, or the first of `NAME-2`, `NAME-3`, … that no file has yet.
 pub fn free_path(wanted: &Path) -> PathBuf {
     let stem = wanted

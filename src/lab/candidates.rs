@@ -2,8 +2,8 @@
 
 use crate::plan::{Model, RenderRequest};
 use crate::scene::{
-    Accelerator, HighlightMethod, MAX_REFLECTIONS, Method, Precision, RayOffset, Render, Sampling,
-    Scene, SphereMethod, TriangleMethod,
+    HighlightMethod, MAX_REFLECTIONS, Method, Precision, RayOffset, Render, Sampling, Scene,
+    Setting, SphereMethod, TriangleMethod, VisitSetting,
 };
 
 /// One way of tracing a picture.
@@ -72,20 +72,10 @@ pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
         change(&mut candidate.render);
         all.push(candidate);
     };
-    neighbours::<Precision>("", &mut change, |render, value| render.precision = value);
-    neighbours::<SphereMethod>("sphere ", &mut change, |render, value| {
-        render.sphere = value;
-    });
-    neighbours::<TriangleMethod>("", &mut change, |render, value| render.triangle = value);
-    neighbours::<RayOffset>("offset ", &mut change, |render, value| {
-        render.offset = value;
-    });
-    neighbours::<HighlightMethod>("highlight ", &mut change, |render, value| {
-        render.specular = value;
-    });
-    neighbours::<Accelerator>("", &mut change, |render, value| {
-        render.accelerator = value;
-    });
+    // Every method of every setting but the plan's; of samplings there is a ladder below.
+    for (name, render) in neighbours(&plan.render) {
+        change(name, &|own| *own = render.clone());
+    }
     let limit = scene.render.reflection_limit;
     if limit > 0 {
         change(bounces(limit - 1), &|render| {
@@ -121,16 +111,61 @@ fn bounces(limit: u32) -> String {
     format!("{limit} bounce{}", if limit == 1 { "" } else { "s" })
 }
 
-/// All ways of one step but the plan's.
-fn neighbours<T: Method>(
-    prefix: &str,
-    change: &mut impl FnMut(String, &dyn Fn(&mut Render)),
-    set: impl Fn(&mut Render, T),
-) {
-    for method in &T::ALL[1..] {
-        change(format!("{prefix}{}", method.id), &|render| {
-            set(render, method.value);
+/// Settings that differ from these in one formula, with their names.
+fn neighbours(render: &Render) -> Vec<(String, Render)> {
+    let mut list = MethodList(Vec::new());
+    render.clone().visit_settings(&mut list);
+    let formulas = list
+        .0
+        .iter()
+        .filter(|(setting, ..)| setting.name != "antialias");
+    let neighbours = formulas.map(|(setting, id)| {
+        let mut neighbour = render.clone();
+        neighbour.visit_settings(&mut Choose {
+            name: setting.name,
+            id,
         });
+        (format!("{}{id}", setting.prefix), neighbour)
+    });
+    neighbours.collect()
+}
+
+/// Every method of every setting but the defaults.
+struct MethodList(Vec<(Setting, &'static str)>);
+
+impl VisitSetting for MethodList {
+    fn visit<M: Method>(&mut self, setting: Setting, _value: &mut M) {
+        let others = M::ALL[1..].iter();
+        self.0.extend(others.map(|method| (setting, method.id)));
+    }
+}
+
+/// Chooses one method by its id.
+struct Choose<'a> {
+    name: &'static str,
+    id: &'a str,
+}
+
+impl VisitSetting for Choose<'_> {
+    fn visit<M: Method>(&mut self, setting: Setting, value: &mut M) {
+        let mut methods = M::ALL.iter();
+        let method = methods.find(|method| method.id == self.id);
+        if let Some(method) = method.filter(|_| setting.name == self.name) {
+            *value = method.value;
+        }
+    }
+}
+
+/// The settings in the words of the command line.
+struct Ids(Vec<String>);
+
+impl VisitSetting for Ids {
+    fn visit<M: Method>(&mut self, setting: Setting, value: &mut M) {
+        let name = match setting.name {
+            name @ ("specular" | "accelerator") => format!("{name} "),
+            _ => String::new(),
+        };
+        self.0.push(format!("{name}{}", value.id()));
     }
 }
 
@@ -155,17 +190,10 @@ impl Candidate {
 
     /// Its settings in the words of the command line.
     pub fn words(&self) -> String {
-        let render = &self.render;
-        let mut words = vec![
-            render.antialias.id(),
-            render.precision.id(),
-            render.sphere.id(),
-            render.triangle.id(),
-            render.offset.id(),
-            format!("specular {}", render.specular.id()),
-            format!("accelerator {}", render.accelerator.id()),
-            bounces(render.reflection_limit),
-        ];
+        let mut ids = Ids(Vec::new());
+        self.render.clone().visit_settings(&mut ids);
+        let mut words = ids.0;
+        words.push(bounces(self.render.reflection_limit));
         if self.model == Model::Everything {
             words.push("nothing left out".to_owned());
         }
@@ -179,7 +207,7 @@ impl Candidate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::check;
+    use crate::scene::{Accelerator, check};
 
     #[test]
     fn every_way_of_every_list_is_compared_once() {

@@ -57,6 +57,6 @@ pub use notation::{format_number, parse_vec3};
 pub use object::{Light, LightObj, Object};
 pub use orientation::Orientation;
 pub use recovery::{Leftover, Recovery};
-pub use render::{MAX_REFLECTIONS, MAX_SIDE, Render};
+pub use render::{MAX_REFLECTIONS, MAX_SIDE, Render, Setting, VisitSetting};
 pub use shape::{Describe, Field, FieldValue, Plane, Shape, Sphere, Triangle};
 pub use whole::{Scene, VERSION};

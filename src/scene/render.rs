@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::methods::{
-    Accelerator, HighlightMethod, Methods, Precision, RayOffset, Sampling, SphereMethod,
+    Accelerator, HighlightMethod, Method, Methods, Precision, RayOffset, Sampling, SphereMethod,
     TriangleMethod,
 };
 use super::notation;
@@ -69,7 +69,75 @@ pub struct Render {
     pub accelerator: Accelerator,
 }
 
+/// A setting that has competing methods.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    /// What the file and the command line call it.
+    pub name: &'static str,
+    /// What the inspector calls it.
+    pub label: &'static str,
+    /// What it decides, in a phrase.
+    pub what: &'static str,
+    /// What comes before a method's id where the id alone says too little.
+    pub prefix: &'static str,
+}
+
+/// Something done with every setting.
+pub trait VisitSetting {
+    /// Does it with one; `value` may be changed.
+    fn visit<M: Method>(&mut self, setting: Setting, value: &mut M);
+}
+
 impl Render {
+    /// Shows every setting that has competing methods: flags, rows of the inspector and the lab's
+    /// candidates are made from this list.
+    pub fn visit_settings(&mut self, visitor: &mut impl VisitSetting) {
+        let setting = |name, label, what, prefix| Setting {
+            name,
+            label,
+            what,
+            prefix,
+        };
+        visitor.visit(
+            setting("antialias", "edges", "How edges are smoothed", ""),
+            &mut self.antialias,
+        );
+        visitor.visit(
+            setting("precision", "precision", "The real type of the tracer", ""),
+            &mut self.precision,
+        );
+        visitor.visit(
+            setting("sphere", "sphere", "Ray against sphere", "sphere "),
+            &mut self.sphere,
+        );
+        visitor.visit(
+            setting("triangle", "triangle", "Ray against triangle", ""),
+            &mut self.triangle,
+        );
+        visitor.visit(
+            setting(
+                "offset",
+                "offset",
+                "Where shadow and reflection rays start",
+                "offset ",
+            ),
+            &mut self.offset,
+        );
+        visitor.visit(
+            setting(
+                "specular",
+                "specular",
+                "The power of a highlight",
+                "highlight ",
+            ),
+            &mut self.specular,
+        );
+        visitor.visit(
+            setting("accelerator", "accelerator", "How primitives are found", ""),
+            &mut self.accelerator,
+        );
+    }
+
     /// The formulas.
     pub fn methods(&self) -> Methods {
         Methods {

@@ -1,8 +1,6 @@
 //! The window's frame: reads input, shows the panels, applies what they asked for, and hands the
 //! scene to the background lane.
 
-use std::path::PathBuf;
-
 use egui::{CentralPanel, Context, Frame, Margin, Panel, Theme, Ui, ViewportCommand};
 
 use super::autosave::Autosave;

@@ -7,8 +7,6 @@ use egui::{
 };
 use egui_material_icons::MaterialIcon;
 
-use glam::DVec3;
-
 use super::add::add_menu;
 use super::icons;
 use super::inspector::name_field;
@@ -16,7 +14,7 @@ use super::menu_entry::{ITEM_COMMANDS, entry as menu_entry};
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW, palette};
 use crate::editor::{Edit, Editor, Item, Kind, Selection};
-use crate::scene::{Scene, Shape};
+use crate::scene::Scene;
 
 /// What the panel remembers between frames.
 #[derive(Debug, Default)]

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use egui::{Align2, ComboBox, DragValue, TextEdit, Ui};
 
-use super::Found;
 use crate::editor::Editor;
 use crate::export::{Frames, Pattern, Sequence, Video};
 use crate::image::Format;
@@ -14,6 +13,9 @@ use crate::ui::commands::Command;
 use crate::ui::requests::UiRequests;
 use crate::ui::status::in_words;
 use crate::ui::theme::ROW;
+
+/// Frames that are to be made, how many of them replace files, and all that are asked for.
+pub type Found = Result<(usize, usize, usize), String>;
 
 /// Width of the window's fields, in points.
 pub const FIELDS: f32 = 360.0;

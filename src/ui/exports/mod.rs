@@ -11,7 +11,7 @@ use egui::{
     TextureOptions, Ui, Window, vec2,
 };
 
-use self::fields::{FIELDS, Settings, fields, forecast, presets};
+use self::fields::{FIELDS, Found, Settings, fields, forecast, presets};
 use super::pictures::Pictures;
 use super::requests::UiRequests;
 use super::status::in_words;
@@ -20,9 +20,6 @@ use super::upload::whole;
 use crate::editor::Editor;
 use crate::export::{Sequence, Video, VideoError};
 use crate::worker::{ExportState, run_in_background};
-
-/// Frames that are to be made, how many of them replace files, and all that are asked for.
-type Found = Result<(usize, usize, usize), String>;
 
 /// The window and its exports.
 #[derive(Default)]

@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use super::title;
+use super::title::title;
 use crate::editor::{Edit, Editor};
 use crate::scene::{Camera, Orientation, Projection};
 use crate::ui::icons;

@@ -4,7 +4,7 @@ use egui::Ui;
 
 use glam::DVec3;
 
-use super::title_field;
+use super::title::title_field;
 use crate::editor::{Edit, Item, Selection};
 use crate::scene::{self, ColorPack, FieldValue, Light, LightObj, Object, Scene, Shape};
 use crate::ui::icons;

@@ -3,7 +3,7 @@
 use egui::{Button, Ui};
 
 use super::camera::place_rows;
-use super::title;
+use super::title::title;
 use crate::editor::{Edit, Editor, Time};
 use crate::scene::{
     Animation, Camera, Easing, Interpolation, Key, MAX_SECONDS, Orientation, Target,

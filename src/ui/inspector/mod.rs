@@ -1,5 +1,7 @@
 //! The panel on the right: every property of what is selected.
 
+mod title;
+
 mod camera;
 
 mod items;
@@ -11,14 +13,15 @@ mod needs;
 mod world;
 
 pub use keys::target;
+pub use title::name_field;
+use title::title_field;
 
-use egui::{Align2, Id, RichText, ScrollArea, TextEdit, Ui};
-use egui_material_icons::MaterialIcon;
+use egui::{ScrollArea, Ui};
 
 use super::icons;
 use super::requests::UiRequests;
-use super::theme::{GRID, ROW};
-use crate::editor::{Edit, Editor, Item, Kind, Selection};
+use super::theme::GRID;
+use crate::editor::{Editor, Item, Kind, Selection};
 use crate::scene::Target;
 
 /// Shows the selection and pushes its changes.
@@ -73,47 +76,4 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         needs::show(ui, editor);
         ui.add_space(GRID);
     });
-}
-
-fn title(ui: &mut Ui, icon: MaterialIcon, name: &str) {
-    ui.horizontal(|ui| {
-        ui.set_min_height(ROW);
-        ui.label(icons::text(icon));
-        ui.label(RichText::new(name).heading());
-    });
-}
-
-/// The title of an item is its name, which can be edited in place.
-fn title_field(ui: &mut Ui, icon: MaterialIcon, item: Item, name: &str, out: &mut UiRequests) {
-    ui.horizontal(|ui| {
-        ui.set_min_height(ROW);
-        ui.label(icons::text(icon));
-        if let Some(new) = name_field(ui, "name", Id::unique(("title", item)), name) {
-            out.edit(Edit::Rename(item, new));
-        }
-    });
-}
-
-/// A text field that gives the text when it is left with Enter or a click elsewhere, and forgets it
-/// on Escape.
-pub fn name_field(ui: &mut Ui, label: &str, id: Id, name: &str) -> Option<String> {
-    let mut text = ui
-        .data(|data| data.get_temp::<String>(id))
-        .unwrap_or_else(|| name.to_owned());
-    let field = TextEdit::singleline(&mut text)
-        .id(id)
-        .char_limit(200)
-        .align(Align2::LEFT_CENTER);
-    let response = ui
-        .add_sized([ui.available_width(), ROW], field)
-        .accessible_name(label);
-    if response.lost_focus() {
-        ui.data_mut(|data| data.remove::<String>(id));
-        let is_cancelled = ui.input(|input| input.key_pressed(egui::Key::Escape));
-        return (!is_cancelled && text.trim() != name).then_some(text);
-    }
-    if response.changed() {
-        ui.data_mut(|data| data.insert_temp(id, text));
-    }
-    None
 }

@@ -4,9 +4,9 @@ use egui::Ui;
 
 use glam::DVec3;
 
-use super::title;
+use super::title::title;
 use crate::editor::Edit;
-use crate::scene::{MAX_REFLECTIONS, MAX_SIDE, Method, Render, Scene};
+use crate::scene::{MAX_REFLECTIONS, MAX_SIDE, Method, Render, Scene, Setting, VisitSetting};
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, fraction};
@@ -82,71 +82,31 @@ pub fn show_picture(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
         &mut render.reflection_limit,
     );
     rows.heading("Traced with");
-    formula(
-        &mut rows,
-        "antialias",
-        "How edges are smoothed",
-        &mut render.antialias,
-    );
-    formula(
-        &mut rows,
-        "precision",
-        "The real type of the tracer",
-        &mut render.precision,
-    );
-    formula(
-        &mut rows,
-        "sphere",
-        "Ray against sphere",
-        &mut render.sphere,
-    );
-    formula(
-        &mut rows,
-        "triangle",
-        "Ray against triangle",
-        &mut render.triangle,
-    );
-    formula(
-        &mut rows,
-        "offset",
-        "Where shadow and reflection rays start",
-        &mut render.offset,
-    );
-    formula(
-        &mut rows,
-        "specular",
-        "The power of a highlight",
-        &mut render.specular,
-    );
-    formula(
-        &mut rows,
-        "accelerator",
-        "How primitives are found",
-        &mut render.accelerator,
-    );
+    render.visit_settings(&mut MethodRows(&mut rows));
     let changed = rows.changed();
     if let Some(field) = changed.filter(|_| render != scene.render) {
         out.edit(Edit::Render(render, field));
     }
 }
 
-/// A row for a choice between ways of doing a step.
-fn formula<T: Method>(rows: &mut Rows, name: &'static str, hint: &str, value: &mut T) {
-    let methods = T::ALL
-        .iter()
-        .map(|method| (method.value, method.id.to_owned()));
-    let mut options: Vec<(T, String)> = methods.collect();
-    if options.iter().all(|(option, _)| option != value) {
-        options.push((*value, value.id()));
+/// A row for each choice between methods.
+struct MethodRows<'a, 'u>(&'a mut Rows<'u>);
+
+impl VisitSetting for MethodRows<'_, '_> {
+    fn visit<M: Method>(&mut self, setting: Setting, value: &mut M) {
+        let methods = M::ALL
+            .iter()
+            .map(|method| (method.value, method.id.to_owned()));
+        let mut options: Vec<(M, String)> = methods.collect();
+        if options.iter().all(|(option, _)| option != value) {
+            options.push((*value, value.id()));
+        }
+        let lines = M::ALL.iter();
+        let lines =
+            lines.map(|method| format!("\n{}: {} ({})", method.id, method.what, method.source));
+        let hint = format!("{}{}", setting.what, lines.collect::<String>());
+        self.0.choice(setting.label, &hint, value, options);
     }
-    let lines = T::ALL.iter();
-    let lines = lines.map(|method| format!("\n{}: {} ({})", method.id, method.what, method.source));
-    rows.choice(
-        name,
-        &format!("{hint}{}", lines.collect::<String>()),
-        value,
-        options,
-    );
 }
 
 /// A row for a whole number.

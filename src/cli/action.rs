@@ -1,0 +1,37 @@
+//! What is left to do when the arguments are read.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use crate::lab::Study;
+use crate::lab::stability::Map;
+
+/// What the command line asked for.
+#[derive(Debug)]
+pub enum CliAction {
+    /// Open the editor.
+    Editor {
+        /// The scene file; the demo if there is none.
+        scene: Option<PathBuf>,
+        /// Where to write a picture of the window, which then closes.
+        screenshot: Option<PathBuf>,
+        /// Whether the window of exports is opened first.
+        exports: bool,
+    },
+    /// Draw the chart of a study into this file.
+    Chart {
+        /// The study.
+        study: Box<Study>,
+        /// The picture file; its ending is known to be good.
+        path: PathBuf,
+    },
+    /// Draw these maps into this file.
+    Stability {
+        /// The maps.
+        maps: Vec<Map>,
+        /// The picture file; its ending is known to be good.
+        path: PathBuf,
+    },
+    /// Nothing more: the command ran and ends with this code.
+    Done(ExitCode),
+}

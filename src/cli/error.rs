@@ -1,0 +1,90 @@
+//! How a command ends, and what it says.
+
+use std::error::Error;
+use std::io::Write as _;
+use std::process::ExitCode;
+
+use crate::export::ExportError;
+use crate::image::FormatError;
+use crate::scene::SceneError;
+use crate::trace::PoolError;
+
+/// Exit code when the work failed.
+const FAILED: u8 = 1;
+/// Exit code when the arguments or the file were wrong.
+pub const WRONG: u8 = 2;
+
+/// What went wrong, whatever it is.
+type Source = Box<dyn Error + Send + Sync>;
+
+/// Why a command did not do what it was asked for.
+#[derive(Debug, thiserror::Error)]
+pub enum CliError {
+    /// The arguments or the file were wrong: nothing was done.
+    #[error(transparent)]
+    Usage(Source),
+    /// The work failed.
+    #[error(transparent)]
+    Failed(Source),
+}
+
+impl CliError {
+    /// The arguments or the file were wrong.
+    pub fn usage(error: impl Into<Source>) -> Self {
+        Self::Usage(error.into())
+    }
+
+    /// The work failed.
+    pub fn failed(error: impl Into<Source>) -> Self {
+        Self::Failed(error.into())
+    }
+
+    /// Says it on stderr; the exit code for it.
+    pub fn report(&self) -> ExitCode {
+        report_error(&self.to_string());
+        match self {
+            Self::Usage(_) => WRONG.into(),
+            Self::Failed(_) => FAILED.into(),
+        }
+    }
+}
+
+impl From<SceneError> for CliError {
+    fn from(error: SceneError) -> Self {
+        Self::usage(error)
+    }
+}
+
+impl From<FormatError> for CliError {
+    fn from(error: FormatError) -> Self {
+        Self::usage(error)
+    }
+}
+
+impl From<ExportError> for CliError {
+    fn from(error: ExportError) -> Self {
+        Self::failed(error)
+    }
+}
+
+impl From<PoolError> for CliError {
+    fn from(error: PoolError) -> Self {
+        Self::failed(error)
+    }
+}
+
+impl From<serde_json::Error> for CliError {
+    fn from(error: serde_json::Error) -> Self {
+        Self::failed(error)
+    }
+}
+
+/// One result line on stdout. A reader that went away is no fault of ours.
+pub fn say(line: &str) {
+    let _ = writeln!(std::io::stdout(), "{line}");
+}
+
+/// One line about what went wrong on stderr.
+pub fn report_error(error: &str) {
+    let _ = writeln!(std::io::stderr(), "error: {error}");
+}

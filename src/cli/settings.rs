@@ -1,0 +1,98 @@
+//! Flags for the tracer's settings, made from the scene's own list.
+
+use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
+
+use crate::scene::{Method, Render, Setting, VisitSetting};
+
+/// What was asked for, by setting. All of it is known to be valid.
+#[derive(Clone, Debug, Default)]
+pub struct SettingArgs {
+    asked: Vec<(&'static str, String)>,
+}
+
+impl SettingArgs {
+    /// Puts what was asked for in place of the scene's own.
+    pub fn apply(&self, render: &mut Render) {
+        render.visit_settings(&mut Apply(self));
+    }
+}
+
+struct Apply<'a>(&'a SettingArgs);
+
+impl VisitSetting for Apply<'_> {
+    fn visit<M: Method>(&mut self, setting: Setting, value: &mut M) {
+        let mut asked = self.0.asked.iter();
+        let asked = asked.find(|(name, _)| *name == setting.name);
+        if let Some(Ok(asked)) = asked.map(|(_, id)| M::parse(id)) {
+            *value = asked;
+        }
+    }
+}
+
+/// Adds a flag for each setting to a command.
+struct Flags(Command);
+
+impl VisitSetting for Flags {
+    fn visit<M: Method>(&mut self, setting: Setting, _value: &mut M) {
+        let ids: Vec<&str> = M::ALL.iter().map(|method| method.id).collect();
+        let own = "[default: the scene's own]";
+        let help = format!("{}: {} {own}", setting.what, ids.join(", "));
+        let lines = M::ALL.iter();
+        let lines = lines.map(|method| format!("\n- {}: {}", method.id, method.what));
+        let arg = Arg::new(setting.name)
+            .long(setting.name)
+            .help(help)
+            .long_help(format!(
+                "{} {own}{}",
+                setting.what,
+                lines.collect::<String>()
+            ))
+            .value_parser(|id: &str| M::parse(id).map(|_| id.to_owned()));
+        self.0 = std::mem::take(&mut self.0).arg(arg);
+    }
+}
+
+/// Reads the flags.
+struct Read<'a> {
+    matches: &'a mut ArgMatches,
+    asked: Vec<(&'static str, String)>,
+}
+
+impl VisitSetting for Read<'_> {
+    fn visit<M: Method>(&mut self, setting: Setting, _value: &mut M) {
+        let asked = self.matches.remove_one(setting.name);
+        self.asked.extend(asked.map(|id| (setting.name, id)));
+    }
+}
+
+impl FromArgMatches for SettingArgs {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        Self::from_arg_matches_mut(&mut matches.clone())
+    }
+
+    fn from_arg_matches_mut(matches: &mut ArgMatches) -> Result<Self, Error> {
+        let mut read = Read {
+            matches,
+            asked: Vec::new(),
+        };
+        Render::default().visit_settings(&mut read);
+        Ok(Self { asked: read.asked })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Args for SettingArgs {
+    fn augment_args(command: Command) -> Command {
+        let mut flags = Flags(command);
+        Render::default().visit_settings(&mut flags);
+        flags.0
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}

@@ -1,0 +1,54 @@
+//! The name on top of what is inspected.
+
+use egui::{Align2, Id, RichText, TextEdit, Ui};
+use egui_material_icons::MaterialIcon;
+
+use crate::editor::{Edit, Item};
+use crate::ui::icons;
+use crate::ui::requests::UiRequests;
+use crate::ui::theme::ROW;
+
+/// A symbol and a heading.
+pub fn title(ui: &mut Ui, icon: MaterialIcon, name: &str) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(ROW);
+        ui.label(icons::text(icon));
+        ui.label(RichText::new(name).heading());
+    });
+}
+
+/// The title of an item is its name, which can be edited in place.
+/// A symbol and a name that can be changed.
+pub fn title_field(ui: &mut Ui, icon: MaterialIcon, item: Item, name: &str, out: &mut UiRequests) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(ROW);
+        ui.label(icons::text(icon));
+        if let Some(new) = name_field(ui, "name", Id::unique(("title", item)), name) {
+            out.edit(Edit::Rename(item, new));
+        }
+    });
+}
+
+/// A text field that gives the text when it is left with Enter or a click elsewhere, and forgets it
+/// on Escape.
+pub fn name_field(ui: &mut Ui, label: &str, id: Id, name: &str) -> Option<String> {
+    let mut text = ui
+        .data(|data| data.get_temp::<String>(id))
+        .unwrap_or_else(|| name.to_owned());
+    let field = TextEdit::singleline(&mut text)
+        .id(id)
+        .char_limit(200)
+        .align(Align2::LEFT_CENTER);
+    let response = ui
+        .add_sized([ui.available_width(), ROW], field)
+        .accessible_name(label);
+    if response.lost_focus() {
+        ui.data_mut(|data| data.remove::<String>(id));
+        let is_cancelled = ui.input(|input| input.key_pressed(egui::Key::Escape));
+        return (!is_cancelled && text.trim() != name).then_some(text);
+    }
+    if response.changed() {
+        ui.data_mut(|data| data.insert_temp(id, text));
+    }
+    None
+}
