@@ -90,6 +90,10 @@ fn thing(shape: &Shape) -> Box<dyn Thing> {
                 corners: Some([a, b, c]),
             })
         }
+        ref other => panic!(
+            "the yardstick draws the demo, which has no {}",
+            other.kind()
+        ),
     }
 }
 

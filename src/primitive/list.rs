@@ -1,5 +1,6 @@
 //! All primitives of a scene, in one list for each kind.
 
+use super::disc::PackedDisc;
 use super::kind::{Packing, Primitive};
 use super::plane::PackedPlane;
 use super::projector::Rectangle;
@@ -95,7 +96,8 @@ macro_rules! kinds {
 kinds! {
     Sphere in spheres: PackedSphere,
     Plane in planes: PackedPlane,
-    Triangle in triangles: PackedTriangle
+    Triangle in triangles: PackedTriangle,
+    Disc in discs: PackedDisc
 }
 
 impl<R: Real> Primitives<R> {

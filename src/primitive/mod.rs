@@ -17,9 +17,12 @@ mod plane;
 
 mod triangle;
 
+mod disc;
+
 mod list;
 
 pub use ball::{Ball, CAUTION, FAR_CAUTION};
+pub use disc::PackedDisc;
 pub use kind::{Approach, Corner, Packing, Primitive, SurfacePoint};
 pub use list::{KINDS, Kind, Primitives, Visit, WithPrimitive};
 pub use plane::PackedPlane;

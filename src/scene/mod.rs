@@ -58,5 +58,5 @@ pub use object::{Light, LightObj, Object};
 pub use orientation::Orientation;
 pub use recovery::{Leftover, Recovery};
 pub use render::{MAX_REFLECTIONS, MAX_SIDE, Render, Setting, VisitSetting};
-pub use shape::{Describe, Field, FieldValue, Plane, Shape, Sphere, Triangle};
+pub use shape::{Describe, Disc, Field, FieldValue, Plane, Shape, Sphere, Triangle};
 pub use whole::{Scene, VERSION};

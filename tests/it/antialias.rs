@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use glint::plan::{Precision, RenderRequest, Sampling};
-use glint::scene::{Object, Scene, Shape, Sphere, Triangle};
+use glint::scene::{Disc, Object, Scene, Shape, Sphere, Triangle};
 use glint::simd::Real;
 use glint::trace::{Pass, Pixel, Rays, RenderControl, Tracer};
 
@@ -164,6 +164,47 @@ fn what_is_narrower_than_a_pixel_does_not_slip_through() {
     assert!(
         got.psnr >= EIGHT_BITS && got.worst.0 <= INVISIBLE,
         "{got:?}"
+    );
+}
+
+/// The demo with discs over its floor: some large, some narrower than a pixel, some all but edge-on.
+fn coins() -> Scene {
+    let mut scene = Scene::demo();
+    for n in 0..36 {
+        let (column, row) = (f64::from(n % 9), f64::from(n / 9));
+        let center = DVec3::new(60.0 + 22.0 * column, 12.0 + 9.0 * row, -40.0 - 24.0 * row);
+        let normal = match n % 3 {
+            0 => DVec3::new(0.3, 1.0, 0.1),
+            1 => DVec3::new(1.0, 0.02 * row, 0.3),
+            _ => DVec3::new(0.2, 0.4, 1.0),
+        };
+        let radius = if n % 4 == 0 { 0.3 } else { 6.0 };
+        scene.objects.push(Object {
+            name: format!("Coin {n}"),
+            color_pack: "sphere 2".to_owned(),
+            shape: Disc {
+                center,
+                normal,
+                radius,
+            }
+            .into(),
+            visible: true,
+        });
+    }
+    scene
+}
+
+#[test]
+fn the_rims_of_discs_are_clean() {
+    let got = quality(&coins(), &picture(Sampling::ADAPTIVE));
+    assert!(
+        got.psnr >= EIGHT_BITS && got.worst.0 <= INVISIBLE,
+        "{got:?}"
+    );
+    let jagged = quality(&coins(), &picture(Sampling::Centres));
+    assert!(
+        jagged.psnr < EIGHT_BITS,
+        "the measure has no power: {jagged:?}"
     );
 }
 

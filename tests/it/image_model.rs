@@ -8,7 +8,7 @@ use glint::plan::{
     Accelerator, HighlightMethod, Methods, Precision, RayOffset, RenderRequest, Sampling,
     SphereMethod, TriangleMethod,
 };
-use glint::scene::{Method as _, Object, Plane, Projection, Scene, Shape, Sphere, Triangle};
+use glint::scene::{Disc, Method as _, Object, Plane, Projection, Scene, Shape, Sphere, Triangle};
 use glint::simd::Level;
 use glint::trace::{Grid, Pass, Rays, RenderControl, Threads, Tracer};
 
@@ -263,6 +263,11 @@ fn placed(scale: f64, by: DVec3) -> Scene {
                 a: place(a),
                 b: place(b),
                 c: place(c),
+            }),
+            Shape::Disc(disc) => Shape::Disc(Disc {
+                center: place(disc.center),
+                radius: disc.radius * scale,
+                ..disc
             }),
         };
     }

@@ -7,7 +7,7 @@ use std::process::Command;
 use glam::DVec3;
 use glint::image::{Image, render};
 use glint::plan::{Methods, RayOffset, RenderRequest};
-use glint::scene::{ColorPack, Plane, Projection, Scene, Shape, Sphere, Triangle};
+use glint::scene::{ColorPack, Disc, Plane, Projection, Scene, Shape, Sphere, Triangle};
 use glint::trace::RenderControl;
 
 use crate::random;
@@ -67,6 +67,18 @@ fn translate(scene: &Scene) -> String {
                     "plane {{ {}, {:?} {texture} }}",
                     vector(n),
                     n.dot(*point)
+                )
+            }
+            Shape::Disc(Disc {
+                center,
+                normal,
+                radius,
+            }) => {
+                writeln!(
+                    pov,
+                    "disc {{ {}, {}, {radius:?} {texture} }}",
+                    vector(*center),
+                    vector(*normal)
                 )
             }
             Shape::Triangle(Triangle { a, b, c }) => {
@@ -183,6 +195,12 @@ fn povray_draws_the_same_pictures() {
     side.camera.projection = Projection::Orthographic;
     scenes.push(("demo, orthographic".to_owned(), side));
     scenes.extend((0..14).map(|seed| (format!("random {seed}"), random::scene(seed))));
+    scenes.extend((0..4).map(|seed| {
+        (
+            format!("random {seed} with discs"),
+            random::with_discs(seed),
+        )
+    }));
     for (name, mut scene) in scenes {
         scene.render.width = scene.render.width.min(512);
         scene.render.height = scene.render.height.min(512);

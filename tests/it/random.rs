@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use glint::scene::{
-    Camera, ColorPack, Light, LightObj, Object, Plane, Projection, Render, Scene, Shape, Sphere,
-    Triangle, check,
+    Camera, ColorPack, Disc, Light, LightObj, Object, Plane, Projection, Render, Scene, Shape,
+    Sphere, Triangle, check,
 };
 
 /// `SplitMix64` (Steele, Lea and Flood 2014): a test must give the same scenes everywhere.
@@ -63,6 +63,28 @@ pub fn scene(seed: u64) -> Scene {
     add_objects(&mut scene, dice);
     scene.lights = (0..=(seed % 3)).map(|number| light(dice, number)).collect();
     scene.camera = camera(dice, seed);
+    assert_eq!(check(&scene), Ok(()));
+    scene
+}
+
+/// The scene of this seed with discs in it: some lie, some lean, two are mirrors.
+pub fn with_discs(seed: u64) -> Scene {
+    let mut scene = scene(seed);
+    let dice = &mut Dice(seed.wrapping_mul(104_729) + 5);
+    for number in 1..=6 {
+        let lean = DVec3::new(dice.real(-1.0, 1.0), 1.0, dice.real(-1.0, 1.0));
+        let disc = Disc {
+            center: dice.vector(-60.0, 60.0),
+            normal: if number < 3 { DVec3::Y } else { lean },
+            radius: dice.real(6.0, 30.0),
+        };
+        scene.objects.push(Object {
+            name: format!("Disc {number}"),
+            color_pack: format!("pack {}", number - 1),
+            shape: disc.into(),
+            visible: true,
+        });
+    }
     assert_eq!(check(&scene), Ok(()));
     scene
 }

@@ -9,6 +9,8 @@ mod triangle;
 
 mod plane;
 
+mod disc;
+
 mod highlight;
 
 mod secondary;
@@ -28,6 +30,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     maps.extend(secondary::maps());
     maps.extend(highlight::maps(effort));
     maps.push(plane::map(effort));
+    maps.push(disc::map(effort));
     maps.extend(camera::maps(effort));
     maps.extend(keys::maps(effort));
     maps

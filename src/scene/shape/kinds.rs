@@ -4,6 +4,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::describe::{Describe, Field};
+use super::disc::Disc;
 use super::plane::Plane;
 use super::sphere::Sphere;
 use super::triangle::Triangle;
@@ -81,5 +82,6 @@ macro_rules! shapes {
 shapes! {
     Sphere: "A ball.",
     Plane: "An endless plane.",
-    Triangle: "A flat triangle."
+    Triangle: "A flat triangle.",
+    Disc: "A flat disc."
 }

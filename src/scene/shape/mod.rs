@@ -5,6 +5,8 @@
 
 mod describe;
 
+mod disc;
+
 mod plane;
 
 mod sphere;
@@ -14,6 +16,7 @@ mod triangle;
 mod kinds;
 
 pub use describe::{Describe, Field, FieldValue};
+pub use disc::Disc;
 pub use kinds::Shape;
 pub use plane::Plane;
 pub use sphere::Sphere;

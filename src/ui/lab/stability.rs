@@ -160,6 +160,19 @@ fn standing(scene: &Scene, map: &Map) -> Option<(f64, f64)> {
                 });
             spheres.max_by(|a, b| a.0.total_cmp(&b.0))
         }
+        "disc" => {
+            let eye = scene.camera.position;
+            let discs = scene
+                .objects
+                .iter()
+                .filter_map(|object| match &object.shape {
+                    Shape::Disc(disc) => {
+                        Some(((disc.center - eye).length() / disc.radius, disc.radius))
+                    }
+                    _ => None,
+                });
+            discs.max_by(|a, b| a.0.total_cmp(&b.0))
+        }
         "highlight" => {
             let packs = scene.color_packs.values().map(|pack| pack.phong_exponent);
             packs.max_by(f64::total_cmp).map(|sharpest| (sharpest, 1.0))

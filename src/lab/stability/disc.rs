@@ -1,0 +1,61 @@
+//! Rays aimed at a disc near its rim, from far away.
+
+use glam::DVec3;
+
+use super::map::{Axis, Map, Tries, scales, scattered};
+use crate::primitive::{PackedDisc, Primitive as _, Ray};
+use crate::scene::Methods;
+use crate::simd::Vec3;
+
+/// Distances in radii: beyond, the plan takes double precision.
+const DISTANCES: [f64; 5] = [1.5, 1e1, 1e2, 1e3, 5e3];
+/// Tries in each cell for a first look.
+const TRIES: u64 = 300;
+/// How far from the rim rays are aimed, in radii: twenty times what the coordinates of a ray from the
+/// largest distance are rounded by.
+const BESIDE: f64 = 0.006;
+
+/// The one formula: hits where the ray passes by, misses where it does not.
+pub fn map(effort: u32) -> Map {
+    let across = Axis {
+        name: "radii away",
+        values: DISTANCES.to_vec(),
+    };
+    Map::measure(
+        ("disc", "hit where it passes by or missed where it does not"),
+        ("disc".to_owned(), true),
+        (across, scales()),
+        |distance, scale| {
+            let tries = (0..TRIES * u64::from(effort)).filter_map(|n| fails(n, distance, scale));
+            Tries::count(tries)
+        },
+    )
+}
+
+fn fails(number: u64, distance: f64, scale: f64) -> Option<bool> {
+    let random = |stream| scattered(number, stream) * 2.0 - 1.0;
+    let normal = DVec3::new(random(0), random(1), random(2)).try_normalize()?;
+    let aside = normal
+        .cross(DVec3::new(random(3), random(4), random(5)))
+        .try_normalize()?;
+    let towards = DVec3::new(random(6), random(7), random(8)).try_normalize()?;
+    let is_hit = number.is_multiple_of(2);
+    let share = if is_hit { 1.0 - BESIDE } else { 1.0 + BESIDE };
+    // Seen edge-on, the rim is nowhere beside the disc.
+    let cosine = normal.dot(towards).abs();
+    let disc = PackedDisc {
+        center: Vec3::<f32>::from_dvec3(towards * (distance * scale)),
+        normal: Vec3::from_dvec3(normal),
+        radius: scale as f32,
+        material: 0,
+    };
+    let target = towards * distance + aside * share;
+    let ray = Ray {
+        origin: Vec3::<f32>::splat(0.0),
+        direction: Vec3::from_dvec3(target.try_normalize()?),
+    };
+    (cosine > 0.2).then(|| {
+        let t: f32 = disc.meet(&ray, &Methods::default());
+        t.is_finite() != is_hit
+    })
+}

@@ -1,0 +1,199 @@
+//! Ray against disc. Both sides are hit.
+
+use super::ball::Ball;
+use super::kind::{Approach, Packing, Primitive, SurfacePoint};
+use super::projector::{Projector, Rectangle};
+use super::ray::Ray;
+use crate::scene::{Disc, Methods};
+use crate::simd::{Real, SimdFloat, Vec3};
+
+/// A flat disc: the points p with normal · (p - center) = 0 and |p - center| ≤ radius.
+#[derive(Clone, Copy, Debug)]
+pub struct PackedDisc<R> {
+    /// Its middle.
+    pub center: Vec3<R>,
+    /// Unit normal.
+    pub normal: Vec3<R>,
+    /// > 0.
+    pub radius: R,
+    /// Index of its material.
+    pub material: u32,
+}
+
+impl<R: Real> Primitive<R> for PackedDisc<R> {
+    type Description = Disc;
+    type Prepared<L: SimdFloat<Real = R>> = ();
+
+    fn pack(description: &Disc, material: u32, packing: &Packing) -> Option<Self> {
+        let normal = description.normal.try_normalize()?;
+        Some(Self {
+            center: Vec3::from_dvec3(description.center - packing.centre),
+            normal: Vec3::from_dvec3(normal),
+            radius: R::from_f64(description.radius),
+            material,
+        })
+    }
+
+    fn rectangle(description: &Disc, projector: &Projector) -> Option<Rectangle> {
+        Some(projector.ball(description.center, description.radius))
+    }
+
+    fn ball(&self) -> Option<Ball> {
+        Some(Ball {
+            center: self.center.to_dvec3(),
+            radius: self.radius.to_f64(),
+        })
+    }
+
+    fn material(&self) -> u32 {
+        self.material
+    }
+
+    fn thickness(&self) -> R {
+        self.radius + self.radius
+    }
+
+    fn reach(&self) -> (Vec3<R>, R) {
+        (self.center, self.radius)
+    }
+
+    #[inline(always)]
+    fn prepare<L: SimdFloat<Real = R>>(_directions: Vec3<L>) {}
+
+    /// t = n·(c - o) / n·d as for a plane, where |o + t·d - c|² ≤ r². The sum is taken from the middle,
+    /// so that it is as exact for a disc far away as for one nearby. A ray along the disc divides by zero,
+    /// and the comparison fails.
+    #[inline(always)]
+    fn intersect<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, (): &(), _methods: &Methods) -> L {
+        let normal = rays.origin.like(self.normal);
+        let from = rays.origin - rays.origin.like(self.center);
+        let t = -normal.dot(from) / normal.dot(rays.direction);
+        let off = from + rays.direction * t;
+        let is_inside = off.dot(off).at_most(t.like(self.radius * self.radius));
+        let is_ahead = t.like(R::ZERO).less(t);
+        L::select(is_inside & is_ahead, t, t.like(R::INFINITY))
+    }
+
+    #[inline(always)]
+    fn refine<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, t: L) -> SurfacePoint<L> {
+        let normal = rays.origin.like(self.normal);
+        let point = rays.at(t);
+        let height = normal.dot(point - rays.origin.like(self.center));
+        SurfacePoint {
+            point: point - normal * height,
+            normal,
+            radius: R::INFINITY,
+            slack: t.like(R::ZERO),
+        }
+    }
+
+    /// Seen along the ray, the disc is an ellipse of half-axes r and r·|n·d|. With f = √((a/B)² + (b/A)²),
+    /// which is 1 on an ellipse and changes by at most 1/B per length, (f - 1)·B is no more than the
+    /// distance from it, and neither is the distance from the circle of radius r.
+    #[inline(always)]
+    fn approach<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, (): &()) -> Approach<L> {
+        let normal = rays.origin.like(self.normal);
+        let x = rays.origin - rays.origin.like(self.center);
+        let radius = x.x.like(self.radius);
+        let along = -rays.direction.dot(x);
+        let aside = x + rays.direction * along;
+        let cosine = normal.dot(rays.direction);
+        let square = aside.dot(aside);
+        // The part along the short axis, which is the normal's own part across the ray.
+        let sine_square = (cosine.like(R::ONE) - cosine * cosine).max(cosine.like(R::ZERO));
+        let lean = aside.dot(normal);
+        let zero = along.like(R::ZERO);
+        let is_leaning = zero.less(sine_square);
+        let short = L::select(is_leaning, lean * lean / sine_square, zero);
+        let long = (square - short).max(zero);
+        let by_ellipse = (short + long * cosine * cosine).sqrt() - radius * cosine.abs();
+        let by_circle = square.sqrt() - radius;
+        Approach {
+            from: along - radius,
+            to: along + radius,
+            distance: by_ellipse.max(by_circle),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use proptest::prelude::*;
+
+    fn vector() -> impl Strategy<Value = DVec3> {
+        prop::array::uniform3(-1.0..1.0_f64).prop_map(DVec3::from)
+    }
+
+    fn disc(normal: DVec3, radius: f64) -> PackedDisc<f64> {
+        PackedDisc {
+            center: Vec3::splat(0.0),
+            normal: Vec3::from_dvec3(normal),
+            radius,
+            material: 0,
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_aimed_at_inside_is_hit_and_beside_is_missed(normal in vector(), along in vector(), eye in vector(), share in 0.0..2.0_f64) {
+            let Some(normal) = normal.try_normalize() else { return Ok(()) };
+            let Some(along) = normal.cross(along).try_normalize() else { return Ok(()) };
+            prop_assume!((share - 1.0).abs() > 1e-6);
+            let (target, eye) = (along * (share * 0.7), eye * 5.0);
+            let Some(direction) = (target - eye).try_normalize() else { return Ok(()) };
+            prop_assume!(normal.dot(direction).abs() > 1e-3);
+            let ray = Ray { origin: Vec3::from_dvec3(eye), direction: Vec3::from_dvec3(direction) };
+            let t: f64 = disc(normal, 0.7).meet(&ray, &Methods::default());
+            prop_assert_eq!(t.is_finite(), share < 1.0);
+            if t.is_finite() {
+                prop_assert!((ray.at(t).to_dvec3() - target).length() < 1e-9);
+            }
+        }
+
+        /// No point of the disc is closer to the ray than the approach says, and a ray that it calls
+        /// outside misses.
+        #[test]
+        fn the_distance_is_never_overstated(normal in vector(), eye in vector(), direction in vector(), angle in 0.0..6.3_f64, share in 0.0..1.0_f64) {
+            let (Some(normal), Some(direction)) = (normal.try_normalize(), direction.try_normalize()) else { return Ok(()) };
+            let Some(along) = normal.cross(DVec3::new(0.3, 0.5, -0.8)).try_normalize() else { return Ok(()) };
+            let across = normal.cross(along);
+            let ray = Ray::<f64> { origin: Vec3::from_dvec3(eye * 3.0), direction: Vec3::from_dvec3(direction) };
+            let target = disc(normal, 0.6);
+            let approach = target.approach(&ray, &());
+            let point = (along * angle.cos() + across * angle.sin()) * (0.6 * share.sqrt());
+            let off = point - eye * 3.0;
+            let beside = (off - direction * off.dot(direction)).length();
+            prop_assert!(approach.distance <= beside + 1e-9, "{} {}", approach.distance, beside);
+            prop_assert!(approach.from - 1e-9 <= off.dot(direction) && off.dot(direction) <= approach.to + 1e-9);
+            if target.meet(&ray, &Methods::default()).is_finite() {
+                prop_assert!(approach.distance <= 1e-9, "a hit is inside: {}", approach.distance);
+            }
+        }
+    }
+
+    #[test]
+    fn edge_on_and_behind_are_misses() {
+        let ray = |x: f32, y: f32| Ray {
+            origin: Vec3::new(-2.0, y, 0.0),
+            direction: Vec3::new(x, 0.0, 0.0),
+        };
+        let lying = PackedDisc {
+            center: Vec3::splat(0.0),
+            normal: Vec3::new(0.0, 1.0, 0.0),
+            radius: 1.0_f32,
+            material: 0,
+        };
+        let meet = |ray: Ray<f32>| lying.meet(&ray, &Methods::default());
+        assert_eq!(meet(ray(1.0, 0.0)), f32::INFINITY, "0/0");
+        assert_eq!(meet(ray(1.0, 0.5)), f32::INFINITY);
+        let standing = PackedDisc {
+            normal: Vec3::new(1.0, 0.0, 0.0),
+            ..lying
+        };
+        let meet = |ray: Ray<f32>| standing.meet(&ray, &Methods::default());
+        assert_eq!(meet(ray(1.0, 0.5)), 2.0);
+        assert_eq!(meet(ray(-1.0, 0.5)), f32::INFINITY);
+    }
+}

@@ -1,0 +1,96 @@
+//! The flat disc: a floor or a mirror that ends.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::describe::{Describe, Field, FieldValue};
+use crate::scene::notation;
+
+/// A flat disc.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Disc {
+    /// Its middle.
+    #[serde(with = "notation::vector")]
+    pub center: DVec3,
+    /// Across it; any length but zero.
+    #[serde(with = "notation::vector")]
+    pub normal: DVec3,
+    /// > 0.
+    #[serde(with = "notation::number")]
+    pub radius: f64,
+}
+
+impl Describe for Disc {
+    const KIND: &'static str = "Disc";
+
+    fn example(at: DVec3, size: f64) -> Self {
+        Self {
+            center: at,
+            normal: DVec3::Y,
+            radius: size / 2.0,
+        }
+    }
+
+    fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Field<'a>)) {
+        visit(Field {
+            name: "center",
+            hint: "The middle of the disc, in world units",
+            value: FieldValue::Point(&mut self.center),
+        });
+        visit(Field {
+            name: "normal",
+            hint: "Direction across the disc; its length does not matter",
+            value: FieldValue::Direction(&mut self.normal),
+        });
+        visit(Field {
+            name: "radius",
+            hint: "In world units, greater than 0",
+            value: FieldValue::Length(&mut self.radius),
+        });
+    }
+
+    /// Along an axis it reaches as far as the sine of the angle between axis and normal lets it.
+    fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        let normal = self.normal.try_normalize().unwrap_or(DVec3::ZERO);
+        let sines = (DVec3::ONE - normal * normal).max(DVec3::ZERO);
+        let reach = DVec3::new(sines.x.sqrt(), sines.y.sqrt(), sines.z.sqrt()) * self.radius;
+        Some((self.center - reach, self.center + reach))
+    }
+
+    fn position(&self) -> DVec3 {
+        self.center
+    }
+
+    fn moved(&self, by: DVec3) -> Self {
+        Self {
+            center: self.center + by,
+            ..*self
+        }
+    }
+
+    fn feature(&self) -> Option<(DVec3, f64)> {
+        Some((self.center, self.radius))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lying_disc_has_no_height_and_a_leaning_one_reaches_both_ways() {
+        let lying = Disc::example(DVec3::new(1.0, 2.0, 3.0), 4.0);
+        let box_of = |disc: Disc| disc.bounds().expect("it ends");
+        assert_eq!(
+            box_of(lying),
+            (DVec3::new(-1.0, 2.0, 1.0), DVec3::new(3.0, 2.0, 5.0))
+        );
+        let leaning = Disc {
+            normal: DVec3::new(3.0, 4.0, 0.0),
+            ..lying
+        };
+        let (low, high) = box_of(leaning);
+        assert!((high - low - DVec3::new(3.2, 2.4, 4.0)).length() < 1e-12);
+    }
+}
