@@ -9,16 +9,20 @@
 )]
 
 use std::cell::{Cell, RefCell};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
 use divan::Bencher;
+use egui::accesskit::Role;
 use egui::{Event, PointerButton, pos2};
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use glam::DVec3;
 use glint::image::{Image, render_into};
 use glint::plan::{RenderRequest, Sampling};
-use glint::scene::Scene;
+use glint::scene::{Document, Object, Scene, Sphere};
 use glint::trace::{RenderControl, Threads};
 use glint::ui::{App, Setup};
 use glint::worker::{BUDGET, Frame, LiveJob, Pace, Worker};
@@ -106,6 +110,46 @@ fn window_while_dragging(bencher: Bencher) {
         .bench_local_values(|()| harness.borrow_mut().frame());
 }
 
+/// One frame of the window while the radius of an object is being dragged, in a scene of so many: an
+/// edit costs what it changes, and not what is there.
+#[divan::bench(args = [10, 1_000, 100_000], sample_count = 60, sample_size = 1)]
+fn window_while_a_number_is_dragged(bencher: Bencher, objects: u32) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("many.ron");
+    std::fs::write(&path, many(objects)).expect("written");
+    let harness = RefCell::new(EditorHarness::on(Some(path)));
+    harness.borrow_mut().press_number();
+    bencher
+        .with_inputs(|| harness.borrow_mut().drag_number())
+        .bench_local_values(|()| harness.borrow_mut().frame());
+}
+
+/// A scene of small balls in rows on the demo's floor; the last one is near the camera.
+fn many(objects: u32) -> String {
+    let document = Document {
+        header: String::new(),
+        scene: Scene {
+            objects: (0..objects)
+                .map(|number| {
+                    let (column, row) = (f64::from(number % 400), f64::from(number / 400));
+                    Object {
+                        name: format!("Ball {number}"),
+                        color_pack: "sphere 1".to_owned(),
+                        shape: Sphere {
+                            center: DVec3::new(column - 25.0, 1.0, -row - 50.0),
+                            radius: 0.4,
+                        }
+                        .into(),
+                        visible: true,
+                    }
+                })
+                .collect(),
+            ..Scene::demo()
+        },
+    };
+    document.to_text().expect("a text")
+}
+
 /// One frame of the window in which nothing has happened.
 #[divan::bench(sample_count = 100, sample_size = 1)]
 fn window_at_rest(bencher: Bencher) {
@@ -116,14 +160,20 @@ fn window_at_rest(bencher: Bencher) {
 struct EditorHarness {
     window: Harness<'static, App>,
     x: f32,
+    /// Where the button was pressed on a number.
+    at: egui::Pos2,
     revision: u64,
 }
 
 impl EditorHarness {
     fn new() -> Self {
+        Self::on(None)
+    }
+
+    fn on(scene: Option<PathBuf>) -> Self {
         let setup = Setup {
             data_folder: None,
-            ..Setup::native(None)
+            ..Setup::native(scene)
         };
         let window = Harness::builder()
             .with_size([1680.0, 1120.0])
@@ -131,6 +181,7 @@ impl EditorHarness {
         let mut harness = Self {
             window,
             x: 800.0,
+            at: pos2(0.0, 0.0),
             revision: 0,
         };
         let start = Instant::now();
@@ -160,6 +211,31 @@ impl EditorHarness {
         self.window
             .event(Event::PointerMoved(pos2(self.x + 9.0, 500.0)));
         self.window.step();
+    }
+
+    /// Selects the first object, and presses the button on its radius.
+    fn press_number(&mut self) {
+        self.window.get_by_label("Ball 0").click();
+        (0..4).for_each(|_| self.window.step());
+        let field = self
+            .window
+            .get_by_role_and_label(Role::SpinButton, "radius");
+        let pos = field.rect().center();
+        self.at = pos;
+        self.window.drag_at(pos);
+        self.window.step();
+        self.window.hover_at(pos + egui::vec2(9.0, 0.0));
+        self.window.step();
+    }
+
+    /// Moves the mouse on the number, when the edit before has been taken up.
+    fn drag_number(&mut self) {
+        std::thread::sleep(Duration::from_millis(20));
+        let revision = self.window.state().editor().revision();
+        assert!(revision > self.revision, "nothing has changed");
+        self.revision = revision;
+        self.x = if self.x > 40.0 { 10.0 } else { self.x + 1.0 };
+        self.window.hover_at(self.at + egui::vec2(self.x, 0.0));
     }
 
     /// Moves the mouse, when the picture of the last move is there.

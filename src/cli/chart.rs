@@ -57,7 +57,7 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
         say(&advice(&study, args.within, args.budget));
     }
     if let Some(path) = &args.csv {
-        write_text(path, &csv(&study, &machine(), threads.count()))?;
+        write_text(path, &csv(&study, &machine(), threads.count())?)?;
     }
     let study = Box::new(study);
     let path = args.png.clone();

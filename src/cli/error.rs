@@ -73,6 +73,12 @@ impl From<PoolError> for CliError {
     }
 }
 
+impl From<csv::Error> for CliError {
+    fn from(error: csv::Error) -> Self {
+        Self::failed(error)
+    }
+}
+
 impl From<serde_json::Error> for CliError {
     fn from(error: serde_json::Error) -> Self {
         Self::failed(error)

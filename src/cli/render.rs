@@ -14,7 +14,7 @@ use serde::Serialize;
 use super::error::{CliError, say};
 use super::settings::SettingArgs;
 use crate::animate::{CameraPath, shot};
-use crate::export::save_image;
+use crate::export::{NoSuchFrame, save_image};
 use crate::image::{Format, Image, RenderCost, render_into};
 use crate::plan::RenderRequest;
 use crate::scene::{Document, MAX_SIDE, Projection, Scene};
@@ -131,13 +131,10 @@ fn frame(word: &str) -> Result<u64, String> {
 }
 
 /// The scene as its animation shows it in a frame.
-fn at_frame(scene: Scene, frame: u64) -> Result<Scene, String> {
+fn at_frame(scene: Scene, frame: u64) -> Result<Scene, NoSuchFrame> {
     let count = scene.animation.frame_count();
     if frame > count {
-        return Err(format!(
-            "there is no frame {frame}: the animation has {count} frame{}",
-            if count == 1 { "" } else { "s" }
-        ));
+        return Err(NoSuchFrame { frame, count });
     }
     let time = scene.animation.time_of(frame);
     let path = CameraPath::new(&scene.animation.keys);

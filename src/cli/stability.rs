@@ -34,7 +34,7 @@ pub fn run(args: &StabilityArgs) -> Result<Option<CliAction>, CliError> {
     let maps = maps(args.effort.get());
     say(summary(&maps).trim_end());
     if let Some(path) = &args.csv {
-        write_text(path, &cells_csv(&maps))?;
+        write_text(path, &cells_csv(&maps)?)?;
     }
     let path = args.png.clone();
     Ok(path.map(|path| CliAction::Stability { maps, path }))

@@ -223,7 +223,8 @@ impl Editor {
         self.document().to_text()
     }
 
-    fn document(&self) -> Document {
+    /// The document as it would be saved; the copy shares the scene.
+    pub fn document(&self) -> Document {
         Document {
             header: self.header.clone(),
             scene: Scene::clone(&self.scene),
@@ -269,7 +270,7 @@ impl Editor {
         let mut next = Scene::clone(&self.scene);
         let selection = match edit.apply(&mut next) {
             Ok(selection) => selection.unwrap_or(self.selection),
-            Err(reason) => return self.report_error(reason),
+            Err(error) => return self.report_error(error.to_string()),
         };
         self.animation_state.key_tracked(&self.scene, &mut next);
         if is_camera {

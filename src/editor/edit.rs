@@ -51,6 +51,22 @@ pub enum Edit {
     MakePackUnique(usize),
 }
 
+/// Why a change is refused.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EditError {
+    /// Something wears the pack that was to go.
+    #[error("{name:?} is used by {users}; give them another color pack first")]
+    PackInUse {
+        /// Of the pack.
+        name: String,
+        /// Of what wears it.
+        users: String,
+    },
+    /// Two packs would have one name.
+    #[error("There is another color pack named {0:?}; choose another name")]
+    PackNameTaken(String),
+}
+
 impl Edit {
     /// Other keys; `what` is what was done to them.
     pub fn animation(animation: Animation, what: &'static str) -> Self {
@@ -87,9 +103,9 @@ impl Edit {
     /// Changes the scene; returns what shall be selected, if that changes too.
     ///
     /// # Errors
-    /// Why the change is refused, in words for the user; the scene is then half-changed and to be
+    /// [`EditError`]: why the change is refused; the scene is then half-changed and to be
     /// thrown away.
-    pub fn apply(self, scene: &mut Scene) -> Result<Option<Selection>, String> {
+    pub fn apply(self, scene: &mut Scene) -> Result<Option<Selection>, EditError> {
         match self {
             Self::Camera(camera, _) => scene.camera = camera,
             Self::Background(color) => scene.background = color,
@@ -252,7 +268,7 @@ fn beside(scene: &Scene, shape: &Shape) -> DVec3 {
     normal.map_or(DVec3::ZERO, |normal| normal * (extent / 20.0))
 }
 
-fn delete(scene: &mut Scene, item: Item) -> Result<(), String> {
+fn delete(scene: &mut Scene, item: Item) -> Result<(), EditError> {
     let Item { kind, index } = item;
     match kind {
         Kind::Object if index < scene.objects.len() => {
@@ -267,10 +283,8 @@ fn delete(scene: &mut Scene, item: Item) -> Result<(), String> {
             let name = item.name(scene).unwrap_or_default().to_owned();
             let users = scene.users_of_pack(&name);
             if !users.is_empty() {
-                return Err(format!(
-                    "{name:?} is used by {}; give them another color pack first",
-                    users.join(", ")
-                ));
+                let users = users.join(", ");
+                return Err(EditError::PackInUse { name, users });
             }
             scene.packs_mut().shift_remove_index(index);
         }
@@ -279,7 +293,7 @@ fn delete(scene: &mut Scene, item: Item) -> Result<(), String> {
     Ok(())
 }
 
-fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), String> {
+fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), EditError> {
     let Some(from) = item
         .name(scene)
         .map(str::to_owned)
@@ -297,9 +311,7 @@ fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), String> {
             scene.animation_mut().follow_name(true, &from, Some(to));
         }
         Kind::Pack if scene.color_packs.contains_key(to) => {
-            return Err(format!(
-                "There is another color pack named {to:?}; choose another name"
-            ));
+            return Err(EditError::PackNameTaken(to.to_owned()));
         }
         Kind::Pack => {
             let pack = scene.packs_mut().shift_remove(&from).unwrap_or_default();

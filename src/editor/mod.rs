@@ -24,7 +24,7 @@ mod flight;
 
 pub use action::{Action, Message, Mode};
 pub use document::Editor;
-pub use edit::Edit;
+pub use edit::{Edit, EditError};
 pub use fly::Motion;
 pub use item::{Item, Kind};
 pub use selection::Selection;

@@ -9,6 +9,27 @@ const MOST: u64 = 1_000_000;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Frames(Vec<u64>);
 
+/// A text that is no set of frames.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FramesError {
+    /// It is not written like one.
+    #[error("expected frames such as 1-202, 1,4 or 1-10:3, counted from 1; found {0:?}")]
+    Syntax(String),
+    /// A range ends before it begins.
+    #[error("{last} comes before {first} in the frames {text:?}")]
+    Backwards {
+        /// Where it begins.
+        first: u64,
+        /// Where it ends.
+        last: u64,
+        /// The whole text.
+        text: String,
+    },
+    /// More than can be handled at once.
+    #[error("there may be at most {MOST} frames at once")]
+    TooMany,
+}
+
 impl Frames {
     /// All frames from the first to this one.
     pub fn up_to(last: u64) -> Self {
@@ -18,11 +39,9 @@ impl Frames {
     /// Reads a set: numbers and ranges, apart by commas; a range may have a step.
     ///
     /// # Errors
-    /// What was expected, in words.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        let expected = || {
-            format!("expected frames such as 1-202, 1,4 or 1-10:3, counted from 1; found {text:?}")
-        };
+    /// [`FramesError`]: what was expected.
+    pub fn parse(text: &str) -> Result<Self, FramesError> {
+        let expected = || FramesError::Syntax(text.to_owned());
         let mut frames = Vec::new();
         for part in text.split(',') {
             let (range, step) = part.split_once(':').unwrap_or((part, "1"));
@@ -33,12 +52,14 @@ impl Frames {
                 return Err(expected());
             };
             if last < first {
-                return Err(format!(
-                    "{last} comes before {first} in the frames {text:?}"
-                ));
+                return Err(FramesError::Backwards {
+                    first,
+                    last,
+                    text: text.to_owned(),
+                });
             }
             if (last - first) / step + frames.len() as u64 >= MOST {
-                return Err(format!("there may be at most {MOST} frames at once"));
+                return Err(FramesError::TooMany);
             }
             frames.extend((first..=last).step_by(usize::try_from(step).unwrap_or(usize::MAX)));
         }

@@ -20,10 +20,10 @@ mod video;
 
 pub use error::ExportError;
 pub use exporting::{ExportStep, Exported, Exporting};
-pub use frames::Frames;
+pub use frames::{Frames, FramesError};
 pub use job::job_template;
 pub use manifest::{Hash, MANIFEST, Manifest};
-pub use pattern::Pattern;
+pub use pattern::{Pattern, PatternError};
 pub use save::{free_path, save_image, write_text};
-pub use sequence::Sequence;
+pub use sequence::{NoSuchFrame, Sequence};
 pub use video::{Video, VideoError};

@@ -9,17 +9,26 @@ pub struct Pattern {
     after: String,
 }
 
+/// A text that names no frames.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{why}, for example rayTrace%d or shot.%05d; found {found:?}")]
+pub struct PatternError {
+    why: String,
+    found: String,
+}
+
 impl Pattern {
     /// Reads a pattern with one `%d`, or `%05d` for five digits; its width does not depend on how
     /// many frames there are, so that names stay when more come.
     ///
     /// # Errors
-    /// What was expected, in words.
-    pub fn parse(text: &str) -> Result<Self, String> {
+    /// [`PatternError`]: what was expected.
+    pub fn parse(text: &str) -> Result<Self, PatternError> {
         let wrong = |why: &str| {
-            Err(format!(
-                "{why}, for example rayTrace%d or shot.%05d; found {text:?}"
-            ))
+            Err(PatternError {
+                why: why.to_owned(),
+                found: text.to_owned(),
+            })
         };
         let Some((before, rest)) = text.split_once('%') else {
             return wrong("a name needs %d where the number goes");

@@ -30,25 +30,32 @@ pub struct Sequence {
     pub folder: PathBuf,
 }
 
+/// A frame behind the last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no frame {frame}: the animation has {count} frame{}", if *count == 1 { "" } else { "s" })]
+pub struct NoSuchFrame {
+    /// What was asked for.
+    pub frame: u64,
+    /// How many there are.
+    pub count: u64,
+}
+
 impl Sequence {
     /// Frames of a scene; their size and how they are traced is what the scene's `render` says.
     ///
     /// # Errors
-    /// What is wrong with the frames, in words.
+    /// [`NoSuchFrame`], if the animation is shorter.
     pub fn new(
         scene: Arc<Scene>,
         frames: Option<Frames>,
         pattern: Pattern,
         format: Format,
         folder: PathBuf,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, NoSuchFrame> {
         let count = scene.animation.frame_count();
         let frames = frames.unwrap_or_else(|| Frames::up_to(count));
         if let Some(last) = frames.last().filter(|&last| last > count) {
-            let s = if count == 1 { "" } else { "s" };
-            return Err(format!(
-                "there is no frame {last}: the animation has {count} frame{s}"
-            ));
+            return Err(NoSuchFrame { frame: last, count });
         }
         Ok(Self {
             path: CameraPath::new(&scene.animation.keys),

@@ -1,5 +1,6 @@
 //! One file that moves, made of frames that are there: by ffmpeg, or as GIF or APNG without it.
 
+use std::borrow::Cow;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
@@ -226,13 +227,9 @@ impl Video {
     }
 }
 
-/// As a shell needs it.
+/// As a shell needs it. No path has a zero byte in it, which is all that cannot be quoted.
 fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_=+./:,%".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        return word.to_owned();
-    }
-    format!("'{}'", word.replace('\'', r"'\''"))
+    shlex::try_quote(word).map_or_else(|_| word.to_owned(), Cow::into_owned)
 }
 
 /// Beside the file, with its ending, by which encoders know the format.

@@ -9,11 +9,11 @@ mod measure;
 
 mod pareto_front;
 
-pub mod stability;
-
 mod study;
 
 mod table;
+
+pub mod stability;
 
 pub use candidates::{Candidate, candidates};
 pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, difference};

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use serde::Serialize;
+
 use super::pareto_front::front;
 use super::study::{Measurement, Study};
 
@@ -63,40 +65,70 @@ pub fn table(study: &Study) -> String {
     text
 }
 
-/// All figures of a study as comma-separated values, one line for each dot.
-pub fn csv(study: &Study, machine: &str, threads: usize) -> String {
-    let front = front(&study.costs());
-    let reference = study
-        .reference
-        .as_ref()
-        .map_or(f64::NAN, |truth| truth.rmse);
-    let (width, height) = study.size();
-    let mut text = "name,settings,width,height,median_ms,spread,runs,rays_per_pixel,rmse,psnr_db,max,visible_share,on_front,reference_rmse,lanes,threads,machine\n".to_owned();
-    for (place, dot) in study.dots.iter().enumerate() {
-        let (Some(timing), Some(failing)) = (dot.timing(), dot.failing) else {
-            continue;
-        };
-        let _ = writeln!(
-            text,
-            "{},{},{width},{height},{:.4},{:.3},{},{:.4},{:e},{:.2},{},{},{},{reference:e},{},{threads},{}",
-            quoted(&dot.candidate.name),
-            quoted(&dot.candidate.words()),
-            timing.median,
-            timing.spread,
-            timing.runs,
-            dot.rays_per_pixel,
-            failing.rmse,
-            failing.psnr(),
-            failing.max,
-            failing.visible,
-            front.contains(&place),
-            quoted(&dot.lanes),
-            quoted(machine),
-        );
-    }
-    text
+/// A line of the file.
+#[derive(Serialize)]
+struct Figures<'a> {
+    name: &'a str,
+    settings: String,
+    width: u32,
+    height: u32,
+    median_ms: f64,
+    spread: f64,
+    runs: usize,
+    rays_per_pixel: f64,
+    rmse: f64,
+    psnr_db: f64,
+    max: f64,
+    visible_share: f64,
+    on_front: bool,
+    reference_rmse: f64,
+    lanes: &'a str,
+    threads: usize,
+    machine: &'a str,
 }
 
-fn quoted(text: &str) -> String {
-    format!("\"{}\"", text.replace('"', "\"\""))
+/// All figures of a study as comma-separated values, one line for each dot.
+///
+/// # Errors
+/// None is known: everything is written to memory.
+pub fn csv(study: &Study, machine: &str, threads: usize) -> Result<String, csv::Error> {
+    let front = front(&study.costs());
+    let reference = study.reference.as_ref();
+    let reference_rmse = reference.map_or(f64::NAN, |truth| truth.rmse);
+    let (width, height) = study.size();
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for (index, dot) in study.dots.iter().enumerate() {
+        let (Some(timing), Some(metrics)) = (dot.timing(), dot.failing) else {
+            continue;
+        };
+        writer.serialize(Figures {
+            name: &dot.candidate.name,
+            settings: dot.candidate.words(),
+            width,
+            height,
+            median_ms: timing.median,
+            spread: timing.spread,
+            runs: timing.runs,
+            rays_per_pixel: dot.rays_per_pixel,
+            rmse: metrics.rmse,
+            psnr_db: metrics.psnr(),
+            max: metrics.max,
+            visible_share: metrics.visible,
+            on_front: front.contains(&index),
+            reference_rmse,
+            lanes: &dot.lanes,
+            threads,
+            machine,
+        })?;
+    }
+    written(writer)
+}
+
+/// The text that a writer has made.
+///
+/// # Errors
+/// None is known: everything is written to memory.
+pub fn written(writer: csv::Writer<Vec<u8>>) -> Result<String, csv::Error> {
+    let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }

@@ -5,6 +5,11 @@
 
 use std::fmt::Debug;
 
+/// There is no method of such an id.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("expected {0}")]
+pub struct UnknownMethod(String);
+
 /// A choice between ways of doing one step.
 pub trait Method: Copy + PartialEq + Debug + Sized + 'static {
     /// Every way, the default first; those with a number in them with a usual one.
@@ -19,12 +24,12 @@ pub trait Method: Copy + PartialEq + Debug + Sized + 'static {
     /// The way of this word.
     ///
     /// # Errors
-    /// A sentence with the words that there are.
-    fn parse(id: &str) -> Result<Self, String> {
+    /// [`UnknownMethod`], with the ids that there are.
+    fn parse(id: &str) -> Result<Self, UnknownMethod> {
         let method = Self::ALL.iter().find(|method| method.id == id);
         method.map(|method| method.value).ok_or_else(|| {
             let ids: Vec<&str> = Self::ALL.iter().map(|method| method.id).collect();
-            format!("expected {}", ids.join(", "))
+            UnknownMethod(ids.join(", "))
         })
     }
 }
@@ -205,7 +210,7 @@ impl Method for RayOffset {
         }
     }
 
-    fn parse(id: &str) -> Result<Self, String> {
+    fn parse(id: &str) -> Result<Self, UnknownMethod> {
         let length = |number: &str| {
             let number = number.parse::<f64>().ok();
             number.filter(|d| d.is_finite() && *d >= 0.0)
@@ -218,7 +223,7 @@ impl Method for RayOffset {
             _ => None,
         };
         found.ok_or_else(|| {
-            "expected robust, wachter-binder, fixed: and a distance ≥ 0 such as fixed:0.1, or relative: and a share of the scene such as relative:0.0001".to_owned()
+            UnknownMethod("robust, wachter-binder, fixed: and a distance ≥ 0 such as fixed:0.1, or relative: and a share of the scene such as relative:0.0001".to_owned())
         })
     }
 }
@@ -344,7 +349,7 @@ impl Method for Sampling {
         }
     }
 
-    fn parse(id: &str) -> Result<Self, String> {
+    fn parse(id: &str) -> Result<Self, UnknownMethod> {
         let mut parts = id.split(':');
         let found = match (parts.next(), parts.next(), parts.next(), parts.next()) {
             (Some("none"), None, ..) => Some(Self::Centres),
@@ -364,9 +369,9 @@ impl Method for Sampling {
             _ => None,
         };
         found.ok_or_else(|| {
-            format!(
-                "expected none, adaptive, grid: and a number from 1 to {MAX_GRID} such as grid:4, or adaptive:CONTRAST:DEPTH such as adaptive:0.1:{MAX_HALVINGS}"
-            )
+            UnknownMethod(format!(
+                "none, adaptive, grid: and a number from 1 to {MAX_GRID} such as grid:4, or adaptive:CONTRAST:DEPTH such as adaptive:0.1:{MAX_HALVINGS}"
+            ))
         })
     }
 }
@@ -406,7 +411,7 @@ mod tests {
             "adaptive:0.1:4",
             "none:1",
         ] {
-            let error = T::parse(wrong).expect_err("nonsense");
+            let error = T::parse(wrong).expect_err("nonsense").to_string();
             assert!(error.starts_with("expected "), "{error}");
         }
     }

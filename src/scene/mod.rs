@@ -51,7 +51,7 @@ pub use locate::PathStep;
 pub use material::ColorPack;
 pub use methods::{
     Accelerator, HighlightMethod, MAX_GRID, MAX_HALVINGS, Method, MethodInfo, Methods, Precision,
-    RayOffset, Sampling, SphereMethod, TriangleMethod,
+    RayOffset, Sampling, SphereMethod, TriangleMethod, UnknownMethod,
 };
 pub use notation::{format_number, parse_vec3};
 pub use object::{Light, LightObj, Object};

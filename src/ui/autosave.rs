@@ -1,12 +1,15 @@
 //! Keeping unsaved work safe while the program runs, and taking it up after one that crashed.
 
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::{Duration, Instant};
 
 use egui::Context;
 
 use crate::editor::Editor;
 use crate::scene::Recovery;
+use crate::worker::run_in_background;
 
 /// Time between two autosaves.
 const INTERVAL: Duration = Duration::from_secs(5);
@@ -14,16 +17,18 @@ const INTERVAL: Duration = Duration::from_secs(5);
 /// The state of autosaving.
 #[derive(Default)]
 pub struct Autosave {
-    recovery: Option<Recovery>,
+    recovery: Option<Arc<Recovery>>,
     /// What is kept: revision, and since when.
     kept: Option<(u64, Instant)>,
+    /// The revision that is being written, and what will come of it.
+    writing: Option<(u64, Receiver<Result<(), String>>)>,
     tried: Option<Instant>,
 }
 
 impl Autosave {
     /// Takes a place in `folder`, and hands what a crashed program left there to the editor.
     pub fn start(folder: Option<&Path>, editor: &mut Editor) -> Self {
-        let recovery = folder.and_then(|folder| Recovery::new(folder).ok());
+        let recovery = folder.and_then(|folder| Recovery::new(folder).ok().map(Arc::new));
         if let Some(leftover) = recovery
             .as_ref()
             .and_then(|recovery| recovery.take_leftover(editor.path()))
@@ -46,11 +51,16 @@ impl Autosave {
         self.kept.map(|(_, since)| since)
     }
 
-    /// Keeps unsaved work on disk, every few seconds while there is new work.
+    /// Keeps unsaved work on disk, every few seconds while there is new work. A large scene takes longer
+    /// to write than a frame: a thread of its own does it.
     pub fn tick(&mut self, ctx: &Context, editor: &mut Editor) {
-        let Some(recovery) = &self.recovery else {
+        let Some(recovery) = self.recovery.clone() else {
             return;
         };
+        self.take_written(editor);
+        if self.writing.is_some() {
+            return;
+        }
         if !editor.is_dirty() {
             if self.kept.take().is_some() {
                 recovery.clear();
@@ -66,24 +76,48 @@ impl Autosave {
             return;
         }
         self.tried = Some(Instant::now());
-        let kept = editor
-            .to_text()
-            .map_err(|error| error.to_string())
-            .and_then(|text| {
-                recovery
-                    .keep(&text, editor.path())
-                    .map_err(|error| error.to_string())
+        let (document, path) = (editor.document(), editor.path().map(Path::to_owned));
+        let ctx = ctx.clone();
+        let written = run_in_background("glint-autosave", move || {
+            let text = document.to_text().map_err(|error| error.to_string());
+            let kept = text.and_then(|text| {
+                let kept = recovery.keep(&text, path.as_deref());
+                kept.map_err(|error| error.to_string())
             });
-        match kept {
-            Ok(()) => self.kept = Some((revision, Instant::now())),
-            Err(error) => editor.report_error(format!(
+            ctx.request_repaint();
+            kept
+        });
+        self.writing = Some((revision, written));
+    }
+
+    /// Takes up what has been written since.
+    fn take_written(&mut self, editor: &mut Editor) {
+        let Some((revision, written)) = &self.writing else {
+            return;
+        };
+        let error = match written.try_recv() {
+            Err(TryRecvError::Empty) => return,
+            Ok(Ok(())) => {
+                self.kept = Some((*revision, Instant::now()));
+                None
+            }
+            Ok(Err(error)) => Some(error),
+            Err(TryRecvError::Disconnected) => Some("no thread could be started".to_owned()),
+        };
+        self.writing = None;
+        if let Some(error) = error {
+            editor.report_error(format!(
                 "Unsaved changes cannot be kept safe: {error}. Save your work and make room on the disk."
-            )),
+            ));
         }
     }
 
     /// The program ends as the user wished: there is nothing to recover.
-    pub fn end(&self) {
+    pub fn end(&mut self) {
+        if let Some((_, written)) = self.writing.take() {
+            // What is still being written must not be there afterwards.
+            let _ = written.recv();
+        }
         if let Some(recovery) = &self.recovery {
             recovery.clear();
         }

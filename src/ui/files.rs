@@ -1,6 +1,7 @@
 //! Opening and saving, from the wish to the file. A wish may have to wait for an answer; what
 //! follows it ([`Next`]) waits with it and is forgotten with it.
 
+use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::{Duration, Instant};
@@ -11,8 +12,7 @@ use super::dialogs::{Ask, Dialogs};
 use super::prompts::{Answer, PathPrompt, ask_about_changes, ask_to_quit};
 use crate::animate::{from_table, from_text, to_table, to_text};
 use crate::editor::{Action, Edit, Editor};
-use crate::export::{Pattern, Sequence, job_template};
-use crate::files::write_atomic;
+use crate::export::{Pattern, Sequence, job_template, write_text};
 use crate::image::Format;
 use crate::scene::{Animation, read_text};
 
@@ -328,46 +328,31 @@ fn export_path(editor: &mut Editor, path: &Path) {
     let text = if is_table(path) {
         Ok(to_table(keys.iter().map(|key| (key.time, &key.value))))
     } else {
-        to_text(keys).map_err(|error| error.to_string())
+        to_text(keys).map_err(Box::<dyn Error>::from)
     };
-    let written = text.and_then(|text| {
-        let written = write_atomic(path, text.as_bytes());
-        written.map_err(|error| format!("cannot write {}: {error}", path.display()))
-    });
-    match written {
+    match text.and_then(|text| Ok(write_text(path, &text)?)) {
         Ok(()) => editor.notify(format!("Saved {}", path.display())),
-        Err(sentence) => editor.report_error(sentence),
+        Err(error) => editor.report_error(error.to_string()),
     }
 }
 
 /// The template, and the scene as it is now beside it.
 fn export_job(editor: &mut Editor, path: &Path) {
-    let name = path
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
     let scene = path.with_extension("ron");
-    let file = scene
-        .file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
-    let (pattern, folder) = (Pattern::default(), PathBuf::from("frames"));
-    let sequence = Sequence::new(editor.scene().clone(), None, pattern, Format::Ppm, folder);
-    let written = sequence.and_then(|sequence| {
-        let text = editor.to_text().map_err(|error| error.to_string())?;
-        let job = job_template(&sequence, &name, &file);
-        let both = [(path, job), (&scene, text)];
-        both.into_iter().try_for_each(|(path, text)| {
-            let written = write_atomic(path, text.as_bytes());
-            written.map_err(|error| format!("cannot write {}: {error}", path.display()))
-        })
-    });
-    match written {
+    match write_job(editor, path, &scene) {
         Ok(()) => editor.notify(format!("Saved {} and {}", path.display(), scene.display())),
-        Err(sentence) => editor.report_error(sentence),
+        Err(error) => editor.report_error(error.to_string()),
     }
+}
+
+fn write_job(editor: &Editor, path: &Path, scene: &Path) -> Result<(), Box<dyn Error>> {
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let file = scene.file_name().unwrap_or_default().to_string_lossy();
+    let (pattern, folder) = (Pattern::default(), PathBuf::from("frames"));
+    let sequence = Sequence::new(editor.scene().clone(), None, pattern, Format::Ppm, folder)?;
+    write_text(path, &job_template(&sequence, &name, &file))?;
+    write_text(scene, &editor.to_text()?)?;
+    Ok(())
 }
 
 fn is_table(path: &Path) -> bool {

@@ -31,6 +31,66 @@ enum Line {
     Entry(Item),
 }
 
+/// Which entries of a group are listed.
+enum Entries {
+    /// The first so many: all of them, or none.
+    All(usize),
+    /// Those at these indices.
+    Some(Vec<usize>),
+}
+
+/// All lines, made one by one as they are asked for: a list of ten thousand would take as long as
+/// everything else together.
+struct Lines([(Kind, usize, Entries); 3]);
+
+/// What is above the groups.
+const SINGLES: [(Selection, MaterialIcon, &str); 3] = [
+    (Selection::Camera, icons::CAMERA, "Camera"),
+    (Selection::World, icons::WORLD, "World"),
+    (Selection::Render, icons::IMAGE, "Picture"),
+];
+
+impl Entries {
+    fn len(&self) -> usize {
+        match self {
+            Self::All(count) => *count,
+            Self::Some(indices) => indices.len(),
+        }
+    }
+
+    fn get(&self, row: usize) -> Option<usize> {
+        match self {
+            Self::All(count) => (row < *count).then_some(row),
+            Self::Some(indices) => indices.get(row).copied(),
+        }
+    }
+}
+
+impl Lines {
+    fn len(&self) -> usize {
+        let groups = self.0.iter().map(|(.., entries)| 1 + entries.len());
+        SINGLES.len() + groups.sum::<usize>()
+    }
+
+    fn get(&self, index: usize) -> Option<Line> {
+        if let Some((selection, icon, name)) = SINGLES.get(index) {
+            return Some(Line::Single(*selection, *icon, name));
+        }
+        let mut row = index - SINGLES.len();
+        for (kind, count, entries) in &self.0 {
+            if row == 0 {
+                return Some(Line::Group(*kind, *count));
+            }
+            row -= 1;
+            if let Some(index) = entries.get(row) {
+                return Some(Line::Entry(Item { kind: *kind, index }));
+            }
+            row -= entries.len();
+        }
+        None
+    }
+}
+
 impl Outliner {
     /// Starts editing the name of an item in its row.
     pub fn rename(&mut self, item: Item) {
@@ -55,52 +115,52 @@ impl Outliner {
         ScrollArea::vertical()
             .auto_shrink(false)
             .show_rows(ui, ROW, lines.len(), |ui, range| {
-                for line in &lines[range] {
-                    match line {
-                        Line::Single(selection, icon, name) => {
+                for index in range {
+                    match lines.get(index) {
+                        Some(Line::Single(selection, icon, name)) => {
                             let rect = row(ui);
                             let look = RowStyle {
-                                icon: *icon,
+                                icon,
                                 is_bright: true,
-                                is_selected: editor.selection == *selection,
+                                is_selected: editor.selection == selection,
                             };
                             if entry(ui, rect, look, name).clicked() {
-                                out.select(*selection);
+                                out.select(selection);
                             }
                         }
-                        Line::Group(kind, count) => self.group(ui, *kind, *count),
-                        Line::Entry(item) => self.item(ui, editor, *item, out),
+                        Some(Line::Group(kind, count)) => self.group(ui, kind, count),
+                        Some(Line::Entry(item)) => self.item(ui, editor, item, out),
+                        None => {}
                     }
                 }
             });
     }
 
-    fn lines(&self, scene: &Scene) -> Vec<Line> {
-        let mut lines = vec![
-            Line::Single(Selection::Camera, icons::CAMERA, "Camera"),
-            Line::Single(Selection::World, icons::WORLD, "World"),
-            Line::Single(Selection::Render, icons::IMAGE, "Picture"),
-        ];
+    fn lines(&self, scene: &Scene) -> Lines {
         let filter = self.filter.trim().to_lowercase();
-        for (kind, count) in [
+        let groups = [
             (Kind::Light, scene.lights.len()),
             (Kind::Object, scene.objects.len()),
             (Kind::Pack, scene.color_packs.len()),
-        ] {
-            lines.push(Line::Group(kind, count));
+        ];
+        let entries = |kind: Kind, count: usize| {
             if self.folded.contains(&kind) {
-                continue;
+                return Entries::All(0);
             }
-            let items = (0..count).map(|index| Item { kind, index });
-            let matches = |item: &Item| {
-                filter.is_empty()
-                    || item
-                        .name(scene)
-                        .is_some_and(|name| name.to_lowercase().contains(&filter))
+            if filter.is_empty() {
+                return Entries::All(count);
+            }
+            let matches = |index: &usize| {
+                let item = Item {
+                    kind,
+                    index: *index,
+                };
+                item.name(scene)
+                    .is_some_and(|name| name.to_lowercase().contains(&filter))
             };
-            lines.extend(items.filter(matches).map(Line::Entry));
-        }
-        lines
+            Entries::Some((0..count).filter(matches).collect())
+        };
+        Lines(groups.map(|(kind, count)| (kind, count, entries(kind, count))))
     }
 
     fn group(&mut self, ui: &mut Ui, kind: Kind, count: usize) {

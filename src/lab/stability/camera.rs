@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::map::{Axis, Map, Tries, scattered};
+use super::subject::Subject;
 
 use crate::scene::{Camera, Orientation};
 use crate::simd::Vec3;
@@ -26,7 +27,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     };
     let pole = |name: &'static str, is_default, right: fn(f64, f64) -> Option<DVec3>| {
         Map::measure(
-            ("camera at the pole", "leans by more than a thousandth"),
+            (Subject::CameraPole, "leans by more than a thousandth"),
             (name.to_owned(), is_default),
             (across(), one()),
             |degrees, _| {
@@ -41,7 +42,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     };
     let drift = |name: &'static str, is_default, turned: fn(u64) -> DMat3| {
         Map::measure(
-            ("camera after turns", "is no orthonormal basis any more"),
+            (Subject::CameraTurns, "is no orthonormal basis any more"),
             (name.to_owned(), is_default),
             (frames(), one()),
             |frames, _| Tries::count([is_crooked(&turned(frames as u64))]),

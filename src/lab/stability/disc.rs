@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scales, scattered};
+use super::subject::Subject;
 use crate::primitive::{PackedDisc, Primitive as _, Ray};
 use crate::scene::Methods;
 use crate::simd::Vec3;
@@ -22,7 +23,10 @@ pub fn map(effort: u32) -> Map {
         values: DISTANCES.to_vec(),
     };
     Map::measure(
-        ("disc", "hit where it passes by or missed where it does not"),
+        (
+            Subject::Disc,
+            "hit where it passes by or missed where it does not",
+        ),
         ("disc".to_owned(), true),
         (across, scales()),
         |distance, scale| {

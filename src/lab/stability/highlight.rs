@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scattered};
+use super::subject::Subject;
 use crate::scene::{HighlightMethod, Method as _};
 use crate::simd::{Exponent, Vec3};
 
@@ -26,7 +27,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
                 values: vec![1.0],
             };
             Map::measure(
-                ("highlight", "off by more than half a level of 255"),
+                (Subject::Highlight, "off by more than half a level of 255"),
                 (
                     method.id.to_owned(),
                     method.value == HighlightMethod::default(),

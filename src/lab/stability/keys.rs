@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scattered};
+use super::subject::Subject;
 use crate::animate::{CameraPath, motion_between};
 use crate::scene::{Camera, Key, Orientation};
 use crate::simd::Vec3;
@@ -37,7 +38,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     };
     let method = |name: &'static str, is_default, leaves: fn(&[f64; 4]) -> bool| {
         Map::measure(
-            ("path between keys", "overshoots a key"),
+            (Subject::Path, "overshoots a key"),
             (name.to_owned(), is_default),
             (ratios.clone(), one()),
             |ratio, _| Tries::count(tries().map(|n| leaves(&stops(n, ratio)))),
@@ -45,10 +46,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     };
     let turn = |name: &'static str, is_default, fails: fn(f64, f64) -> bool| {
         Map::measure(
-            (
-                "turn between keys",
-                "no direction or a step of twice the mean",
-            ),
+            (Subject::Turn, "no direction or a step of twice the mean"),
             (name.to_owned(), is_default),
             (angles.clone(), one()),
             |degrees, _| {

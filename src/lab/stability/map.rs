@@ -1,5 +1,7 @@
 //! Maps of failure rates, and what they are measured over.
 
+use super::subject::Subject;
+
 /// Scales of a scene whose size is one.
 const SCALES: [f64; 12] = [
     1e-4, 1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7,
@@ -61,7 +63,7 @@ impl Tries {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     /// What is tried.
-    pub subject: &'static str,
+    pub subject: Subject,
     /// The method's word.
     pub method: String,
     /// Whether it is the default.
@@ -80,7 +82,7 @@ impl Map {
     /// Tries a method in every cell: what is tested and what counts as its failure, the method and
     /// whether it is the default, both axes, and the tries at a place on them.
     pub fn measure(
-        (subject, failure): (&'static str, &'static str),
+        (subject, failure): (Subject, &'static str),
         (method, is_default): (String, bool),
         (across, up): (Axis, Axis),
         mut try_at: impl FnMut(f64, f64) -> Tries,

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scales, scattered};
+use super::subject::Subject;
 use crate::primitive::{PackedPlane, Primitive as _, Ray};
 use crate::scene::Methods;
 use crate::simd::{Real as _, Vec3};
@@ -19,7 +20,7 @@ pub fn map(effort: u32) -> Map {
         values: ANGLES.to_vec(),
     };
     Map::measure(
-        ("plane", "distance off by more than 8u / sin(angle)"),
+        (Subject::Plane, "distance off by more than 8u / sin(angle)"),
         ("plane".to_owned(), true),
         (across, scales()),
         |angle, scale| {

@@ -2,6 +2,7 @@
 //! a ball and a card on a floor, at every scale and place; the ball a sphere, or a mesh.
 
 use super::map::{Map, Tries, places, scales};
+use super::subject::Subject;
 use crate::plan::RenderRequest;
 use crate::scene::{
     Camera, ColorPack, Light, List, Method as _, Methods, Object, Plane, Precision, RayOffset,
@@ -28,12 +29,15 @@ enum BallKind {
 /// Two maps for each way and ball: lit points that are dark (acne), and points in shadow that are
 /// lit (leak). Pixels beside an edge of a shadow or of a thing are not tried.
 pub fn maps() -> Vec<Map> {
-    let mut maps = maps_of(BallKind::Sphere, ["shadow acne", "shadow leak"]);
-    maps.extend(maps_of(BallKind::Mesh, ["mesh acne", "mesh leak"]));
+    let mut maps = maps_of(BallKind::Sphere, [Subject::ShadowAcne, Subject::ShadowLeak]);
+    maps.extend(maps_of(
+        BallKind::Mesh,
+        [Subject::MeshAcne, Subject::MeshLeak],
+    ));
     maps
 }
 
-fn maps_of(ball: BallKind, [acne, leak]: [&'static str; 2]) -> Vec<Map> {
+fn maps_of(ball: BallKind, [acne, leak]: [Subject; 2]) -> Vec<Map> {
     let at_home = scene(ball, 0.0, 1.0);
     let truth = lit(&at_home, RayOffset::Robust, Precision::Double);
     let facing = lit(&at_home, RayOffset::Fixed(BEYOND), Precision::Double);

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scales, scattered};
+use super::subject::Subject;
 use crate::primitive::{PackedSphere, Primitive as _, Ray};
 use crate::scene::{Method as _, Methods, SphereMethod};
 use crate::simd::Vec3;
@@ -24,7 +25,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
             };
             Map::measure(
                 (
-                    "sphere",
+                    Subject::Sphere,
                     "hit where it passes by or missed where it does not",
                 ),
                 (

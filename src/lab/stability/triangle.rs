@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::map::{Map, Tries, places, scales, scattered};
+use super::subject::Subject;
 use crate::primitive::{PackedTriangle, Primitive as _, Ray};
 use crate::scene::{Method as _, Methods, TriangleMethod};
 use crate::simd::Vec3;
@@ -22,7 +23,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
         .map(|method| {
             Map::measure(
                 (
-                    "triangle",
+                    Subject::Triangle,
                     "ray from inside a closed mesh that meets nothing",
                 ),
                 (

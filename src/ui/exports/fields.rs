@@ -6,9 +6,9 @@ use std::sync::Arc;
 use egui::{Align2, ComboBox, DragValue, TextEdit, Ui};
 
 use crate::editor::Editor;
-use crate::export::{Frames, Pattern, Sequence, Video};
+use crate::export::{Frames, FramesError, NoSuchFrame, Pattern, PatternError, Sequence, Video};
 use crate::image::Format;
-use crate::scene::{MAX_SIDE, Method as _, Sampling, Scene};
+use crate::scene::{MAX_SIDE, Method as _, Problem, Sampling, Scene};
 use crate::ui::commands::Command;
 use crate::ui::requests::UiRequests;
 use crate::ui::status::in_words;
@@ -63,19 +63,20 @@ impl Settings {
     }
 
     /// The sequence, with the scene as it is now.
-    pub fn sequence(&self, scene: &Scene) -> Result<Sequence, String> {
+    pub fn sequence(&self, scene: &Scene) -> Result<Sequence, SettingsError> {
         let mut scene = scene.clone();
         (scene.render.width, scene.render.height) = (self.width, self.height);
         scene.render.antialias = self.antialias;
         scene.animation_mut().frames_per_second = self.fps;
-        crate::scene::check(&scene).map_err(|problem| problem.sentence)?;
+        crate::scene::check(&scene).map_err(SettingsError::Scene)?;
         let frames = Frames::parse(&self.frames)?;
         let pattern = Pattern::parse(&self.name)?;
         if self.folder.trim().is_empty() {
-            return Err("choose a folder for the frames".to_owned());
+            return Err(SettingsError::NoFolder);
         }
         let folder = PathBuf::from(self.folder.trim());
-        Sequence::new(Arc::new(scene), Some(frames), pattern, self.format, folder)
+        let sequence = Sequence::new(Arc::new(scene), Some(frames), pattern, self.format, folder);
+        Ok(sequence?)
     }
 
     /// The video that is to follow the frames.
@@ -84,6 +85,26 @@ impl Settings {
         let path = sequence.folder.join(format!("{name}.{}", self.video));
         Video::of_path(&path).ok().map(|video| (path, video))
     }
+}
+
+/// Why nothing can be exported with these settings.
+#[derive(Debug, thiserror::Error)]
+pub enum SettingsError {
+    /// The scene means nothing with this size or rate.
+    #[error("{}", .0.sentence)]
+    Scene(Problem),
+    /// The frames are no set of frames.
+    #[error(transparent)]
+    Frames(#[from] FramesError),
+    /// The name has no place for a number.
+    #[error(transparent)]
+    Pattern(#[from] PatternError),
+    /// The animation is shorter.
+    #[error(transparent)]
+    NoSuchFrame(#[from] NoSuchFrame),
+    /// There is nowhere to write to.
+    #[error("choose a folder for the frames")]
+    NoFolder,
 }
 
 /// Settings that go together.

@@ -144,8 +144,8 @@ impl Exports {
         let sequence = settings.sequence(editor.scene());
         let colors = palette(ui.ctx());
         match &sequence {
-            Err(sentence) => {
-                ui.colored_label(colors.error, sentence);
+            Err(error) => {
+                ui.colored_label(colors.error, error.to_string());
             }
             Ok(sequence) => {
                 self.look(editor, &settings, sequence);

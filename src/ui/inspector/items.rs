@@ -1,6 +1,6 @@
 //! Lights, objects and colour packs.
 
-use egui::Ui;
+use egui::{Id, Ui};
 
 use glam::DVec3;
 
@@ -109,7 +109,7 @@ pub fn object(ui: &mut Ui, scene: &Scene, index: usize, before: &Object, out: &m
         return;
     };
     pack(ui, place, value, out);
-    let users = scene.users_of_pack(name).len();
+    let users = count_users(ui, scene, name);
     ui.horizontal(|ui| {
         ui.weak(format!("used by {users}"));
         let unique = ui.add_enabled(users > 1, egui::Button::new("Make unique"));
@@ -120,6 +120,22 @@ pub fn object(ui: &mut Ui, scene: &Scene, index: usize, before: &Object, out: &m
             out.edit(Edit::MakePackUnique(index));
         }
     });
+}
+
+/// How many things wear a pack. To count them takes a look at every object: what is dragged changes
+/// nothing about it, so it is counted when the button is up.
+fn count_users(ui: &Ui, scene: &Scene, name: &str) -> usize {
+    let id = Id::unique(("users of a pack", name));
+    let known = ui.data(|data| data.get_temp::<(usize, usize)>(id));
+    let is_dragging = ui.input(|input| input.pointer.any_down());
+    match known {
+        Some((objects, users)) if is_dragging && objects == scene.objects.len() => users,
+        _ => {
+            let users = scene.users_of_pack(name).len();
+            ui.data_mut(|data| data.insert_temp(id, (scene.objects.len(), users)));
+            users
+        }
+    }
 }
 
 fn shape_rows(rows: &mut Rows, shape: &mut Shape) {

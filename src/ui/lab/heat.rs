@@ -159,6 +159,7 @@ fn number(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lab::stability::Subject;
 
     #[test]
     fn a_scene_stands_at_the_nearest_mark() {
@@ -169,7 +170,7 @@ mod tests {
         let places = [0.0, 0.1, 0.9, 4.0, 31.0, 33.0, 1e9].map(|value| nearest(&axis, value));
         assert_eq!(places, [0, 0, 1, 2, 2, 3, 3]);
         let only = |place: usize| Map {
-            subject: "",
+            subject: Subject::Sphere,
             method: String::new(),
             is_default: true,
             failure: "",

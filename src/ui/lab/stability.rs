@@ -7,10 +7,9 @@ use egui::{RichText, ScrollArea, Ui, vec2};
 use super::super::raster::draw;
 use super::super::theme::{GRID, palette};
 use super::heat;
-use crate::animate::motion_between;
 use crate::image::Image;
 use crate::lab::stability::{Map, maps};
-use crate::scene::{Method as _, Orientation, Scene, Shape, Sphere};
+use crate::scene::Scene;
 use crate::worker::run_in_background;
 
 /// How many times more tries than for a first look: a second of computing.
@@ -44,7 +43,7 @@ impl Stability {
             });
             ui.vertical(|ui| {
                 let map = &self.maps[self.chosen];
-                let stand = standing(scene, map);
+                let stand = map.subject.standing(scene);
                 ui.label(headline(map));
                 let warning = stand.filter(|&stand| heat::is_near_failing(map, stand));
                 match (warning, is_used(scene, map)) {
@@ -83,7 +82,7 @@ impl Stability {
             let used = if is_used(scene, map) { "●" } else { " " };
             let text = format!(
                 "{used} {:<19}{:<22}{:>8.3}%",
-                map.subject,
+                map.subject.name(),
                 map.method,
                 map.total().rate() * 100.0
             );
@@ -111,7 +110,7 @@ pub fn stability_picture(maps: &[Map]) -> Image {
                             ui.set_min_height(height);
                             ui.add_space(GRID);
                             let star = if map.is_default { " *" } else { "" };
-                            ui.label(format!("   {} {}{star}", map.subject, map.method));
+                            ui.label(format!("   {} {}{star}", map.subject.name(), map.method));
                             let room = vec2(width - 2.0 * GRID, height - 5.0 * GRID);
                             heat::show(ui, map, room, None);
                         });
@@ -124,79 +123,16 @@ pub fn stability_picture(maps: &[Map]) -> Image {
 
 fn headline(map: &Map) -> String {
     let default = if map.is_default { " (the default)" } else { "" };
-    format!("{} {}{default}: {}", map.subject, map.method, map.failure)
+    format!(
+        "{} {}{default}: {}",
+        map.subject.name(),
+        map.method,
+        map.failure
+    )
 }
 
 /// Whether the scene asks for this method.
 fn is_used(scene: &Scene, map: &Map) -> bool {
-    let render = &scene.render;
-    let word = match map.subject {
-        "sphere" => render.sphere.id(),
-        "triangle" => render.triangle.id(),
-        "highlight" => render.specular.id(),
-        "shadow acne" | "shadow leak" | "mesh acne" | "mesh leak" => render.offset.id(),
-        // There is one way of doing the rest.
-        _ => return map.is_default,
-    };
-    word == map.method
-}
-
-/// Where the scene stands on a map, as far as that can be said.
-fn standing(scene: &Scene, map: &Map) -> Option<(f64, f64)> {
-    let (low, high) = scene.bounds()?;
-    let size = (high - low).length() / 2.0;
-    let away = ((low + high) * 0.5).length() / size;
-    match map.subject {
-        "sphere" => {
-            let eye = scene.camera.position;
-            let spheres = scene
-                .objects
-                .iter()
-                .filter_map(|object| match object.shape {
-                    Shape::Sphere(Sphere { center, radius }) => {
-                        Some(((center - eye).length() / radius, radius))
-                    }
-                    _ => None,
-                });
-            spheres.max_by(|a, b| a.0.total_cmp(&b.0))
-        }
-        "disc" => {
-            let eye = scene.camera.position;
-            let discs = scene
-                .objects
-                .iter()
-                .filter_map(|object| match &object.shape {
-                    Shape::Disc(disc) => {
-                        Some(((disc.center - eye).length() / disc.radius, disc.radius))
-                    }
-                    _ => None,
-                });
-            discs.max_by(|a, b| a.0.total_cmp(&b.0))
-        }
-        "highlight" => {
-            let packs = scene.color_packs.values().map(|pack| pack.phong_exponent);
-            packs.max_by(f64::total_cmp).map(|sharpest| (sharpest, 1.0))
-        }
-        "plane" | "camera after turns" => None,
-        "camera at the pole" => {
-            let pitch = Orientation::of(&scene.camera).pitch.to_degrees();
-            Some((90.0 - pitch.abs(), 1.0))
-        }
-        "turn between keys" => {
-            let keys = scene.animation.keys.windows(2);
-            let turns = keys.map(|pair| motion_between(&pair[0].value, &pair[1].value).turn);
-            turns.max_by(f64::total_cmp).map(|turn| (turn, 1.0))
-        }
-        "path between keys" => {
-            let keys = scene.animation.keys.windows(2);
-            let ways = keys.map(|pair| (pair[1].value.position - pair[0].value.position).length());
-            let ways: Vec<f64> = ways.filter(|way| *way > 0.0).collect();
-            let ratio = |pair: &[f64]| (pair[0] / pair[1]).max(pair[1] / pair[0]);
-            let ratios = ways.windows(2).map(ratio);
-            ratios.max_by(f64::total_cmp).map(|ratio| (ratio, 1.0))
-        }
-        // The plan moves every scene to the origin before it is traced.
-        "triangle" => Some((0.0, size)),
-        _ => Some((away, size)),
-    }
+    let asked = map.subject.method_in_use(&scene.render);
+    asked.map_or(map.is_default, |asked| asked == map.method)
 }

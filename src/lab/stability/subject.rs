@@ -1,0 +1,121 @@
+//! What the maps are about.
+
+use crate::animate::motion_between;
+use crate::scene::{Method as _, Orientation, Render, Scene, Shape};
+
+/// What a map is about: the setting that it tests, and where on it a scene stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// Rays past spheres.
+    Sphere,
+    /// Rays at the edges of triangles.
+    Triangle,
+    /// Lit points of single shapes.
+    ShadowAcne,
+    /// Points in the shadow of single shapes.
+    ShadowLeak,
+    /// Lit points of meshes.
+    MeshAcne,
+    /// Points in the shadow of meshes.
+    MeshLeak,
+    /// Phong highlights.
+    Highlight,
+    /// Rays that graze planes.
+    Plane,
+    /// Rays at the rims of discs.
+    Disc,
+    /// Cameras that look nearly straight up.
+    CameraPole,
+    /// Cameras that have turned for long.
+    CameraTurns,
+    /// Paths through uneven keys.
+    Path,
+    /// Turns between keys.
+    Turn,
+}
+
+impl Subject {
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sphere => "sphere",
+            Self::Triangle => "triangle",
+            Self::ShadowAcne => "shadow acne",
+            Self::ShadowLeak => "shadow leak",
+            Self::MeshAcne => "mesh acne",
+            Self::MeshLeak => "mesh leak",
+            Self::Highlight => "highlight",
+            Self::Plane => "plane",
+            Self::Disc => "disc",
+            Self::CameraPole => "camera at the pole",
+            Self::CameraTurns => "camera after turns",
+            Self::Path => "path between keys",
+            Self::Turn => "turn between keys",
+        }
+    }
+
+    /// The id of the method that a scene asks for; `None` where there is no choice.
+    pub fn method_in_use(self, render: &Render) -> Option<String> {
+        match self {
+            Self::Sphere => Some(render.sphere.id()),
+            Self::Triangle => Some(render.triangle.id()),
+            Self::Highlight => Some(render.specular.id()),
+            Self::ShadowAcne | Self::ShadowLeak | Self::MeshAcne | Self::MeshLeak => {
+                Some(render.offset.id())
+            }
+            _ => None,
+        }
+    }
+
+    /// Where a scene stands on the axes of the map, as far as that can be said.
+    pub fn standing(self, scene: &Scene) -> Option<(f64, f64)> {
+        let (low, high) = scene.bounds()?;
+        let size = (high - low).length() / 2.0;
+        match self {
+            Self::Sphere | Self::Disc => self.farthest(scene),
+            Self::Highlight => {
+                let packs = scene.color_packs.values().map(|pack| pack.phong_exponent);
+                packs.max_by(f64::total_cmp).map(|sharpest| (sharpest, 1.0))
+            }
+            Self::Plane | Self::CameraTurns => None,
+            Self::CameraPole => {
+                let pitch = Orientation::of(&scene.camera).pitch.to_degrees();
+                Some((90.0 - pitch.abs(), 1.0))
+            }
+            Self::Turn => {
+                let keys = scene.animation.keys.windows(2);
+                let turns = keys.map(|pair| motion_between(&pair[0].value, &pair[1].value).turn);
+                turns.max_by(f64::total_cmp).map(|turn| (turn, 1.0))
+            }
+            Self::Path => {
+                let keys = scene.animation.keys.windows(2);
+                let lengths =
+                    keys.map(|pair| (pair[1].value.position - pair[0].value.position).length());
+                let lengths: Vec<f64> = lengths.filter(|length| *length > 0.0).collect();
+                let ratio = |pair: &[f64]| (pair[0] / pair[1]).max(pair[1] / pair[0]);
+                let ratios = lengths.windows(2).map(ratio);
+                ratios.max_by(f64::total_cmp).map(|ratio| (ratio, 1.0))
+            }
+            // The plan moves every scene to the origin before it is traced.
+            Self::Triangle => Some((0.0, size)),
+            Self::ShadowAcne | Self::ShadowLeak | Self::MeshAcne | Self::MeshLeak => {
+                let away = ((low + high) * 0.5).length() / size;
+                Some((away, size))
+            }
+        }
+    }
+
+    /// Distance in radii, and radius, of the round shape that is farthest from the eye.
+    fn farthest(self, scene: &Scene) -> Option<(f64, f64)> {
+        let eye = scene.camera.position;
+        let round = scene.objects.iter().filter_map(|object| {
+            let (center, radius) = match (&object.shape, self) {
+                (Shape::Sphere(sphere), Self::Sphere) => (sphere.center, sphere.radius),
+                (Shape::Disc(disc), Self::Disc) => (disc.center, disc.radius),
+                _ => return None,
+            };
+            Some(((center - eye).length() / radius, radius))
+        });
+        round.max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+}
