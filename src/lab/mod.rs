@@ -16,7 +16,7 @@ mod table;
 pub mod stability;
 
 pub use candidates::{Candidate, candidates};
-pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, difference};
+pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, LinearRgb, difference, trace_light};
 pub use pareto_front::{cheapest_within, front};
 pub use study::{Measurement, Reference, Study, Timing};
 pub use table::{DOUBTFUL, csv, table};

@@ -60,12 +60,14 @@ impl RenderRequest {
     }
 }
 
-/// How much of the image model is computed. Both show the same picture.
+/// How much of the image model is computed. All show the same picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Model {
     /// What the scene needs.
     #[default]
     Needed,
-    /// Everything, needed or not: what the rules of the plan are measured against.
+    /// What the scene needs, with every primitive tested for every ray: what culling is measured against.
+    Unculled,
+    /// Everything, needed or not, and unculled: what the rules of the plan are measured against.
     Everything,
 }

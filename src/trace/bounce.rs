@@ -32,9 +32,15 @@ pub struct Bounce<L: SimdFloat> {
 impl<L: SimdFloat> Bounce<L> {
     /// A bounce without packets.
     pub fn new(plan: &Plan<L::Real>) -> Self {
+        let casters = Candidates::all_casting(plan);
+        // Without culling nobody looks for the narrow ones among them.
+        let thin = match plan.screen {
+            Some(_) => Candidates::default(),
+            None => casters.clone(),
+        };
         let light = LightCandidates {
-            casters: Candidates::all_casting(plan),
-            thin: Candidates::default(),
+            casters,
+            thin,
             is_umbra: false,
         };
         Self {

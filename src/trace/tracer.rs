@@ -327,7 +327,10 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicBool, AtomicU64};
+
     use super::*;
+    use crate::trace::Threads;
     use proptest::prelude::*;
 
     impl Pixel for [u64; 3] {
@@ -386,6 +389,39 @@ mod tests {
                 assert_eq!(Some(sum), rays);
             }
         }
+    }
+
+    /// Told to stop by the first pixel that is written.
+    static FIRST: RenderControl = RenderControl {
+        stop: AtomicBool::new(false),
+        pixels: AtomicU64::new(0),
+    };
+
+    #[derive(Clone, Copy)]
+    struct Stopping;
+
+    impl Pixel for Stopping {
+        fn of<R: Real>(_: R, _: R, _: R) -> Self {
+            FIRST.stop.store(true, Ordering::Relaxed);
+            Self
+        }
+    }
+
+    #[test]
+    fn a_stopped_pass_ends_with_the_tiles_that_are_being_traced() {
+        let (scene, side) = (Scene::demo(), 2048);
+        let tracer = Tracer::new(&scene, &RenderRequest::sized(side, side));
+        let mut pixels = vec![Stopping; (side * side) as usize];
+        let threads = Threads::new(Some(3)).expect("threads");
+        let rays = threads.run(|| tracer.pass(&mut pixels, Pass::Whole, &FIRST));
+        assert_eq!(rays, None);
+        let traced = FIRST.pixels.load(Ordering::Relaxed);
+        // One tile is written before the stop is seen, and each thread may have begun another.
+        let most = (2 * 3 * tracer.tile * tracer.tile) as u64;
+        assert!(
+            traced <= most,
+            "{traced} pixels after the stop, {most} at most"
+        );
     }
 
     proptest! {

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 use glint::image::{Image, render};
-use glint::plan::{Model, Plan, RenderRequest, needs};
+use glint::plan::{Model, Plan, RenderRequest, Sampling, needs};
 use glint::scene::{Object, Scene, Shape, Sphere};
 use glint::trace::{Rays, RenderControl};
 
@@ -59,6 +59,44 @@ fn what_is_left_out_is_not_missed() {
             few.shadow < many.shadow && few.reflected <= many.reflected,
             "{few:?} {many:?}"
         );
+    }
+}
+
+/// Every ray meets what it would meet if every primitive were tested for it: byte for byte, ray for ray,
+/// with every sampling, where smoothing also looks beside its rays.
+#[test]
+fn what_is_culled_is_not_missed() {
+    let mut many = Scene::demo();
+    many.render.reflection_limit = 3;
+    for number in 0..200 {
+        let mut ball = many.objects[0].clone();
+        let (column, row) = (f64::from(number % 20), f64::from(number / 20));
+        ball.name = format!("Ball {number}");
+        ball.shape = Shape::Sphere(Sphere {
+            center: DVec3::new(10.0 * column, 1.0 + row % 3.0, -40.0 - 20.0 * row),
+            radius: 0.2 + 0.4 * row,
+        });
+        many.objects.push(ball);
+    }
+    let scenes = (0..10).map(random::scene);
+    let scenes = scenes.chain((0..6).map(random::with_discs));
+    let scenes = scenes.chain(random::published()).chain([many]);
+    for (index, scene) in scenes.enumerate() {
+        for sampling in [Sampling::Centres, Sampling::Grid(2), Sampling::ADAPTIVE] {
+            let traced = |model| {
+                let request = RenderRequest {
+                    model,
+                    sampling,
+                    ..RenderRequest::sized(96, 72)
+                };
+                let traced = render(&scene, &request, &RenderControl::default());
+                let (image, cost) = traced.expect("not stopped");
+                (image, cost.rays)
+            };
+            let (culled, unculled) = (traced(Model::Needed), traced(Model::Unculled));
+            assert_eq!(culled.1, unculled.1, "rays of scene {index}, {sampling:?}");
+            assert!(culled.0 == unculled.0, "scene {index}, {sampling:?}");
+        }
     }
 }
 

@@ -186,11 +186,8 @@ fn different_ppm(a: &Image, b: &Image) -> usize {
 #[ignore = "needs POV-Ray (Debian package povray)"]
 fn povray_draws_the_same_pictures() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut scenes = vec![("demo".to_owned(), Scene::demo())];
-    let mut side = Scene::demo();
-    side.camera.position = DVec3::new(172.0, 159.0, -27.0);
-    side.camera.look_at = DVec3::new(-0.25, -0.70, -0.67);
-    side.camera.up = DVec3::new(-0.25, 0.71, -0.65);
+    let [front, mut side] = random::published();
+    let mut scenes = vec![("demo".to_owned(), front)];
     scenes.push(("demo, second camera".to_owned(), side.clone()));
     side.camera.projection = Projection::Orthographic;
     scenes.push(("demo, orthographic".to_owned(), side));

@@ -1,25 +1,20 @@
-//! Random scenes with a fixed seed: what both Glint and POV-Ray can say.
+//! Scenes that several tests share: random ones with a fixed seed, of what both Glint and POV-Ray can
+//! say, and the published views.
 
 use glam::DVec3;
+use glint::lab::stability::{GOLDEN, mixed, share};
 use glint::scene::{
     Camera, ColorPack, Disc, Light, LightObj, Object, Plane, Projection, Render, Scene, Shape,
     Sphere, Triangle, check,
 };
 
-/// `SplitMix64` (Steele, Lea and Flood 2014): a test must give the same scenes everywhere.
+/// Random numbers that are the same everywhere, as a test must be.
 pub struct Dice(pub u64);
 
 impl Dice {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
     pub fn real(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+        self.0 = self.0.wrapping_add(GOLDEN);
+        low + (high - low) * share(mixed(self.0))
     }
 
     fn vector(&mut self, low: f64, high: f64) -> DVec3 {
@@ -65,6 +60,16 @@ pub fn scene(seed: u64) -> Scene {
     scene.camera = camera(dice, seed);
     assert_eq!(check(&scene), Ok(()));
     scene
+}
+
+/// The demo from both cameras that the original report publishes.
+pub fn published() -> [Scene; 2] {
+    let first = Scene::demo();
+    let mut second = first.clone();
+    second.camera.position = DVec3::new(172.0, 159.0, -27.0);
+    second.camera.look_at = DVec3::new(-0.25, -0.70, -0.67);
+    second.camera.up = DVec3::new(-0.25, 0.71, -0.65);
+    [first, second]
 }
 
 /// The scene of this seed with discs in it: some lie, some lean, two are mirrors.

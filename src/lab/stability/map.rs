@@ -146,11 +146,24 @@ pub fn places() -> Axis {
 
 /// Directions and shares without a pattern, the same every time.
 pub fn scattered(number: u64, stream: u64) -> f64 {
-    // Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
-    let mut bits = (number + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15)
-        ^ stream.wrapping_mul(0xD1B5_4A32_D192_ED03);
+    share(mixed(
+        (number + 1).wrapping_mul(GOLDEN) ^ stream.wrapping_mul(0xD1B5_4A32_D192_ED03),
+    ))
+}
+
+/// What is added to a state from one random number to the next: 2⁶⁴ over the golden ratio.
+pub const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+
+/// Bits without a pattern, from any others.
+///
+/// Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
+pub fn mixed(mut bits: u64) -> u64 {
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    bits ^= bits >> 31;
+    bits ^ (bits >> 31)
+}
+
+/// A number from 0 to below 1, of bits without a pattern.
+pub fn share(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1_u64 << 53) as f64
 }

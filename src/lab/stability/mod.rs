@@ -21,7 +21,7 @@ mod camera;
 
 mod keys;
 
-pub use map::{Axis, Map, Tries};
+pub use map::{Axis, GOLDEN, Map, Tries, mixed, share};
 pub use subject::Subject;
 
 use std::fmt::Write as _;
