@@ -1,6 +1,6 @@
 //! Glint's program: the command line, or else the window.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use glint::cli::{CliAction, CliError, picture_instead_of_window};
@@ -21,24 +21,24 @@ fn main() -> ExitCode {
             scene,
             screenshot,
             exports,
-        } => open_editor(scene, screenshot, exports),
+        } => open_editor(scene.as_deref(), screenshot, exports),
     };
     result.map_or_else(|error| error.report(), |()| ExitCode::SUCCESS)
 }
 
 /// Opens the window, or explains why there is none and traces a picture instead.
 fn open_editor(
-    scene: Option<PathBuf>,
+    scene: Option<&Path>,
     screenshot: Option<PathBuf>,
     exports: bool,
 ) -> Result<(), CliError> {
     let is_screenshot = screenshot.is_some();
-    match ui::run(scene.clone(), screenshot, exports) {
+    match ui::run(scene.map(Path::to_owned), screenshot, exports) {
         Ok(()) => Ok(()),
         Err(NoWindow::Unavailable(reason)) if is_screenshot => {
             Err(CliError::failed(format!("no window: {reason}")))
         }
-        Err(NoWindow::Unavailable(reason)) => picture_instead_of_window(scene.as_deref(), &reason),
+        Err(NoWindow::Unavailable(reason)) => picture_instead_of_window(scene, &reason),
         Err(error) => Err(CliError::failed(error)),
     }
 }

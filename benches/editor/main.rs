@@ -1,6 +1,6 @@
 //! How soon an edit is seen, and what it costs the window's thread: `cargo bench --bench editor`.
 //!
-//! Everything runs without a display: the lane is the real one, the window is driven headlessly and
+//! Everything runs without a display: the render thread is the real one, the window is driven headlessly and
 //! its shapes are cut into triangles as for a graphics card.
 
 #![allow(
@@ -33,7 +33,7 @@ fn main() {
 
 const SIDE: u32 = 1024;
 
-/// What `published` has to be held against: the same picture without the lane.
+/// What `published` has to be held against: the same picture without the render thread.
 #[divan::bench(sample_count = 100, sample_size = 1)]
 fn plain_frame(bencher: Bencher) {
     let threads = Threads::new(None).expect("threads");
@@ -44,7 +44,7 @@ fn plain_frame(bencher: Bencher) {
     });
 }
 
-/// From an edit of the demo to its picture in full resolution, through the lane, while the clean
+/// From an edit of the demo to its picture in full resolution, through the render thread, while the clean
 /// edges of the one before are being traced.
 #[divan::bench(sample_count = 100, sample_size = 1)]
 fn published(bencher: Bencher) {
@@ -53,7 +53,7 @@ fn published(bencher: Bencher) {
         // The receiver is gone when the last frame comes: nobody waits for it.
         let _ = sender.send(());
     })
-    .expect("a lane");
+    .expect("a render thread");
     let revision = Cell::new(0);
     let submit = || {
         revision.set(revision.get() + 1);
@@ -69,7 +69,7 @@ fn published(bencher: Bencher) {
             pace: Pace::Within(BUDGET),
         });
     };
-    // The lane learns how fine the first picture may be.
+    // The render thread learns how fine the first picture may be.
     for _ in 0..20 {
         submit();
         wait(&worker, &woken, revision.get());
@@ -89,7 +89,7 @@ fn published(bencher: Bencher) {
 /// The first frame in full resolution of this revision.
 fn wait(worker: &Worker, woken: &Receiver<()>, revision: u64) -> Frame {
     loop {
-        woken.recv().expect("the lane lives");
+        woken.recv().expect("the render thread lives");
         if let Some(frame) = worker.take_frame()
             && frame.revision == revision
             && frame.step == 1
@@ -177,7 +177,7 @@ impl EditorHarness {
         };
         let window = Harness::builder()
             .with_size([1680.0, 1120.0])
-            .build_eframe(|cc| App::new(cc, setup).expect("a lane"));
+            .build_eframe(|cc| App::new(cc, setup).expect("a render thread"));
         let mut harness = Self {
             window,
             x: 800.0,

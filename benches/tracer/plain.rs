@@ -90,7 +90,7 @@ fn thing(shape: &Shape) -> Box<dyn Thing> {
                 corners: Some([a, b, c]),
             })
         }
-        ref other => panic!(
+        ref other @ Shape::Disc(_) => panic!(
             "the yardstick draws the demo, which has no {}",
             other.kind()
         ),
@@ -142,13 +142,13 @@ impl World<'_> {
                 .try_normalize()
                 .expect("not against the light");
             let highlight = normal.dot(h).max(0.0).powf(part.pack.phong_exponent);
-            total = total + (diffuse * cosine + specular * highlight) * light.intensity;
+            total += (diffuse * cosine + specular * highlight) * light.intensity;
         }
         if part.pack.reflective && bounces < self.scene.render.reflection_limit {
             let mirrored = direction - normal * (2.0 * direction.dot(normal));
             let seen = self.color(point + mirrored * AWAY, mirrored, bounces + 1);
             let intensities: f64 = self.scene.lights.iter().map(|light| light.intensity).sum();
-            total = total + specular * seen * intensities;
+            total += specular * seen * intensities;
         }
         total.clamp(V::ZERO, V::ONE)
     }

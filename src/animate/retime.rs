@@ -143,7 +143,7 @@ fn trimmed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
     };
     let mut kept: Vec<Key<Camera>> = Vec::new();
     for (place, key) in with_steps(keys, step).into_iter().enumerate() {
-        // Of keys that fall together, the one after the pause goes on.
+        // Where keys fall together, the one after the pause goes on.
         if place > 0 && pauses[place - 1] {
             kept.pop();
         }

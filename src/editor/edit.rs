@@ -57,9 +57,9 @@ pub enum EditError {
     /// Something wears the pack that was to go.
     #[error("{name:?} is used by {users}; give them another color pack first")]
     PackInUse {
-        /// Of the pack.
+        /// The pack's name.
         name: String,
-        /// Of what wears it.
+        /// The names of what wears it.
         users: String,
     },
     /// Two packs would have one name.

@@ -129,6 +129,8 @@ pub fn csv(study: &Study, machine: &str, threads: usize) -> Result<String, csv::
 /// # Errors
 /// None is known: everything is written to memory.
 pub fn written(writer: csv::Writer<Vec<u8>>) -> Result<String, csv::Error> {
-    let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+    let bytes = writer
+        .into_inner()
+        .map_err(csv::IntoInnerError::into_error)?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }

@@ -11,17 +11,17 @@ use crate::simd::Real;
 /// How many balls are tested together: as many as the widest processor has lanes.
 pub const GROUP: usize = 16;
 
-/// Above so many, testing the bundles costs less than testing every primitive's own ball.
+/// Above so many, walking the tree costs less than testing every primitive's own ball.
 pub const LARGEST_LIST: usize = 128;
 
 /// Balls, component by component, filled up to whole groups with balls that nothing meets.
 #[derive(Clone, Debug, Default)]
 pub struct Balls<R> {
-    /// Of the centres.
+    /// x of the centres.
     pub x: Vec<R>,
-    /// Of the centres.
+    /// y of the centres.
     pub y: Vec<R>,
-    /// Of the centres.
+    /// z of the centres.
     pub z: Vec<R>,
     /// Minus infinity in a ball that nothing meets.
     pub radius: Vec<R>,
@@ -57,7 +57,7 @@ impl<R: Real> Bvh<R> {
         Self { levels, members }
     }
 
-    /// Whether there are bundles.
+    /// Whether it is more than a list.
     pub fn is_tree(&self) -> bool {
         self.levels.len() > 1
     }
@@ -119,7 +119,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_ball_lies_in_its_bundles(places in prop::collection::vec((vector(), 0.0..5.0_f64), 1..700)) {
+        fn every_ball_lies_in_those_above_it(places in prop::collection::vec((vector(), 0.0..5.0_f64), 1..700)) {
             let balls: Vec<(u32, Ball)> = (0..).zip(places).map(|(number, (center, radius))| (number, Ball { center, radius })).collect();
             let volumes = Bvh::<f64>::new(&balls, true);
             let mut members = volumes.members.clone();

@@ -355,9 +355,9 @@ mod tests {
             object.shape = object.shape.moved(by);
         }
         for light in moved.lights.iter_mut() {
-            light.position = light.position + by;
+            light.position += by;
         }
-        moved.camera.position = moved.camera.position + by;
+        moved.camera.position += by;
         let (here, there) = (plan(&scene), plan(&moved));
         for (a, b) in here
             .primitives

@@ -7,7 +7,7 @@ use crate::scene::{Projection, RayOffset, Scene, SphereMethod};
 
 /// A plane, its normal turned to the eye.
 pub struct PlaneOccluder {
-    /// Of length 1.
+    /// The unit normal.
     normal: DVec3,
     /// Any of its points.
     point: DVec3,
@@ -30,7 +30,7 @@ impl PlaneOccluder {
     }
 }
 
-/// The planes as walls that hide every light behind them from everything that the eye can reach,
+/// The planes as occluders that hide every light behind them from everything that the eye can reach,
 /// and block no other light; `None` where planes have to be tested ray by ray: for parallel rays,
 /// which start on both sides, for an eye on a plane, and for formulas whose failures shall show.
 pub fn classify_planes(scene: &Scene, request: &RenderRequest) -> Option<Vec<PlaneOccluder>> {

@@ -261,12 +261,12 @@ impl Method for HighlightMethod {
 /// How the primitives that a beam of rays can meet are found. All show the same picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Accelerator {
-    /// A list, or bundles where there are many.
+    /// A list, or a tree where there are many.
     #[default]
     Auto,
     /// One by one.
     List,
-    /// Bundles within bundles.
+    /// A tree of balls.
     Bvh,
 }
 
@@ -275,14 +275,14 @@ impl Method for Accelerator {
         method(
             Self::Auto,
             "auto",
-            "a list up to 128 spheres and triangles, bundles above",
+            "a list up to 128 shapes that end, a tree above",
             "Glint's plan",
         ),
         method(Self::List, "list", "each by each, per tile", "Glint"),
         method(
             Self::Bvh,
             "bvh",
-            "bundles of 16 along a Morton curve",
+            "a tree of balls, 16 by 16 along a Morton curve",
             "Wald, Boulos and Shirley, TOG 26(1), 2007, in kind",
         ),
     ];

@@ -14,7 +14,7 @@ pub struct Beam<R> {
     /// Radius of the ball that the rays start in.
     spread: R,
     axis: Vec3<R>,
-    /// Of the angle between the axis and the outermost rays, which is below a right angle.
+    /// Sine of the angle between the axis and the outermost rays, which is below a right angle.
     sine: R,
     cosine: R,
     /// How far the rays go.

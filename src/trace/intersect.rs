@@ -14,6 +14,10 @@ pub struct Kernel<'a, L: SimdFloat> {
     pub plan: &'a Plan<L::Real>,
 }
 
+#[expect(
+    clippy::expl_impl_clone_on_copy,
+    reason = "derived, it would ask for the same of every lane"
+)]
 impl<L: SimdFloat> Clone for Kernel<'_, L> {
     fn clone(&self) -> Self {
         *self

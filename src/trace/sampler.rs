@@ -16,7 +16,7 @@ pub struct Sampler<L: SimdFloat> {
     columns: Vec<L::Real>,
     samples: Samples<L::Real>,
     traced: Traced<L::Real>,
-    /// Of the pixels of a tile.
+    /// The largest difference of a pixel's corners, for each pixel of a tile.
     contrast: Vec<L::Real>,
     wanting: Vec<bool>,
     lattice: Lattice<L::Real>,

@@ -203,7 +203,7 @@ impl<'a, L: SimdFloat> Shader<'a, L> {
             if let Some((edge, footprint)) = &mut edge {
                 let cone = footprint.shadow();
                 let near = kernel.thin_distance(&candidates.thin, &paths, cone, reach);
-                // Of light that nobody sees, the shadow is not seen either.
+                // The shadow of a light that nobody sees is not seen either.
                 let diffuse = point.surface.diffuse;
                 let brightest = (diffuse.x + diffuse.y + diffuse.z) * light.intensity;
                 let visible = kernel

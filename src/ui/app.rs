@@ -1,5 +1,5 @@
 //! The window's frame: reads input, shows the panels, applies what they asked for, and hands the
-//! scene to the background lane.
+//! scene to the render thread.
 
 use egui::{CentralPanel, Context, Frame, Margin, Panel, Theme, Ui, ViewportCommand};
 
@@ -56,7 +56,7 @@ pub struct App {
 }
 
 impl App {
-    /// Sets the window up: fonts, theme, lane, and the document.
+    /// Sets the window up: fonts, theme, render thread, and the document.
     ///
     /// # Errors
     /// [`RenderThreadError`] when the system starts no threads.

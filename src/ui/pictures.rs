@@ -1,4 +1,4 @@
-//! Between the editor and the lane: which pictures are asked for, and which one is on screen.
+//! Between the editor and the render thread: which pictures are asked for, and which one is on screen.
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -53,7 +53,7 @@ impl Rhythm {
     }
 }
 
-/// The lane and its pictures.
+/// The render thread and its pictures.
 pub struct Pictures {
     worker: Worker,
     /// The pictures on the graphics card.
@@ -66,7 +66,7 @@ pub struct Pictures {
 }
 
 impl Pictures {
-    /// Starts the lane; it wakes the window.
+    /// Starts the render thread; it wakes the window.
     ///
     /// # Errors
     /// [`RenderThreadError`] when the system starts no threads.
@@ -83,7 +83,7 @@ impl Pictures {
         })
     }
 
-    /// Takes up what the lane has finished.
+    /// Takes up what the render thread has finished.
     pub fn poll(&mut self, ctx: &Context, editor: &mut Editor) {
         while let Some(frame) = self.worker.take_frame() {
             if !frame.is_still {
@@ -177,7 +177,7 @@ impl Pictures {
         Some(frame.cost.time.as_secs_f64() * 1e3 / pixels.max(1.0))
     }
 
-    /// Passes a wish of the lab on to the lane.
+    /// Passes a wish of the lab on to the render thread.
     pub fn fulfil(&self, wish: LabRequest) {
         match wish {
             LabRequest::Measure(study) => self.worker.measure(*study),
@@ -185,17 +185,17 @@ impl Pictures {
         }
     }
 
-    /// Whether the lane is measuring, or will be.
+    /// Whether the render thread is measuring, or will be.
     pub fn is_measuring(&self) -> bool {
         self.worker.is_measuring()
     }
 
-    /// What the lane has measured since the last call.
+    /// What the render thread has measured since the last call.
     pub fn take_study(&self) -> Option<Study> {
         self.worker.take_study()
     }
 
-    /// What the lane is doing.
+    /// What the render thread is doing.
     pub fn activity(&self) -> Activity {
         self.worker.activity()
     }

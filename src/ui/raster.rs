@@ -184,3 +184,79 @@ fn over(color: [f32; 4], below: Color32) -> Color32 {
     };
     Color32::from_rgb(mix(0, red), mix(1, green), mix(2, blue))
 }
+
+#[cfg(test)]
+mod tests {
+    use egui::{Pos2, pos2};
+
+    use super::*;
+
+    const WHITE: [u8; 4] = [255; 4];
+
+    fn texture(size: [usize; 2], texels: &[[u8; 4]]) -> ColorImage {
+        let pixels = texels.iter();
+        let pixels = pixels.map(|&[r, g, b, a]| Color32::from_rgba_premultiplied(r, g, b, a));
+        ColorImage::new(size, pixels.collect())
+    }
+
+    /// A square of two triangles, half transparent.
+    fn square(from: Pos2, to: Pos2) -> Mesh {
+        let mut mesh = Mesh::default();
+        mesh.add_colored_rect(
+            Rect::from_min_max(from, to),
+            Color32::from_rgba_premultiplied(100, 100, 100, 128),
+        );
+        mesh
+    }
+
+    fn painted(mesh: &Mesh, clip: Rect, scale: f32) -> ColorImage {
+        let mut canvas = ColorImage::filled([12, 12], Color32::BLACK);
+        fill(&mut canvas, mesh, clip, &texture([1, 1], &[WHITE]), scale);
+        canvas
+    }
+
+    #[test]
+    fn two_triangles_paint_every_pixel_of_their_square_once() {
+        let canvas = painted(
+            &square(pos2(2.0, 3.0), pos2(9.0, 11.0)),
+            Rect::EVERYTHING,
+            1.0,
+        );
+        for (index, pixel) in canvas.pixels.iter().enumerate() {
+            let (x, y) = (index % 12, index / 12);
+            let is_inside = (2..9).contains(&x) && (3..11).contains(&y);
+            let expected = if is_inside { 100 } else { 0 };
+            assert_eq!(pixel.r(), expected, "pixel {x}, {y}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_painted_outside_the_clip_and_points_are_scaled() {
+        let clip = Rect::from_min_max(pos2(0.0, 0.0), pos2(2.0, 6.0));
+        let canvas = painted(&square(pos2(1.0, 1.0), pos2(4.0, 4.0)), clip, 2.0);
+        let lit = |x: usize, y: usize| canvas.pixels[y * 12 + x].r() > 0;
+        assert!(lit(2, 2) && lit(3, 7), "from twice 1 to the clip's twice 2");
+        assert!(!lit(1, 2) && !lit(4, 4) && !lit(2, 8));
+    }
+
+    #[test]
+    fn textures_are_even_between_their_texels() {
+        let ramp = texture([2, 1], &[[0, 0, 0, 255], [255, 255, 255, 255]]);
+        let at = |x: f32| bilinear(&ramp, vec2(x, 0.5))[0];
+        assert_eq!(
+            [at(0.0), at(0.25), at(0.5), at(0.75), at(1.0)],
+            [0.0, 0.0, 0.5, 1.0, 1.0]
+        );
+    }
+
+    #[test]
+    fn a_part_of_a_texture_is_replaced_in_its_place() {
+        let id = TextureId::default();
+        let mut textures = HashMap::new();
+        let image = |size, texels: &[[u8; 4]]| ImageData::Color(texture(size, texels).into());
+        take(&mut textures, id, &image([2, 2], &[[0; 4]; 4]), None);
+        take(&mut textures, id, &image([1, 1], &[WHITE]), Some([1, 0]));
+        let reds: Vec<u8> = textures[&id].pixels.iter().map(egui::Color32::r).collect();
+        assert_eq!(reds, [0, 255, 0, 0]);
+    }
+}

@@ -23,7 +23,7 @@ pub struct Screenshot {
 }
 
 impl Screenshot {
-    /// Of the window as it is when its traced picture is complete. How writing it went arrives in
+    /// A screenshot of the window as it is when its traced picture is complete. How writing it went arrives in
     /// the channel.
     pub fn new(path: PathBuf) -> (Self, Receiver<Result<(), ExportError>>) {
         let (outcome, told) = channel();

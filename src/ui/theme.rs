@@ -22,7 +22,7 @@ pub const LAB: f32 = 280.0;
 pub const TIMELINE: f32 = 216.0;
 /// Width of the labels of the timeline's lanes.
 pub const TRACK_LABEL: f32 = 112.0;
-/// Height of a lane of the timeline.
+/// Height of a track of the timeline.
 pub const TRACK: f32 = 20.0;
 /// Height of the small pictures above keys.
 pub const THUMB: f32 = 44.0;

@@ -16,7 +16,7 @@ pub struct Shared {
     pub wakeup: Condvar,
     /// What was done.
     pub outbox: Mutex<Outbox>,
-    /// Of what only quitting stops: first passes and small pictures.
+    /// Controls what only quitting stops: first passes and small pictures.
     pub until_quit: RenderControl,
     /// Called when there is something in the outbox.
     pub wake: Box<dyn Fn() + Send + Sync>,

@@ -547,7 +547,7 @@ fn an_export_waits_goes_on_and_is_given_up() {
         )
         .expect("a sequence")
     };
-    let worker = Worker::new(Some(2), || ()).expect("a lane");
+    let worker = Worker::new(Some(2), || ()).expect("a render thread");
     let first = worker.export(sequence("first", "1-202")).expect("a folder");
     let second = worker.export(sequence("second", "1-3")).expect("a folder");
     let state = |id: u64| worker.exports().into_iter().find(|state| state.id == id);

@@ -75,7 +75,7 @@ impl EditorHarness {
                         exports: false,
                     },
                 )
-                .expect("a lane")
+                .expect("a render thread")
             });
         let mut harness = Self { window, folder };
         harness.settle();

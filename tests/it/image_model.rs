@@ -507,7 +507,7 @@ fn rays_are_traced_only_where_they_can_show() {
 }
 
 #[test]
-fn bundles_show_what_a_list_shows() {
+fn a_tree_shows_what_a_list_shows() {
     let mut crowd = random::scene(5);
     for n in 0..300 {
         let place = |speed: f64| (f64::from(n) * speed).sin() * 70.0;

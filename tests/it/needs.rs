@@ -153,7 +153,7 @@ fn without_mirrors_nothing_is_reflected_and_one_brings_it_back() {
 }
 
 #[test]
-fn bundles_begin_where_a_list_is_too_long() {
+fn the_tree_begins_where_a_list_is_too_long() {
     let crowd = |count: usize| {
         let mut scene = Scene::empty();
         let pack = scene.color_packs.keys().next().expect("a pack").clone();

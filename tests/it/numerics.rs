@@ -34,7 +34,7 @@ const ROWS: &[Row] = &[
     ("spheres far away, double precision", far_spheres_in_double),
     ("an eye just above a huge ball", low_over_a_planet),
     ("viewing directions of any length", unnormalised_cameras),
-    ("bundles of flat things on their own borders", flat_bundles),
+    ("trees of flat things on their own borders", flat_trees),
     ("shadows that touch what casts them", contact_shadows),
     ("light inside and outside a hollow ball", hollow_balls),
     (
@@ -270,7 +270,7 @@ fn unnormalised_cameras(_: u32) {
 }
 
 /// A wall of axis-aligned triangles, looked at through pixel centres that lie on its edges.
-fn flat_bundles(_: u32) {
+fn flat_trees(_: u32) {
     for away in [0.0, 1e4, 1e6] {
         let corner = |x: u32, y: u32| DVec3::new(f64::from(x) + away, f64::from(y), -away);
         let mut scene = Scene::empty();

@@ -600,7 +600,7 @@ fn the_published_flight_is_what_it_says() {
 #[test]
 fn small_pictures_are_plain_renders_and_come_in_their_order() {
     let scene = Arc::new(Scene::demo());
-    let worker = Worker::new(Some(2), || ()).expect("a lane");
+    let worker = Worker::new(Some(2), || ()).expect("a render thread");
     let sketch = |name: u64| ThumbnailJob {
         name,
         scene: Arc::clone(&scene),

@@ -1,4 +1,4 @@
-//! The background lane: newest wins, nothing is traced twice, nothing waits long.
+//! The render thread: newest wins, nothing is traced twice, nothing waits long.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -48,7 +48,10 @@ fn wait_for(worker: &Worker, fits: impl Fn(&Frame) -> bool) -> Vec<Frame> {
         }
         std::thread::sleep(Duration::from_micros(200));
     }
-    panic!("no such frame came; the lane is {:?}", worker.activity());
+    panic!(
+        "no such frame came; the render thread is {:?}",
+        worker.activity()
+    );
 }
 
 fn wait_until(what: &str, mut is_true: impl FnMut() -> bool) {
@@ -79,7 +82,7 @@ fn slow_scene() -> Arc<Scene> {
 
 #[test]
 fn many_submissions_end_in_the_last_ones_picture() {
-    let worker = Worker::new(Some(2), || {}).expect("a lane");
+    let worker = Worker::new(Some(2), || {}).expect("a render thread");
     let mut scene = Scene::demo();
     let mut last = Arc::new(scene.clone());
     for revision in 1..=200_u32 {
@@ -110,7 +113,7 @@ fn many_submissions_end_in_the_last_ones_picture() {
 
 #[test]
 fn refinement_traces_every_pixel_once_and_ends_byte_equal() {
-    let worker = Worker::new(Some(2), || {}).expect("a lane");
+    let worker = Worker::new(Some(2), || {}).expect("a render thread");
     let scene = Arc::new(Scene::demo());
     worker.submit(live(1, &scene, 640));
     let frames = wait_for(&worker, |frame| frame.step == 1);
@@ -127,8 +130,8 @@ fn refinement_traces_every_pixel_once_and_ends_byte_equal() {
 }
 
 #[test]
-fn a_new_lane_shows_a_coarse_picture_first() {
-    let worker = Worker::new(Some(1), || {}).expect("a lane");
+fn a_new_render_thread_shows_a_coarse_picture_first() {
+    let worker = Worker::new(Some(1), || {}).expect("a render thread");
     worker.submit(live(1, &slow_scene(), 512));
     let first = wait_for(&worker, |_| true).remove(0);
     assert!(first.step > 1);
@@ -139,7 +142,7 @@ fn a_new_lane_shows_a_coarse_picture_first() {
 
 #[test]
 fn an_edit_during_a_still_picture_is_picked_up_at_once() {
-    let worker = Worker::new(None, || {}).expect("a lane");
+    let worker = Worker::new(None, || {}).expect("a render thread");
     let slow = slow_scene();
     let quick = Arc::new(Scene::demo());
     for round in 0..5_u64 {
@@ -163,7 +166,7 @@ fn an_edit_during_a_still_picture_is_picked_up_at_once() {
 
 #[test]
 fn a_cancelled_still_picture_never_comes() {
-    let worker = Worker::new(None, || {}).expect("a lane");
+    let worker = Worker::new(None, || {}).expect("a render thread");
     worker.request_still(still(1, &slow_scene(), 2048));
     wait_until(
         "progress",
@@ -178,7 +181,7 @@ fn a_cancelled_still_picture_never_comes() {
 fn a_picture_that_is_to_be_saved_outlives_edits() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("still.png");
-    let worker = Worker::new(None, || {}).expect("a lane");
+    let worker = Worker::new(None, || {}).expect("a render thread");
     let slow = slow_scene();
     worker.request_still(StillJob {
         save_to: Some(path.clone()),
@@ -212,7 +215,7 @@ fn a_picture_that_is_to_be_saved_outlives_edits() {
 
 #[test]
 fn a_picture_that_cannot_be_written_says_so() {
-    let worker = Worker::new(Some(1), || {}).expect("a lane");
+    let worker = Worker::new(Some(1), || {}).expect("a render thread");
     let path = std::path::PathBuf::from("/nowhere/at/all.png");
     worker.request_still(StillJob {
         save_to: Some(path),
@@ -231,7 +234,7 @@ fn a_picture_that_cannot_be_written_says_so() {
 
 #[test]
 fn a_fault_in_the_tracer_is_shown_and_the_lane_lives_on() {
-    let worker = Worker::new(Some(1), || {}).expect("a lane");
+    let worker = Worker::new(Some(1), || {}).expect("a render thread");
     // A scene that no file and no edit can make: an object without its pack has no material.
     let mut broken = Scene::demo();
     broken.packs_mut().clear();
@@ -251,7 +254,7 @@ fn a_fault_in_the_tracer_is_shown_and_the_lane_lives_on() {
 
 #[test]
 fn dropping_the_handle_ends_the_thread() {
-    let worker = Worker::new(Some(2), || {}).expect("a lane");
+    let worker = Worker::new(Some(2), || {}).expect("a render thread");
     worker.submit(live(1, &slow_scene(), 4096));
     wait_until("work", || {
         matches!(worker.activity(), Activity::Live { .. })
@@ -263,7 +266,7 @@ fn dropping_the_handle_ends_the_thread() {
 #[test]
 fn pictures_to_be_saved_wait_for_each_other() {
     let folder = tempfile::tempdir().expect("a folder");
-    let worker = Worker::new(None, || {}).expect("a lane");
+    let worker = Worker::new(None, || {}).expect("a render thread");
     let slow = slow_scene();
     let paths: Vec<_> = (0..3)
         .map(|n| folder.path().join(format!("{n}.ppm")))
@@ -285,7 +288,7 @@ fn pictures_to_be_saved_wait_for_each_other() {
 
 #[test]
 fn a_study_goes_on_under_the_live_view_and_can_be_given_up() {
-    let worker = Worker::new(Some(2), || {}).expect("a lane");
+    let worker = Worker::new(Some(2), || {}).expect("a render thread");
     let scene = Arc::new(Scene::demo());
     worker.measure(Study::new(Arc::clone(&scene), 48, 48));
     let mut revision = 0;

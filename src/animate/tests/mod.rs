@@ -249,7 +249,7 @@ fn any_keys() -> impl Strategy<Value = Vec<Key<Camera>>> {
     ];
     let gap = prop_oneof![Just(1e-6), 1e-6..1e-3_f64, 0.01..10.0_f64];
     let easing = (0..4_usize).prop_map(|n| Easing::ALL[n]);
-    // Of one place out of two, so that duplicates and reversals are common.
+    // Half of the places are the first one again: duplicates and reversals are common.
     let one = (gap, place, any::<bool>(), yaw, pitch, way, easing);
     prop::collection::vec(one, 1..8).prop_map(|parts| {
         let mut time = 0.0;

@@ -119,7 +119,7 @@ impl Map {
         let width = self.across.values.len();
         let place = (0..self.cells.len()).max_by(|&a, &b| {
             let rates = (self.cells[a].rate(), self.cells[b].rate());
-            // Of equals, the first: the mildest circumstances.
+            // The first of equals has the mildest circumstances.
             rates.0.total_cmp(&rates.1).then(b.cmp(&a))
         })?;
         Some((

@@ -195,7 +195,7 @@ mod tests {
     /// A place in the ball.
     const INSIDE: Vec3<f32> = Vec3::new(0.11, -0.07, 0.05);
 
-    /// Of `n` rays from inside aimed at corners (or points on edges), how many meet nothing.
+    /// How many of `n` rays from inside, aimed at corners (or points on edges), meet nothing.
     fn leaks(
         method: TriangleMethod,
         mesh: &[PackedTriangle<f32>],

@@ -36,7 +36,7 @@ const PICTURE: (u32, u32) = (800, 480);
 /// Width of the column that tells of a dot.
 const DETAILS: f32 = 300.0;
 
-/// What the lab asks of the lane.
+/// What the lab asks of the render thread.
 pub enum LabRequest {
     /// Measure this.
     Measure(Box<Study>),
@@ -64,7 +64,7 @@ pub struct Lab {
     /// Whether it is shown.
     pub is_open: bool,
     study: Option<Box<Study>>,
-    /// Whether the lane is at it.
+    /// Whether the render thread is at it.
     is_running: bool,
     /// Counts the studies.
     number: u64,
@@ -100,7 +100,7 @@ impl Default for Lab {
 }
 
 impl Lab {
-    /// Takes up what the lane has measured, and whether it was still at it just before.
+    /// Takes up what the render thread has measured, and whether it was still at it just before.
     pub fn follow(&mut self, is_measuring: bool, news: Option<Study>) {
         if self.is_running {
             self.study = news.map(Box::new).or(self.study.take());

@@ -88,7 +88,7 @@ impl Thumbs {
         if self.asked != wanted && is_resting {
             self.asked = wanted;
             self.keys.resize(keys.len(), None);
-            // Of very many keys some, evenly.
+            // Where there are very many keys, some of them have pictures, evenly.
             let stride = keys.len().div_ceil(MOST).max(1);
             let sketch = |(place, key): (usize, &crate::scene::Key<_>)| ThumbnailJob {
                 name: place as u64,

@@ -62,7 +62,7 @@ pub struct Drag {
 
 /// Seconds, frames, and the playhead, which follows the pointer.
 pub fn ruler(ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) {
-    let (rect, response) = lane(ui, scale, Sense::click_and_drag());
+    let (rect, response) = band(ui, scale, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Playhead"));
     if let Some(pointer) = response.interact_pointer_pos() {
         out.time(Time::Seek(scale.time(pointer.x)));
@@ -110,10 +110,10 @@ fn playhead(ui: &Ui, scale: &Scale, rect: Rect, editor: &Editor) {
 }
 
 /// A strip as wide as the time, with the part for a label to its left.
-fn lane(ui: &mut Ui, scale: &Scale, sense: Sense) -> (Rect, Response) {
+fn band(ui: &mut Ui, scale: &Scale, sense: Sense) -> (Rect, Response) {
     let (whole, _) = ui.allocate_exact_size(vec2(ui.available_width(), TRACK), Sense::hover());
     let rect = Rect::from_x_y_ranges(scale.left..=scale.left + scale.width, whole.y_range());
-    let id = ui.scope_id().with(("lane", whole.top() as i32));
+    let id = ui.scope_id().with(("band", whole.top() as i32));
     // The first moment can be hit from a little to its left.
     let response = ui.interact(rect.expand2(vec2(GRID, 0.0)), id, sense);
     (rect, response)
@@ -164,7 +164,7 @@ pub fn keys(
     drag: &mut Option<Drag>,
     out: &mut UiRequests,
 ) {
-    let (rect, response) = lane(ui, scale, Sense::click());
+    let (rect, response) = band(ui, scale, Sense::click());
     if response.clicked() {
         out.time(Time::SelectKeys(BTreeSet::new()));
     }
@@ -345,7 +345,7 @@ pub fn tracks(
     let animation = &editor.scene().animation;
     let colors = palette(ui.ctx());
     for track in &animation.tracks {
-        let (rect, _) = lane(ui, scale, Sense::hover());
+        let (rect, _) = band(ui, scale, Sense::hover());
         label(ui, rect, &track.target.name());
         playhead(ui, scale, rect, editor);
         for (place, key) in track.keys.iter().enumerate() {
