@@ -49,8 +49,9 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
         self.material
     }
 
+    /// Edge-on, nothing is seen of it.
     fn thickness(&self) -> R {
-        self.radius + self.radius
+        R::ZERO
     }
 
     fn reach(&self) -> (Vec3<R>, R) {
@@ -112,6 +113,7 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
             from: along - radius,
             to: along + radius,
             distance: by_ellipse.max(by_circle),
+            size: (radius + radius) * cosine.abs(),
         }
     }
 }

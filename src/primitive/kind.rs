@@ -49,6 +49,8 @@ pub struct Approach<L> {
     pub to: L,
     /// How far from the rays it is, in scene units; not above 0 inside.
     pub distance: L,
+    /// Its smallest measure as the rays see it, in scene units.
+    pub size: L,
 }
 
 /// A primitive, packed for the kernels.
@@ -73,7 +75,8 @@ pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
     /// Index of its material.
     fn material(&self) -> u32;
 
-    /// Its smallest measure in scene units; infinity for what is never narrower than a pixel.
+    /// The smallest measure that rays can see of it, in scene units; infinity for what is never narrower
+    /// than a pixel.
     fn thickness(&self) -> R;
 
     /// A point of it, and how far from there it reaches.

@@ -84,6 +84,7 @@ impl<R: Real> Primitive<R> for PackedPlane<R> {
             from: nowhere,
             to: nowhere,
             distance: nowhere,
+            size: nowhere,
         }
     }
 }

@@ -118,6 +118,7 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
             from: along,
             to: along,
             distance: distance - along.like(self.radius),
+            size: along.like(self.thickness()),
         }
     }
 

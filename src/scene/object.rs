@@ -12,7 +12,7 @@ use super::shape::Shape;
 pub struct Object {
     /// Unique name, shown in the outliner.
     pub name: String,
-    /// Name of its material in [`Scene::color_packs`].
+    /// Name of its material in [`super::Scene::color_packs`].
     pub color_pack: String,
     /// Where and what it is.
     pub shape: Shape,
@@ -48,7 +48,7 @@ pub struct LightObj {
     /// Radius in world units, > 0.
     #[serde(with = "notation::number")]
     pub radius: f64,
-    /// Name of its material in [`Scene::color_packs`].
+    /// Name of its material in [`super::Scene::color_packs`].
     pub color_pack: String,
 }
 

@@ -54,8 +54,12 @@ impl<L: SimdFloat> Visit<L::Real> for ThinScan<'_, L> {
         let (slipping, zero) = (self.kernel.splat(SLIPPING), self.kernel.splat(0.0));
         for &index in among {
             let primitive = &primitives[index as usize];
-            let size = self.reach.like(primitive.thickness());
-            let Approach { from, to, distance } = primitive.approach(rays, &prepared);
+            let Approach {
+                from,
+                to,
+                distance,
+                size,
+            } = primitive.approach(rays, &prepared);
             let width = self.cone.width_at(to);
             let is_before = from.less(self.reach + primitive.margin(width));
             let mut thin = size.less(width * slipping) & zero.less(to) & is_before;

@@ -122,6 +122,7 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
             from: t.min(u).min(v),
             to: t.max(u).max(v),
             distance: L::select(inside, zero, nearest),
+            size: zero.like(self.thickness),
         }
     }
 }
