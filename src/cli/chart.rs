@@ -92,7 +92,7 @@ fn advice(study: &Study, within: Option<f64>, budget: Option<f64>) -> String {
     best.map_or_else(
         || "nothing measured is within that".to_owned(),
         |place| {
-            let candidate = &study.dots[place].candidate;
+            let candidate = &study.measurements[place].candidate;
             format!("take {}: {}", candidate.name, candidate.words())
         },
     )

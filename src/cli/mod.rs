@@ -42,7 +42,7 @@ use crate::image::Format;
     long_about = "A scene editor whose viewport is a CPU ray tracer.\n\nWithout a command, opens the editor on SCENE (on the demo scene if there is none).",
     args_conflicts_with_subcommands = true
 )]
-struct Words {
+struct CliArgs {
     /// The scene to open in the editor (RON)
     scene: Option<PathBuf>,
     /// Write a picture of the window once it is complete (PNG or PPM), and quit
@@ -84,7 +84,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> CliAction {
             "there is no command {name:?}; there are render, export, job, check, plan, chart and stability, and `glint SCENE` opens the editor"
         ))));
     }
-    let words = match Words::try_parse_from(words) {
+    let words = match CliArgs::try_parse_from(words) {
         Ok(words) => words,
         Err(error) => {
             // Help and version are "errors" of exit code 0 that go to stdout.
@@ -113,7 +113,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> CliAction {
     }
 }
 
-impl Words {
+impl CliArgs {
     fn editor(self) -> Result<CliAction, CliError> {
         // A name that cannot be written is known before the window opens.
         self.screenshot
@@ -134,7 +134,7 @@ fn unknown_command(words: &[OsString]) -> Option<String> {
     let [_, first, second, ..] = words else {
         return None;
     };
-    let is_command = Words::command().find_subcommand(first).is_some() || first == "help";
+    let is_command = CliArgs::command().find_subcommand(first).is_some() || first == "help";
     (is_plain(first) && is_plain(second) && !is_command)
         .then(|| first.to_string_lossy().into_owned())
 }
@@ -145,6 +145,6 @@ mod tests {
 
     #[test]
     fn the_words_are_consistent() {
-        Words::command().debug_assert();
+        CliArgs::command().debug_assert();
     }
 }

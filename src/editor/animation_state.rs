@@ -131,7 +131,7 @@ impl AnimationState {
     }
 
     /// Takes up what has changed: the scene, the time, the camera that is looked through.
-    pub fn follow(&mut self, scene: &Arc<Scene>) {
+    pub fn update(&mut self, scene: &Arc<Scene>) {
         let is_new = !Arc::ptr_eq(scene, &self.scene);
         if is_new {
             let (new, old) = (&scene.animation, &self.scene.animation);

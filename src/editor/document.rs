@@ -158,7 +158,7 @@ impl Editor {
             Action::Show(mode) => self.mode = mode,
             Action::Time(time) => self.apply_time(time),
         }
-        self.animation_state.follow(&self.scene);
+        self.animation_state.update(&self.scene);
         if matches!(self.selection, Selection::Keys) && self.timeline().selected.is_empty() {
             self.selection = Selection::Camera;
         }
@@ -312,7 +312,7 @@ impl Editor {
         if self.mode == Mode::HighRes {
             self.mode = Mode::Live;
         }
-        self.animation_state.follow(&self.scene);
+        self.animation_state.update(&self.scene);
     }
 }
 

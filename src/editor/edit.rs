@@ -229,7 +229,7 @@ fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
         Kind::Object => {
             let mut copy = scene.objects.get(index)?.clone();
             copy.name = free_object_name(scene, &copy.name);
-            copy.shape = copy.shape.moved(beside(scene, &copy.shape));
+            copy.shape = copy.shape.moved(copy_offset(scene, &copy.shape));
             scene.objects.insert(index + 1, copy);
         }
         Kind::Light => {
@@ -255,7 +255,7 @@ fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
 }
 
 /// From a shape to where its copy stands: two things in one place would shadow each other.
-fn beside(scene: &Scene, shape: &Shape) -> DVec3 {
+fn copy_offset(scene: &Scene, shape: &Shape) -> DVec3 {
     if let Some((low, high)) = shape.bounds() {
         return DVec3::new((high - low).abs().max_element(), 0.0, 0.0);
     }

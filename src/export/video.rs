@@ -127,18 +127,18 @@ impl Video {
         path: &Path,
         mut done: impl FnMut(usize),
     ) -> Result<(), VideoError> {
-        let beside = beside(path);
+        let unfinished_path = unfinished_path(path);
         let made = match self {
-            Self::Gif => gif(sequence, &beside, &mut done),
-            Self::Apng => apng(sequence, &beside, &mut done),
+            Self::Gif => gif(sequence, &unfinished_path, &mut done),
+            Self::Apng => apng(sequence, &unfinished_path, &mut done),
             Self::H264 | Self::ProRes | Self::Lossless => {
-                self.by_ffmpeg(sequence, path, &beside, &mut done)
+                self.by_ffmpeg(sequence, path, &unfinished_path, &mut done)
             }
         };
-        let placed =
-            made.and_then(|()| fs::rename(&beside, path).map_err(|error| disk(path, &error)));
+        let placed = made
+            .and_then(|()| fs::rename(&unfinished_path, path).map_err(|error| disk(path, &error)));
         if placed.is_err() {
-            let _ = fs::remove_file(&beside);
+            let _ = fs::remove_file(&unfinished_path);
         }
         placed
     }
@@ -147,7 +147,7 @@ impl Video {
         self,
         sequence: &Sequence,
         path: &Path,
-        beside: &Path,
+        unfinished_path: &Path,
         done: &mut impl FnMut(usize),
     ) -> Result<(), VideoError> {
         let fps = sequence.frames_per_second().to_string();
@@ -168,7 +168,7 @@ impl Video {
             ])
             .args(["-c:v", codec, "-framerate", &fps, "-i", "-"])
             .args(self.codec())
-            .arg(beside)
+            .arg(unfinished_path)
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .stderr(Stdio::piped());
@@ -233,7 +233,7 @@ fn quoted(word: &str) -> String {
 }
 
 /// Beside the file, with its ending, by which encoders know the format.
-fn beside(path: &Path) -> PathBuf {
+fn unfinished_path(path: &Path) -> PathBuf {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     path.with_file_name(format!(".part-{name}"))
 }

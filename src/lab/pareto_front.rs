@@ -6,18 +6,19 @@ const WORTH: f64 = 0.99;
 
 /// The places of the dots (cost, error), by cost, that show clearly less error than every cheaper
 /// one. Dots with a number that is not finite are on no front.
-pub fn front(dots: &[(f64, f64)]) -> Vec<usize> {
-    let finite = |&place: &usize| dots[place].0.is_finite() && dots[place].1.is_finite();
-    let mut places: Vec<usize> = (0..dots.len()).filter(finite).collect();
+pub fn front(measurements: &[(f64, f64)]) -> Vec<usize> {
+    let finite =
+        |&place: &usize| measurements[place].0.is_finite() && measurements[place].1.is_finite();
+    let mut places: Vec<usize> = (0..measurements.len()).filter(finite).collect();
     places.sort_by(|&a, &b| {
-        let by_cost = dots[a].0.total_cmp(&dots[b].0);
-        by_cost.then(dots[a].1.total_cmp(&dots[b].1))
+        let by_cost = measurements[a].0.total_cmp(&measurements[b].0);
+        by_cost.then(measurements[a].1.total_cmp(&measurements[b].1))
     });
     let mut least = f64::INFINITY;
     places.retain(|&place| {
-        let is_better = dots[place].1 < least * WORTH;
+        let is_better = measurements[place].1 < least * WORTH;
         if is_better {
-            least = dots[place].1;
+            least = measurements[place].1;
         }
         is_better
     });
@@ -25,10 +26,10 @@ pub fn front(dots: &[(f64, f64)]) -> Vec<usize> {
 }
 
 /// The cheapest dot (cost, error) within both bounds, if there is one.
-pub fn cheapest_within(dots: &[(f64, f64)], error: f64, cost: f64) -> Option<usize> {
-    let fits = |&place: &usize| dots[place].1 <= error && dots[place].0 <= cost;
-    let fitting = (0..dots.len()).filter(fits);
-    fitting.min_by(|&a, &b| dots[a].0.total_cmp(&dots[b].0))
+pub fn cheapest_within(measurements: &[(f64, f64)], error: f64, cost: f64) -> Option<usize> {
+    let fits = |&place: &usize| measurements[place].1 <= error && measurements[place].0 <= cost;
+    let fitting = (0..measurements.len()).filter(fits);
+    fitting.min_by(|&a, &b| measurements[a].0.total_cmp(&measurements[b].0))
 }
 
 #[cfg(test)]
@@ -38,7 +39,7 @@ mod tests {
 
     #[test]
     fn the_front_goes_down_from_left_to_right() {
-        let dots = [
+        let measurements = [
             (3.0, 1.0),
             (1.0, 5.0),
             (2.0, 5.0),
@@ -46,23 +47,23 @@ mod tests {
             (4.0, 1.0),
             (0.5, f64::NAN),
         ];
-        assert_eq!(front(&dots), [1, 3, 0]);
+        assert_eq!(front(&measurements), [1, 3, 0]);
         assert_eq!(front(&[(1.0, 5.0), (2.0, 4.99)]), [0], "not worth it");
-        assert_eq!(cheapest_within(&dots, 4.0, 10.0), Some(3));
-        assert_eq!(cheapest_within(&dots, 4.0, 1.5), None);
-        assert_eq!(cheapest_within(&dots, 0.5, 10.0), None);
+        assert_eq!(cheapest_within(&measurements, 4.0, 10.0), Some(3));
+        assert_eq!(cheapest_within(&measurements, 4.0, 1.5), None);
+        assert_eq!(cheapest_within(&measurements, 0.5, 10.0), None);
     }
 
     proptest! {
         #[test]
-        fn what_is_not_on_the_front_is_beaten(dots in prop::collection::vec((0.0..9.0_f64, 0.0..9.0_f64), 1..40)) {
-            let front = front(&dots);
-            for (place, dot) in dots.iter().enumerate() {
-                let beats = |&other: &usize| dots[other].0 <= dot.0 && dots[other].1 * WORTH <= dot.1;
+        fn what_is_not_on_the_front_is_beaten(measurements in prop::collection::vec((0.0..9.0_f64, 0.0..9.0_f64), 1..40)) {
+            let front = front(&measurements);
+            for (place, dot) in measurements.iter().enumerate() {
+                let beats = |&other: &usize| measurements[other].0 <= dot.0 && measurements[other].1 * WORTH <= dot.1;
                 let beaten = front.iter().filter(|&&other| other != place).any(beats);
                 prop_assert!(front.contains(&place) || beaten);
             }
-            prop_assert!(front.windows(2).all(|pair| dots[pair[0]].0 < dots[pair[1]].0 && dots[pair[0]].1 > dots[pair[1]].1));
+            prop_assert!(front.windows(2).all(|pair| measurements[pair[0]].0 < measurements[pair[1]].0 && measurements[pair[0]].1 > measurements[pair[1]].1));
         }
     }
 }

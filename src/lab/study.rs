@@ -30,7 +30,7 @@ pub struct Measurement {
     /// The way.
     pub candidate: Candidate,
     /// What its picture is off; `None` until it is measured.
-    pub failing: Option<ErrorMetrics>,
+    pub metrics: Option<ErrorMetrics>,
     /// Rays per pixel of the finished picture, all kinds together.
     pub rays_per_pixel: f64,
     /// Milliseconds of each timed run.
@@ -72,7 +72,7 @@ pub struct Study {
     /// There once the reference is.
     pub reference: Option<Reference>,
     /// One for each candidate.
-    pub dots: Vec<Measurement>,
+    pub measurements: Vec<Measurement>,
     spent: Duration,
     timed: usize,
 }
@@ -88,18 +88,18 @@ impl Study {
 
     /// Nothing measured yet; pictures will be `width × height`.
     pub fn new(scene: Arc<Scene>, width: u32, height: u32) -> Self {
-        let dots = candidates(&scene, width, height)
+        let measurements = candidates(&scene, width, height)
             .into_iter()
             .map(|candidate| Measurement {
                 candidate,
-                failing: None,
+                metrics: None,
                 rays_per_pixel: 0.0,
                 times: Vec::new(),
                 picture: None,
                 lanes: String::new(),
             });
         Self {
-            dots: dots.collect(),
+            measurements: measurements.collect(),
             scene,
             size: (width, height),
             truths: Default::default(),
@@ -127,7 +127,11 @@ impl Study {
         let is_more = if self.reference.is_none() {
             self.find_truth(control);
             true
-        } else if let Some(place) = self.dots.iter().position(|dot| dot.failing.is_none()) {
+        } else if let Some(place) = self
+            .measurements
+            .iter()
+            .position(|dot| dot.metrics.is_none())
+        {
             self.look_at(place, control);
             true
         } else {
@@ -139,14 +143,18 @@ impl Study {
 
     /// Share of the work that is done, 0–1, by the number of its pieces.
     pub fn progress(&self) -> f64 {
-        let seen = self.dots.iter().filter(|dot| dot.failing.is_some()).count();
+        let seen = self
+            .measurements
+            .iter()
+            .filter(|dot| dot.metrics.is_some())
+            .count();
         let pixels = (self.size.0 * self.size.1) as usize;
         let traced: usize = self.truths.iter().map(|truth| truth.len()).sum();
         // References take as long as a good part of the rest.
         let truth = TRUTH_WORTH * traced as f64 / (2 * pixels) as f64;
-        let wanted: usize = self.dots.iter().map(Measurement::rounds).sum();
-        let runs: usize = self.dots.iter().map(|dot| dot.times.len()).sum();
-        let (done, all) = (seen + runs, self.dots.len() + wanted);
+        let wanted: usize = self.measurements.iter().map(Measurement::rounds).sum();
+        let runs: usize = self.measurements.iter().map(|dot| dot.times.len()).sum();
+        let (done, all) = (seen + runs, self.measurements.len() + wanted);
         (truth + done as f64) / (TRUTH_WORTH + all as f64)
     }
 
@@ -186,7 +194,7 @@ impl Study {
     }
 
     fn look_at(&mut self, place: usize, control: &RenderControl) {
-        let candidate = &self.dots[place].candidate;
+        let candidate = &self.measurements[place].candidate;
         let picture = candidate.picture(&self.scene);
         let tracer = Tracer::new(&candidate.scene(&self.scene), &picture);
         let Some((light, rays)) = trace_light(&tracer, control) else {
@@ -194,8 +202,8 @@ impl Study {
         };
         let size = (self.size.0 as usize, self.size.1 as usize);
         let light = scaled(&light, (tracer.width(), tracer.height()), size);
-        let dot = &mut self.dots[place];
-        dot.failing = Some(difference(&light, &self.truths[0]));
+        let dot = &mut self.measurements[place];
+        dot.metrics = Some(difference(&light, &self.truths[0]));
         dot.rays_per_pixel = rays.total() as f64 / (size.0 * size.1) as f64;
         dot.picture = Some(Arc::new(eight_bits(&light, size.0, size.1)));
         dot.lanes = tracer.lanes();
@@ -206,7 +214,7 @@ impl Study {
     fn time_next(&mut self, control: &RenderControl) -> bool {
         let waiting = |dot: &&mut Measurement| dot.times.len() < dot.rounds();
         let Some(dot) = self
-            .dots
+            .measurements
             .iter_mut()
             .filter(waiting)
             .min_by_key(|dot| dot.times.len())
@@ -287,10 +295,10 @@ mod tests {
         assert_eq!(study.progress(), 1.0);
         let truth = study.reference.as_ref().expect("a reference");
         assert!(truth.rmse > 0.0 && truth.rmse < 3e-4, "{:e}", truth.rmse);
-        for dot in &study.dots {
-            let failing = dot.failing.expect("measured");
+        for dot in &study.measurements {
+            let metrics = dot.metrics.expect("measured");
             assert!(
-                failing.rmse > 0.0,
+                metrics.rmse > 0.0,
                 "{} is its own reference",
                 dot.candidate.name
             );
@@ -298,8 +306,11 @@ mod tests {
             assert!(dot.rays_per_pixel > 0.0);
         }
         let rmse = |name: &str| {
-            let dot = study.dots.iter().find(|dot| dot.candidate.name == name);
-            dot.and_then(|dot| dot.failing).expect("measured").rmse
+            let dot = study
+                .measurements
+                .iter()
+                .find(|dot| dot.candidate.name == name);
+            dot.and_then(|dot| dot.metrics).expect("measured").rmse
         };
         assert!(rmse("the plan") < rmse("none") / 3.0);
         assert!(rmse("grid:8") < rmse("grid:2"));

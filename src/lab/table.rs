@@ -14,8 +14,8 @@ impl Study {
     /// Milliseconds and RMSE of each dot, as far as they are known; NaN elsewhere.
     pub fn costs(&self) -> Vec<(f64, f64)> {
         let cost = |dot: &Measurement| dot.timing().map_or(f64::NAN, |timing| timing.median);
-        let error = |dot: &Measurement| dot.failing.map_or(f64::NAN, |failing| failing.rmse);
-        self.dots
+        let error = |dot: &Measurement| dot.metrics.map_or(f64::NAN, |metrics| metrics.rmse);
+        self.measurements
             .iter()
             .map(|dot| (cost(dot), error(dot)))
             .collect()
@@ -26,15 +26,15 @@ impl Study {
 pub fn table(study: &Study) -> String {
     let costs = study.costs();
     let front = front(&costs);
-    let mut order: Vec<usize> = (0..study.dots.len()).collect();
+    let mut order: Vec<usize> = (0..study.measurements.len()).collect();
     order.sort_by(|&a, &b| costs[a].0.total_cmp(&costs[b].0));
     let mut text = format!(
         "  {:<22} {:>9} {:>7} {:>9} {:>10} {:>7} {:>7} {:>8}\n",
         "way", "ms", "spread", "rays/px", "RMSE", "dB", "max", "> 4/255"
     );
     for place in order {
-        let dot = &study.dots[place];
-        let (Some(timing), Some(failing)) = (dot.timing(), dot.failing) else {
+        let dot = &study.measurements[place];
+        let (Some(timing), Some(metrics)) = (dot.timing(), dot.metrics) else {
             continue;
         };
         let mark = if front.contains(&place) { '*' } else { ' ' };
@@ -46,10 +46,10 @@ pub fn table(study: &Study) -> String {
             timing.median,
             format!("{:.0}%{doubt}", timing.spread * 100.0),
             dot.rays_per_pixel,
-            failing.rmse,
-            failing.psnr(),
-            failing.max,
-            failing.visible * 100.0,
+            metrics.rmse,
+            metrics.psnr(),
+            metrics.max,
+            metrics.visible * 100.0,
         );
     }
     let (width, height) = study.size();
@@ -97,8 +97,8 @@ pub fn csv(study: &Study, machine: &str, threads: usize) -> Result<String, csv::
     let reference_rmse = reference.map_or(f64::NAN, |truth| truth.rmse);
     let (width, height) = study.size();
     let mut writer = csv::Writer::from_writer(Vec::new());
-    for (index, dot) in study.dots.iter().enumerate() {
-        let (Some(timing), Some(metrics)) = (dot.timing(), dot.failing) else {
+    for (index, dot) in study.measurements.iter().enumerate() {
+        let (Some(timing), Some(metrics)) = (dot.timing(), dot.metrics) else {
             continue;
         };
         writer.serialize(Figures {

@@ -46,7 +46,7 @@ pub struct App {
     pub(super) shortcuts_open: bool,
     pub(super) keys_are_taken: bool,
     /// Commands for the next frame.
-    pub(super) late: Vec<Command>,
+    pub(super) deferred: Vec<Command>,
     /// The revision at which the user said that the window may close.
     pub(super) closing: Option<u64>,
     pub(super) title: String,
@@ -93,7 +93,7 @@ impl App {
             },
             shortcuts_open: false,
             keys_are_taken: false,
-            late: Vec::new(),
+            deferred: Vec::new(),
             closing: None,
             title: String::new(),
             theme: cc.egui_ctx.theme(),
@@ -222,7 +222,7 @@ impl App {
         Some((place, response))
     }
 
-    pub(super) fn follow(&mut self, ctx: &Context, outcome: Option<FileOutcome>) {
+    pub(super) fn act_on(&mut self, ctx: &Context, outcome: Option<FileOutcome>) {
         match outcome {
             None => {}
             Some(FileOutcome::Quit) => {
@@ -282,7 +282,7 @@ impl eframe::App for App {
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
         self.pictures.poll(ctx, &mut self.editor);
         let is_measuring = self.pictures.is_measuring();
-        self.lab.follow(is_measuring, self.pictures.take_study());
+        self.lab.update(is_measuring, self.pictures.take_study());
         self.thumbs.take(ctx, self.pictures.take_thumbnails());
         for answer in self.pictures.take_answers() {
             match answer {
@@ -292,21 +292,21 @@ impl eframe::App for App {
                 Answer::Visible(revision, ticks) => self.overlay.take_visible(revision, ticks),
             }
         }
-        self.exports.follow(&mut self.editor, &self.pictures);
+        self.exports.update(&mut self.editor, &self.pictures);
         self.pass_time(ctx);
         self.close_if_meant(ctx);
         let outcome = self.files.poll(ctx, &mut self.editor);
-        self.follow(ctx, outcome);
+        self.act_on(ctx, outcome);
         for file in ctx.input(|input| input.raw.dropped_files.clone()) {
             let next = Next::Open(file.path().to_owned());
             let outcome = self.files.start(ctx, &mut self.editor, next);
-            self.follow(ctx, outcome);
+            self.act_on(ctx, outcome);
         }
         let is_closing = ctx.input(|input| input.viewport().close_requested());
         if is_closing && self.closing.is_none() {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             let outcome = self.files.start(ctx, &mut self.editor, Next::Quit);
-            self.follow(ctx, outcome);
+            self.act_on(ctx, outcome);
         }
         self.autosave.tick(ctx, &mut self.editor);
         self.theme = ctx.theme();
@@ -318,14 +318,14 @@ impl eframe::App for App {
         // What had the keys when this frame's were pressed: a field loses its focus to Escape, and a
         // menu closes, before this is asked.
         let keys_are_free = !self.keys_are_taken && !ui.text_edit_focused();
-        out.commands = std::mem::take(&mut self.late);
+        out.commands = std::mem::take(&mut self.deferred);
         if keys_are_free {
             let pressed = pressed(ui, self.flying.is_flying(), |_| true);
             out.commands.extend(pressed);
         } else if ui.text_edit_focused() && !self.files.is_asking() {
             // The text is taken over first, and the command runs when that is done.
-            self.late = pressed(ui, false, is_about_files);
-            if !self.late.is_empty() {
+            self.deferred = pressed(ui, false, is_about_files);
+            if !self.deferred.is_empty() {
                 ui.memory_mut(egui::Memory::stop_text_input);
                 ui.request_repaint();
             }
@@ -355,7 +355,7 @@ impl eframe::App for App {
             self.run(&ctx, command);
         }
         let outcome = self.files.show(ui, &mut self.editor);
-        self.follow(&ctx, outcome);
+        self.act_on(&ctx, outcome);
         help::show(&ctx, &mut self.shortcuts_open);
         self.pictures.ask(&self.editor, questions);
         let is_gesture = ui.input(|input| input.pointer.any_down()) || self.flying.is_gesture(&ctx);

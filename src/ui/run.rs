@@ -56,7 +56,7 @@ impl App {
                 None
             }
         };
-        self.follow(ctx, outcome);
+        self.act_on(ctx, outcome);
     }
 
     /// The commands that are actions of the editor.

@@ -322,9 +322,9 @@ fn chart_prints_the_front_and_writes_every_figure() {
     let csv = std::fs::read_to_string(folder.path().join("c.csv")).expect("a file");
     let mut lines = csv.lines();
     let columns = lines.next().expect("a head").split(',').count();
-    let dots: Vec<&str> = lines.collect();
-    assert!(dots.len() > 30, "{}", dots.len());
-    for dot in dots {
+    let measurements: Vec<&str> = lines.collect();
+    assert!(measurements.len() > 30, "{}", measurements.len());
+    for dot in measurements {
         // Texts are in quotation marks and may hold commas.
         let plain: String = dot.split('"').step_by(2).collect();
         assert_eq!(plain.split(',').count(), columns, "{dot}");

@@ -311,7 +311,7 @@ fn a_study_goes_on_under_the_live_view_and_can_be_given_up() {
     });
     let study = measured.expect("a study");
     wait_until("the end of the study", || !worker.is_measuring());
-    assert!(revision > 3 && study.dots.iter().all(|dot| dot.timing().is_some()));
+    assert!(revision > 3 && study.measurements.iter().all(|dot| dot.timing().is_some()));
     worker.measure(Study::new(scene, 96, 96));
     wait_until("a first piece", || worker.take_study().is_some());
     assert!(worker.is_measuring());

@@ -56,7 +56,7 @@ impl Exports {
     }
 
     /// Tells of exports that have ended, and makes their videos.
-    pub fn follow(&mut self, editor: &mut Editor, pictures: &Pictures) {
+    pub fn update(&mut self, editor: &mut Editor, pictures: &Pictures) {
         for state in pictures.exports() {
             let Some(ended) = &state.ended else { continue };
             if self.told.contains(&state.id) {

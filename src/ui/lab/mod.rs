@@ -101,7 +101,7 @@ impl Default for Lab {
 
 impl Lab {
     /// Takes up what the render thread has measured, and whether it was still at it just before.
-    pub fn follow(&mut self, is_measuring: bool, news: Option<Study>) {
+    pub fn update(&mut self, is_measuring: bool, news: Option<Study>) {
         if self.is_running {
             self.study = news.map(Box::new).or(self.study.take());
             self.is_running = is_measuring;
@@ -116,7 +116,7 @@ impl Lab {
     /// What the status line says about the dot that is looked at, if one is.
     pub fn describe(&self) -> Option<String> {
         let place = self.chosen.filter(|_| self.is_open)?;
-        let dot = self.study.as_ref()?.dots.get(place)?;
+        let dot = self.study.as_ref()?.measurements.get(place)?;
         let image = dot.picture.as_ref()?;
         let (name, words) = (&dot.candidate.name, dot.candidate.words());
         Some(format!(
@@ -280,7 +280,7 @@ impl Lab {
         ui.set_width(DETAILS - GRID);
         let chosen = self
             .chosen
-            .and_then(|place| self.study.as_ref()?.dots.get(place));
+            .and_then(|place| self.study.as_ref()?.measurements.get(place));
         let Some(dot) = chosen else {
             ui.weak(match &self.study {
                 None => "Measure the scene to see what each way of tracing it costs, and how far it is off.",
@@ -327,7 +327,7 @@ impl Lab {
     pub fn show_picture(&mut self, ui: &mut Ui, place: Place) -> Option<Response> {
         let place_of_dot = self.chosen.filter(|_| self.is_open)?;
         let study = self.study.as_ref()?;
-        let picture = study.dots.get(place_of_dot)?.picture.as_ref()?;
+        let picture = study.measurements.get(place_of_dot)?.picture.as_ref()?;
         let reference = &study.reference.as_ref()?.picture;
         let is_flipped = !ui.text_edit_focused() && ui.input(|input| input.key_down(Key::B));
         let face = if is_flipped {
@@ -374,19 +374,19 @@ pub fn chart_picture(study: &Study) -> Image {
 
 /// The dots of a study, as far as they are measured.
 fn chart(study: Option<&Study>, axes: (CostAxis, ErrorAxis), chosen: Option<usize>) -> Chart {
-    let dots = study.map_or(&[][..], |study| &study.dots);
+    let measurements = study.map_or(&[][..], |study| &study.measurements);
     let error = |dot: &Measurement| {
-        dot.failing.map_or(f64::NAN, |failing| match axes.1 {
-            ErrorAxis::Rmse => failing.rmse,
-            ErrorAxis::Max => failing.max,
-            ErrorAxis::Visible => failing.visible,
+        dot.metrics.map_or(f64::NAN, |metrics| match axes.1 {
+            ErrorAxis::Rmse => metrics.rmse,
+            ErrorAxis::Max => metrics.max,
+            ErrorAxis::Visible => metrics.visible,
         })
     };
     let cost = |dot: &Measurement| match axes.0 {
         CostAxis::Time => dot.timing().map_or(f64::NAN, |timing| timing.median),
         CostAxis::Rays => dot.rays_per_pixel,
     };
-    let spots = dots.iter().map(|dot| ChartDot {
+    let spots = measurements.iter().map(|dot| ChartDot {
         name: dot.candidate.name.clone(),
         cost: cost(dot),
         // A logarithm has no zero.
@@ -435,15 +435,15 @@ fn figures(dot: &Measurement) -> String {
             timing.median, timing.runs
         )
     });
-    let Some(failing) = dot.failing else {
+    let Some(metrics) = dot.metrics else {
         return time;
     };
     format!(
         "{time}\n{:.2} rays/px\nRMSE {:.2e}, {:.1} dB\nworst {:.4}, {:.3} % > 4/255",
         dot.rays_per_pixel,
-        failing.rmse,
-        failing.psnr(),
-        failing.max,
-        failing.visible * 100.0,
+        metrics.rmse,
+        metrics.psnr(),
+        metrics.max,
+        metrics.visible * 100.0,
     )
 }

@@ -44,7 +44,7 @@ struct PaceStep {
 impl Graph {
     /// Draws speed and turn rate, each as a share of its highest.
     pub fn show(&mut self, ui: &mut Ui, scale: &Scale, editor: &Editor) {
-        self.follow(editor);
+        self.update(editor);
         let colors = palette(ui.ctx());
         let highest = |of: fn(&PaceStep) -> f64| self.steps.iter().map(of).fold(0.0, f64::max);
         let (fastest, sharpest) = (highest(|step| step.speed), highest(|step| step.turn));
@@ -112,7 +112,7 @@ impl Graph {
         ))
     }
 
-    fn follow(&mut self, editor: &Editor) {
+    fn update(&mut self, editor: &Editor) {
         let Animation {
             keys,
             frames_per_second,

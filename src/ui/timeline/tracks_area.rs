@@ -199,7 +199,7 @@ pub fn keys(
             key.interpolation.name()
         ));
     }
-    follow(ui, scale, editor, drag, out);
+    drag_to_pointer(ui, scale, editor, drag, out);
 }
 
 /// Lines between keys: straight ones thin, curves thick, none where it is held.
@@ -260,7 +260,13 @@ fn pick(
 }
 
 /// Moves what is dragged to the frame at the pointer.
-fn follow(ui: &Ui, scale: &Scale, editor: &Editor, drag: &mut Option<Drag>, out: &mut UiRequests) {
+fn drag_to_pointer(
+    ui: &Ui,
+    scale: &Scale,
+    editor: &Editor,
+    drag: &mut Option<Drag>,
+    out: &mut UiRequests,
+) {
     let Some(held) = drag.as_ref().filter(|drag| drag.target.is_none()) else {
         return;
     };
