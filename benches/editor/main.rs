@@ -5,6 +5,7 @@
 
 #![allow(
     clippy::expect_used,
+    clippy::print_stderr,
     reason = "a benchmark that cannot go on has failed"
 )]
 
@@ -20,6 +21,7 @@ use egui::{Event, PointerButton, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
+use glint::editor::{Action, Edit, Editor};
 use glint::image::{Image, render_into};
 use glint::plan::{RenderRequest, Sampling};
 use glint::scene::{Document, Object, Scene, Sphere};
@@ -122,6 +124,39 @@ fn window_while_a_number_is_dragged(bencher: Bencher, objects: u32) {
     bencher
         .with_inputs(|| harness.borrow_mut().drag_number())
         .bench_local_values(|()| harness.borrow_mut().frame());
+}
+
+/// Five hundred moves of one object of a hundred thousand, each a step of its own in the history. Prints
+/// the memory that the steps take, where the system tells.
+#[divan::bench(sample_count = 1, sample_size = 1)]
+fn five_hundred_steps_of_undo(bencher: Bencher) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("many.ron");
+    std::fs::write(&path, many(100_000)).expect("written");
+    let mut editor = Editor::demo();
+    editor.open(&path).expect("a scene");
+    let before = resident_megabytes();
+    bencher.bench_local(|| {
+        for step in 0..500 {
+            let mut object = editor.scene().objects[77_777].clone();
+            object.shape = object.shape.moved(DVec3::X * f64::from(step % 7 - 3));
+            editor.apply(Action::Edit(Edit::Object(77_777, object, "center")));
+            editor.end_gesture();
+        }
+    });
+    if let (Some(before), Some(after)) = (before, resident_megabytes()) {
+        eprintln!("500 steps take {:.1} MB", after - before);
+    }
+}
+
+/// Memory of this process, where the system tells.
+fn resident_megabytes() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let kibibytes: f64 = line.trim().strip_suffix(" kB")?.parse().ok()?;
+    Some(kibibytes / 1024.0)
 }
 
 /// A scene of small balls in rows on the demo's floor; the last one is near the camera.
