@@ -16,8 +16,8 @@
 //! file imports from those above its own, and `ui` and `cli` never meet. A test reads the order and keeps
 //! it. Geometry is spoken in `glam`; only kernels compute with vectors of the processor ([`simd`]).
 //!
-//! A primitive is two files: its description in [`scene`] (what the file and the inspector show) and its
-//! kernels in [`primitive`] (how rays meet it), with a line in the list of each.
+//! A primitive is its description in [`scene`] (what the file and the inspector show) and its kernels in
+//! [`primitive`] (how rays meet it), with a line in the list of each, and a symbol in `ui/icons.rs`.
 //!
 //! A slider is dragged: its panel clones the object, the widgets change the clone, and the panel
 //! pushes an [`editor::Action`]. When all panels are drawn, [`editor::Editor::apply`] checks what the new

@@ -1,6 +1,6 @@
 //! How fast pictures are: `cargo bench`. Machines differ and are busy, so compare rows of one run.
 //!
-//! `plain` is the yardstick: the image model as a student would write it (`plain.rs`).
+//! `plain` is the baseline: the image model as a student would write it (`plain.rs`).
 
 #![allow(
     clippy::expect_used,
@@ -12,8 +12,8 @@ mod plain;
 use divan::{Bencher, black_box};
 use glam::DVec3;
 use glint::image::{Image, render, render_into};
-use glint::plan::{Precision, RenderRequest, Sampling};
-use glint::scene::{Object, Scene, Shape, Sphere};
+use glint::plan::RenderRequest;
+use glint::scene::{Object, Precision, Sampling, Scene, Shape, Sphere};
 use glint::simd::Level;
 use glint::trace::{RenderControl, Threads};
 
@@ -22,7 +22,7 @@ fn main() {
     divan::main();
 }
 
-/// A yardstick that draws another picture measures nothing.
+/// A baseline that draws another picture measures nothing.
 fn agree() {
     let scene = Scene::demo();
     let plain = plain::render(&scene, 256, 256);

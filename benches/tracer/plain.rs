@@ -1,4 +1,4 @@
-//! The yardstick: the image model written plainly. One thread, double precision, one ray at a time,
+//! The baseline: the image model written plainly. One thread, double precision, one ray at a time,
 //! a call through a table for every test of every object, nothing left out, rays that start 0.1
 //! away from their surface.
 
@@ -90,10 +90,9 @@ fn thing(shape: &Shape) -> Box<dyn Thing> {
                 corners: Some([a, b, c]),
             })
         }
-        ref other @ Shape::Disc(_) => panic!(
-            "the yardstick draws the demo, which has no {}",
-            other.kind()
-        ),
+        ref other @ Shape::Disc(_) => {
+            panic!("the baseline draws the demo, which has no {}", other.kind())
+        }
     }
 }
 

@@ -182,7 +182,7 @@ pub(super) fn eased(easing: Easing, along: f64) -> f64 {
     match easing {
         Easing::Even => along,
         Easing::In => along * along,
-        Easing::UiRequests => along * (2.0 - along),
+        Easing::Out => along * (2.0 - along),
         Easing::InOut => along * along * (3.0 - 2.0 * along),
     }
 }

@@ -78,7 +78,7 @@ fn measure(study: &mut Study, threads: &Threads) {
     bar.finish_and_clear();
 }
 
-/// Which dot to take.
+/// Which way of tracing to take.
 fn advice(study: &Study, within: Option<f64>, budget: Option<f64>) -> String {
     let costs = study.costs();
     let budget = budget.unwrap_or(f64::INFINITY);

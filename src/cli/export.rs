@@ -37,9 +37,13 @@ struct What {
     /// Height in pixels; alone, it keeps the scene's aspect
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SIDE)))]
     height: Option<u32>,
-    /// How edges are smoothed: none, adaptive, or grid:N [default: the scene's own]
-    #[arg(long, value_parser = Sampling::parse)]
+    #[arg(long, value_name = "METHOD", value_parser = Sampling::parse, help = antialias_help())]
     antialias: Option<Sampling>,
+}
+
+fn antialias_help() -> String {
+    let methods = Sampling::syntax();
+    format!("How edges are smoothed: {methods} [default: the scene's own]")
 }
 
 #[derive(Debug, Args)]

@@ -1,5 +1,5 @@
 //! The command line: parses words, prints lines. Results go to stdout, errors to stderr; the exit
-//! code is 0 for done, 1 for failed work, 2 for wrong words or a wrong file.
+//! code is 0 for done, 1 for failed work, 2 for wrong arguments or a wrong file.
 
 mod error;
 

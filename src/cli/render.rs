@@ -43,7 +43,7 @@ pub struct RenderArgs {
     camera: Option<CameraArg>,
     #[command(flatten)]
     settings: SettingArgs,
-    /// Lanes of the tracer; all give the same picture [default: the widest of this processor]
+    /// Instruction set of the tracer; all give the same picture [default: the widest of this processor]
     #[arg(long, value_name = "LEVEL", value_parser = lanes)]
     lanes: Option<Level>,
     /// Frame of the animation, from 1 [default: the scene's own camera and values]

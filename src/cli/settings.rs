@@ -34,19 +34,15 @@ struct Flags(Command);
 
 impl VisitSetting for Flags {
     fn visit<M: Method>(&mut self, setting: Setting, _value: &mut M) {
-        let ids: Vec<&str> = M::ALL.iter().map(|method| method.id).collect();
         let own = "[default: the scene's own]";
-        let help = format!("{}: {} {own}", setting.what, ids.join(", "));
+        let help = format!("{}: {} {own}", setting.what, M::syntax());
         let lines = M::ALL.iter();
         let lines = lines.map(|method| format!("\n- {}: {}", method.id, method.what));
         let arg = Arg::new(setting.name)
             .long(setting.name)
+            .value_name("METHOD")
+            .long_help(format!("{help}{}", lines.collect::<String>()))
             .help(help)
-            .long_help(format!(
-                "{} {own}{}",
-                setting.what,
-                lines.collect::<String>()
-            ))
             .value_parser(|id: &str| M::parse(id).map(|_| id.to_owned()));
         self.0 = std::mem::take(&mut self.0).arg(arg);
     }

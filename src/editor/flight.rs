@@ -19,6 +19,7 @@ impl Editor {
     pub(super) fn apply_time(&mut self, time: Time) {
         let scene = Arc::clone(&self.scene);
         let animation = &scene.animation;
+        let is_making_keys = self.is_making_keys();
         let timeline = &mut self.animation_state.timeline;
         match time {
             Time::Seek(seconds) => {
@@ -54,6 +55,9 @@ impl Editor {
                     Selection::Keys
                 };
                 timeline.selected = places;
+            }
+            Time::Record if is_making_keys => {
+                self.notify("The last flight is still becoming keys".to_owned());
             }
             Time::Record => {
                 let camera = self.animation_state.shown.camera.clone();
@@ -137,7 +141,7 @@ impl Editor {
                     .as_ref()
                     .is_some_and(|own| Arc::ptr_eq(own, &take))
                 {
-                    return;
+                    return self.animation_state.measure();
                 }
                 self.animation_state.timeline.tolerance = pixels;
                 let old = Arc::clone(&self.scene);

@@ -148,7 +148,7 @@ impl Exporting {
             return ExportStep::Going;
         }
         let mut image = self.spare.pop().unwrap_or_default();
-        let request = self.sequence.picture(&shown);
+        let request = self.sequence.request(&shown);
         let Some(cost) = render_into(&mut image, &shown, &request, control) else {
             self.spare.push(image);
             self.left.push_front(frame);

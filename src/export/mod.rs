@@ -22,7 +22,7 @@ pub use error::ExportError;
 pub use exporting::{ExportStep, Exported, Exporting};
 pub use frames::{Frames, FramesError};
 pub use job::job_template;
-pub use manifest::{Hash, MANIFEST, Manifest};
+pub use manifest::{Hash, Manifest};
 pub use pattern::{Pattern, PatternError};
 pub use save::{free_path, save_image, write_text};
 pub use sequence::{NoSuchFrame, Sequence};

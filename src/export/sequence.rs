@@ -88,7 +88,7 @@ impl Sequence {
     }
 
     /// How a frame is traced.
-    pub fn picture(&self, scene: &Scene) -> RenderRequest {
+    pub fn request(&self, scene: &Scene) -> RenderRequest {
         RenderRequest::still(scene)
     }
 

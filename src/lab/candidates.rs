@@ -161,17 +161,13 @@ struct Ids(Vec<String>);
 
 impl VisitSetting for Ids {
     fn visit<M: Method>(&mut self, setting: Setting, value: &mut M) {
-        let name = match setting.name {
-            name @ ("specular" | "accelerator") => format!("{name} "),
-            _ => String::new(),
-        };
-        self.0.push(format!("{name}{}", value.id()));
+        self.0.push(format!("{} {}", setting.name, value.id()));
     }
 }
 
 impl Candidate {
     /// What is traced, before it is scaled up.
-    pub fn picture(&self, scene: &Scene) -> RenderRequest {
+    pub fn request(&self, scene: &Scene) -> RenderRequest {
         let side = |side: u32| side.div_ceil(self.upscale);
         let (width, height) = (side(self.render.width), side(self.render.height));
         RenderRequest {

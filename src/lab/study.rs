@@ -179,7 +179,7 @@ impl Study {
             });
             return;
         };
-        let picture = RenderRequest {
+        let request = RenderRequest {
             precision: Precision::Double,
             sampling: Sampling::Grid(TRUTH_GRIDS[place]),
             ..RenderRequest::sized(self.size.0, self.size.1)
@@ -187,7 +187,7 @@ impl Study {
         let first = self.truths[place].len() / width;
         let rows = height.div_ceil(TRUTH_PIECES).min(height - first);
         let mut light = vec![[0.0; 3]; rows * width];
-        let tracer = Tracer::new(&self.scene, &picture);
+        let tracer = Tracer::new(&self.scene, &request);
         if tracer.rows(&mut light, first, control).is_some() {
             Arc::make_mut(&mut self.truths[place]).extend(light);
         }
@@ -195,8 +195,8 @@ impl Study {
 
     fn look_at(&mut self, place: usize, control: &RenderControl) {
         let candidate = &self.measurements[place].candidate;
-        let picture = candidate.picture(&self.scene);
-        let tracer = Tracer::new(&candidate.scene(&self.scene), &picture);
+        let request = candidate.request(&self.scene);
+        let tracer = Tracer::new(&candidate.scene(&self.scene), &request);
         let Some((light, rays)) = trace_light(&tracer, control) else {
             return;
         };
@@ -239,13 +239,13 @@ impl Study {
 
 /// The finished picture, as the user would get it.
 fn draw(candidate: &Candidate, scene: &Scene, control: &RenderControl) -> Option<Image> {
-    let (scene, picture) = (candidate.scene(scene), candidate.picture(scene));
+    let (scene, request) = (candidate.scene(scene), candidate.request(scene));
     let mut image = Image::default();
     if candidate.upscale == 1 {
-        render_into(&mut image, &scene, &picture, control)?;
+        render_into(&mut image, &scene, &request, control)?;
         return Some(image);
     }
-    let tracer = Tracer::new(&scene, &picture);
+    let tracer = Tracer::new(&scene, &request);
     let (light, _) = trace_light(&tracer, control)?;
     let size = (scene.render.width as usize, scene.render.height as usize);
     let light = scaled(&light, (tracer.width(), tracer.height()), size);

@@ -38,7 +38,7 @@ pub struct Bvh<R> {
 }
 
 impl<R: Real> Bvh<R> {
-    /// Builds a tree of the balls, each with the number of its primitive; else lists them in their order.
+    /// Builds a tree of the numbered balls if `is_tree`, else a flat list in their order.
     pub fn new(balls: &[(u32, Ball)], is_tree: bool) -> Self {
         let mut sorted = balls.to_vec();
         if is_tree {
@@ -121,20 +121,20 @@ mod tests {
         #[test]
         fn every_ball_lies_in_those_above_it(places in prop::collection::vec((vector(), 0.0..5.0_f64), 1..700)) {
             let balls: Vec<(u32, Ball)> = (0..).zip(places).map(|(number, (center, radius))| (number, Ball { center, radius })).collect();
-            let volumes = Bvh::<f64>::new(&balls, true);
-            let mut members = volumes.members.clone();
+            let bvh = Bvh::<f64>::new(&balls, true);
+            let mut members = bvh.members.clone();
             members.sort_unstable();
             prop_assert_eq!(members, (0..balls.len() as u32).collect::<Vec<_>>());
-            for (place, &member) in volumes.members.iter().enumerate() {
+            for (place, &member) in bvh.members.iter().enumerate() {
                 let (_, own) = balls[member as usize];
                 let mut place = place;
-                for level in &volumes.levels[1..] {
+                for level in &bvh.levels[1..] {
                     place /= GROUP;
                     let center = DVec3::new(level.x[place], level.y[place], level.z[place]);
                     prop_assert!((own.center - center).length() + own.radius <= level.radius[place] * (1.0 + 1e-12));
                 }
             }
-            prop_assert!(volumes.levels.last().is_some_and(|top| top.x.len() == GROUP));
+            prop_assert!(bvh.levels.last().is_some_and(|top| top.x.len() == GROUP));
         }
 
     }

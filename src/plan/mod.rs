@@ -27,8 +27,3 @@ pub use pack::{Plan, PointLight, RayOrigin};
 pub use precision::needs_double;
 pub use request::{Model, RenderRequest};
 pub use view::View;
-
-pub use crate::scene::{
-    Accelerator, HighlightMethod, MAX_GRID, MAX_HALVINGS, Methods, Precision, RayOffset, Sampling,
-    SphereMethod, TriangleMethod,
-};

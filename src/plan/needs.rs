@@ -7,7 +7,9 @@ use super::materials::Material;
 use super::pack::Plan;
 use super::precision::needs_double;
 use super::request::RenderRequest;
-use crate::scene::{Object, Precision, Sampling, Scene};
+use crate::scene::{
+    Methods, Object, Precision, RayOffset, Sampling, Scene, SphereMethod, TriangleMethod,
+};
 use crate::simd::Exponent;
 
 /// One decision of the plan.
@@ -128,6 +130,13 @@ fn shadows(scene: &Scene, plan: &Plan<f64>) -> Need {
     )
 }
 
+const FAILING: &str = "formulas that are known to fail were asked for, and shall show it";
+
+/// Whether spheres are hit where they are, and new rays start where they should.
+fn is_sound(methods: &Methods) -> bool {
+    methods.sphere == SphereMethod::Stable && methods.offset == RayOffset::Robust
+}
+
 fn planes(plan: &Plan<f64>) -> Need {
     let rule = "planes";
     match (plan.primitives.planes.len(), plan.planes_cast) {
@@ -137,12 +146,15 @@ fn planes(plan: &Plan<f64>) -> Need {
             "there are none in the scene",
             "their test for every ray",
         ),
-        (number, true) => need(
-            rule,
-            format!("{} tested for shadows", count(number, "plane")),
-            "parallel rays start on both sides of a plane, or the camera is on one",
-            "nothing",
-        ),
+        (number, true) => {
+            let why = if is_sound(&plan.methods) {
+                "parallel rays start on both sides of a plane, or the camera is on one"
+            } else {
+                FAILING
+            };
+            let what = format!("{} tested for shadows", count(number, "plane"));
+            need(rule, what, why, "nothing")
+        }
         (number, false) => need(
             rule,
             format!("{} never tested for shadows", count(number, "plane")),
@@ -211,12 +223,14 @@ fn faces(plan: &Plan<f64>) -> Need {
         .map(|light| set(&light.shadow_culled_faces))
         .sum();
     if unseen + idle == 0 {
-        return need(
-            rule,
-            format!("both sides of {}", count(all, "triangle")),
-            "none belongs to a closed convex solid with the camera or a light outside",
-            "nothing",
-        );
+        let is_tight = plan.methods.triangle == TriangleMethod::Watertight;
+        let why = if is_tight && is_sound(&plan.methods) {
+            "none belongs to a closed convex solid with the camera or a light outside"
+        } else {
+            FAILING
+        };
+        let what = format!("both sides of {}", count(all, "triangle"));
+        return need(rule, what, why, "nothing");
     }
     need(
         rule,
@@ -233,8 +247,7 @@ fn accelerator(plan: &Plan<f64>) -> Need {
     let rule = "accelerator";
     let bounded = plan.primitives.bounded();
     if plan.screen.is_none() {
-        let why = "formulas that are known to fail were asked for, and shall show it";
-        return need(rule, "every primitive for every ray", why, "nothing");
+        return need(rule, "every primitive for every ray", FAILING, "nothing");
     }
     let what = count(bounded, "bounded primitive");
     if plan.bvh.is_tree() {

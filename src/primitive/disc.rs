@@ -105,8 +105,9 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
         let lean = aside.dot(normal);
         let zero = along.like(R::ZERO);
         let is_leaning = zero.less(sine_square);
-        let short = L::select(is_leaning, lean * lean / sine_square, zero);
-        let long = (square - short).max(zero);
+        // Rounding makes much of a small lean: a part is no more than the whole.
+        let short = L::select(is_leaning, lean * lean / sine_square, zero).min(square);
+        let long = square - short;
         let by_ellipse = (short + long * cosine * cosine).sqrt() - radius * cosine.abs();
         let by_circle = square.sqrt() - radius;
         Approach {

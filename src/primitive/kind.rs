@@ -82,7 +82,7 @@ pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
     /// A point of it, and how far from there it reaches.
     fn reach(&self) -> (Vec3<R>, R);
 
-    /// Whether nothing in `ball` is lit by `light` because of it alone. It may say no where it is so.
+    /// Whether this primitive alone hides all of `ball` from `light`; `false` may be wrong.
     fn hides(&self, _light: DVec3, _ball: &Ball) -> bool {
         false
     }

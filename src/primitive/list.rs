@@ -34,7 +34,8 @@ macro_rules! kinds {
         /// How many kinds there are.
         pub const KINDS: usize = [$(Kind::$kind),*].len();
 
-        /// Every primitive has a number, exact in any real type: the kinds follow each other.
+        /// All packed primitives, one list per kind. A primitive's number counts through the lists in
+        /// the order of [`Kind`], and is exact in `f32` below 2²⁴.
         #[derive(Clone, Debug)]
         pub struct Primitives<R> {
             $(#[doc = concat!("Every [`", stringify!($packed), "`].")] pub $list: Vec<$packed<R>>),*
@@ -47,7 +48,8 @@ macro_rules! kinds {
         }
 
         impl<R: Real> Primitives<R> {
-            /// Adds a shape; where it is in the picture, if there is a projector and it ends anywhere.
+            /// Packs a shape, unless no ray can meet it. Returns its kind and its rectangle in the
+            /// picture, if there is a projector and it is bounded.
             pub fn push(&mut self, shape: &Shape, material: u32, packing: &Packing) -> Option<(Kind, Rectangle)> {
                 match shape {
                     $(Shape::$kind(description) => {

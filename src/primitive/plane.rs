@@ -76,7 +76,7 @@ impl<R: Real> Primitive<R> for PackedPlane<R> {
         }
     }
 
-    /// A plane is never thin: nothing asks.
+    /// A plane is never thin: its infinite size rules it out.
     #[inline(always)]
     fn approach<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, (): &()) -> Approach<L> {
         let nowhere = rays.origin.x.like(R::INFINITY);

@@ -78,7 +78,7 @@ pub enum Easing {
     /// Starts slowly.
     In,
     /// Ends slowly.
-    UiRequests,
+    Out,
     /// Starts and ends slowly.
     InOut,
 }
@@ -226,14 +226,14 @@ impl Interpolation {
 
 impl Easing {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Even, Self::In, Self::UiRequests, Self::InOut];
+    pub const ALL: [Self; 4] = [Self::Even, Self::In, Self::Out, Self::InOut];
 
     /// What it is called in lists.
     pub fn name(self) -> &'static str {
         match self {
             Self::Even => "even",
             Self::In => "slow start",
-            Self::UiRequests => "slow end",
+            Self::Out => "slow end",
             Self::InOut => "slow start and end",
         }
     }

@@ -233,7 +233,8 @@ fn pretty(value: &impl serde::Serialize) -> Result<String, SceneError> {
         .depth_limit(2)
         .new_line("\n")
         .compact_maps(false);
-    let text = options().to_string_pretty(value, config);
+    let options = options().with_default_extension(Extensions::UNWRAP_VARIANT_NEWTYPES);
+    let text = options.to_string_pretty(value, config);
     text.map_err(SceneError::Unwritable)
 }
 
@@ -279,7 +280,7 @@ fn read_bounded(path: &Path) -> Result<Vec<u8>, SceneError> {
 
 fn options() -> ron::Options {
     ron::Options::default()
-        .with_default_extension(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_VARIANT_NEWTYPES)
+        .with_default_extension(Extensions::IMPLICIT_SOME)
         .with_recursion_limit(MAX_DEPTH)
 }
 

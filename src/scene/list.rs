@@ -1,6 +1,7 @@
 //! Lists that share what did not change: a copy costs nothing, and a change of one item copies a
 //! chunk of its neighbours and a table of chunks, however long the list is.
 
+use std::collections::HashSet;
 use std::ops::{Index, IndexMut};
 use std::sync::Arc;
 
@@ -167,9 +168,11 @@ impl<T: Clone> List<T> {
 
     /// About how many bytes this list has that another one does not share.
     pub fn bytes_apart(&self, other: &Self) -> usize {
-        let items = self
-            .changes(other)
-            .map_or(self.len(), |changes| changes.len());
+        let address = |chunk: &Chunk<T>| Arc::as_ptr(&chunk.items);
+        let shared: HashSet<_> = other.chunks.iter().map(address).collect();
+        let own = self.chunks.iter();
+        let own = own.filter(|chunk| !shared.contains(&address(chunk)));
+        let items: usize = own.map(|chunk| chunk.items.len()).sum();
         let table = if Arc::ptr_eq(&self.chunks, &other.chunks) {
             0
         } else {
@@ -353,6 +356,19 @@ mod tests {
             prop_assert!(copy.iter().eq(kept.iter()), "a copy has changed");
             prop_assert_eq!(list == copy, vector == kept);
         }
+    }
+
+    #[test]
+    fn a_step_of_undo_weighs_what_it_changed() {
+        let before: List<u32> = (0..100_000).collect();
+        let mut after = before.clone();
+        assert_eq!(after.bytes_apart(&before), 0);
+        after.insert(50, 1);
+        after.remove(77_777);
+        let changed = 3 * MOST * (size_of::<u32>() + TEXT);
+        let table = after.chunks.len() * size_of::<Chunk<u32>>();
+        assert!(after.bytes_apart(&before) <= changed + table);
+        assert!(after.bytes_apart(&before) > table);
     }
 
     #[test]

@@ -21,16 +21,20 @@ pub trait Method: Copy + PartialEq + Debug + Sized + 'static {
         method.map_or(String::new(), |method| method.id.to_owned())
     }
 
+    /// What can be asked for, for people.
+    fn syntax() -> String {
+        let ids: Vec<&str> = Self::ALL.iter().map(|method| method.id).collect();
+        ids.join(", ")
+    }
+
     /// The way of this word.
     ///
     /// # Errors
-    /// [`UnknownMethod`], with the ids that there are.
+    /// [`UnknownMethod`], with what can be asked for.
     fn parse(id: &str) -> Result<Self, UnknownMethod> {
         let method = Self::ALL.iter().find(|method| method.id == id);
-        method.map(|method| method.value).ok_or_else(|| {
-            let ids: Vec<&str> = Self::ALL.iter().map(|method| method.id).collect();
-            UnknownMethod(ids.join(", "))
-        })
+        let value = method.map(|method| method.value);
+        value.ok_or_else(|| UnknownMethod(Self::syntax()))
     }
 }
 
@@ -222,9 +226,11 @@ impl Method for RayOffset {
             Some(("relative", number)) => length(number).map(Self::Relative),
             _ => None,
         };
-        found.ok_or_else(|| {
-            UnknownMethod("robust, wachter-binder, fixed: and a distance ≥ 0 such as fixed:0.1, or relative: and a share of the scene such as relative:0.0001".to_owned())
-        })
+        found.ok_or_else(|| UnknownMethod(Self::syntax()))
+    }
+
+    fn syntax() -> String {
+        "robust, wachter-binder, fixed: and a distance ≥ 0 such as fixed:0.1, or relative: and a share of the scene such as relative:0.0001".to_owned()
     }
 }
 
@@ -368,11 +374,13 @@ impl Method for Sampling {
             }
             _ => None,
         };
-        found.ok_or_else(|| {
-            UnknownMethod(format!(
-                "none, adaptive, grid: and a number from 1 to {MAX_GRID} such as grid:4, or adaptive:CONTRAST:DEPTH such as adaptive:0.1:{MAX_HALVINGS}"
-            ))
-        })
+        found.ok_or_else(|| UnknownMethod(Self::syntax()))
+    }
+
+    fn syntax() -> String {
+        format!(
+            "none, adaptive, grid: and a number from 1 to {MAX_GRID} such as grid:4, or adaptive:CONTRAST:DEPTH such as adaptive:0.1:{MAX_HALVINGS}"
+        )
     }
 }
 

@@ -1,11 +1,11 @@
-//! Which lanes the processor has, found out at run time.
+//! Which vectors the processor has, found out at run time.
 
 use fearless_simd::{Simd, dispatch, f32x16, f64x8};
 
 use super::float::Wide;
 use super::{Real, SimdFloat};
 
-/// A kind of processor.
+/// An instruction set of the processor.
 #[derive(Clone, Copy, Debug)]
 pub struct Level {
     /// What `--lanes` calls it.

@@ -11,7 +11,7 @@ use super::shade::Shader;
 use super::stats::Rays;
 use super::thresholds::{LARGEST_STRETCH, SLIPPING};
 use crate::plan::Plan;
-use crate::primitive::Ray;
+use crate::primitive::{Kind, Ray};
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
 
 /// One bounce: its packets, and what they can meet.
@@ -237,7 +237,7 @@ impl<L: SimdFloat> Bounce<L> {
         let is_shared = self.parents.iter().all(
             |parent| matches!(parent.ignored, IgnoredPrimitive::Shared(start) if start == first),
         );
-        let plane = first.checked_sub(plan.primitives.spheres.len())?;
+        let plane = first.checked_sub(plan.primitives.firsts()[Kind::Plane as usize])?;
         (is_shared && plane < plan.primitives.planes.len()).then_some(plane)
     }
 

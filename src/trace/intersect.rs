@@ -8,7 +8,7 @@ use crate::simd::{Mask as _, Real, SimdFloat};
 
 /// What the kernels of a picture share: the proof that the processor has the lanes, and the plan.
 pub struct Kernel<'a, L: SimdFloat> {
-    /// The lanes.
+    /// Proof that the processor has these vectors.
     pub token: L::Token,
     /// The plan.
     pub plan: &'a Plan<L::Real>,
@@ -40,9 +40,9 @@ pub struct Paths<L> {
 pub enum IgnoredPrimitive<L> {
     /// None.
     Nothing,
-    /// The one of this number, all of them.
+    /// All rays start on the primitive of this number.
     Shared(usize),
-    /// Those of these numbers, [`NOTHING`] for none.
+    /// Each ray starts on the primitive whose number is in its lane; [`NOTHING`] for none.
     Each(L),
 }
 

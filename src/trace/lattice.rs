@@ -3,7 +3,7 @@
 use super::samples::{Samples, Traced};
 use super::thresholds::{EDGE_CONTRAST, FINEST, NEAR, STRONG_CONTRAST};
 use super::tile::{Tile, TileColors};
-use crate::plan::MAX_HALVINGS;
+use crate::scene::MAX_HALVINGS;
 use crate::simd::{Real, SimdFloat};
 
 /// Samples on the finest grid of a tile that are shared by the cells around them.

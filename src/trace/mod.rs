@@ -1,9 +1,10 @@
 //! What runs per ray and per tile. Knows no file and no pixel format.
 //!
-//! The files stand in the order of their dependence. From below: what is counted, what is thin, the
-//! tiles and samples; which primitives to test and the tests; packets of rays, what a beam of them can
-//! meet, and their colours; one bounce, all bounces, the pixels; the tracer, which shares tiles between
-//! threads; and questions to a scene that need no picture.
+//! The files stand in the order of their dependence. From below: counters and thresholds, tiles and
+//! samples; which primitives to test and the tests, what lies at a hit, the footprint of a pixel and
+//! what is thin in it; packets of rays, what a beam of them can meet, and their colours; one bounce, all
+//! bounces, the pixels; the tracer, which shares tiles between threads; and questions to a scene that
+//! need no picture.
 
 mod stats;
 
@@ -45,7 +46,7 @@ mod threads;
 
 mod query;
 
-pub use query::{SceneQuery, survey, visible};
+pub use query::{survey, visible};
 pub use stats::{Rays, RenderControl};
 pub use threads::{PoolError, Threads};
 pub use tracer::{Grid, Pass, Pixel, Tracer};

@@ -6,6 +6,8 @@
 use std::sync::atomic::Ordering;
 
 use glam::DVec3;
+use rayon::current_num_threads;
+use rayon::iter::{IntoParallelIterator as _, ParallelExtend as _, ParallelIterator as _};
 
 use super::stats::RenderControl;
 use crate::animate::Seen;
@@ -75,23 +77,32 @@ impl SceneQuery {
     }
 }
 
-/// Side of the grid of places at which a picture is surveyed for how far another is off.
+/// Rays along each side of the grid that [`survey`] casts.
 const SURVEYED: u32 = 5;
 
-/// What every sample of a recorded flight sees of the scene, at a grid of places in its picture. `None`
-/// if `control` said stop.
-pub fn survey(take: &Take, scene: &Scene, control: &RenderControl) -> Option<Vec<Vec<Seen>>> {
+/// Adds to `seen` what the other samples of a recorded flight see of the scene, at a grid of places in
+/// their pictures: all of them, or at least one for each thread if `control` says stop. Whether it was
+/// all of them.
+pub fn survey(
+    take: &Take,
+    scene: &Scene,
+    seen: &mut Vec<Vec<Seen>>,
+    control: &RenderControl,
+) -> bool {
     let query = SceneQuery::new(scene);
     let aspect = f64::from(scene.render.width) / f64::from(scene.render.height);
     let sample = |sample: usize| {
         let framing = take.camera(sample).and_then(|camera| camera.framing());
         framing.map_or(Vec::new(), |framing| query.look(&framing, aspect))
     };
-    let samples = (0..take.samples.len()).map(|index| {
-        let is_stopped = control.stop.load(Ordering::Relaxed);
-        (!is_stopped).then(|| sample(index))
-    });
-    samples.collect()
+    while seen.len() < take.samples.len() {
+        let last = take.samples.len().min(seen.len() + current_num_threads());
+        seen.par_extend((seen.len()..last).into_par_iter().map(sample));
+        if control.stop.load(Ordering::Relaxed) {
+            break;
+        }
+    }
+    seen.len() == take.samples.len()
 }
 
 /// For each point, whether nothing stands between it and the camera. `None` if `control` said stop.

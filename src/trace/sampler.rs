@@ -10,7 +10,7 @@ use super::thresholds::{FINEST, NEAR};
 use super::tile::{Tile, TileColors};
 use crate::simd::{Real, SimdFloat};
 
-/// What sampling leaves behind for the next tile to use again.
+/// Samples the pixels of tiles; its buffers are used again.
 pub struct Sampler<L: SimdFloat> {
     /// Places of the samples of a row.
     columns: Vec<L::Real>,
@@ -153,7 +153,7 @@ impl<L: SimdFloat> Sampler<L> {
         }
     }
 
-    /// The pixels by their corners alone, and which of them must be looked into. Most pictures are
+    /// Sets every pixel to the mean of its corners, and notes those to subdivide. Most pictures are
     /// smooth nearly everywhere, so this is what their smoothing costs: one loop over the whole tile,
     /// with a pixel at the end of each row that is none.
     #[inline(always)]

@@ -105,8 +105,8 @@ impl<R: Real> Traced<R> {
         for column in [&mut self.red, &mut self.green, &mut self.blue] {
             column.resize(length, R::ZERO);
         }
-        let marked = if edges == Edges::Noted { length } else { 0 };
-        self.near.resize(marked, R::ZERO);
-        self.signature.resize(marked, 0);
+        let noted = if edges == Edges::Noted { length } else { 0 };
+        self.near.resize(noted, R::ZERO);
+        self.signature.resize(noted, 0);
     }
 }

@@ -20,7 +20,7 @@ const LIGHT_BITS: usize = 20;
 
 /// How packets are shaded.
 pub struct Shader<'a, L: SimdFloat> {
-    /// Lanes and plan.
+    /// Vector token and plan.
     pub kernel: Kernel<'a, L>,
     /// Whether mirrors send rays on.
     pub may_mirror: bool,
@@ -111,7 +111,7 @@ impl<'a, L: SimdFloat> Shader<'a, L> {
         mirrored
     }
 
-    /// Both sides of everything are lit: the normal is turned to the viewer.
+    /// The hits, with the pixel's footprint; both sides are lit: the normal is turned to the viewer.
     #[inline(always)]
     fn shading_point(
         &self,
@@ -239,7 +239,7 @@ impl<'a, L: SimdFloat> Shader<'a, L> {
     }
 }
 
-/// Puts the rays of several mirrors into one row.
+/// Merges the rays of several mirrors into one packet.
 #[inline(always)]
 fn join<L: SimdFloat>(
     kernel: Kernel<L>,

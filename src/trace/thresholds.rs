@@ -1,6 +1,6 @@
 //! What is thin, grazing or visible: every threshold of smooth edges, with its reason.
 
-use crate::plan::MAX_HALVINGS;
+use crate::scene::MAX_HALVINGS;
 
 /// Widest thing, in pixels, that may slip between samples.
 pub const SLIPPING: f64 = 2.0;

@@ -35,7 +35,7 @@ impl<R: Real> TileColors<R> {
         self.channels.each_ref().map(Vec::as_slice)
     }
 
-    /// Becomes black.
+    /// Makes all pixels black.
     pub fn clear(&mut self, stride: usize, length: usize) {
         self.stride = stride;
         for channel in &mut self.channels {

@@ -14,8 +14,8 @@ use super::sampler::Sampler;
 use super::samples::Traced;
 use super::stats::{Rays, RenderControl};
 use super::tile::{Tile, TileColors};
-use crate::plan::{Plan, Precision, RenderRequest, Sampling, needs_double};
-use crate::scene::Scene;
+use crate::plan::{Plan, RenderRequest, needs_double};
+use crate::scene::{Precision, Sampling, Scene};
 use crate::simd::{Level, Real, SimdFloat, SimdReal, WithSimd};
 
 /// Side of a tile in pixels where there is little to see. Large enough that the bookkeeping does not
@@ -23,7 +23,7 @@ use crate::simd::{Level, Real, SimdFloat, SimdReal, WithSimd};
 const LARGE_TILE: usize = 32;
 /// Side of a tile where there is much to see: it sees less of it.
 const SMALL_TILE: usize = 16;
-/// With fewer pixels than this for each sphere and triangle, there is much to see.
+/// With fewer pixels than this for each bounded primitive, there is much to see.
 const PIXELS_PER_PRIMITIVE: u64 = 16_384;
 
 /// What a colour becomes in a picture.
@@ -113,24 +113,24 @@ impl PlanOf {
 }
 
 impl Tracer {
-    /// Plans `picture` of `scene`, which must pass [`crate::scene::check`].
-    pub fn new(scene: &Scene, picture: &RenderRequest) -> Self {
-        let double = match picture.precision {
+    /// Plans `request` of `scene`, which must pass [`crate::scene::check`].
+    pub fn new(scene: &Scene, request: &RenderRequest) -> Self {
+        let double = match request.precision {
             Precision::Auto => needs_double(scene),
             Precision::Single => false,
             Precision::Double => true,
         };
         let plan = if double {
-            PlanOf::Double(Box::new(Plan::new(scene, picture)))
+            PlanOf::Double(Box::new(Plan::new(scene, request)))
         } else {
-            PlanOf::Single(Box::new(Plan::new(scene, picture)))
+            PlanOf::Single(Box::new(Plan::new(scene, request)))
         };
         Self {
-            width: picture.width as usize,
-            height: picture.height as usize,
-            tile: plan.tile_side(u64::from(picture.width) * u64::from(picture.height)),
-            sampling: picture.sampling,
-            level: picture.level.unwrap_or_else(Level::widest),
+            width: request.width as usize,
+            height: request.height as usize,
+            tile: plan.tile_side(u64::from(request.width) * u64::from(request.height)),
+            sampling: request.sampling,
+            level: request.level.unwrap_or_else(Level::widest),
             plan,
         }
     }
@@ -345,13 +345,13 @@ mod tests {
         scene.render.reflection_limit = 3;
         for sampling in [Sampling::Centres, Sampling::Grid(2), Sampling::ADAPTIVE] {
             let pictures = [16, 8, 5, 32, 200].map(|tile| {
-                let picture = RenderRequest {
+                let request = RenderRequest {
                     sampling,
                     ..RenderRequest::sized(171, 93)
                 };
                 let tracer = Tracer {
                     tile,
-                    ..Tracer::new(&scene, &picture)
+                    ..Tracer::new(&scene, &request)
                 };
                 let mut pixels = vec![[0_u64; 3]; 171 * 93];
                 let rays = tracer.pass(&mut pixels, Pass::Whole, &RenderControl::default());
@@ -368,11 +368,11 @@ mod tests {
     fn a_picture_in_pieces_has_the_same_bits() {
         let scene = Scene::demo();
         for sampling in [Sampling::Grid(2), Sampling::ADAPTIVE] {
-            let picture = RenderRequest {
+            let request = RenderRequest {
                 sampling,
                 ..RenderRequest::sized(83, 61)
             };
-            let (tracer, control) = (Tracer::new(&scene, &picture), RenderControl::default());
+            let (tracer, control) = (Tracer::new(&scene, &request), RenderControl::default());
             let mut whole = vec![[0_u64; 3]; 83 * 61];
             let rays = tracer.pass(&mut whole, Pass::Whole, &control);
             let mut pieces = Vec::new();

@@ -357,7 +357,6 @@ impl eframe::App for App {
         let outcome = self.files.show(ui, &mut self.editor);
         self.act_on(&ctx, outcome);
         help::show(&ctx, &mut self.shortcuts_open);
-        self.pictures.ask(&self.editor, questions);
         let is_gesture = ui.input(|input| input.pointer.any_down()) || self.flying.is_gesture(&ctx);
         if !is_gesture {
             self.editor.end_gesture();
@@ -373,6 +372,8 @@ impl eframe::App for App {
                 self.pictures.request_thumbnails(wishes);
             }
         }
+        // A question would keep the live view waiting.
+        self.pictures.ask(&self.editor, questions);
         let is_settled = self.is_settled();
         if let Some(screenshot) = &mut self.screenshot
             && screenshot.tick(&ctx, is_settled)

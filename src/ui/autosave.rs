@@ -14,6 +14,9 @@ use crate::worker::run_in_background;
 /// Time between two autosaves.
 const INTERVAL: Duration = Duration::from_secs(5);
 
+/// Time between two looks at whether it is written.
+const POLL: Duration = Duration::from_millis(100);
+
 /// The state of autosaving.
 #[derive(Default)]
 pub struct Autosave {
@@ -59,6 +62,7 @@ impl Autosave {
         };
         self.take_written(editor);
         if self.writing.is_some() {
+            ctx.request_repaint_after(POLL);
             return;
         }
         if !editor.is_dirty() {
@@ -77,16 +81,14 @@ impl Autosave {
         }
         self.tried = Some(Instant::now());
         let (document, path) = (editor.document(), editor.path().map(Path::to_owned));
-        let ctx = ctx.clone();
         let written = run_in_background("glint-autosave", move || {
             let text = document.to_text().map_err(|error| error.to_string());
-            let kept = text.and_then(|text| {
+            text.and_then(|text| {
                 let kept = recovery.keep(&text, path.as_deref());
                 kept.map_err(|error| error.to_string())
-            });
-            ctx.request_repaint();
-            kept
+            })
         });
+        ctx.request_repaint_after(POLL);
         self.writing = Some((revision, written));
     }
 

@@ -73,6 +73,8 @@ struct PathRequest {
 /// A question over the window.
 enum Question {
     Unsaved(Next),
+    /// The answer was to save: as soon as a recorded flight has become keys.
+    Saving(Next),
     Quit,
     Path(PathRequest, PathPrompt),
 }
@@ -197,6 +199,8 @@ impl Files {
         let ctx = ui.ctx().clone();
         let answer = match self.question.as_mut()? {
             Question::Unsaved(_) => ask_about_changes(&ctx, &editor.title()),
+            Question::Saving(_) if editor.is_making_keys() => Answer::Open,
+            Question::Saving(_) => Answer::Yes,
             Question::Quit => ask_to_quit(&ctx),
             Question::Path(_, prompt) => prompt.show(&ctx),
         };
@@ -205,7 +209,13 @@ impl Files {
         }
         let question = self.question.take()?;
         match (question, answer) {
-            (Question::Unsaved(next), Answer::Yes) => self.save_then(&ctx, editor, Some(next)),
+            (Question::Unsaved(next), Answer::Yes) if editor.is_making_keys() => {
+                self.question = Some(Question::Saving(next));
+                None
+            }
+            (Question::Unsaved(next) | Question::Saving(next), Answer::Yes) => {
+                self.save_then(&ctx, editor, Some(next))
+            }
             (Question::Unsaved(next), Answer::No) => self.go_on(&ctx, editor, next),
             (Question::Quit, Answer::Yes) => Some(FileOutcome::Quit),
             (Question::Path(wish, prompt), Answer::Yes) => {

@@ -13,8 +13,8 @@ use crate::editor::{Editor, Mode};
 use crate::export::{ExportError, Sequence};
 use crate::image::Image;
 use crate::lab::Study;
-use crate::plan::{RenderRequest, Sampling};
-use crate::scene::Take;
+use crate::plan::RenderRequest;
+use crate::scene::{Sampling, Take};
 use crate::worker::{
     Activity, Answer, BUDGET, Event, ExportState, Frame, LiveJob, Pace, QueryJob, Question,
     RenderThreadError, StillJob, ThumbnailJob, Worker,
@@ -127,7 +127,7 @@ impl Pictures {
         self.surveyed = wanted.cloned();
         if let Some(take) = wanted {
             let scene = Arc::clone(editor.scene());
-            let question = Question::Survey(Arc::clone(take));
+            let question = Question::Survey(Arc::clone(take), Vec::new());
             self.worker.ask(QueryJob { scene, question });
         }
     }
@@ -228,7 +228,7 @@ impl Pictures {
             Mode::HighRes => self.shown_still(editor).is_some(),
             Mode::Live | Mode::LowRes => self.screen.live().is_some_and(is_finished),
         };
-        is_shown && self.worker.activity() == Activity::Idle
+        is_shown && self.worker.activity() == Activity::Idle && !self.worker.is_asked()
     }
 
     /// Asks for the still picture, and for a file of it.

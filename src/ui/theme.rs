@@ -20,7 +20,7 @@ pub const INSPECTOR: f32 = 320.0;
 pub const LAB: f32 = 280.0;
 /// Height of the timeline when it is first shown.
 pub const TIMELINE: f32 = 216.0;
-/// Width of the labels of the timeline's lanes.
+/// Width of the labels of the timeline's tracks.
 pub const TRACK_LABEL: f32 = 112.0;
 /// Height of a track of the timeline.
 pub const TRACK: f32 = 20.0;

@@ -9,8 +9,7 @@ use egui::{
 
 use super::theme::palette;
 use super::upload::{changes, piece, whole};
-use crate::plan::Sampling;
-use crate::scene::Scene;
+use crate::scene::{Sampling, Scene};
 use crate::worker::Frame;
 
 /// Each picture pixel is a square of screen pixels; a larger picture is averaged, not picked from.

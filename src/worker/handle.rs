@@ -78,9 +78,10 @@ impl Worker {
         self.put(Job::Still(job));
     }
 
-    /// Asks for small pictures, in this order and in place of those of the same names.
+    /// Asks for small pictures, in this order, before those that wait and in place of those of the same
+    /// names.
     pub fn request_thumbnails(&self, jobs: Vec<ThumbnailJob>) {
-        for job in jobs {
+        for job in jobs.into_iter().rev() {
             self.put(Job::Thumbnail(job));
         }
     }
@@ -95,6 +96,11 @@ impl Worker {
         self.put(Job::Query(job));
     }
 
+    /// Whether a question waits for its answer.
+    pub fn is_asked(&self) -> bool {
+        self.shared.mailbox().has(JobKind::Query)
+    }
+
     /// The answers since the last call.
     pub fn take_answers(&self) -> Vec<Answer> {
         std::mem::take(&mut self.shared.outbox().answers)
@@ -105,6 +111,7 @@ impl Worker {
     pub fn cancel_still(&self) {
         let mut mailbox = self.shared.mailbox();
         let running = mailbox.running.as_ref();
+        let running = running.filter(|running| !running.is_given_up);
         let running = running.and_then(|running| running.save_to.clone());
         mailbox.give_up(JobKind::Still);
         let waiting = mailbox.give_up(JobKind::Save).into_iter();

@@ -9,8 +9,8 @@ use glam::DVec3;
 use crate::animate::Seen;
 use crate::export::Exported;
 use crate::image::{Image, RenderCost};
-use crate::plan::{RenderRequest, Sampling};
-use crate::scene::{Camera, Scene, Take};
+use crate::plan::RenderRequest;
+use crate::scene::{Camera, Sampling, Scene, Take};
 
 /// The kinds of work, the most urgent first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -70,8 +70,8 @@ pub struct QueryJob {
 /// What can be asked.
 #[derive(Clone, Debug)]
 pub enum Question {
-    /// What every sample of a recorded flight sees.
-    Survey(Arc<Take>),
+    /// What every sample of a recorded flight sees, and what is known of that.
+    Survey(Arc<Take>, Vec<Vec<Seen>>),
     /// Which points the camera sees; the number is the asker's.
     Visible(u64, Box<Camera>, Vec<DVec3>),
 }

@@ -7,7 +7,7 @@ use super::frame_pool::FramePool;
 use super::jobs::{Frame, LiveJob, Pace};
 use super::shared::Shared;
 use crate::image::{Image, RenderCost};
-use crate::plan::Sampling;
+use crate::scene::Sampling;
 use crate::trace::{Grid, Pass, Rays, RenderControl, Tracer};
 
 /// A live picture on its way: a coarse pass that always completes, so that there is always

@@ -44,7 +44,7 @@ impl Job {
         match (self, newer) {
             (Self::Query(old), Self::Query(new)) => matches!(
                 (&old.question, &new.question),
-                (Question::Survey(_), Question::Survey(_))
+                (Question::Survey(..), Question::Survey(..))
                     | (Question::Visible(..), Question::Visible(..))
             ),
             (Self::Thumbnail(old), Self::Thumbnail(new)) => old.name == new.name,
@@ -118,7 +118,7 @@ impl Running {
 /// The list of what waits, and what is being done.
 #[derive(Debug, Default)]
 pub struct Mailbox {
-    /// In order of arrival.
+    /// In order of arrival, but for small pictures.
     waiting: Vec<Job>,
     /// What is being done.
     pub running: Option<Running>,
@@ -142,10 +142,15 @@ impl Mailbox {
             let is_replaced = running.kind == job.kind() && job.kind().is_replaced();
             running.is_given_up |= is_outdated || is_replaced;
         }
-        self.waiting.push(job);
+        // The newest small pictures are those that are looked for.
+        let index = match job {
+            Job::Thumbnail(_) => 0,
+            _ => self.waiting.len(),
+        };
+        self.waiting.insert(index, job);
     }
 
-    /// Takes the most urgent job out, the oldest of those. An export that is paused waits.
+    /// Takes the most urgent job out, the first of those. An export that is paused waits.
     pub fn next(&mut self, exports: &[ExportState]) -> Option<(Job, Arc<RenderControl>)> {
         let is_paused = |job: &Job| {
             let id = job.export();

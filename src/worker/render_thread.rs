@@ -14,7 +14,8 @@ use super::task::panic_text;
 use crate::export::{ExportStep, Exporting, save_image};
 use crate::image::render;
 use crate::lab::Study;
-use crate::plan::{RenderRequest, Sampling};
+use crate::plan::RenderRequest;
+use crate::scene::Sampling;
 use crate::trace::{RenderControl, Threads, Tracer, survey, visible};
 
 /// Time between two reports of a study.
@@ -73,6 +74,9 @@ pub fn run(shared: &Shared, threads: &Threads) {
                 None
             }
             Err(panic) => {
+                if let Job::Query(job) = &job {
+                    answer_nothing(shared, job);
+                }
                 finish(shared, job, None);
                 Some(panic)
             }
@@ -168,11 +172,10 @@ fn finish_piece(shared: &Shared, study: Box<Study>, outcome: &JobOutcome) -> boo
     has_more && is_wanted
 }
 
-fn answer(shared: &Shared, job: &QueryJob, control: &RenderControl) -> JobOutcome {
-    let answer = match &job.question {
-        Question::Survey(take) => {
-            survey(take, &job.scene, control).map(|seen| Answer::Survey(Arc::clone(take), seen))
-        }
+fn answer(shared: &Shared, job: &mut QueryJob, control: &RenderControl) -> JobOutcome {
+    let answer = match &mut job.question {
+        Question::Survey(take, seen) => survey(take, &job.scene, seen, control)
+            .then(|| Answer::Survey(Arc::clone(take), std::mem::take(seen))),
         Question::Visible(name, camera, points) => {
             visible(&job.scene, camera, points, control).map(|seen| Answer::Visible(*name, seen))
         }
@@ -183,6 +186,15 @@ fn answer(shared: &Shared, job: &QueryJob, control: &RenderControl) -> JobOutcom
             JobOutcome::Ended
         }
         None => JobOutcome::Unfinished,
+    }
+}
+
+/// A recorded flight is kept even if nobody can tell what it saw.
+fn answer_nothing(shared: &Shared, job: &QueryJob) {
+    if let Question::Survey(take, _) = &job.question {
+        let seen = vec![Vec::new(); take.samples.len()];
+        let answer = Answer::Survey(Arc::clone(take), seen);
+        shared.outbox().answers.push(answer);
     }
 }
 

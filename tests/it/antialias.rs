@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use glint::lab::{LinearRgb, difference, trace_light};
-use glint::plan::{Precision, RenderRequest, Sampling};
-use glint::scene::{Disc, Object, Scene, Shape, Sphere, Triangle};
+use glint::plan::RenderRequest;
+use glint::scene::{Disc, Object, Precision, Sampling, Scene, Shape, Sphere, Triangle};
 use glint::trace::{Rays, RenderControl, Tracer};
 
 use crate::random;

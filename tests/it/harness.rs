@@ -202,7 +202,13 @@ pub fn radius(scene: &Scene, object: usize) -> f64 {
 /// Answers what the editor wants to know of its recorded flight, as the window does.
 pub fn survey_flight(editor: &mut Editor) {
     while let Some(take) = editor.wanted_survey().cloned() {
-        let seen = survey(&take, editor.scene(), &RenderControl::default()).expect("not stopped");
+        let mut seen = Vec::new();
+        assert!(survey(
+            &take,
+            editor.scene(),
+            &mut seen,
+            &RenderControl::default()
+        ));
         editor.apply(Action::Time(Time::Surveyed(take, seen)));
     }
 }

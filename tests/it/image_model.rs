@@ -4,11 +4,11 @@ use std::collections::HashSet;
 
 use glam::DVec3;
 use glint::image::{Image, render};
-use glint::plan::{
-    Accelerator, HighlightMethod, Methods, Precision, RayOffset, RenderRequest, Sampling,
-    SphereMethod, TriangleMethod,
+use glint::plan::RenderRequest;
+use glint::scene::{
+    Accelerator, Disc, HighlightMethod, Method as _, Methods, Object, Plane, Precision, Projection,
+    RayOffset, Sampling, Scene, Shape, Sphere, SphereMethod, Triangle, TriangleMethod,
 };
-use glint::scene::{Disc, Method as _, Object, Plane, Projection, Scene, Shape, Sphere, Triangle};
 use glint::simd::Level;
 use glint::trace::{Grid, Pass, Rays, RenderControl, Threads, Tracer};
 

@@ -3,8 +3,8 @@
 
 use glam::DVec3;
 use glint::image::{Image, render};
-use glint::plan::{Model, Plan, RenderRequest, Sampling, needs};
-use glint::scene::{Object, Scene, Shape, Sphere};
+use glint::plan::{Model, Plan, RenderRequest, needs};
+use glint::scene::{Object, Sampling, Scene, Shape, Sphere};
 use glint::trace::{Rays, RenderControl};
 
 use crate::random;

@@ -8,11 +8,11 @@
 
 use glam::DVec3;
 use glint::image::{Image, render};
-use glint::plan::{RenderRequest, SphereMethod};
+use glint::plan::RenderRequest;
 use glint::primitive::{PackedSphere, Primitive as _, Ray};
 use glint::scene::{
     Accelerator, Camera, ColorPack, Methods, Object, Plane, Precision, Projection, RayOffset,
-    Sampling, Scene, Shape, Sphere, Triangle,
+    Sampling, Scene, Shape, Sphere, SphereMethod, Triangle,
 };
 use glint::simd::{Real, Vec3};
 use glint::trace::RenderControl;

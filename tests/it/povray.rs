@@ -6,8 +6,10 @@ use std::process::Command;
 
 use glam::DVec3;
 use glint::image::{Image, render};
-use glint::plan::{Methods, RayOffset, RenderRequest};
-use glint::scene::{ColorPack, Disc, Plane, Projection, Scene, Shape, Sphere, Triangle};
+use glint::plan::RenderRequest;
+use glint::scene::{
+    ColorPack, Disc, Methods, Plane, Projection, RayOffset, Scene, Shape, Sphere, Triangle,
+};
 use glint::trace::RenderControl;
 
 use crate::random;

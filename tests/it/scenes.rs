@@ -86,6 +86,48 @@ fn what_it_is_traced_with_is_kept_and_the_default_is_not_written() {
     assert!(!plain.contains("antialias") && !plain.contains("offset"));
 }
 
+/// Files of people hold these words: they stay what they are, whatever the program calls them.
+#[test]
+fn a_file_with_every_word_is_read_and_written_again() {
+    let text = r#"Scene(
+    version: 1,
+    camera: Camera(position: (0, 0, 9), look_at: (0, 0, -1), projection: Orthographic),
+    color_packs: {"a": ColorPack(ambient: (1, 2, 3))},
+    lights: [Light(name: "Lamp", position: (0, 9, 0), marker: Some(LightObj(radius: 5, color_pack: "a")))],
+    objects: [
+        Object(name: "S", color_pack: "a", shape: Sphere(center: (0, 0, 0), radius: 1)),
+        Object(name: "P", color_pack: "a", shape: Plane(point: (0, 0, 0), normal: (0, 1, 0))),
+        Object(name: "T", color_pack: "a", shape: Triangle(corners: ((0, 0, 0), (1, 0, 0), (0, 1, 0)))),
+        Object(name: "D", color_pack: "a", shape: Disc(center: (0, 0, 0), normal: (0, 1, 0), radius: 1)),
+    ],
+    animation: Animation(keys: [
+        Key(time: 0, value: Camera(position: (0, 0, 9), look_at: (0, 0, -1), projection: Perspective), interpolation: Smooth, easing: Even),
+        Key(time: 1, value: Camera(position: (0, 0, 8), look_at: (0, 0, -1)), interpolation: Linear, easing: In),
+        Key(time: 2, value: Camera(position: (0, 0, 7), look_at: (0, 0, -1)), interpolation: Hold, easing: Out),
+        Key(time: 3, value: Camera(position: (0, 0, 6), look_at: (0, 0, -1)), interpolation: Orbit(around: (0, 0, 0)), easing: InOut),
+    ]),
+)"#;
+    let document = Document::from_text(text).expect("a scene");
+    let written = document.to_text().expect("writable");
+    for word in [
+        "Orthographic",
+        "LightObj(",
+        "Sphere(",
+        "Plane(",
+        "Triangle(",
+        "Disc(",
+        "Linear",
+        "Hold",
+        "Orbit(",
+        "easing: In,",
+        "easing: Out",
+        "easing: InOut",
+    ] {
+        assert!(written.contains(word), "{word} is not in\n{written}");
+    }
+    assert_eq!(Document::from_text(&written).expect("a scene"), document);
+}
+
 #[test]
 fn a_long_line_is_shown_around_the_place_only() {
     let objects =

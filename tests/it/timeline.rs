@@ -618,7 +618,7 @@ fn small_pictures_are_plain_renders_and_come_in_their_order() {
     names.sort_unstable();
     assert_eq!(names, [1, 3, 7]);
     let plain = RenderRequest {
-        sampling: glint::plan::Sampling::Centres,
+        sampling: glint::scene::Sampling::Centres,
         ..RenderRequest::of(&scene, 40, 30)
     };
     let direct = render(&scene, &plain, &RenderControl::default())

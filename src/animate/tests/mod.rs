@@ -231,7 +231,7 @@ fn easing_starts_and_ends_slowly() {
     };
     assert!((x(Easing::Even, 0.25) - 0.25).abs() < 1e-12);
     assert!((x(Easing::In, 0.25) - 0.0625).abs() < 1e-12);
-    assert!((x(Easing::UiRequests, 0.25) - 0.4375).abs() < 1e-12);
+    assert!((x(Easing::Out, 0.25) - 0.4375).abs() < 1e-12);
     assert!((x(Easing::InOut, 0.25) - 0.15625).abs() < 1e-12);
     assert!((x(Easing::InOut, 0.5) - 0.5).abs() < 1e-12);
 }

@@ -71,7 +71,7 @@ fn maps_of(ball: BallKind, [acne, leak]: [Subject; 2]) -> Vec<Map> {
 
 /// Which pixels are lit.
 fn lit(scene: &Scene, offset: RayOffset, precision: Precision) -> Vec<bool> {
-    let picture = RenderRequest {
+    let request = RenderRequest {
         methods: Methods {
             offset,
             ..Methods::default()
@@ -82,7 +82,7 @@ fn lit(scene: &Scene, offset: RayOffset, precision: Precision) -> Vec<bool> {
     };
     let mut pixels = vec![[0.0_f32; 3]; (SIDE * SIDE) as usize];
     // Nobody stops it.
-    let _ = Tracer::new(scene, &picture).pass(&mut pixels, Pass::Whole, &RenderControl::default());
+    let _ = Tracer::new(scene, &request).pass(&mut pixels, Pass::Whole, &RenderControl::default());
     pixels.iter().map(|pixel| pixel[0] > GRAZING).collect()
 }
 

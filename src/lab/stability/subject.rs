@@ -1,5 +1,7 @@
 //! What the maps are about.
 
+use glam::DVec3;
+
 use crate::animate::motion_between;
 use crate::scene::{Method as _, Orientation, Render, Scene, Shape};
 
@@ -69,8 +71,6 @@ impl Subject {
 
     /// Where a scene stands on the axes of the map, as far as that can be said.
     pub fn standing(self, scene: &Scene) -> Option<(f64, f64)> {
-        let (low, high) = scene.bounds()?;
-        let size = (high - low).length() / 2.0;
         match self {
             Self::Sphere | Self::Disc => self.farthest(scene),
             Self::Highlight => {
@@ -97,10 +97,9 @@ impl Subject {
                 ratios.max_by(f64::total_cmp).map(|ratio| (ratio, 1.0))
             }
             // The plan moves every scene to the origin before it is traced.
-            Self::Triangle => Some((0.0, size)),
+            Self::Triangle => middle_and_size(scene).map(|(_, size)| (0.0, size)),
             Self::ShadowAcne | Self::ShadowLeak | Self::MeshAcne | Self::MeshLeak => {
-                let away = ((low + high) * 0.5).length() / size;
-                Some((away, size))
+                middle_and_size(scene).map(|(middle, size)| (middle.length() / size, size))
             }
         }
     }
@@ -118,4 +117,10 @@ impl Subject {
         });
         round.max_by(|a, b| a.0.total_cmp(&b.0))
     }
+}
+
+/// Middle of what is seen and ends, and half the diagonal of its box.
+fn middle_and_size(scene: &Scene) -> Option<(DVec3, f64)> {
+    let (low, high) = scene.bounds()?;
+    Some(((low + high) * 0.5, (high - low).length() / 2.0))
 }

@@ -1,6 +1,11 @@
 //! The list of all kinds.
 
+use std::fmt::{self, Formatter};
+use std::marker::PhantomData;
+
 use glam::DVec3;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, EnumAccess, MapAccess, VariantAccess as _, Visitor};
 use serde::{Deserialize, Serialize};
 
 use super::describe::{Describe, Field};
@@ -9,11 +14,29 @@ use super::plane::Plane;
 use super::sphere::Sphere;
 use super::triangle::Triangle;
 
+/// Reads a shape. A variant that holds a struct would have parentheses within parentheses in the file;
+/// the extension of RON that unwraps them refuses an explicit `Some`.
+struct AnyShape;
+
+/// Reads the fields of a variant as those of a struct.
+struct Fields<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for Fields<T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut Formatter) -> fmt::Result {
+        f.write_str("the fields of a shape")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, fields: A) -> Result<T, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(fields))
+    }
+}
+
 macro_rules! shapes {
     ($($kind:ident: $article:literal),*) => {
         /// A primitive: all numbers in world units.
-        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-        #[serde(deny_unknown_fields)]
+        #[derive(Clone, Debug, PartialEq, Serialize)]
         pub enum Shape {
             $(#[doc = $article] $kind($kind)),*
         }
@@ -23,6 +46,32 @@ macro_rules! shapes {
                 Self::$kind(shape)
             }
         })*
+
+        #[derive(Deserialize)]
+        #[serde(variant_identifier)]
+        enum Kind {
+            $($kind),*
+        }
+
+        impl<'de> Visitor<'de> for AnyShape {
+            type Value = Shape;
+
+            fn expecting(&self, f: &mut Formatter) -> fmt::Result {
+                f.write_str("a shape")
+            }
+
+            fn visit_enum<A: EnumAccess<'de>>(self, shape: A) -> Result<Shape, A::Error> {
+                match shape.variant()? {
+                    $((Kind::$kind, fields) => fields.struct_variant(&[], Fields(PhantomData)).map(Shape::$kind)),*
+                }
+            }
+        }
+
+        impl<'de> Deserialize<'de> for Shape {
+            fn deserialize<D: Deserializer<'de>>(file: D) -> Result<Self, D::Error> {
+                file.deserialize_enum("Shape", &[$(stringify!($kind)),*], AnyShape)
+            }
+        }
 
         impl Shape {
             /// One shape of every kind, of the given size around `at`: what *Add* offers.

@@ -1,7 +1,7 @@
 //! The primitives as the file describes them: one file each.
 //!
-//! A new one is a file here that implements [`Describe`] and its name in the list in `kinds.rs`; its
-//! kernels are in [`crate::primitive`], its symbol is in the window's.
+//! A new one is a file here that implements [`Describe`] and a line in the list in `kinds.rs`; a file
+//! and a line in [`crate::primitive`], which has the kernels; and a symbol in the window's `icons.rs`.
 
 mod describe;
 

@@ -7,8 +7,8 @@ use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::Duration;
 
 use egui::{
-    Button, Context, Grid, Image as RenderRequest, ProgressBar, RichText, TextureHandle,
-    TextureOptions, Ui, Window, vec2,
+    Button, Context, Grid, Image as Picture, ProgressBar, RichText, TextureHandle, TextureOptions,
+    Ui, Window, vec2,
 };
 
 use self::fields::{FIELDS, Found, Settings, fields, forecast, presets};
@@ -249,7 +249,7 @@ impl Exports {
         }
         let thumb = self.thumbs.iter().find(|(id, ..)| *id == state.id);
         if let Some((.., texture)) = thumb {
-            ui.add(RenderRequest::new(texture).fit_to_exact_size(vec2(THUMB, THUMB)));
+            ui.add(Picture::new(texture).fit_to_exact_size(vec2(THUMB, THUMB)));
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::image::Image;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Face {
     /// Its picture.
-    RenderRequest,
+    Picture,
     /// What it should be.
     Reference,
     /// How far each channel is off, so many times enlarged.
@@ -21,7 +21,7 @@ pub enum Face {
 
 /// The faces that can be chosen.
 pub const FACES: [(Face, &str, &str); 7] = [
-    (Face::RenderRequest, "A", "The picture of the dot"),
+    (Face::Picture, "A", "The picture of the dot"),
     (
         Face::Reference,
         "B",
@@ -55,7 +55,7 @@ pub fn compose(picture: &Image, reference: &Image, face: Face) -> Image {
     let channel = |a: u8, b: u8| {
         let off = i64::from(a) - i64::from(b);
         let shown = match face {
-            Face::RenderRequest => i64::from(a),
+            Face::Picture => i64::from(a),
             Face::Reference => i64::from(b),
             Face::Off(gain) => off.abs() * i64::from(gain),
             Face::Signed(gain) => 128 + off * i64::from(gain) / 2,
@@ -157,7 +157,7 @@ mod tests {
         };
         let (a, b) = (one([10, 200, 30, 255]), one([12, 100, 30, 255]));
         let shown = |face| compose(&a, &b, face).pixels[0];
-        assert_eq!(shown(Face::RenderRequest), [10, 200, 30, 255]);
+        assert_eq!(shown(Face::Picture), [10, 200, 30, 255]);
         assert_eq!(shown(Face::Reference), [12, 100, 30, 255]);
         assert_eq!(shown(Face::Off(1)), [2, 100, 0, 255]);
         assert_eq!(shown(Face::Off(8)), [16, 255, 0, 255]);

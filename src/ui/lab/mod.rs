@@ -90,7 +90,7 @@ impl Default for Lab {
             cost: CostAxis::Time,
             error: ErrorAxis::Rmse,
             chosen: None,
-            face: Face::RenderRequest,
+            face: Face::Picture,
             look: Comparison::default(),
             bounds: (EIGHT_BIT_FLOOR, 100.0),
             shows_maps: false,

@@ -340,7 +340,7 @@ fn menu(ui: &mut Ui, place: usize, editor: &Editor, out: &mut UiRequests) {
     }
 }
 
-/// The keys of lights, objects and the ambience, one lane for each value.
+/// The keys of lights, objects and the ambience, one track for each value.
 pub fn tracks(
     ui: &mut Ui,
     scale: &Scale,

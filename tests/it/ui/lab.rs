@@ -4,9 +4,8 @@ use std::time::{Duration, Instant};
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use glint::plan::Sampling;
 use glint::scene::Method as _;
-use glint::scene::{Document, Scene};
+use glint::scene::{Document, Sampling, Scene};
 
 use crate::harness::{CTRL, EditorHarness};
 

@@ -5,8 +5,8 @@ use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use glint::editor::Mode;
 use glint::image::render;
-use glint::plan::{RenderRequest, Sampling};
-use glint::scene::{Projection, Scene};
+use glint::plan::RenderRequest;
+use glint::scene::{Projection, Sampling, Scene};
 use glint::trace::RenderControl;
 
 use crate::harness::{CTRL, EditorHarness};
