@@ -246,9 +246,9 @@ impl Outliner {
                 menu_entry(ui, text, command, true, out);
             }
         });
-        if let Some(visible) = visible {
+        if visible.is_some() {
             ui.scope_builder(UiBuilder::new().max_rect(eye_rect), |ui| {
-                eye(ui, scene, item, name, visible, out);
+                eye(ui, scene, item, name, out);
             });
         }
     }
@@ -369,7 +369,13 @@ fn reorder(ui: &Ui, response: &egui::Response, item: Item, out: &mut UiRequests)
     }
 }
 
-fn eye(ui: &mut Ui, scene: &Scene, item: Item, name: &str, visible: bool, out: &mut UiRequests) {
+/// Shows or hides an item by this name.
+fn eye(ui: &mut Ui, scene: &Scene, item: Item, name: &str, out: &mut UiRequests) {
+    let visible = match item.kind {
+        Kind::Light => scene.lights[item.index].visible,
+        Kind::Object => scene.objects[item.index].visible,
+        Kind::Pack => return,
+    };
     let (icon, verb) = if visible {
         (icons::VISIBLE, "Hide")
     } else {

@@ -93,8 +93,13 @@ impl<'u> Rows<'u> {
                 if reset {
                     *value = field.default;
                 }
-                let width = ui.available_width();
-                drag(ui, field, field.name, value, width, None);
+                let number = Number {
+                    field,
+                    name: field.name,
+                    width: ui.available_width(),
+                    pasted: None,
+                };
+                drag(ui, &number, value);
             },
         );
         self.note(field.name, *value != before);
@@ -115,7 +120,13 @@ impl<'u> Rows<'u> {
                 ("z", &mut value.z),
             ] {
                 let name = format!("{} {axis}", field.name);
-                drag(ui, field, &name, part, width, Some(&pasted));
+                let number = Number {
+                    field,
+                    name: &name,
+                    width,
+                    pasted: Some(&pasted),
+                };
+                drag(ui, &number, part);
             }
             if let Some(whole) = pasted.get() {
                 *value = whole;
@@ -156,7 +167,13 @@ impl<'u> Rows<'u> {
                 ("blue", &mut value.z),
             ] {
                 let name = format!("{name} {channel}");
-                drag(ui, &field, &name, part, width, Some(&pasted));
+                let number = Number {
+                    field: &field,
+                    name: &name,
+                    width,
+                    pasted: Some(&pasted),
+                };
+                drag(ui, &number, part);
             }
             if let Some(whole) = pasted.get() {
                 *value = whole.clamp(DVec3::ZERO, DVec3::splat(255.0));
@@ -253,15 +270,24 @@ fn labelled<T>(
     .inner
 }
 
-/// One draggable number. Typing three numbers puts them into `pasted` as a whole vector.
-fn drag(
-    ui: &mut Ui,
-    field: &Field,
-    name: &str,
-    value: &mut f64,
+/// How a draggable number looks and what it takes.
+struct Number<'a> {
+    field: &'a Field,
+    /// What it is called; the field may have several.
+    name: &'a str,
     width: f32,
-    pasted: Option<&Cell<Option<DVec3>>>,
-) {
+    /// Where three numbers go that are typed at once: a whole vector.
+    pasted: Option<&'a Cell<Option<DVec3>>>,
+}
+
+/// One draggable number.
+fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
+    let Number {
+        field,
+        name,
+        width,
+        pasted,
+    } = *number;
     let by_size = || (value.abs() * 0.01).max(0.01);
     let speed = field.speed.unwrap_or_else(by_size);
     let parser = |text: &str| {

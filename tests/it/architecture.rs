@@ -22,6 +22,7 @@ const HOMES: &[(&[&str], &[&str])] = &[
             "export/exporting",
             "trace/tracer",
             "trace/threads",
+            "trace/query",
         ],
     ),
     (&["std::io::stdout", "std::io::stderr"], &["cli", "main"]),

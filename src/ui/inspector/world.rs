@@ -70,17 +70,25 @@ pub fn show_picture(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
             &mut render.height,
         ),
     ] {
-        whole(&mut rows, name, hint, " px", default, 1..=limit, value);
+        let field = Field {
+            name,
+            hint,
+            unit: " px",
+            default: f64::from(default),
+            range: 1.0..=f64::from(limit),
+            speed: Some(2.0),
+        };
+        whole(&mut rows, &field, value);
     }
-    whole(
-        &mut rows,
-        "reflections",
-        "How often light may be mirrored on its way to the eye",
-        "",
-        defaults.reflection_limit,
-        0..=MAX_REFLECTIONS,
-        &mut render.reflection_limit,
-    );
+    let reflections = Field {
+        name: "reflections",
+        hint: "How often light may be mirrored on its way to the eye",
+        unit: "",
+        default: f64::from(defaults.reflection_limit),
+        range: 0.0..=f64::from(MAX_REFLECTIONS),
+        speed: Some(0.05),
+    };
+    whole(&mut rows, &reflections, &mut render.reflection_limit);
     rows.heading("Traced with");
     render.visit_settings(&mut MethodRows(&mut rows));
     let changed = rows.changed();
@@ -110,28 +118,8 @@ impl VisitSetting for MethodRows<'_, '_> {
 }
 
 /// A row for a whole number.
-fn whole(
-    rows: &mut Rows,
-    name: &'static str,
-    hint: &'static str,
-    unit: &'static str,
-    default: u32,
-    range: std::ops::RangeInclusive<u32>,
-    value: &mut u32,
-) {
-    let range = f64::from(*range.start())..=f64::from(*range.end());
-    let speed = Some(if *range.end() > 100.0 { 2.0 } else { 0.05 });
+fn whole(rows: &mut Rows, field: &Field, value: &mut u32) {
     let mut real = f64::from(*value);
-    rows.number(
-        &Field {
-            name,
-            hint,
-            unit,
-            default: f64::from(default),
-            range,
-            speed,
-        },
-        &mut real,
-    );
+    rows.number(field, &mut real);
     *value = real.round() as u32;
 }

@@ -191,7 +191,7 @@ pub fn keys(
             (false, false) => colors.curve,
         };
         diamond(ui, at, fill, key.interpolation == Interpolation::Hold);
-        pick(ui, &response, place, editor, drag, out);
+        pick(&response, place, editor, drag, out);
         response.context_menu(|ui| menu(ui, place, editor, out));
         response.on_hover_text(format!(
             "{name}: {:.3} s, {}\nDrag to move, Ctrl-drag to copy, Shift-click for several",
@@ -219,7 +219,6 @@ fn ways(ui: &Ui, scale: &Scale, rect: Rect, animation: &Animation) {
 
 /// A click selects, a drag starts to move.
 fn pick(
-    ui: &Ui,
     response: &Response,
     place: usize,
     editor: &Editor,
@@ -227,7 +226,7 @@ fn pick(
     out: &mut UiRequests,
 ) {
     let selected = &editor.timeline().selected;
-    let modifiers = ui.input(|input| input.modifiers);
+    let modifiers = response.ctx.input(|input| input.modifiers);
     if response.secondary_clicked() && !selected.contains(&place) {
         out.time(Time::SelectKeys(BTreeSet::from([place])));
     }
