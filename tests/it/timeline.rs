@@ -137,6 +137,27 @@ fn a_flight_is_recorded_and_becomes_keys_in_one_step() {
 }
 
 #[test]
+fn no_recorded_flight_is_lost_while_it_becomes_keys() {
+    let mut editor = Editor::demo();
+    let record = |editor: &mut Editor| {
+        editor.apply(Action::Time(Time::Record));
+        for tenth in 0..20 {
+            let seconds = f64::from(tenth) / 10.0;
+            editor.apply(Action::Time(Time::Sample(seconds)));
+        }
+        editor.apply(Action::Time(Time::Stop));
+    };
+    record(&mut editor);
+    assert!(editor.is_making_keys() && editor.is_dirty());
+    let take = editor.wanted_survey().cloned().expect("a take");
+    // Before anyone has found out what the first one saw.
+    record(&mut editor);
+    survey_flight(&mut editor);
+    assert!(!editor.is_making_keys());
+    assert_eq!(editor.scene().animation.take, Some(take));
+}
+
+#[test]
 fn keys_are_set_overwritten_and_deleted() {
     let mut harness = EditorHarness::new();
     harness.press(Modifiers::NONE, Key::K);
