@@ -107,7 +107,7 @@ impl CameraPath {
         let along = eased(from.easing, (time - from.time) / (to.time - from.time));
         let camera = match (from.interpolation, self.smooth[i]) {
             (Interpolation::Hold, _) => from.value.clone(),
-            (_, Some((run, place))) => self.on_curve(i, &self.runs[run], place, along),
+            (_, Some((run, index))) => self.on_curve(i, &self.runs[run], index, along),
             (Interpolation::Orbit { around }, _) => {
                 let position = orbit(around, from.value.position, to.value.position, along);
                 Camera {
@@ -139,23 +139,23 @@ impl CameraPath {
     }
 
     /// `i` is the segment's place in the path, `place` that in its run.
-    fn on_curve(&self, i: usize, run: &Run, place: usize, along: f64) -> Camera {
+    fn on_curve(&self, i: usize, run: &Run, index: usize, along: f64) -> Camera {
         let (from, to) = (&self.keys[i].value, &self.keys[i + 1].value);
-        let position = match run.route.at(run.pace.at(place, along)) {
+        let position = match run.route.at(run.pace.at(index, along)) {
             Some(position) if from.position != to.position => position,
             _ => from.position,
         };
         let start = self.angles[i];
         let turned = Orientation {
-            yaw: run.yaw.at(place, along),
-            pitch: run.pitch.at(place, along),
-            roll: run.roll.at(place, along),
+            yaw: run.yaw.at(index, along),
+            pitch: run.pitch.at(index, along),
+            roll: run.roll.at(index, along),
         };
         let zoom = |a: f64, b: f64, curve: &Curve| {
             if a == b {
                 a
             } else {
-                curve.at(place, along).exp()
+                curve.at(index, along).exp()
             }
         };
         let camera = Camera {

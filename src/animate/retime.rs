@@ -142,9 +142,9 @@ fn trimmed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
         }
     };
     let mut kept: Vec<Key<Camera>> = Vec::new();
-    for (place, key) in with_steps(keys, step).into_iter().enumerate() {
+    for (index, key) in with_steps(keys, step).into_iter().enumerate() {
         // Where keys fall together, the one after the pause goes on.
-        if place > 0 && pauses[place - 1] {
+        if index > 0 && pauses[index - 1] {
             kept.pop();
         }
         kept.push(key);
@@ -156,13 +156,13 @@ fn trimmed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
 fn with_steps(keys: &[Key<Camera>], step: impl Fn(usize) -> f64) -> Vec<Key<Camera>> {
     let mut time = keys[0].time;
     let mut later = Vec::new();
-    for (place, key) in keys.iter().enumerate() {
+    for (index, key) in keys.iter().enumerate() {
         later.push(Key {
             time,
             ..key.clone()
         });
-        if place + 1 < keys.len() {
-            time += step(place);
+        if index + 1 < keys.len() {
+            time += step(index);
         }
     }
     later

@@ -181,14 +181,14 @@ impl Video {
             Err(error) => return Err(disk(path, &error)),
         };
         if let Some(mut pipe) = ffmpeg.stdin.take() {
-            for (place, frame) in sequence.frames.iter().enumerate() {
+            for (index, frame) in sequence.frames.iter().enumerate() {
                 let file = sequence.path(frame);
                 let bytes = fs::read(&file).map_err(|error| unreadable(&file, error.into()))?;
                 // It hangs up when it fails; why, it says below.
                 if pipe.write_all(&bytes).is_err() {
                     break;
                 }
-                done(place + 1);
+                done(index + 1);
             }
         }
         let output = ffmpeg
@@ -263,12 +263,12 @@ fn gif(sequence: &Sequence, path: &Path, done: &mut impl FnMut(usize)) -> Result
     let wrong = |error: image::ImageError| disk(path, &error);
     encoder.set_repeat(Repeat::Infinite).map_err(wrong)?;
     let delay = Duration::from_secs_f64(1.0 / sequence.frames_per_second());
-    for (place, frame) in sequence.frames.iter().enumerate() {
+    for (index, frame) in sequence.frames.iter().enumerate() {
         let image = read(&sequence.path(frame))?;
         let delay = Delay::from_saturating_duration(delay);
         let frame = Frame::from_parts(image, 0, 0, delay);
         encoder.encode_frame(frame).map_err(wrong)?;
-        done(place + 1);
+        done(index + 1);
     }
     Ok(())
 }
@@ -287,10 +287,10 @@ fn apng(sequence: &Sequence, path: &Path, done: &mut impl FnMut(usize)) -> Resul
     let thousandths = (1000.0 / sequence.frames_per_second()).round() as u16;
     encoder.set_frame_delay(thousandths, 1000).map_err(wrong)?;
     let mut writer = encoder.write_header().map_err(wrong)?;
-    for (place, frame) in sequence.frames.iter().enumerate() {
+    for (index, frame) in sequence.frames.iter().enumerate() {
         let image = image::DynamicImage::from(read(&sequence.path(frame))?).to_rgb8();
         writer.write_image_data(&image).map_err(wrong)?;
-        done(place + 1);
+        done(index + 1);
     }
     writer.finish().map_err(wrong)
 }

@@ -38,10 +38,10 @@ impl ErrorMetrics {
     }
 }
 
-/// How far `picture` is off `truth`, which is as large.
-pub fn difference(picture: &[LinearRgb], truth: &[LinearRgb]) -> ErrorMetrics {
+/// How far `picture` is off `reference`, which is as large.
+pub fn difference(picture: &[LinearRgb], reference: &[LinearRgb]) -> ErrorMetrics {
     let (mut squares, mut max, mut visible) = (0.0, 0.0_f32, 0_usize);
-    for (a, b) in picture.iter().zip(truth) {
+    for (a, b) in picture.iter().zip(reference) {
         let mut worst = 0.0_f32;
         for channel in 0..3 {
             let off = (a[channel] - b[channel]).abs();
@@ -51,7 +51,7 @@ pub fn difference(picture: &[LinearRgb], truth: &[LinearRgb]) -> ErrorMetrics {
         max = max.max(worst);
         visible += usize::from(worst > VISIBLE);
     }
-    let pixels = truth.len().max(1) as f64;
+    let pixels = reference.len().max(1) as f64;
     ErrorMetrics {
         rmse: (squares / (3.0 * pixels)).sqrt(),
         max: f64::from(max),
@@ -120,12 +120,12 @@ mod tests {
 
     #[test]
     fn an_error_is_what_it_says() {
-        let truth = vec![[0.5; 3]; 4];
-        let mut picture = truth.clone();
-        assert_eq!(difference(&picture, &truth), ErrorMetrics::default());
-        assert_eq!(difference(&picture, &truth).psnr(), f64::INFINITY);
+        let reference = vec![[0.5; 3]; 4];
+        let mut picture = reference.clone();
+        assert_eq!(difference(&picture, &reference), ErrorMetrics::default());
+        assert_eq!(difference(&picture, &reference).psnr(), f64::INFINITY);
         picture[1][2] = 0.75;
-        let off = difference(&picture, &truth);
+        let off = difference(&picture, &reference);
         assert!((off.rmse - (0.0625_f64 / 12.0).sqrt()).abs() < 1e-9);
         assert_eq!((off.max, off.visible), (0.25, 0.25));
     }

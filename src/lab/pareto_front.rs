@@ -8,26 +8,26 @@ const WORTH: f64 = 0.99;
 /// one. Dots with a number that is not finite are on no front.
 pub fn front(measurements: &[(f64, f64)]) -> Vec<usize> {
     let finite =
-        |&place: &usize| measurements[place].0.is_finite() && measurements[place].1.is_finite();
-    let mut places: Vec<usize> = (0..measurements.len()).filter(finite).collect();
-    places.sort_by(|&a, &b| {
+        |&index: &usize| measurements[index].0.is_finite() && measurements[index].1.is_finite();
+    let mut indices: Vec<usize> = (0..measurements.len()).filter(finite).collect();
+    indices.sort_by(|&a, &b| {
         let by_cost = measurements[a].0.total_cmp(&measurements[b].0);
         by_cost.then(measurements[a].1.total_cmp(&measurements[b].1))
     });
     let mut least = f64::INFINITY;
-    places.retain(|&place| {
-        let is_better = measurements[place].1 < least * WORTH;
+    indices.retain(|&index| {
+        let is_better = measurements[index].1 < least * WORTH;
         if is_better {
-            least = measurements[place].1;
+            least = measurements[index].1;
         }
         is_better
     });
-    places
+    indices
 }
 
 /// The cheapest dot (cost, error) within both bounds, if there is one.
 pub fn cheapest_within(measurements: &[(f64, f64)], error: f64, cost: f64) -> Option<usize> {
-    let fits = |&place: &usize| measurements[place].1 <= error && measurements[place].0 <= cost;
+    let fits = |&index: &usize| measurements[index].1 <= error && measurements[index].0 <= cost;
     let fitting = (0..measurements.len()).filter(fits);
     fitting.min_by(|&a, &b| measurements[a].0.total_cmp(&measurements[b].0))
 }
@@ -58,10 +58,10 @@ mod tests {
         #[test]
         fn what_is_not_on_the_front_is_beaten(measurements in prop::collection::vec((0.0..9.0_f64, 0.0..9.0_f64), 1..40)) {
             let front = front(&measurements);
-            for (place, dot) in measurements.iter().enumerate() {
+            for (index, dot) in measurements.iter().enumerate() {
                 let beats = |&other: &usize| measurements[other].0 <= dot.0 && measurements[other].1 * WORTH <= dot.1;
-                let beaten = front.iter().filter(|&&other| other != place).any(beats);
-                prop_assert!(front.contains(&place) || beaten);
+                let beaten = front.iter().filter(|&&other| other != index).any(beats);
+                prop_assert!(front.contains(&index) || beaten);
             }
             prop_assert!(front.windows(2).all(|pair| measurements[pair[0]].0 < measurements[pair[1]].0 && measurements[pair[0]].1 > measurements[pair[1]].1));
         }

@@ -12,11 +12,11 @@ use crate::trace::{RenderControl, Tracer};
 
 /// Samples along each side of a pixel of the reference, and of a second one with samples in other
 /// places, which tells how far the first is off.
-const TRUTH_GRIDS: [u32; 2] = [64, 61];
+const REFERENCE_GRIDS: [u32; 2] = [64, 61];
 /// A reference is traced in so many pieces, between which more urgent work can go first.
-const TRUTH_PIECES: usize = 32;
+const REFERENCE_PIECES: usize = 32;
 /// What the references count for in the progress, in timed runs.
-const TRUTH_WORTH: f64 = 100.0;
+const REFERENCE_WORTH: f64 = 100.0;
 /// Timed runs of each candidate, not counting the one that warms up.
 const ROUNDS: usize = 9;
 /// A candidate that takes longer than this is run less often.
@@ -68,7 +68,7 @@ pub struct Study {
     scene: Arc<Scene>,
     size: (u32, u32),
     /// The reference and the second one, as many rows as are traced.
-    truths: [Arc<Vec<LinearRgb>>; 2],
+    references: [Arc<Vec<LinearRgb>>; 2],
     /// There once the reference is.
     pub reference: Option<Reference>,
     /// One for each candidate.
@@ -102,7 +102,7 @@ impl Study {
             measurements: measurements.collect(),
             scene,
             size: (width, height),
-            truths: Default::default(),
+            references: Default::default(),
             reference: None,
             spent: Duration::ZERO,
             timed: 0,
@@ -125,14 +125,14 @@ impl Study {
     pub fn step(&mut self, control: &RenderControl) -> bool {
         let start = Instant::now();
         let is_more = if self.reference.is_none() {
-            self.find_truth(control);
+            self.find_reference(control);
             true
-        } else if let Some(place) = self
+        } else if let Some(index) = self
             .measurements
             .iter()
             .position(|dot| dot.metrics.is_none())
         {
-            self.look_at(place, control);
+            self.look_at(index, control);
             true
         } else {
             self.time_next(control)
@@ -149,13 +149,17 @@ impl Study {
             .filter(|dot| dot.metrics.is_some())
             .count();
         let pixels = (self.size.0 * self.size.1) as usize;
-        let traced: usize = self.truths.iter().map(|truth| truth.len()).sum();
+        let traced: usize = self
+            .references
+            .iter()
+            .map(|reference| reference.len())
+            .sum();
         // References take as long as a good part of the rest.
-        let truth = TRUTH_WORTH * traced as f64 / (2 * pixels) as f64;
+        let reference = REFERENCE_WORTH * traced as f64 / (2 * pixels) as f64;
         let wanted: usize = self.measurements.iter().map(Measurement::rounds).sum();
         let runs: usize = self.measurements.iter().map(|dot| dot.times.len()).sum();
         let (done, all) = (seen + runs, self.measurements.len() + wanted);
-        (truth + done as f64) / (TRUTH_WORTH + all as f64)
+        (reference + done as f64) / (REFERENCE_WORTH + all as f64)
     }
 
     /// How long the rest will take; `None` at the start.
@@ -165,36 +169,36 @@ impl Study {
     }
 
     /// A few rows of a reference, or what the two differ by when both are there.
-    fn find_truth(&mut self, control: &RenderControl) {
+    fn find_reference(&mut self, control: &RenderControl) {
         let (width, height) = (self.size.0 as usize, self.size.1 as usize);
         let unfinished = self
-            .truths
+            .references
             .iter()
-            .position(|truth| truth.len() < width * height);
-        let Some(place) = unfinished else {
-            let rmse = difference(&self.truths[1], &self.truths[0]).rmse / 2.0_f64.sqrt();
+            .position(|reference| reference.len() < width * height);
+        let Some(index) = unfinished else {
+            let rmse = difference(&self.references[1], &self.references[0]).rmse / 2.0_f64.sqrt();
             self.reference = Some(Reference {
                 rmse,
-                picture: Arc::new(eight_bits(&self.truths[0], width, height)),
+                picture: Arc::new(eight_bits(&self.references[0], width, height)),
             });
             return;
         };
         let request = RenderRequest {
             precision: Precision::Double,
-            sampling: Sampling::Grid(TRUTH_GRIDS[place]),
+            sampling: Sampling::Grid(REFERENCE_GRIDS[index]),
             ..RenderRequest::sized(self.size.0, self.size.1)
         };
-        let first = self.truths[place].len() / width;
-        let rows = height.div_ceil(TRUTH_PIECES).min(height - first);
+        let first = self.references[index].len() / width;
+        let rows = height.div_ceil(REFERENCE_PIECES).min(height - first);
         let mut light = vec![[0.0; 3]; rows * width];
         let tracer = Tracer::new(&self.scene, &request);
         if tracer.rows(&mut light, first, control).is_some() {
-            Arc::make_mut(&mut self.truths[place]).extend(light);
+            Arc::make_mut(&mut self.references[index]).extend(light);
         }
     }
 
-    fn look_at(&mut self, place: usize, control: &RenderControl) {
-        let candidate = &self.measurements[place].candidate;
+    fn look_at(&mut self, index: usize, control: &RenderControl) {
+        let candidate = &self.measurements[index].candidate;
         let request = candidate.request(&self.scene);
         let tracer = Tracer::new(&candidate.scene(&self.scene), &request);
         let Some((light, rays)) = trace_light(&tracer, control) else {
@@ -202,8 +206,8 @@ impl Study {
         };
         let size = (self.size.0 as usize, self.size.1 as usize);
         let light = scaled(&light, (tracer.width(), tracer.height()), size);
-        let dot = &mut self.measurements[place];
-        dot.metrics = Some(difference(&light, &self.truths[0]));
+        let dot = &mut self.measurements[index];
+        dot.metrics = Some(difference(&light, &self.references[0]));
         dot.rays_per_pixel = rays.total() as f64 / (size.0 * size.1) as f64;
         dot.picture = Some(Arc::new(eight_bits(&light, size.0, size.1)));
         dot.lanes = tracer.lanes();
@@ -282,7 +286,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_study_measures_everything_and_its_truth_is_no_method() {
+    fn a_study_measures_everything_and_its_reference_is_no_method() {
         let scene = Arc::new(Scene::demo());
         let mut study = Study::new(Arc::clone(&scene), 24, 18);
         let control = RenderControl::default();
@@ -293,8 +297,12 @@ mod tests {
             last = done;
         }
         assert_eq!(study.progress(), 1.0);
-        let truth = study.reference.as_ref().expect("a reference");
-        assert!(truth.rmse > 0.0 && truth.rmse < 3e-4, "{:e}", truth.rmse);
+        let reference = study.reference.as_ref().expect("a reference");
+        assert!(
+            reference.rmse > 0.0 && reference.rmse < 3e-4,
+            "{:e}",
+            reference.rmse
+        );
         for dot in &study.measurements {
             let metrics = dot.metrics.expect("measured");
             assert!(

@@ -274,9 +274,9 @@ impl Target {
 
 impl Take {
     /// The camera of a sample; `None` if there is no such sample.
-    pub fn camera(&self, place: usize) -> Option<Camera> {
-        let &Sample(_, position, yaw, pitch, roll) = self.samples.get(place)?;
-        let lens = self.lenses.iter().rev().find(|lens| lens.from <= place)?;
+    pub fn camera(&self, index: usize) -> Option<Camera> {
+        let &Sample(_, position, yaw, pitch, roll) = self.samples.get(index)?;
+        let lens = self.lenses.iter().rev().find(|lens| lens.from <= index)?;
         let (look_at, up) = Orientation { yaw, pitch, roll }.vectors();
         Some(Camera {
             position,
@@ -360,10 +360,10 @@ impl<'de> Visitor<'de> for NumberOrPoint {
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut parts: A) -> Result<Value, A::Error> {
         let mut point = [0.0; 3];
-        for (place, part) in point.iter_mut().enumerate() {
+        for (index, part) in point.iter_mut().enumerate() {
             *part = parts
                 .next_element()?
-                .ok_or_else(|| A::Error::invalid_length(place, &self))?;
+                .ok_or_else(|| A::Error::invalid_length(index, &self))?;
         }
         match parts.next_element::<f64>()? {
             Some(_) => Err(A::Error::invalid_length(4, &self)),

@@ -22,19 +22,19 @@ impl Animation {
     /// With a camera key at this time, in place of one that is there; and its place.
     pub fn with_key(&self, time: f64, camera: Camera) -> (Self, usize) {
         let mut animation = self.clone();
-        if let Some(place) = self.key_at(time) {
-            animation.keys[place].value = camera;
-            return (animation, place);
+        if let Some(index) = self.key_at(time) {
+            animation.keys[index].value = camera;
+            return (animation, index);
         }
-        let place = self.keys.partition_point(|key| key.time < time);
-        animation.keys.insert(place, Key::new(time, camera));
-        (animation, place)
+        let index = self.keys.partition_point(|key| key.time < time);
+        animation.keys.insert(index, Key::new(time, camera));
+        (animation, index)
     }
 
     /// Without these camera keys.
-    pub fn without_keys(&self, places: &BTreeSet<usize>) -> Self {
+    pub fn without_keys(&self, indices: &BTreeSet<usize>) -> Self {
         let kept = self.keys.iter().enumerate();
-        let kept = kept.filter(|(place, _)| !places.contains(place));
+        let kept = kept.filter(|(index, _)| !indices.contains(index));
         Self {
             keys: kept.map(|(_, key)| key.clone()).collect(),
             ..self.clone()
@@ -45,11 +45,11 @@ impl Animation {
     /// land on, and none goes before the start. Also their new places.
     pub fn with_moved(
         &self,
-        places: &BTreeSet<usize>,
+        indices: &BTreeSet<usize>,
         later: f64,
         are_copies: bool,
     ) -> (Self, BTreeSet<usize>) {
-        let moved = places.iter().filter_map(|&place| self.keys.get(place));
+        let moved = indices.iter().filter_map(|&index| self.keys.get(index));
         let first = moved
             .clone()
             .map(|key| key.time)
@@ -62,7 +62,7 @@ impl Animation {
             })
             .collect();
         let others = self.keys.iter().enumerate();
-        let others = others.filter(|(place, _)| are_copies || !places.contains(place));
+        let others = others.filter(|(index, _)| are_copies || !indices.contains(index));
         let is_free = |key: &Key<Camera>| {
             !moved
                 .iter()
@@ -73,7 +73,7 @@ impl Animation {
         keys.sort_by(|a, b| a.time.total_cmp(&b.time));
         let is_moved = |key: &Key<Camera>| moved.iter().any(|moved| moved.time == key.time);
         let new = (0..keys.len())
-            .filter(|&place| is_moved(&keys[place]))
+            .filter(|&index| is_moved(&keys[index]))
             .collect();
         let animation = Self {
             keys,
@@ -83,10 +83,10 @@ impl Animation {
     }
 
     /// With these camera keys changed.
-    pub fn with_each(&self, places: &BTreeSet<usize>, change: impl Fn(&mut Key<Camera>)) -> Self {
+    pub fn with_each(&self, indices: &BTreeSet<usize>, change: impl Fn(&mut Key<Camera>)) -> Self {
         let mut animation = self.clone();
-        for &place in places {
-            if let Some(key) = animation.keys.get_mut(place) {
+        for &index in indices {
+            if let Some(key) = animation.keys.get_mut(index) {
                 change(key);
             }
         }
@@ -110,15 +110,15 @@ impl Animation {
     pub fn with_value(&self, target: &Target, time: f64, value: Value) -> Self {
         let mut animation = self.clone();
         let tracks = &mut animation.tracks;
-        let place = tracks.iter().position(|track| track.target == *target);
-        let place = place.unwrap_or_else(|| {
+        let index = tracks.iter().position(|track| track.target == *target);
+        let index = index.unwrap_or_else(|| {
             tracks.push(Track {
                 target: target.clone(),
                 keys: Vec::new(),
             });
             tracks.len() - 1
         });
-        let keys = &mut tracks[place].keys;
+        let keys = &mut tracks[index].keys;
         let there = keys
             .iter_mut()
             .find(|key| self.is_same_time(key.time, time));

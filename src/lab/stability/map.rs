@@ -117,15 +117,15 @@ impl Map {
     /// The cell with the highest rate, and where it is.
     pub fn worst(&self) -> Option<(f64, f64, Tries)> {
         let width = self.across.values.len();
-        let place = (0..self.cells.len()).max_by(|&a, &b| {
+        let index = (0..self.cells.len()).max_by(|&a, &b| {
             let rates = (self.cells[a].rate(), self.cells[b].rate());
             // The first of equals has the mildest circumstances.
             rates.0.total_cmp(&rates.1).then(b.cmp(&a))
         })?;
         Some((
-            self.across.values[place % width],
-            self.up.values[place / width],
-            self.cells[place],
+            self.across.values[index % width],
+            self.up.values[index / width],
+            self.cells[index],
         ))
     }
 }

@@ -41,12 +41,12 @@ fn maps_of(ball: BallKind, [acne, leak]: [Subject; 2]) -> Vec<Map> {
     let at_home = scene(ball, 0.0, 1.0);
     let truth = lit(&at_home, RayOffset::Robust, Precision::Double);
     let facing = lit(&at_home, RayOffset::Fixed(BEYOND), Precision::Double);
-    let inner = |place: &usize| is_inner(&truth, *place) && is_inner(&facing, *place);
+    let inner = |index: &usize| is_inner(&truth, *index) && is_inner(&facing, *index);
     let inner: Vec<usize> = (0..truth.len()).filter(inner).collect();
     let (bright, shadowed): (Vec<usize>, Vec<usize>) = inner
         .into_iter()
-        .filter(|&place| facing[place])
-        .partition(|&place| truth[place]);
+        .filter(|&index| facing[index])
+        .partition(|&index| truth[index]);
     let map = |subject, failure, offset: RayOffset, word: &str, tried: &[usize]| {
         Map::measure(
             (subject, failure),
@@ -54,7 +54,7 @@ fn maps_of(ball: BallKind, [acne, leak]: [Subject; 2]) -> Vec<Map> {
             (places(), scales()),
             |away, scale| {
                 let got = lit(&scene(ball, away, scale), offset, Precision::Single);
-                Tries::count(tried.iter().map(|&place| got[place] != truth[place]))
+                Tries::count(tried.iter().map(|&index| got[index] != truth[index]))
             },
         )
     };
@@ -87,20 +87,20 @@ fn lit(scene: &Scene, offset: RayOffset, precision: Precision) -> Vec<bool> {
 }
 
 /// Whether the pixels around are as lit as this one.
-fn is_inner(lit: &[bool], place: usize) -> bool {
+fn is_inner(lit: &[bool], index: usize) -> bool {
     let side = SIDE as usize;
-    let (x, y) = (place % side, place / side);
+    let (x, y) = (index % side, index / side);
     if x == 0 || y == 0 || x == side - 1 || y == side - 1 {
         return false;
     }
-    let rows = [place - side, place, place + side];
+    let rows = [index - side, index, index + side];
     rows.iter()
-        .all(|row| (row - 1..=row + 1).all(|near| lit[near] == lit[place]))
+        .all(|row| (row - 1..=row + 1).all(|near| lit[near] == lit[index]))
 }
 
 /// A floor, a ball on it, a thin card beside it, and one light; so large, so many sizes away.
 fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
-    let place = |x: f64, y: f64, z: f64| {
+    let index = |x: f64, y: f64, z: f64| {
         (DVec3::new(x, y, z) + DVec3::new(0.6, -0.64, 0.48) * away) * scale
     };
     let mut scene = Scene::empty();
@@ -125,16 +125,16 @@ fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
         object(
             "Floor",
             Shape::Plane(Plane {
-                point: place(0.0, 0.0, 0.0),
+                point: index(0.0, 0.0, 0.0),
                 normal: DVec3::new(0.0, 1.0, 0.0),
             }),
         ),
         object(
             "Card",
             Shape::Triangle(Triangle {
-                a: place(0.7, 0.0, 0.1),
-                b: place(0.9, 0.8, -0.1),
-                c: place(1.1, 0.0, -0.3),
+                a: index(0.7, 0.0, 0.1),
+                b: index(0.9, 0.8, -0.1),
+                c: index(1.1, 0.0, -0.3),
             }),
         ),
     ]);
@@ -142,13 +142,13 @@ fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
         BallKind::Sphere => scene.objects.push(object(
             "Ball",
             Shape::Sphere(Sphere {
-                center: place(0.0, 0.5, 0.0),
+                center: index(0.0, 0.5, 0.0),
                 radius: 0.5 * scale,
             }),
         )),
         BallKind::Mesh => {
             for (n, face) in super::triangle::ball().into_iter().enumerate() {
-                let corner = |v: DVec3| place(v.x * 0.5, v.y * 0.5 + 0.5, v.z * 0.5);
+                let corner = |v: DVec3| index(v.x * 0.5, v.y * 0.5 + 0.5, v.z * 0.5);
                 let [a, b, c] = face.map(corner);
                 let name = format!("Face {n}");
                 scene
@@ -159,13 +159,13 @@ fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
     }
     scene.lights = List::from(vec![Light {
         name: "Light".to_owned(),
-        position: place(1.6, 1.9, 1.3),
+        position: index(1.6, 1.9, 1.3),
         intensity: 1.0,
         visible: true,
         marker: None,
     }]);
     scene.camera = Camera {
-        position: place(0.4, 1.3, 2.6),
+        position: index(0.4, 1.3, 2.6),
         look_at: DVec3::new(0.0, -0.4, -1.0),
         up: DVec3::new(0.0, 1.0, 0.0),
         projection_distance: 1.0,

@@ -15,26 +15,26 @@ use crate::ui::rows::{Field, Rows, coordinate};
 /// Time, way and camera of the selected keys; what several keys do not share is not shown.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
-    let places = &editor.timeline().selected;
-    let Some(first) = places
+    let indices = &editor.timeline().selected;
+    let Some(first) = indices
         .iter()
         .next()
-        .and_then(|&place| animation.keys.get(place))
+        .and_then(|&index| animation.keys.get(index))
     else {
         return;
     };
-    let name = match places.len() {
-        1 => format!("Key {}", places.iter().next().map_or(0, |place| place + 1)),
+    let name = match indices.len() {
+        1 => format!("Key {}", indices.iter().next().map_or(0, |index| index + 1)),
         count => format!("{count} keys"),
     };
     title(ui, icons::KEY, &name);
     let mut key = first.clone();
     let mut rows = Rows::new(ui);
-    if places.len() == 1 {
+    if indices.len() == 1 {
         rows.number(&time_field(), &mut key.time);
     }
     way_rows(&mut rows, editor, &mut key);
-    if places.len() == 1 {
+    if indices.len() == 1 {
         rows.heading("Camera");
         let angles = Orientation::of(&key.value);
         place_rows(&mut rows, angles, &mut key.value);
@@ -45,14 +45,14 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         return;
     };
     if key.time != first.time {
-        let (moved, new) = animation.with_moved(places, key.time - first.time, false);
+        let (moved, new) = animation.with_moved(indices, key.time - first.time, false);
         out.edit(Edit::animation(moved, "Key: time"));
         return out.time(Time::SelectKeys(new));
     }
-    let changed = animation.with_each(places, |each| {
+    let changed = animation.with_each(indices, |each| {
         each.interpolation = key.interpolation;
         each.easing = key.easing;
-        if places.len() == 1 {
+        if indices.len() == 1 {
             each.value = key.value.clone();
         }
     });
@@ -135,26 +135,26 @@ pub fn target(editor: &Editor) -> glam::DVec3 {
 
 fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
-    let places = &editor.timeline().selected;
-    let overwrite = ui.add_enabled(places.len() == 1, Button::new("Overwrite with view"));
+    let indices = &editor.timeline().selected;
+    let overwrite = ui.add_enabled(indices.len() == 1, Button::new("Overwrite with view"));
     let hint = "Put the camera of the view into this key";
     if overwrite.on_hover_text(hint).clicked() {
         let view = editor.shown().camera.clone();
-        let changed = animation.with_each(places, |key| key.value = view.clone());
+        let changed = animation.with_each(indices, |key| key.value = view.clone());
         out.edit(Edit::animation(changed, "Overwrite key"));
     }
-    let go = ui.add_enabled(places.len() == 1, Button::new("Go there"));
-    let key = places
+    let go = ui.add_enabled(indices.len() == 1, Button::new("Go there"));
+    let key = indices
         .iter()
         .next()
-        .and_then(|&place| animation.keys.get(place));
+        .and_then(|&index| animation.keys.get(index));
     if go.on_hover_text("Put the playhead on this key").clicked()
         && let Some(key) = key
     {
         out.time(Time::Seek(key.time));
     }
     if ui.button("Delete").clicked() {
-        let kept = animation.without_keys(places);
+        let kept = animation.without_keys(indices);
         out.edit(Edit::animation(kept, "Delete keys"));
         out.time(Time::SelectKeys(std::collections::BTreeSet::new()));
     }

@@ -88,16 +88,16 @@ impl Chart {
                         plot.text(text.anchor(egui::Align2::LEFT_TOP).color(colors.muted));
                     }
                 }
-                let steps: Vec<[f64; 2]> = front.iter().map(|&place| self.at(place)).collect();
+                let steps: Vec<[f64; 2]> = front.iter().map(|&index| self.at(index)).collect();
                 plot.line(Line::new("front", steps).color(colors.accent).width(1.5));
-                for (place, spot) in self.spots.iter().enumerate() {
+                for (index, spot) in self.spots.iter().enumerate() {
                     if !(spot.cost.is_finite() && spot.error.is_finite()) {
                         continue;
                     }
-                    let is_best = front.contains(&place);
+                    let is_best = front.contains(&index);
                     let dot =
-                        Points::new(spot.name.clone(), PlotPoints::from(vec![self.at(place)]))
-                            .radius(if self.chosen == Some(place) { 7.0 } else { 4.0 })
+                        Points::new(spot.name.clone(), PlotPoints::from(vec![self.at(index)]))
+                            .radius(if self.chosen == Some(index) { 7.0 } else { 4.0 })
                             .shape(if spot.is_doubtful {
                                 MarkerShape::Diamond
                             } else {
@@ -107,9 +107,9 @@ impl Chart {
                             .color(if is_best { colors.accent } else { colors.muted });
                     plot.points(dot);
                 }
-                for &place in front.iter().take(MOST_NAMES) {
-                    let [x, y] = self.at(place);
-                    let name = egui::RichText::new(format!("  {}", self.spots[place].name));
+                for &index in front.iter().take(MOST_NAMES) {
+                    let [x, y] = self.at(index);
+                    let name = egui::RichText::new(format!("  {}", self.spots[index].name));
                     let text = Text::new("name", PlotPoint::new(x, y), name.small());
                     plot.text(text.anchor(egui::Align2::LEFT_BOTTOM).color(colors.text));
                 }
@@ -128,21 +128,21 @@ impl Chart {
     }
 
     /// Where a dot is on axes of powers of ten.
-    fn at(&self, place: usize) -> [f64; 2] {
-        let spot = &self.spots[place];
+    fn at(&self, index: usize) -> [f64; 2] {
+        let spot = &self.spots[index];
         [spot.cost.log10(), spot.error.log10()]
     }
 
     fn nearest(&self, pointer: Pos2, on_screen: impl Fn(PlotPoint) -> Pos2) -> Option<usize> {
-        let distance = |place: usize| {
-            let [x, y] = self.at(place);
+        let distance = |index: usize| {
+            let [x, y] = self.at(index);
             on_screen(PlotPoint::new(x, y)).distance(pointer)
         };
         (0..self.spots.len())
-            .map(|place| (place, distance(place)))
+            .map(|index| (index, distance(index)))
             .filter(|(_, distance)| *distance <= REACH)
             .min_by(|a, b| a.1.total_cmp(&b.1))
-            .map(|(place, _)| place)
+            .map(|(index, _)| index)
     }
 
     fn label(&self, hover: &HoverPosition) -> Option<String> {

@@ -25,8 +25,8 @@ pub fn show(ui: &mut Ui, map: &Map, size: egui::Vec2, marker: Option<(f64, f64)>
         squares.width() / columns as f32,
         squares.height() / rows as f32,
     );
-    let square = |place: usize| {
-        let (column, row) = (place % columns, place / columns);
+    let square = |index: usize| {
+        let (column, row) = (index % columns, index / columns);
         let corner = pos2(
             squares.left() + column as f32 * cell.x,
             squares.bottom() - (row + 1) as f32 * cell.y,
@@ -34,8 +34,8 @@ pub fn show(ui: &mut Ui, map: &Map, size: egui::Vec2, marker: Option<(f64, f64)>
         Rect::from_min_size(corner, cell)
     };
     let painter = ui.painter();
-    for (place, tries) in map.cells.iter().enumerate() {
-        painter.rect_filled(square(place).shrink(0.5), 1, shade(*tries, ui));
+    for (index, tries) in map.cells.iter().enumerate() {
+        painter.rect_filled(square(index).shrink(0.5), 1, shade(*tries, ui));
     }
     let font = FontId::proportional(SMALL);
     let write = |at: Pos2, anchor: Align2, text: String| {
@@ -65,14 +65,14 @@ pub fn show(ui: &mut Ui, map: &Map, size: egui::Vec2, marker: Option<(f64, f64)>
     };
     write(below, Align2::CENTER_BOTTOM, names);
     if let Some((x, y)) = marker {
-        let place = nearest(&map.up, y) * columns + nearest(&map.across, x);
+        let index = nearest(&map.up, y) * columns + nearest(&map.across, x);
         let ring = Stroke::new(2.0, colors.text);
-        painter.rect_stroke(square(place), 2, ring, StrokeKind::Inside);
+        painter.rect_stroke(square(index), 2, ring, StrokeKind::Inside);
     }
     if let Some(pointer) = response.hover_pos() {
-        let under = (0..map.cells.len()).find(|&place| square(place).contains(pointer));
-        if let Some(place) = under {
-            response.on_hover_text_at_pointer(describe(map, place));
+        let under = (0..map.cells.len()).find(|&index| square(index).contains(pointer));
+        if let Some(index) = under {
+            response.on_hover_text_at_pointer(describe(map, index));
         }
     }
 }
@@ -81,9 +81,9 @@ pub fn show(ui: &mut Ui, map: &Map, size: egui::Vec2, marker: Option<(f64, f64)>
 pub fn is_near_failing(map: &Map, (x, y): (f64, f64)) -> bool {
     let columns = map.across.values.len();
     let (column, row) = (nearest(&map.across, x), nearest(&map.up, y));
-    map.cells.iter().enumerate().any(|(place, tries)| {
-        let beside = (place % columns).abs_diff(column) <= 1;
-        beside && (place / columns).abs_diff(row) <= 1 && tries.failures > 0
+    map.cells.iter().enumerate().any(|(index, tries)| {
+        let beside = (index % columns).abs_diff(column) <= 1;
+        beside && (index / columns).abs_diff(row) <= 1 && tries.failures > 0
     })
 }
 
@@ -105,7 +105,7 @@ fn nearest(axis: &Axis, value: f64) -> usize {
     };
     let marks = axis.values.iter().enumerate();
     let nearest = marks.min_by(|a, b| away(*a.1).total_cmp(&away(*b.1)));
-    nearest.map_or(0, |(place, _)| place)
+    nearest.map_or(0, |(index, _)| index)
 }
 
 /// Nothing failed, and one colour from yellow to red for each decade of the rate.
@@ -122,25 +122,25 @@ fn shade(tries: Tries, ui: &Ui) -> Color32 {
     colors.accent.lerp_to_gamma(colors.error, heat)
 }
 
-fn describe(map: &Map, place: usize) -> String {
+fn describe(map: &Map, index: usize) -> String {
     let columns = map.across.values.len();
-    let cell = map.cells[place];
-    let place = format!(
+    let cell = map.cells[index];
+    let at = format!(
         "{} {}, {} {}",
         map.across.name,
-        number(map.across.values[place % columns]),
+        number(map.across.values[index % columns]),
         map.up.name,
-        number(map.up.values[place / columns]),
+        number(map.up.values[index / columns]),
     );
     if cell.failures == 0 {
         return format!(
-            "{place}\nnone of {} failed: below {:.1e} with 95 %",
+            "{at}\nnone of {} failed: below {:.1e} with 95 %",
             cell.tries,
             cell.bound()
         );
     }
     format!(
-        "{place}\n{} of {} failed: {:.3} %, below {:.3} % with 95 %",
+        "{at}\n{} of {} failed: {:.3} %, below {:.3} % with 95 %",
         cell.failures,
         cell.tries,
         cell.rate() * 100.0,
@@ -169,7 +169,7 @@ mod tests {
         };
         let places = [0.0, 0.1, 0.9, 4.0, 31.0, 33.0, 1e9].map(|value| nearest(&axis, value));
         assert_eq!(places, [0, 0, 1, 2, 2, 3, 3]);
-        let only = |place: usize| Map {
+        let only = |index: usize| Map {
             subject: Subject::Sphere,
             method: String::new(),
             is_default: true,
@@ -182,7 +182,7 @@ mod tests {
             cells: (0..4)
                 .map(|at| Tries {
                     tries: 10,
-                    failures: u64::from(at == place),
+                    failures: u64::from(at == index),
                 })
                 .collect(),
         };

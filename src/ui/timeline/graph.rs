@@ -148,24 +148,24 @@ fn steps(animation: &Animation, path: &CameraPath) -> Vec<PaceStep> {
         .map(|key| key.value.position.abs().max_element());
     let noise = far.fold(0.0, f64::max) * NOISE;
     let per_second = fps / stride as f64;
-    let step = |place: usize| {
-        let time = animation.time_of(frames[place + 1]);
+    let step = |index: usize| {
+        let time = animation.time_of(frames[index + 1]);
         let is_cut = animation.keys.windows(2).any(|pair| {
             let is_hold = pair[0].interpolation == Interpolation::Hold;
             is_hold
-                && pair[1].time > animation.time_of(frames[place])
+                && pair[1].time > animation.time_of(frames[index])
                 && pair[1].time <= time + 1e-6
         });
-        let beside = [place.checked_sub(1), Some(place + 1)];
+        let beside = [index.checked_sub(1), Some(index + 1)];
         let is_jump = |of: fn(&CameraChange) -> f64, mean: f64| {
-            let here = of(&motions[place]);
+            let here = of(&motions[index]);
             let beside = beside
                 .into_iter()
                 .flatten()
                 .filter_map(|near| motions.get(near));
             here > JUMP * mean && beside.map(of).any(|near| here > JUMP * near)
         };
-        let CameraChange { distance, turn } = motions[place];
+        let CameraChange { distance, turn } = motions[index];
         let distance = if distance > noise { distance } else { 0.0 };
         let turn = if turn > NOISE_TURN { turn } else { 0.0 };
         let is_jump = is_jump(|m| m.distance, mean_distance)

@@ -54,7 +54,7 @@ pub struct Drag {
     /// The animation before.
     before: Arc<Animation>,
     /// Places of the camera's keys.
-    places: BTreeSet<usize>,
+    indices: BTreeSet<usize>,
     /// Time of the key that the pointer holds.
     from: f64,
     are_copies: bool,
@@ -174,25 +174,25 @@ pub fn keys(
     ways(ui, scale, rect, animation);
     playhead(ui, scale, rect, editor);
     let selected = &editor.timeline().selected;
-    for (place, key) in animation.keys.iter().enumerate() {
+    for (index, key) in animation.keys.iter().enumerate() {
         let at = pos2(scale.x(key.time), rect.center().y);
         let near = Rect::from_center_size(at, vec2(2.0 * KEY + 2.0, TRACK));
         let response = ui.interact(
             near,
-            ui.scope_id().with(("key", place)),
+            ui.scope_id().with(("key", index)),
             Sense::click_and_drag(),
         );
-        let name = format!("Key {}", place + 1);
+        let name = format!("Key {}", index + 1);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-        let is_on = selected.contains(&place);
+        let is_on = selected.contains(&index);
         let fill = match (is_on, response.hovered()) {
             (true, _) => colors.accent,
             (false, true) => colors.text,
             (false, false) => colors.curve,
         };
         diamond(ui, at, fill, key.interpolation == Interpolation::Hold);
-        pick(&response, place, editor, drag, out);
-        response.context_menu(|ui| menu(ui, place, editor, out));
+        pick(&response, index, editor, drag, out);
+        response.context_menu(|ui| menu(ui, index, editor, out));
         response.on_hover_text(format!(
             "{name}: {:.3} s, {}\nDrag to move, Ctrl-drag to copy, Shift-click for several",
             key.time,
@@ -220,39 +220,39 @@ fn ways(ui: &Ui, scale: &Scale, rect: Rect, animation: &Animation) {
 /// A click selects, a drag starts to move.
 fn pick(
     response: &Response,
-    place: usize,
+    index: usize,
     editor: &Editor,
     drag: &mut Option<Drag>,
     out: &mut UiRequests,
 ) {
     let selected = &editor.timeline().selected;
     let modifiers = response.ctx.input(|input| input.modifiers);
-    if response.secondary_clicked() && !selected.contains(&place) {
-        out.time(Time::SelectKeys(BTreeSet::from([place])));
+    if response.secondary_clicked() && !selected.contains(&index) {
+        out.time(Time::SelectKeys(BTreeSet::from([index])));
     }
     if response.clicked() {
-        let mut places = selected.clone();
+        let mut indices = selected.clone();
         if modifiers.shift {
-            if !places.remove(&place) {
-                places.insert(place);
+            if !indices.remove(&index) {
+                indices.insert(index);
             }
         } else {
-            places = BTreeSet::from([place]);
+            indices = BTreeSet::from([index]);
         }
-        out.time(Time::SelectKeys(places));
+        out.time(Time::SelectKeys(indices));
     }
     if response.drag_started() {
-        let places = if selected.contains(&place) {
+        let indices = if selected.contains(&index) {
             selected.clone()
         } else {
-            BTreeSet::from([place])
+            BTreeSet::from([index])
         };
         let before = Arc::clone(&editor.scene().animation);
         *drag = Some(Drag {
             target: None,
-            from: before.keys[place].time,
+            from: before.keys[index].time,
             before,
-            places,
+            indices,
             are_copies: modifiers.command,
         });
     }
@@ -275,7 +275,7 @@ fn drag_to_pointer(
     };
     let (moved, new) = held
         .before
-        .with_moved(&held.places, to - held.from, held.are_copies);
+        .with_moved(&held.indices, to - held.from, held.are_copies);
     if moved != *editor.scene().animation {
         let label = if held.are_copies {
             "Copy keys"
@@ -298,13 +298,13 @@ fn pointed(ui: &Ui, scale: &Scale, animation: &Animation) -> Option<f64> {
     Some((scale.time(at.x).max(0.0) * fps).round() / fps)
 }
 
-fn menu(ui: &mut Ui, place: usize, editor: &Editor, out: &mut UiRequests) {
+fn menu(ui: &mut Ui, index: usize, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
-    let mut places = editor.timeline().selected.clone();
-    if !places.contains(&place) {
-        places = BTreeSet::from([place]);
+    let mut indices = editor.timeline().selected.clone();
+    if !indices.contains(&index) {
+        indices = BTreeSet::from([index]);
     }
-    let Some(key) = animation.keys.get(place) else {
+    let Some(key) = animation.keys.get(index) else {
         return;
     };
     let around = match key.interpolation {
@@ -318,21 +318,21 @@ fn menu(ui: &mut Ui, place: usize, editor: &Editor, out: &mut UiRequests) {
         Interpolation::Orbit { around },
     ] {
         if ui.radio(key.interpolation == way, way.name()).clicked() {
-            let changed = animation.with_each(&places, |key| key.interpolation = way);
+            let changed = animation.with_each(&indices, |key| key.interpolation = way);
             out.edit(Edit::animation(changed, "Key: way"));
         }
     }
     ui.separator();
     for easing in Easing::ALL {
         if ui.radio(key.easing == easing, easing.name()).clicked() {
-            let changed = animation.with_each(&places, |key| key.easing = easing);
+            let changed = animation.with_each(&indices, |key| key.easing = easing);
             out.edit(Edit::animation(changed, "Key: pace"));
         }
     }
     ui.separator();
     if ui.button("Delete").clicked() {
         out.edit(Edit::animation(
-            animation.without_keys(&places),
+            animation.without_keys(&indices),
             "Delete keys",
         ));
         out.time(Time::SelectKeys(BTreeSet::new()));
@@ -353,12 +353,12 @@ pub fn tracks(
         let (rect, _) = band(ui, scale, Sense::hover());
         label(ui, rect, &track.target.name());
         playhead(ui, scale, rect, editor);
-        for (place, key) in track.keys.iter().enumerate() {
+        for (index, key) in track.keys.iter().enumerate() {
             let at = pos2(scale.x(key.time), rect.center().y);
             let near = Rect::from_center_size(at, vec2(2.0 * KEY + 2.0, TRACK));
-            let id = ui.scope_id().with(("value", &track.target.name(), place));
+            let id = ui.scope_id().with(("value", &track.target.name(), index));
             let response = ui.interact(near, id, Sense::click_and_drag());
-            let name = format!("{} key {}", track.target.name(), place + 1);
+            let name = format!("{} key {}", track.target.name(), index + 1);
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
             let fill = if response.hovered() {
                 colors.text
@@ -373,12 +373,12 @@ pub fn tracks(
                 *drag = Some(Drag {
                     target: Some(track.target.clone()),
                     before: Arc::clone(animation),
-                    places: BTreeSet::new(),
+                    indices: BTreeSet::new(),
                     from: key.time,
                     are_copies: false,
                 });
             }
-            response.context_menu(|ui| value_menu(ui, animation, &track.target, place, out));
+            response.context_menu(|ui| value_menu(ui, animation, &track.target, index, out));
         }
     }
     let Some(held) = drag.as_ref() else { return };
@@ -399,7 +399,7 @@ fn value_menu(
     ui: &mut Ui,
     animation: &Animation,
     target: &Target,
-    place: usize,
+    index: usize,
     out: &mut UiRequests,
 ) {
     let mut changed = animation.clone();
@@ -410,7 +410,7 @@ fn value_menu(
     else {
         return;
     };
-    let key = &mut track.keys[place];
+    let key = &mut track.keys[index];
     for way in [
         Interpolation::Smooth,
         Interpolation::Linear,
