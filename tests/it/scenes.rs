@@ -97,7 +97,7 @@ fn a_file_with_every_word_is_read_and_written_again() {
     objects: [
         Object(name: "S", color_pack: "a", shape: Sphere(center: (0, 0, 0), radius: 1)),
         Object(name: "P", color_pack: "a", shape: Plane(point: (0, 0, 0), normal: (0, 1, 0))),
-        Object(name: "T", color_pack: "a", shape: Triangle(corners: ((0, 0, 0), (1, 0, 0), (0, 1, 0)))),
+        Object(name: "T", color_pack: "a", shape: Triangle(a: (0, 0, 0), b: (1, 0, 0), c: (0, 1, 0))),
         Object(name: "D", color_pack: "a", shape: Disc(center: (0, 0, 0), normal: (0, 1, 0), radius: 1)),
     ],
     animation: Animation(keys: [
