@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 
 use divan::Bencher;
 use egui::accesskit::Role;
-use egui::{Event, PointerButton, pos2};
+use egui::{Event, PointerButton, Vec2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
@@ -34,6 +34,9 @@ fn main() {
 }
 
 const SIDE: u32 = 1024;
+
+/// Size of the window when it is first opened.
+const OPENED: Vec2 = vec2(1280.0, 800.0);
 
 /// What `published` has to be held against: the same picture without the render thread.
 #[divan::bench(sample_count = 100, sample_size = 1)]
@@ -119,7 +122,7 @@ fn window_while_a_number_is_dragged(bencher: Bencher, objects: u32) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("many.ron");
     std::fs::write(&path, many(objects)).expect("written");
-    let harness = RefCell::new(EditorHarness::on(Some(path)));
+    let harness = RefCell::new(EditorHarness::on(Some(path), OPENED));
     harness.borrow_mut().press_number();
     bencher
         .with_inputs(|| harness.borrow_mut().drag_number())
@@ -160,7 +163,7 @@ fn resident_megabytes() -> Option<f64> {
     Some(kibibytes / 1024.0)
 }
 
-/// A scene of small balls in rows on the demo's floor; the last one is near the camera.
+/// A scene of small balls in rows, all but ten hidden: what the window does is measured, not the tracer.
 fn many(objects: u32) -> String {
     let document = Document {
         header: String::new(),
@@ -176,7 +179,7 @@ fn many(objects: u32) -> String {
                             radius: 0.4,
                         }
                         .into(),
-                        visible: true,
+                        visible: number < 10,
                     }
                 })
                 .collect(),
@@ -203,16 +206,23 @@ struct EditorHarness {
 
 impl EditorHarness {
     fn new() -> Self {
-        Self::on(None)
+        let harness = Self::on(None, vec2(1680.0, 1200.0));
+        let picture = harness.window.state().shown_picture().expect("a picture");
+        let side = SIDE as usize;
+        assert!(
+            picture.width >= side && picture.height >= side,
+            "a small picture"
+        );
+        harness
     }
 
-    fn on(scene: Option<PathBuf>) -> Self {
+    fn on(scene: Option<PathBuf>, size: Vec2) -> Self {
         let setup = Setup {
             data_folder: None,
             ..Setup::native(scene)
         };
         let window = Harness::builder()
-            .with_size([1680.0, 1200.0])
+            .with_size(size)
             .build_eframe(|cc| App::new(cc, setup).expect("a render thread"));
         let mut harness = Self {
             window,
@@ -225,12 +235,6 @@ impl EditorHarness {
             assert!(start.elapsed() < Duration::from_mins(1), "no picture");
             harness.window.step();
         }
-        let picture = harness.window.state().shown_picture().expect("a picture");
-        let side = SIDE as usize;
-        assert!(
-            picture.width >= side && picture.height >= side,
-            "a small picture"
-        );
         harness
     }
 
@@ -260,7 +264,7 @@ impl EditorHarness {
         self.at = pos;
         self.window.drag_at(pos);
         self.window.step();
-        self.window.hover_at(pos + egui::vec2(9.0, 0.0));
+        self.window.hover_at(pos + vec2(9.0, 0.0));
         self.window.step();
     }
 
@@ -270,8 +274,9 @@ impl EditorHarness {
         let revision = self.window.state().editor().revision();
         assert!(revision > self.revision, "nothing has changed");
         self.revision = revision;
-        self.x = if self.x > 40.0 { 10.0 } else { self.x + 1.0 };
-        self.window.hover_at(self.at + egui::vec2(self.x, 0.0));
+        // To and fro: far enough for a number that is rounded, and never to its limit.
+        self.x = if self.x > 25.0 { 20.0 } else { 30.0 };
+        self.window.hover_at(self.at + vec2(self.x, 0.0));
     }
 
     /// Moves the mouse, when the picture of the last move is there.
