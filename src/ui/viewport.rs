@@ -200,7 +200,7 @@ pub fn describe(frame: &Frame, scene: &Arc<Scene>) -> String {
         Sampling::Grid(_) | Sampling::Adaptive { .. } => " · smooth",
     };
     let bounces = scene.render.reflection_limit;
-    let objects = scene.objects.iter().filter(|object| object.visible).count();
+    let objects = scene.objects.len();
     format!(
         "{size}{edges} · {:.1} ms · {per_pixel:.1} rays/px · {} · {bounces} bounce{} · {objects} object{}",
         frame.cost.time.as_secs_f64() * 1e3,
