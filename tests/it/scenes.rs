@@ -119,9 +119,9 @@ fn a_file_with_every_word_is_read_and_written_again() {
         "Linear",
         "Hold",
         "Orbit(",
-        "easing: In,",
-        "easing: Out",
-        "easing: InOut",
+        "easing: In)",
+        "easing: Out)",
+        "easing: InOut)",
     ] {
         assert!(written.contains(word), "{word} is not in\n{written}");
     }
