@@ -200,8 +200,8 @@ fn restore(target: &Target, scene: &Scene, shown: &Scene, next: &mut Scene) {
         let is_only_moved = shape(next) == shape(shown);
         if let (true, Some(own)) = (is_only_moved, shape(scene)) {
             // Moved to and fro, its corners would be rounded.
-            let mut objects = next.objects.iter_mut();
-            if let Some(object) = objects.find(|object| object.name == *name) {
+            let object = next.objects.find_mut(|object| object.name == *name);
+            if let Some(object) = object {
                 object.shape = own;
             }
             return;

@@ -34,8 +34,8 @@ impl Target {
                 }
             }
             (Self::ObjectPosition(name), Value::Point(point)) => {
-                let mut objects = scene.objects.iter_mut();
-                if let Some(object) = objects.find(|object| object.name == *name) {
+                let object = scene.objects.find_mut(|object| object.name == *name);
+                if let Some(object) = object {
                     object.shape = object.shape.moved(point - object.shape.position());
                 }
             }
@@ -45,5 +45,5 @@ impl Target {
 }
 
 fn light<'s>(scene: &'s mut Scene, name: &str) -> Option<&'s mut Light> {
-    scene.lights.iter_mut().find(|light| light.name == name)
+    scene.lights.find_mut(|light| light.name == name)
 }
