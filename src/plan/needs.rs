@@ -7,9 +7,7 @@ use super::materials::Material;
 use super::pack::Plan;
 use super::precision::needs_double;
 use super::request::RenderRequest;
-use crate::scene::{
-    Methods, Object, Precision, RayOffset, Sampling, Scene, SphereMethod, TriangleMethod,
-};
+use crate::scene::{Object, Precision, Sampling, Scene};
 use crate::simd::Exponent;
 
 /// One decision of the plan.
@@ -132,11 +130,6 @@ fn shadows(scene: &Scene, plan: &Plan<f64>) -> Need {
 
 const FAILING: &str = "formulas that are known to fail were asked for, and shall show it";
 
-/// Whether spheres are hit where they are, and new rays start where they should.
-fn is_sound(methods: &Methods) -> bool {
-    methods.sphere == SphereMethod::Stable && methods.offset == RayOffset::Robust
-}
-
 fn planes(plan: &Plan<f64>) -> Need {
     let rule = "planes";
     match (plan.primitives.planes.len(), plan.planes_cast) {
@@ -147,7 +140,7 @@ fn planes(plan: &Plan<f64>) -> Need {
             "their test for every ray",
         ),
         (number, true) => {
-            let why = if is_sound(&plan.methods) {
+            let why = if plan.methods.is_sound() {
                 "parallel rays start on both sides of a plane, or the camera is on one"
             } else {
                 FAILING
@@ -223,8 +216,7 @@ fn faces(plan: &Plan<f64>) -> Need {
         .map(|light| set(&light.shadow_culled_faces))
         .sum();
     if unseen + idle == 0 {
-        let is_tight = plan.methods.triangle == TriangleMethod::Watertight;
-        let why = if is_tight && is_sound(&plan.methods) {
+        let why = if plan.methods.is_tight() {
             "none belongs to a closed convex solid with the camera or a light outside"
         } else {
             FAILING

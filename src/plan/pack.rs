@@ -15,7 +15,7 @@ use crate::primitive::{
 };
 use crate::scene::{
     Accelerator, Camera, LightObj, Methods, Projection, RayOffset, Sampling, Scene, Shape, Sphere,
-    SphereMethod, TriangleMethod,
+    SphereMethod,
 };
 use crate::simd::{Real, Vec3};
 
@@ -122,8 +122,7 @@ impl<R: Real> Plan<R> {
         if may_cull {
             plan.bvh = plan.bound(request.accelerator);
             // What leaks through a face must not find that those behind it were left out.
-            let is_tight = request.methods.triangle == TriangleMethod::Watertight;
-            if is_tight && request.methods.offset == RayOffset::Robust {
+            if request.methods.is_tight() {
                 plan.drop_far_faces(scene, request, centre);
             }
         }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::request::{Model, RenderRequest};
-use crate::scene::{Projection, RayOffset, Scene, SphereMethod};
+use crate::scene::{Projection, Scene};
 
 /// A plane, its normal turned to the eye.
 pub struct PlaneOccluder {
@@ -36,11 +36,7 @@ impl PlaneOccluder {
 pub fn classify_planes(scene: &Scene, request: &RenderRequest) -> Option<Vec<PlaneOccluder>> {
     let camera = &scene.camera;
     let is_parallel = request.projection.unwrap_or(camera.projection) == Projection::Orthographic;
-    if is_parallel
-        || request.methods.offset != RayOffset::Robust
-        || request.methods.sphere != SphereMethod::Stable
-        || request.model == Model::Everything
-    {
+    if is_parallel || !request.methods.is_sound() || request.model == Model::Everything {
         return None;
     }
     let visible = scene.objects.iter().filter(|object| object.visible);

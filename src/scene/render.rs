@@ -165,3 +165,15 @@ impl Default for Render {
         }
     }
 }
+
+impl Methods {
+    /// Whether spheres are hit where they are, and new rays start where they should.
+    pub fn is_sound(&self) -> bool {
+        self.sphere == SphereMethod::Stable && self.offset == RayOffset::Robust
+    }
+
+    /// Whether, besides, nothing leaks between triangles.
+    pub fn is_tight(&self) -> bool {
+        self.is_sound() && self.triangle == TriangleMethod::Watertight
+    }
+}
