@@ -176,6 +176,32 @@ mod tests {
         }
     }
 
+    /// Nearly face-on and far away, single precision makes a large lean of a small one.
+    #[test]
+    fn rounding_pushes_no_hit_out_of_a_far_disc() {
+        let eye = DVec3::new(0.0, 0.0, 1000.0);
+        for step in 0..8000_u32 {
+            let tilt = 10.0_f64.powf(-4.0 + 3.0 * f64::from(step / 400) / 20.0);
+            let turned = DVec3::X.rotate_axis(DVec3::Z, f64::from(step) * 0.7);
+            let normal = turned * tilt.sin() + DVec3::Z * tilt.cos();
+            let share = f64::from(step % 20) / 20.0;
+            let aside = DVec3::X.rotate_axis(DVec3::Z, f64::from(step) * 2.399) * share;
+            let target = aside - DVec3::Z * (aside.dot(normal) / normal.z);
+            let ray = Ray::<f32> {
+                origin: Vec3::from_dvec3(eye),
+                direction: Vec3::from_dvec3((target - eye).normalize()),
+            };
+            let disc = PackedDisc {
+                center: Vec3::splat(0.0),
+                normal: Vec3::from_dvec3(normal),
+                radius: 1.0,
+                material: 0,
+            };
+            let distance = disc.approach(&ray, &()).distance;
+            assert!(distance <= 1e-3, "{distance} outside, tilted by {tilt}");
+        }
+    }
+
     #[test]
     fn edge_on_and_behind_are_misses() {
         let ray = |x: f32, y: f32| Ray {
