@@ -17,7 +17,8 @@ use super::render::Render;
 /// The scene-file version that this program writes and the newest that it reads.
 pub const VERSION: u32 = 1;
 
-/// Everything that makes a picture. A copy shares what is not changed. What a file leaves out has the value that the demo scene has.
+/// Everything that makes a picture. A copy shares what is not changed. What a file leaves out has the
+/// value that the demo scene has.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {

@@ -11,6 +11,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
 
+use crate::scenes::files_in;
+
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// What every scene is rendered with.
@@ -57,20 +59,9 @@ fn hash(folder: &Path, scene: &str, settings: &str) -> String {
 }
 
 fn pictures() -> Vec<(String, &'static str)> {
-    let scenes = std::fs::read_dir(Path::new(ROOT).join("scenes")).expect("a folder");
-    let mut names: Vec<String> = scenes
-        .map(|entry| {
-            entry
-                .expect("an entry")
-                .file_name()
-                .to_string_lossy()
-                .into_owned()
-        })
-        .collect();
-    names.sort();
-    let each = names
-        .iter()
-        .flat_map(|name| EACH.map(|settings| (name.clone(), settings)));
+    let scenes = files_in("scenes").into_iter();
+    let names = scenes.filter_map(|path| Some(path.file_name()?.to_str()?.to_owned()));
+    let each = names.flat_map(|name| EACH.map(|settings| (name.clone(), settings)));
     let more = MORE.map(|(name, settings)| (name.to_owned(), settings));
     each.chain(more).collect()
 }

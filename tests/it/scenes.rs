@@ -10,7 +10,8 @@ use glint::scene::{
 };
 use proptest::prelude::*;
 
-fn files_in(folder: &str) -> Vec<PathBuf> {
+/// The files of a folder of the project, sorted.
+pub fn files_in(folder: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let entries = fs::read_dir(folder).expect("a folder");
     let mut files: Vec<PathBuf> = entries

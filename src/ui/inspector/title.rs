@@ -17,8 +17,7 @@ pub fn title(ui: &mut Ui, icon: MaterialIcon, name: &str) {
     });
 }
 
-/// The title of an item is its name, which can be edited in place.
-/// A symbol and a name that can be changed.
+/// The title of an item: a symbol, and its name, which can be edited in place.
 pub fn title_field(ui: &mut Ui, icon: MaterialIcon, item: Item, name: &str, out: &mut UiRequests) {
     ui.horizontal(|ui| {
         ui.set_min_height(ROW);
