@@ -9,7 +9,7 @@
 //!       │
 //!  scene ─► animate ─► plan ─► trace ─► image ─► export      lab (methods ► time, error, failures)
 //!    ▲                  ▲        ▲
-//!  files        primitive, simd ─┘
+//!  files, mesh  primitive, simd ─┘
 //! ```
 //!
 //! The modules stand in the order of their dependence, in this file and in the `mod.rs` of every room: a
@@ -30,6 +30,8 @@
 // The blank lines keep the formatter from sorting what is in order of dependence.
 
 pub mod files;
+
+pub mod mesh;
 
 pub mod scene;
 

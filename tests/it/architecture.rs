@@ -13,13 +13,21 @@ const HOMES: &[(&[&str], &[&str])] = &[
     (&["egui", "eframe"], &["ui"]),
     (
         &["std::fs"],
-        &["files", "scene/file", "scene/recovery", "export", "cli"],
+        &[
+            "files",
+            "mesh",
+            "scene/file",
+            "scene/recovery",
+            "export",
+            "cli",
+        ],
     ),
     (
         &["std::thread", "rayon"],
         &[
             "worker",
             "export/exporting",
+            "plan/thickness",
             "trace/tracer",
             "trace/threads",
             "trace/query",
@@ -330,7 +338,7 @@ fn imports_point_one_way_and_tools_stay_at_home() {
     assert!(
         house
             .order(&Vec::new())
-            .starts_with(&["files".to_owned(), "scene".to_owned()])
+            .starts_with(&["files".to_owned(), "mesh".to_owned()])
     );
     let faults = house.faults();
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));

@@ -1,0 +1,285 @@
+//! glTF and GLB: the triangles of the default scene, where its nodes put them.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use glam::{DMat4, DQuat, Vec3};
+use gltf::json::Root;
+use gltf::json::validation::Checked;
+use gltf::mesh::{Mode, Primitive};
+use gltf::scene::Transform;
+use gltf::{Document, Glb, Material, Node, Semantic};
+
+use super::error::Fault;
+use super::gltf_buffers::Buffers;
+use super::limits::{check_faces, check_groups, check_points};
+use super::part::{Part, PartColors};
+use super::triangles::Triangles;
+
+/// Most objects and lists in the JSON: each can cost hundreds of bytes.
+const MAX_OBJECTS: usize = 1_000_000;
+/// Extensions without which the triangles cannot be read.
+const GEOMETRY_EXTENSIONS: [&str; 3] = [
+    "KHR_draco_mesh_compression",
+    "KHR_mesh_quantization",
+    "EXT_meshopt_compression",
+];
+
+/// Reads the primitives of the default scene, or of the first if none is said to be.
+pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<Vec<Part>, Fault> {
+    let (json, chunk) = split(bytes)?;
+    let document = document_of(&json)?;
+    let buffers = Buffers::load(&document, chunk.as_deref(), folder)?;
+    let scene = document.default_scene();
+    let Some(scene) = scene.or_else(|| document.scenes().next()) else {
+        return Ok(Vec::new());
+    };
+    let mut walk = Walk {
+        buffers,
+        stem,
+        parts: Vec::new(),
+        points: 0,
+        faces: 0,
+    };
+    let mut visited = vec![false; document.nodes().len()];
+    let mut stack: Vec<_> = scene.nodes().map(|node| (node, DMat4::IDENTITY)).collect();
+    // The first node is on top.
+    stack.reverse();
+    while let Some((node, outer)) = stack.pop() {
+        let index = node.index();
+        // A node that is its own ancestor would be followed for ever.
+        if std::mem::replace(&mut visited[index], true) {
+            return Err(Fault::new(format!(
+                "node {index} is in the scene more than once"
+            )));
+        }
+        let transform = outer * matrix_of(&node);
+        walk.add(&node, transform)?;
+        let start = stack.len();
+        stack.extend(node.children().map(|child| (child, transform)));
+        stack[start..].reverse();
+    }
+    Ok(walk.parts)
+}
+
+type Chunks<'a> = (Cow<'a, [u8]>, Option<Cow<'a, [u8]>>);
+
+/// The JSON, and the bytes behind it if this is a GLB file.
+fn split(bytes: &[u8]) -> Result<Chunks<'_>, Fault> {
+    if !bytes.starts_with(b"glTF") {
+        return Ok((Cow::Borrowed(bytes), None));
+    }
+    // The crate subtracts the header from this length unseen.
+    let length = bytes.get(8..).and_then(<[u8]>::first_chunk);
+    let length = length.map_or(0, |length| u32::from_le_bytes(*length) as usize);
+    if length < 20 || length > bytes.len() {
+        return Err(Fault::new(format!(
+            "the header promises {length} bytes, and the file has {}",
+            bytes.len()
+        )));
+    }
+    let glb = Glb::from_slice(&bytes[..length])
+        .map_err(|error| Fault::new(format!("this is no valid GLB file: {error}")))?;
+    Ok((glb.json, glb.bin))
+}
+
+fn document_of(json: &[u8]) -> Result<Document, Fault> {
+    let objects = json.iter().filter(|&&byte| byte == b'{' || byte == b'[');
+    if objects.count() > MAX_OBJECTS {
+        let (what, limit) = ("objects and lists", MAX_OBJECTS);
+        return Err(Fault::TooMany { what, limit });
+    }
+    let mut root = Root::from_slice(json).map_err(|error| {
+        let said = error.to_string();
+        let why = said.rsplit_once(" at line ").map_or(&*said, |(why, _)| why);
+        Fault::in_line(error.line(), format!("this is no valid glTF file: {why}"))
+    })?;
+    // What is only about materials, lights or pictures does not keep the triangles from being read.
+    let is_needed = |name: &String| GEOMETRY_EXTENSIONS.contains(&name.as_str());
+    if let Some(name) = root.extensions_required.iter().find(|name| is_needed(name)) {
+        return Err(Fault::new(format!(
+            "its triangles are packed with {name}, which is not read"
+        )));
+    }
+    root.extensions_required.clear();
+    prepare_positions(&mut root)?;
+    Document::from_json(root).map_err(|error| {
+        let gltf::Error::Validation(errors) = &error else {
+            return Fault::new(format!("this is no valid glTF file: {error}"));
+        };
+        let first = errors.first();
+        let said = first.map(|(path, error)| format!("{path}: {error}"));
+        Fault::new(format!(
+            "this is no valid glTF file: {}",
+            said.unwrap_or_default()
+        ))
+    })
+}
+
+/// The crate panics on positions that are not there, and refuses those without their bounds, which
+/// nobody here asks for and not every exporter writes.
+fn prepare_positions(root: &mut Root) -> Result<(), Fault> {
+    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    for primitive in primitives {
+        let positions = Checked::Valid(Semantic::Positions);
+        let Some(index) = primitive.attributes.get(&positions) else {
+            continue;
+        };
+        let index = index.value();
+        let Some(accessor) = root.accessors.get_mut(index) else {
+            return Err(Fault::new(format!(
+                "a mesh has its positions in accessor {index}, which is not there"
+            )));
+        };
+        accessor.min = Some(vec![0.0; 3].into());
+        accessor.max = Some(vec![0.0; 3].into());
+    }
+    Ok(())
+}
+
+fn matrix_of(node: &Node) -> DMat4 {
+    match node.transform() {
+        Transform::Matrix { matrix } => {
+            DMat4::from_cols_array_2d(&matrix.map(|c| c.map(f64::from)))
+        }
+        Transform::Decomposed {
+            translation,
+            rotation,
+            scale,
+        } => {
+            let rotation = DQuat::from_array(rotation.map(f64::from));
+            let is_rotation = rotation.length_squared() > 0.0;
+            DMat4::from_scale_rotation_translation(
+                Vec3::from(scale).as_dvec3(),
+                // Single precision is not quite of length one.
+                if is_rotation {
+                    rotation.normalize()
+                } else {
+                    DQuat::IDENTITY
+                },
+                Vec3::from(translation).as_dvec3(),
+            )
+        }
+    }
+}
+
+/// What has been read on the way through the nodes.
+struct Walk<'a> {
+    buffers: Buffers<'a>,
+    stem: &'a str,
+    parts: Vec<Part>,
+    points: usize,
+    faces: usize,
+}
+
+impl Walk<'_> {
+    fn add(&mut self, node: &Node, transform: DMat4) -> Result<(), Fault> {
+        let Some(mesh) = node.mesh() else {
+            return Ok(());
+        };
+        let name = node.name().or(mesh.name()).unwrap_or(self.stem);
+        for primitive in mesh.primitives() {
+            let mode = primitive.mode();
+            if !matches!(
+                mode,
+                Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
+            ) {
+                continue;
+            }
+            let triangles = self.triangles(&primitive, mode, transform)?;
+            check_groups(self.parts.len() + 1)?;
+            self.parts.push(Part {
+                name: name.to_owned(),
+                colors: colors_of(&primitive.material()),
+                triangles,
+            });
+        }
+        Ok(())
+    }
+
+    fn triangles(
+        &mut self,
+        primitive: &Primitive,
+        mode: Mode,
+        transform: DMat4,
+    ) -> Result<Triangles, Fault> {
+        let Some(accessor) = primitive.get(&Semantic::Positions) else {
+            return Ok(Triangles::default());
+        };
+        let corners = primitive
+            .indices()
+            .map_or(accessor.count(), |indices| indices.count());
+        // Many nodes may show the same mesh, so a small file can be a large scene.
+        self.points = self.points.saturating_add(accessor.count());
+        self.faces = self.faces.saturating_add(match mode {
+            Mode::Triangles => corners / 3,
+            _ => corners.saturating_sub(2),
+        });
+        check_points(self.points)?;
+        check_faces(self.faces)?;
+        let points = self.buffers.positions(&accessor)?;
+        let corners = match primitive.indices() {
+            Some(indices) => self.buffers.indices(&indices)?,
+            None => (0..points.len() as u32).collect(),
+        };
+        let mut faces = triangles_of(&corners, mode);
+        // A mirror turns faces, and turns them back where there are two.
+        if transform.determinant() < 0.0 {
+            for [_, b, c] in &mut faces {
+                std::mem::swap(b, c);
+            }
+        }
+        let place = |index: usize| {
+            let point = Vec3::from(points[index]).as_dvec3();
+            // Not projected: the last row of a node's matrix is 0 0 0 1.
+            transform.transform_point3(point)
+        };
+        Triangles::weld(points.len(), place, faces.into_iter())
+    }
+}
+
+fn triangles_of(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {
+    match mode {
+        Mode::TriangleStrip => {
+            let strip = corners.array_windows().enumerate();
+            let turned = |(number, &[a, b, c]): (usize, &[u32; 3])| match number % 2 {
+                0 => [a, b, c],
+                _ => [b, a, c],
+            };
+            strip.map(turned).collect()
+        }
+        Mode::TriangleFan => match corners {
+            [first, rest @ ..] => rest
+                .windows(2)
+                .map(|pair| [*first, pair[0], pair[1]])
+                .collect(),
+            [] => Vec::new(),
+        },
+        _ => corners.as_chunks().0.to_vec(),
+    }
+}
+
+fn colors_of(material: &Material) -> Option<PartColors> {
+    // The default material is in no file.
+    let index = material.index()?;
+    let [red, green, blue, _] = material.pbr_metallic_roughness().base_color_factor();
+    Some(PartColors {
+        name: material
+            .name()
+            .map_or_else(|| format!("material {index}"), str::to_owned),
+        diffuse: [red, green, blue].map(|channel| srgb_of(channel.into())),
+        specular: None,
+        ambient: None,
+        exponent: None,
+    })
+}
+
+/// What a screen is sent for an amount of light.
+fn srgb_of(light: f64) -> f64 {
+    match light {
+        ..=0.0 => 0.0,
+        ..=0.003_130_8 => 12.92 * light,
+        ..1.0 => 1.055 * light.powf(1.0 / 2.4) - 0.055,
+        _ => 1.0,
+    }
+}

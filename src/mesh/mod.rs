@@ -1,0 +1,112 @@
+//! Triangle meshes out of files: OBJ with MTL, STL, PLY, and the triangles of glTF and GLB.
+//!
+//! Every format comes out the same: points that are equal are one, in the order in which faces
+//! need them; faces are triangles with an area, each once, clockwise seen from outside. Memory is
+//! bounded by what a file holds, not by what its header claims.
+
+mod error;
+
+mod limits;
+
+mod triangles;
+
+mod solids;
+
+mod part;
+
+mod mtl;
+
+mod obj_fault;
+
+mod obj_lines;
+
+mod obj;
+
+mod ply_element;
+
+mod ply;
+
+mod stl;
+
+mod gltf_buffers;
+
+mod gltf_scene;
+
+use std::path::Path;
+
+pub use error::MeshError;
+pub use part::{Part, PartColors};
+pub use solids::{SOLIDS, icosphere};
+pub use triangles::{FARTHEST, Triangles};
+
+/// What a mesh is written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum MeshFormat {
+    Obj,
+    Stl,
+    Ply,
+    Gltf,
+}
+
+impl MeshFormat {
+    fn of_path(path: &Path) -> Option<Self> {
+        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+        match ending.as_str() {
+            "obj" => Some(Self::Obj),
+            "stl" => Some(Self::Stl),
+            "ply" => Some(Self::Ply),
+            "gltf" | "glb" => Some(Self::Gltf),
+            _ => None,
+        }
+    }
+}
+
+/// Whether the ending of a file's name, in any case, is one of a mesh file.
+pub fn is_mesh_file(path: &Path) -> bool {
+    MeshFormat::of_path(path).is_some()
+}
+
+/// Reads the parts of a mesh file that have triangles, of which there is at least one.
+///
+/// # Errors
+/// [`MeshError`]: which file, where in it, and what is wrong. Nothing is half-read.
+pub fn read_parts(path: &Path) -> Result<Vec<Part>, MeshError> {
+    let Some(format) = MeshFormat::of_path(path) else {
+        return Err(MeshError::UnknownFormat {
+            path: path.to_owned(),
+        });
+    };
+    let bytes = limits::read_mesh_bytes(path)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let read = match format {
+        MeshFormat::Obj => obj::read(&bytes, folder, &stem),
+        MeshFormat::Stl => stl::read(bytes, &stem),
+        MeshFormat::Ply => ply::read(&bytes, &stem),
+        MeshFormat::Gltf => gltf_scene::read(&bytes, folder, &stem),
+    };
+    let mut parts = read.map_err(|fault| fault.of(path))?;
+    parts.retain(|part| !part.triangles.faces().is_empty());
+    if parts.is_empty() {
+        return Err(MeshError::Empty {
+            path: path.to_owned(),
+        });
+    }
+    Ok(parts)
+}
+
+/// Reads all parts of a mesh file as one mesh, in the coordinates of the file.
+///
+/// # Errors
+/// [`MeshError`]: which file, where in it, and what is wrong.
+pub fn read_triangles(path: &Path) -> Result<Triangles, MeshError> {
+    let mut parts = read_parts(path)?;
+    match parts.as_mut_slice() {
+        [only] => Ok(std::mem::take(&mut only.triangles)),
+        several => Triangles::join(several.iter().map(|part| &part.triangles))
+            .map_err(|fault| fault.of(path)),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,100 @@
+//! Colours of OBJ files.
+
+use std::cell::Cell;
+use std::path::Path;
+
+use tobj::{LoadError, MTLLoadResult, Material};
+
+use super::limits::read_at_most;
+use super::part::PartColors;
+
+/// Most bytes of the material files of one OBJ file: room for thousands of materials.
+const MAX_BYTES: u64 = 4 << 20;
+
+/// Reads the material files that one OBJ file names.
+pub(super) struct Libraries<'a> {
+    folder: &'a Path,
+    /// A file that is named a million times is read until these are used up.
+    left: Cell<u64>,
+}
+
+impl<'a> Libraries<'a> {
+    /// Material files are looked for in the folder of the OBJ file.
+    pub(super) fn new(folder: &'a Path) -> Self {
+        let left = Cell::new(MAX_BYTES);
+        Self { folder, left }
+    }
+
+    /// Reads one. One that is not there, or cannot be read, only means that there are no colours.
+    pub(super) fn load(&self, name: &Path) -> MTLLoadResult {
+        let left = self.left.get();
+        // Exporters on Windows write its separators.
+        let name = name.to_string_lossy().replace('\\', "/");
+        let bytes = read_at_most(&self.folder.join(name), left)
+            .ok()
+            .flatten()
+            .ok_or(LoadError::OpenFileFailed)?;
+        // An empty file costs something too.
+        self.left
+            .set(left.saturating_sub(bytes.len() as u64 + 1024));
+        let text = String::from_utf8_lossy(&bytes);
+        let lines = text.lines().map(str::trim).filter(|line| is_color(line));
+        let kept = lines.collect::<Vec<_>>().join("\n");
+        tobj::load_mtl_buf(&mut kept.as_bytes())
+    }
+}
+
+/// Whether a line is about colours and complete: `tobj` panics where a number is missing.
+fn is_color(line: &str) -> bool {
+    let mut words = line.split_whitespace();
+    let keyword = words.next();
+    let numbers = |count| {
+        let is_number = |word: &str| word.parse::<f64>().is_ok_and(f64::is_finite);
+        words
+            .clone()
+            .take(count)
+            .filter(|word| is_number(word))
+            .count()
+            == count
+    };
+    match keyword {
+        Some("newmtl") => words.clone().next().is_some(),
+        Some("Kd" | "Ks" | "Ka") => numbers(3),
+        Some("Ns") => numbers(1),
+        _ => false,
+    }
+}
+
+/// The colours of a material, if it says what it looks like in diffuse light.
+pub(super) fn colors_of(material: &Material) -> Option<PartColors> {
+    let clamp = |color: [f64; 3]| color.map(|channel| channel.clamp(0.0, 1.0));
+    Some(PartColors {
+        name: material.name.clone(),
+        diffuse: clamp(material.diffuse?),
+        specular: material.specular.map(clamp),
+        ambient: material.ambient.map(clamp),
+        exponent: material.shininess.map(|exponent| exponent.max(0.0)),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_that_would_panic_are_left_out() {
+        for good in ["newmtl red", "Kd 1 0 0", "Ka 1 1 1 1", "Ns 10"] {
+            assert!(is_color(good), "{good}");
+        }
+        for bad in [
+            "newmtl",
+            "Kd 1 0",
+            "Ks spectral a.rfl",
+            "Ns",
+            "Kd nan 0 0",
+            "map_Kd a",
+        ] {
+            assert!(!is_color(bad), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! Where an OBJ file is wrong, looked for once it is known to be: `tobj` says what and not where.
+
+use super::error::{Fault, excerpt};
+
+/// Most characters of a word that a sentence shows.
+const EXCERPT: usize = 24;
+
+/// The first line that is wrong. If none is, `said` is all that is known.
+pub(super) fn find_fault(text: &str, said: &str) -> Fault {
+    let is_point = |line: &&str| line.split_ascii_whitespace().next() == Some("v");
+    let total = text.lines().filter(is_point).count();
+    let mut before = 0;
+    let mut goes_on = false;
+    for (index, line) in text.lines().enumerate() {
+        let mut words = line.split_ascii_whitespace();
+        let keyword = if goes_on { Some("") } else { words.next() };
+        goes_on = line.trim_ascii_end().ends_with('\\');
+        let why = match keyword {
+            Some("v") => {
+                before += 1;
+                // What stands in the next line cannot be judged here.
+                if goes_on { None } else { wrong_point(words) }
+            }
+            Some("f") => words
+                .filter(|&word| word != "\\")
+                .find_map(|word| wrong_corner(word, before, total)),
+            _ => None,
+        };
+        if let Some(why) = why {
+            return Fault::in_line(index + 1, why);
+        }
+    }
+    Fault::new(format!("this is no valid OBJ file: {said}"))
+}
+
+fn wrong_point<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<String> {
+    for _ in 0..3 {
+        let Some(word) = words.next() else {
+            return Some("a point needs three coordinates".to_owned());
+        };
+        if !word.parse::<f64>().is_ok_and(f64::is_finite) {
+            return Some(format!(
+                "the coordinate {:?} is no finite number",
+                excerpt(word, EXCERPT)
+            ));
+        }
+    }
+    None
+}
+
+fn wrong_corner(word: &str, before: usize, total: usize) -> Option<String> {
+    let is_number = |text: &str| text.is_empty() || text.parse::<isize>().is_ok();
+    let mut numbers = word.split('/');
+    let Some(point) = numbers.next().and_then(|text| text.parse::<isize>().ok()) else {
+        return Some(format!(
+            "the corner {:?} of this face names no point",
+            excerpt(word, EXCERPT)
+        ));
+    };
+    if numbers.clone().count() > 2 || !numbers.all(is_number) {
+        return Some(format!(
+            "the corner {:?} of this face is not written like 1, 1/2, 1//3 or 1/2/3",
+            excerpt(word, EXCERPT)
+        ));
+    }
+    // A negative number counts back from the point before the face.
+    let (is_there, count) = match point {
+        ..0 => (point.unsigned_abs() <= before, before),
+        0 => return Some("this face names point 0; points are counted from 1".to_owned()),
+        1.. => (point.unsigned_abs() <= total, total),
+    };
+    let before = if point < 0 { " before it" } else { "" };
+    (!is_there)
+        .then(|| format!("this face names point {point}, and there are only {count}{before}"))
+}

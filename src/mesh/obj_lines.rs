@@ -1,0 +1,183 @@
+//! The lines of an OBJ file that matter here, in the one form that `tobj` reads well.
+//!
+//! Left out: texture coordinates and normals, whose numbers `tobj` can overflow on; lines and free
+//! curves; the weights or colours behind the coordinates of a point, which `tobj` wants at every
+//! point or at none. Lines that go on behind a backslash are joined. Corners are counted on the
+//! way, so that a file with too many ends before it fills the memory.
+
+use std::io::{self, BufRead, Read};
+
+use super::error::Fault;
+use super::limits::{check_faces, check_groups, check_points};
+
+/// What a line says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Point,
+    Face,
+    Group,
+    Library,
+    Other,
+}
+
+impl Kind {
+    fn of(line: &str) -> Self {
+        match line.split_ascii_whitespace().next() {
+            Some("v") => Self::Point,
+            Some("f") => Self::Face,
+            Some("o" | "g") => Self::Group,
+            // One without a name is an error to `tobj` and nothing to a person.
+            Some("usemtl") if line.len() > "usemtl".len() => Self::Group,
+            Some("mtllib") => Self::Library,
+            _ => Self::Other,
+        }
+    }
+}
+
+/// Gives the lines piece by piece.
+pub(super) struct ObjLines<'a> {
+    rest: &'a str,
+    /// What is given out next.
+    piece: &'a [u8],
+    /// What comes behind the piece: a line break, or a space where the line goes on.
+    behind: &'static [u8],
+    /// The line goes on in the next of the file.
+    going_on: Option<Kind>,
+    corners: usize,
+    faces: usize,
+    points: usize,
+    groups: usize,
+    /// Why there are no more lines although the text goes on.
+    pub(super) fault: Option<Fault>,
+}
+
+impl<'a> ObjLines<'a> {
+    pub(super) fn new(text: &'a str) -> Self {
+        Self {
+            rest: text,
+            piece: b"",
+            behind: b"",
+            going_on: None,
+            corners: 0,
+            faces: 0,
+            points: 0,
+            groups: 0,
+            fault: None,
+        }
+    }
+
+    fn next_piece(&mut self) -> Result<&'a [u8], Fault> {
+        if !self.behind.is_empty() {
+            return Ok(std::mem::take(&mut self.behind));
+        }
+        while !self.rest.is_empty() {
+            let (line, rest) = self.rest.split_once('\n').unwrap_or((self.rest, ""));
+            self.rest = rest;
+            let line = line.trim_ascii();
+            let begun = self.going_on.take();
+            let kind = begun.unwrap_or_else(|| Kind::of(line));
+            let (line, goes_on) = match line.strip_suffix('\\') {
+                // Not where the name of a file or a group ends like this.
+                Some(start) if matches!(kind, Kind::Point | Kind::Face | Kind::Other) => {
+                    (start, !rest.is_empty())
+                }
+                _ => (line, false),
+            };
+            self.going_on = goes_on.then_some(kind);
+            let line = match kind {
+                Kind::Point if begun.is_none() && !goes_on => three_numbers(line),
+                _ => line,
+            };
+            self.count(kind, line, goes_on)?;
+            let behind: &[u8] = if goes_on { b" " } else { b"\n" };
+            if kind == Kind::Other {
+                continue;
+            }
+            // An empty piece would be the end of the text.
+            if line.is_empty() {
+                return Ok(behind);
+            }
+            self.behind = behind;
+            return Ok(line.as_bytes());
+        }
+        Ok(b"")
+    }
+
+    fn count(&mut self, kind: Kind, line: &str, goes_on: bool) -> Result<(), Fault> {
+        match kind {
+            Kind::Point => {
+                self.points += 1;
+                check_points(self.points)
+            }
+            Kind::Face => {
+                self.corners += line.split_ascii_whitespace().count();
+                // The first word is the `f`.
+                check_faces(self.faces + self.corners.saturating_sub(3))?;
+                if !goes_on {
+                    self.faces += self.corners.saturating_sub(3);
+                    self.corners = 0;
+                }
+                Ok(())
+            }
+            Kind::Group => {
+                self.groups += 1;
+                check_groups(self.groups)
+            }
+            Kind::Library | Kind::Other => Ok(()),
+        }
+    }
+}
+
+/// The start of a line with `v` and three numbers.
+fn three_numbers(line: &str) -> &str {
+    let mut words = 0;
+    let mut in_word = false;
+    for (at, byte) in line.bytes().enumerate() {
+        let is_space = byte.is_ascii_whitespace();
+        if in_word && is_space {
+            words += 1;
+            if words == 4 {
+                return &line[..at];
+            }
+        }
+        in_word = !is_space;
+    }
+    line
+}
+
+impl BufRead for ObjLines<'_> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        if self.piece.is_empty() {
+            self.piece = self.next_piece().map_err(|fault| {
+                self.fault = Some(fault);
+                io::Error::other("too many")
+            })?;
+        }
+        Ok(self.piece)
+    }
+
+    fn consume(&mut self, amount: usize) {
+        self.piece = self.piece.get(amount..).unwrap_or_default();
+    }
+}
+
+impl Read for ObjLines<'_> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let read = self.fill_buf()?.read(into)?;
+        self.consume(read);
+        Ok(read)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_matters_is_left() {
+        let text = "# a cube\r\nv 1 2\t3 0.5 0.5 0.5\nvt 1 1\n  f 1/1 \\\r\n 2 3\n\nl 1 2 \\\n3\nusemtl\n\tg a b\\\nf 1 2";
+        let mut read = String::new();
+        ObjLines::new(text).read_to_string(&mut read).expect("text");
+        assert_eq!(read, "v 1 2\t3\nf 1/1  2 3\ng a b\\\nf 1 2\n");
+    }
+}

@@ -1,0 +1,230 @@
+//! PLY: the header and the binary elements are read by `ply-rs-bw`, one element at a time so that
+//! nothing is stored twice. Lines of text are read here: the crate refuses `5.` and `.5`, which
+//! programs write.
+
+use std::io::ErrorKind;
+
+use glam::DVec3;
+use ply_rs_bw::parser::{ParseError, Parser, Reader};
+use ply_rs_bw::ply::{ElementDef, Encoding, Header, PropertyType};
+
+use super::error::Fault;
+use super::limits::{check_faces, check_points};
+use super::part::Part;
+use super::ply_element::{Element, is_corners, least_bytes};
+use super::triangles::{Triangles, out_of_range};
+
+/// Longest header; one without an end is not searched for gigabytes.
+const MAX_HEADER: usize = 1 << 20;
+
+/// Reads a PLY file; polygons become fans of triangles.
+pub(super) fn read(bytes: &[u8], stem: &str) -> Result<Vec<Part>, Fault> {
+    let parser = Parser::<Element>::new();
+    // Comments may be in any encoding, and the crate wants UTF-8.
+    let to_ascii = |&byte: &u8| if byte.is_ascii() { byte } else { b'?' };
+    let start: Vec<u8> = bytes.iter().take(MAX_HEADER).map(to_ascii).collect();
+    let mut reader = Reader::new(start.as_slice());
+    let header = parser
+        .read_header(&mut reader)
+        .map_err(|error| header_fault(&error, bytes))?;
+    let rest = &bytes[start.len() - reader.get_ref().len()..];
+    let mut body = Body {
+        parser,
+        encoding: header.encoding,
+        rest,
+        line: reader.line(),
+    };
+    let (points, faces) = body.read(&header)?;
+    let triangles = Triangles::weld(points.len(), |index| points[index], faces.into_iter())?;
+    Ok(vec![Part {
+        name: stem.to_owned(),
+        colors: None,
+        triangles,
+    }])
+}
+
+fn header_fault(error: &ParseError, bytes: &[u8]) -> Fault {
+    if !bytes.starts_with(b"ply") {
+        return Fault::new("this is no PLY file, which begins with `ply`");
+    }
+    match (error.kind(), error.line()) {
+        (ErrorKind::UnexpectedEof, _) => Fault::new("the header has no `end_header`"),
+        (_, Some(line)) => Fault::in_line(line, "this is no line of a PLY header"),
+        (_, None) => Fault::new("the header does not say which format of PLY this is"),
+    }
+}
+
+/// What comes behind the header.
+struct Body<'a> {
+    parser: Parser<Element>,
+    encoding: Encoding,
+    rest: &'a [u8],
+    /// The line that is read next, counted from 1.
+    line: usize,
+}
+
+impl Body<'_> {
+    fn read(&mut self, header: &Header) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), Fault> {
+        let vertices = check_vertices(header)?;
+        check_points(vertices)?;
+        let (mut points, mut faces) = (Vec::new(), Vec::new());
+        for (name, element) in &header.elements {
+            self.check_length(element)?;
+            match name.as_str() {
+                "vertex" => {
+                    points.reserve_exact(element.count);
+                    self.each(element, |_, read| {
+                        points.push(DVec3::from_array(read.position));
+                        Ok(())
+                    })?;
+                }
+                "face" => {
+                    check_corners(element)?;
+                    check_faces(element.count)?;
+                    faces.reserve_exact(element.count);
+                    self.each(element, |number, read| {
+                        add_fan(&mut faces, number, &read.corners, vertices)
+                    })?;
+                    // Nothing behind the faces matters, if the points were before.
+                    if points.len() == vertices {
+                        break;
+                    }
+                }
+                _ => self.each(element, |_, _| Ok(()))?,
+            }
+        }
+        Ok((points, faces))
+    }
+
+    /// A header may claim any number: it is held against what the file has left.
+    fn check_length(&self, element: &ElementDef) -> Result<(), Fault> {
+        let is_text = self.encoding == Encoding::Ascii;
+        let least = least_bytes(element, is_text).saturating_mul(element.count);
+        // The last line of a text may have no end.
+        if least > self.rest.len() + usize::from(is_text) {
+            return Err(Fault::new(format!(
+                "the header promises {} of `{}`, which take at least {least} bytes, and the file has {} left",
+                element.count,
+                element.name,
+                self.rest.len()
+            )));
+        }
+        Ok(())
+    }
+
+    /// Reads all elements of a kind, counted from 1.
+    fn each(
+        &mut self,
+        element: &ElementDef,
+        mut take: impl FnMut(usize, Element) -> Result<(), Fault>,
+    ) -> Result<(), Fault> {
+        // Nothing is written for an element without properties, however many there are.
+        if element.properties.is_empty() {
+            return Ok(());
+        }
+        for number in 1..=element.count {
+            let read = match self.encoding {
+                Encoding::Ascii => self.next_line(number, element)?,
+                Encoding::BinaryLittleEndian => self
+                    .parser
+                    .read_little_endian_element(&mut self.rest, element)
+                    .map_err(|error| body_fault(&error, number, element))?,
+                Encoding::BinaryBigEndian => self
+                    .parser
+                    .read_big_endian_element(&mut self.rest, element)
+                    .map_err(|error| body_fault(&error, number, element))?,
+            };
+            take(number, read).map_err(|fault| match fault {
+                Fault::Refused { why, .. } if self.encoding == Encoding::Ascii => {
+                    Fault::in_line(self.line - 1, why)
+                }
+                other => other,
+            })?;
+        }
+        Ok(())
+    }
+
+    fn next_line(&mut self, number: usize, element: &ElementDef) -> Result<Element, Fault> {
+        while !self.rest.is_empty() {
+            let end = self.rest.iter().position(|&byte| byte == b'\n');
+            let (line, rest) = self
+                .rest
+                .split_at(end.map_or(self.rest.len(), |end| end + 1));
+            self.rest = rest;
+            self.line += 1;
+            let line = line.trim_ascii();
+            if !line.is_empty() {
+                return str::from_utf8(line)
+                    .map_err(|_| "this is no text".to_owned())
+                    .and_then(|line| Element::from_text(line, element))
+                    .map_err(|why| Fault::in_line(self.line - 1, why));
+            }
+        }
+        Err(ends_within(number, element))
+    }
+}
+
+fn body_fault(error: &ParseError, number: usize, element: &ElementDef) -> Fault {
+    match error.kind() {
+        ErrorKind::UnexpectedEof => ends_within(number, element),
+        _ => Fault::new(format!(
+            "{} {number} has a list of a length or type that cannot be",
+            element.name
+        )),
+    }
+}
+
+fn ends_within(number: usize, element: &ElementDef) -> Fault {
+    let ElementDef { name, count, .. } = element;
+    Fault::new(format!("the file ends within {name} {number} of {count}"))
+}
+
+/// How many vertices there are, if they are somewhere.
+fn check_vertices(header: &Header) -> Result<usize, Fault> {
+    let Some(element) = header.elements.get("vertex") else {
+        return Err(Fault::new("the header names no element `vertex`"));
+    };
+    for name in ["x", "y", "z"] {
+        let property = element.properties.get(name);
+        let is_number = |data: &PropertyType| matches!(data, PropertyType::Scalar(_));
+        if !property.is_some_and(|property| is_number(&property.data_type)) {
+            let sentence = format!("the header gives a `vertex` no number `{name}`");
+            return Err(Fault::new(sentence));
+        }
+    }
+    Ok(element.count)
+}
+
+fn check_corners(element: &ElementDef) -> Result<(), Fault> {
+    let has_corners = element.properties.iter().any(|(name, property)| {
+        is_corners(name) && matches!(property.data_type, PropertyType::List(..))
+    });
+    if !has_corners {
+        return Err(Fault::new(
+            "the header gives a `face` no list `vertex_indices` or `vertex_index`",
+        ));
+    }
+    Ok(())
+}
+
+fn add_fan(
+    faces: &mut Vec<[u32; 3]>,
+    number: usize,
+    corners: &[i64],
+    vertices: usize,
+) -> Result<(), Fault> {
+    let index = |corner: i64| {
+        let index = u32::try_from(corner).ok();
+        index
+            .filter(|&index| (index as usize) < vertices)
+            .ok_or_else(|| out_of_range(number, corner, vertices))
+    };
+    let [first, rest @ ..] = corners else {
+        return Ok(());
+    };
+    check_faces(faces.len() + rest.len().saturating_sub(1))?;
+    for pair in rest.windows(2) {
+        faces.push([index(*first)?, index(pair[0])?, index(pair[1])?]);
+    }
+    Ok(())
+}

@@ -1,0 +1,215 @@
+//! Solids that are made, not read: closed, around the origin, clockwise seen from outside.
+
+use std::collections::HashMap;
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+
+use super::triangles::Triangles;
+
+/// How often each face of the icosahedron is divided in four.
+const HALVINGS: u32 = 2;
+
+/// Sides of what is round.
+const SIDES: u32 = 48;
+/// Sides of the tube of a torus.
+const TUBE_SIDES: u32 = 24;
+
+/// A solid by its name, and what makes one of a given size.
+pub type Solid = (&'static str, fn(f64) -> Triangles);
+
+/// What can be made.
+pub const SOLIDS: [Solid; 6] = [
+    ("Box", cuboid),
+    ("Tetrahedron", tetrahedron),
+    ("Icosphere", |size| icosphere(size / 2.0)),
+    ("Cylinder", |size| {
+        spun(&[(size / 2.0, size / 2.0), (size / 2.0, -size / 2.0)])
+    }),
+    ("Cone", |size| {
+        spun(&[(0.0, size / 2.0), (size / 2.0, -size / 2.0)])
+    }),
+    ("Torus", torus),
+];
+
+fn cuboid(size: f64) -> Triangles {
+    let half = size / 2.0;
+    let corner = |at: u32| {
+        let part = |bit: u32| if at >> bit & 1 == 1 { half } else { -half };
+        DVec3::new(part(0), part(1), part(2))
+    };
+    let sides = [
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+    ];
+    let faces = sides
+        .iter()
+        .flat_map(|&[a, b, c, d]| [[a, c, b], [a, d, c]]);
+    Triangles::of((0..8).map(corner).collect(), faces.collect())
+}
+
+fn tetrahedron(size: f64) -> Triangles {
+    let corners = [
+        [1.0, 1.0, 1.0],
+        [-1.0, 1.0, -1.0],
+        [1.0, -1.0, -1.0],
+        [-1.0, -1.0, 1.0],
+    ];
+    let points = corners.map(|corner| DVec3::from(corner) * (size / 2.0));
+    let faces = vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+    Triangles::of(points.to_vec(), faces)
+}
+
+/// What an outline of (radius, height), from the top down, leaves when it is spun around y; closed by flat
+/// ends where it does not come to a point.
+fn spun(outline: &[(f64, f64)]) -> Triangles {
+    let mut points = Vec::new();
+    let mut rings: Vec<Vec<u32>> = Vec::new();
+    let mut add = |place: DVec3| {
+        points.push(place);
+        points.len() as u32 - 1
+    };
+    let first = outline.first().map(|&(_, height)| (0.0, height));
+    let last = outline.last().map(|&(_, height)| (0.0, height));
+    let all = first.into_iter().chain(outline.iter().copied()).chain(last);
+    for (radius, height) in all {
+        let angles = (0..SIDES).map(|side| f64::from(side) / f64::from(SIDES) * TAU);
+        rings.push(if radius == 0.0 {
+            vec![add(DVec3::Y * height); SIDES as usize]
+        } else {
+            let place = |angle: f64| DVec3::new(angle.cos() * radius, height, angle.sin() * radius);
+            angles.map(|angle| add(place(angle))).collect()
+        });
+    }
+    Triangles::of(points, between(&rings))
+}
+
+fn torus(size: f64) -> Triangles {
+    let (radius, tube) = (size * 0.35, size * 0.15);
+    let mut points = Vec::new();
+    let mut rings = Vec::new();
+    for ring in 0..=TUBE_SIDES {
+        let turn = f64::from(ring % TUBE_SIDES) / f64::from(TUBE_SIDES) * TAU;
+        let (across, height) = (radius + tube * turn.cos(), -tube * turn.sin());
+        let start = ring % TUBE_SIDES * SIDES;
+        rings.push((start..start + SIDES).collect());
+        if ring < TUBE_SIDES {
+            points.extend((0..SIDES).map(|side| {
+                let angle = f64::from(side) / f64::from(SIDES) * TAU;
+                DVec3::new(angle.cos() * across, height, angle.sin() * across)
+            }));
+        }
+    }
+    Triangles::of(points, between(&rings))
+}
+
+/// The faces between rings of points, each of which lies below or outside the one before.
+fn between(rings: &[Vec<u32>]) -> Vec<[u32; 3]> {
+    let mut faces = Vec::new();
+    for [upper, lower] in rings.array_windows() {
+        for side in 0..upper.len() {
+            let next = (side + 1) % upper.len();
+            let (a, b, c, d) = (upper[side], upper[next], lower[next], lower[side]);
+            for face in [[a, d, c], [a, c, b]] {
+                let [x, y, z] = face;
+                if x != y && y != z && z != x {
+                    faces.push(face);
+                }
+            }
+        }
+    }
+    faces
+}
+
+/// A ball of 320 triangles around the origin: an icosahedron whose faces are divided.
+pub fn icosphere(radius: f64) -> Triangles {
+    let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
+    let mut points = Vec::new();
+    for (a, b) in [
+        (1.0, golden),
+        (-1.0, golden),
+        (1.0, -golden),
+        (-1.0, -golden),
+    ] {
+        points.extend([
+            DVec3::new(0.0, a, b),
+            DVec3::new(a, b, 0.0),
+            DVec3::new(b, 0.0, a),
+        ]);
+    }
+    let mut faces = nearest_triples(&points);
+    for _ in 0..HALVINGS {
+        let mut middles = HashMap::new();
+        let mut middle = |a: u32, b: u32| {
+            *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                points.push(points[a as usize] + points[b as usize]);
+                points.len() as u32 - 1
+            })
+        };
+        let mut finer = Vec::with_capacity(faces.len() * 4);
+        for [a, b, c] in faces {
+            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+            finer.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+        }
+        faces = finer;
+        for point in &mut points {
+            *point = point.normalize();
+        }
+    }
+    let points = points.iter().map(|point| *point * radius).collect();
+    Triangles::of(points, faces)
+}
+
+/// The triples of points that are neighbours, clockwise seen from outside.
+fn nearest_triples(points: &[DVec3]) -> Vec<[u32; 3]> {
+    // The edges of the icosahedron above are 2 long, all other distances more than 3.
+    let is_edge = |a: usize, b: usize| (points[a] - points[b]).length() < 2.5;
+    let count = points.len();
+    let mut faces = Vec::new();
+    for a in 0..count {
+        for b in (a + 1..count).filter(|&b| is_edge(a, b)) {
+            for c in (b + 1..count).filter(|&c| is_edge(a, c) && is_edge(b, c)) {
+                let normal = (points[c] - points[a]).cross(points[b] - points[a]);
+                let is_outwards = normal.dot(points[a]) > 0.0;
+                let face = if is_outwards { [a, b, c] } else { [a, c, b] };
+                faces.push(face.map(|point| point as u32));
+            }
+        }
+    }
+    faces
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use super::*;
+
+    #[test]
+    fn solids_are_closed_and_look_outwards() {
+        for (name, make) in SOLIDS {
+            let solid = make(2.0);
+            let mut edges = HashSet::new();
+            for &[a, b, c] in solid.faces() {
+                for edge in [(a, b), (b, c), (c, a)] {
+                    assert!(edges.insert(edge), "{name}: an edge is passed twice");
+                }
+            }
+            assert!(
+                edges.iter().all(|&(a, b)| edges.contains(&(b, a))),
+                "{name} is open"
+            );
+            let volume: f64 = solid
+                .corners()
+                .map(|[a, b, c]| a.dot(c.cross(b)) / 6.0)
+                .sum();
+            assert!((0.3..8.1).contains(&volume), "{name}: {volume}");
+            let (low, high) = solid.bounds().expect("it has an end");
+            assert!((high - low).max_element() <= 2.0 + 1e-12, "{name}");
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! STL, text and binary, read by `mesh-loader`.
+
+use glam::DVec3;
+use mesh_loader::Scene;
+
+use super::error::Fault;
+use super::limits::{check_faces, check_points};
+use super::part::Part;
+use super::triangles::Triangles;
+
+/// Bytes before the first triangle of a binary file: 80 of any content, and how many there are.
+const HEADER: usize = 84;
+/// Bytes of a triangle of a binary file.
+const TRIANGLE: usize = 50;
+/// What a text begins with.
+const WORD: &[u8] = b"solid";
+/// Shortest triangle of a text file.
+const SHORTEST: usize = 80;
+
+/// Reads an STL file; several solids are one part.
+pub(super) fn read(mut bytes: Vec<u8>, stem: &str) -> Result<Vec<Part>, Fault> {
+    let is_text = is_text(&bytes);
+    let (name, loaded) = if is_text {
+        (prepare_text(&mut bytes)?, load_text(&bytes))
+    } else {
+        prepare_binary(&mut bytes)?;
+        (None, mesh_loader::stl::from_slice(&bytes))
+    };
+    let scene = loaded.map_err(|error| fault_of(&error, is_text))?;
+    drop(bytes);
+    // Each face has its own three points.
+    let solids = scene.meshes.into_iter().map(|mesh| mesh.vertices);
+    let points = solids.reduce(|mut all, more| {
+        all.extend(more);
+        all
+    });
+    let points = points.unwrap_or_default();
+    check_points(points.len())?;
+    let triangles = Triangles::weld(
+        points.len(),
+        |index| DVec3::from_array(points[index].map(f64::from)),
+        (0..points.len() as u32 / 3).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]),
+    )?;
+    Ok(vec![Part {
+        name: name.unwrap_or_else(|| stem.to_owned()),
+        colors: None,
+        triangles,
+    }])
+}
+
+/// Whether this is the text form. The header of a binary file may begin with the same word.
+fn is_text(bytes: &[u8]) -> bool {
+    let start = bytes.trim_ascii_start();
+    let is_word = start.len() > WORD.len() && start[..WORD.len()].eq_ignore_ascii_case(WORD);
+    is_word
+        && start[WORD.len()].is_ascii_whitespace()
+        && promised(bytes).is_none_or(|(_, length)| length != bytes.len() as u64)
+        && !bytes.iter().take(HEADER).any(|&byte| byte == 0)
+}
+
+/// How many triangles the header of a binary file promises, and how long the file is then.
+fn promised(bytes: &[u8]) -> Option<(usize, u64)> {
+    let (_, count) = bytes.get(..HEADER)?.split_last_chunk()?;
+    let count = u32::from_le_bytes(*count) as usize;
+    Some((count, HEADER as u64 + count as u64 * TRIANGLE as u64))
+}
+
+fn prepare_binary(bytes: &mut Vec<u8>) -> Result<(), Fault> {
+    let found = bytes.len();
+    let Some((count, length)) = promised(bytes) else {
+        return Err(Fault::new(format!(
+            "this is no text that begins with `solid`, and too short for a binary STL file: {found} of at least {HEADER} bytes"
+        )));
+    };
+    if length > found as u64 {
+        return Err(Fault::new(format!(
+            "the header promises {count} triangles, which take {length} bytes, and the file ends after {found}"
+        )));
+    }
+    check_faces(count)?;
+    bytes.truncate(HEADER + count * TRIANGLE);
+    // So that no header is taken for text.
+    bytes[..HEADER].fill(0);
+    Ok(())
+}
+
+/// Makes the text what the reader wants: keywords small, everything else ASCII, a space behind
+/// `solid`. What it does not take for text it would read as binary numbers. Returns the name.
+fn prepare_text(bytes: &mut Vec<u8>) -> Result<Option<String>, Fault> {
+    let is_line_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
+    let start = bytes.len() - bytes.trim_ascii_start().len();
+    let line = bytes[start..].split(is_line_end).next().unwrap_or_default();
+    if start + line.len() == bytes.len() {
+        return Err(Fault::new("the file ends within its first line"));
+    }
+    let name = String::from_utf8_lossy(&line[WORD.len()..])
+        .trim()
+        .to_owned();
+    for byte in bytes.iter_mut() {
+        *byte = if byte.is_ascii() {
+            byte.to_ascii_lowercase()
+        } else {
+            b'?'
+        };
+    }
+    // Faces cannot be counted before they are read; there are no more than this.
+    if check_faces(bytes.len() / SHORTEST).is_err() {
+        let facets = bytes.windows(8).filter(|window| *window == b"endfacet");
+        check_faces(facets.count())?;
+    }
+    bytes.insert(start + WORD.len(), b' ');
+    // A length that no binary file has.
+    while bytes.len() < HEADER || (bytes.len() - HEADER) % TRIANGLE != TRIANGLE / 2 {
+        bytes.push(b' ');
+    }
+    Ok((!name.is_empty()).then_some(name))
+}
+
+/// Reads a text; later solids without a name need the space, too.
+fn load_text(bytes: &[u8]) -> std::io::Result<Scene> {
+    let loaded = mesh_loader::stl::from_slice(bytes);
+    match &loaded {
+        Err(error) if error.to_string().contains("space after solid") => {
+            let text = String::from_utf8_lossy(bytes);
+            let spaced = text
+                .replace("solid\n", "solid \n")
+                .replace("solid\r", "solid \r");
+            mesh_loader::stl::from_slice(spaced.as_bytes())
+        }
+        _ => loaded,
+    }
+}
+
+/// The reader's sentence ends with a line and a column in brackets.
+fn fault_of(error: &std::io::Error, is_text: bool) -> Fault {
+    let said = error.to_string();
+    let place = said.rsplit_once(" (").and_then(|(said, place)| {
+        let (line, _) = place.split_once(':')?;
+        Some((said, line.parse().ok()?))
+    });
+    match place {
+        Some((said, line)) if is_text => Fault::in_line(line, said),
+        Some((said, _)) => Fault::new(said),
+        None => Fault::new(said),
+    }
+}

@@ -1,0 +1,56 @@
+//! Real files in every format, good and broken.
+
+mod broken;
+mod mutated;
+mod obj_files;
+mod other_files;
+mod round_trip;
+mod solid;
+
+use std::path::PathBuf;
+
+use tempfile::TempDir;
+
+use super::*;
+
+/// A file in a folder of its own, which goes when it does.
+struct Sample {
+    folder: TempDir,
+    path: PathBuf,
+}
+
+impl Sample {
+    fn new(name: &str, bytes: impl AsRef<[u8]>) -> Self {
+        let folder = TempDir::new().expect("a folder");
+        let path = folder.path().join(name);
+        let sample = Self { folder, path };
+        sample.beside(name, bytes);
+        sample
+    }
+
+    /// Another file in the same folder.
+    fn beside(&self, name: &str, bytes: impl AsRef<[u8]>) {
+        std::fs::write(self.folder.path().join(name), bytes).expect("written");
+    }
+
+    fn parts(&self) -> Vec<Part> {
+        read_parts(&self.path).expect("a mesh")
+    }
+
+    fn triangles(&self) -> Triangles {
+        read_triangles(&self.path).expect("a mesh")
+    }
+
+    /// The error, with the file's name only in place of its path.
+    fn error(&self) -> String {
+        let error = read_parts(&self.path).expect_err("an error").to_string();
+        let folder = format!("{}/", self.folder.path().display());
+        assert!(error.contains(&folder), "{error}");
+        error.replace(&folder, "")
+    }
+}
+
+/// What a file of this name and content is refused with.
+fn error_of(name: &str, bytes: impl AsRef<[u8]>) -> String {
+    Sample::new(name, bytes).error()
+}

@@ -1,0 +1,73 @@
+//! What is particular about STL, PLY and glTF files.
+
+use super::Sample;
+use super::solid::{binary_stl, embedded_gltf, text_stl};
+
+#[test]
+fn stl_texts_differ() {
+    let expected = Sample::new("m.stl", text_stl()).triangles();
+    for text in [
+        text_stl().to_uppercase(),
+        text_stl().replace('\n', "\r\n"),
+        text_stl().replace(" ico sahedron", ""),
+        text_stl().replace("ico", "icö"),
+        format!("\n {}", text_stl()),
+    ] {
+        let triangles = Sample::new("m.stl", &text).triangles();
+        assert!(triangles == expected, "{text}");
+    }
+    // Two solids are one part with the name of the first.
+    let other = "solid b\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid b\n";
+    let parts = Sample::new("m.stl", text_stl() + other).parts();
+    assert_eq!(parts.len(), 1);
+    assert_eq!(parts[0].triangles.faces().len(), 21);
+    let unnamed = text_stl().replace(" ico sahedron", "") + &other.replace(" b\n", "\n");
+    assert_eq!(Sample::new("m.stl", unnamed).triangles().faces().len(), 21);
+    // Some programs write more behind the triangles.
+    let longer = [binary_stl(), b"behind".to_vec()].concat();
+    let header: Vec<u8> = [vec![0; 80], longer[80..].to_vec()].concat();
+    assert_eq!(Sample::new("m.stl", header).triangles(), expected);
+}
+
+#[test]
+fn ply_polygons_become_fans() {
+    let header = "ply\r\nformat ascii 1.0\r\ncomment é\r\nelement face 3\r\nproperty uchar flags\r\nproperty list uint8 uint32 vertex_index\r\nelement edge 1\r\nproperty list int int other\r\nelement vertex 5\r\nproperty double z\r\nproperty double y\r\nproperty double x\r\nend_header\r\n";
+    let body = "9 5 0 1 2 3 4\r\n\r\n9 3 0 0 1\r\n9 2 0 1\r\n2 8 8\r\n0 .5 0\r\n0 0. 1\r\n0 1e0 2\r\n0 2 1\r\n0 2 0";
+    let latin: Vec<u8> = format!("{header}{body}").chars().map(|c| c as u8).collect();
+    let parts = Sample::new("five.ply", latin).parts();
+    assert_eq!(parts[0].name, "five");
+    let mesh = &parts[0].triangles;
+    assert_eq!(mesh.faces(), [[0, 2, 1], [0, 3, 2], [0, 4, 3]]);
+    assert_eq!(mesh.points()[0].to_array(), [0.0, 0.5, 0.0]);
+    assert_eq!(mesh.points()[2].to_array(), [2.0, 1.0, 0.0]);
+}
+
+#[test]
+fn strips_and_fans_of_gltf_are_triangles() {
+    // The first corners are a strip and a fan as well as triangles.
+    let count = |mode: &str, count: &str| {
+        let json = embedded_gltf("")
+            .replace(r#""indices":1"#, &format!(r#""indices":1,"mode":{mode}"#))
+            .replace(r#""count":60"#, &format!(r#""count":{count}"#));
+        let sample = Sample::new("m.gltf", json);
+        super::read_triangles(&sample.path).map(|mesh| mesh.faces().len())
+    };
+    assert_eq!(count("4", "60").expect("a mesh"), 20);
+    assert_eq!(count("5", "3").expect("a mesh"), 1);
+    assert_eq!(count("6", "3").expect("a mesh"), 1);
+    assert!(count("1", "60").is_err(), "lines are no faces");
+}
+
+#[test]
+fn extensions_about_looks_do_not_matter() {
+    let with = |name: &str| {
+        let json = embedded_gltf("");
+        let start = format!(r#"{{"extensionsRequired":["{name}"],"#);
+        Sample::new("m.gltf", json.replacen('{', &start, 1))
+    };
+    assert_eq!(with("KHR_materials_unlit").triangles().faces().len(), 20);
+    assert_eq!(
+        with("KHR_draco_mesh_compression").error(),
+        "m.gltf: its triangles are packed with KHR_draco_mesh_compression, which is not read"
+    );
+}

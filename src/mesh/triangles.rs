@@ -1,0 +1,289 @@
+//! Points and triangles, and how what a file says becomes them.
+
+use std::collections::HashMap;
+use std::sync::OnceLock;
+
+use glam::DVec3;
+
+use super::error::Fault;
+use super::limits::{check_faces, check_points};
+
+/// Points and triangles. Faces are wound clockwise seen from outside: the files'
+/// counter-clockwise is turned by the reader.
+#[derive(Clone, Debug, Default)]
+pub struct Triangles {
+    points: Vec<DVec3>,
+    faces: Vec<[u32; 3]>,
+    bounds: Option<(DVec3, DVec3)>,
+    fingerprint: OnceLock<blake3::Hash>,
+}
+
+impl PartialEq for Triangles {
+    fn eq(&self, other: &Self) -> bool {
+        self.points == other.points && self.faces == other.faces
+    }
+}
+
+impl Triangles {
+    /// Triangles as they are: faces clockwise seen from outside.
+    ///
+    /// # Errors
+    /// A sentence without its full stop: no faces, too many, one that names a point that is not there, or
+    /// a point that is no place.
+    pub fn new(points: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Result<Self, String> {
+        check_points(points.len()).map_err(|fault| fault.to_string())?;
+        check_faces(faces.len()).map_err(|fault| fault.to_string())?;
+        if faces.is_empty() {
+            return Err("a mesh needs at least one face".to_owned());
+        }
+        for (number, face) in faces.iter().enumerate() {
+            if let Some(wrong) = face.iter().find(|&&point| point as usize >= points.len()) {
+                let fault = out_of_range(number, wrong, points.len());
+                return Err(fault.to_string());
+            }
+        }
+        let is_place = |point: &DVec3| point.is_finite() && point.abs().max_element() <= FARTHEST;
+        match points.iter().position(|point| !is_place(point)) {
+            Some(wrong) => Err(not_a_place(wrong)),
+            None => Ok(Self::of(points, faces)),
+        }
+    }
+
+    pub(super) fn of(points: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Self {
+        let boxes = points.iter().map(|&point| (point, point));
+        let bounds = boxes.reduce(|(low, high), (point, _)| (low.min(point), high.max(point)));
+        Self {
+            points,
+            faces,
+            bounds,
+            fingerprint: OnceLock::new(),
+        }
+    }
+
+    /// A hash of the triangles, computed once.
+    pub fn fingerprint(&self) -> &blake3::Hash {
+        self.fingerprint.get_or_init(|| {
+            let mut hasher = blake3::Hasher::new();
+            let mut bytes = Vec::new();
+            for points in self.points.chunks(HASHED) {
+                bytes.clear();
+                let parts = points.iter().flat_map(DVec3::to_array);
+                bytes.extend(parts.flat_map(f64::to_le_bytes));
+                hasher.update(&bytes);
+            }
+            for faces in self.faces.chunks(HASHED) {
+                bytes.clear();
+                bytes.extend(faces.as_flattened().iter().flat_map(|i| i.to_le_bytes()));
+                hasher.update(&bytes);
+            }
+            hasher.finalize()
+        })
+    }
+
+    /// The places of the corners.
+    pub fn points(&self) -> &[DVec3] {
+        &self.points
+    }
+
+    /// The three points of each triangle, by their indices.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    /// The corners of each triangle.
+    pub fn corners(&self) -> impl ExactSizeIterator<Item = [DVec3; 3]> {
+        let corners = |face: &[u32; 3]| face.map(|point| self.points[point as usize]);
+        self.faces.iter().map(corners)
+    }
+
+    /// Smallest and largest corner of the box around them; `None` around nothing.
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        self.bounds
+    }
+
+    /// Makes a mesh of the triangles of a file, which are wound counter-clockwise: equal points
+    /// become one, faces without an area and exact duplicates are dropped.
+    ///
+    /// `point` is asked for numbers under `count` only.
+    pub(super) fn weld(
+        count: usize,
+        point: impl Fn(usize) -> DVec3,
+        faces: impl ExactSizeIterator<Item = [u32; 3]>,
+    ) -> Result<Self, Fault> {
+        check_points(count)?;
+        check_faces(faces.len())?;
+        let mut welder = Welder {
+            points: Vec::new(),
+            faces: Vec::new(),
+            numbers: vec![UNKNOWN; count],
+            // Grown on demand: places in a table that is too large are far apart, which is slow.
+            places: HashMap::new(),
+        };
+        for (number, corners) in faces.enumerate() {
+            let indices = corners.map(|corner| corner as usize);
+            if let Some(wrong) = indices.iter().find(|&&index| index >= count) {
+                return Err(out_of_range(number + 1, wrong, count));
+            }
+            let points = indices.map(&point);
+            for (index, point) in indices.iter().zip(points) {
+                if !point.is_finite() || point.abs().max_element() > FARTHEST {
+                    return Err(Fault::new(not_a_place(index + 1)));
+                }
+            }
+            let [a, b, c] = points;
+            if (b - a).cross(c - a) != DVec3::ZERO {
+                welder.add(indices, points);
+            }
+        }
+        let Welder {
+            points, mut faces, ..
+        } = welder;
+        drop_duplicates(&mut faces);
+        Ok(Self::of(points, faces))
+    }
+
+    /// One mesh of several.
+    pub(super) fn join<'a>(parts: impl Iterator<Item = &'a Self>) -> Result<Self, Fault> {
+        let (mut points, mut faces) = (Vec::new(), Vec::new());
+        for part in parts {
+            let first = points.len() as u32;
+            points.extend_from_slice(&part.points);
+            // As in a file, because welding turns them.
+            faces.extend(
+                part.faces
+                    .iter()
+                    .map(|&[a, c, b]| [a + first, b + first, c + first]),
+            );
+        }
+        Self::weld(points.len(), |index| points[index], faces.into_iter())
+    }
+}
+
+/// Points, or faces, that are hashed at once.
+const HASHED: usize = 1024;
+
+/// Largest coordinate, in world units: what a scene may hold.
+pub const FARTHEST: f64 = 1e12;
+
+/// The sentence for a point that is nowhere.
+fn not_a_place(point: usize) -> String {
+    format!("point {point} has a coordinate that is no finite number within 1e12 of 0")
+}
+
+/// The sentence for a face that names a point that is not there; both are counted as in the file.
+pub(super) fn out_of_range(face: usize, point: impl std::fmt::Display, count: usize) -> Fault {
+    Fault::new(format!(
+        "face {face} names point {point}, and there are only {count}"
+    ))
+}
+
+/// A point that no face has named yet.
+const UNKNOWN: u32 = u32::MAX;
+
+/// A mesh on its way.
+struct Welder {
+    points: Vec<DVec3>,
+    faces: Vec<[u32; 3]>,
+    /// The number in the mesh of each point of the file.
+    numbers: Vec<u32>,
+    places: HashMap<[u64; 3], u32>,
+}
+
+impl Welder {
+    fn add(&mut self, indices: [usize; 3], points: [DVec3; 3]) {
+        let mut face = [0; 3];
+        for ((corner, index), point) in face.iter_mut().zip(indices).zip(points) {
+            if self.numbers[index] == UNKNOWN {
+                self.numbers[index] = self.number_of(point);
+            }
+            *corner = self.numbers[index];
+        }
+        let [a, b, c] = face;
+        self.faces.push([a, c, b]);
+    }
+
+    fn number_of(&mut self, point: DVec3) -> u32 {
+        // Zero has two signs and is one place.
+        let point = point + DVec3::ZERO;
+        let next = self.points.len() as u32;
+        let key = point.to_array().map(f64::to_bits);
+        let number = *self.places.entry(key).or_insert(next);
+        if number == next {
+            self.points.push(point);
+        }
+        number
+    }
+}
+
+/// Keeps the first of equal faces. Sorting takes half as long as a hash set, whose places are far
+/// apart in memory.
+fn drop_duplicates(faces: &mut Vec<[u32; 3]>) {
+    let key = |&[a, b, c]: &[u32; 3]| match a.min(b).min(c) {
+        // The same triangle may start at another corner.
+        least if least == b => [b, c, a],
+        least if least == c => [c, a, b],
+        _ => [a, b, c],
+    };
+    let mut keys: Vec<_> = faces.iter().map(key).zip(0_u32..).collect();
+    keys.sort_unstable();
+    let pairs = keys.array_windows();
+    let mut repeated: Vec<u32> = pairs
+        .filter(|[(before, _), (key, _)]| before == key)
+        .map(|[_, (_, number)]| *number)
+        .collect();
+    drop(keys);
+    repeated.sort_unstable();
+    let mut repeated = repeated.into_iter().peekable();
+    let mut number = 0;
+    faces.retain(|_| {
+        let is_first = repeated.next_if_eq(&number).is_none();
+        number += 1;
+        is_first
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn weld(points: &[DVec3], faces: &[[u32; 3]]) -> Result<Triangles, Fault> {
+        Triangles::weld(points.len(), |index| points[index], faces.iter().copied())
+    }
+
+    #[test]
+    fn faces_are_turned_and_only_good_ones_stay() {
+        let points = [DVec3::ONE, DVec3::ZERO, DVec3::X, DVec3::Y, -DVec3::ZERO];
+        let faces = [
+            [1, 2, 3],
+            // The same, from another corner and with the other zero.
+            [3, 4, 2],
+            // No area.
+            [1, 4, 2],
+            [1, 1, 3],
+            // The other side is another face.
+            [3, 2, 1],
+        ];
+        let triangles = weld(&points, &faces).expect("a mesh");
+        assert_eq!(triangles.points(), [DVec3::ZERO, DVec3::X, DVec3::Y]);
+        assert_eq!(triangles.faces(), [[0, 2, 1], [2, 0, 1]]);
+        let again = Triangles::join([&triangles, &triangles].into_iter()).expect("a mesh");
+        assert_eq!(again, triangles);
+    }
+
+    #[test]
+    fn wrong_faces_and_points_are_named() {
+        let said = |points: &[DVec3], faces: &[[u32; 3]]| match weld(points, faces) {
+            Err(Fault::Refused { why, .. }) => why,
+            other => panic!("{other:?}"),
+        };
+        let points = [DVec3::ZERO, DVec3::X, DVec3::NAN];
+        assert_eq!(
+            said(&points, &[[0, 1, 9]]),
+            "face 1 names point 9, and there are only 3"
+        );
+        assert_eq!(
+            said(&points, &[[0, 1, 2]]),
+            "point 3 has a coordinate that is no finite number within 1e12 of 0"
+        );
+    }
+}
