@@ -23,7 +23,7 @@ use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 use glint::editor::{Action, Edit, Editor};
 use glint::image::{Image, render_into};
-use glint::plan::RenderRequest;
+use glint::plan::{Planner, RenderRequest};
 use glint::scene::{Document, Object, Sampling, Scene, Sphere};
 use glint::trace::{RenderControl, Threads};
 use glint::ui::{App, Setup};
@@ -43,9 +43,12 @@ const OPENED: Vec2 = vec2(1280.0, 800.0);
 fn plain_frame(bencher: Bencher) {
     let threads = Threads::new(None).expect("threads");
     let (scene, picture) = (Scene::demo(), RenderRequest::sized(SIDE, SIDE));
-    let mut image = Image::default();
+    let (mut image, mut planner) = (Image::default(), Planner::default());
     bencher.bench_local(|| {
-        threads.run(|| render_into(&mut image, &scene, &picture, &RenderControl::default()))
+        threads.run(|| {
+            let control = RenderControl::default();
+            render_into(&mut image, &mut planner, &scene, &picture, &control)
+        })
     });
 }
 

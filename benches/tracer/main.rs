@@ -12,7 +12,7 @@ mod plain;
 use divan::{Bencher, black_box};
 use glam::DVec3;
 use glint::image::{Image, render, render_into};
-use glint::plan::RenderRequest;
+use glint::plan::{Planner, RenderRequest};
 use glint::scene::{Object, Precision, Sampling, Scene, Shape, Sphere};
 use glint::simd::Level;
 use glint::trace::{RenderControl, Threads};
@@ -45,10 +45,10 @@ fn agree() {
 fn trace(bencher: Bencher, scene: &Scene, request: RenderRequest, threads: usize) {
     let threads = Threads::new(Some(threads)).expect("threads");
     // Over the last picture, as the window does.
-    let mut image = Image::default();
+    let (mut image, mut planner) = (Image::default(), Planner::default());
     bencher.bench_local(|| {
         let control = RenderControl::default();
-        threads.run(|| render_into(&mut image, scene, &request, &control))
+        threads.run(|| render_into(&mut image, &mut planner, scene, &request, &control))
     });
 }
 

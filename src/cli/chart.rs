@@ -8,10 +8,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::action::CliAction;
 use super::error::{CliError, say};
+use super::scene::read_scene;
 use crate::export::write_text;
 use crate::image::Format;
 use crate::lab::{Study, cheapest_within, csv, table};
-use crate::scene::Document;
 use crate::trace::{RenderControl, Threads};
 
 /// Steps of the progress bar.
@@ -48,7 +48,7 @@ pub struct ChartArgs {
 pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
     // A name that cannot be written is known before the first ray.
     args.png.as_deref().map(Format::of_path).transpose()?;
-    let scene = Document::load(&args.scene)?.scene;
+    let scene = read_scene(&args.scene)?;
     let threads = Threads::new(args.threads.map(usize::from))?;
     let mut study = Study::of_side(Arc::new(scene), args.side);
     measure(&mut study, &threads);

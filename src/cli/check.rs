@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use clap::Args;
 
 use super::error::{WRONG, report_error, say};
+use super::scene::missing_meshes;
 use crate::scene::{Document, Scene};
 
 #[derive(Debug, Args)]
@@ -20,11 +21,17 @@ pub fn run(args: &CheckArgs) -> ExitCode {
     let mut code = ExitCode::SUCCESS;
     for path in &args.scenes {
         match Document::load(path) {
-            Ok(document) => say(&format!(
-                "{}: ok, {}",
-                path.display(),
-                contents(&document.scene)
-            )),
+            Ok(Document { scene, .. }) => {
+                let missing = missing_meshes(path, &scene);
+                if missing.is_empty() {
+                    say(&format!("{}: ok, {}", path.display(), contents(&scene)));
+                    continue;
+                }
+                for problem in missing {
+                    report_error(&problem);
+                }
+                code = WRONG.into();
+            }
             Err(error) => {
                 report_error(&error.to_string());
                 code = WRONG.into();

@@ -10,11 +10,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::error::{CliError, say};
 use super::render::sized;
+use super::scene::read_scene;
 use crate::export::{ExportError, ExportStep, Exported, Exporting};
 use crate::export::{Frames, Pattern, Sequence, Video, job_template};
 use crate::files::write_atomic;
 use crate::image::Format;
-use crate::scene::{Document, MAX_SIDE, Method as _, Sampling, Scene};
+use crate::scene::{MAX_SIDE, Method as _, Sampling, Scene};
 use crate::trace::{RenderControl, Threads};
 
 /// What is exported, for a folder and for a job.
@@ -86,7 +87,7 @@ fn format_of(word: &str) -> Result<Format, String> {
 
 impl What {
     fn sequence(&self, folder: PathBuf) -> Result<Sequence, CliError> {
-        let mut scene: Scene = Document::load(&self.scene)?.scene;
+        let mut scene: Scene = read_scene(&self.scene)?;
         let render = &mut scene.render;
         (render.width, render.height) =
             sized((render.width, render.height), (self.width, self.height));

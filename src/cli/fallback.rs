@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use super::error::{CliError, say};
+use super::scene::read_scene;
 use crate::export::{free_path, save_image};
 use crate::image::render;
 use crate::plan::RenderRequest;
-use crate::scene::{Document, Scene};
+use crate::scene::Scene;
 use crate::trace::{RenderControl, Threads};
 
 /// What a Debian or Ubuntu system needs to show a window.
@@ -23,7 +24,7 @@ pub fn picture_instead_of_window(scene: Option<&Path>, reason: &str) -> Result<(
         Some(path) => {
             let stem = path.file_stem().unwrap_or(path.as_os_str());
             let name = Path::new(stem).with_extension("png");
-            (Document::load(path)?.scene, name)
+            (read_scene(path)?, name)
         }
     };
     {

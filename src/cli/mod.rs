@@ -3,6 +3,8 @@
 
 mod error;
 
+mod scene;
+
 mod action;
 
 mod settings;
@@ -14,6 +16,8 @@ mod plan;
 mod render;
 
 mod export;
+
+mod convert;
 
 mod chart;
 
@@ -65,6 +69,8 @@ enum CliCommand {
     Job(export::JobArgs),
     /// Validate scene files
     Check(check::CheckArgs),
+    /// Make a scene of a mesh file
+    Convert(convert::ConvertArgs),
     /// Say what a scene needs of the tracer, and why
     Plan(plan::PlanArgs),
     /// Chart time against error for every way of tracing a scene
@@ -81,7 +87,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> CliAction {
     };
     if let Some(name) = unknown_command(&words) {
         return done(Err(CliError::usage(format!(
-            "there is no command {name:?}; there are render, export, job, check, plan, chart and stability, and `glint SCENE` opens the editor"
+            "there is no command {name:?}; there are render, export, job, check, convert, plan, chart and stability, and `glint SCENE` opens the editor"
         ))));
     }
     let words = match CliArgs::try_parse_from(words) {
@@ -101,6 +107,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> CliAction {
         Some(CliCommand::Export(args)) => export::run(args).map(|()| None),
         Some(CliCommand::Job(args)) => export::run_job(args).map(|()| None),
         Some(CliCommand::Check(args)) => return CliAction::Done(check::run(args)),
+        Some(CliCommand::Convert(args)) => convert::run(args).map(|()| None),
         Some(CliCommand::Plan(args)) => plan::run(args).map(|()| None),
         Some(CliCommand::Chart(args)) => chart::run(args),
         Some(CliCommand::Stability(args)) => stability::run(args),

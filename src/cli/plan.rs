@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::error::{CliError, say};
+use super::scene::read_scene;
 use crate::plan::{RenderRequest, needs};
-use crate::scene::Document;
 
 #[derive(Debug, Args)]
 pub struct PlanArgs {
@@ -22,7 +22,7 @@ pub struct PlanArgs {
 /// # Errors
 /// [`CliError::Usage`] for a scene that is none.
 pub fn run(args: &PlanArgs) -> Result<(), CliError> {
-    let scene = Document::load(&args.scene)?.scene;
+    let scene = read_scene(&args.scene)?;
     let needs = needs(&scene, &RenderRequest::still(&scene));
     if args.json {
         say(&serde_json::to_string_pretty(&needs)?);

@@ -12,12 +12,13 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use super::error::{CliError, say};
+use super::scene::read_scene;
 use super::settings::SettingArgs;
 use crate::animate::{CameraPath, shot};
 use crate::export::{NoSuchFrame, save_image};
 use crate::image::{Format, Image, RenderCost, render_into};
-use crate::plan::RenderRequest;
-use crate::scene::{Document, MAX_SIDE, Projection, Scene};
+use crate::plan::{Planner, RenderRequest};
+use crate::scene::{MAX_SIDE, Projection, Scene};
 use crate::simd::Level;
 use crate::trace::{RenderControl, Threads};
 use crate::worker::run_in_background;
@@ -101,7 +102,7 @@ fn lanes(word: &str) -> Result<Level, String> {
 pub fn run(args: &RenderArgs) -> Result<(), CliError> {
     // A name that cannot be written is known before the first ray.
     args.output.as_deref().map(Format::of_path).transpose()?;
-    let mut scene = Document::load(&args.scene)?.scene;
+    let mut scene = read_scene(&args.scene)?;
     let threads = Threads::new(args.threads.map(usize::from))?;
     if let Some(frame) = args.frame {
         let place = |sentence| CliError::usage(format!("{}: {sentence}", args.scene.display()));
@@ -187,9 +188,10 @@ fn trace(
         move || {
             let mut costs = Vec::new();
             // They are all the same, and may be large.
-            let mut image = Image::default();
+            let (mut image, mut planner) = (Image::default(), Planner::default());
             for _ in 0..repeat {
-                let cost = threads.run(|| render_into(&mut image, &scene, &request, &control))?;
+                let traced = || render_into(&mut image, &mut planner, &scene, &request, &control);
+                let cost = threads.run(traced)?;
                 costs.push(cost);
             }
             Some((image, costs))

@@ -186,7 +186,23 @@ impl Editor {
     pub fn open(&mut self, path: &Path) -> Result<(), SceneError> {
         let document = Document::load(path)?;
         self.replace(document, Some(absolute(path)));
+        self.tell_missing_meshes();
         Ok(())
+    }
+
+    /// Says which meshes could not be read.
+    fn tell_missing_meshes(&mut self) {
+        let mut problems = self.scene.mesh_problems();
+        let Some((index, why)) = problems.next() else {
+            return;
+        };
+        let more = match problems.count() {
+            0 => String::new(),
+            more => format!(" ({more} more are missing)"),
+        };
+        let name = &self.scene.objects[index].name;
+        let text = format!("{name:?} is not in the picture: {why}{more}");
+        self.report_error(text);
     }
 
     /// Writes the document to `path`, which becomes its file.
@@ -213,6 +229,7 @@ impl Editor {
         self.replace(document, path);
         self.saved = Arc::new(Scene::empty());
         self.is_dirty = true;
+        self.tell_missing_meshes();
     }
 
     /// The text of the document as it would be saved.

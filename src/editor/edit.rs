@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use crate::mesh::Part;
 use crate::scene::{
-    Animation, Camera, ColorPack, Light, LightObj, List, Object, Render, Scene, Shape,
+    Animation, Camera, ColorPack, Light, LightObj, List, Mesh, Object, Render, Scene, Shape,
 };
 
 use super::item::{Item, Kind};
@@ -35,6 +36,14 @@ pub enum Edit {
     Pack(usize, ColorPack, &'static str),
     /// A new object of this shape.
     AddObject(Shape),
+    /// A new object of this name, or one like it, and this mesh.
+    AddMesh(&'static str, Mesh),
+    /// The parts of a mesh file as new objects.
+    Import(Vec<Part>),
+    /// One mesh of this triangle and all that hang together with it.
+    Join(usize),
+    /// Triangles of this mesh.
+    Separate(usize),
     /// A new light here.
     AddLight(DVec3),
     /// A new pack.
@@ -88,6 +97,10 @@ impl Edit {
             Self::Light(index, _, field) => format!("{}: {field}", name(Item::light(*index))),
             Self::Pack(index, _, field) => format!("{}: {field}", name(Item::pack(*index))),
             Self::AddObject(shape) => format!("Add {}", shape.kind()),
+            Self::AddMesh(name, _) => format!("Add {name}"),
+            Self::Import(_) => "Import mesh".to_owned(),
+            Self::Join(index) => format!("Join {}", name(Item::object(*index))),
+            Self::Separate(index) => format!("Separate {}", name(Item::object(*index))),
             Self::AddLight(_) => "Add Light".to_owned(),
             Self::AddPack => "Add ColorPack".to_owned(),
             Self::Rename(item, to) => format!("Rename {} to {to}", name(*item)),
@@ -120,7 +133,15 @@ impl Edit {
                     *place = pack;
                 }
             }
-            Self::AddObject(shape) => return Ok(select(add_object(scene, shape))),
+            Self::AddObject(shape) => {
+                return Ok(select(add_object(scene, shape.kind(), shape)));
+            }
+            Self::AddMesh(name, mesh) => return Ok(select(add_object(scene, name, mesh.into()))),
+            Self::Import(parts) => return Ok(select(Item::object(scene.add_parts(parts)))),
+            Self::Join(index) => return Ok(scene.join(index).map(Item::object).and_then(select)),
+            Self::Separate(index) => {
+                scene.separate(index);
+            }
             Self::AddLight(position) => return Ok(select(add_light(scene, position))),
             Self::AddPack => return Ok(select(add_pack(scene))),
             Self::Rename(item, name) => rename(scene, item, name.trim())?,
@@ -185,8 +206,8 @@ fn some_pack(scene: &mut Scene, preferred: &str) -> String {
     scene.color_packs.keys().next().cloned().unwrap_or_default()
 }
 
-fn add_object(scene: &mut Scene, shape: Shape) -> Item {
-    let name = free_object_name(scene, &format!("{} 1", shape.kind()));
+fn add_object(scene: &mut Scene, name: &str, shape: Shape) -> Item {
+    let name = free_object_name(scene, &format!("{name} 1"));
     let color_pack = some_pack(scene, "");
     scene.objects.push(Object {
         name,

@@ -9,6 +9,7 @@ use super::error::ExportError;
 use super::manifest::{Hash, Manifest};
 use super::sequence::Sequence;
 use crate::image::{Image, render_into};
+use crate::plan::Planner;
 use crate::trace::RenderControl;
 
 /// Pictures that may wait to be written: memory stays bounded, however long the sequence is.
@@ -63,6 +64,7 @@ pub struct Exporting {
     jobs: Option<SyncSender<WriteJob>>,
     results: Receiver<WriteResult>,
     spare: Vec<Image>,
+    planner: Planner,
     done: Exported,
     last: Option<Arc<Image>>,
 }
@@ -106,6 +108,7 @@ impl Exporting {
             jobs: Some(jobs),
             results,
             spare: Vec::new(),
+            planner: Planner::default(),
             last: None,
         })
     }
@@ -149,7 +152,8 @@ impl Exporting {
         }
         let mut image = self.spare.pop().unwrap_or_default();
         let request = self.sequence.request(&shown);
-        let Some(cost) = render_into(&mut image, &shown, &request, control) else {
+        let Some(cost) = render_into(&mut image, &mut self.planner, &shown, &request, control)
+        else {
             self.spare.push(image);
             self.left.push_front(frame);
             return ExportStep::Stopped;

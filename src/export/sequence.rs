@@ -110,7 +110,7 @@ impl Sequence {
     pub fn fingerprint(&self, shown: &Scene) -> Result<Hash, ExportError> {
         let still = Scene {
             animation: Arc::default(),
-            ..shown.clone()
+            ..shown.abridged()
         };
         let text = ron::to_string(&still)?;
         let mut hasher = blake3::Hasher::new();

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::buffer::Image;
-use crate::plan::RenderRequest;
+use crate::plan::{Planner, RenderRequest};
 use crate::scene::Scene;
 use crate::trace::{Pass, Rays, RenderControl, Tracer};
 
@@ -26,19 +26,20 @@ pub fn render(
     control: &RenderControl,
 ) -> Option<(Image, RenderCost)> {
     let mut image = Image::new(request.width as usize, request.height as usize);
-    let cost = render_into(&mut image, scene, request, control)?;
+    let cost = render_into(&mut image, &mut Planner::default(), scene, request, control)?;
     Some((image, cost))
 }
 
-/// [`render`] over an older picture, whose memory it takes.
+/// [`render`] over an older picture, whose memory it takes, with what was planned for it.
 pub fn render_into(
     image: &mut Image,
+    planner: &mut Planner,
     scene: &Scene,
     request: &RenderRequest,
     control: &RenderControl,
 ) -> Option<RenderCost> {
     let start = Instant::now();
-    let tracer = Tracer::new(scene, request);
+    let tracer = Tracer::planned(scene, request, planner);
     image.resize(tracer.width(), tracer.height());
     let rays = image.trace(&tracer, Pass::Whole, control)?;
     Some(RenderCost {

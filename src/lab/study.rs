@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use super::candidates::{Candidate, candidates};
 use super::measure::{ErrorMetrics, LinearRgb, difference, eight_bits, scaled, trace_light};
 use crate::image::{Image, render_into};
-use crate::plan::RenderRequest;
+use crate::plan::{Planner, RenderRequest};
 use crate::scene::{Precision, Sampling, Scene};
 use crate::trace::{RenderControl, Tracer};
 
@@ -73,6 +73,7 @@ pub struct Study {
     pub reference: Option<Reference>,
     /// One for each candidate.
     pub measurements: Vec<Measurement>,
+    planner: Planner,
     spent: Duration,
     timed: usize,
 }
@@ -103,6 +104,7 @@ impl Study {
             scene,
             size: (width, height),
             references: Default::default(),
+            planner: Planner::default(),
             reference: None,
             spent: Duration::ZERO,
             timed: 0,
@@ -191,7 +193,7 @@ impl Study {
         let first = self.references[index].len() / width;
         let rows = height.div_ceil(REFERENCE_PIECES).min(height - first);
         let mut light = vec![[0.0; 3]; rows * width];
-        let tracer = Tracer::new(&self.scene, &request);
+        let tracer = Tracer::planned(&self.scene, &request, &mut self.planner);
         if tracer.rows(&mut light, first, control).is_some() {
             Arc::make_mut(&mut self.references[index]).extend(light);
         }
@@ -200,7 +202,7 @@ impl Study {
     fn look_at(&mut self, index: usize, control: &RenderControl) {
         let candidate = &self.measurements[index].candidate;
         let request = candidate.request(&self.scene);
-        let tracer = Tracer::new(&candidate.scene(&self.scene), &request);
+        let tracer = Tracer::planned(&candidate.scene(&self.scene), &request, &mut self.planner);
         let Some((light, rays)) = trace_light(&tracer, control) else {
             return;
         };
@@ -229,7 +231,7 @@ impl Study {
         let runs = if self.timed == 0 { 2 } else { 1 };
         for _ in 0..runs {
             let start = Instant::now();
-            if draw(&dot.candidate, &self.scene, control).is_none() {
+            if draw(&dot.candidate, &self.scene, &mut self.planner, control).is_none() {
                 return true;
             }
             self.timed += 1;
@@ -242,14 +244,19 @@ impl Study {
 }
 
 /// The finished picture, as the user would get it.
-fn draw(candidate: &Candidate, scene: &Scene, control: &RenderControl) -> Option<Image> {
+fn draw(
+    candidate: &Candidate,
+    scene: &Scene,
+    planner: &mut Planner,
+    control: &RenderControl,
+) -> Option<Image> {
     let (scene, request) = (candidate.scene(scene), candidate.request(scene));
     let mut image = Image::default();
     if candidate.upscale == 1 {
-        render_into(&mut image, &scene, &request, control)?;
+        render_into(&mut image, planner, &scene, &request, control)?;
         return Some(image);
     }
-    let tracer = Tracer::new(&scene, &request);
+    let tracer = Tracer::planned(&scene, &request, planner);
     let (light, _) = trace_light(&tracer, control)?;
     let size = (scene.render.width as usize, scene.render.height as usize);
     let light = scaled(&light, (tracer.width(), tracer.height()), size);

@@ -1,141 +1,404 @@
-//! Balls around what a ray can meet, laid out so that several are tested in step.
+//! Boxes within boxes, sixteen in each: the way down to what a ray can meet among many things.
 //!
-//! Few primitives are one flat list of balls. Many are sorted along a curve through space and
-//! bundled, [`GROUP`] by [`GROUP`], under larger balls, those again, and so on.
+//! A packet of rays is held against all boxes of a node in step, so that a node is as wide as the widest
+//! packet.
 
-use glam::DVec3;
+use std::collections::VecDeque;
 
-use crate::primitive::Ball;
-use crate::simd::Real;
+use glam::Vec3A;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
-/// How many balls are tested together: as many as the widest processor has lanes.
+use crate::primitive::BoundingBox;
+use crate::simd::{Real, Vec3};
+
+/// How many boxes a node has.
 pub const GROUP: usize = 16;
+/// Most nodes on the way from the root to a member.
+pub const DEEPEST: usize = 24;
+/// Share of the boxes that are put elsewhere after the first pass, where that makes the tree better.
+const REINSERTED: f32 = 0.02;
 
-/// Above so many, walking the tree costs less than testing every primitive's own ball.
-pub const LARGEST_LIST: usize = 128;
-
-/// Balls, component by component, filled up to whole groups with balls that nothing meets.
-#[derive(Clone, Debug, Default)]
-pub struct Balls<R> {
-    /// x of the centres.
-    pub x: Vec<R>,
-    /// y of the centres.
-    pub y: Vec<R>,
-    /// z of the centres.
-    pub z: Vec<R>,
-    /// Minus infinity in a ball that nothing meets.
-    pub radius: Vec<R>,
+/// What a box of a node holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Child {
+    /// The node of this index.
+    Node(u32),
+    /// The member of this number.
+    Member(u32),
 }
 
-/// The balls around the primitives that end.
-#[derive(Clone, Debug, Default)]
+/// A node: up to [`GROUP`] boxes, component by component.
+#[derive(Clone, Copy, Debug)]
+pub struct Node<R> {
+    /// The lowest x of each box, y, z; then the highest.
+    pub planes: [[[R; GROUP]; 3]; 2],
+    /// The smallest thickness of what is in each box, see [`crate::primitive::Primitive::thickness`].
+    pub thickness: [R; GROUP],
+    children: [Child; GROUP],
+    /// How many boxes there are.
+    pub count: usize,
+}
+
+/// What is to be found in a tree.
+#[derive(Clone, Copy, Debug)]
+pub struct Member<R> {
+    /// The box around it.
+    pub bounds: BoundingBox<R>,
+    /// Its smallest measure.
+    pub thickness: R,
+}
+
+/// A bounding volume hierarchy, the root first; no nodes where there are no members.
+#[derive(Clone, Debug)]
 pub struct Bvh<R> {
-    /// The primitives' own balls first; then, level by level, balls around [`GROUP`] of the level
-    /// before, up to a single group.
-    pub levels: Vec<Balls<R>>,
-    /// The number of the primitive in each ball of the first level.
-    pub members: Vec<u32>,
+    /// The nodes, each before those in its boxes.
+    pub nodes: Vec<Node<R>>,
+    /// The box around everything.
+    pub bounds: BoundingBox<R>,
+    /// The smallest thickness of any member.
+    pub thinnest: R,
+}
+
+impl<R: Real> Node<R> {
+    /// No boxes.
+    pub fn empty() -> Self {
+        Self {
+            planes: [[[R::INFINITY; GROUP]; 3], [[-R::INFINITY; GROUP]; 3]],
+            thickness: [R::INFINITY; GROUP],
+            children: [Child::Member(0); GROUP],
+            count: 0,
+        }
+    }
+
+    /// A bit for each box.
+    pub fn filled(&self) -> u64 {
+        (1 << self.count) - 1
+    }
+
+    /// What the box at `place` holds.
+    pub fn child(&self, place: usize) -> Child {
+        self.children[place]
+    }
+
+    /// Takes over a box of another node, behind its own, of which there are fewer than [`GROUP`].
+    #[inline(always)]
+    pub fn take(&mut self, from: &Self, place: usize) {
+        for (planes, others) in self.planes.iter_mut().zip(&from.planes) {
+            for (plane, other) in planes.iter_mut().zip(others) {
+                plane[self.count] = other[place];
+            }
+        }
+        self.thickness[self.count] = from.thickness[place];
+        self.children[self.count] = from.children[place];
+        self.count += 1;
+    }
+
+    /// Takes a box out; the last one comes into its place.
+    #[inline(always)]
+    pub fn remove(&mut self, place: usize) {
+        let last = self.count - 1;
+        for plane in self.planes.iter_mut().flatten() {
+            plane[place] = plane[last];
+        }
+        self.thickness[place] = self.thickness[last];
+        self.children[place] = self.children[last];
+        self.count = last;
+    }
+
+    fn set(&mut self, place: usize, member: &Member<R>) {
+        let Member { bounds, thickness } = member;
+        for (planes, corner) in self.planes.iter_mut().zip([bounds.low, bounds.high]) {
+            for (plane, coordinate) in planes.iter_mut().zip(corner.to_array()) {
+                plane[place] = coordinate;
+            }
+        }
+        self.thickness[place] = *thickness;
+    }
+
+    /// The box at `place` as if it were a member.
+    fn get(&self, place: usize) -> Member<R> {
+        let corner = |planes: &[[R; GROUP]; 3]| Vec3::from(planes.map(|plane| plane[place]));
+        Member {
+            bounds: BoundingBox {
+                low: corner(&self.planes[0]),
+                high: corner(&self.planes[1]),
+            },
+            thickness: self.thickness[place],
+        }
+    }
+
+    /// All boxes together.
+    fn around(&self) -> Member<R> {
+        (0..self.count).fold(Member::nothing(), |around, place| {
+            around.and(&self.get(place))
+        })
+    }
+}
+
+impl<R: Real> Member<R> {
+    fn nothing() -> Self {
+        Self {
+            bounds: BoundingBox::nothing(),
+            thickness: R::INFINITY,
+        }
+    }
+
+    fn and(&self, other: &Self) -> Self {
+        Self {
+            bounds: self.bounds.and(&other.bounds),
+            thickness: self.thickness.min(other.thickness),
+        }
+    }
 }
 
 impl<R: Real> Bvh<R> {
-    /// Builds a tree of the numbered balls if `is_tree`, else a flat list in their order.
-    pub fn new(balls: &[(u32, Ball)], is_tree: bool) -> Self {
-        let mut sorted = balls.to_vec();
-        if is_tree {
-            let keys = curve(balls);
-            let mut order: Vec<usize> = (0..balls.len()).collect();
-            order.sort_by_key(|&index| keys[index]);
-            sorted = order.into_iter().map(|index| balls[index]).collect();
+    /// A tree of the members, which are numbered in their order.
+    pub fn new(members: &[Member<R>]) -> Self {
+        let mut nodes = Vec::new();
+        if !members.is_empty() {
+            let pairs = build_pairs(members);
+            nodes = match widened(&pairs) {
+                Some(nodes) => nodes,
+                None => bundled(&pairs.primitive_indices),
+            };
         }
-        let members = sorted.iter().map(|&(member, _)| member).collect();
-        let mut level: Vec<Ball> = sorted.into_iter().map(|(_, ball)| ball).collect();
-        let mut levels = vec![Balls::of(&level)];
-        while is_tree && level.len() > GROUP {
-            level = level.chunks(GROUP).map(Ball::around_balls).collect();
-            levels.push(Balls::of(&level));
-        }
-        Self { levels, members }
-    }
-
-    /// Whether it is more than a list.
-    pub fn is_tree(&self) -> bool {
-        self.levels.len() > 1
-    }
-}
-
-impl<R: Real> Balls<R> {
-    fn of(balls: &[Ball]) -> Self {
-        let full = balls.len().next_multiple_of(GROUP);
-        let column = |part: fn(&Ball) -> f64, filler: f64| {
-            let mut column: Vec<R> = balls.iter().map(|ball| R::from_f64(part(ball))).collect();
-            column.resize(full, R::from_f64(filler));
-            column
+        let mut bvh = Self {
+            nodes,
+            bounds: BoundingBox::nothing(),
+            thinnest: R::INFINITY,
         };
-        Self {
-            x: column(|ball| ball.center.x, 0.0),
-            y: column(|ball| ball.center.y, 0.0),
-            z: column(|ball| ball.center.z, 0.0),
-            radius: column(|ball| ball.radius, f64::NEG_INFINITY),
+        bvh.refit(members);
+        bvh
+    }
+
+    /// Fits the boxes to the members, which have moved.
+    pub fn refit(&mut self, members: &[Member<R>]) {
+        // A node stands before those in its boxes.
+        for index in (0..self.nodes.len()).rev() {
+            for place in 0..self.nodes[index].count {
+                let held = match self.nodes[index].child(place) {
+                    Child::Member(member) => members[member as usize],
+                    Child::Node(node) => self.nodes[node as usize].around(),
+                };
+                self.nodes[index].set(place, &held);
+            }
+        }
+        let all = self.nodes.first().map_or(Member::nothing(), Node::around);
+        (self.bounds, self.thinnest) = (all.bounds, all.thickness);
+    }
+
+    /// The boxes of the root.
+    pub fn outline(&self) -> impl Iterator<Item = BoundingBox<R>> {
+        let root = self.nodes.first();
+        root.into_iter()
+            .flat_map(|root| (0..root.count).map(|place| root.get(place).bounds))
+    }
+}
+
+/// Boxes two by two: Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume
+/// Hierarchy Construction", TVCG 24(3), 2018, with some boxes put elsewhere afterwards.
+fn build_pairs<R: Real>(members: &[Member<R>]) -> Bvh2 {
+    // Single precision is enough to decide what goes with what.
+    let point = |v: Vec3<R>| Vec3A::from(v.to_dvec3().as_vec3());
+    let boxes: Vec<Aabb> = members
+        .iter()
+        .map(|member| Aabb::new(point(member.bounds.low), point(member.bounds.high)))
+        .collect();
+    let mut pairs = PlocBuilder::with_capacity(boxes.len()).build(
+        PlocSearchDistance::Low,
+        &boxes,
+        (0..boxes.len() as u32).collect(),
+        SortPrecision::U64,
+        2,
+    );
+    ReinsertionOptimizer::default().run(&mut pairs, REINSERTED, None);
+    pairs
+}
+
+/// For each pair how many members are below it.
+fn count_members(pairs: &Bvh2) -> Vec<u32> {
+    let mut counts = vec![0; pairs.nodes.len()];
+    let mut stack = vec![(0, false)];
+    while let Some((index, is_counted)) = stack.pop() {
+        let node = &pairs.nodes[index];
+        let first = node.first_index as usize;
+        if node.is_leaf() {
+            counts[index] = node.prim_count;
+        } else if is_counted {
+            counts[index] = counts[first] + counts[first + 1];
+        } else {
+            stack.extend([(index, true), (first, false), (first + 1, false)]);
+        }
+    }
+    counts
+}
+
+/// Nodes of pairs, from the largest pairs down; `None` if that becomes too deep.
+fn widened<R: Real>(pairs: &Bvh2) -> Option<Vec<Node<R>>> {
+    let counts = count_members(pairs);
+    let mut nodes = vec![Node::empty()];
+    let mut waiting = VecDeque::from([(0, 0, 1)]);
+    while let Some((index, pair, depth)) = waiting.pop_front() {
+        if depth > DEEPEST {
+            return None;
+        }
+        for held in opened(pairs, &counts, pair) {
+            let node = &pairs.nodes[held];
+            let child = if node.is_leaf() {
+                Child::Member(pairs.primitive_indices[node.first_index as usize])
+            } else {
+                nodes.push(Node::empty());
+                waiting.push_back((nodes.len() - 1, held, depth + 1));
+                Child::Node(nodes.len() as u32 - 1)
+            };
+            let node: &mut Node<R> = &mut nodes[index];
+            node.children[node.count] = child;
+            node.count += 1;
+        }
+    }
+    Some(nodes)
+}
+
+/// Up to [`GROUP`] pairs that together are one: the largest are taken apart first, and what would fill
+/// no more than one node last, where there is room for all of it.
+fn opened(pairs: &Bvh2, counts: &[u32], pair: usize) -> Vec<usize> {
+    let mut held = vec![pair];
+    loop {
+        let room = GROUP - held.len();
+        let area = |&place: &usize| {
+            let held: usize = held[place];
+            let count = counts[held] as usize;
+            let is_open = count > GROUP || (count > 1 && count <= room + 1);
+            is_open.then(|| (count > GROUP, pairs.nodes[held].aabb().half_area(), place))
+        };
+        let largest = (0..held.len()).filter_map(|place| area(&place));
+        let largest = largest.max_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        match largest {
+            Some((_, _, place)) if room > 0 => {
+                let first = pairs.nodes[held[place]].first_index as usize;
+                held[place] = first;
+                held.push(first + 1);
+            }
+            _ => return held,
         }
     }
 }
 
-/// The place of each ball's centre on a curve that fills the box around them, neighbours in space
-/// mostly being neighbours on it (Morton 1966).
-fn curve(balls: &[(u32, Ball)]) -> Vec<u64> {
-    let (mut low, mut high) = (DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY));
-    for (_, ball) in balls {
-        low = low.min(ball.center);
-        high = high.max(ball.center);
+/// Nodes of neighbours in a list: no better than their order, but never deep.
+fn bundled<R: Real>(order: &[u32]) -> Vec<Node<R>> {
+    let mut nodes = vec![Node::empty()];
+    let mut waiting = VecDeque::from([(0, order)]);
+    while let Some((index, members)) = waiting.pop_front() {
+        for part in members.chunks(members.len().div_ceil(GROUP)) {
+            let child = if let [member] = *part {
+                Child::Member(member)
+            } else {
+                nodes.push(Node::empty());
+                waiting.push_back((nodes.len() - 1, part));
+                Child::Node(nodes.len() as u32 - 1)
+            };
+            let node: &mut Node<R> = &mut nodes[index];
+            node.children[node.count] = child;
+            node.count += 1;
+        }
     }
-    let side = (high - low).abs().max_element().max(f64::MIN_POSITIVE);
-    let last_cell = f64::from((1_u32 << CELL_BITS) - 1);
-    let place = |(_, ball): &(u32, Ball)| {
-        let cell = (ball.center - low) * (last_cell / side);
-        cell.to_array()
-            .iter()
-            .enumerate()
-            .fold(0, |key, (axis, part)| key | spread(*part as u64) << axis)
-    };
-    balls.iter().map(place).collect()
-}
-
-/// Bits of a cell's number along one axis.
-const CELL_BITS: u32 = 20;
-
-/// The bits of a cell's number with two zeros after each.
-fn spread(cell: u64) -> u64 {
-    (0..CELL_BITS).fold(0, |spread, bit| spread | (cell >> bit & 1) << (3 * bit))
+    nodes
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
     use proptest::prelude::*;
 
     fn vector() -> impl Strategy<Value = DVec3> {
         prop::array::uniform3(-50.0..50.0_f64).prop_map(DVec3::from)
     }
 
-    proptest! {
-        #[test]
-        fn every_ball_lies_in_those_above_it(places in prop::collection::vec((vector(), 0.0..5.0_f64), 1..700)) {
-            let balls: Vec<(u32, Ball)> = (0..).zip(places).map(|(number, (center, radius))| (number, Ball { center, radius })).collect();
-            let bvh = Bvh::<f64>::new(&balls, true);
-            let mut members = bvh.members.clone();
-            members.sort_unstable();
-            prop_assert_eq!(members, (0..balls.len() as u32).collect::<Vec<_>>());
-            for (place, &member) in bvh.members.iter().enumerate() {
-                let (_, own) = balls[member as usize];
-                let mut place = place;
-                for level in &bvh.levels[1..] {
-                    place /= GROUP;
-                    let center = DVec3::new(level.x[place], level.y[place], level.z[place]);
-                    prop_assert!((own.center - center).length() + own.radius <= level.radius[place] * (1.0 + 1e-12));
+    fn member((center, reach): (DVec3, f64)) -> Member<f64> {
+        Member {
+            bounds: BoundingBox {
+                low: Vec3::from_dvec3(center - reach),
+                high: Vec3::from_dvec3(center + reach),
+            },
+            thickness: reach,
+        }
+    }
+
+    fn holds(outer: &BoundingBox<f64>, inner: &BoundingBox<f64>) -> bool {
+        outer.and(inner) == *outer
+    }
+
+    /// Every member is held once, and by all boxes above it.
+    fn is_whole(bvh: &Bvh<f64>, members: &[Member<f64>]) -> bool {
+        let mut found = vec![0; members.len()];
+        let mut waiting: Vec<(u32, BoundingBox<f64>, usize)> = vec![(0, bvh.bounds, 1)];
+        while let Some((index, around, depth)) = waiting.pop() {
+            let node = &bvh.nodes[index as usize];
+            for place in 0..node.count {
+                let held = node.get(place);
+                if depth > DEEPEST || !holds(&around, &held.bounds) {
+                    return false;
+                }
+                match node.child(place) {
+                    Child::Node(node) => waiting.push((node, held.bounds, depth + 1)),
+                    Child::Member(member) => {
+                        found[member as usize] += 1;
+                        if held.bounds != members[member as usize].bounds {
+                            return false;
+                        }
+                    }
                 }
             }
-            prop_assert!(bvh.levels.last().is_some_and(|top| top.x.len() == GROUP));
+        }
+        found.iter().all(|&times| times == 1)
+    }
+
+    proptest! {
+        #[test]
+        fn every_member_is_held_by_all_boxes_above_it(places in prop::collection::vec((vector(), 0.0..5.0_f64), 1..700)) {
+            let mut members: Vec<_> = places.into_iter().map(member).collect();
+            let mut bvh = Bvh::new(&members);
+            prop_assert!(is_whole(&bvh, &members));
+            let thinnest = members.iter().map(|member| member.thickness).fold(f64::INFINITY, f64::min);
+            prop_assert_eq!(bvh.thinnest, thinnest);
+            for moved in &mut members {
+                moved.bounds.high = moved.bounds.high + Vec3::new(1.0, 2.0, 0.0);
+            }
+            bvh.refit(&members);
+            prop_assert!(is_whole(&bvh, &members));
         }
 
+        #[test]
+        fn a_list_becomes_a_flat_tree(length in 1..3000_usize) {
+            let members: Vec<_> = (0..length).map(|at| member((DVec3::X * at as f64, 0.5))).collect();
+            let mut bvh = Bvh { nodes: bundled(&(0..length as u32).collect::<Vec<_>>()), ..Bvh::new(&members) };
+            bvh.refit(&members);
+            prop_assert!(is_whole(&bvh, &members));
+        }
+    }
+
+    #[test]
+    fn a_thousand_members_in_one_place_are_found() {
+        let members = vec![member((DVec3::ONE, 1.0)); 1000];
+        assert!(is_whole(&Bvh::new(&members), &members));
+        // Each around the one before it: a chain of pairs.
+        let nested: Vec<_> = (0..2000)
+            .map(|at| member((DVec3::ZERO, f64::from(at))))
+            .collect();
+        assert!(is_whole(&Bvh::new(&nested), &nested));
+    }
+
+    #[test]
+    fn nodes_are_well_filled() {
+        let grid = (0..4096).map(|at| {
+            let (x, y) = (f64::from(at % 64), f64::from(at / 64));
+            member((DVec3::new(x, y, 0.0), 0.5))
+        });
+        let bvh = Bvh::new(&grid.collect::<Vec<_>>());
+        assert!(bvh.nodes.len() < 4096 / 8, "{} nodes", bvh.nodes.len());
     }
 }

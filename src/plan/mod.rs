@@ -2,7 +2,15 @@
 //! rebased around the scene's middle and narrowed to the kernel's real type, without what the
 //! picture cannot show. No names, no file.
 
+mod balls;
+
 mod bvh;
+
+mod thickness;
+
+mod packed_mesh;
+
+mod geometry;
 
 mod precision;
 
@@ -20,10 +28,13 @@ mod pack;
 
 mod needs;
 
-pub use bvh::{Balls, Bvh, GROUP};
+pub use balls::Balls;
+pub use bvh::{Bvh, Child, GROUP, Node};
+pub use geometry::{Geometry, Kept, Planner};
 pub use materials::{Material, Surface};
 pub use needs::{Need, needs};
 pub use pack::{Plan, PointLight, RayOrigin};
-pub use precision::needs_double;
+pub use packed_mesh::{MeshInstance, PackedMesh};
+pub use precision::{is_uncountable, needs_double};
 pub use request::{Model, RenderRequest};
 pub use view::View;

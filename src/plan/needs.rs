@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::bvh::LARGEST_LIST;
+use super::geometry::{Kept, LARGEST_LIST};
 use super::materials::Material;
 use super::pack::Plan;
 use super::precision::needs_double;
@@ -25,7 +25,8 @@ pub struct Need {
 
 /// The decisions of the plan for `request` of `scene`, which must pass [`crate::scene::check`].
 pub fn needs(scene: &Scene, request: &RenderRequest) -> Vec<Need> {
-    let plan = Plan::<f64>::new(scene, request);
+    // Meshes count; what is in them need not be made ready for that.
+    let plan = Plan::<f64>::new(&scene.abridged(), request, &mut Kept::default());
     vec![
         precision(scene, request),
         reflections(scene, &plan),
@@ -34,7 +35,7 @@ pub fn needs(scene: &Scene, request: &RenderRequest) -> Vec<Need> {
         markers(scene, &plan),
         hidden(scene),
         faces(&plan),
-        accelerator(&plan),
+        accelerator(&plan, scene.faces()),
         highlights(&plan),
         edges(request),
     ]
@@ -159,7 +160,7 @@ fn planes(plan: &Plan<f64>) -> Need {
 
 fn markers(scene: &Scene, plan: &Plan<f64>) -> Need {
     let rule = "markers";
-    let drawn = plan.primitives.spheres.len() - plan.casting_spheres;
+    let drawn = plan.markers;
     let made = scene
         .lights
         .iter()
@@ -235,19 +236,21 @@ fn faces(plan: &Plan<f64>) -> Need {
     )
 }
 
-fn accelerator(plan: &Plan<f64>) -> Need {
+fn accelerator(plan: &Plan<f64>, faces: usize) -> Need {
     let rule = "accelerator";
-    let bounded = plan.primitives.bounded();
+    let bounded = plan.bounded() + faces;
     if plan.screen.is_none() {
         return need(rule, "every primitive for every ray", FAILING, "nothing");
     }
     let what = count(bounded, "bounded primitive");
-    if plan.bvh.is_tree() {
+    if plan.geometry.is_some() {
         need(
             rule,
-            format!("{what} in a tree of balls"),
-            format!("more than {LARGEST_LIST} are too many to test one by one for every tile"),
-            "time that grows with what a tile can see, not with the scene",
+            format!("{what} in a tree of boxes"),
+            format!(
+                "meshes, and more than {LARGEST_LIST} objects, are too much to be listed for every tile"
+            ),
+            "time that grows with what a ray comes near, not with the scene",
         )
     } else {
         need(

@@ -1,17 +1,19 @@
 //! The scene as flat lists of one kind each.
 
+use std::collections::HashMap;
+use std::sync::Arc;
+
 use glam::DVec3;
 
-use super::bvh::Bvh;
-use super::bvh::LARGEST_LIST;
+use super::balls::{Balls, balls_of};
+use super::geometry::{Geometry, Kept, is_tree, material_number, measure_loose};
 use super::materials::{Material, linear, pack_materials};
 use super::plane_occluders::{PlaneOccluder, classify_planes};
 use super::request::{Model, RenderRequest};
 use super::solids::Solids;
 use super::view::View;
 use crate::primitive::{
-    Ball, KINDS, Kind, Packing, Primitive, Primitives, Projector, Rectangle, Visit,
-    count_corner_users,
+    BoundingBox, CAUTION, KINDS, Packing, Primitives, Projector, Rectangle, count_corner_users,
 };
 use crate::scene::{
     Accelerator, Camera, LightObj, Methods, Projection, RayOffset, Sampling, Scene, Shape, Sphere,
@@ -23,12 +25,21 @@ use crate::simd::{Real, Vec3};
 /// so that single precision is spent on the scene and not on its distance from the origin.
 #[derive(Clone, Debug)]
 pub struct Plan<R> {
+    /// The scene's middle, which all coordinates are relative to.
+    pub centre: DVec3,
     /// Primary rays.
     pub view: View<R>,
-    /// Everything that rays can meet. The last spheres are the markers of the lights.
+    /// What tiles keep lists of: everything that rays can meet, or what is left beside the geometry. The
+    /// first spheres are the markers of the lights.
     pub primitives: Primitives<R>,
-    /// How many spheres cast shadows; the others are markers.
-    pub casting_spheres: usize,
+    /// How many spheres are markers, which cast no shadow.
+    pub markers: usize,
+    /// What stands in a tree. Its numbers follow those of `primitives`.
+    pub geometry: Option<Arc<Geometry<R>>>,
+    /// Whether only what is in the boxes is tested that a ray meets.
+    pub is_boxed: bool,
+    /// Where balls are in the picture that together surround the geometry; none if that is unknown.
+    pub outline: Vec<Rectangle>,
     /// Lights that shine.
     pub lights: Vec<PointLight<R>>,
     /// What the primitives' `material` numbers mean.
@@ -49,8 +60,10 @@ pub struct Plan<R> {
     /// Where each primitive that ends is in the picture, kind by kind; `None` where formulas are in use
     /// whose failures must not be hidden.
     pub screen: Option<[Vec<Rectangle>; KINDS]>,
-    /// Balls around the primitives that end.
-    pub bvh: Bvh<R>,
+    /// Balls around the `primitives` that end.
+    pub balls: Balls<R>,
+    /// Their numbers.
+    pub in_balls: Vec<u32>,
     /// For each triangle, whether no camera ray needs it; empty where they all may.
     pub camera_culled_faces: Vec<bool>,
 }
@@ -75,6 +88,9 @@ pub struct PointLight<R> {
     pub intensity: R,
     /// For each triangle, whether another one casts all of its shadow; empty where none is known.
     pub shadow_culled_faces: Vec<bool>,
+    /// For each mesh of the geometry, whether its faces that are turned to the light cast no shadow that
+    /// the others do not: rays that leave the mesh there have entered it elsewhere.
+    pub lit_faces_are_idle: Vec<bool>,
 }
 
 /// Pixels added around everything for the rounding of the kernel.
@@ -85,17 +101,21 @@ const SMOOTH_MARGIN: f64 = 4.0;
 
 impl<R: Real> Plan<R> {
     /// Packs what `request` of `scene` can show. The scene must pass [`crate::scene::check`].
-    pub fn new(scene: &Scene, request: &RenderRequest) -> Self {
+    pub fn new(scene: &Scene, request: &RenderRequest, kept: &mut Kept<R>) -> Self {
         let centre = scene
-            .bounds()
+            .objects_bounds()
             .map_or(scene.camera.position, |(low, high)| low * 0.5 + high * 0.5);
         let (occluders, model) = (classify_planes(scene, request), request.model);
         // The classic formula hits spheres where they are not: that must show.
         let may_cull = request.methods.sphere == SphereMethod::Stable && model == Model::Needed;
         let mut plan = Self {
+            centre,
             view: View::new(&scene.camera, request, centre),
             primitives: Primitives::default(),
-            casting_spheres: 0,
+            markers: 0,
+            geometry: None,
+            is_boxed: may_cull && request.accelerator != Accelerator::List,
+            outline: Vec::new(),
             lights: pack_lights(
                 scene,
                 centre,
@@ -110,7 +130,8 @@ impl<R: Real> Plan<R> {
             planes_cast: occluders.is_none(),
             shadows_behind: model == Model::Everything,
             screen: may_cull.then(Default::default),
-            bvh: Bvh::default(),
+            balls: Balls::default(),
+            in_balls: Vec::new(),
             camera_culled_faces: Vec::new(),
         };
         let projector = if may_cull {
@@ -118,43 +139,75 @@ impl<R: Real> Plan<R> {
         } else {
             None
         };
+        if is_tree(scene, request.accelerator, may_cull) {
+            plan.take_geometry(kept.geometry(scene, centre), projector.as_ref(), centre);
+        }
         plan.pack(scene, centre, projector.as_ref());
         if may_cull {
-            plan.bvh = plan.bound(request.accelerator);
+            plan.bound();
             // What leaks through a face must not find that those behind it were left out.
             if request.methods.is_tight() {
                 plan.drop_far_faces(scene, request, centre);
+                plan.drop_lit_faces(scene, request);
             }
         }
         plan
     }
 
-    /// Packs the visible objects, then the markers.
+    /// Takes what stands in a tree, and surrounds it.
+    fn take_geometry(
+        &mut self,
+        geometry: Arc<Geometry<R>>,
+        projector: Option<&Projector>,
+        centre: DVec3,
+    ) {
+        let place = |bounds: BoundingBox<R>| {
+            let (middle, radius) = bounds.ball();
+            let radius = radius.to_f64() * (1.0 + CAUTION);
+            Some(projector?.ball(middle.to_dvec3() + centre, radius))
+        };
+        self.outline = geometry.outline().filter_map(place).collect();
+        self.geometry = Some(geometry);
+    }
+
+    /// Packs the markers, then the visible objects that stand in no tree.
     fn pack(&mut self, scene: &Scene, centre: DVec3, projector: Option<&Projector>) {
+        let is_listed = |shape: &Shape| self.geometry.is_none() || shape.bounds().is_none();
+        let visible = scene.objects.iter().filter(|object| object.visible);
+        let listed: Vec<_> = visible.filter(|object| is_listed(&object.shape)).collect();
+        let corner_users = match self.geometry {
+            Some(_) => HashMap::new(),
+            None => count_corner_users(scene),
+        };
         let packing = Packing {
             centre,
-            corner_users: &count_corner_users(scene),
+            corner_users: &corner_users,
             projector,
         };
-        for object in scene.objects.iter().filter(|object| object.visible) {
+        if scene.light_visualization {
+            self.pack_markers(scene, &packing);
+        }
+        for object in listed {
             let material = material_number(scene, &object.color_pack);
             self.push(&object.shape, material, &packing);
         }
-        self.casting_spheres = self.primitives.spheres.len();
-        if scene.light_visualization {
-            let first_marker_material = scene.color_packs.len() as u32;
-            for light in scene.lights.iter().filter(|light| light.visible) {
-                let Some(LightObj { radius, color_pack }) = &light.marker else {
-                    continue;
-                };
-                let marker = Sphere {
-                    center: light.position,
-                    radius: *radius,
-                };
-                let material = first_marker_material + material_number(scene, color_pack);
-                self.push(&marker.into(), material, &packing);
-            }
+        measure_loose(&mut self.primitives);
+    }
+
+    fn pack_markers(&mut self, scene: &Scene, packing: &Packing) {
+        let first_marker_material = scene.color_packs.len() as u32;
+        for light in scene.lights.iter().filter(|light| light.visible) {
+            let Some(LightObj { radius, color_pack }) = &light.marker else {
+                continue;
+            };
+            let marker = Sphere {
+                center: light.position,
+                radius: *radius,
+            };
+            let material = first_marker_material + material_number(scene, color_pack);
+            self.push(&marker.into(), material, packing);
         }
+        self.markers = self.primitives.spheres.len();
     }
 
     fn push(&mut self, shape: &Shape, material: u32, packing: &Packing) {
@@ -177,29 +230,47 @@ impl<R: Real> Plan<R> {
         }
     }
 
-    fn bound(&self, accelerator: Accelerator) -> Bvh<R> {
-        let mut balls = BallsOf(Vec::new());
-        self.primitives.visit(&mut balls);
-        let is_tree = match accelerator {
-            Accelerator::Auto => balls.0.len() > LARGEST_LIST,
-            Accelerator::List => false,
-            Accelerator::Bvh => true,
+    /// Finds the meshes whose faces towards a light need no shadow test: those with an inside where neither
+    /// the eye nor the light is, so that no ray that counts sets out there either.
+    fn drop_lit_faces(&mut self, scene: &Scene, request: &RenderRequest) {
+        let projection = request.projection.unwrap_or(scene.camera.projection);
+        let Some(geometry) = &self.geometry else {
+            return;
         };
-        Bvh::new(&balls.0, is_tree)
+        if projection != Projection::Perspective || request.methods.offset != RayOffset::Robust {
+            return;
+        }
+        let eye = Vec3::from_dvec3(scene.camera.position - self.centre);
+        let seen: Vec<bool> = geometry
+            .meshes
+            .iter()
+            .map(|mesh| mesh.is_seen_from_outside(eye))
+            .collect();
+        for light in &mut self.lights {
+            let meshes = geometry.meshes.iter().zip(&seen);
+            let idle =
+                meshes.map(|(mesh, seen)| *seen && mesh.is_seen_from_outside(light.position));
+            light.lit_faces_are_idle = idle.collect();
+        }
     }
-}
 
-/// The balls around all primitives that end, with their numbers.
-struct BallsOf(Vec<(u32, Ball)>);
+    fn bound(&mut self) {
+        let balls = balls_of(&self.primitives);
+        self.balls = Balls::new(balls.iter().map(|(_, ball)| ball));
+        self.in_balls = balls.iter().map(|&(number, _)| number).collect();
+    }
 
-impl<R: Real> Visit<R> for BallsOf {
-    fn visit<P: Primitive<R>>(&mut self, _kind: Kind, primitives: &[P], first: usize) {
-        let balls = primitives.iter().enumerate();
-        let balls = balls.filter_map(|(index, primitive)| {
-            let ball = primitive.ball()?;
-            Some(((first + index) as u32, ball))
-        });
-        self.0.extend(balls);
+    /// The geometry, with the number of its first primitive.
+    #[inline(always)]
+    pub fn numbered_geometry(&self) -> Option<(&Geometry<R>, usize)> {
+        let geometry = self.geometry.as_deref()?;
+        Some((geometry, self.primitives.len()))
+    }
+
+    /// How many primitives have an end.
+    pub fn bounded(&self) -> usize {
+        let in_tree = self.geometry.as_ref().map_or(0, |all| all.len());
+        self.primitives.bounded() + in_tree
     }
 }
 
@@ -252,12 +323,9 @@ fn pack_lights<R: Real>(
             position: Vec3::from_dvec3(light.position - centre),
             intensity: R::from_f64(light.intensity),
             shadow_culled_faces: Vec::new(),
+            lit_faces_are_idle: Vec::new(),
         })
         .collect()
-}
-
-fn material_number(scene: &Scene, pack: &str) -> u32 {
-    scene.color_packs.get_index_of(pack).unwrap_or_default() as u32
 }
 
 #[cfg(test)]
@@ -265,17 +333,15 @@ mod tests {
     use super::*;
 
     fn plan(scene: &Scene) -> Plan<f32> {
-        Plan::new(scene, &RenderRequest::sized(64, 64))
+        let request = RenderRequest::sized(64, 64);
+        Plan::new(scene, &request, &mut Kept::default())
     }
 
     #[test]
     fn hidden_markers_and_objects_are_in_no_list() {
         let mut scene = Scene::demo();
         let full = plan(&scene);
-        assert_eq!(
-            (full.primitives.spheres.len(), full.casting_spheres),
-            (4, 2)
-        );
+        assert_eq!((full.primitives.spheres.len(), full.markers), (4, 2));
         scene.light_visualization = false;
         assert_eq!(plan(&scene).primitives.spheres.len(), 2);
         scene.objects[0].visible = false;

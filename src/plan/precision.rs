@@ -12,6 +12,14 @@ const MAX_EXTENT_PER_FEATURE: f64 = 1e5;
 /// to the ground right ahead has lost its digits.
 const MIN_HEIGHT_PER_RADIUS: f64 = 1e-3;
 
+/// Most things that single precision can number.
+const MAX_NUMBER: usize = 1 << 24;
+
+/// Whether there are more things than single precision can number.
+pub fn is_uncountable(scene: &Scene) -> bool {
+    scene.objects.len() + scene.lights.len() + scene.faces() >= MAX_NUMBER
+}
+
 /// Whether single precision would show in the picture.
 pub fn needs_double(scene: &Scene) -> bool {
     let Some((low, high)) = scene.bounds() else {

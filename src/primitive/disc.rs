@@ -1,6 +1,7 @@
 //! Ray against disc. Both sides are hit.
 
 use super::ball::Ball;
+use super::bounding_box::BoundingBox;
 use super::kind::{Approach, Packing, Primitive, SurfacePoint};
 use super::projector::{Projector, Rectangle};
 use super::ray::Ray;
@@ -45,6 +46,10 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
         })
     }
 
+    fn bounds(&self) -> Option<BoundingBox<R>> {
+        Some(BoundingBox::around_ball(self.center, self.radius))
+    }
+
     fn material(&self) -> u32 {
         self.material
     }
@@ -83,7 +88,7 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
         SurfacePoint {
             point: point - normal * height,
             normal,
-            radius: R::INFINITY,
+            curvature: t.like(R::ZERO),
             slack: t.like(R::ZERO),
         }
     }

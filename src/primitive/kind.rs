@@ -7,6 +7,7 @@ use std::fmt::Debug;
 use glam::DVec3;
 
 use super::ball::Ball;
+use super::bounding_box::BoundingBox;
 use super::projector::{Projector, Rectangle};
 use super::ray::Ray;
 use crate::scene::{Describe, Methods};
@@ -32,8 +33,8 @@ pub struct SurfacePoint<L: SimdFloat> {
     pub point: Vec3<L>,
     /// Unit normal of the surface, on either side.
     pub normal: Vec3<L>,
-    /// Radius of curvature of the surface; infinity if it is flat.
-    pub radius: L::Real,
+    /// One over the radius of curvature of the surface; 0 if it is flat.
+    pub curvature: L,
     /// How far the point may be off along the normal: 0, or a few roundings where it matters. A
     /// number even where there is none: the compiler multiplies with it in either case, and what it
     /// would find in its place may be a number so small that the processor stumbles over it.
@@ -63,6 +64,9 @@ pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
     /// Whether rays that start on it can meet it again elsewhere, see [`Self::exit`].
     const IS_CURVED: bool = false;
 
+    /// Whether it never ends.
+    const IS_ENDLESS: bool = false;
+
     /// The packed form; `None` for what no ray can meet.
     fn pack(description: &Self::Description, material: u32, packing: &Packing) -> Option<Self>;
 
@@ -71,6 +75,9 @@ pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
 
     /// A ball around it; `None` for what never ends.
     fn ball(&self) -> Option<Ball>;
+
+    /// The box around it; `None` for what never ends.
+    fn bounds(&self) -> Option<BoundingBox<R>>;
 
     /// Index of its material.
     fn material(&self) -> u32;

@@ -7,7 +7,7 @@ use super::projector::Rectangle;
 use super::sphere::PackedSphere;
 use super::triangle::PackedTriangle;
 use crate::scene::Shape;
-use crate::simd::Real;
+use crate::simd::{Real, SimdFloat, Vec3};
 
 /// Work on every list, compiled for each kind.
 pub trait Visit<R: Real> {
@@ -21,6 +21,12 @@ pub trait WithPrimitive<R: Real> {
     type Output;
     /// Works on the primitive.
     fn run<P: Primitive<R>>(self, primitive: &P) -> Self::Output;
+}
+
+/// Work on one primitive with what its test needs of the directions of rays, compiled for each kind.
+pub trait WithPrepared<L: SimdFloat> {
+    /// Works on the primitive.
+    fn run<P: Primitive<L::Real>>(&mut self, primitive: &P, prepared: &P::Prepared<L>);
 }
 
 macro_rules! kinds {
@@ -41,6 +47,20 @@ macro_rules! kinds {
             $(#[doc = concat!("Every [`", stringify!($packed), "`].")] pub $list: Vec<$packed<R>>),*
         }
 
+        /// What the test of each kind needs of the directions of rays.
+        #[derive(Clone, Copy)]
+        pub struct Prepared<L: SimdFloat> {
+            $(#[doc = concat!("For [`", stringify!($packed), "`].")] pub $list: <$packed<L::Real> as Primitive<L::Real>>::Prepared<L>),*
+        }
+
+        impl<L: SimdFloat> Prepared<L> {
+            /// What the tests need of unit directions.
+            #[inline(always)]
+            pub fn new(directions: Vec3<L>) -> Self {
+                Self { $($list: $packed::<L::Real>::prepare(directions)),* }
+            }
+        }
+
         impl<R> Default for Primitives<R> {
             fn default() -> Self {
                 Self { $($list: Vec::new()),* }
@@ -57,6 +77,8 @@ macro_rules! kinds {
                         let rectangle = $packed::<R>::rectangle(description, packing.projector?)?;
                         Some((Kind::$kind, rectangle))
                     }),*
+                    // Many primitives, which are kept apart.
+                    Shape::Mesh(_) => None,
                 }
             }
 
@@ -91,13 +113,29 @@ macro_rules! kinds {
                 )*
                 unreachable!("there is no primitive {index} behind the last")
             }
+
+            /// The same work with what has been prepared for rays.
+            ///
+            /// # Panics
+            /// If there is no primitive of this number.
+            #[inline(always)]
+            pub fn with_prepared<L: SimdFloat<Real = R>>(&self, number: usize, prepared: &Prepared<L>, work: &mut impl WithPrepared<L>) {
+                let mut index = number;
+                $(
+                    if index < self.$list.len() {
+                        return work.run(&self.$list[index], &prepared.$list);
+                    }
+                    index -= self.$list.len();
+                )*
+                unreachable!("there is no primitive {index} behind the last")
+            }
         }
     };
 }
 
 kinds! {
-    Sphere in spheres: PackedSphere,
     Plane in planes: PackedPlane,
+    Sphere in spheres: PackedSphere,
     Triangle in triangles: PackedTriangle,
     Disc in discs: PackedDisc
 }

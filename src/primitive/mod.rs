@@ -7,6 +7,8 @@ mod ray;
 
 mod ball;
 
+mod bounding_box;
+
 mod projector;
 
 mod kind;
@@ -22,11 +24,12 @@ mod disc;
 mod list;
 
 pub use ball::{Ball, CAUTION, FAR_CAUTION};
+pub use bounding_box::BoundingBox;
 pub use disc::PackedDisc;
 pub use kind::{Approach, Corner, Packing, Primitive, SurfacePoint};
-pub use list::{KINDS, Kind, Primitives, Visit, WithPrimitive};
+pub use list::{KINDS, Kind, Prepared, Primitives, Visit, WithPrepared, WithPrimitive};
 pub use plane::PackedPlane;
 pub use projector::{Extent, Projector, Rectangle};
 pub use ray::Ray;
-pub use sphere::PackedSphere;
-pub use triangle::{PackedTriangle, corner, count_corner_users};
+pub use sphere::{PackedSphere, Round};
+pub use triangle::{Flat, PackedTriangle, corner, count_corner_users, number_corners};

@@ -1,6 +1,7 @@
 //! Ray against plane.
 
 use super::ball::Ball;
+use super::bounding_box::BoundingBox;
 use super::kind::{Approach, Packing, Primitive, SurfacePoint};
 use super::projector::{Projector, Rectangle};
 use super::ray::Ray;
@@ -21,6 +22,7 @@ pub struct PackedPlane<R> {
 impl<R: Real> Primitive<R> for PackedPlane<R> {
     type Description = Plane;
     type Prepared<L: SimdFloat<Real = R>> = ();
+    const IS_ENDLESS: bool = true;
 
     fn pack(description: &Plane, material: u32, packing: &Packing) -> Option<Self> {
         let normal = description.normal.try_normalize()?;
@@ -36,6 +38,10 @@ impl<R: Real> Primitive<R> for PackedPlane<R> {
     }
 
     fn ball(&self) -> Option<Ball> {
+        None
+    }
+
+    fn bounds(&self) -> Option<BoundingBox<R>> {
         None
     }
 
@@ -71,7 +77,7 @@ impl<R: Real> Primitive<R> for PackedPlane<R> {
         SurfacePoint {
             point: point - normal * (normal.dot(point) - t.like(self.offset)),
             normal,
-            radius: R::INFINITY,
+            curvature: t.like(R::ZERO),
             slack: t.like(R::ZERO),
         }
     }

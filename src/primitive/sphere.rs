@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::ball::Ball;
+use super::bounding_box::BoundingBox;
 use super::kind::{Approach, Packing, Primitive, SurfacePoint};
 use super::projector::{Projector, Rectangle};
 use super::ray::Ray;
@@ -22,6 +23,40 @@ pub struct PackedSphere<R> {
 
 /// Distances along the ray to where its line enters and leaves a sphere; NaN if it passes by.
 type Roots<L> = (L, L);
+
+/// What is needed of a sphere where it is hit, for each ray of its own sphere.
+#[derive(Clone, Copy, Debug)]
+pub struct Round<L: SimdFloat> {
+    /// Its middle.
+    pub center: Vec3<L>,
+    /// > 0.
+    pub radius: L,
+    /// One over the radius.
+    pub curvature: L,
+}
+
+impl<L: SimdFloat> Round<L> {
+    /// The hits at `t`, drawn onto the surface.
+    #[inline(always)]
+    pub fn refine(&self, rays: &Ray<L>, t: L) -> SurfacePoint<L> {
+        let Self {
+            center,
+            radius,
+            curvature,
+        } = *self;
+        let outwards = rays.at(t) - center;
+        // 1/|p - c| by one step of Newton's method from 1/R, which |p - c| all but is.
+        let near = outwards * curvature;
+        let correction = t.like_f64(1.5) - near.dot(near) * t.like_f64(0.5);
+        let normal = near * correction;
+        SurfacePoint {
+            point: center + normal * radius,
+            normal,
+            curvature,
+            slack: t.like(L::Real::ZERO),
+        }
+    }
+}
 
 impl<R: Real> Primitive<R> for PackedSphere<R> {
     type Description = Sphere;
@@ -45,6 +80,10 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
             center: self.center.to_dvec3(),
             radius: self.radius.to_f64(),
         })
+    }
+
+    fn bounds(&self) -> Option<BoundingBox<R>> {
+        Some(BoundingBox::around_ball(self.center, self.radius))
     }
 
     fn material(&self) -> u32 {
@@ -93,20 +132,12 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
     /// come. The normal points outwards.
     #[inline(always)]
     fn refine<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, t: L) -> SurfacePoint<L> {
-        let center = rays.origin.like(self.center);
-        let radius = t.like(self.radius);
-        let outwards = rays.at(t) - center;
-        // 1/|p - c| by one step of Newton's method from 1/R, which |p - c| all but is.
-        let per_radius = t.like(R::ONE / self.radius);
-        let near = outwards * per_radius;
-        let correction = t.like_f64(1.5) - near.dot(near) * t.like_f64(0.5);
-        let normal = near * correction;
-        SurfacePoint {
-            point: center + normal * radius,
-            normal,
-            radius: self.radius,
-            slack: t.like(R::ZERO),
-        }
+        let round = Round {
+            center: rays.origin.like(self.center),
+            radius: t.like(self.radius),
+            curvature: t.like(R::ONE / self.radius),
+        };
+        round.refine(rays, t)
     }
 
     #[inline(always)]

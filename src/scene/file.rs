@@ -3,7 +3,7 @@
 use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, Read};
-use std::path::{Path, PathBuf};
+use std::path::{Path, PathBuf, absolute};
 
 use ron::extensions::Extensions;
 use ron::ser::PrettyConfig;
@@ -17,8 +17,8 @@ use crate::files::write_atomic;
 /// The RON text of the demo scene, as embedded in the program.
 pub const DEMO_TEXT: &str = include_str!("../../scenes/demo.ron");
 
-/// Longest scene file that is read, in bytes: room for about 200,000 objects.
-const MAX_BYTES: u64 = 32 << 20;
+/// Longest scene file that is read, in bytes: room for 4,000,000 faces of meshes or 1,500,000 objects.
+const MAX_BYTES: u64 = 256 << 20;
 /// Deepest nesting of brackets; a scene needs five.
 const MAX_DEPTH: usize = 32;
 /// Most characters of a line that an error shows, so that a file on one line stays readable.
@@ -136,7 +136,9 @@ impl Document {
                 "the file is not UTF-8 text".to_owned(),
             )
         })?;
-        Self::parse(&name, &text)
+        let mut document = Self::parse(&name, &text)?;
+        document.scene.load_meshes(Some(&folder_of(path)));
+        Ok(document)
     }
 
     /// Reads and checks a scene from RON text.
@@ -203,7 +205,20 @@ impl Document {
     /// # Errors
     /// [`SceneError::Disk`]; the file at `path` is then untouched.
     pub fn save(&self, path: &Path) -> Result<Option<PathBuf>, SceneError> {
-        let text = self.to_text()?;
+        let document = Self {
+            header: self.header.clone(),
+            scene: self.scene.taken_to(&folder_of(path)),
+        };
+        let text = document.to_text()?;
+        // What could not be read again is not written.
+        let found = text.len() as u64;
+        if found > MAX_BYTES {
+            return Err(SceneError::TooLarge {
+                path: path.to_owned(),
+                found,
+                limit: MAX_BYTES,
+            });
+        }
         let disk = |source| SceneError::Disk {
             verb: "write",
             path: path.to_owned(),
@@ -224,6 +239,12 @@ impl Document {
         write_atomic(path, text.as_bytes()).map_err(disk)?;
         Ok(backup)
     }
+}
+
+/// The folder of a file, from the root.
+fn folder_of(path: &Path) -> PathBuf {
+    let path = absolute(path).unwrap_or_else(|_| path.to_owned());
+    path.parent().map(Path::to_owned).unwrap_or_default()
 }
 
 /// One item of a list in each line. Texts have their line breaks escaped.

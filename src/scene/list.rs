@@ -36,6 +36,11 @@ impl<T: Clone> List<T> {
         }
     }
 
+    /// Whether it is the same list, unchanged since one was copied from the other; `false` may be wrong.
+    pub fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.chunks, &other.chunks)
+    }
+
     /// How many items there are.
     pub fn len(&self) -> usize {
         let last = self.chunks.last();

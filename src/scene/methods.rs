@@ -272,7 +272,7 @@ pub enum Accelerator {
     Auto,
     /// One by one.
     List,
-    /// A tree of balls.
+    /// A tree of boxes.
     Bvh,
 }
 
@@ -281,15 +281,20 @@ impl Method for Accelerator {
         method(
             Self::Auto,
             "auto",
-            "a list up to 128 shapes that end, a tree above",
+            "a list up to 128 shapes that end, a tree above and for meshes",
             "Glint's plan",
         ),
-        method(Self::List, "list", "each by each, per tile", "Glint"),
+        method(
+            Self::List,
+            "list",
+            "each by each, per tile; meshes for every ray",
+            "Glint",
+        ),
         method(
             Self::Bvh,
             "bvh",
-            "a tree of balls, 16 by 16 along a Morton curve",
-            "Wald, Boulos and Shirley, TOG 26(1), 2007, in kind",
+            "a tree of boxes, 16 in each, walked by packets of rays",
+            "Wald, Benthin and Boulos, RT 2008, in kind",
         ),
     ];
 }

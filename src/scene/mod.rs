@@ -28,6 +28,10 @@ mod keys;
 
 mod whole;
 
+mod import;
+
+mod join;
+
 mod target;
 
 mod locate;
@@ -46,6 +50,7 @@ pub use animation::{
 pub use camera::{Camera, Framing, Projection};
 pub use check::{Problem, check, check_edit};
 pub use file::{DEMO_TEXT, Document, SceneError, read_text};
+pub use join::MOST_SEPARATE;
 pub use list::List;
 pub use locate::PathStep;
 pub use material::ColorPack;
@@ -58,5 +63,7 @@ pub use object::{Light, LightObj, Object};
 pub use orientation::Orientation;
 pub use recovery::{Leftover, Recovery};
 pub use render::{MAX_REFLECTIONS, MAX_SIDE, Render, Setting, VisitSetting};
-pub use shape::{Describe, Disc, Field, FieldValue, Plane, Shape, Sphere, Triangle};
+pub use shape::{
+    Describe, Disc, Field, FieldValue, Mesh, MeshSource, Plane, Shape, Sphere, Triangle,
+};
 pub use whole::{Scene, VERSION};

@@ -99,7 +99,8 @@ fn take(path: &Path, of: Option<&Path>) -> Option<Leftover> {
     if of.is_some_and(|of| of != Path::new(first)) {
         return None;
     }
-    let document = Document::from_text(body).ok()?;
+    let mut document = Document::from_text(body).ok()?;
+    document.scene.load_meshes(Path::new(first).parent());
     let _ = fs::remove_file(path);
     let _ = fs::remove_file(&lock_path);
     Some(Leftover {

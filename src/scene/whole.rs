@@ -1,5 +1,6 @@
 //! The scene itself.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -13,6 +14,7 @@ use super::material::{ColorPack, read_packs};
 use super::notation;
 use super::object::{Light, LightObj, Object, default_intensity, yes};
 use super::render::Render;
+use super::shape::{Mesh, Shape};
 
 /// The scene-file version that this program writes and the newest that it reads.
 pub const VERSION: u32 = 1;
@@ -105,13 +107,83 @@ impl Scene {
     /// Smallest and largest corner of the box around everything visible that has an end, lights
     /// included; `None` if there is nothing.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        let visible = self.objects.iter().filter(|object| object.visible);
         let lights = self.lights.iter().filter(|light| light.visible);
-        let boxes = visible
-            .filter_map(|object| object.shape.bounds())
-            .chain(lights.map(|light| (light.position, light.position)));
-        boxes.reduce(|(low, high), (other_low, other_high)| {
-            (low.min(other_low), high.max(other_high))
+        let lights = lights.map(|light| (light.position, light.position));
+        around(self.objects_bounds().into_iter().chain(lights))
+    }
+
+    /// The same without lights.
+    pub fn objects_bounds(&self) -> Option<(DVec3, DVec3)> {
+        let visible = self.objects.iter().filter(|object| object.visible);
+        around(visible.filter_map(|object| object.shape.bounds()))
+    }
+
+    /// Reads the meshes that are files in `folder`, where the scene file is. What cannot be read is noted
+    /// with the mesh, which is then empty; see [`Self::mesh_problems`].
+    pub fn load_meshes(&mut self, folder: Option<&Path>) {
+        self.change_meshes(|mesh| {
+            let mut loaded = mesh.clone();
+            loaded.load(folder);
+            loaded
+        });
+    }
+
+    /// The same scene for a file in another folder: meshes that lie elsewhere are taken in.
+    #[must_use]
+    pub fn taken_to(&self, folder: &Path) -> Self {
+        let mut scene = self.clone();
+        scene.change_meshes(|mesh| Mesh {
+            source: mesh.source.taken_to(folder),
+            ..mesh.clone()
+        });
+        scene
+    }
+
+    /// The same scene with a word in place of the triangles of each mesh, which is another word for other
+    /// triangles: what tells scenes apart without writing them down.
+    #[must_use]
+    pub fn abridged(&self) -> Self {
+        let mut scene = self.clone();
+        scene.change_meshes(|mesh| Mesh {
+            source: mesh.source.abridged(),
+            ..mesh.clone()
+        });
+        scene
+    }
+
+    fn change_meshes(&mut self, change: impl Fn(&Mesh) -> Mesh) {
+        let meshes = self.objects.iter().enumerate();
+        let meshes = meshes.filter_map(|(index, object)| match object.shape {
+            Shape::Mesh(_) => Some(index),
+            _ => None,
+        });
+        for index in meshes.collect::<Vec<_>>() {
+            if let Some(object) = self.objects.get_mut(index)
+                && let Shape::Mesh(mesh) = &mut object.shape
+            {
+                *mesh = change(mesh);
+            }
+        }
+    }
+
+    /// How many triangles the meshes have.
+    pub fn faces(&self) -> usize {
+        let meshes = self
+            .objects
+            .iter()
+            .filter_map(|object| match &object.shape {
+                Shape::Mesh(mesh) => Some(mesh.source.triangles().faces().len()),
+                _ => None,
+            });
+        meshes.sum()
+    }
+
+    /// The objects whose meshes could not be read, and why.
+    pub fn mesh_problems(&self) -> impl Iterator<Item = (usize, &str)> {
+        let objects = self.objects.iter().enumerate();
+        objects.filter_map(|(index, object)| match &object.shape {
+            Shape::Mesh(mesh) => Some((index, mesh.source.problem()?)),
+            _ => None,
         })
     }
 
@@ -132,6 +204,11 @@ impl Scene {
             .chain(objects.map(|o| o.name.as_str()))
             .collect()
     }
+}
+
+/// The box around boxes.
+fn around(boxes: impl Iterator<Item = (DVec3, DVec3)>) -> Option<(DVec3, DVec3)> {
+    boxes.reduce(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)))
 }
 
 fn default_ambient_intensity() -> f64 {

@@ -19,8 +19,16 @@ pub struct Vec3<R> {
 
 impl<R> Vec3<R> {
     /// The vector (x, y, z).
+    #[inline(always)]
     pub const fn new(x: R, y: R, z: R) -> Self {
         Self { x, y, z }
+    }
+}
+
+impl<T> Vec3<T> {
+    /// What `change` makes of each component.
+    pub fn map<U>(self, change: impl Fn(T) -> U) -> Vec3<U> {
+        Vec3::new(change(self.x), change(self.y), change(self.z))
     }
 }
 

@@ -3,8 +3,8 @@
 
 use glam::DVec3;
 
-use crate::plan::{Balls, Bvh, GROUP};
-use crate::primitive::{Ball, CAUTION, FAR_CAUTION, Ray};
+use crate::plan::Balls;
+use crate::primitive::{Ball, BoundingBox, CAUTION, FAR_CAUTION, Ray};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// Rays that start within a ball and go in directions within a cone, up to some distance.
@@ -111,39 +111,21 @@ impl<R: Real> Beam<R> {
         is_met.bits()
     }
 
-    /// Lists the members of `bvh` that it meets, in order; `stack` is room to work in.
+    /// Lists the places of the balls that it meets, in order.
     #[inline(always)]
     pub fn gather<L: SimdFloat<Real = R>>(
         &self,
         token: L::Token,
-        bvh: &Bvh<R>,
-        stack: &mut Vec<(usize, usize)>,
+        balls: &Balls<R>,
         met: &mut Vec<u32>,
     ) {
         met.clear();
-        stack.clear();
-        let top = bvh.levels.len() - 1;
-        for group in (0..bvh.levels[top].x.len() / GROUP).rev() {
-            stack.push((top, group));
-        }
-        while let Some((level, group)) = stack.pop() {
-            let from = group * GROUP;
-            for first in (from..from + GROUP).step_by(L::WIDTH) {
-                let mut bits = self.meets::<L>(token, &bvh.levels[level], first);
-                while bits != 0 {
-                    let place = first + bits.trailing_zeros() as usize;
-                    bits &= bits - 1;
-                    if level == 0 {
-                        met.push(bvh.members[place]);
-                    } else {
-                        stack.push((level - 1, place));
-                    }
-                }
+        for first in (0..balls.x.len()).step_by(L::WIDTH) {
+            let mut bits = self.meets::<L>(token, balls, first);
+            while bits != 0 {
+                met.push(first as u32 + bits.trailing_zeros());
+                bits &= bits - 1;
             }
-        }
-        // A tree has an order of its own; surfaces at the same distance must not care.
-        if bvh.is_tree() {
-            met.sort_unstable();
         }
     }
 }
@@ -173,16 +155,24 @@ impl<L: SimdFloat> Bounds<L> {
         self.high = Vec3::select(mask, self.high.max(point), self.high);
     }
 
+    /// The box around all lanes; inside out if no point was taken in.
+    #[inline(always)]
+    pub fn around(&self) -> BoundingBox<L::Real> {
+        BoundingBox {
+            low: Vec3::new(self.low.x.least(), self.low.y.least(), self.low.z.least()),
+            high: Vec3::new(
+                self.high.x.greatest(),
+                self.high.y.greatest(),
+                self.high.z.greatest(),
+            ),
+        }
+    }
+
     /// The ball around the box of all lanes; `None` if no point was taken in.
     #[inline(always)]
     pub fn ball(&self) -> Option<Ball> {
-        let low = Vec3::new(self.low.x.least(), self.low.y.least(), self.low.z.least()).to_dvec3();
-        let high = Vec3::new(
-            self.high.x.greatest(),
-            self.high.y.greatest(),
-            self.high.z.greatest(),
-        )
-        .to_dvec3();
+        let BoundingBox { low, high } = self.around();
+        let (low, high) = (low.to_dvec3(), high.to_dvec3());
         let radius = (high - low).length() * 0.5;
         radius.is_finite().then(|| Ball {
             center: (low + high) * 0.5,
@@ -227,9 +217,7 @@ mod tests {
     }
 
     fn is_met(beam: Option<Beam<f64>>, ball: Ball) -> bool {
-        beam.is_none_or(|beam| {
-            beam.meets::<f64>((), &Bvh::new(&[(0, ball)], false).levels[0], 0) != 0
-        })
+        beam.is_none_or(|beam| beam.meets::<f64>((), &Balls::new([ball].iter()), 0) != 0)
     }
 
     proptest! {

@@ -1,15 +1,19 @@
 //! One depth of reflection: the packets of a tile, what they can meet, and what they see.
 
 use super::beam::{Bounds, beam_around};
-use super::candidates::Candidates;
+use super::bundle::{Shaft, roundings};
+use super::candidates::{Among, Candidates};
 use super::cull::{LightCandidates, Scratch};
 use super::footprint::RayCone;
-use super::intersect::{IgnoredPrimitive, Kernel, Paths};
+use super::intersect::Kernel;
 use super::packet::{EdgeInfo, Packet, ReflectionParent};
+use super::paths::{IgnoredPrimitive, Paths};
+use super::roots::Roots;
 use super::samples::{Samples, Traced};
 use super::shade::Shader;
 use super::stats::Rays;
 use super::thresholds::{LARGEST_STRETCH, SLIPPING};
+use super::walk::Stack;
 use crate::plan::Plan;
 use crate::primitive::{Kind, Ray};
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
@@ -23,9 +27,11 @@ pub struct Bounce<L: SimdFloat> {
     edges: Vec<EdgeInfo<L>>,
     /// What the rays can meet.
     seen: Candidates,
+    /// Where to start in the trees.
+    roots: Roots<L::Real>,
     /// Those of them that may slip between samples.
     thin: Candidates,
-    lights: Vec<LightCandidates>,
+    lights: Vec<LightCandidates<L::Real>>,
     signatures: Vec<[u32; MAX_LANES]>,
 }
 
@@ -40,6 +46,7 @@ impl<L: SimdFloat> Bounce<L> {
         };
         let light = LightCandidates {
             casters,
+            roots: Roots::default(),
             thin,
             is_umbra: false,
         };
@@ -48,6 +55,7 @@ impl<L: SimdFloat> Bounce<L> {
             parents: Vec::new(),
             edges: Vec::new(),
             seen: Candidates::default(),
+            roots: Roots::default(),
             thin: Candidates::default(),
             lights: vec![light; plan.lights.len()],
             signatures: Vec::new(),
@@ -109,33 +117,72 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// Finds what the packets meet, and what can cast shadows there. Whether there is anything.
     #[inline(always)]
-    pub fn find(&mut self, kernel: Kernel<L>, scratch: &mut Scratch) -> bool {
+    pub fn find(&mut self, kernel: Kernel<L>, scratch: &mut Scratch<L::Real>) -> bool {
         if self.seen.is_empty() {
             return false;
         }
         let plan = kernel.plan;
+        // What is thin beside the rays may be there where they meet nothing.
+        self.find_thin(plan);
+        self.enter(kernel);
         let infinity = kernel.infinity();
         let mut bounds = Bounds::new(kernel.token);
+        let mut farthest = kernel.splat(0.0);
         for index in 0..self.packets.len() {
             let ignored = self.ignored_by(index);
             let packet = &mut self.packets[index];
             let rays = packet.rays;
-            packet.near = kernel.nearest(&self.seen, &Paths { rays, ignored });
+            let paths = Paths { rays, ignored };
+            let among = Among {
+                candidates: &self.seen,
+                roots: &self.roots,
+                light: None,
+            };
+            packet.near = kernel.nearest(among, &paths, packet.active, &mut scratch.stack);
             let hit = packet.near.t.less(infinity) & packet.active;
             bounds.add(hit, rays.at(packet.near.t));
+            farthest = L::select(hit, farthest.max(packet.near.t), farthest);
         }
-        self.find_thin(plan);
         let Some(ball) = bounds.ball() else {
             return !self.thin.is_empty();
         };
         if plan.screen.is_some() {
             // Room for what passes beside the rays to the lights, closer than a pixel.
             let footprint = self.widest(kernel) * L::Real::from_f64(LARGEST_STRETCH);
+            // A ray that has come far is off by a few roundings of its length.
+            let hits = bounds.around().widened(farthest.greatest() * roundings());
             for (between, light) in self.lights.iter_mut().zip(&plan.lights) {
                 kernel.keep_between(between, light, (&ball, footprint), scratch);
+                kernel.enter_towards(between, light, &hits);
             }
         }
         true
+    }
+
+    /// Finds where the packets can start to look into the trees.
+    #[inline(always)]
+    fn enter(&mut self, kernel: Kernel<L>) {
+        self.roots.forget();
+        let plan = kernel.plan;
+        let Some((geometry, _)) = plan.numbered_geometry() else {
+            return;
+        };
+        if !self.seen.has_geometry || !plan.is_boxed {
+            return;
+        }
+        let mut origins = Bounds::new(kernel.token);
+        let mut directions = origins;
+        for Packet { rays, active, .. } in &self.packets {
+            origins.add(*active, rays.origin);
+            directions.add(*active, rays.direction);
+        }
+        let (origins, directions) = (origins.around(), directions.around());
+        let slack = (origins.max_abs() + geometry.bvh.bounds.max_abs()) * roundings();
+        let shaft = Shaft::of(&origins.widened(slack), &directions);
+        let infinity = L::Real::INFINITY;
+        self.seen.has_geometry = self
+            .roots
+            .narrow::<L>(kernel.token, geometry, &shaft, infinity);
     }
 
     /// Finds what rays from the camera can meet, or just miss, between samples; nothing without
@@ -165,7 +212,13 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// Shades the packets; `next` gets the rays that mirrors send on.
     #[inline(always)]
-    pub fn shade(&mut self, kernel: Kernel<L>, may_mirror: bool, next: &mut Self, rays: &mut Rays) {
+    pub fn shade(
+        &mut self,
+        kernel: Kernel<L>,
+        may_mirror: bool,
+        next: &mut Self,
+        (stack, rays): (&mut Stack<L::Real>, &mut Rays),
+    ) {
         for index in 0..self.packets.len() {
             let ignored = self.ignored_by(index);
             let shader = Shader {
@@ -175,7 +228,8 @@ impl<L: SimdFloat> Bounce<L> {
                 lights: &self.lights,
             };
             let edge = self.edges.get_mut(index);
-            let Some(mirrored) = shader.shade(&mut self.packets[index], ignored, edge, rays) else {
+            let packet = &mut self.packets[index];
+            let Some(mirrored) = shader.shade(packet, ignored, edge, (stack, rays)) else {
                 continue;
             };
             rays.reflected += u64::from(mirrored.active.bits().count_ones());
@@ -195,7 +249,7 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// Finds what mirrored rays can meet.
     #[inline(always)]
-    pub fn aim(&mut self, kernel: Kernel<L>, scratch: &mut Scratch) {
+    pub fn aim(&mut self, kernel: Kernel<L>, scratch: &mut Scratch<L::Real>) {
         let plan = kernel.plan;
         let rays = self
             .packets
@@ -271,7 +325,7 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// Notes what each ray has hit, and which lights shine on it.
     #[inline(always)]
-    pub fn sign(&mut self) {
+    pub fn sign(&mut self, plan: &Plan<L::Real>) {
         self.signatures.clear();
         for (packet, edge) in self.packets.iter().zip(&self.edges) {
             let mut numbers = [L::Real::ZERO; MAX_LANES];
@@ -281,7 +335,7 @@ impl<L: SimdFloat> Bounce<L> {
             let mut signature = [0; MAX_LANES];
             for lane in 0..L::WIDTH {
                 // Odd multipliers spread the small numbers over all bits.
-                let number = (numbers[lane] + L::Real::ONE).nearest();
+                let number = object_of(plan, (numbers[lane] + L::Real::ONE).nearest());
                 let lit = lit[lane].nearest();
                 signature[lane] = number.wrapping_mul(0x9E37_79B1) ^ lit.wrapping_mul(0x85EB_CA6B);
             }
@@ -306,6 +360,17 @@ impl<L: SimdFloat> Bounce<L> {
                 .copy_from_slice(&self.signatures[index][..L::WIDTH]);
         }
     }
+}
+
+/// What tells objects apart, from 1 plus the number of a primitive: the faces of a mesh are one thing.
+#[inline(always)]
+fn object_of<R: Real>(plan: &Plan<R>, number: u32) -> u32 {
+    let Some((geometry, first)) = plan.numbered_geometry() else {
+        return number;
+    };
+    let index = (number as usize).checked_sub(first + 1);
+    let mesh = index.and_then(|index| geometry.mesh_of(index));
+    mesh.map_or(number, |mesh| (first + mesh.first + 1) as u32)
 }
 
 /// A colour within 0–1.

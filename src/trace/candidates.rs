@@ -2,14 +2,29 @@
 
 use std::ops::Range;
 
-use crate::plan::Plan;
+use super::roots::Roots;
+use crate::plan::{Plan, PointLight};
 use crate::primitive::{Extent, KINDS, Kind, Primitive, Rectangle, Visit};
 use crate::simd::{Real, Vec3};
 
-/// The primitives that are worth testing: for each kind, indices into the plan's list.
+/// The primitives that are worth testing.
 #[derive(Clone, Debug, Default)]
 pub struct Candidates {
+    /// For each kind, indices into the plan's list.
     lists: [Vec<u32>; KINDS],
+    /// Whether something of the plan's geometry may be among them.
+    pub has_geometry: bool,
+}
+
+/// What rays are tested against: lists, and trees from these nodes on.
+#[derive(Clone, Copy, Debug)]
+pub struct Among<'a, R> {
+    /// The lists, and whether there is anything in the trees.
+    pub candidates: &'a Candidates,
+    /// Where to start in the trees.
+    pub roots: &'a Roots<R>,
+    /// The light that the rays go to, if they do.
+    pub light: Option<&'a PointLight<R>>,
 }
 
 /// Direction of a range of pixels.
@@ -38,6 +53,7 @@ impl Candidates {
                 .primitives
                 .counts()
                 .map(|count| (0..count as u32).collect()),
+            has_geometry: plan.geometry.is_some(),
         }
     }
 
@@ -52,7 +68,7 @@ impl Candidates {
     /// Everything that casts shadows.
     pub fn all_casting<R: Real>(plan: &Plan<R>) -> Self {
         let mut all = Self::all(plan);
-        all.lists[Kind::Sphere as usize].truncate(plan.casting_spheres);
+        all.lists[Kind::Sphere as usize].drain(..plan.markers);
         if !plan.planes_cast {
             all.lists[Kind::Plane as usize].clear();
         }
@@ -75,22 +91,23 @@ impl Candidates {
         for list in &mut self.lists {
             list.clear();
         }
+        self.has_geometry = false;
     }
 
     /// Whether there is nothing to test.
     pub fn is_empty(&self) -> bool {
-        self.lists.iter().all(Vec::is_empty)
+        !self.has_geometry && self.lists.iter().all(Vec::is_empty)
     }
 
     /// Becomes those of `from` that can be seen in these columns (or rows).
-    pub fn keep_seen(
+    pub fn keep_seen<R: Real>(
         &mut self,
         from: &Self,
-        screen: Option<&[Vec<Rectangle>; KINDS]>,
+        plan: &Plan<R>,
         pixels: &Range<usize>,
         span: Span,
     ) {
-        let Some(screen) = screen else {
+        let Some(screen) = &plan.screen else {
             return self.clone_from(from);
         };
         let meets = |rectangle: &Rectangle| {
@@ -112,6 +129,8 @@ impl Candidates {
                 list.extend(seen);
             }
         }
+        self.has_geometry =
+            from.has_geometry && (plan.outline.is_empty() || plan.outline.iter().any(meets));
     }
 
     /// Becomes those of `from` that are narrower than `width`, which is given the primitive's place and
@@ -122,6 +141,11 @@ impl Candidates {
         plan: &Plan<R>,
         width: impl Fn(Vec3<R>, R) -> R,
     ) {
+        self.has_geometry = from.has_geometry
+            && plan.geometry.as_ref().is_some_and(|geometry| {
+                let (at, reach) = geometry.bvh.bounds.ball();
+                geometry.bvh.thinnest < width(at, reach)
+            });
         plan.primitives.visit(&mut Narrow {
             from,
             to: self,
@@ -129,18 +153,19 @@ impl Candidates {
         });
     }
 
-    /// Becomes the primitives of these numbers, kind by kind. Planes are none of them.
-    pub fn sort_by_kind<R: Real>(&mut self, plan: &Plan<R>, numbers: &[u32], omit: Omit) {
+    /// Becomes the primitives in these of the plan's balls, kind by kind; no geometry.
+    pub fn sort_by_kind<R: Real>(&mut self, plan: &Plan<R>, balls: &[u32], omit: Omit) {
         self.clear();
         let firsts = plan.primitives.firsts();
-        for &number in numbers {
+        for &ball in balls {
+            let number = plan.in_balls[ball as usize];
             let later = firsts.iter().filter(|&&first| first <= number as usize);
             let kind = later.count() - 1;
             let index = number - firsts[kind] as u32;
             let is_omitted = match omit {
                 Omit::Nothing => false,
                 Omit::MarkersAndFaces(faces) => {
-                    (kind == Kind::Sphere as usize && index as usize >= plan.casting_spheres)
+                    (kind == Kind::Sphere as usize && (index as usize) < plan.markers)
                         || (kind == Kind::Triangle as usize && is_set(faces, index))
                 }
             };

@@ -4,26 +4,41 @@
 use glam::DVec3;
 
 use super::beam::Beam;
+use super::bundle::Shaft;
 use super::candidates::{Candidates, Omit};
 use super::intersect::Kernel;
+use super::roots::Roots;
 use super::thresholds::SLIPPING;
 use super::tile::Tile;
-use crate::plan::{Plan, PointLight};
-use crate::primitive::{Ball, Kind, Primitive, Visit};
+use super::walk::Stack;
+use crate::plan::{Plan, PointLight, RayOrigin};
+use crate::primitive::{Ball, BoundingBox, FAR_CAUTION, Kind, Primitive, Visit};
 use crate::simd::{Real, SimdFloat};
 
 /// Memory to gather candidates in, used again for every beam.
-#[derive(Debug, Default)]
-pub struct Scratch {
-    stack: Vec<(usize, usize)>,
+#[derive(Debug)]
+pub struct Scratch<R> {
+    /// Boxes of a tree that wait to be looked into.
+    pub stack: Stack<R>,
     met: Vec<u32>,
+}
+
+impl<R> Default for Scratch<R> {
+    fn default() -> Self {
+        Self {
+            stack: Stack::new(),
+            met: Vec::new(),
+        }
+    }
 }
 
 /// What can stand between a light and the hits of a tile.
 #[derive(Clone, Debug, Default)]
-pub struct LightCandidates {
+pub struct LightCandidates<R> {
     /// What may block the light for some of them.
     pub casters: Candidates,
+    /// Where to start in the trees.
+    pub roots: Roots<R>,
     /// Those of them whose shadows may slip between samples.
     pub thin: Candidates,
     /// Whether one primitive blocks it for all of them.
@@ -63,11 +78,12 @@ impl<L: SimdFloat> Kernel<'_, L> {
         candidates: &mut Candidates,
         beam: &Beam<L::Real>,
         start_plane: Option<usize>,
-        scratch: &mut Scratch,
+        scratch: &mut Scratch<L::Real>,
     ) {
         let plan = self.plan;
-        beam.gather::<L>(self.token, &plan.bvh, &mut scratch.stack, &mut scratch.met);
+        beam.gather::<L>(self.token, &plan.balls, &mut scratch.met);
         candidates.sort_by_kind(plan, &scratch.met, Omit::Nothing);
+        candidates.has_geometry = plan.geometry.is_some();
         for (index, plane) in plan.primitives.planes.iter().enumerate() {
             if start_plane != Some(index) && beam.crosses(plane.normal, plane.offset) {
                 candidates.planes_mut().push(index as u32);
@@ -80,17 +96,19 @@ impl<L: SimdFloat> Kernel<'_, L> {
     #[inline(always)]
     pub fn keep_between(
         self,
-        between: &mut LightCandidates,
+        between: &mut LightCandidates<L::Real>,
         light: &PointLight<L::Real>,
         (ball, footprint): (&Ball, L::Real),
-        scratch: &mut Scratch,
+        scratch: &mut Scratch<L::Real>,
     ) {
         let plan = self.plan;
         let LightCandidates {
             casters,
+            roots,
             thin,
             is_umbra,
         } = between;
+        roots.forget();
         let from = light.position.to_dvec3();
         let slipping = footprint * L::Real::from_f64(SLIPPING);
         let Some(beam) = Beam::to_ball(from, ball) else {
@@ -100,9 +118,10 @@ impl<L: SimdFloat> Kernel<'_, L> {
             return;
         };
         let beam = beam.widened(footprint, L::Real::ZERO);
-        beam.gather::<L>(self.token, &plan.bvh, &mut scratch.stack, &mut scratch.met);
+        beam.gather::<L>(self.token, &plan.balls, &mut scratch.met);
         let omit = Omit::MarkersAndFaces(&light.shadow_culled_faces);
         casters.sort_by_kind(plan, &scratch.met, omit);
+        casters.has_geometry = plan.geometry.is_some();
         if plan.planes_cast {
             let planes = 0..plan.primitives.planes.len() as u32;
             casters.planes_mut().extend(planes);
@@ -116,6 +135,38 @@ impl<L: SimdFloat> Kernel<'_, L> {
         };
         plan.primitives.visit(&mut umbra);
         *is_umbra = umbra.is_found;
+    }
+}
+
+impl<L: SimdFloat> Kernel<'_, L> {
+    /// Finds where shadow rays from these hits to a light can start to look into the trees. Without the
+    /// rule that starts them at the hits, they start anywhere.
+    #[inline(always)]
+    pub fn enter_towards(
+        self,
+        between: &mut LightCandidates<L::Real>,
+        light: &PointLight<L::Real>,
+        hits: &BoundingBox<L::Real>,
+    ) {
+        let plan = self.plan;
+        let Some((geometry, _)) = plan.numbered_geometry() else {
+            return;
+        };
+        let is_at_hits = matches!(plan.ray_origin, RayOrigin::AtHit);
+        if !between.casters.has_geometry || !plan.is_boxed || !is_at_hits {
+            return;
+        }
+        let caution = L::Real::from_f64(FAR_CAUTION);
+        let reach = geometry.bvh.bounds.max_abs().max(light.position.max_abs());
+        let starts = hits.widened((hits.max_abs() + reach) * caution);
+        // From the hits to the light in one step.
+        let ways = BoundingBox {
+            low: light.position - starts.high,
+            high: light.position - starts.low,
+        };
+        let shaft = Shaft::of(&starts, &ways);
+        let end = L::Real::ONE + caution;
+        between.casters.has_geometry = between.roots.narrow::<L>(self.token, geometry, &shaft, end);
     }
 }
 

@@ -13,7 +13,7 @@ use crate::simd::SimdFloat;
 pub struct Engine<'a, L: SimdFloat> {
     kernel: Kernel<'a, L>,
     bounces: Vec<Bounce<L>>,
-    scratch: Scratch,
+    scratch: Scratch<L::Real>,
     /// Rays traced so far.
     pub rays: Rays,
 }
@@ -73,7 +73,8 @@ impl<'a, L: SimdFloat> Engine<'a, L> {
             next.clear();
             let may_mirror = (depth as u32) < kernel.plan.reflection_limit;
             if bounce.find(kernel, &mut self.scratch) {
-                bounce.shade(kernel, may_mirror, next, &mut self.rays);
+                let counted = (&mut self.scratch.stack, &mut self.rays);
+                bounce.shade(kernel, may_mirror, next, counted);
             }
             if next.is_empty() {
                 break;
@@ -83,7 +84,7 @@ impl<'a, L: SimdFloat> Engine<'a, L> {
         }
         if with_edges {
             for bounce in &mut self.bounces[..=depth] {
-                bounce.sign();
+                bounce.sign(kernel.plan);
             }
         }
 

@@ -32,16 +32,16 @@ impl<L: SimdFloat> RayCone<L> {
 }
 
 impl<L: SimdFloat> Footprint<L> {
-    /// The pixel around a ray that has gone as far as `t` and meets a surface of this radius of
-    /// curvature (infinity: flat) at this cosine.
+    /// The pixel around a ray that has gone as far as `t` and meets a surface of this curvature at this
+    /// cosine.
     #[inline(always)]
-    pub fn new(cone: RayCone<L>, t: L, cosine: L, radius: L::Real) -> Self {
+    pub fn new(cone: RayCone<L>, t: L, cosine: L, curvature: L) -> Self {
         let width = cone.width_at(t);
         let length = width / cosine.abs().max(t.like_f64(GRAZING));
         Self {
             cone: RayCone { width, ..cone },
             length,
-            turn: length * t.like(L::Real::ONE / radius),
+            turn: length * curvature,
         }
     }
 

@@ -1,8 +1,12 @@
 //! The nearest hit among some primitives, and whether anything stands in a ray's way.
 
-use super::candidates::Candidates;
+use super::bundle::Beside;
+use super::candidates::Among;
+use super::paths::{NOTHING, Paths, real};
+use super::scan::{Test, Thicket, scan_lists};
+use super::walk::Stack;
 use crate::plan::Plan;
-use crate::primitive::{Kind, Primitive, Ray, Visit};
+use crate::primitive::Primitive;
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
@@ -26,26 +30,6 @@ impl<L: SimdFloat> Clone for Kernel<'_, L> {
 
 impl<L: SimdFloat> Copy for Kernel<'_, L> {}
 
-/// Rays and the primitives that they start on, which they must not meet where they start.
-#[derive(Clone, Copy, Debug)]
-pub struct Paths<L> {
-    /// The rays.
-    pub rays: Ray<L>,
-    /// What they start on.
-    pub ignored: IgnoredPrimitive<L>,
-}
-
-/// The primitives that rays start on.
-#[derive(Clone, Copy, Debug)]
-pub enum IgnoredPrimitive<L> {
-    /// None.
-    Nothing,
-    /// All rays start on the primitive of this number.
-    Shared(usize),
-    /// Each ray starts on the primitive whose number is in its lane; [`NOTHING`] for none.
-    Each(L),
-}
-
 /// The nearest primitives.
 #[derive(Clone, Copy, Debug)]
 pub struct Nearest<L> {
@@ -55,67 +39,23 @@ pub struct Nearest<L> {
     pub number: L,
 }
 
-/// The number of no primitive.
-pub const NOTHING: f64 = -1.0;
-
-#[inline(always)]
-fn real<R: Real>(number: usize) -> R {
-    R::from_f64(number as f64)
-}
-
-impl<L: SimdFloat> IgnoredPrimitive<L> {
-    /// This where the mask is set, `other` elsewhere.
+impl<'a, L: SimdFloat> Kernel<'a, L> {
+    /// What stands in the plan's tree, if it is among these.
     #[inline(always)]
-    pub fn over(self, token: L::Token, mask: L::Mask, other: Self) -> Self {
-        match (self, other) {
-            (Self::Nothing, Self::Nothing) => self,
-            (Self::Shared(this), Self::Shared(other)) if this == other => self,
-            _ => Self::Each(L::select(mask, self.numbers(token), other.numbers(token))),
-        }
-    }
-
-    /// Where it is the primitive of this number.
-    #[inline(always)]
-    pub fn is(self, token: L::Token, number: usize) -> L::Mask {
-        self.numbers(token).same(L::splat(token, real(number)))
-    }
-
-    #[inline(always)]
-    fn numbers(self, token: L::Token) -> L {
-        match self {
-            Self::Nothing => L::splat(token, L::Real::from_f64(NOTHING)),
-            Self::Shared(number) => L::splat(token, real(number)),
-            Self::Each(numbers) => numbers,
-        }
-    }
-}
-
-impl<L: SimdFloat> Paths<L> {
-    /// How far the primitive of this number is; infinity for none, and where the rays start on it.
-    #[inline(always)]
-    fn distance<P: Primitive<L::Real>>(
-        &self,
-        primitive: &P,
-        prepared: &P::Prepared<L>,
-        number: usize,
-        methods: &Methods,
-    ) -> L {
-        let rays = &self.rays;
-        match self.ignored {
-            IgnoredPrimitive::Shared(start) if start == number => primitive.exit(rays),
-            IgnoredPrimitive::Nothing | IgnoredPrimitive::Shared(_) => {
-                primitive.intersect(rays, prepared, methods)
-            }
-            IgnoredPrimitive::Each(start) => {
-                let t = primitive.intersect(rays, prepared, methods);
-                let own = start.same(start.like(real(number)));
-                if !P::IS_CURVED || own.any() {
-                    L::select(own, primitive.exit(rays), t)
-                } else {
-                    t
-                }
-            }
-        }
+    pub fn thicket<'b>(self, among: Among<'b, L::Real>, active: L::Mask) -> Option<Thicket<'b, L>>
+    where
+        'a: 'b,
+    {
+        let (geometry, first) = self.plan.numbered_geometry()?;
+        among.candidates.has_geometry.then_some(Thicket {
+            geometry,
+            first,
+            roots: among.roots,
+            light: among.light,
+            active,
+            beside: Beside::default(),
+            is_boxed: self.plan.is_boxed,
+        })
     }
 }
 
@@ -132,98 +72,171 @@ impl<L: SimdFloat> Kernel<'_, L> {
         L::splat(self.token, L::Real::INFINITY)
     }
 
-    /// The nearest primitives along the paths.
+    /// The nearest primitives along the paths where the mask is set.
     #[inline(always)]
-    pub fn nearest(self, among: &Candidates, paths: &Paths<L>) -> Nearest<L> {
-        let mut scan = NearestScan {
+    pub fn nearest(
+        self,
+        among: Among<L::Real>,
+        paths: &Paths<L>,
+        active: L::Mask,
+        stack: &mut Stack<L::Real>,
+    ) -> Nearest<L> {
+        let mut test = NearestTest::<L, true> {
             methods: &self.plan.methods,
-            among,
-            paths,
             best: Nearest {
                 t: self.infinity(),
                 number: self.splat(NOTHING),
             },
         };
-        self.plan.primitives.visit(&mut scan);
-        scan.best
+        scan_lists(self.plan, among.candidates, paths, &mut test);
+        let best = test.best;
+        match self.thicket(among, active) {
+            Some(thicket) => self.nearest_in(&thicket, paths, best, stack),
+            None => best,
+        }
+    }
+
+    /// The nearest of `best` and what stands in the tree. A function of its own: it is long, and few
+    /// scenes need it.
+    #[inline(never)]
+    fn nearest_in(
+        self,
+        thicket: &Thicket<L>,
+        paths: &Paths<L>,
+        best: Nearest<L>,
+        stack: &mut Stack<L::Real>,
+    ) -> Nearest<L> {
+        L::vectorize(
+            self.token,
+            #[inline(always)]
+            || {
+                let mut test = NearestTest::<L, false> {
+                    methods: &self.plan.methods,
+                    best,
+                };
+                thicket.scan(paths, stack, &mut test);
+                test.best
+            },
+        )
     }
 
     /// Where one of the primitives meets the paths before `distance`; looked for only where `wanted`.
     #[inline(always)]
     pub fn blocked(
         self,
-        among: &Candidates,
+        among: Among<L::Real>,
         paths: &Paths<L>,
-        distance: L,
-        wanted: L::Mask,
+        (distance, wanted): (L, L::Mask),
+        stack: &mut Stack<L::Real>,
     ) -> L::Mask {
-        let mut scan = BlockedScan {
+        let mut test = BlockedTest::<L, true> {
             methods: &self.plan.methods,
-            among,
-            paths,
             distance,
             free: wanted,
         };
-        self.plan.primitives.visit(&mut scan);
-        wanted & !scan.free
+        scan_lists(self.plan, among.candidates, paths, &mut test);
+        let mut free = test.free;
+        if free.any()
+            && let Some(thicket) = self.thicket(among, free)
+        {
+            free = self.free_in(&thicket, paths, distance, stack);
+        }
+        wanted & !free
+    }
+
+    /// Where nothing in the tree meets the paths before `distance`.
+    #[inline(never)]
+    fn free_in(
+        self,
+        thicket: &Thicket<L>,
+        paths: &Paths<L>,
+        distance: L,
+        stack: &mut Stack<L::Real>,
+    ) -> L::Mask {
+        L::vectorize(
+            self.token,
+            #[inline(always)]
+            || {
+                let mut test = BlockedTest::<L, false> {
+                    methods: &self.plan.methods,
+                    distance,
+                    free: thicket.active,
+                };
+                thicket.scan(paths, stack, &mut test);
+                test.free
+            },
+        )
     }
 }
 
-struct NearestScan<'a, L> {
+/// Looks for the nearest primitive. Of two at the same distance it is the one with the smaller number:
+/// the first that is tested, where they are tested in order.
+struct NearestTest<'a, L, const IN_ORDER: bool> {
     methods: &'a Methods,
-    among: &'a Candidates,
-    paths: &'a Paths<L>,
     best: Nearest<L>,
 }
 
-impl<L: SimdFloat> Visit<L::Real> for NearestScan<'_, L> {
+impl<L: SimdFloat, const IN_ORDER: bool> Test<L> for NearestTest<'_, L, IN_ORDER> {
     #[inline(always)]
-    fn visit<P: Primitive<L::Real>>(&mut self, kind: Kind, primitives: &[P], first: usize) {
-        let among = self.among.of(kind);
-        if among.is_empty() {
-            return;
+    fn reach(&self) -> L {
+        self.best.t
+    }
+
+    #[inline(always)]
+    fn test<P: Primitive<L::Real>>(
+        &mut self,
+        primitive: &P,
+        prepared: &P::Prepared<L>,
+        paths: &Paths<L>,
+        number: usize,
+    ) {
+        let t = if IN_ORDER {
+            paths.distance(primitive, prepared, number, self.methods)
+        } else {
+            paths.distance_in_tree(primitive, prepared, number, self.methods)
+        };
+        let own = t.like(real(number));
+        let mut closer = t.less(self.best.t);
+        if !IN_ORDER {
+            closer = closer | (t.same(self.best.t) & own.less(self.best.number));
         }
-        let prepared = P::prepare(self.paths.rays.direction);
-        for &index in among {
-            let number = first + index as usize;
-            let primitive = &primitives[index as usize];
-            let t = self
-                .paths
-                .distance(primitive, &prepared, number, self.methods);
-            let closer = t.less(self.best.t);
-            self.best.t = L::select(closer, t, self.best.t);
-            self.best.number = L::select(closer, t.like(real(number)), self.best.number);
-        }
+        self.best.t = L::select(closer, t, self.best.t);
+        self.best.number = L::select(closer, own, self.best.number);
     }
 }
 
-struct BlockedScan<'a, L: SimdFloat> {
+/// Looks for anything before a distance.
+struct BlockedTest<'a, L: SimdFloat, const IN_LIST: bool> {
     methods: &'a Methods,
-    among: &'a Candidates,
-    paths: &'a Paths<L>,
     distance: L,
     /// Where nothing was met yet.
     free: L::Mask,
 }
 
-impl<L: SimdFloat> Visit<L::Real> for BlockedScan<'_, L> {
+impl<L: SimdFloat, const IN_LIST: bool> Test<L> for BlockedTest<'_, L, IN_LIST> {
     #[inline(always)]
-    fn visit<P: Primitive<L::Real>>(&mut self, kind: Kind, primitives: &[P], first: usize) {
-        let among = self.among.of(kind);
-        if among.is_empty() || !self.free.any() {
-            return;
-        }
-        let prepared = P::prepare(self.paths.rays.direction);
-        for &index in among {
-            let number = first + index as usize;
-            let primitive = &primitives[index as usize];
-            let t = self
-                .paths
-                .distance(primitive, &prepared, number, self.methods);
-            self.free = self.free & !t.less(self.distance);
-            if !self.free.any() {
-                return;
-            }
-        }
+    fn reach(&self) -> L {
+        L::select(self.free, self.distance, self.distance.like_f64(-1.0))
+    }
+
+    #[inline(always)]
+    fn is_done(&self) -> bool {
+        !self.free.any()
+    }
+
+    #[inline(always)]
+    fn test<P: Primitive<L::Real>>(
+        &mut self,
+        primitive: &P,
+        prepared: &P::Prepared<L>,
+        paths: &Paths<L>,
+        number: usize,
+    ) {
+        let t = if IN_LIST {
+            paths.distance(primitive, prepared, number, self.methods)
+        } else {
+            paths.distance_in_tree(primitive, prepared, number, self.methods)
+        };
+        self.free = self.free & !t.less(self.distance);
     }
 }

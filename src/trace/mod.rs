@@ -14,9 +14,21 @@ mod tile;
 
 mod samples;
 
+mod bundle;
+
+mod roots;
+
 mod candidates;
 
+mod walk;
+
+mod paths;
+
+mod scan;
+
 mod intersect;
+
+mod gather;
 
 mod surface;
 

@@ -1,7 +1,8 @@
 //! Rays that travel in step, and what goes with them.
 
 use super::footprint::RayCone;
-use super::intersect::{IgnoredPrimitive, Kernel, NOTHING, Nearest};
+use super::intersect::{Kernel, Nearest};
+use super::paths::{IgnoredPrimitive, NOTHING};
 use crate::primitive::Ray;
 use crate::simd::{Real, SimdFloat, Vec3};
 

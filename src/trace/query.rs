@@ -1,7 +1,7 @@
 //! What single rays see, in double precision and without a picture: for what is drawn over the picture
 //! and for the depth of what the picture shows.
 //!
-//! Every ray tests every object: the render thread asks, in pieces that can be stopped.
+//! The render thread asks, in pieces that can be stopped.
 
 use std::sync::atomic::Ordering;
 
@@ -9,62 +9,59 @@ use glam::DVec3;
 use rayon::current_num_threads;
 use rayon::iter::{IntoParallelIterator as _, ParallelExtend as _, ParallelIterator as _};
 
+use super::candidates::{Among, Candidates};
+use super::intersect::Kernel;
+use super::paths::{IgnoredPrimitive, Paths};
+use super::roots::Roots;
 use super::stats::RenderControl;
 use crate::animate::Seen;
-use crate::primitive::{Kind, Packing, Primitive, Primitives, Ray, Visit, count_corner_users};
-use crate::scene::{Camera, Framing, Methods, Scene, Take};
+use crate::plan::{Kept, Plan, RenderRequest};
+use crate::primitive::Ray;
+use crate::scene::{Camera, Framing, Scene, Take};
 use crate::simd::Vec3;
 
 /// The visible objects of a scene; markers of lights are not among them.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct SceneQuery {
-    primitives: Primitives<f64>,
-}
-
-/// Looks for the nearest hit of one ray.
-struct Distance {
-    ray: Ray<f64>,
-    methods: Methods,
-    t: f64,
-}
-
-impl Visit<f64> for Distance {
-    fn visit<P: Primitive<f64>>(&mut self, _kind: Kind, primitives: &[P], _first: usize) {
-        let prepared = P::prepare(self.ray.direction);
-        for primitive in primitives {
-            let t = primitive.intersect(&self.ray, &prepared, &self.methods);
-            self.t = self.t.min(t);
-        }
-    }
+    plan: Plan<f64>,
+    all: Candidates,
 }
 
 impl SceneQuery {
     /// What can be seen of a scene, which must pass [`crate::scene::check`].
     pub fn new(scene: &Scene) -> Self {
-        let mut primitives = Primitives::default();
-        let packing = Packing {
-            centre: DVec3::ZERO,
-            corner_users: &count_corner_users(scene),
-            projector: None,
+        let unmarked = Scene {
+            light_visualization: false,
+            ..scene.clone()
         };
-        for object in scene.objects.iter().filter(|object| object.visible) {
-            primitives.push(&object.shape, 0, &packing);
+        let request = RenderRequest::sized(1, 1);
+        let plan = Plan::new(&unmarked, &request, &mut Kept::default());
+        Self {
+            all: Candidates::all(&plan),
+            plan,
         }
-        Self { primitives }
     }
 
     /// How far the first object is along a ray with a unit direction; infinity for the sky.
     pub fn distance(&self, origin: DVec3, direction: DVec3) -> f64 {
-        let mut distance = Distance {
-            ray: Ray {
-                origin: Vec3::from_dvec3(origin),
+        let paths = Paths {
+            rays: Ray {
+                origin: Vec3::from_dvec3(origin - self.plan.centre),
                 direction: Vec3::from_dvec3(direction),
             },
-            methods: Methods::default(),
-            t: f64::INFINITY,
+            ignored: IgnoredPrimitive::Nothing,
         };
-        self.primitives.visit(&mut distance);
-        distance.t
+        let kernel = Kernel::<f64> {
+            token: (),
+            plan: &self.plan,
+        };
+        let among = Among {
+            candidates: &self.all,
+            roots: &Roots::default(),
+            light: None,
+        };
+        let nearest = kernel.nearest(among, &paths, true, &mut Vec::new());
+        nearest.t
     }
 
     /// Whether nothing stands between two points. What is at the second point itself does not.

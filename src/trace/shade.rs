@@ -3,14 +3,17 @@
 //! Rays that travel in step may hit different things: each thing that was hit is shaded for its own
 //! rays, and the results are put together.
 
-use super::candidates::Candidates;
+use super::candidates::{Among, Candidates};
 use super::cull::LightCandidates;
 use super::footprint::{Footprint, RayCone};
-use super::intersect::{IgnoredPrimitive, Kernel, NOTHING, Paths};
+use super::intersect::Kernel;
 use super::packet::{EdgeInfo, Packet};
+use super::paths::{IgnoredPrimitive, NOTHING, Paths};
 use super::stats::Rays;
 use super::surface::Hit;
+use super::thin::Gaze;
 use super::thresholds::EDGE_CONTRAST;
+use super::walk::Stack;
 use crate::plan::{PointLight, RayOrigin, Surface};
 use crate::primitive::Ray;
 use crate::simd::{Mask as _, SimdFloat, Vec3};
@@ -27,7 +30,7 @@ pub struct Shader<'a, L: SimdFloat> {
     /// What rays can meet, or just miss, that may slip between samples.
     pub thin: &'a Candidates,
     /// What can stand before each light.
-    pub lights: &'a [LightCandidates],
+    pub lights: &'a [LightCandidates<L::Real>],
 }
 
 /// Rays that a mirror sends on.
@@ -58,7 +61,7 @@ struct ShadingPoint<'a, L: SimdFloat> {
 struct LightSource<'a, R> {
     index: usize,
     light: &'a PointLight<R>,
-    candidates: &'a LightCandidates,
+    candidates: &'a LightCandidates<R>,
 }
 
 impl<'a, L: SimdFloat> Shader<'a, L> {
@@ -70,7 +73,7 @@ impl<'a, L: SimdFloat> Shader<'a, L> {
         packet: &mut Packet<L>,
         ignored: IgnoredPrimitive<L>,
         mut edge: Option<&mut EdgeInfo<L>>,
-        rays: &mut Rays,
+        (stack, rays): (&mut Stack<L::Real>, &mut Rays),
     ) -> Option<Mirrored<L>> {
         let kernel = self.kernel;
         let mut mirrored: Option<Mirrored<L>> = None;
@@ -79,17 +82,22 @@ impl<'a, L: SimdFloat> Shader<'a, L> {
                 rays: packet.rays,
                 ignored,
             };
-            edge.near = kernel.thin_distance(self.thin, &paths, edge.cone, packet.near.t);
+            let gaze = Gaze {
+                paths: &paths,
+                active: packet.active,
+                cone: edge.cone,
+                reach: packet.near.t,
+            };
+            edge.near = kernel.thin_distance(self.thin, &gaze, stack);
         }
 
         // Each primitive that was hit, for all rays that have hit it.
         let nothing = kernel.splat(NOTHING);
         let mut left = (nothing.less(packet.near.number) & packet.active).bits();
         while left != 0 {
-            let number = packet.near.number.lane(left.trailing_zeros() as usize);
-            let here = packet.near.number.same(nothing.like(number)) & packet.active;
+            let hit = kernel.refine(&packet.rays, &packet.near, left);
+            let here = hit.here & packet.active;
             left &= !here.bits();
-            let hit = kernel.refine(&packet.rays, &packet.near, number);
             let material = &kernel.plan.materials[hit.material as usize];
             let mut color = Vec3::broadcast(kernel.token, material.base);
             if let Some(surface) = &material.surface {
@@ -100,7 +108,7 @@ impl<'a, L: SimdFloat> Shader<'a, L> {
                         light,
                         candidates: &self.lights[index],
                     };
-                    color = color + self.light(edge.as_deref_mut(), &point, &light, rays);
+                    color = color + self.light(edge.as_deref_mut(), &point, &light, (stack, rays));
                 }
                 if let Some(filter) = surface.mirror.filter(|_| self.may_mirror) {
                     mirrored = Some(join(kernel, mirrored, self.mirror(&point, filter)));
@@ -129,8 +137,8 @@ impl<'a, L: SimdFloat> Shader<'a, L> {
             None => None,
             Some(edge) => {
                 let cosine = hit.surface.normal.dot(view);
-                let radius = hit.surface.radius;
-                Some(Footprint::new(edge.cone, packet.near.t, cosine, radius))
+                let curvature = hit.surface.curvature;
+                Some(Footprint::new(edge.cone, packet.near.t, cosine, curvature))
             }
         };
         ShadingPoint {
@@ -167,7 +175,7 @@ impl<'a, L: SimdFloat> Shader<'a, L> {
         edge: Option<&mut EdgeInfo<L>>,
         point: &ShadingPoint<L>,
         source: &LightSource<L::Real>,
-        rays: &mut Rays,
+        (stack, rays): (&mut Stack<L::Real>, &mut Rays),
     ) -> Vec3<L> {
         let (kernel, hit) = (self.kernel, &point.hit);
         let (light, candidates) = (source.light, source.candidates);
@@ -194,15 +202,20 @@ impl<'a, L: SimdFloat> Shader<'a, L> {
         rays.shadow += u64::from(facing.bits().count_ones());
         let mut edge = edge.zip(point.footprint.as_ref());
         let mut lit = lit_side;
-        if !candidates.casters.is_empty() {
+        if !candidates.casters.is_empty() || !candidates.thin.is_empty() {
             let paths = kernel.spawn(hit, l);
             let reach = match kernel.plan.ray_origin {
                 RayOrigin::AtHit | RayOrigin::Roundings => distance,
                 RayOrigin::Along(start) => distance - distance.like(start),
             };
             if let Some((edge, footprint)) = &mut edge {
-                let cone = footprint.shadow();
-                let near = kernel.thin_distance(&candidates.thin, &paths, cone, reach);
+                let gaze = Gaze {
+                    paths: &paths,
+                    active: facing,
+                    cone: footprint.shadow(),
+                    reach,
+                };
+                let near = kernel.thin_distance(&candidates.thin, &gaze, stack);
                 // The shadow of a light that nobody sees is not seen either.
                 let diffuse = point.surface.diffuse;
                 let brightest = (diffuse.x + diffuse.y + diffuse.z) * light.intensity;
@@ -214,7 +227,12 @@ impl<'a, L: SimdFloat> Shader<'a, L> {
             if candidates.is_umbra {
                 return dark;
             }
-            lit = lit & !kernel.blocked(&candidates.casters, &paths, reach, facing);
+            let among = Among {
+                candidates: &candidates.casters,
+                roots: &candidates.roots,
+                light: Some(light),
+            };
+            lit = lit & !kernel.blocked(among, &paths, (reach, facing), stack);
             if !lit.any() {
                 return dark;
             }

@@ -1,24 +1,29 @@
 //! Where rays have met a primitive, refined, and the rays that start there.
 
-use super::intersect::{IgnoredPrimitive, Kernel, Nearest, Paths};
+use super::gather::{Gathered, Piece};
+use super::intersect::{Kernel, Nearest};
+use super::paths::{IgnoredPrimitive, Paths};
 use crate::plan::RayOrigin;
 use crate::primitive::{Primitive, Ray, SurfacePoint, WithPrimitive};
 use crate::simd::{Real, SimdFloat, Vec3};
 
-/// Hits on one primitive.
+/// Hits on one primitive, or on several that look alike.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<L: SimdFloat> {
+    /// Where they are.
+    pub here: L::Mask,
     /// Point, normal and curvature of the surface.
     pub surface: SurfacePoint<L>,
     /// Index into [`crate::plan::Plan::materials`].
     pub material: u32,
-    /// Number of the primitive.
-    pub number: usize,
+    /// What was hit.
+    own: IgnoredPrimitive<L>,
 }
 
-struct Refine<'a, L> {
+struct Refine<'a, L: SimdFloat> {
     rays: &'a Ray<L>,
     t: L,
+    here: L::Mask,
     number: usize,
 }
 
@@ -28,21 +33,81 @@ impl<L: SimdFloat> WithPrimitive<L::Real> for Refine<'_, L> {
     #[inline(always)]
     fn run<P: Primitive<L::Real>>(self, primitive: &P) -> Hit<L> {
         Hit {
+            here: self.here,
             surface: primitive.refine(self.rays, self.t),
             material: primitive.material(),
-            number: self.number,
+            own: IgnoredPrimitive::Shared(self.number),
         }
     }
 }
 
 impl<L: SimdFloat> Kernel<'_, L> {
-    /// The hits on the primitive of this number.
+    /// The hits on what the first of the rays in `left` (bit by bit) has met, which has met something.
     #[inline(always)]
-    pub fn refine(self, rays: &Ray<L>, nearest: &Nearest<L>, number: L::Real) -> Hit<L> {
-        let number = number.to_f64() as usize;
-        let t = nearest.t;
-        let refine = Refine { rays, t, number };
-        self.plan.primitives.with(number, refine)
+    pub fn refine(self, rays: &Ray<L>, nearest: &Nearest<L>, left: u64) -> Hit<L> {
+        let number = nearest.number.lane(left.trailing_zeros() as usize);
+        let refine = Refine {
+            rays,
+            t: nearest.t,
+            here: nearest.number.same(nearest.number.like(number)),
+            number: number.to_f64() as usize,
+        };
+        match self.plan.numbered_geometry() {
+            Some((geometry, first)) if refine.number >= first => {
+                let index = refine.number - first;
+                match Piece::of(geometry, index) {
+                    Some(piece) => self.refine_alike(&piece, rays, nearest, left),
+                    None => geometry.primitives.with(index, refine),
+                }
+            }
+            _ => self.plan.primitives.with(refine.number, refine),
+        }
+    }
+
+    /// The hits on everything that is like one piece: each ray has met its own, and they are shaded as one.
+    #[inline(never)]
+    fn refine_alike(
+        self,
+        piece: &Piece<L::Real>,
+        rays: &Ray<L>,
+        nearest: &Nearest<L>,
+        left: u64,
+    ) -> Hit<L> {
+        L::vectorize(
+            self.token,
+            #[inline(always)]
+            || self.refine_alike_vectorized(piece, rays, nearest, left),
+        )
+    }
+
+    #[inline(always)]
+    fn refine_alike_vectorized(
+        self,
+        piece: &Piece<L::Real>,
+        rays: &Ray<L>,
+        nearest: &Nearest<L>,
+        left: u64,
+    ) -> Hit<L> {
+        let mut gathered = Gathered::new();
+        let mut left = left;
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize;
+            left &= left - 1;
+            if let Some((geometry, first)) = self.plan.numbered_geometry()
+                && let number = nearest.number.lane(lane).to_f64() as usize
+                && number >= first
+                && let Some(other) = Piece::of(geometry, number - first)
+                && other.is_like(piece)
+            {
+                gathered.set(lane, &other);
+            }
+        }
+        Hit {
+            here: gathered.mask::<L>(self.token),
+            surface: gathered.refine(piece, rays, nearest.t),
+            material: piece.material,
+            own: IgnoredPrimitive::Each(nearest.number),
+        }
     }
 
     /// The paths that start at the hits in unit directions on the side that the normal points to.
@@ -55,7 +120,7 @@ impl<L: SimdFloat> Kernel<'_, L> {
             ..
         } = hit.surface;
         let (origin, ignored) = match self.plan.ray_origin {
-            RayOrigin::AtHit => (point + normal * slack, IgnoredPrimitive::Shared(hit.number)),
+            RayOrigin::AtHit => (point + normal * slack, hit.own),
             RayOrigin::Along(distance) => (
                 point + direction * slack.like(distance),
                 IgnoredPrimitive::Nothing,

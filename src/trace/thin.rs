@@ -2,73 +2,173 @@
 //! that are narrower than two pixels. A sample that passes such a thing closely says so, and is then
 //! not left alone.
 
-use super::candidates::Candidates;
+use super::bundle::Beside;
+use super::candidates::{Among, Candidates};
 use super::footprint::{RayCone, pixels};
-use super::intersect::{IgnoredPrimitive, Kernel, Paths};
-use super::thresholds::SLIPPING;
-use crate::primitive::{Approach, Kind, Primitive, Visit};
-use crate::simd::SimdFloat;
+use super::intersect::Kernel;
+use super::paths::{IgnoredPrimitive, Paths};
+use super::roots::Roots;
+use super::scan::{Test, Thicket, scan_lists};
+use super::thresholds::{NEAR, SLIPPING, SMALL};
+use super::walk::Stack;
+use crate::primitive::{Approach, Primitive};
+use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
+
+/// Rays that look beside themselves.
+#[derive(Clone, Copy, Debug)]
+pub struct Gaze<'a, L: SimdFloat> {
+    /// The rays.
+    pub paths: &'a Paths<L>,
+    /// Where there is a ray.
+    pub active: L::Mask,
+    /// How wide a pixel is along them.
+    pub cone: RayCone<L>,
+    /// How far they go.
+    pub reach: L,
+}
 
 impl<L: SimdFloat> Kernel<'_, L> {
-    /// How many pixels away from the paths the nearest of the primitives is that are narrower there
-    /// than [`SLIPPING`] pixels, before `reach`; infinity for none.
+    /// How many pixels away from the rays the nearest of the primitives is that are narrower there
+    /// than [`SLIPPING`] pixels; infinity for none.
     #[inline(always)]
     pub fn thin_distance(
         self,
         among: &Candidates,
-        paths: &Paths<L>,
-        cone: RayCone<L>,
-        reach: L,
+        gaze: &Gaze<L>,
+        stack: &mut Stack<L::Real>,
     ) -> L {
-        let mut scan = ThinScan {
-            kernel: self,
-            among,
-            paths,
-            cone,
-            reach,
+        let counted = gaze.active | !gaze.active;
+        let mut test = ThinTest {
+            gaze,
             best: self.infinity(),
+            counted,
         };
-        self.plan.primitives.visit(&mut scan);
-        scan.best
+        scan_lists(self.plan, among, gaze.paths, &mut test);
+        let best = test.best;
+        // Their starts leave out what is beside the rays.
+        let roots = Roots::default();
+        let among = Among {
+            candidates: among,
+            roots: &roots,
+            light: None,
+        };
+        match self.thicket(among, gaze.active) {
+            Some(thicket) => self.thin_in(&thicket, gaze, best, stack),
+            None => best,
+        }
+    }
+
+    /// The nearest of `best` and what stands in the tree.
+    #[inline(never)]
+    fn thin_in(
+        self,
+        thicket: &Thicket<L>,
+        gaze: &Gaze<L>,
+        best: L,
+        stack: &mut Stack<L::Real>,
+    ) -> L {
+        L::vectorize(
+            self.token,
+            #[inline(always)]
+            || {
+                let (active, cone) = (gaze.active, gaze.cone);
+                let zero = self.splat(0.0);
+                let beside = Beside {
+                    width: L::select(active, cone.width, zero).greatest(),
+                    spread: L::select(active, cone.spread, zero).greatest(),
+                    thickest: L::Real::from_f64(SLIPPING),
+                };
+                let thicket = Thicket {
+                    beside,
+                    // What is narrow is found in the same way with and without boxes.
+                    is_boxed: true,
+                    ..*thicket
+                };
+                let mut test = ThinTest {
+                    gaze,
+                    best,
+                    counted: active | !active,
+                };
+                thicket.scan(gaze.paths, stack, &mut test);
+                test.best
+            },
+        )
     }
 }
 
-struct ThinScan<'a, L: SimdFloat> {
-    kernel: Kernel<'a, L>,
-    among: &'a Candidates,
-    paths: &'a Paths<L>,
-    cone: RayCone<L>,
-    reach: L,
+/// Looks for the thin thing that the rays pass most closely.
+struct ThinTest<'a, L: SimdFloat> {
+    gaze: &'a Gaze<'a, L>,
+    /// How many pixels away it is.
     best: L,
+    /// For which rays what is tested counts.
+    counted: L::Mask,
 }
 
-impl<L: SimdFloat> Visit<L::Real> for ThinScan<'_, L> {
+impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
+    const LOOKS_BESIDE: bool = true;
+
     #[inline(always)]
-    fn visit<P: Primitive<L::Real>>(&mut self, kind: Kind, primitives: &[P], first: usize) {
-        let among = self.among.of(kind);
-        if among.is_empty() {
-            return;
+    fn test_ball(
+        &mut self,
+        center: Vec3<L::Real>,
+        radius: L::Real,
+        paths: &Paths<L>,
+        active: L::Mask,
+    ) -> Option<L::Mask> {
+        let x = paths.rays.origin - paths.rays.origin.like(center);
+        let along = -paths.rays.direction.dot(x);
+        let off = (x + paths.rays.direction * along).length();
+        let (radius, zero) = (off.like(radius), off.like(L::Real::ZERO));
+        let width = self.gaze.cone.width_at(along.max(zero));
+        let is_small = (radius + radius).less(width * width.like_f64(SMALL));
+        let is_before = (along - radius).less(self.gaze.reach + width);
+        let is_ahead = zero.less(along + radius);
+        // Whether a ray meets what is inside, nobody asks: it passes closely enough.
+        let beside = (off - radius).max(width * width.like_f64(NEAR / 2.0));
+        let near = pixels(is_small & is_before & is_ahead, beside, width);
+        self.best = self.best.min(near);
+        let others = active & !is_small;
+        if !others.any() {
+            return None;
         }
-        let rays = &self.paths.rays;
-        let prepared = P::prepare(rays.direction);
-        let (slipping, zero) = (self.kernel.splat(SLIPPING), self.kernel.splat(0.0));
-        for &index in among {
-            let primitive = &primitives[index as usize];
-            let Approach {
-                from,
-                to,
-                distance,
-                size,
-            } = primitive.approach(rays, &prepared);
-            let width = self.cone.width_at(to);
-            let is_before = from.less(self.reach + primitive.margin(width));
-            let mut thin = size.less(width * slipping) & zero.less(to) & is_before;
-            // A curved surface surrounds the rays that start on it.
-            if P::IS_CURVED && !matches!(self.paths.ignored, IgnoredPrimitive::Nothing) {
-                let number = first + index as usize;
-                thin = thin & !self.paths.ignored.is(self.kernel.token, number);
-            }
-            self.best = self.best.min(pixels(thin, distance, width));
+        self.counted = !is_small;
+        Some(others)
+    }
+
+    #[inline(always)]
+    fn leave_mesh(&mut self) {
+        self.counted = self.counted | !self.counted;
+    }
+
+    #[inline(always)]
+    fn reach(&self) -> L {
+        self.gaze.reach
+    }
+
+    #[inline(always)]
+    fn test<P: Primitive<L::Real>>(
+        &mut self,
+        primitive: &P,
+        prepared: &P::Prepared<L>,
+        paths: &Paths<L>,
+        number: usize,
+    ) {
+        let Gaze { cone, reach, .. } = self.gaze;
+        let Approach {
+            from,
+            to,
+            distance,
+            size,
+        } = primitive.approach(&paths.rays, prepared);
+        let (slipping, zero) = (to.like_f64(SLIPPING), to.like(L::Real::ZERO));
+        let width = cone.width_at(to);
+        let is_before = from.less(*reach + primitive.margin(width));
+        let mut thin = size.less(width * slipping) & zero.less(to) & is_before;
+        // A curved surface surrounds the rays that start on it.
+        if P::IS_CURVED && !matches!(paths.ignored, IgnoredPrimitive::Nothing) {
+            thin = thin & !paths.ignored.is(to.token(), number);
         }
+        self.best = self.best.min(pixels(thin & self.counted, distance, width));
     }
 }

@@ -4,6 +4,8 @@ use crate::scene::MAX_HALVINGS;
 
 /// Widest thing, in pixels, that may slip between samples.
 pub const SLIPPING: f64 = 2.0;
+/// A mesh that is less than so many pixels large may slip between samples as a whole.
+pub const SMALL: f64 = 8.0;
 /// Cosine below which a surface seen at a grazing angle does not stretch a pixel any further: what
 /// [`LARGEST_STRETCH`] promises.
 pub const GRAZING: f64 = 0.25;

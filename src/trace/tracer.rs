@@ -14,7 +14,7 @@ use super::sampler::Sampler;
 use super::samples::Traced;
 use super::stats::{Rays, RenderControl};
 use super::tile::{Tile, TileColors};
-use crate::plan::{Plan, RenderRequest, needs_double};
+use crate::plan::{Plan, Planner, RenderRequest, is_uncountable, needs_double};
 use crate::scene::{Precision, Sampling, Scene};
 use crate::simd::{Level, Real, SimdFloat, SimdReal, WithSimd};
 
@@ -101,8 +101,8 @@ enum PlanOf {
 impl PlanOf {
     fn tile_side(&self, pixels: u64) -> usize {
         let primitives = match self {
-            Self::Single(plan) => plan.primitives.bounded(),
-            Self::Double(plan) => plan.primitives.bounded(),
+            Self::Single(plan) => plan.bounded(),
+            Self::Double(plan) => plan.bounded(),
         };
         if primitives as u64 * PIXELS_PER_PRIMITIVE <= pixels {
             LARGE_TILE
@@ -115,15 +115,20 @@ impl PlanOf {
 impl Tracer {
     /// Plans `request` of `scene`, which must pass [`crate::scene::check`].
     pub fn new(scene: &Scene, request: &RenderRequest) -> Self {
+        Self::planned(scene, request, &mut Planner::default())
+    }
+
+    /// The same after other pictures: what they need as well is not made again.
+    pub fn planned(scene: &Scene, request: &RenderRequest, planner: &mut Planner) -> Self {
         let double = match request.precision {
-            Precision::Auto => needs_double(scene),
-            Precision::Single => false,
+            Precision::Auto => is_uncountable(scene) || needs_double(scene),
+            Precision::Single => is_uncountable(scene),
             Precision::Double => true,
         };
         let plan = if double {
-            PlanOf::Double(Box::new(Plan::new(scene, request)))
+            PlanOf::Double(Box::new(Plan::new(scene, request, &mut planner.double)))
         } else {
-            PlanOf::Single(Box::new(Plan::new(scene, request)))
+            PlanOf::Single(Box::new(Plan::new(scene, request, &mut planner.single)))
         };
         Self {
             width: request.width as usize,
@@ -251,8 +256,7 @@ impl<R: SimdReal, P: Pixel> WithSimd<R> for Band<'_, R, P> {
         let mut sampler = Sampler::new();
         let mut colors = TileColors::default();
         let (mut in_band, mut in_tile) = (Candidates::default(), Candidates::default());
-        let screen = self.plan.screen.as_ref();
-        in_band.keep_seen(self.seen, screen, &self.rows, Span::Rows);
+        in_band.keep_seen(self.seen, plan, &self.rows, Span::Rows);
         for left in (0..self.width).step_by(self.tile) {
             if self.control.stop.load(Ordering::Relaxed) {
                 return None;
@@ -262,8 +266,8 @@ impl<R: SimdReal, P: Pixel> WithSimd<R> for Band<'_, R, P> {
                 columns,
                 rows: self.rows.clone(),
             };
-            in_tile.keep_seen(&in_band, screen, &tile.columns, Span::Columns);
-            if screen.is_some() {
+            in_tile.keep_seen(&in_band, plan, &tile.columns, Span::Columns);
+            if plan.screen.is_some() {
                 in_tile.drop_unseen_planes(self.plan, &tile);
             }
             match self.sampling {

@@ -6,12 +6,14 @@ use glam::DVec3;
 use super::icons;
 use super::requests::UiRequests;
 use crate::editor::Edit;
-use crate::scene::{Scene, Shape};
+use crate::mesh::SOLIDS;
+use crate::scene::{Mesh, Scene, Shape};
 
 /// What can be added, placed in front of the camera.
 pub fn add_menu(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
     let (at, size) = in_front_of_camera(scene);
-    for shape in Shape::examples(at, size) {
+    let shapes = Shape::examples(at, size).into_iter();
+    for shape in shapes.filter(|shape| !matches!(shape, Shape::Mesh(_))) {
         let name = format!("Add {}", shape.kind());
         if ui
             .add(Button::new((icons::text(icons::of_shape(&shape)), &name)))
@@ -19,6 +21,17 @@ pub fn add_menu(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
             .clicked()
         {
             out.edit(Edit::AddObject(shape));
+        }
+    }
+    for (solid, make) in SOLIDS {
+        let name = format!("Add {solid}");
+        let button = Button::new((icons::text(icons::MESH), &name));
+        if ui.add(button).accessible_name(name).clicked() {
+            let mesh = Mesh {
+                position: at,
+                ..Mesh::of(make(size))
+            };
+            out.edit(Edit::AddMesh(solid, mesh));
         }
     }
     let others = [

@@ -6,7 +6,7 @@ use egui::{CentralPanel, Context, Frame, Margin, Panel, Theme, Ui, ViewportComma
 use super::autosave::Autosave;
 use super::commands::{Command, is_about_files, pressed};
 use super::exports::Exports;
-use super::files::{FileOutcome, Files, Next};
+use super::files::{FileOutcome, Files, Next, import_mesh};
 use super::flying::Flying;
 use super::lab::Lab;
 use super::menu::Layout;
@@ -22,6 +22,7 @@ use super::viewport::{Place, describe, fit};
 use super::{help, inspector, menu, status, theme};
 use crate::editor::{Action, Editor, Mode, Time};
 use crate::image::Image;
+use crate::mesh::is_mesh_file;
 use crate::worker::{Answer, RenderThreadError};
 
 /// Where the list of recent files is kept between runs.
@@ -298,6 +299,10 @@ impl eframe::App for App {
         let outcome = self.files.poll(ctx, &mut self.editor);
         self.act_on(ctx, outcome);
         for file in ctx.input(|input| input.raw.dropped_files.clone()) {
+            if is_mesh_file(file.path()) {
+                import_mesh(&mut self.editor, file.path());
+                continue;
+            }
             let next = Next::Open(file.path().to_owned());
             let outcome = self.files.start(ctx, &mut self.editor, next);
             self.act_on(ctx, outcome);

@@ -18,6 +18,8 @@ pub enum Command {
     Open,
     /// Open this file.
     OpenRecent(PathBuf),
+    /// Choose a mesh file and add it to the scene.
+    ImportMesh,
     /// Write the document to its file.
     Save,
     /// Choose a file and write the document to it.

@@ -13,6 +13,8 @@ use crate::worker::run_in_background;
 pub enum Ask {
     /// A scene to open.
     OpenScene,
+    /// A mesh to add to the scene.
+    ImportMesh,
     /// Where to write the scene.
     SaveScene,
     /// Where to write the picture.
@@ -32,6 +34,7 @@ impl Ask {
     pub fn title(&self) -> &'static str {
         match self {
             Self::OpenScene => "Open scene",
+            Self::ImportMesh => "Import mesh",
             Self::SaveScene => "Save scene",
             Self::SaveImage => "Save image",
             Self::ImportPath => "Import camera path",
@@ -45,7 +48,7 @@ impl Ask {
     pub fn writes(&self) -> bool {
         !matches!(
             self,
-            Self::OpenScene | Self::ImportPath | Self::ExportFolder
+            Self::OpenScene | Self::ImportMesh | Self::ImportPath | Self::ExportFolder
         )
     }
 
@@ -61,6 +64,7 @@ impl Ask {
     pub fn endings(&self) -> &'static [&'static str] {
         match self {
             Self::OpenScene | Self::SaveScene => &["ron"],
+            Self::ImportMesh => &["obj", "stl", "ply", "glb", "gltf"],
             Self::SaveImage => &["png", "ppm"],
             Self::ImportPath | Self::ExportPath => &["csv", "ron"],
             Self::ExportJob => &["yaml"],
@@ -86,6 +90,7 @@ impl Dialogs for Native {
             let mut dialog = rfd::FileDialog::new().set_title(ask.title());
             dialog = match ask {
                 Ask::OpenScene | Ask::SaveScene => dialog.add_filter("Glint scene", ask.endings()),
+                Ask::ImportMesh => dialog.add_filter("Mesh", ask.endings()),
                 Ask::SaveImage => dialog.add_filter("Picture", ask.endings()),
                 Ask::ExportJob => dialog.add_filter("Open Job Description", ask.endings()),
                 Ask::ExportFolder => dialog,

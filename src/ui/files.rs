@@ -14,6 +14,7 @@ use crate::animate::{from_table, from_text, to_table, to_text};
 use crate::editor::{Action, Edit, Editor};
 use crate::export::{Pattern, Sequence, job_template, write_text};
 use crate::image::Format;
+use crate::mesh::read_parts;
 use crate::scene::{Animation, read_text};
 
 /// A dialog that comes back empty sooner than a hand can cancel it was never shown.
@@ -234,6 +235,7 @@ impl Files {
     ) -> Option<FileOutcome> {
         match wish.ask {
             Ask::OpenScene => self.open(editor, &path),
+            Ask::ImportMesh => import_mesh(editor, &path),
             Ask::SaveImage => return Some(FileOutcome::SaveImage(path)),
             Ask::ExportFolder => return Some(FileOutcome::ExportFolder(path)),
             Ask::ImportPath => import_path(editor, &path),
@@ -294,10 +296,22 @@ fn suggestion(editor: &Editor, ask: &Ask) -> PathBuf {
     let title = editor.title();
     let stem = title.strip_suffix(".ron").unwrap_or(&title);
     match ask {
-        Ask::OpenScene | Ask::ImportPath | Ask::ExportFolder => folder.join(""),
+        Ask::OpenScene | Ask::ImportMesh | Ask::ImportPath | Ask::ExportFolder => folder.join(""),
         Ask::ExportPath => folder.join(format!("{stem} path.csv")),
         Ask::ExportJob => folder.join(format!("{stem} job.yaml")),
         Ask::SaveScene | Ask::SaveImage => folder.join(format!("{stem}.{}", ask.endings()[0])),
+    }
+}
+
+/// The parts of a mesh file become objects.
+pub fn import_mesh(editor: &mut Editor, path: &Path) {
+    match read_parts(path) {
+        Ok(parts) => {
+            let count: usize = parts.iter().map(|part| part.triangles.faces().len()).sum();
+            editor.apply(Action::Edit(Edit::Import(parts)));
+            editor.notify(format!("{count} triangles from {}", path.display()));
+        }
+        Err(error) => editor.report_error(error.to_string()),
     }
 }
 
@@ -361,7 +375,7 @@ fn write_job(editor: &Editor, path: &Path, scene: &Path) -> Result<(), Box<dyn E
     let (pattern, folder) = (Pattern::default(), PathBuf::from("frames"));
     let sequence = Sequence::new(editor.scene().clone(), None, pattern, Format::Ppm, folder)?;
     write_text(path, &job_template(&sequence, &name, &file))?;
-    write_text(scene, &editor.to_text()?)?;
+    editor.document().save(scene)?;
     Ok(())
 }
 

@@ -85,6 +85,7 @@ fn file_menu(ui: &mut Ui, recent: &[PathBuf], out: &mut UiRequests) {
         });
     });
     entry(ui, "Open demo", Command::OpenDemo, true, out);
+    entry(ui, "Import mesh…", Command::ImportMesh, true, out);
     ui.separator();
     entry(ui, "Save", Command::Save, true, out);
     entry(ui, "Save as…", Command::SaveAs, true, out);

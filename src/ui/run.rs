@@ -25,6 +25,7 @@ impl App {
                 self.escape();
                 None
             }
+            Command::ImportMesh => self.ask(ctx, Ask::ImportMesh),
             Command::ImportPath => self.ask(ctx, Ask::ImportPath),
             Command::ExportPath => self.ask(ctx, Ask::ExportPath),
             Command::Export => {

@@ -12,9 +12,9 @@ use super::mailbox::Job;
 use super::shared::Shared;
 use super::task::panic_text;
 use crate::export::{ExportStep, Exporting, save_image};
-use crate::image::render;
+use crate::image::{Image, render_into};
 use crate::lab::Study;
-use crate::plan::RenderRequest;
+use crate::plan::{Planner, RenderRequest};
 use crate::scene::Sampling;
 use crate::trace::{RenderControl, Threads, Tracer, survey, visible};
 
@@ -35,6 +35,7 @@ enum JobOutcome {
 pub fn run(shared: &Shared, threads: &Threads) {
     let mut budget = Budget::new();
     let mut frame_pool = FramePool::default();
+    let mut planner = Planner::default();
     let mut woken = Instant::now();
     while let Some((mut job, control)) = next_job(shared) {
         let outcome = catch_unwind(AssertUnwindSafe(|| {
@@ -44,15 +45,15 @@ pub fn run(shared: &Shared, threads: &Threads) {
                     let mut live = Live {
                         shared,
                         job,
-                        tracer: Tracer::new(&job.scene, &job.request),
+                        tracer: Tracer::planned(&job.scene, &job.request, &mut planner),
                         frame_pool: &mut frame_pool,
                     };
                     live.run(&control, &mut budget, start);
                     JobOutcome::Ended
                 }
                 Job::Query(job) => answer(shared, job, &control),
-                Job::Thumbnail(job) => thumbnail(shared, job),
-                Job::Still(job) => still(shared, job, &control),
+                Job::Thumbnail(job) => thumbnail(shared, job, &mut planner),
+                Job::Still(job) => still(shared, job, &mut planner, &control),
                 Job::Export(_, exporting) => JobOutcome::Export(exporting.step(&control)),
                 Job::Lab(study) => {
                     if study.step(&control) {
@@ -198,19 +199,27 @@ fn answer_nothing(shared: &Shared, job: &QueryJob) {
     }
 }
 
-fn thumbnail(shared: &Shared, job: &ThumbnailJob) -> JobOutcome {
+fn thumbnail(shared: &Shared, job: &ThumbnailJob, planner: &mut Planner) -> JobOutcome {
     let request = RenderRequest {
         sampling: Sampling::Centres,
         ..RenderRequest::of(&job.scene, job.size.0, job.size.1)
     };
-    if let Some((image, _)) = render(&job.scene, &request, &shared.until_quit) {
+    let mut image = Image::default();
+    let control = &shared.until_quit;
+    if render_into(&mut image, planner, &job.scene, &request, control).is_some() {
         shared.outbox().thumbnails.push((job.name, image));
     }
     JobOutcome::Ended
 }
 
-fn still(shared: &Shared, job: &StillJob, control: &RenderControl) -> JobOutcome {
-    let Some((image, cost)) = render(&job.scene, &job.request, control) else {
+fn still(
+    shared: &Shared,
+    job: &StillJob,
+    planner: &mut Planner,
+    control: &RenderControl,
+) -> JobOutcome {
+    let mut image = Image::default();
+    let Some(cost) = render_into(&mut image, planner, &job.scene, &job.request, control) else {
         return JobOutcome::Unfinished;
     };
     let image = Arc::new(image);

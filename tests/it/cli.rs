@@ -168,7 +168,7 @@ fn wrong_words_and_wrong_files_exit_with_2() {
         (&["check"], "<SCENE>..."),
         (
             &["chek", DEMO],
-            "there is no command \"chek\"; there are render, export, job, check, plan, chart and stability",
+            "there is no command \"chek\"; there are render, export, job, check, convert, plan, chart and stability",
         ),
     ];
     for (words, expected) in cases {

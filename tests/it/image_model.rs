@@ -6,8 +6,8 @@ use glam::DVec3;
 use glint::image::{Image, render};
 use glint::plan::RenderRequest;
 use glint::scene::{
-    Accelerator, Disc, HighlightMethod, Method as _, Methods, Object, Plane, Precision, Projection,
-    RayOffset, Sampling, Scene, Shape, Sphere, SphereMethod, Triangle, TriangleMethod,
+    Disc, HighlightMethod, Mesh, Method as _, Methods, Plane, Precision, Projection, RayOffset,
+    Sampling, Scene, Shape, Sphere, SphereMethod, Triangle, TriangleMethod,
 };
 use glint::simd::Level;
 use glint::trace::{Grid, Pass, Rays, RenderControl, Threads, Tracer};
@@ -246,7 +246,7 @@ fn placed(scale: f64, by: DVec3) -> Scene {
     let mut scene = Scene::demo();
     let place = |v: DVec3| v * scale + by;
     for object in scene.objects.iter_mut() {
-        object.shape = match object.shape {
+        object.shape = match object.shape.clone() {
             Shape::Sphere(Sphere { center, radius }) => Shape::Sphere(Sphere {
                 center: place(center),
                 radius: radius * scale,
@@ -264,6 +264,11 @@ fn placed(scale: f64, by: DVec3) -> Scene {
                 center: place(disc.center),
                 radius: disc.radius * scale,
                 ..disc
+            }),
+            Shape::Mesh(mesh) => Shape::Mesh(Mesh {
+                position: place(mesh.position),
+                scale: mesh.scale * scale,
+                ..mesh
             }),
         };
     }
@@ -504,36 +509,4 @@ fn rays_are_traced_only_where_they_can_show() {
             reflected: 0
         }
     );
-}
-
-#[test]
-fn a_tree_shows_what_a_list_shows() {
-    let mut crowd = random::scene(5);
-    for n in 0..300 {
-        let place = |speed: f64| (f64::from(n) * speed).sin() * 70.0;
-        crowd.objects.push(Object {
-            name: format!("Speck {n}"),
-            color_pack: "pack 0".to_owned(),
-            shape: Shape::Sphere(Sphere {
-                center: DVec3::new(place(1.7), place(2.3), place(3.1)),
-                radius: 2.5,
-            }),
-            visible: true,
-        });
-    }
-    for scene in [Scene::demo(), crowd] {
-        for sampling in SAMPLINGS {
-            let with = |accelerator| {
-                let wanted = RenderRequest {
-                    accelerator,
-                    sampling,
-                    ..RenderRequest::sized(160, 120)
-                };
-                picture(&scene, &wanted)
-            };
-            let list = with(Accelerator::List);
-            assert!(list == with(Accelerator::Bvh), "{sampling:?}");
-            assert!(list == with(Accelerator::Auto), "{sampling:?}");
-        }
-    }
 }

@@ -9,6 +9,7 @@ mod cli;
 mod export;
 mod harness;
 mod image_model;
+mod meshes;
 mod needs;
 mod numerics;
 mod povray;

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 use glint::image::{Image, render};
-use glint::plan::{Model, Plan, RenderRequest, needs};
+use glint::plan::{Kept, Model, Plan, RenderRequest, needs};
 use glint::scene::{Object, Sampling, Scene, Shape, Sphere};
 use glint::trace::{Rays, RenderControl};
 
@@ -169,9 +169,9 @@ fn the_tree_begins_where_a_list_is_too_long() {
             });
         }
         scene.light_visualization = false;
-        Plan::<f32>::new(&scene, &RenderRequest::sized(64, 64))
-            .bvh
-            .is_tree()
+        let request = RenderRequest::sized(64, 64);
+        let plan = Plan::<f32>::new(&scene, &request, &mut Kept::default());
+        plan.geometry.is_some()
     };
     assert!(!crowd(128));
     assert!(crowd(129));
@@ -180,7 +180,7 @@ fn the_tree_begins_where_a_list_is_too_long() {
 #[test]
 fn far_faces_of_solids_are_left_out_and_of_open_meshes_are_not() {
     let left_out = |scene: &Scene| {
-        let plan = Plan::<f32>::new(scene, &RenderRequest::sized(64, 64));
+        let plan = Plan::<f32>::new(scene, &RenderRequest::sized(64, 64), &mut Kept::default());
         let eye = plan
             .camera_culled_faces
             .iter()

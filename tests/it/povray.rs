@@ -83,6 +83,15 @@ fn translate(scene: &Scene) -> String {
                     vector(*normal)
                 )
             }
+            Shape::Mesh(mesh) => {
+                let transform = mesh.transform();
+                let _ = writeln!(pov, "mesh {{");
+                for corners in mesh.source.triangles().corners() {
+                    let [a, b, c] = corners.map(|p| vector(transform.transform_point3(p)));
+                    let _ = writeln!(pov, "triangle {{ {a}, {b}, {c} }}");
+                }
+                writeln!(pov, "{texture} }}")
+            }
             Shape::Triangle(Triangle { a, b, c }) => {
                 writeln!(
                     pov,

@@ -6,17 +6,55 @@ mod watertight;
 
 mod weak;
 
-pub use packed::{PackedTriangle, corner, count_corner_users};
+pub use packed::{PackedTriangle, corner, count_corner_users, number_corners};
 use watertight::{Shear, watertight};
 
 use glam::DVec3;
 
 use super::ball::Ball;
+use super::bounding_box::BoundingBox;
 use super::kind::{Approach, Packing, Primitive, SurfacePoint};
 use super::projector::{Projector, Rectangle};
 use super::ray::Ray;
 use crate::scene::{Methods, Triangle, TriangleMethod};
 use crate::simd::{Real, SimdFloat, Vec3};
+
+/// What is needed of a triangle where it is hit, for each ray of its own triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Flat<L: SimdFloat> {
+    /// A corner.
+    pub corner: Vec3<L>,
+    /// Unit normal.
+    pub normal: Vec3<L>,
+    /// 1 where it shares a corner with another triangle, else 0.
+    pub in_mesh: L,
+}
+
+impl<L: SimdFloat> Flat<L> {
+    /// The hits at `t`, drawn onto the surface.
+    #[inline(always)]
+    pub fn refine(&self, rays: &Ray<L>, t: L) -> SurfacePoint<L> {
+        let normal = self.normal;
+        let point = rays.at(t);
+        let point = point - normal * normal.dot(point - self.corner);
+        // The neighbours in a mesh meet the triangle at its edges: 4u·(|p| + |o| + t) is what the
+        // computation of the point can be off by.
+        let reach = point.max_abs() + rays.origin.max_abs() + t;
+        let roundings = t.like(L::Real::UNIT_ROUNDOFF * L::Real::from_f64(4.0));
+        // Where the ray meets nothing, infinity times 0 is no number.
+        let slack = L::select(
+            t.like(L::Real::ZERO).less(self.in_mesh),
+            reach * roundings,
+            self.in_mesh,
+        );
+        SurfacePoint {
+            point,
+            normal,
+            curvature: t.like(L::Real::ZERO),
+            slack,
+        }
+    }
+}
 
 impl<R: Real> Primitive<R> for PackedTriangle<R> {
     type Description = Triangle;
@@ -46,6 +84,10 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
         Some(Ball::around_triangle(self.corners.map(Vec3::to_dvec3)))
     }
 
+    fn bounds(&self) -> Option<BoundingBox<R>> {
+        Some(BoundingBox::around(&self.corners))
+    }
+
     fn material(&self) -> u32 {
         self.material
     }
@@ -73,31 +115,19 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
     ) -> L {
         match methods.triangle {
             TriangleMethod::Watertight => watertight(rays, shear, self),
-            TriangleMethod::Edges => weak::edges(rays, self),
-            TriangleMethod::MollerTrumbore => weak::moller_trumbore(rays, self),
-            TriangleMethod::EdgePlanes => weak::edge_planes(rays, self),
+            weak => weak::weak(rays, self, weak),
         }
     }
 
     #[inline(always)]
     fn refine<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, t: L) -> SurfacePoint<L> {
-        let normal = rays.origin.like(self.normal);
-        let point = rays.at(t);
-        let point = point - normal * normal.dot(point - rays.origin.like(self.corners[0]));
-        // The neighbours in a mesh meet the triangle at its edges: 4u·(|p| + |o| + t) is what the
-        // computation of the point can be off by.
-        let slack = if self.in_mesh {
-            let reach = point.max_abs() + rays.origin.max_abs() + t;
-            reach * t.like(R::UNIT_ROUNDOFF * R::from_f64(4.0))
-        } else {
-            t.like(R::ZERO)
+        let in_mesh = if self.in_mesh { R::ONE } else { R::ZERO };
+        let flat = Flat {
+            corner: rays.origin.like(self.corners[0]),
+            normal: rays.origin.like(self.normal),
+            in_mesh: t.like(in_mesh),
         };
-        SurfacePoint {
-            point,
-            normal,
-            radius: R::INFINITY,
-            slack,
-        }
+        flat.refine(rays, t)
     }
 
     /// From the nearest corner to the farthest; the distance inside is zero.

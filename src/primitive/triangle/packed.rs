@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use crate::primitive::kind::Corner;
-use crate::scene::{Scene, Shape};
-use crate::simd::Vec3;
+use crate::scene::{Scene, Shape, Triangle};
+use crate::simd::{Real, Vec3};
 
 /// A flat triangle.
 #[derive(Clone, Copy, Debug)]
@@ -24,10 +24,36 @@ pub struct PackedTriangle<R> {
     pub material: u32,
 }
 
+impl<R: Real> PackedTriangle<R> {
+    /// A face of a mesh, as thick as it is by itself; `None` without an area.
+    pub fn of_mesh(corners: [DVec3; 3]) -> Option<Self> {
+        let [a, b, c] = corners;
+        let normal = (c - a).cross(b - a).try_normalize()?;
+        Some(Self {
+            corners: corners.map(Vec3::from_dvec3),
+            normal: Vec3::from_dvec3(normal),
+            in_mesh: true,
+            thickness: R::from_f64(Triangle { a, b, c }.thickness()),
+            material: 0,
+        })
+    }
+}
+
 /// A corner as a key: corners are one where their coordinates are equal.
 pub fn corner(point: DVec3) -> Corner {
     // Adding zero makes one zero of the two.
     point.to_array().map(|part| (part + 0.0).to_bits())
+}
+
+/// Numbers for the corners of triangles: the same where they meet.
+pub fn number_corners<R: Real>(triangles: &[PackedTriangle<R>]) -> Vec<[u32; 3]> {
+    let mut numbers = HashMap::new();
+    let mut number = |place: Vec3<R>| {
+        let next = numbers.len() as u32;
+        *numbers.entry(corner(place.to_dvec3())).or_insert(next)
+    };
+    let corners = triangles.iter().map(|triangle| triangle.corners);
+    corners.map(|corners| corners.map(&mut number)).collect()
 }
 
 /// How many visible triangles meet at each corner.

@@ -2,13 +2,32 @@
 
 use super::packed::PackedTriangle;
 use crate::primitive::ray::Ray;
+use crate::scene::TriangleMethod;
 use crate::simd::{Real, SimdFloat, Vec3};
+
+/// One of the formulas. A function of its own: only the lab calls it, from everywhere.
+#[inline(never)]
+pub fn weak<L: SimdFloat>(
+    ray: &Ray<L>,
+    triangle: &PackedTriangle<L::Real>,
+    method: TriangleMethod,
+) -> L {
+    L::vectorize(
+        ray.origin.x.token(),
+        #[inline(always)]
+        || match method {
+            TriangleMethod::Edges => edges(ray, triangle),
+            TriangleMethod::MollerTrumbore => moller_trumbore(ray, triangle),
+            TriangleMethod::EdgePlanes | TriangleMethod::Watertight => edge_planes(ray, triangle),
+        },
+    )
+}
 
 /// The formula of the original program: where the ray meets the plane, then, edge by edge in clockwise
 /// order, whether the cross product with the edge points away from the normal. Every rounding of
 /// the hit moves it across the edge differently for each neighbour.
 #[inline(always)]
-pub fn edges<L: SimdFloat>(ray: &Ray<L>, triangle: &PackedTriangle<L::Real>) -> L {
+fn edges<L: SimdFloat>(ray: &Ray<L>, triangle: &PackedTriangle<L::Real>) -> L {
     let n: Vec3<L> = ray.origin.like(triangle.normal);
     let [a, b, c] = triangle.corners;
     let (a, b, c) = (ray.origin.like(a), ray.origin.like(b), ray.origin.like(c));
@@ -31,7 +50,7 @@ pub fn edges<L: SimdFloat>(ray: &Ray<L>, triangle: &PackedTriangle<L::Real>) -> 
 /// Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", Journal of Graphics Tools
 /// 2(1), 1997; without its fixed threshold for the determinant, which fails in small scenes.
 #[inline(always)]
-pub fn moller_trumbore<L: SimdFloat>(ray: &Ray<L>, triangle: &PackedTriangle<L::Real>) -> L {
+fn moller_trumbore<L: SimdFloat>(ray: &Ray<L>, triangle: &PackedTriangle<L::Real>) -> L {
     let [a, b, c] = triangle.corners;
     let (ab, ac) = (ray.origin.like(b - a), ray.origin.like(c - a));
     let across = ray.direction.cross(ac);
@@ -58,7 +77,7 @@ pub fn moller_trumbore<L: SimdFloat>(ray: &Ray<L>, triangle: &PackedTriangle<L::
 /// Slusallek and Dachsbacher, "3D rasterization: a bridge between rasterization and ray casting",
 /// Graphics Interface 2012.
 #[inline(always)]
-pub fn edge_planes<L: SimdFloat>(ray: &Ray<L>, triangle: &PackedTriangle<L::Real>) -> L {
+fn edge_planes<L: SimdFloat>(ray: &Ray<L>, triangle: &PackedTriangle<L::Real>) -> L {
     let [a, b, c] = triangle.corners;
     let a = ray.origin.like(a) - ray.origin;
     let b = ray.origin.like(b) - ray.origin;

@@ -181,6 +181,8 @@ fn check_shape(at: &At, shape: &Shape) -> Check {
                 FieldValue::Point(point) => at.point(*point),
                 FieldValue::Direction(direction) => at.direction(*direction),
                 FieldValue::Length(length) => at.positive(*length),
+                FieldValue::Angles(angles) => at.point(*angles),
+                FieldValue::Factors(factors) => at.factors(*factors),
             };
         }
     });

@@ -8,6 +8,9 @@ use crate::scene::notation::format_number;
 /// Largest coordinate or length, in world units: f32 squares of it are still finite.
 const MAX_COORDINATE: f64 = 1e12;
 
+/// Smallest factor that something is scaled by.
+const MIN_FACTOR: f64 = 1e-6;
+
 /// Why a scene is refused, and where in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
@@ -147,6 +150,24 @@ impl<'a> At<'a> {
             self.name(),
             format_number(value.abs().max_element())
         ))
+    }
+
+    /// Factors, none of which makes anything flat.
+    pub fn factors(&self, value: DVec3) -> Check {
+        self.finite(&value.to_array())?;
+        let is_factor = |factor: &f64| (MIN_FACTOR..=1.0 / MIN_FACTOR).contains(&factor.abs());
+        match value
+            .to_array()
+            .into_iter()
+            .find(|factor| !is_factor(factor))
+        {
+            None => Ok(()),
+            Some(factor) => self.refuse(format!(
+                "{} must have factors between 1e-6 and 1e6, or as much below 0, found {}",
+                self.name(),
+                format_number(factor)
+            )),
+        }
     }
 
     /// A direction of any length but zero.

@@ -66,4 +66,8 @@ pub enum FieldValue<'a> {
     Direction(&'a mut DVec3),
     /// A length in world units, > 0.
     Length(&'a mut f64),
+    /// Degrees about x, y and z.
+    Angles(&'a mut DVec3),
+    /// Factors along x, y and z; none is 0.
+    Factors(&'a mut DVec3),
 }

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::describe::{Describe, Field};
 use super::disc::Disc;
+use super::mesh::Mesh;
 use super::plane::Plane;
 use super::sphere::Sphere;
 use super::triangle::Triangle;
@@ -132,5 +133,6 @@ shapes! {
     Sphere: "A ball.",
     Plane: "An endless plane.",
     Triangle: "A flat triangle.",
-    Disc: "A flat disc."
+    Disc: "A flat disc.",
+    Mesh: "Many triangles."
 }

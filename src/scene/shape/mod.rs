@@ -7,6 +7,8 @@ mod describe;
 
 mod disc;
 
+mod mesh;
+
 mod plane;
 
 mod sphere;
@@ -18,6 +20,7 @@ mod kinds;
 pub use describe::{Describe, Field, FieldValue};
 pub use disc::Disc;
 pub use kinds::Shape;
+pub use mesh::{Mesh, MeshSource};
 pub use plane::Plane;
 pub use sphere::Sphere;
 pub use triangle::Triangle;

@@ -6,7 +6,9 @@ use glam::DVec3;
 
 use super::title::title_field;
 use crate::editor::{Edit, Item, Selection};
-use crate::scene::{self, ColorPack, FieldValue, Light, LightObj, Object, Scene, Shape};
+use crate::scene::{
+    self, ColorPack, FieldValue, Light, LightObj, MOST_SEPARATE, Object, Scene, Shape,
+};
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, coordinate, fraction};
@@ -69,6 +71,30 @@ fn length(name: &'static str, hint: &'static str, default: f64) -> Field {
     }
 }
 
+/// Degrees.
+fn angle(name: &'static str, hint: &'static str) -> Field {
+    Field {
+        name,
+        hint,
+        unit: "°",
+        default: 0.0,
+        range: -1e6..=1e6,
+        speed: Some(0.5),
+    }
+}
+
+/// What something is multiplied by.
+fn factor(name: &'static str, hint: &'static str) -> Field {
+    Field {
+        name,
+        hint,
+        unit: "",
+        default: 1.0,
+        range: -1e6..=1e6,
+        speed: None,
+    }
+}
+
 fn pack_choice(rows: &mut Rows, scene: &Scene, name: &mut String) {
     let options = scene
         .color_packs
@@ -100,6 +126,7 @@ pub fn object(ui: &mut Ui, scene: &Scene, index: usize, before: &Object, out: &m
         "An invisible object casts no shadow and no reflection",
         &mut object.visible,
     );
+    mesh_tools(&mut rows, index, &before.shape, out);
     rows.heading("ColorPack");
     pack_choice(&mut rows, scene, &mut object.color_pack);
     if let Some(field) = rows.changed().filter(|_| object != *before) {
@@ -120,6 +147,40 @@ pub fn object(ui: &mut Ui, scene: &Scene, index: usize, before: &Object, out: &m
             out.edit(Edit::MakePackUnique(index));
         }
     });
+}
+
+/// What turns triangles into a mesh and back.
+fn mesh_tools(rows: &mut Rows, index: usize, shape: &Shape, out: &mut UiRequests) {
+    match shape {
+        Shape::Triangle(_) => {
+            let hint = "Make one mesh of this triangle and all that share corners with it";
+            if tool(rows, "Join connected", hint, true) {
+                out.edit(Edit::Join(index));
+            }
+        }
+        Shape::Mesh(mesh) => {
+            let faces = mesh.source.triangles().faces().len();
+            rows.ui.weak(format!("{faces} triangles"));
+            if let Some(problem) = mesh.source.problem() {
+                rows.ui.label(problem);
+            }
+            let hint = format!("Make an object of each triangle, up to {MOST_SEPARATE} of them");
+            if tool(
+                rows,
+                "Separate",
+                &hint,
+                (1..=MOST_SEPARATE).contains(&faces),
+            ) {
+                out.edit(Edit::Separate(index));
+            }
+        }
+        _ => {}
+    }
+}
+
+fn tool(rows: &mut Rows, name: &str, hint: &str, is_enabled: bool) -> bool {
+    let button = rows.ui.add_enabled(is_enabled, egui::Button::new(name));
+    button.on_hover_text(hint).clicked()
 }
 
 /// How many things wear a pack. To count them takes a look at every object: what is dragged changes
@@ -145,6 +206,8 @@ fn shape_rows(rows: &mut Rows, shape: &mut Shape) {
             rows.vector(&coordinate(name, hint), DVec3::Y, direction);
         }
         FieldValue::Length(length) => rows.number(&self::length(name, hint, 50.0), length),
+        FieldValue::Angles(angles) => rows.vector(&angle(name, hint), DVec3::ZERO, angles),
+        FieldValue::Factors(factors) => rows.vector(&factor(name, hint), DVec3::ONE, factors),
     });
 }
 

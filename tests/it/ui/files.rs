@@ -179,3 +179,34 @@ fn saving_works_from_within_a_field() {
         "what was typed is in the file"
     );
 }
+
+const PARTS: &str =
+    "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\no wing\nf 1 2 3\no tail\nf 1 2 4\nf 1 3 4\n";
+
+#[test]
+fn a_mesh_is_imported_turned_and_taken_apart() {
+    let answers = |folder: &std::path::Path| {
+        let path = folder.join("plane.obj");
+        std::fs::write(&path, PARTS).expect("written");
+        std::fs::write(folder.join("bad.stl"), "solid\n").expect("written");
+        let bad = folder.join("bad.stl");
+        vec![(Ask::ImportMesh, Some(path)), (Ask::ImportMesh, Some(bad))]
+    };
+    let mut harness = EditorHarness::with(answers, None);
+    let before = harness.scene().objects.len();
+    harness.choose("File", "Import mesh…");
+    assert_eq!(harness.scene().objects.len(), before + 2);
+    harness.click("tail");
+    harness.window.get_by_label_contains("2 triangles");
+    harness.click("Separate");
+    assert_eq!(harness.scene().objects.len(), before + 3);
+    harness.press(Modifiers::COMMAND, Key::Z);
+    harness.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(harness.scene().objects.len(), before, "one step each");
+    harness.choose("File", "Import mesh…");
+    assert_eq!(harness.scene().objects.len(), before);
+    harness.window.get_by_label_contains("bad.stl");
+    harness.click("Triangle 1");
+    harness.click("Join connected");
+    assert_eq!(harness.scene().objects.len(), before - 5);
+}

@@ -1,0 +1,27 @@
+//! Scenes that commands read.
+
+use std::path::Path;
+
+use super::error::{CliError, report_error};
+use crate::scene::{Document, Scene};
+
+/// Reads a scene. What is missing in it is said on stderr, once, and the rest is there.
+///
+/// # Errors
+/// [`CliError::Usage`], for a file that is no scene.
+pub fn read_scene(path: &Path) -> Result<Scene, CliError> {
+    let scene = Document::load(path)?.scene;
+    for problem in missing_meshes(path, &scene) {
+        report_error(&problem);
+    }
+    Ok(scene)
+}
+
+/// A line for each object whose mesh could not be read.
+pub fn missing_meshes(path: &Path, scene: &Scene) -> Vec<String> {
+    let said = |(index, why): (usize, &str)| {
+        let name = &scene.objects[index].name;
+        format!("{}: {name:?} is left out: {why}", path.display())
+    };
+    scene.mesh_problems().map(said).collect()
+}

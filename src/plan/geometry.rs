@@ -1,0 +1,229 @@
+//! What many objects become: packed once, in a tree, and kept from picture to picture.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::bvh::{Bvh, Member};
+use super::packed_mesh::{MeshInstance, PackedMesh, measure};
+use crate::primitive::{
+    BoundingBox, Kind, Packing, Primitive, Primitives, Visit, count_corner_users, number_corners,
+};
+use crate::scene::{Accelerator, List, Object, Scene, Shape};
+use crate::simd::{Real, Vec3};
+
+/// Above so many, walking a tree costs less than testing every object that a tile can see.
+pub const LARGEST_LIST: usize = 128;
+
+/// Most meshes whose parts surround the geometry one by one.
+const FINE_OUTLINE: usize = 4;
+
+/// The visible objects that end, ready to be traced: what does not depend on the camera, on lights or on
+/// what colours mean.
+#[derive(Clone, Debug)]
+pub struct Geometry<R> {
+    /// The objects; no plane is among them.
+    pub primitives: Primitives<R>,
+    /// The meshes. Their triangles are numbered after the primitives.
+    pub meshes: Vec<MeshInstance<R>>,
+    /// The way to them: its members are the numbers of the primitives, then the meshes.
+    pub bvh: Bvh<R>,
+}
+
+/// What a picture was planned from that the next one may need as well.
+#[derive(Clone, Debug, Default)]
+pub struct Kept<R> {
+    last: Option<(Source, Arc<Geometry<R>>)>,
+}
+
+/// What the picture before was planned from, which the next one may need as well.
+#[derive(Clone, Debug, Default)]
+pub struct Planner {
+    /// For single precision.
+    pub single: Kept<f32>,
+    /// For double precision.
+    pub double: Kept<f64>,
+}
+
+/// What the geometry depends on.
+#[derive(Clone, Debug)]
+struct Source {
+    objects: List<Object>,
+    centre: DVec3,
+    /// The names of the packs in their order: their places are in the primitives.
+    packs: Vec<String>,
+}
+
+impl Source {
+    fn of(scene: &Scene, centre: DVec3) -> Self {
+        Self {
+            objects: scene.objects.clone(),
+            centre,
+            packs: scene.color_packs.keys().cloned().collect(),
+        }
+    }
+
+    fn is_of(&self, scene: &Scene, centre: DVec3) -> bool {
+        self.centre == centre
+            && self.objects.is_same(&scene.objects)
+            && self.packs.iter().eq(scene.color_packs.keys())
+    }
+}
+
+impl<R: Real> Kept<R> {
+    /// The geometry of a scene, relative to `centre`: the last one, if nothing of it has changed.
+    pub fn geometry(&mut self, scene: &Scene, centre: DVec3) -> Arc<Geometry<R>> {
+        if let Some((source, geometry)) = &self.last
+            && source.is_of(scene, centre)
+        {
+            return Arc::clone(geometry);
+        }
+        // The old one is not needed while the new one is made, but for meshes that have not changed.
+        let meshes = self.last.take().map(|(_, last)| last.packed_meshes());
+        let geometry = Geometry::with_meshes(scene, centre, meshes.unwrap_or_default());
+        let geometry = Arc::new(geometry);
+        self.last = Some((Source::of(scene, centre), Arc::clone(&geometry)));
+        geometry
+    }
+}
+
+/// Whether the objects of a scene that end are kept in a tree: many of them, and any mesh.
+pub fn is_tree(scene: &Scene, accelerator: Accelerator, may_cull: bool) -> bool {
+    let visible = || scene.objects.iter().filter(|object| object.visible);
+    let is_wanted = match accelerator {
+        Accelerator::List => false,
+        Accelerator::Bvh => true,
+        Accelerator::Auto => {
+            let ended = visible().filter(|object| object.shape.bounds().is_some());
+            ended.take(LARGEST_LIST + 1).count() > LARGEST_LIST
+        }
+    };
+    let is_mesh = |object: &Object| matches!(object.shape, Shape::Mesh(_));
+    (is_wanted && may_cull) || visible().any(is_mesh)
+}
+
+impl<R: Real> Geometry<R> {
+    /// Packs the visible objects that end, relative to `centre`.
+    pub fn new(scene: &Scene, centre: DVec3) -> Self {
+        Self::with_meshes(scene, centre, Vec::new())
+    }
+
+    /// The same with those of the meshes that are packed already.
+    fn with_meshes(scene: &Scene, centre: DVec3, mut packed: Vec<Arc<PackedMesh<R>>>) -> Self {
+        let (mut primitives, mut meshes) = (Primitives::default(), Vec::new());
+        let packing = Packing {
+            centre,
+            corner_users: &count_corner_users(scene),
+            projector: None,
+        };
+        let visible = scene.objects.iter().filter(|object| object.visible);
+        for object in visible.filter(|object| object.shape.bounds().is_some()) {
+            let material = material_number(scene, &object.color_pack);
+            match &object.shape {
+                Shape::Mesh(mesh) => {
+                    let mesh_of = |known: &&Arc<PackedMesh<R>>| known.is_of(mesh);
+                    let known = packed.iter().find(mesh_of).cloned().unwrap_or_else(|| {
+                        let new = Arc::new(PackedMesh::new(mesh));
+                        packed.push(Arc::clone(&new));
+                        new
+                    });
+                    if known.triangles.is_empty() {
+                        continue; // None of them has an area.
+                    }
+                    meshes.push(MeshInstance {
+                        centre: Vec3::from_dvec3(known.middle_of(mesh) - centre),
+                        mesh: Arc::clone(&known),
+                        material,
+                        first: 0,
+                    });
+                }
+                shape => {
+                    primitives.push(shape, material, &packing);
+                }
+            }
+        }
+        let mut first = primitives.len();
+        for instance in &mut meshes {
+            instance.first = first;
+            first += instance.mesh.triangles.len();
+        }
+        measure_loose(&mut primitives);
+        let mut members = Members(Vec::with_capacity(primitives.len()));
+        primitives.visit(&mut members);
+        members.0.extend(meshes.iter().map(MeshInstance::member));
+        Self {
+            bvh: Bvh::new(&members.0),
+            primitives,
+            meshes,
+        }
+    }
+
+    /// Boxes that together surround it: those of the root, or of the roots of meshes in them.
+    pub fn outline(&self) -> impl Iterator<Item = BoundingBox<R>> {
+        let meshes = self.meshes.iter().flat_map(|instance| {
+            let boxes = instance.mesh.bvh.outline();
+            boxes.map(|inner| BoundingBox {
+                low: inner.low + instance.centre,
+                high: inner.high + instance.centre,
+            })
+        });
+        let is_fine = self.meshes.len() <= FINE_OUTLINE && self.primitives.is_empty();
+        let coarse = self.bvh.outline().filter(move |_| !is_fine);
+        coarse.chain(meshes.filter(move |_| is_fine))
+    }
+
+    fn packed_meshes(&self) -> Vec<Arc<PackedMesh<R>>> {
+        let meshes = self.meshes.iter();
+        meshes.map(|instance| Arc::clone(&instance.mesh)).collect()
+    }
+
+    /// How many primitives there are, triangles of meshes included.
+    pub fn len(&self) -> usize {
+        let last = self.meshes.last();
+        last.map_or(self.primitives.len(), |last| {
+            last.first + last.mesh.triangles.len()
+        })
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The mesh that the primitive of a number belongs to, counted from that of the first primitive.
+    #[inline(always)]
+    pub fn mesh_of(&self, number: usize) -> Option<&MeshInstance<R>> {
+        if number < self.primitives.len() {
+            return None;
+        }
+        let after = self.meshes.partition_point(|mesh| mesh.first <= number);
+        self.meshes.get(after.wrapping_sub(1))
+    }
+}
+
+/// Measures how thick what loose triangles make is, where they hang together.
+pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>) {
+    let triangles = &mut primitives.triangles;
+    let corners = number_corners(triangles);
+    measure(triangles, &corners);
+}
+
+/// The place of a pack among the materials.
+pub fn material_number(scene: &Scene, pack: &str) -> u32 {
+    scene.color_packs.get_index_of(pack).unwrap_or_default() as u32
+}
+
+/// All primitives that end, in the order of their numbers.
+struct Members<R>(Vec<Member<R>>);
+
+impl<R: Real> Visit<R> for Members<R> {
+    fn visit<P: Primitive<R>>(&mut self, _kind: Kind, primitives: &[P], _first: usize) {
+        let members = primitives.iter().filter_map(|primitive| {
+            Some(Member {
+                bounds: primitive.bounds()?,
+                thickness: primitive.thickness(),
+            })
+        });
+        self.0.extend(members);
+    }
+}

@@ -1,0 +1,134 @@
+//! A mesh, ready to be traced: its triangles relative to its own middle, and the way to them.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+
+use super::bvh::{Bvh, Member};
+use super::thickness::{is_outside, measures};
+use crate::mesh::Triangles;
+use crate::primitive::{BoundingBox, PackedTriangle};
+use crate::scene::Mesh;
+use crate::simd::{Real, Vec3};
+
+/// The triangles of a mesh, turned and scaled as they are in the world and relative to the middle of the
+/// box around them: where the mesh is costs no precision, and moving it changes none of this.
+#[derive(Clone, Debug)]
+pub struct PackedMesh<R> {
+    /// Its triangles; those without an area are left out.
+    pub triangles: Vec<PackedTriangle<R>>,
+    /// The way to them.
+    pub bvh: Bvh<R>,
+    /// Whether it has an inside, and its normals point away from there.
+    is_solid: bool,
+    /// The middle, from the origin of the mesh.
+    middle: DVec3,
+    source: Arc<Triangles>,
+    turn: DMat3,
+}
+
+/// A mesh in its place.
+#[derive(Clone, Debug)]
+pub struct MeshInstance<R> {
+    /// What is there; several may share it.
+    pub mesh: Arc<PackedMesh<R>>,
+    /// Where its middle is.
+    pub centre: Vec3<R>,
+    /// Index of its material.
+    pub material: u32,
+    /// The number of its first triangle, counted from that of the geometry's first primitive.
+    pub first: usize,
+}
+
+impl<R: Real> PackedMesh<R> {
+    /// Packs a mesh.
+    pub fn new(mesh: &Mesh) -> Self {
+        let (source, turn) = (mesh.source.triangles(), mesh.turn());
+        let turned = || source.points().iter().map(|&point| turn * point);
+        let low = turned().fold(DVec3::INFINITY, DVec3::min);
+        let high = turned().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let middle = low * 0.5 + high * 0.5;
+        let points: Vec<DVec3> = turned().map(|point| point - middle).collect();
+        let is_mirrored = turn.determinant() < 0.0;
+        let packed = |&[a, b, c]: &[u32; 3]| {
+            // Clockwise seen from outside, as it was before.
+            let face = if is_mirrored { [a, c, b] } else { [a, b, c] };
+            let corners = face.map(|point| points[point as usize]);
+            Some((PackedTriangle::of_mesh(corners)?, face))
+        };
+        let faces = source.faces().iter().filter_map(packed);
+        let (mut triangles, faces): (Vec<_>, Vec<_>) = faces.unzip();
+        let (bvh, is_closed) = measure(&mut triangles, &faces);
+        Self {
+            bvh,
+            is_solid: is_closed && volume(&triangles) > 0.0,
+            triangles,
+            middle,
+            source: Arc::clone(source),
+            turn,
+        }
+    }
+
+    /// Whether it is what would be packed of a mesh, wherever that is.
+    pub fn is_of(&self, mesh: &Mesh) -> bool {
+        Arc::ptr_eq(&self.source, mesh.source.triangles()) && self.turn == mesh.turn()
+    }
+
+    /// Where its middle is in the world, if it is that of `mesh`.
+    pub fn middle_of(&self, mesh: &Mesh) -> DVec3 {
+        mesh.position + self.middle
+    }
+}
+
+/// Six times the volume that the triangles surround; negative where they look inwards.
+fn volume<R: Real>(triangles: &[PackedTriangle<R>]) -> f64 {
+    let corners = triangles.iter().map(|triangle| triangle.corners);
+    let volumes = corners.map(|corners| {
+        let [a, b, c] = corners.map(Vec3::to_dvec3);
+        // Clockwise seen from outside.
+        a.dot(c.cross(b))
+    });
+    volumes.sum()
+}
+
+/// Sets how thick each of the triangles is, whose corners have these numbers. Gives the way to them, and
+/// whether they are closed.
+pub fn measure<R: Real>(triangles: &mut [PackedTriangle<R>], faces: &[[u32; 3]]) -> (Bvh<R>, bool) {
+    let members = |triangles: &[PackedTriangle<R>]| -> Vec<_> {
+        let member = |triangle: &PackedTriangle<R>| Member {
+            bounds: BoundingBox::around(&triangle.corners),
+            thickness: triangle.thickness,
+        };
+        triangles.iter().map(member).collect()
+    };
+    let mut bvh = Bvh::new(&members(triangles));
+    let measures = measures(triangles, faces, &bvh);
+    for (triangle, thickness) in triangles.iter_mut().zip(measures.thicknesses) {
+        triangle.thickness = triangle.thickness.max(thickness);
+    }
+    bvh.refit(&members(triangles));
+    (bvh, measures.is_closed)
+}
+
+impl<R: Real> MeshInstance<R> {
+    /// Whether it has an inside, and a point is not there.
+    pub fn is_seen_from_outside(&self, point: Vec3<R>) -> bool {
+        let PackedMesh { triangles, bvh, .. } = &*self.mesh;
+        self.mesh.is_solid && is_outside(triangles, bvh, point - self.centre)
+    }
+
+    /// The mesh as a member of the tree over all objects.
+    pub fn member(&self) -> Member<R> {
+        let BoundingBox { low, high } = self.mesh.bvh.bounds;
+        // A rounding of each sum.
+        let size = self.centre.max_abs() + low.max_abs().max(high.max_abs());
+        let slack = Vec3::splat(size * R::UNIT_ROUNDOFF * R::from_f64(2.0));
+        Member {
+            bounds: BoundingBox {
+                low: self.centre + low - slack,
+                high: self.centre + high + slack,
+            },
+            thickness: self.mesh.bvh.thinnest,
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! Boxes around things, along the axes.
+
+use crate::simd::{Real, Vec3};
+
+/// A box along the axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundingBox<R> {
+    /// The smallest coordinates.
+    pub low: Vec3<R>,
+    /// The largest.
+    pub high: Vec3<R>,
+}
+
+impl<R: Real> BoundingBox<R> {
+    /// The box around nothing.
+    pub fn nothing() -> Self {
+        Self {
+            low: Vec3::splat(R::INFINITY),
+            high: Vec3::splat(-R::INFINITY),
+        }
+    }
+
+    /// The box around points.
+    pub fn around(points: &[Vec3<R>]) -> Self {
+        points.iter().fold(Self::nothing(), |around, &point| Self {
+            low: around.low.min(point),
+            high: around.high.max(point),
+        })
+    }
+
+    /// The box around a ball, and a few roundings more.
+    pub fn around_ball(center: Vec3<R>, radius: R) -> Self {
+        let slack = (center.max_abs() + radius) * R::UNIT_ROUNDOFF * R::from_f64(4.0);
+        let reach = Vec3::splat(radius + slack);
+        Self {
+            low: center - reach,
+            high: center + reach,
+        }
+    }
+
+    /// The box around both.
+    #[must_use]
+    pub fn and(&self, other: &Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+        }
+    }
+
+    /// The box with so much more on every side.
+    #[must_use]
+    pub fn widened(&self, by: R) -> Self {
+        let by = Vec3::splat(by);
+        Self {
+            low: self.low - by,
+            high: self.high + by,
+        }
+    }
+
+    /// Its middle, and how far from there it reaches.
+    pub fn ball(&self) -> (Vec3<R>, R) {
+        let half = R::from_f64(0.5);
+        let middle = self.low * half + self.high * half;
+        (middle, (self.high - self.low).length() * half)
+    }
+
+    /// The largest coordinate, of either sign.
+    pub fn max_abs(&self) -> R {
+        self.low.max_abs().max(self.high.max_abs())
+    }
+}

@@ -1,0 +1,267 @@
+//! Parts of a mesh file become objects of a scene.
+
+use std::collections::{HashMap, HashSet};
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::camera::Camera;
+use super::list::List;
+use super::material::ColorPack;
+use super::object::{Light, LightObj, Object};
+use super::shape::{Mesh, MeshSource, Shape};
+use super::whole::Scene;
+use crate::mesh::{MeshError, Part, PartColors, read_parts};
+
+/// The pack of what a file gives no colours.
+const PLAIN: &str = "mesh";
+
+impl Scene {
+    /// A scene of a mesh file, seen whole and lit from two sides. A file of one part that lies in
+    /// `folder`, where the scene is to be saved, is referred to; all else is taken in.
+    ///
+    /// # Errors
+    /// [`MeshError`]: which file, where in it, and what is wrong.
+    pub fn of_mesh_file(path: &Path, folder: Option<&Path>) -> Result<Self, MeshError> {
+        let mut scene = Self::empty();
+        scene.packs_mut().clear();
+        scene.lights = List::new();
+        scene.import(path)?;
+        let near = folder.and_then(|folder| path.strip_prefix(folder).ok());
+        if let (Some(near), 1) = (near.and_then(Path::to_str), scene.objects.len())
+            && let Some(object) = scene.objects.get_mut(0)
+            && let Shape::Mesh(mesh) = &mut object.shape
+        {
+            // In the file's own coordinates, which are not moved to their middle.
+            let mut linked = Mesh {
+                source: MeshSource::File {
+                    path: near.to_owned(),
+                    folder: None,
+                    triangles: Arc::default(),
+                    problem: None,
+                },
+                position: DVec3::ZERO,
+                ..mesh.clone()
+            };
+            linked.load(folder);
+            if linked.source.problem().is_none() {
+                *mesh = linked;
+            }
+        }
+        scene.frame_and_light();
+        Ok(scene)
+    }
+
+    /// Adds the parts of a mesh file as objects behind the last, with its colours as packs. Gives the
+    /// index of the first.
+    ///
+    /// # Errors
+    /// [`MeshError`]; the scene is then unchanged.
+    pub fn import(&mut self, path: &Path) -> Result<usize, MeshError> {
+        Ok(self.add_parts(read_parts(path)?))
+    }
+
+    /// Adds parts as objects behind the last, with their colours as packs. Gives the index of the first.
+    pub fn add_parts(&mut self, parts: Vec<Part>) -> usize {
+        let first = self.objects.len();
+        let mut names = Names::new(self.objects.iter().map(|object| object.name.as_str()));
+        for part in parts {
+            let color_pack = self.pack_of(part.colors.as_ref());
+            let Part {
+                name, triangles, ..
+            } = part;
+            self.objects.push(Object {
+                name: names.take(&name),
+                color_pack,
+                shape: Mesh::of(triangles).centred().into(),
+                visible: true,
+            });
+        }
+        first
+    }
+
+    /// The pack of a part: that of its colours, which may be there already.
+    fn pack_of(&mut self, colors: Option<&PartColors>) -> String {
+        let (wanted, pack) = match colors {
+            None => (PLAIN.to_owned(), plain_pack()),
+            Some(colors) => (tidy(&colors.name), color_pack(colors)),
+        };
+        if self.color_packs.get(&wanted) == Some(&pack) {
+            return wanted;
+        }
+        let name = Names::new(self.color_packs.keys().map(String::as_str)).take(&wanted);
+        self.packs_mut().insert(name.clone(), pack);
+        name
+    }
+
+    /// Shows everything from the front, a little from above, and lights it from both sides.
+    fn frame_and_light(&mut self) {
+        let Some((low, high)) = self.objects_bounds() else {
+            return;
+        };
+        let (middle, size) = (low * 0.5 + high * 0.5, (high - low).length());
+        let from = DVec3::new(0.35, 0.3, 1.0).normalize();
+        self.camera = Camera {
+            position: middle + from * size * 1.3,
+            look_at: -from,
+            up: DVec3::Y,
+            projection_distance: 1.0,
+            orthographic_height: size,
+            ..Camera::default()
+        };
+        for (name, direction, intensity) in [
+            ("Light 1", DVec3::new(1.0, 1.2, 1.0), 0.5),
+            ("Light 2", DVec3::new(-1.4, 0.6, 0.7), 0.25),
+        ] {
+            self.lights.push(Light {
+                name: name.to_owned(),
+                position: middle + direction * size,
+                intensity,
+                marker: None::<LightObj>,
+                visible: true,
+            });
+        }
+    }
+}
+
+fn plain_pack() -> ColorPack {
+    let clay = DVec3::new(214.0, 200.0, 184.0);
+    ColorPack {
+        ambient: clay,
+        diffuse: clay,
+        specular: DVec3::splat(60.0),
+        ..ColorPack::default()
+    }
+}
+
+fn color_pack(colors: &PartColors) -> ColorPack {
+    let color = |[red, green, blue]: [f64; 3]| (DVec3::new(red, green, blue) * 255.0).round();
+    let diffuse = color(colors.diffuse);
+    let plain = plain_pack();
+    ColorPack {
+        // Files mostly leave it black or white; what is lit by nothing but ambient light is then lost.
+        ambient: diffuse,
+        diffuse,
+        specular: colors.specular.map_or(plain.specular, color),
+        phong_exponent: colors.exponent.unwrap_or(plain.phong_exponent),
+        reflective: false,
+    }
+}
+
+/// A name as a scene can have it.
+fn tidy(name: &str) -> String {
+    let plain: String = name.chars().filter(|c| !c.is_control()).take(100).collect();
+    let plain = plain.trim();
+    if plain.is_empty() { PLAIN } else { plain }.to_owned()
+}
+
+/// Names that are taken.
+#[derive(Debug, Default)]
+pub struct Names {
+    taken: HashSet<String>,
+    /// For names that were wanted the number to go on with.
+    next: HashMap<String, u64>,
+}
+
+impl Names {
+    /// These are taken.
+    pub fn new<'a>(taken: impl Iterator<Item = &'a str>) -> Self {
+        Self {
+            taken: taken.map(str::to_owned).collect(),
+            next: HashMap::new(),
+        }
+    }
+
+    /// `wanted`, or `wanted 2`, `wanted 3`, … which is then taken.
+    pub fn take(&mut self, wanted: &str) -> String {
+        let wanted = tidy(wanted);
+        if self.taken.insert(wanted.clone()) {
+            return wanted;
+        }
+        let next = self.next.entry(wanted.clone()).or_insert(2);
+        loop {
+            let name = format!("{wanted} {next}");
+            *next += 1;
+            if self.taken.insert(name.clone()) {
+                return name;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Document, check};
+
+    const OBJ: &str = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no left\nusemtl red\nf 1 2 3\no left\nf 1 2 4\n";
+    const MTL: &str = "newmtl red\nKd 1 0.5 0\nKs 0.2 0.2 0.2\nNs 40\n";
+
+    #[test]
+    fn groups_become_objects_and_materials_packs() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("m.obj");
+        std::fs::write(&path, OBJ).expect("written");
+        std::fs::write(folder.path().join("m.mtl"), MTL).expect("written");
+        let scene = Scene::of_mesh_file(&path, Some(folder.path())).expect("read");
+        assert_eq!(check(&scene), Ok(()));
+        let names: Vec<_> = scene.objects.iter().map(|o| o.name.as_str()).collect();
+        assert_eq!(names, ["left", "left 2"]);
+        let pack = &scene.color_packs["red"];
+        assert_eq!(pack.diffuse, DVec3::new(255.0, 128.0, 0.0));
+        assert_eq!(pack.phong_exponent, 40.0);
+        assert_eq!(scene.objects[1].color_pack, "red");
+        // Two parts are taken in, and read again as they are.
+        let document = Document {
+            header: String::new(),
+            scene,
+        };
+        let text = document.to_text().expect("a text");
+        let again = Document::from_text(&text).expect("a scene");
+        assert_eq!(again, document);
+    }
+
+    #[test]
+    fn one_part_beside_the_scene_is_referred_to() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("m.obj");
+        std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
+        let scene = Scene::of_mesh_file(&path, Some(folder.path())).expect("read");
+        let document = Document {
+            header: String::new(),
+            scene,
+        };
+        let file = folder.path().join("s.ron");
+        document.save(&file).expect("saved");
+        let text = std::fs::read_to_string(&file).expect("there");
+        assert!(text.contains("Mesh(file: \"m.obj\")"), "{text}");
+        assert_eq!(Document::load(&file).expect("read").scene, document.scene);
+        // In another folder there is no such file: the triangles are taken along.
+        let elsewhere = tempfile::tempdir().expect("a folder");
+        let file = elsewhere.path().join("s.ron");
+        document.save(&file).expect("saved");
+        std::fs::remove_file(&path).expect("removed");
+        let there = Document::load(&file).expect("read").scene;
+        assert_eq!(there.mesh_problems().count(), 0);
+        assert_eq!(there.objects_bounds(), document.scene.objects_bounds());
+    }
+
+    #[test]
+    fn a_missing_file_is_named_and_the_rest_is_there() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("s.ron");
+        let text = "Scene(version: 1, color_packs: {\"p\": ColorPack()}, objects: [Object(name: \"a\", color_pack: \"p\", shape: Mesh(file: \"gone.ply\", position: (1, 2, 3))), Object(name: \"b\", color_pack: \"p\", shape: Sphere(center: (0, 0, 0), radius: 1))])";
+        std::fs::write(&file, text).expect("written");
+        let document = Document::load(&file).expect("the rest opens");
+        let problems: Vec<_> = document.scene.mesh_problems().collect();
+        assert_eq!(problems.len(), 1);
+        assert!(problems[0].1.contains("gone.ply"), "{problems:?}");
+        assert!(
+            document
+                .to_text()
+                .expect("a text")
+                .contains("Mesh(file: \"gone.ply\", position: (1, 2, 3))")
+        );
+    }
+}

@@ -1,0 +1,165 @@
+//! Triangles that become one mesh, and a mesh that becomes triangles.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use super::import::Names;
+use super::list::List;
+use super::object::Object;
+use super::shape::{Mesh, Shape, Triangle};
+use super::whole::Scene;
+use crate::mesh::Triangles;
+
+/// Most triangles that a mesh is taken apart into: each becomes an object with a name.
+pub const MOST_SEPARATE: usize = 10_000;
+
+impl Scene {
+    /// The triangles that hang together with the one at `index` by common corners, itself included, by
+    /// their indices; none if that is no triangle.
+    pub fn connected_triangles(&self, index: usize) -> Vec<usize> {
+        let corners = |object: &Object| match &object.shape {
+            Shape::Triangle(triangle) => Some(triangle.corners().map(key)),
+            _ => None,
+        };
+        let mut users: HashMap<[u64; 3], Vec<usize>> = HashMap::new();
+        for (user, object) in self.objects.iter().enumerate() {
+            for corner in corners(object).into_iter().flatten() {
+                users.entry(corner).or_default().push(user);
+            }
+        }
+        let mut found = vec![false; self.objects.len()];
+        let mut waiting = vec![index];
+        while let Some(object) = waiting.pop() {
+            let Some(own) = self.objects.get(object).and_then(corners) else {
+                continue;
+            };
+            if std::mem::replace(&mut found[object], true) {
+                continue;
+            }
+            // Each corner leads on once.
+            waiting.extend(
+                own.iter()
+                    .filter_map(|corner| users.remove(corner))
+                    .flatten(),
+            );
+        }
+        (0..found.len()).filter(|&object| found[object]).collect()
+    }
+
+    /// Puts a mesh in place of the triangle at `index` and all that hang together with it, with the name
+    /// and the pack of the first. Gives the index of the mesh; `None` if that is no triangle.
+    pub fn join(&mut self, index: usize) -> Option<usize> {
+        let joined = self.connected_triangles(index);
+        let first = *joined.first()?;
+        let (mut numbers, mut points) = (HashMap::new(), Vec::new());
+        let mut number = |point: DVec3| {
+            *numbers.entry(key(point)).or_insert_with(|| {
+                points.push(point);
+                points.len() as u32 - 1
+            })
+        };
+        let triangles = joined
+            .iter()
+            .filter_map(|&index| match &self.objects[index].shape {
+                Shape::Triangle(triangle) => Some(triangle.corners()),
+                _ => None,
+            });
+        let faces: Vec<_> = triangles.map(|corners| corners.map(&mut number)).collect();
+        let mesh = Mesh::of(Triangles::new(points, faces).ok()?).centred();
+        let mut rest = joined.into_iter().peekable();
+        let objects = self
+            .objects
+            .iter()
+            .enumerate()
+            .filter_map(|(index, object)| {
+                if rest.next_if_eq(&index).is_none() {
+                    return Some(object.clone());
+                }
+                (index == first).then(|| Object {
+                    shape: mesh.clone().into(),
+                    ..object.clone()
+                })
+            });
+        self.objects = objects.collect::<List<_>>();
+        Some(first)
+    }
+
+    /// Puts triangles in place of the mesh at `index`, if there are no more than [`MOST_SEPARATE`]. Whether
+    /// it did.
+    pub fn separate(&mut self, index: usize) -> bool {
+        let Some(object) = self.objects.get(index) else {
+            return false;
+        };
+        let Shape::Mesh(mesh) = &object.shape else {
+            return false;
+        };
+        let triangles = mesh.source.triangles();
+        if !(1..=MOST_SEPARATE).contains(&triangles.faces().len()) {
+            return false;
+        }
+        let transform = mesh.transform();
+        let is_mirrored = transform.matrix3.determinant() < 0.0;
+        let others = self
+            .objects
+            .iter()
+            .filter(|other| other.name != object.name);
+        let mut names = Names::new(others.map(|other| other.name.as_str()));
+        let pieces: Vec<Object> = triangles
+            .corners()
+            .map(|corners| {
+                let [a, b, c] = corners.map(|corner| transform.transform_point3(corner));
+                let (b, c) = if is_mirrored { (c, b) } else { (b, c) };
+                Object {
+                    name: names.take(&object.name),
+                    shape: Triangle { a, b, c }.into(),
+                    ..object.clone()
+                }
+            })
+            .collect();
+        let before = self.objects.iter().take(index).cloned();
+        let after = self.objects.iter().skip(index + 1).cloned();
+        self.objects = before.chain(pieces).chain(after).collect::<List<_>>();
+        true
+    }
+}
+
+/// Corners are one where their coordinates are equal.
+fn key(point: DVec3) -> [u64; 3] {
+    // Adding zero makes one zero of the two.
+    (point + DVec3::ZERO).to_array().map(f64::to_bits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::check;
+
+    #[test]
+    fn the_pyramid_of_the_demo_becomes_a_mesh_and_triangles_again() {
+        let demo = Scene::demo();
+        let is_triangle = |object: &Object| matches!(object.shape, Shape::Triangle(_));
+        let first = demo
+            .objects
+            .iter()
+            .position(is_triangle)
+            .expect("a triangle");
+        let mut scene = demo.clone();
+        assert_eq!(scene.join(first + 2), Some(first));
+        assert_eq!(scene.objects.len(), demo.objects.len() - 5);
+        assert_eq!(check(&scene), Ok(()));
+        assert_eq!(scene.objects[first].name, demo.objects[first].name);
+        assert_eq!(scene.faces(), 6);
+        assert!(scene.separate(first));
+        assert_eq!(check(&scene), Ok(()));
+        let shapes = |scene: &Scene| -> Vec<_> {
+            scene
+                .objects
+                .iter()
+                .map(|object| object.shape.clone())
+                .collect()
+        };
+        assert_eq!(shapes(&scene), shapes(&demo));
+        assert!(demo.connected_triangles(0).is_empty(), "a sphere");
+    }
+}

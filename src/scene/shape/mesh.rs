@@ -1,0 +1,414 @@
+//! Many triangles as one thing: written in the scene file, or in a file of their own.
+
+use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
+
+use glam::{DAffine3, DMat3, DVec3};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::describe::{Describe, Field, FieldValue};
+use crate::mesh::{FARTHEST, Triangles, icosphere, read_triangles};
+use crate::scene::notation;
+
+/// Triangles that are moved, turned and scaled as one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// The triangles, as they are before they are scaled, turned and moved.
+    pub source: MeshSource,
+    /// Where their origin is.
+    pub position: DVec3,
+    /// Degrees about x, then y, then z.
+    pub rotation: DVec3,
+    /// Factors along x, y and z, before the rotation; none is 0.
+    pub scale: DVec3,
+}
+
+/// Where the triangles of a mesh come from.
+#[derive(Clone, Debug)]
+pub enum MeshSource {
+    /// The scene file.
+    Inline(Arc<Triangles>),
+    /// A file of their own.
+    File {
+        /// Its path from the folder of the scene file.
+        path: String,
+        /// That folder, once it is known.
+        folder: Option<PathBuf>,
+        /// What was read.
+        triangles: Arc<Triangles>,
+        /// Why nothing was read, as a sentence without its full stop.
+        problem: Option<String>,
+    },
+}
+
+/// A mesh as the file has it.
+#[derive(Serialize, Deserialize)]
+#[serde(rename = "Mesh", deny_unknown_fields)]
+struct MeshText {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    file: Option<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    points: Vec<Point>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    faces: Vec<[u32; 3]>,
+    #[serde(
+        default,
+        with = "notation::vector",
+        skip_serializing_if = "notation::is_default"
+    )]
+    position: DVec3,
+    #[serde(
+        default,
+        with = "notation::vector",
+        skip_serializing_if = "notation::is_default"
+    )]
+    rotation: DVec3,
+    #[serde(default = "unscaled", skip_serializing_if = "is_unscaled")]
+    scale: Scale,
+}
+
+/// A point of a mesh as the file has it.
+#[derive(Serialize, Deserialize)]
+#[serde(transparent)]
+struct Point(#[serde(with = "notation::vector")] DVec3);
+
+/// One factor, or three.
+#[derive(Clone, Copy, PartialEq)]
+struct Scale(DVec3);
+
+fn unscaled() -> Scale {
+    Scale(DVec3::ONE)
+}
+
+fn is_unscaled(scale: &Scale) -> bool {
+    *scale == unscaled()
+}
+
+impl Serialize for Scale {
+    fn serialize<S: Serializer>(&self, file: S) -> Result<S::Ok, S::Error> {
+        let [x, y, z] = self.0.to_array();
+        if x == y && y == z {
+            notation::number::serialize(&x, file)
+        } else {
+            notation::vector::serialize(&self.0, file)
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Scale {
+    fn deserialize<D: Deserializer<'de>>(file: D) -> Result<Self, D::Error> {
+        notation::vector::one_or_three(file).map(Self)
+    }
+}
+
+impl Serialize for Mesh {
+    fn serialize<S: Serializer>(&self, file: S) -> Result<S::Ok, S::Error> {
+        let (path, points, faces) = match &self.source {
+            MeshSource::Inline(triangles) => (
+                None,
+                triangles.points().iter().copied().map(Point).collect(),
+                triangles.faces().to_vec(),
+            ),
+            MeshSource::File { path, .. } => (Some(path.clone()), Vec::new(), Vec::new()),
+        };
+        let text = MeshText {
+            file: path,
+            points,
+            faces,
+            position: self.position,
+            rotation: self.rotation,
+            scale: Scale(self.scale),
+        };
+        text.serialize(file)
+    }
+}
+
+impl<'de> Deserialize<'de> for Mesh {
+    fn deserialize<D: Deserializer<'de>>(file: D) -> Result<Self, D::Error> {
+        let text = MeshText::deserialize(file)?;
+        let source = match text.file {
+            Some(_) if !text.points.is_empty() || !text.faces.is_empty() => {
+                return Err(D::Error::custom(
+                    "a mesh has either a file or points and faces, this one has both",
+                ));
+            }
+            Some(path) => MeshSource::File {
+                path,
+                folder: None,
+                triangles: Arc::default(),
+                problem: None,
+            },
+            None => {
+                let points = text.points.into_iter().map(|Point(point)| point).collect();
+                let triangles = Triangles::new(points, text.faces);
+                MeshSource::Inline(Arc::new(triangles.map_err(D::Error::custom)?))
+            }
+        };
+        Ok(Self {
+            source,
+            position: text.position,
+            rotation: text.rotation,
+            scale: text.scale.0,
+        })
+    }
+}
+
+impl PartialEq for MeshSource {
+    fn eq(&self, other: &Self) -> bool {
+        let is_same = || {
+            let (ours, theirs) = (self.triangles(), other.triangles());
+            Arc::ptr_eq(ours, theirs) || ours == theirs
+        };
+        match (self, other) {
+            (Self::Inline(_), Self::Inline(_)) => is_same(),
+            (
+                Self::File { path, problem, .. },
+                Self::File {
+                    path: their_path,
+                    problem: their_problem,
+                    ..
+                },
+            ) => path == their_path && problem == their_problem && is_same(),
+            _ => false,
+        }
+    }
+}
+
+impl MeshSource {
+    /// Why the file that it refers to could not be read.
+    pub fn problem(&self) -> Option<&str> {
+        match self {
+            Self::Inline(_) => None,
+            Self::File { problem, .. } => problem.as_deref(),
+        }
+    }
+
+    /// The same in a scene file of this folder: triangles that were read from elsewhere are taken in.
+    pub fn taken_to(&self, folder: &Path) -> Self {
+        match self {
+            Self::File {
+                folder: own,
+                triangles,
+                problem: None,
+                ..
+            } if own.as_deref() != Some(folder) && !triangles.faces().is_empty() => {
+                Self::Inline(Arc::clone(triangles))
+            }
+            _ => self.clone(),
+        }
+    }
+
+    /// A stand-in that is written in few words and is another one for other triangles.
+    pub fn abridged(&self) -> Self {
+        Self::File {
+            path: self.triangles().fingerprint().to_string(),
+            folder: None,
+            triangles: Arc::default(),
+            problem: None,
+        }
+    }
+
+    /// The triangles; none where a file could not be read.
+    pub fn triangles(&self) -> &Arc<Triangles> {
+        match self {
+            Self::Inline(triangles) | Self::File { triangles, .. } => triangles,
+        }
+    }
+}
+
+impl Mesh {
+    /// Triangles where they are.
+    pub fn of(triangles: Triangles) -> Self {
+        Self {
+            source: MeshSource::Inline(Arc::new(triangles)),
+            position: DVec3::ZERO,
+            rotation: DVec3::ZERO,
+            scale: DVec3::ONE,
+        }
+    }
+
+    /// The same with its position in the middle of its triangles, by which it is then turned. For a mesh
+    /// that is neither turned nor scaled.
+    #[must_use]
+    pub fn centred(self) -> Self {
+        let triangles = self.source.triangles();
+        let Some((low, high)) = triangles.bounds() else {
+            return self;
+        };
+        // Whole numbers keep the coordinates of the corners what they are.
+        let middle = (low * 0.5 + high * 0.5).round();
+        let points = triangles.points().iter().map(|&point| point - middle);
+        match Triangles::new(points.collect(), triangles.faces().to_vec()) {
+            Ok(moved) => Self {
+                position: self.position + middle,
+                ..Self::of(moved)
+            },
+            Err(_) => self,
+        }
+    }
+
+    /// Reads the triangles of a file that it refers to, which lies in `folder` or a folder in it; nothing
+    /// is read outside, because a scene may come from a stranger. What is wrong is kept with the
+    /// reference, and the mesh is empty.
+    pub fn load(&mut self, folder: Option<&Path>) {
+        let MeshSource::File {
+            path,
+            folder: own_folder,
+            triangles,
+            problem,
+        } = &mut self.source
+        else {
+            return;
+        };
+        *own_folder = folder.map(Path::to_owned);
+        let is_inside = Path::new(path)
+            .components()
+            .all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+        let read = match folder {
+            None => Err(format!(
+                "cannot read {path}: the scene has no folder before it is saved"
+            )),
+            Some(_) if !is_inside => Err(format!(
+                "{path} is not read: a mesh file must lie in the folder of the scene, or in one within it"
+            )),
+            Some(folder) => read_triangles(&folder.join(path)).map_err(|error| error.to_string()),
+        };
+        match read {
+            Ok(new) => (*triangles, *problem) = (Arc::new(new), None),
+            Err(sentence) => (*triangles, *problem) = (Arc::default(), Some(sentence)),
+        }
+    }
+
+    /// Scale and rotation.
+    pub fn turn(&self) -> DMat3 {
+        let [x, y, z] = self.rotation.to_array().map(f64::to_radians);
+        DMat3::from_rotation_z(z)
+            * DMat3::from_rotation_y(y)
+            * DMat3::from_rotation_x(x)
+            * DMat3::from_diagonal(self.scale)
+    }
+
+    /// From the triangles' own coordinates to the world's.
+    pub fn transform(&self) -> DAffine3 {
+        DAffine3 {
+            matrix3: self.turn(),
+            translation: self.position,
+        }
+    }
+}
+
+impl Describe for Mesh {
+    const KIND: &'static str = "Mesh";
+
+    fn example(at: DVec3, size: f64) -> Self {
+        Self {
+            position: at,
+            ..Self::of(icosphere(size / 2.0))
+        }
+    }
+
+    fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Field<'a>)) {
+        visit(Field {
+            name: "position",
+            hint: "Where the origin of the mesh is, in world units",
+            value: FieldValue::Point(&mut self.position),
+        });
+        visit(Field {
+            name: "rotation",
+            hint: "Degrees about x, then y, then z",
+            value: FieldValue::Angles(&mut self.rotation),
+        });
+        visit(Field {
+            name: "scale",
+            hint: "Factors along x, y and z, before the rotation; none is 0",
+            value: FieldValue::Factors(&mut self.scale),
+        });
+    }
+
+    fn problem(&self) -> Option<String> {
+        let (low, high) = self.bounds()?;
+        let farthest = low.abs().max(high.abs()).max_element();
+        (farthest > FARTHEST).then(|| "the mesh must lie within 1e12 of the origin".to_owned())
+    }
+
+    /// The turned box around the triangles: no smaller than they are.
+    fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        let (low, high) = self.source.triangles().bounds()?;
+        let transform = self.transform();
+        let corners = (0..8).map(|corner| {
+            let part = |axis: usize| {
+                if corner >> axis & 1 == 0 {
+                    low[axis]
+                } else {
+                    high[axis]
+                }
+            };
+            transform.transform_point3(DVec3::new(part(0), part(1), part(2)))
+        });
+        let first = corners.clone().next()?;
+        Some(corners.fold((first, first), |(low, high), corner| {
+            (low.min(corner), high.max(corner))
+        }))
+    }
+
+    fn position(&self) -> DVec3 {
+        self.position
+    }
+
+    fn moved(&self, by: DVec3) -> Self {
+        Self {
+            position: self.position + by,
+            ..self.clone()
+        }
+    }
+
+    /// A mesh as a whole: that a triangle of it is small hurts nothing, its neighbours are moved with it.
+    fn feature(&self) -> Option<(DVec3, f64)> {
+        let (low, high) = self.bounds()?;
+        Some((low * 0.5 + high * 0.5, (high - low).length()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_scaled_then_turned_about_x_y_and_z_then_moved() {
+        let mesh = Mesh {
+            position: DVec3::new(0.0, 0.0, 7.0),
+            rotation: DVec3::new(90.0, 90.0, 0.0),
+            scale: DVec3::new(1.0, 2.0, 3.0),
+            ..Mesh::example(DVec3::ZERO, 1.0)
+        };
+        // y: twice as long, turned to z about x, then to x about y.
+        let turned = mesh.transform().transform_point3(DVec3::Y);
+        assert!(
+            (turned - DVec3::new(2.0, 0.0, 7.0)).length() < 1e-12,
+            "{turned}"
+        );
+        let (low, high) = mesh.bounds().expect("it has an end");
+        assert!(low.x < -0.9 && high.x > 0.9 && low.z > 6.0 && high.z < 8.0);
+    }
+
+    #[test]
+    fn nothing_outside_the_folder_is_read() {
+        for path in ["/etc/passwd", "../up.ply", "a/../../b.ply"] {
+            let mut mesh = Mesh {
+                source: MeshSource::File {
+                    path: path.to_owned(),
+                    folder: None,
+                    triangles: Arc::default(),
+                    problem: None,
+                },
+                ..Mesh::example(DVec3::ZERO, 1.0)
+            };
+            mesh.load(Some(Path::new("/tmp")));
+            let MeshSource::File { problem, .. } = mesh.source else {
+                panic!("still a file");
+            };
+            assert!(problem.is_some_and(|said| said.contains("must lie in the folder")));
+        }
+    }
+}

@@ -1,0 +1,325 @@
+//! The rays of a packet as one: boxes that no ray of it can meet are left out, sixteen at a time.
+
+use crate::plan::{GROUP, Node};
+use crate::primitive::{BoundingBox, Ray};
+use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
+
+/// Roundings by which boxes are taken larger, in parts of the largest coordinate: what the test of a
+/// primitive may be off by aside of a ray.
+const ROUNDINGS: f64 = 16.0;
+/// The smallest component of a direction; one over it is still a number in single precision.
+const LEAST: f64 = 1e-30;
+
+/// What a box is taken larger by, in parts of the largest coordinate.
+pub fn roundings<R: Real>() -> R {
+    R::UNIT_ROUNDOFF * R::from_f64(ROUNDINGS)
+}
+
+/// Rays, and what all of them have in common along each axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Bundle<L: SimdFloat> {
+    /// Where there is a ray.
+    pub active: L::Mask,
+    /// The origins, with the roundings towards lower and higher coordinates.
+    origins: [Vec3<L>; 2],
+    /// One over the directions.
+    inverse: Vec3<L>,
+    /// What the rays have in common.
+    shaft: Shaft<L::Real>,
+    /// Whether boxes that no ray meets are left out.
+    is_boxed: bool,
+}
+
+/// What rays have in common along each axis: where they start, and which way they go.
+#[derive(Clone, Copy, Debug)]
+pub struct Shaft<R> {
+    axes: [Axis<R>; 3],
+}
+
+/// What the rays have in common along an axis.
+#[derive(Clone, Copy, Debug)]
+struct Axis<R> {
+    /// 0 where all rays go upwards, which meet the lower plane of a box first; 1 downwards; `None` where
+    /// they go either way.
+    first: Option<usize>,
+    /// What the planes that are met first and last are measured from.
+    origins: [R; 2],
+    /// Least and greatest of one over the directions.
+    inverse: [R; 2],
+}
+
+/// How wide a pixel is around the rays, at most: where they start, and how much more at distance 1.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Beside<R> {
+    /// Scene units.
+    pub width: R,
+    /// Scene units per scene unit.
+    pub spread: R,
+    /// How many times as wide as that things may be that are looked for.
+    pub thickest: R,
+}
+
+impl<L: SimdFloat> Bundle<L> {
+    /// The rays where the mask is set, among things whose coordinates are at most `reach`.
+    #[inline(always)]
+    pub fn new(rays: &Ray<L>, active: L::Mask, reach: L::Real) -> Self {
+        let like = rays.origin.x;
+        let roundings = like.like(roundings());
+        let slack = Vec3::splat((rays.origin.max_abs() + like.like(reach)) * roundings);
+        let inverse = Vec3::new(
+            inverse(rays.direction.x),
+            inverse(rays.direction.y),
+            inverse(rays.direction.z),
+        );
+        let origins = [rays.origin - slack, rays.origin + slack];
+        Self {
+            active,
+            origins,
+            inverse,
+            shaft: Shaft {
+                axes: [
+                    Axis::new(active, [origins[0].x, origins[1].x], inverse.x),
+                    Axis::new(active, [origins[0].y, origins[1].y], inverse.y),
+                    Axis::new(active, [origins[0].z, origins[1].z], inverse.z),
+                ],
+            },
+            is_boxed: true,
+        }
+    }
+
+    /// From now on every box is met.
+    #[inline(always)]
+    pub fn meet_all(&mut self) {
+        self.is_boxed = false;
+        for axis in &mut self.shaft.axes {
+            axis.first = None;
+        }
+    }
+
+    /// The same rays as seen from elsewhere, among what was in reach before.
+    #[inline(always)]
+    #[must_use]
+    pub fn seen_from(&self, centre: Vec3<L::Real>) -> Self {
+        let [low, high] = self.origins;
+        let by = low.like(centre);
+        Self {
+            origins: [low - by, high - by],
+            shaft: self.shaft.seen_from(centre),
+            ..*self
+        }
+    }
+
+    /// What the rays have in common.
+    #[inline(always)]
+    pub fn shaft(&self) -> &Shaft<L::Real> {
+        &self.shaft
+    }
+
+    /// Which of the rays meet the box at `place` of a node before their own `reach`: slabs, as Kay and
+    /// Kajiya, "Ray tracing complex scenes", SIGGRAPH 1986.
+    #[inline(always)]
+    pub fn each_meets(&self, node: &Node<L::Real>, place: usize, reach: L) -> L::Mask {
+        let mut near = reach.like(L::Real::ZERO);
+        let mut far = reach;
+        let [below, above] = &self.origins;
+        let origins = [
+            (below.x, above.x, self.inverse.x),
+            (below.y, above.y, self.inverse.y),
+            (below.z, above.z, self.inverse.z),
+        ];
+        for (axis, (below, above, inverse)) in origins.into_iter().enumerate() {
+            let low = reach.like(node.planes[0][axis][place]);
+            let high = reach.like(node.planes[1][axis][place]);
+            // The origin is moved away from either plane, so that the box grows.
+            let (low, high) = ((low - above) * inverse, (high - below) * inverse);
+            near = near.max(low.min(high));
+            far = far.min(low.max(high));
+        }
+        if !self.is_boxed {
+            return self.active;
+        }
+        let slack = L::Real::ONE + roundings::<L::Real>();
+        near.at_most(far * reach.like(slack)) & self.active
+    }
+}
+
+impl<R: Real> Shaft<R> {
+    /// From somewhere in a box, in directions within another one.
+    pub fn of(origins: &BoundingBox<R>, directions: &BoundingBox<R>) -> Self {
+        let (lows, highs) = (origins.low.to_array(), origins.high.to_array());
+        let (froms, tos) = (directions.low.to_array(), directions.high.to_array());
+        let axis = |axis: usize| Axis::of([lows[axis], highs[axis]], [froms[axis], tos[axis]]);
+        Self {
+            axes: [axis(0), axis(1), axis(2)],
+        }
+    }
+
+    /// The same as seen from elsewhere.
+    #[inline(always)]
+    #[must_use]
+    pub fn seen_from(&self, centre: Vec3<R>) -> Self {
+        let mut moved = *self;
+        for (axis, by) in moved.axes.iter_mut().zip(centre.to_array()) {
+            axis.origins = axis.origins.map(|origin| origin - by);
+        }
+        moved
+    }
+
+    /// Which boxes of a node some ray may meet before `reach`, and from where on; bit by bit.
+    #[inline(always)]
+    pub fn meets<L: SimdFloat<Real = R>>(
+        &self,
+        token: L::Token,
+        node: &Node<R>,
+        reach: R,
+        nears: &mut [R; GROUP],
+    ) -> u64 {
+        let mut bits = 0;
+        for first in (0..node.count).step_by(L::WIDTH) {
+            let (near, is_met) = self.slabs::<L>(node, first, L::splat(token, reach), None);
+            near.store(&mut nears[first..]);
+            bits |= is_met.bits() << first;
+        }
+        bits & node.filled()
+    }
+
+    /// Which boxes of a node that hold something thin some ray may come close to before `reach`.
+    #[inline(always)]
+    pub fn grazes<L: SimdFloat<Real = R>>(
+        &self,
+        token: L::Token,
+        node: &Node<R>,
+        reach: R,
+        beside: &Beside<R>,
+    ) -> u64 {
+        let mut bits = 0;
+        for first in (0..node.count).step_by(L::WIDTH) {
+            let width = self.distance::<L>(token, node, first) * L::splat(token, beside.spread)
+                + L::splat(token, beside.width);
+            let thickness = L::load(token, &node.thickness[first..]);
+            let is_thin = thickness.less(width * L::splat(token, beside.thickest));
+            if is_thin.any() {
+                // Round things count up to their own size behind the end.
+                let behind = L::splat(token, beside.thickest + R::ONE);
+                let reach = L::splat(token, reach) + width * behind;
+                let (_, is_met) = self.slabs(node, first, reach, Some(width));
+                bits |= (is_thin & is_met).bits() << first;
+            }
+        }
+        bits & node.filled()
+    }
+
+    /// How far the farthest corner of each box is from where a ray starts, at most.
+    #[inline(always)]
+    fn distance<L: SimdFloat<Real = R>>(&self, token: L::Token, node: &Node<R>, from: usize) -> L {
+        let mut sum = L::splat(token, R::ZERO);
+        for (axis, common) in self.axes.iter().enumerate() {
+            let [one, other] = common.origins;
+            let low = L::load(token, &node.planes[0][axis][from..]);
+            let high = L::load(token, &node.planes[1][axis][from..]);
+            let above = high - L::splat(token, one.min(other));
+            let below = L::splat(token, one.max(other)) - low;
+            sum = sum + above.max(below).max(L::splat(token, R::ZERO));
+        }
+        sum
+    }
+
+    /// The boxes of a node from `from` on as slabs between planes: where the first of the rays may enter
+    /// each, and whether any may meet it before `reach` and within `beside` of it.
+    #[inline(always)]
+    fn slabs<L: SimdFloat<Real = R>>(
+        &self,
+        node: &Node<R>,
+        from: usize,
+        reach: L,
+        beside: Option<L>,
+    ) -> (L, L::Mask) {
+        let token = reach.token();
+        let mut near = L::splat(token, R::ZERO);
+        let mut far = reach;
+        for (axis, common) in self.axes.iter().enumerate() {
+            let Some(first) = common.first else { continue };
+            let enter = L::load(token, &node.planes[first][axis][from..]);
+            let leave = L::load(token, &node.planes[1 - first][axis][from..]);
+            let mut enter = enter - L::splat(token, common.origins[0]);
+            let mut leave = leave - L::splat(token, common.origins[1]);
+            if let Some(beside) = beside {
+                let outwards = if first == 0 { beside } else { -beside };
+                enter = enter - outwards;
+                leave = leave + outwards;
+            }
+            let [least, greatest] = common.inverse;
+            let (least, greatest) = (L::splat(token, least), L::splat(token, greatest));
+            near = near.max((enter * least).min(enter * greatest));
+            far = far.min((leave * least).max(leave * greatest));
+        }
+        let slack = R::ONE + roundings::<R>();
+        (near, near.at_most(far * L::splat(token, slack)))
+    }
+}
+
+impl<R: Real> Axis<R> {
+    #[inline(always)]
+    fn new<L: SimdFloat<Real = R>>(active: L::Mask, origins: [L; 2], inverse: L) -> Self {
+        let inverse = [least(active, inverse), greatest(active, inverse)];
+        Self::between(
+            [least(active, origins[0]), greatest(active, origins[1])],
+            inverse,
+        )
+    }
+
+    /// Between origins, in directions between others.
+    fn of(origins: [R; 2], [from, to]: [R; 2]) -> Self {
+        let inverse = if from > R::ZERO || to < R::ZERO {
+            let (one, other) = (R::ONE / to, R::ONE / from);
+            let slack = one.abs().max(other.abs()) * roundings();
+            [one - slack, other + slack]
+        } else {
+            [-R::INFINITY, R::INFINITY]
+        };
+        Self::between(origins, inverse)
+    }
+
+    #[inline(always)]
+    fn between(origins: [R; 2], inverse: [R; 2]) -> Self {
+        if inverse[0] > R::ZERO {
+            Self {
+                first: Some(0),
+                origins: [origins[1], origins[0]],
+                inverse,
+            }
+        } else if inverse[1] < R::ZERO {
+            Self {
+                first: Some(1),
+                origins,
+                inverse,
+            }
+        } else {
+            Self {
+                first: None,
+                origins,
+                inverse,
+            }
+        }
+    }
+}
+
+/// The smallest number where the mask is set.
+#[inline(always)]
+fn least<L: SimdFloat>(active: L::Mask, numbers: L) -> L::Real {
+    L::select(active, numbers, numbers.like(L::Real::INFINITY)).least()
+}
+
+/// The largest number where the mask is set.
+#[inline(always)]
+fn greatest<L: SimdFloat>(active: L::Mask, numbers: L) -> L::Real {
+    L::select(active, numbers, numbers.like(-L::Real::INFINITY)).greatest()
+}
+
+/// One over a component of directions.
+#[inline(always)]
+fn inverse<L: SimdFloat>(along: L) -> L {
+    let size = along.abs().max(along.like_f64(LEAST));
+    let along = L::select(along.less(along.like(L::Real::ZERO)), -size, size);
+    along.like(L::Real::ONE) / along
+}

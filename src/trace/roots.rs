@@ -1,0 +1,133 @@
+//! Where the packets of a tile start to look into trees: the way that all of them go is gone once.
+
+use super::bundle::Shaft;
+use crate::plan::{Bvh, Child, GROUP, Geometry, Node};
+use crate::simd::{Real, SimdFloat};
+
+/// Most meshes that a tile has starts of their own for; the others are entered at their roots.
+const MESHES: usize = 4;
+
+/// For a tile's rays, the nodes to start from. A node of these may be in no tree: its boxes come from
+/// several, and together hold everything that the rays can meet.
+#[derive(Clone, Debug, Default)]
+pub struct Roots<R> {
+    objects: Option<Node<R>>,
+    meshes: Vec<(u32, Node<R>)>,
+}
+
+impl<R: Real> Roots<R> {
+    /// The roots of the trees themselves.
+    pub fn forget(&mut self) {
+        self.objects = None;
+        self.meshes.clear();
+    }
+
+    /// Finds the starts of rays that go no farther than `reach`. Whether they can meet anything.
+    #[inline(never)]
+    pub fn narrow<L: SimdFloat<Real = R>>(
+        &mut self,
+        token: L::Token,
+        geometry: &Geometry<R>,
+        shaft: &Shaft<R>,
+        reach: R,
+    ) -> bool {
+        L::vectorize(
+            token,
+            #[inline(always)]
+            || self.narrow_vectorized::<L>(token, geometry, shaft, reach),
+        )
+    }
+
+    #[inline(always)]
+    fn narrow_vectorized<L: SimdFloat<Real = R>>(
+        &mut self,
+        token: L::Token,
+        geometry: &Geometry<R>,
+        shaft: &Shaft<R>,
+        reach: R,
+    ) -> bool {
+        self.meshes.clear();
+        let Some(mut objects) = start::<L>(token, &geometry.bvh, shaft, reach) else {
+            return false;
+        };
+        let mut kept = Node::empty();
+        for place in 0..objects.count {
+            if let Child::Member(member) = objects.child(place)
+                && let Some(mesh) = (member as usize).checked_sub(geometry.primitives.len())
+                && self.meshes.len() < MESHES
+            {
+                let instance = &geometry.meshes[mesh];
+                let own = shaft.seen_from(instance.centre);
+                match start::<L>(token, &instance.mesh.bvh, &own, reach) {
+                    Some(node) => self.meshes.push((mesh as u32, node)),
+                    None => continue,
+                }
+            }
+            kept.take(&objects, place);
+        }
+        std::mem::swap(&mut objects, &mut kept);
+        self.objects = Some(objects);
+        objects.count > 0
+    }
+
+    /// Where to start among the objects.
+    #[inline(always)]
+    pub fn of_objects<'a>(&'a self, geometry: &'a Geometry<R>) -> Option<&'a Node<R>> {
+        self.objects.as_ref().or(geometry.bvh.nodes.first())
+    }
+
+    /// Where to start in a mesh.
+    #[inline(always)]
+    pub fn of_mesh<'a>(&'a self, geometry: &'a Geometry<R>, mesh: usize) -> Option<&'a Node<R>> {
+        let own = self
+            .meshes
+            .iter()
+            .find(|(index, _)| *index as usize == mesh);
+        match own {
+            Some((_, node)) => Some(node),
+            None => geometry.meshes[mesh].mesh.bvh.nodes.first(),
+        }
+    }
+}
+
+/// The boxes that the rays can meet, as far down as there is room for all of them; `None` for none.
+#[inline(always)]
+fn start<L: SimdFloat>(
+    token: L::Token,
+    bvh: &Bvh<L::Real>,
+    shaft: &Shaft<L::Real>,
+    reach: L::Real,
+) -> Option<Node<L::Real>> {
+    let mut nears = [L::Real::ZERO; GROUP];
+    let mut met = Node::empty();
+    met.take_met(
+        bvh.nodes.first()?,
+        shaft.meets::<L>(token, &bvh.nodes[0], reach, &mut nears),
+    );
+    let mut place = 0;
+    while place < met.count {
+        if let Child::Node(inner) = met.child(place) {
+            let inner = &bvh.nodes[inner as usize];
+            let bits = shaft.meets::<L>(token, inner, reach, &mut nears);
+            if bits.count_ones() as usize <= GROUP + 1 - met.count {
+                met.remove(place);
+                met.take_met(inner, bits);
+                // What has moved into its place is next.
+                continue;
+            }
+        }
+        place += 1;
+    }
+    (met.count > 0).then_some(met)
+}
+
+impl<R: Real> Node<R> {
+    /// Takes over the boxes of a node whose bits are set.
+    #[inline(always)]
+    fn take_met(&mut self, from: &Self, mut bits: u64) {
+        while bits != 0 {
+            self.take(from, bits.trailing_zeros() as usize);
+            bits &= bits - 1;
+        }
+    }
+}

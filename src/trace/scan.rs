@@ -1,0 +1,281 @@
+//! Tests of many primitives: those of a list one by one, those of a tree where its boxes are met.
+
+use super::bundle::{Beside, Bundle};
+use super::candidates::Candidates;
+use super::paths::{IgnoredPrimitive, Paths};
+use super::roots::Roots;
+use super::walk::{Seek, Stack, walk, walk_beside};
+use crate::plan::{Geometry, MeshInstance, PackedMesh, Plan, PointLight};
+use crate::primitive::{FAR_CAUTION, Kind, Prepared, Primitive, Ray, Visit, WithPrepared};
+use crate::simd::{Real, SimdFloat, Vec3};
+
+/// What is to be found out about each primitive.
+pub trait Test<L: SimdFloat> {
+    /// Whether thin things beside the rays count, and not what they meet.
+    const LOOKS_BESIDE: bool = false;
+
+    /// How far each ray still looks; not above 0 where it does not.
+    fn reach(&self) -> L;
+
+    /// Whether nothing more can be found out.
+    fn is_done(&self) -> bool {
+        false
+    }
+
+    /// Tests a mesh that is no larger than a few pixels as the ball around it, for the rays that see it so
+    /// small. Where any other ray is, if there is one: its faces are tested there and nowhere else.
+    fn test_ball(
+        &mut self,
+        _center: Vec3<L::Real>,
+        _radius: L::Real,
+        _paths: &Paths<L>,
+        active: L::Mask,
+    ) -> Option<L::Mask> {
+        Some(active)
+    }
+
+    /// What is tested from now on is no face of that mesh.
+    fn leave_mesh(&mut self) {}
+
+    /// Tests the primitive of this number.
+    fn test<P: Primitive<L::Real>>(
+        &mut self,
+        primitive: &P,
+        prepared: &P::Prepared<L>,
+        paths: &Paths<L>,
+        number: usize,
+    );
+}
+
+/// Tests what is in the lists.
+#[inline(always)]
+pub fn scan_lists<L: SimdFloat>(
+    plan: &Plan<L::Real>,
+    among: &Candidates,
+    paths: &Paths<L>,
+    test: &mut impl Test<L>,
+) {
+    plan.primitives.visit(&mut Lists { among, paths, test });
+}
+
+struct Lists<'a, L, T> {
+    among: &'a Candidates,
+    paths: &'a Paths<L>,
+    test: &'a mut T,
+}
+
+impl<L: SimdFloat, T: Test<L>> Visit<L::Real> for Lists<'_, L, T> {
+    #[inline(always)]
+    fn visit<P: Primitive<L::Real>>(&mut self, kind: Kind, primitives: &[P], first: usize) {
+        let among = self.among.of(kind);
+        if among.is_empty() || self.test.is_done() {
+            return;
+        }
+        let prepared = P::prepare(self.paths.rays.direction);
+        for &index in among {
+            let (primitive, number) = (&primitives[index as usize], first + index as usize);
+            self.test.test(primitive, &prepared, self.paths, number);
+            if self.test.is_done() {
+                return;
+            }
+        }
+    }
+}
+
+/// What stands in a tree, and how it is looked at.
+pub struct Thicket<'a, L: SimdFloat> {
+    /// What stands there.
+    pub geometry: &'a Geometry<L::Real>,
+    /// The number of its first primitive.
+    pub first: usize,
+    /// Where to start; at the roots of the trees, to look beside the rays.
+    pub roots: &'a Roots<L::Real>,
+    /// The light that the rays go to, if they do.
+    pub light: Option<&'a PointLight<L::Real>>,
+    /// Where there is a ray.
+    pub active: L::Mask,
+    /// How far beside the rays thin things are looked for, by a test that does.
+    pub beside: Beside<L::Real>,
+    /// Whether boxes are looked at; otherwise everything is tested.
+    pub is_boxed: bool,
+}
+
+impl<L: SimdFloat> Thicket<'_, L> {
+    /// Tests what the boxes of the tree hold that the rays meet.
+    #[inline(always)]
+    pub fn scan<T: Test<L>>(&self, paths: &Paths<L>, stack: &mut Stack<L::Real>, test: &mut T) {
+        let bvh = &self.geometry.bvh;
+        // In one form, for all that is tested.
+        let token = paths.rays.origin.x.token();
+        let paths = &Paths {
+            ignored: IgnoredPrimitive::Each(paths.ignored.numbers(token)),
+            ..*paths
+        };
+        let mut bundle = Bundle::new(&paths.rays, self.active, bvh.bounds.max_abs());
+        if !self.is_boxed {
+            bundle.meet_all();
+        }
+        let mut objects = Objects {
+            thicket: self,
+            bundle: &bundle,
+            paths,
+            prepared: Prepared::new(paths.rays.direction),
+            test,
+        };
+        if T::LOOKS_BESIDE {
+            walk_beside(bvh, &bundle, &self.beside, stack, &mut objects);
+        } else if let Some(start) = self.roots.of_objects(self.geometry) {
+            walk((bvh, start), &bundle, stack, &mut objects);
+        }
+    }
+}
+
+/// The members of the tree over all objects: primitives, then meshes.
+struct Objects<'a, L: SimdFloat, T> {
+    thicket: &'a Thicket<'a, L>,
+    bundle: &'a Bundle<L>,
+    paths: &'a Paths<L>,
+    prepared: Prepared<L>,
+    test: &'a mut T,
+}
+
+impl<L: SimdFloat, T: Test<L>> Seek<L> for Objects<'_, L, T> {
+    #[inline(always)]
+    fn reach(&self) -> L {
+        active_reach(self.thicket.active, self.test)
+    }
+
+    #[inline(always)]
+    fn meet(&mut self, member: u32, stack: &mut Stack<L::Real>) {
+        let (geometry, index) = (self.thicket.geometry, member as usize);
+        let number = self.thicket.first + index;
+        let primitives = &geometry.primitives;
+        if let Some(mesh) = index.checked_sub(primitives.len()) {
+            return self.meet_mesh(mesh, stack);
+        }
+        let mut tested = Tested {
+            paths: self.paths,
+            number,
+            test: self.test,
+        };
+        primitives.with_prepared(index, &self.prepared, &mut tested);
+    }
+}
+
+impl<L: SimdFloat, T: Test<L>> Objects<'_, L, T> {
+    /// Looks into a mesh, from its own middle.
+    #[inline(always)]
+    fn meet_mesh(&mut self, mesh: usize, stack: &mut Stack<L::Real>) {
+        let Thicket {
+            geometry,
+            first,
+            roots,
+            light,
+            active,
+            beside,
+            ..
+        } = self.thicket;
+        let instance = &geometry.meshes[mesh];
+        let rays = self.paths.rays;
+        let paths = Paths {
+            rays: Ray {
+                origin: rays.origin - rays.origin.like(instance.centre),
+                direction: rays.direction,
+            },
+            ignored: self.paths.ignored,
+        };
+        let bvh = &instance.mesh.bvh;
+        let (center, radius) = bvh.bounds.ball();
+        let Some(active) = self.test.test_ball(center, radius, &paths, *active) else {
+            return;
+        };
+        let bundle = self.bundle.seen_from(instance.centre);
+        let mut faces = Faces {
+            mesh: &instance.mesh,
+            idle: idle_towards(*light, mesh, instance),
+            first: first + instance.first,
+            active,
+            paths: &paths,
+            prepared: &self.prepared,
+            test: self.test,
+        };
+        if T::LOOKS_BESIDE {
+            walk_beside(bvh, &bundle, beside, stack, &mut faces);
+        } else if let Some(start) = roots.of_mesh(geometry, mesh) {
+            walk((bvh, start), &bundle, stack, &mut faces);
+        }
+        self.test.leave_mesh();
+    }
+}
+
+/// The members of the tree of a mesh.
+struct Faces<'a, L: SimdFloat, T> {
+    mesh: &'a PackedMesh<L::Real>,
+    /// Faces that are turned to this point, by more than a margin, are left out.
+    idle: Option<(Vec3<L::Real>, L::Real)>,
+    first: usize,
+    active: L::Mask,
+    paths: &'a Paths<L>,
+    prepared: &'a Prepared<L>,
+    test: &'a mut T,
+}
+
+impl<L: SimdFloat, T: Test<L>> Seek<L> for Faces<'_, L, T> {
+    #[inline(always)]
+    fn reach(&self) -> L {
+        active_reach(self.active, self.test)
+    }
+
+    #[inline(always)]
+    fn meet(&mut self, member: u32, _stack: &mut Stack<L::Real>) {
+        let (index, prepared) = (member as usize, &self.prepared.triangles);
+        let (triangle, number) = (&self.mesh.triangles[index], self.first + index);
+        if let Some((light, margin)) = self.idle
+            && margin < triangle.normal.dot(light - triangle.corners[0])
+        {
+            return;
+        }
+        self.test.test(triangle, prepared, self.paths, number);
+    }
+}
+
+/// Where a light is that faces turned to it cast no shadow from, and by how much they must be.
+#[inline(always)]
+fn idle_towards<R: Real>(
+    light: Option<&PointLight<R>>,
+    mesh: usize,
+    instance: &MeshInstance<R>,
+) -> Option<(Vec3<R>, R)> {
+    let light = light?;
+    let is_idle = light.lit_faces_are_idle.get(mesh) == Some(&true);
+    is_idle.then(
+        #[inline(always)]
+        || {
+            let place = light.position - instance.centre;
+            let size = place.max_abs() + instance.mesh.bvh.bounds.max_abs();
+            (place, size * R::from_f64(FAR_CAUTION))
+        },
+    )
+}
+
+#[inline(always)]
+fn active_reach<L: SimdFloat>(active: L::Mask, test: &impl Test<L>) -> L {
+    let reach = test.reach();
+    L::select(active, reach, reach.like_f64(-1.0))
+}
+
+struct Tested<'a, L, T> {
+    paths: &'a Paths<L>,
+    number: usize,
+    test: &'a mut T,
+}
+
+impl<L: SimdFloat, T: Test<L>> WithPrepared<L> for Tested<'_, L, T> {
+    #[inline(always)]
+    fn run<P: Primitive<L::Real>>(&mut self, primitive: &P, prepared: &P::Prepared<L>) {
+        if P::IS_ENDLESS {
+            return; // Stands in no tree.
+        }
+        self.test.test(primitive, prepared, self.paths, self.number);
+    }
+}

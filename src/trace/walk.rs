@@ -1,0 +1,128 @@
+//! The way of a packet through a tree of boxes, the nearest first.
+
+use super::bundle::{Beside, Bundle};
+use crate::plan::{Bvh, Child, GROUP, Node};
+use crate::simd::{Mask as _, Real, SimdFloat};
+
+/// A box that waits to be looked into.
+#[derive(Clone, Copy, Debug)]
+pub struct Waiting<R> {
+    /// The node that it is in, and its place there.
+    node: u32,
+    place: u32,
+    /// What it holds.
+    inner: u32,
+    /// Where the first ray may enter it.
+    near: R,
+}
+
+/// Boxes that wait, the nearest last; memory that is used again.
+pub type Stack<R> = Vec<Waiting<R>>;
+
+/// Looks for something among the members of a tree.
+pub trait Seek<L: SimdFloat> {
+    /// How far each ray still looks; below 0 where it does not.
+    fn reach(&self) -> L;
+    /// Looks at a member.
+    fn meet(&mut self, member: u32, stack: &mut Stack<L::Real>);
+}
+
+/// The number of the node that a walk starts in, which need not be the root of the tree.
+const START: u32 = u32::MAX;
+
+/// Shows `seek` the members that the rays may meet, from a node on.
+#[inline(always)]
+pub fn walk<L: SimdFloat>(
+    (bvh, start): (&Bvh<L::Real>, &Node<L::Real>),
+    bundle: &Bundle<L>,
+    stack: &mut Stack<L::Real>,
+    seek: &mut impl Seek<L>,
+) {
+    let bottom = stack.len();
+    let (mut index, mut node) = (START, start);
+    loop {
+        let mut nears = [L::Real::ZERO; GROUP];
+        let reach = seek.reach();
+        let farthest = reach.greatest();
+        let shaft = bundle.shaft();
+        let mut bits = shaft.meets::<L>(reach.token(), node, farthest, &mut nears);
+        let above = stack.len();
+        while bits != 0 {
+            let place = bits.trailing_zeros();
+            bits &= bits - 1;
+            match node.child(place as usize) {
+                Child::Member(member) => seek.meet(member, stack),
+                Child::Node(inner) => {
+                    let near = nears[place as usize];
+                    let waiting = Waiting {
+                        node: index,
+                        place,
+                        inner,
+                        near,
+                    };
+                    // Sorted as it grows: there are few.
+                    let mut at = stack.len();
+                    stack.push(waiting);
+                    while at > above && stack[at - 1].near < near {
+                        stack[at] = stack[at - 1];
+                        at -= 1;
+                    }
+                    stack[at] = waiting;
+                }
+            }
+        }
+        let reach = seek.reach();
+        let farthest = reach.greatest();
+        index = loop {
+            if stack.len() == bottom {
+                return;
+            }
+            let Some(next) = stack.pop() else { return };
+            let around = match next.node {
+                START => start,
+                inner => &bvh.nodes[inner as usize],
+            };
+            let place = next.place as usize;
+            if next.near <= farthest && bundle.each_meets(around, place, reach).any() {
+                break next.inner;
+            }
+        };
+        node = &bvh.nodes[index as usize];
+    }
+}
+
+/// Shows `seek` the thin members that the rays may come close to.
+#[inline(always)]
+pub fn walk_beside<L: SimdFloat>(
+    bvh: &Bvh<L::Real>,
+    bundle: &Bundle<L>,
+    beside: &Beside<L::Real>,
+    stack: &mut Stack<L::Real>,
+    seek: &mut impl Seek<L>,
+) {
+    let bottom = stack.len();
+    let reach = seek.reach();
+    let (token, reach, shaft) = (reach.token(), reach.greatest(), bundle.shaft());
+    let mut index = 0;
+    while let Some(node) = bvh.nodes.get(index as usize) {
+        let mut bits = shaft.grazes::<L>(token, node, reach, beside);
+        while bits != 0 {
+            let place = bits.trailing_zeros();
+            bits &= bits - 1;
+            match node.child(place as usize) {
+                Child::Member(member) => seek.meet(member, stack),
+                Child::Node(inner) => stack.push(Waiting {
+                    node: index,
+                    place,
+                    inner,
+                    near: L::Real::ZERO,
+                }),
+            }
+        }
+        if stack.len() == bottom {
+            return;
+        }
+        let Some(next) = stack.pop() else { return };
+        index = next.inner;
+    }
+}

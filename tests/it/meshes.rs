@@ -1,0 +1,338 @@
+//! Meshes: pictures of them, and the tree that many things stand in.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+use glint::image::{Image, render};
+use glint::mesh::{Triangles, icosphere};
+use glint::plan::{Model, RenderRequest};
+use glint::scene::{
+    Accelerator, Mesh, Object, Precision, Sampling, Scene, Shape, Sphere, Triangle,
+};
+use glint::trace::{Rays, RenderControl};
+
+use crate::random;
+
+fn picture(scene: &Scene, wanted: &RenderRequest) -> (Image, Rays) {
+    let (image, cost) = render(scene, wanted, &RenderControl::default()).expect("not stopped");
+    (image, cost.rays)
+}
+
+fn object(name: &str, color_pack: &str, shape: impl Into<Shape>) -> Object {
+    Object {
+        name: name.to_owned(),
+        color_pack: color_pack.to_owned(),
+        shape: shape.into(),
+        visible: true,
+    }
+}
+
+/// A ball with bumps around the origin, closed, of about so many triangles.
+fn bumpy(triangles: f64) -> Triangles {
+    let rings = (triangles / 4.0).sqrt() as u32;
+    let columns = 2 * rings;
+    let place = |ring: u32, column: u32| {
+        let (down, around) = (
+            f64::from(ring) / f64::from(rings) * TAU / 2.0,
+            f64::from(column % columns) / f64::from(columns) * TAU,
+        );
+        let radius = 20.0 * (1.0 + 0.1 * (5.0 * around).sin() * (4.0 * down).sin());
+        DVec3::new(
+            down.sin() * around.cos(),
+            down.cos(),
+            down.sin() * around.sin(),
+        ) * radius
+    };
+    let mut points = vec![place(0, 0), place(rings, 0)];
+    let number = |ring: u32, column: u32| match ring {
+        0 => 0,
+        _ if ring == rings => 1,
+        _ => 2 + (ring - 1) * columns + column % columns,
+    };
+    for ring in 1..rings {
+        points.extend((0..columns).map(|column| place(ring, column)));
+    }
+    let mut faces = Vec::new();
+    for ring in 0..rings {
+        for column in 0..columns {
+            let (a, b) = (number(ring, column), number(ring, column + 1));
+            let (c, d) = (number(ring + 1, column + 1), number(ring + 1, column));
+            // Clockwise seen from outside.
+            if ring > 0 {
+                faces.push([a, b, c]);
+            }
+            if ring + 1 < rings {
+                faces.push([a, c, d]);
+            }
+        }
+    }
+    Triangles::new(points, faces).expect("a mesh")
+}
+
+/// The demo with two meshes, one of them twice, turned and squeezed.
+fn exhibition() -> Scene {
+    let mut scene = Scene::demo();
+    let ball = Mesh::of(bumpy(700.0));
+    let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+    scene.objects.push(object(
+        "Bumps 1",
+        "sphere 2",
+        Mesh {
+            position: at(160.0, 30.0, -60.0),
+            ..ball.clone()
+        },
+    ));
+    scene.objects.push(object(
+        "Bumps 2",
+        "plane",
+        Mesh {
+            position: at(215.0, 60.0, -140.0),
+            rotation: at(20.0, 35.0, -70.0),
+            scale: at(1.0, -0.4, 1.3),
+            ..ball
+        },
+    ));
+    scene.objects.push(object(
+        "Ball",
+        "tetrahedron",
+        Mesh {
+            position: at(90.0, 25.0, -90.0),
+            ..Mesh::of(icosphere(18.0))
+        },
+    ));
+    scene
+}
+
+/// The same with every mesh taken apart.
+fn apart(scene: &Scene) -> Scene {
+    let mut apart = scene.clone();
+    let is_mesh = |object: &Object| matches!(object.shape, Shape::Mesh(_));
+    while let Some(index) = apart.objects.iter().position(is_mesh) {
+        assert!(apart.separate(index));
+    }
+    apart
+}
+
+#[test]
+fn a_tree_changes_no_bit_and_no_ray() {
+    let mut crowd = random::scene(5);
+    for n in 0..300 {
+        let place = |speed: f64| (f64::from(n) * speed).sin() * 70.0;
+        let center = DVec3::new(place(1.7), place(2.3), place(3.1));
+        let radius = 2.5;
+        crowd.objects.push(object(
+            &format!("Speck {n}"),
+            "pack 0",
+            Sphere { center, radius },
+        ));
+    }
+    let mut mirrors = exhibition();
+    mirrors.render.reflection_limit = 3;
+    for (number, scene) in [exhibition(), apart(&exhibition()), mirrors, crowd]
+        .iter()
+        .enumerate()
+    {
+        for sampling in [Sampling::Centres, Sampling::Grid(2), Sampling::ADAPTIVE] {
+            for precision in [Precision::Single, Precision::Double] {
+                let with = |accelerator, model| {
+                    let wanted = RenderRequest {
+                        accelerator,
+                        model,
+                        sampling,
+                        precision,
+                        ..RenderRequest::sized(120, 90)
+                    };
+                    picture(scene, &wanted)
+                };
+                let tree = with(Accelerator::Bvh, Model::Needed);
+                for (accelerator, model) in [
+                    (Accelerator::List, Model::Needed),
+                    (Accelerator::Auto, Model::Unculled),
+                ] {
+                    let flat = with(accelerator, model);
+                    let case = format!("scene {number}, {sampling:?}, {precision:?}");
+                    if sampling != Sampling::ADAPTIVE {
+                        assert!(tree == flat, "{case}");
+                        continue;
+                    }
+                    // A list also counts as near what is thin beside the way behind a ray.
+                    assert_eq!(differing(&tree.0, &flat.0), 0, "{case}");
+                    let (ours, theirs) = (tree.1.camera as f64, flat.1.camera as f64);
+                    assert!(
+                        (ours / theirs - 1.0).abs() < 1e-3,
+                        "{case}: {ours} {theirs}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+fn differing(a: &Image, b: &Image) -> usize {
+    let pairs = a.pixels.iter().zip(&b.pixels);
+    pairs
+        .filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 1))
+        .count()
+}
+
+#[test]
+fn a_mesh_is_its_triangles() {
+    let wanted = RenderRequest::sized(320, 240);
+    let (whole, rays) = picture(&exhibition(), &wanted);
+    let (pieces, other_rays) = picture(&apart(&exhibition()), &wanted);
+    let differ = differing(&whole, &pieces);
+    assert!(differ <= 8, "{differ} of 76,800 pixels");
+    let share = rays.shadow as f64 / other_rays.shadow as f64;
+    assert!((share - 1.0).abs() < 1e-3, "{rays:?} {other_rays:?}");
+}
+
+#[test]
+fn where_a_mesh_is_costs_no_precision() {
+    let by = DVec3::new(3e6, -2e6, 5e6);
+    let mut moved = exhibition();
+    for object in moved.objects.iter_mut() {
+        object.shape = object.shape.moved(by);
+    }
+    for light in moved.lights.iter_mut() {
+        light.position += by;
+    }
+    moved.camera.position += by;
+    let wanted = RenderRequest {
+        precision: Precision::Single,
+        ..RenderRequest::sized(320, 240)
+    };
+    let differ = differing(
+        &picture(&exhibition(), &wanted).0,
+        &picture(&moved, &wanted).0,
+    );
+    assert!(differ <= 8, "{differ} of 76,800 pixels");
+}
+
+#[test]
+fn nobody_looks_out_of_a_closed_mesh() {
+    let sky = DVec3::new(0.0, 255.0, 0.0);
+    for scale in [1e-4, 1.0, 1e4] {
+        for away in [0.0, 1e2, 1e4] {
+            let mut scene = Scene::empty();
+            scene.background = sky;
+            scene.light_visualization = false;
+            let centre = DVec3::new(0.6, -0.64, 0.48) * (scale * away * 20.0);
+            scene.objects.push(object(
+                "Room",
+                "pack 1",
+                Mesh {
+                    position: centre,
+                    rotation: DVec3::new(10.0, 20.0, 30.0),
+                    scale: DVec3::splat(scale),
+                    ..Mesh::of(bumpy(5000.0))
+                },
+            ));
+            for light in scene.lights.iter_mut() {
+                light.position = centre + DVec3::splat(scale);
+            }
+            scene.camera.position = centre + DVec3::new(1.0, 2.0, -3.0) * scale;
+            for look_at in [DVec3::NEG_Z, DVec3::new(1.0, 0.3, 0.2)] {
+                scene.camera.look_at = look_at;
+                scene.camera.up = DVec3::Y;
+                let wanted = RenderRequest {
+                    precision: Precision::Single,
+                    ..RenderRequest::sized(600, 600)
+                };
+                let (image, _) = picture(&scene, &wanted);
+                let leaks = image
+                    .pixels
+                    .iter()
+                    .filter(|pixel| pixel[1] == 255 && pixel[0] == 0);
+                assert_eq!(leaks.count(), 0, "scale {scale:e}, {away} sizes away");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_closed_mesh_in_the_light_has_no_dark_specks() {
+    // Seen from the light, everything that is seen is lit.
+    let mut scene = Scene::empty();
+    scene.ambient_intensity = 0.0;
+    scene.light_visualization = false;
+    scene.background = DVec3::splat(255.0);
+    scene
+        .objects
+        .push(object("Bumps", "pack 1", Mesh::of(bumpy(20_000.0))));
+    let eye = DVec3::new(30.0, 20.0, 60.0);
+    for light in scene.lights.iter_mut() {
+        light.position = eye;
+        light.intensity = 1.0;
+    }
+    scene.camera.position = eye;
+    scene.camera.look_at = -eye;
+    for precision in [Precision::Single, Precision::Double] {
+        let wanted = RenderRequest {
+            precision,
+            ..RenderRequest::sized(500, 500)
+        };
+        let (image, _) = picture(&scene, &wanted);
+        // At the rim the light only grazes it.
+        let is_rim = |at: usize| {
+            let around = [1, 499, 500, 501]
+                .into_iter()
+                .flat_map(|by| [at - by, at + by]);
+            around.into_iter().any(|at| image.pixels[at][1] == 255)
+        };
+        let dark = (501..500 * 499).filter(|&at| image.pixels[at][0] == 0 && !is_rim(at));
+        assert_eq!(dark.count(), 0, "{precision:?}");
+    }
+}
+
+#[test]
+fn what_is_thin_in_a_mesh_is_found_and_what_is_thick_is_left_alone() {
+    // A rod of half a pixel, closed, in many faces, and a ball of as many.
+    let mut scene = Scene::demo();
+    let rod = |width: f64| {
+        let ring = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
+        let mut points = Vec::new();
+        for step in 0..=40 {
+            let x = f64::from(step) - 20.0;
+            let at = |(y, z): (f64, f64)| DVec3::new(x, y * width / 2.0, z * width / 2.0);
+            points.extend(ring.map(at));
+        }
+        let mut faces = vec![[0, 2, 1], [0, 3, 2]];
+        for step in 0..40 {
+            for side in 0..4 {
+                let (a, b) = (4 * step + side, 4 * step + (side + 1) % 4);
+                faces.extend([[a, b, b + 4], [a, b + 4, a + 4]]);
+            }
+        }
+        faces.extend([[160, 161, 162], [160, 162, 163]]);
+        Mesh::of(Triangles::new(points, faces).expect("a rod"))
+    };
+    let at = DVec3::new(170.0, 40.0, -80.0);
+    let rays = |shape: Mesh| {
+        let mut scene = scene.clone();
+        scene.objects.push(object(
+            "it",
+            "sphere 1",
+            Mesh {
+                position: at,
+                ..shape
+            },
+        ));
+        let wanted = RenderRequest {
+            sampling: Sampling::ADAPTIVE,
+            ..RenderRequest::sized(256, 256)
+        };
+        picture(&scene, &wanted).1.camera
+    };
+    let (thin, ball) = (rays(rod(0.15)), rays(Mesh::of(bumpy(20_000.0))));
+    scene.objects.push(object(
+        "one",
+        "sphere 1",
+        Triangle {
+            a: at,
+            b: at + DVec3::Y,
+            c: at + DVec3::X,
+        },
+    ));
+    assert!(thin > 100_000, "{thin}");
+    assert!(ball < 300_000, "{ball}");
+}
