@@ -26,8 +26,7 @@ pub trait Test<L: SimdFloat> {
     /// small. Where any other ray is, if there is one: its faces are tested there and nowhere else.
     fn test_ball(
         &mut self,
-        _center: Vec3<L::Real>,
-        _radius: L::Real,
+        _mesh: &PackedMesh<L::Real>,
         _paths: &Paths<L>,
         active: L::Mask,
     ) -> Option<L::Mask> {
@@ -185,8 +184,7 @@ impl<L: SimdFloat, T: Test<L>> Objects<'_, L, T> {
             ignored: self.paths.ignored,
         };
         let bvh = &instance.mesh.bvh;
-        let (center, radius) = bvh.bounds.ball();
-        let Some(active) = self.test.test_ball(center, radius, &paths, *active) else {
+        let Some(active) = self.test.test_ball(&instance.mesh, &paths, *active) else {
             return;
         };
         let bundle = self.bundle.seen_from(instance.centre);

@@ -9,10 +9,11 @@ use super::intersect::Kernel;
 use super::paths::{IgnoredPrimitive, Paths};
 use super::roots::Roots;
 use super::scan::{Test, Thicket, scan_lists};
-use super::thresholds::{NEAR, SLIPPING, SMALL};
+use super::thresholds::{CROWDED, NEAR, SLIPPING, SMALL};
 use super::walk::Stack;
+use crate::plan::PackedMesh;
 use crate::primitive::{Approach, Primitive};
-use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
+use crate::simd::{Mask as _, Real, SimdFloat};
 
 /// Rays that look beside themselves.
 #[derive(Clone, Copy, Debug)]
@@ -111,17 +112,20 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
     #[inline(always)]
     fn test_ball(
         &mut self,
-        center: Vec3<L::Real>,
-        radius: L::Real,
+        mesh: &PackedMesh<L::Real>,
         paths: &Paths<L>,
         active: L::Mask,
     ) -> Option<L::Mask> {
+        let (center, radius) = mesh.bvh.bounds.ball();
+        // With so many faces in a pixel, they are too many to look at one by one.
+        let faces = L::Real::from_f64(mesh.triangles.len() as f64 / CROWDED);
+        let small = faces.sqrt().max(L::Real::from_f64(SMALL));
         let x = paths.rays.origin - paths.rays.origin.like(center);
         let along = -paths.rays.direction.dot(x);
         let off = (x + paths.rays.direction * along).length();
         let (radius, zero) = (off.like(radius), off.like(L::Real::ZERO));
         let width = self.gaze.cone.width_at(along.max(zero));
-        let is_small = (radius + radius).less(width * width.like_f64(SMALL));
+        let is_small = (radius + radius).less(width * width.like(small));
         let is_before = (along - radius).less(self.gaze.reach + width);
         let is_ahead = zero.less(along + radius);
         // Whether a ray meets what is inside, nobody asks: it passes closely enough.
