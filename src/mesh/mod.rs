@@ -37,7 +37,7 @@ use std::path::Path;
 pub use error::MeshError;
 pub use part::{Part, PartColors};
 pub use solids::{SOLIDS, icosphere};
-pub use triangles::{FARTHEST, Triangles};
+pub use triangles::{FARTHEST, Triangles, place_key};
 
 /// What a mesh is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -177,6 +177,12 @@ pub(super) fn out_of_range(face: usize, point: impl std::fmt::Display, count: us
     ))
 }
 
+/// A place as a key: places are one where their coordinates are equal.
+pub fn place_key(point: DVec3) -> [u64; 3] {
+    // Zero has two signs and is one place.
+    (point + DVec3::ZERO).to_array().map(f64::to_bits)
+}
+
 /// A point that no face has named yet.
 const UNKNOWN: u32 = u32::MAX;
 
@@ -203,13 +209,10 @@ impl Welder {
     }
 
     fn number_of(&mut self, point: DVec3) -> u32 {
-        // Zero has two signs and is one place.
-        let point = point + DVec3::ZERO;
         let next = self.points.len() as u32;
-        let key = point.to_array().map(f64::to_bits);
-        let number = *self.places.entry(key).or_insert(next);
+        let number = *self.places.entry(place_key(point)).or_insert(next);
         if number == next {
-            self.points.push(point);
+            self.points.push(point + DVec3::ZERO);
         }
         number
     }

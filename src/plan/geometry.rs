@@ -80,7 +80,7 @@ impl<R: Real> Kept<R> {
         }
         // The old one is not needed while the new one is made, but for meshes that have not changed.
         let meshes = self.last.take().map(|(_, last)| last.packed_meshes());
-        let geometry = Geometry::with_meshes(scene, centre, meshes.unwrap_or_default());
+        let geometry = Geometry::new(scene, centre, meshes.unwrap_or_default());
         let geometry = Arc::new(geometry);
         self.last = Some((Source::of(scene, centre), Arc::clone(&geometry)));
         geometry
@@ -103,13 +103,9 @@ pub fn is_tree(scene: &Scene, accelerator: Accelerator, may_cull: bool) -> bool 
 }
 
 impl<R: Real> Geometry<R> {
-    /// Packs the visible objects that end, relative to `centre`.
-    pub fn new(scene: &Scene, centre: DVec3) -> Self {
-        Self::with_meshes(scene, centre, Vec::new())
-    }
-
-    /// The same with those of the meshes that are packed already.
-    fn with_meshes(scene: &Scene, centre: DVec3, mut packed: Vec<Arc<PackedMesh<R>>>) -> Self {
+    /// Packs the visible objects that end, relative to `centre`, with those of the meshes that are packed
+    /// already.
+    fn new(scene: &Scene, centre: DVec3, mut packed: Vec<Arc<PackedMesh<R>>>) -> Self {
         let (mut primitives, mut meshes) = (Primitives::default(), Vec::new());
         let packing = Packing {
             centre,

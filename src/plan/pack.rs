@@ -237,7 +237,7 @@ impl<R: Real> Plan<R> {
         let Some(geometry) = &self.geometry else {
             return;
         };
-        if projection != Projection::Perspective || request.methods.offset != RayOffset::Robust {
+        if projection != Projection::Perspective {
             return;
         }
         let eye = Vec3::from_dvec3(scene.camera.position - self.centre);

@@ -44,24 +44,6 @@ impl Ball {
         }
     }
 
-    /// A ball around balls, of which there is at least one.
-    pub fn around_balls(balls: &[Self]) -> Self {
-        let (mut low, mut high) = (DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY));
-        for ball in balls {
-            let reach = DVec3::splat(ball.radius);
-            low = low.min(ball.center - reach);
-            high = high.max(ball.center + reach);
-        }
-        let center = low * 0.5 + high * 0.5;
-        let radius = balls
-            .iter()
-            .map(|ball| (ball.center - center).length() + ball.radius);
-        Self {
-            center,
-            radius: radius.fold(0.0, f64::max),
-        }
-    }
-
     /// Whether another ball lies wholly behind this one, seen from a light: nothing in it is lit.
     pub fn hides(&self, light: DVec3, ball: &Self) -> bool {
         let towards = self.center - light;

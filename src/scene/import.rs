@@ -27,7 +27,7 @@ impl Scene {
         let mut scene = Self::empty();
         scene.packs_mut().clear();
         scene.lights = List::new();
-        scene.import(path)?;
+        scene.add_parts(read_parts(path)?);
         let near = folder.and_then(|folder| path.strip_prefix(folder).ok());
         if let (Some(near), 1) = (near.and_then(Path::to_str), scene.objects.len())
             && let Some(object) = scene.objects.get_mut(0)
@@ -51,15 +51,6 @@ impl Scene {
         }
         scene.frame_and_light();
         Ok(scene)
-    }
-
-    /// Adds the parts of a mesh file as objects behind the last, with its colours as packs. Gives the
-    /// index of the first.
-    ///
-    /// # Errors
-    /// [`MeshError`]; the scene is then unchanged.
-    pub fn import(&mut self, path: &Path) -> Result<usize, MeshError> {
-        Ok(self.add_parts(read_parts(path)?))
     }
 
     /// Adds parts as objects behind the last, with their colours as packs. Gives the index of the first.

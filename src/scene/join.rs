@@ -9,7 +9,7 @@ use super::list::List;
 use super::object::Object;
 use super::shape::{Mesh, Shape, Triangle};
 use super::whole::Scene;
-use crate::mesh::Triangles;
+use crate::mesh::{Triangles, place_key};
 
 /// Most triangles that a mesh is taken apart into: each becomes an object with a name.
 pub const MOST_SEPARATE: usize = 10_000;
@@ -19,7 +19,7 @@ impl Scene {
     /// their indices; none if that is no triangle.
     pub fn connected_triangles(&self, index: usize) -> Vec<usize> {
         let corners = |object: &Object| match &object.shape {
-            Shape::Triangle(triangle) => Some(triangle.corners().map(key)),
+            Shape::Triangle(triangle) => Some(triangle.corners().map(place_key)),
             _ => None,
         };
         let mut users: HashMap<[u64; 3], Vec<usize>> = HashMap::new();
@@ -54,7 +54,7 @@ impl Scene {
         let first = *joined.first()?;
         let (mut numbers, mut points) = (HashMap::new(), Vec::new());
         let mut number = |point: DVec3| {
-            *numbers.entry(key(point)).or_insert_with(|| {
+            *numbers.entry(place_key(point)).or_insert_with(|| {
                 points.push(point);
                 points.len() as u32 - 1
             })
@@ -122,12 +122,6 @@ impl Scene {
         self.objects = before.chain(pieces).chain(after).collect::<List<_>>();
         true
     }
-}
-
-/// Corners are one where their coordinates are equal.
-fn key(point: DVec3) -> [u64; 3] {
-    // Adding zero makes one zero of the two.
-    (point + DVec3::ZERO).to_array().map(f64::to_bits)
 }
 
 #[cfg(test)]

@@ -77,14 +77,8 @@ impl<L: SimdFloat> Paths<L> {
             IgnoredPrimitive::Nothing | IgnoredPrimitive::Shared(_) => {
                 primitive.intersect(rays, prepared, methods)
             }
-            IgnoredPrimitive::Each(start) => {
-                let t = primitive.intersect(rays, prepared, methods);
-                let own = start.same(start.like(real(number)));
-                if !P::IS_CURVED || own.any() {
-                    L::select(own, primitive.exit(rays), t)
-                } else {
-                    t
-                }
+            IgnoredPrimitive::Each(_) => {
+                self.distance_in_tree(primitive, prepared, number, methods)
             }
         }
     }

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
+use crate::mesh::place_key;
 use crate::primitive::kind::Corner;
 use crate::scene::{Scene, Shape, Triangle};
 use crate::simd::{Real, Vec3};
@@ -41,8 +42,7 @@ impl<R: Real> PackedTriangle<R> {
 
 /// A corner as a key: corners are one where their coordinates are equal.
 pub fn corner(point: DVec3) -> Corner {
-    // Adding zero makes one zero of the two.
-    point.to_array().map(|part| (part + 0.0).to_bits())
+    place_key(point)
 }
 
 /// Numbers for the corners of triangles: the same where they meet.
