@@ -3,6 +3,7 @@
 use std::fs::{self, File};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 /// Writes `bytes` to `path` so that a reader finds either the old file or the new one, whole: they
 /// go to a new file beside it, to the disk, and then under the name. Links are followed and the
@@ -40,6 +41,35 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
     // system's business.
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
     Ok(())
+}
+
+/// What a file held when it was read or written last.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Stamp {
+    hash: blake3::Hash,
+    length: u64,
+    modified: Option<SystemTime>,
+}
+
+impl Stamp {
+    /// Of a file that holds these bytes.
+    pub fn of(path: &Path, bytes: &[u8]) -> Self {
+        let modified = fs::metadata(path).and_then(|metadata| metadata.modified());
+        Self {
+            hash: blake3::hash(bytes),
+            length: bytes.len() as u64,
+            modified: modified.ok(),
+        }
+    }
+
+    /// Whether the file holds something else by now. One that is gone holds nothing that could be lost.
+    pub fn is_outdated(&self, path: &Path) -> bool {
+        let Ok(metadata) = fs::metadata(path) else {
+            return false;
+        };
+        let is_touched = metadata.len() != self.length || metadata.modified().ok() != self.modified;
+        is_touched && fs::read(path).is_ok_and(|bytes| blake3::hash(&bytes) != self.hash)
+    }
 }
 
 /// The file that a path means, links followed, whether or not it exists yet.

@@ -14,6 +14,9 @@ fn main() -> ExitCode {
         CliAction::Chart { study, path } => {
             save_image(&ui::chart_picture(&study), &path).map_err(CliError::from)
         }
+        CliAction::Growth { growth, path } => {
+            save_image(&ui::growth_picture(&growth), &path).map_err(CliError::from)
+        }
         CliAction::Stability { maps, path } => {
             save_image(&ui::stability_picture(&maps), &path).map_err(CliError::from)
         }

@@ -140,7 +140,7 @@ fn five_hundred_steps_of_undo(bencher: Bencher) {
     let path = folder.path().join("many.ron");
     std::fs::write(&path, many(100_000)).expect("written");
     let mut editor = Editor::demo();
-    editor.open(&path).expect("a scene");
+    editor.open(Document::load_stamped(&path).expect("a scene"), &path);
     let before = resident_megabytes();
     bencher.bench_local(|| {
         for step in 0..500 {

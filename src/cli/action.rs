@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use crate::lab::Study;
 use crate::lab::stability::Map;
+use crate::lab::{Growth, Study};
 
 /// What the command line asked for.
 #[derive(Debug)]
@@ -22,6 +22,13 @@ pub enum CliAction {
     Chart {
         /// The study.
         study: Box<Study>,
+        /// The picture file; its ending is known to be good.
+        path: PathBuf,
+    },
+    /// Draw how cost grows into this file.
+    Growth {
+        /// What was measured.
+        growth: Growth,
         /// The picture file; its ending is known to be good.
         path: PathBuf,
     },

@@ -11,16 +11,22 @@ use super::error::{CliError, say};
 use super::scene::read_scene;
 use crate::export::write_text;
 use crate::image::Format;
-use crate::lab::{Study, cheapest_within, csv, table};
+use crate::lab::{Growth, Study, cheapest_within, csv, table};
 use crate::trace::{RenderControl, Threads};
 
+/// Primitives of the largest scene that growth is measured in.
+const MOST_PRIMITIVES: u32 = 1_000_000;
 /// Steps of the progress bar.
 const BAR: u64 = 1000;
 
 #[derive(Debug, Args)]
 pub struct ChartArgs {
     /// The scene file (RON)
-    scene: PathBuf,
+    #[arg(required_unless_present = "growth")]
+    scene: Option<PathBuf>,
+    /// Measure how time grows with the number of primitives, in scenes made for that, instead
+    #[arg(long, conflicts_with_all = ["scene", "within", "budget"])]
+    growth: bool,
     /// Longer side of the pictures that are compared, in pixels
     #[arg(long, default_value = "256", value_parser = clap::value_parser!(u32).range(8..=2048))]
     side: u32,
@@ -48,8 +54,11 @@ pub struct ChartArgs {
 pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
     // A name that cannot be written is known before the first ray.
     args.png.as_deref().map(Format::of_path).transpose()?;
-    let scene = read_scene(&args.scene)?;
     let threads = Threads::new(args.threads.map(usize::from))?;
+    let Some(scene) = &args.scene else {
+        return grow(args, &threads);
+    };
+    let scene = read_scene(scene)?;
     let mut study = Study::of_side(Arc::new(scene), args.side);
     measure(&mut study, &threads);
     say(table(&study).trim_end());
@@ -64,13 +73,42 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
     Ok(path.map(|path| CliAction::Chart { study, path }))
 }
 
-fn measure(study: &mut Study, threads: &Threads) {
-    // Draws to stderr, and only where that is a terminal.
+/// The same for scenes of more and more primitives.
+fn grow(args: &ChartArgs, threads: &Threads) -> Result<Option<CliAction>, CliError> {
+    let mut growth = Growth::new(args.side, MOST_PRIMITIVES);
+    let bar = progress_bar();
+    while threads.run(|| growth.step()) {
+        bar.set_position((growth.progress() * BAR as f64) as u64);
+    }
+    bar.finish_and_clear();
+    for cost in &growth.costs {
+        say(&format!(
+            "{:<20} {:>9} primitives {:>9.2} ms, planned in {:.1} ms",
+            cost.name(),
+            cost.primitives,
+            cost.ms,
+            cost.plan_ms
+        ));
+    }
+    if let Some(path) = &args.csv {
+        write_text(path, &growth.csv()?)?;
+    }
+    let path = args.png.clone();
+    Ok(path.map(|path| CliAction::Growth { growth, path }))
+}
+
+/// Draws to stderr, and only where that is a terminal.
+fn progress_bar() -> ProgressBar {
     let bar = ProgressBar::new(BAR);
     let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {eta} left");
     if let Ok(style) = style {
         bar.set_style(style);
     }
+    bar
+}
+
+fn measure(study: &mut Study, threads: &Threads) {
+    let bar = progress_bar();
     let control = RenderControl::default();
     while threads.run(|| study.step(&control)) {
         bar.set_position((study.progress() * BAR as f64) as u64);

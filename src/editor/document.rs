@@ -11,6 +11,7 @@ use super::history::{History, Snapshot};
 use super::selection::Selection;
 use super::timeline::Timeline;
 use crate::animate::CameraPath;
+use crate::files::Stamp;
 use crate::scene::{DEMO_TEXT, Document, Orientation, Scene, SceneError, check_edit};
 
 /// The open document and everything about working on it.
@@ -23,6 +24,9 @@ pub struct Editor {
     /// What the document is called while it has no file.
     name: &'static str,
     saved: Arc<Scene>,
+    /// What its file held when this window read or wrote it last.
+    stamp: Option<Stamp>,
+    saves: u64,
     is_dirty: bool,
     history: History,
     flight: Flight,
@@ -55,6 +59,8 @@ impl Editor {
             header: document.header,
             path,
             name: "untitled",
+            stamp: None,
+            saves: 0,
             is_dirty: false,
             history: History::default(),
             flight: Flight::default(),
@@ -179,15 +185,58 @@ impl Editor {
         self.become_other(Self::demo());
     }
 
-    /// Opens a file in place of the document; the document stays if that fails.
-    ///
-    /// # Errors
-    /// Why the file was refused.
-    pub fn open(&mut self, path: &Path) -> Result<(), SceneError> {
-        let document = Document::load(path)?;
+    /// Takes what was read of a file in place of the document.
+    pub fn open(&mut self, (document, stamp): (Document, Stamp), path: &Path) {
         self.replace(document, Some(absolute(path)));
+        self.stamp = Some(stamp);
         self.tell_missing_meshes();
-        Ok(())
+    }
+
+    /// Grows when the file and the scene become one: by opening, saving, or taking up what is there.
+    pub fn saves(&self) -> u64 {
+        self.saves
+    }
+
+    /// Whether another program has written the document's file since this window read or wrote it.
+    pub fn is_changed_outside(&self) -> bool {
+        match (&self.path, &self.stamp) {
+            (Some(path), Some(stamp)) => stamp.is_outdated(path),
+            _ => false,
+        }
+    }
+
+    /// Takes what another program has written in place of the scene, as a step that can be undone.
+    pub fn take_theirs(&mut self, (document, stamp): (Document, Stamp)) {
+        let before = Snapshot {
+            scene: Arc::clone(&self.scene),
+            selection: self.selection,
+        };
+        let theirs = Arc::new(document.scene);
+        self.history.end_gesture();
+        self.history.record("Reload".to_owned(), before, &theirs);
+        self.history.end_gesture();
+        self.header = document.header;
+        self.stamp = Some(stamp);
+        self.saves += 1;
+        self.saved = Arc::clone(&theirs);
+        self.set_scene(theirs);
+        self.notify(format!(
+            "{} was changed by another program and read anew; undo brings yours back",
+            self.title()
+        ));
+        self.tell_missing_meshes();
+    }
+
+    /// Keeps the scene beside what another program has written, if it can be read; the next save replaces
+    /// that.
+    pub fn keep_mine(&mut self, theirs: Option<(Document, Stamp)>) {
+        self.saves += 1;
+        let (theirs, stamp) = theirs.map_or((None, None), |(theirs, stamp)| {
+            (Some(Arc::new(theirs.scene)), Some(stamp))
+        });
+        self.is_dirty = theirs.as_ref() != Some(&self.scene);
+        self.saved = theirs.unwrap_or_else(|| Arc::clone(&self.saved));
+        self.stamp = stamp;
     }
 
     /// Says which meshes could not be read.
@@ -210,8 +259,10 @@ impl Editor {
     /// # Errors
     /// Why it could not be written; the document then still counts as changed.
     pub fn save(&mut self, path: &Path) -> Result<(), SceneError> {
-        let backup = self.document().save(path)?;
+        let (backup, stamp) = self.document().save_stamped(path)?;
         self.path = Some(absolute(path));
+        self.stamp = Some(stamp);
+        self.saves += 1;
         self.saved = Arc::clone(&self.scene);
         self.is_dirty = false;
         let kept = backup.map_or(String::new(), |backup| {
@@ -271,10 +322,12 @@ impl Editor {
     /// Takes another document's place; what is traced and what is said goes on.
     fn become_other(&mut self, other: Self) {
         let revision = self.revision + 1;
+        let saves = self.saves + 1;
         let messages = std::mem::take(&mut self.messages);
         let animation_state = self.animation_state.start_again(&other.scene);
         *self = Self {
             revision,
+            saves,
             animation_state,
             messages,
             ..other

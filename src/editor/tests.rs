@@ -106,22 +106,6 @@ fn high_res_ends_with_the_next_change() {
     assert_eq!(editor.mode, Mode::Live);
 }
 
-#[test]
-fn a_file_that_is_refused_leaves_the_document_alone() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("bad.ron");
-    crate::files::write_atomic(&path, b"Scene(version: 1, objects: 5)").expect("written");
-    let mut editor = Editor::demo();
-    editor.apply(Action::Edit(Edit::Ambient(0.25)));
-    let error = editor.open(&path).expect_err("refused").to_string();
-    assert!(
-        error.starts_with(&format!("{}:1:28: ", path.display())),
-        "{error}"
-    );
-    assert_eq!(editor.scene().ambient_intensity, 0.25);
-    assert!(editor.is_dirty());
-}
-
 fn any_edit() -> impl Strategy<Value = Action> {
     let item = (0..3_u8, 0..12_usize).prop_map(|(kind, index)| match kind {
         0 => Item::light(index),

@@ -13,9 +13,12 @@ mod study;
 
 mod table;
 
+mod growth;
+
 pub mod stability;
 
 pub use candidates::{Candidate, candidates};
+pub use growth::{Cost, Crowd, Growth};
 pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, LinearRgb, difference, trace_light};
 pub use pareto_front::{cheapest_within, front};
 pub use study::{Measurement, Reference, Study, Timing};

@@ -13,7 +13,9 @@ use crate::scene::{Accelerator, List, Object, Scene, Shape};
 use crate::simd::{Real, Vec3};
 
 /// Above so many, walking a tree costs less than testing every object that a tile can see.
-pub const LARGEST_LIST: usize = 128;
+pub const LARGEST_LIST: usize = 384;
+/// The same for triangles, which seldom come alone.
+pub const MOST_LISTED_TRIANGLES: usize = 128;
 
 /// Most meshes whose parts surround the geometry one by one.
 const FINE_OUTLINE: usize = 4;
@@ -95,7 +97,10 @@ pub fn is_tree(scene: &Scene, accelerator: Accelerator, may_cull: bool) -> bool 
         Accelerator::Bvh => true,
         Accelerator::Auto => {
             let ended = visible().filter(|object| object.shape.bounds().is_some());
+            let is_triangle = |object: &&Object| matches!(object.shape, Shape::Triangle(_));
+            let triangles = visible().filter(is_triangle);
             ended.take(LARGEST_LIST + 1).count() > LARGEST_LIST
+                || triangles.take(MOST_LISTED_TRIANGLES + 1).count() > MOST_LISTED_TRIANGLES
         }
     };
     let is_mesh = |object: &Object| matches!(object.shape, Shape::Mesh(_));

@@ -8,6 +8,8 @@ mod bvh;
 
 mod thickness;
 
+mod smooth;
+
 mod packed_mesh;
 
 mod geometry;

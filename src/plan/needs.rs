@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use super::geometry::{Kept, LARGEST_LIST};
+use super::geometry::{Kept, LARGEST_LIST, MOST_LISTED_TRIANGLES};
 use super::materials::Material;
 use super::pack::Plan;
 use super::precision::needs_double;
 use super::request::RenderRequest;
-use crate::scene::{Object, Precision, Sampling, Scene};
+use crate::scene::{Object, Precision, Sampling, Scene, Shape};
 use crate::simd::Exponent;
 
 /// One decision of the plan.
@@ -36,6 +36,7 @@ pub fn needs(scene: &Scene, request: &RenderRequest) -> Vec<Need> {
         hidden(scene),
         faces(&plan),
         accelerator(&plan, scene.faces()),
+        normals(scene),
         highlights(&plan),
         edges(request),
     ]
@@ -248,7 +249,7 @@ fn accelerator(plan: &Plan<f64>, faces: usize) -> Need {
             rule,
             format!("{what} in a tree of boxes"),
             format!(
-                "meshes, and more than {LARGEST_LIST} objects, are too much to be listed for every tile"
+                "meshes, more than {LARGEST_LIST} objects or {MOST_LISTED_TRIANGLES} triangles are too much to be listed for every tile"
             ),
             "time that grows with what a ray comes near, not with the scene",
         )
@@ -256,9 +257,33 @@ fn accelerator(plan: &Plan<f64>, faces: usize) -> Need {
         need(
             rule,
             format!("{what} in a flat list, cut down for every tile"),
-            format!("up to {LARGEST_LIST} are tested faster than a tree is walked"),
+            format!(
+                "up to {LARGEST_LIST}, of them {MOST_LISTED_TRIANGLES} triangles, are tested faster than a tree is walked"
+            ),
             "building a tree on every edit",
         )
+    }
+}
+
+fn normals(scene: &Scene) -> Need {
+    let rule = "normals";
+    let is_smooth = |object: &&Object| match &object.shape {
+        Shape::Mesh(mesh) => object.visible && mesh.smooth > 0.0,
+        _ => false,
+    };
+    match scene.objects.iter().filter(is_smooth).count() {
+        0 => need(
+            rule,
+            "one normal per face",
+            "no visible mesh is smooth",
+            "three normals per face, put together at every hit",
+        ),
+        smooth => need(
+            rule,
+            "normals put together from the corners of faces",
+            format!("visible meshes that are smooth: {smooth}"),
+            "nothing: secondary rays start on the curved surface, so that its faces do not shadow it",
+        ),
     }
 }
 

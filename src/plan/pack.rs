@@ -143,6 +143,9 @@ impl<R: Real> Plan<R> {
             plan.take_geometry(kept.geometry(scene, centre), projector.as_ref(), centre);
         }
         plan.pack(scene, centre, projector.as_ref());
+        if matches!(request.sampling, Sampling::Adaptive { .. }) {
+            measure_loose(&mut plan.primitives);
+        }
         if may_cull {
             plan.bound();
             // What leaks through a face must not find that those behind it were left out.
@@ -191,7 +194,6 @@ impl<R: Real> Plan<R> {
             let material = material_number(scene, &object.color_pack);
             self.push(&object.shape, material, &packing);
         }
-        measure_loose(&mut self.primitives);
     }
 
     fn pack_markers(&mut self, scene: &Scene, packing: &Packing) {
@@ -241,10 +243,11 @@ impl<R: Real> Plan<R> {
             return;
         }
         let eye = Vec3::from_dvec3(scene.camera.position - self.centre);
+        // Where a face is shaded as if it were curved, light comes from beneath it too.
         let seen: Vec<bool> = geometry
             .meshes
             .iter()
-            .map(|mesh| mesh.is_seen_from_outside(eye))
+            .map(|mesh| mesh.mesh.smooth.is_empty() && mesh.is_seen_from_outside(eye))
             .collect();
         for light in &mut self.lights {
             let meshes = geometry.meshes.iter().zip(&seen);

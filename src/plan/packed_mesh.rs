@@ -5,9 +5,10 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3};
 
 use super::bvh::{Bvh, Member};
+use super::smooth::corner_normals;
 use super::thickness::{is_outside, measures};
 use crate::mesh::Triangles;
-use crate::primitive::{BoundingBox, PackedTriangle};
+use crate::primitive::{BoundingBox, CornerNormals, PackedTriangle};
 use crate::scene::Mesh;
 use crate::simd::{Real, Vec3};
 
@@ -17,6 +18,8 @@ use crate::simd::{Real, Vec3};
 pub struct PackedMesh<R> {
     /// Its triangles; those without an area are left out.
     pub triangles: Vec<PackedTriangle<R>>,
+    /// Their normals where they are shaded as one curved surface; none if they are flat.
+    pub smooth: Vec<CornerNormals<R>>,
     /// The way to them.
     pub bvh: Bvh<R>,
     /// Whether it has an inside, and its normals point away from there.
@@ -25,6 +28,7 @@ pub struct PackedMesh<R> {
     middle: DVec3,
     source: Arc<Triangles>,
     turn: DMat3,
+    smooth_degrees: f64,
 }
 
 /// A mesh in its place.
@@ -59,19 +63,28 @@ impl<R: Real> PackedMesh<R> {
         let faces = source.faces().iter().filter_map(packed);
         let (mut triangles, faces): (Vec<_>, Vec<_>) = faces.unzip();
         let (bvh, is_closed) = measure(&mut triangles, &faces);
+        let smooth = if mesh.smooth > 0.0 {
+            corner_normals(&triangles, mesh.smooth)
+        } else {
+            Vec::new()
+        };
         Self {
+            smooth,
             bvh,
             is_solid: is_closed && volume(&triangles) > 0.0,
             triangles,
             middle,
             source: Arc::clone(source),
             turn,
+            smooth_degrees: mesh.smooth,
         }
     }
 
     /// Whether it is what would be packed of a mesh, wherever that is.
     pub fn is_of(&self, mesh: &Mesh) -> bool {
-        Arc::ptr_eq(&self.source, mesh.source.triangles()) && self.turn == mesh.turn()
+        Arc::ptr_eq(&self.source, mesh.source.triangles())
+            && self.turn == mesh.turn()
+            && self.smooth_degrees == mesh.smooth
     }
 
     /// Where its middle is in the world, if it is that of `mesh`.
@@ -130,5 +143,47 @@ impl<R: Real> MeshInstance<R> {
             },
             thickness: self.mesh.bvh.thinnest,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{SOLIDS, icosphere};
+
+    fn packed(triangles: Triangles, smooth: f64) -> PackedMesh<f64> {
+        PackedMesh::new(&Mesh {
+            smooth,
+            ..Mesh::of(triangles)
+        })
+    }
+
+    #[test]
+    fn a_ball_of_triangles_has_the_normals_of_a_ball() {
+        let mesh = packed(icosphere(2.0), 60.0);
+        for (face, smooth) in mesh.triangles.iter().zip(&mesh.smooth) {
+            for (corner, normal) in face.corners.into_iter().zip(smooth.normals) {
+                let cosine = corner.dot(normal) / corner.length();
+                assert!(cosine > 0.9999, "{normal:?}");
+            }
+            assert!(
+                (0.4..0.6).contains(&smooth.curvature),
+                "{}",
+                smooth.curvature
+            );
+        }
+    }
+
+    #[test]
+    fn faces_that_meet_at_a_larger_angle_stay_flat() {
+        let (name, cuboid) = SOLIDS[0];
+        let mesh = packed(cuboid(1.0), 89.0);
+        for (face, smooth) in mesh.triangles.iter().zip(&mesh.smooth) {
+            let is_flat = |normal: &Vec3<f64>| (*normal - face.normal).length() < 1e-12;
+            assert!(smooth.normals.iter().all(is_flat), "{name}");
+        }
+        let round = packed(cuboid(1.0), 91.0);
+        assert!(round.smooth.iter().all(|smooth| smooth.curvature > 0.5));
+        assert!(packed(cuboid(1.0), 0.0).smooth.is_empty());
     }
 }

@@ -55,6 +55,15 @@ impl<R: Real> View<R> {
         }
     }
 
+    /// How much wider a pixel becomes at distance 1; where the camera's rays are parallel, as much as in a
+    /// perspective picture that is as high as its distance.
+    pub fn spread(&self) -> R {
+        match self.projection {
+            Projection::Orthographic => self.pixel,
+            Projection::Perspective => self.footprint().1,
+        }
+    }
+
     /// How wide a pixel is within this distance of a point, at most.
     pub fn width_at(&self, point: Vec3<R>, reach: R) -> R {
         let (width, spread) = self.footprint();

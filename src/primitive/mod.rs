@@ -32,4 +32,6 @@ pub use plane::PackedPlane;
 pub use projector::{Extent, Projector, Rectangle};
 pub use ray::Ray;
 pub use sphere::{PackedSphere, Round};
-pub use triangle::{Flat, PackedTriangle, corner, count_corner_users, number_corners};
+pub use triangle::{
+    CornerNormals, Curved, Flat, PackedTriangle, corner, count_corner_users, number_corners,
+};

@@ -104,6 +104,8 @@ pub enum Target {
     LightPosition(String),
     /// Place of the named object, see [`super::Shape::position`].
     ObjectPosition(String),
+    /// How the named object is turned, which must be a mesh: degrees about x, then y, then z.
+    ObjectRotation(String),
 }
 
 /// What a key of a track holds.
@@ -111,7 +113,7 @@ pub enum Target {
 pub enum Value {
     /// For intensities.
     Number(f64),
-    /// For positions, in world units.
+    /// For positions, in world units, and rotations, in degrees.
     Point(DVec3),
 }
 
@@ -244,9 +246,10 @@ impl Target {
     pub fn owner(&self) -> Option<&str> {
         match self {
             Self::AmbientIntensity => None,
-            Self::LightIntensity(name) | Self::LightPosition(name) | Self::ObjectPosition(name) => {
-                Some(name)
-            }
+            Self::LightIntensity(name)
+            | Self::LightPosition(name)
+            | Self::ObjectPosition(name)
+            | Self::ObjectRotation(name) => Some(name),
         }
     }
 
@@ -259,6 +262,7 @@ impl Target {
             Self::LightIntensity(_) => Self::LightIntensity(to),
             Self::LightPosition(_) => Self::LightPosition(to),
             Self::ObjectPosition(_) => Self::ObjectPosition(to),
+            Self::ObjectRotation(_) => Self::ObjectRotation(to),
         }
     }
 
@@ -268,6 +272,7 @@ impl Target {
             Self::AmbientIntensity => "Ambient intensity".to_owned(),
             Self::LightIntensity(name) => format!("{name}: intensity"),
             Self::LightPosition(name) | Self::ObjectPosition(name) => format!("{name}: position"),
+            Self::ObjectRotation(name) => format!("{name}: rotation"),
         }
     }
 }

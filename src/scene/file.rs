@@ -12,7 +12,7 @@ use super::check::{Problem, check};
 use super::locate::{claimed_version, has_inner_comments, header, locate};
 use super::parse_errors::sentence;
 use super::whole::{Scene, VERSION};
-use crate::files::write_atomic;
+use crate::files::{Stamp, write_atomic};
 
 /// The RON text of the demo scene, as embedded in the program.
 pub const DEMO_TEXT: &str = include_str!("../../scenes/demo.ron");
@@ -124,7 +124,16 @@ impl Document {
     /// # Errors
     /// [`SceneError`]: unreadable, too large, or refused with its place. Nothing is half-loaded.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
+        Self::load_stamped(path).map(|(document, _)| document)
+    }
+
+    /// The same, with what the file held.
+    ///
+    /// # Errors
+    /// See [`Self::load`].
+    pub fn load_stamped(path: &Path) -> Result<(Self, Stamp), SceneError> {
         let bytes = read_bounded(path)?;
+        let stamp = Stamp::of(path, &bytes);
         let name = path.display().to_string();
         let text = String::from_utf8(bytes).map_err(|error| {
             let good = error.utf8_error().valid_up_to();
@@ -138,7 +147,7 @@ impl Document {
         })?;
         let mut document = Self::parse(&name, &text)?;
         document.scene.load_meshes(Some(&folder_of(path)));
-        Ok(document)
+        Ok((document, stamp))
     }
 
     /// Reads and checks a scene from RON text.
@@ -205,6 +214,14 @@ impl Document {
     /// # Errors
     /// [`SceneError::Disk`]; the file at `path` is then untouched.
     pub fn save(&self, path: &Path) -> Result<Option<PathBuf>, SceneError> {
+        self.save_stamped(path).map(|(backup, _)| backup)
+    }
+
+    /// The same, with what the file holds now.
+    ///
+    /// # Errors
+    /// See [`Self::save`].
+    pub fn save_stamped(&self, path: &Path) -> Result<(Option<PathBuf>, Stamp), SceneError> {
         let document = Self {
             header: self.header.clone(),
             scene: self.scene.taken_to(&folder_of(path)),
@@ -237,7 +254,7 @@ impl Document {
             .transpose()
             .map_err(disk)?;
         write_atomic(path, text.as_bytes()).map_err(disk)?;
-        Ok(backup)
+        Ok((backup, Stamp::of(path, text.as_bytes())))
     }
 }
 

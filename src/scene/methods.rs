@@ -323,7 +323,7 @@ pub enum Sampling {
 impl Sampling {
     /// The usual adaptive sampling.
     pub const ADAPTIVE: Self = Self::Adaptive {
-        contrast: 0.1,
+        contrast: 0.06,
         depth: MAX_HALVINGS,
     };
 }

@@ -28,6 +28,8 @@ mod keys;
 
 mod whole;
 
+mod differences;
+
 mod import;
 
 mod join;
@@ -49,6 +51,7 @@ pub use animation::{
 };
 pub use camera::{Camera, Framing, Projection};
 pub use check::{Problem, check, check_edit};
+pub use differences::differences;
 pub use file::{DEMO_TEXT, Document, SceneError, read_text};
 pub use join::MOST_SEPARATE;
 pub use list::List;

@@ -2,20 +2,23 @@
 
 use super::animation::{Target, Value};
 use super::object::Light;
+use super::shape::Shape;
 use super::whole::Scene;
 
 impl Target {
-    /// The value in a scene; `None` if the scene has no such light or object.
+    /// The value in a scene; `None` if the scene has no such light or object, or it
+    /// has no such property.
     pub fn get(&self, scene: &Scene) -> Option<Value> {
         let light = |name: &String| scene.lights.iter().find(|light| light.name == *name);
         Some(match self {
             Self::AmbientIntensity => Value::Number(scene.ambient_intensity),
             Self::LightIntensity(name) => Value::Number(light(name)?.intensity),
             Self::LightPosition(name) => Value::Point(light(name)?.position),
-            Self::ObjectPosition(name) => {
-                let object = scene.objects.iter().find(|object| object.name == *name)?;
-                Value::Point(object.shape.position())
-            }
+            Self::ObjectPosition(name) => Value::Point(shape(scene, name)?.position()),
+            Self::ObjectRotation(name) => match shape(scene, name)? {
+                Shape::Mesh(mesh) => Value::Point(mesh.rotation),
+                _ => return None,
+            },
         })
     }
 
@@ -39,9 +42,20 @@ impl Target {
                     object.shape = object.shape.moved(point - object.shape.position());
                 }
             }
+            (Self::ObjectRotation(name), Value::Point(rotation)) => {
+                let object = scene.objects.find_mut(|object| object.name == *name);
+                if let Some(Shape::Mesh(mesh)) = object.map(|object| &mut object.shape) {
+                    mesh.rotation = rotation;
+                }
+            }
             _ => {}
         }
     }
+}
+
+fn shape<'s>(scene: &'s Scene, name: &str) -> Option<&'s Shape> {
+    let object = scene.objects.iter().find(|object| object.name == name)?;
+    Some(&object.shape)
 }
 
 fn light<'s>(scene: &'s mut Scene, name: &str) -> Option<&'s mut Light> {

@@ -9,9 +9,10 @@ use super::intersect::Kernel;
 use super::packet::{EdgeInfo, Packet, ReflectionParent};
 use super::paths::{IgnoredPrimitive, Paths};
 use super::roots::Roots;
-use super::samples::{Samples, Traced};
+use super::samples::{Edges, Samples, Traced};
 use super::shade::Shader;
 use super::stats::Rays;
+use super::thin::widest_spread;
 use super::thresholds::{LARGEST_STRETCH, SLIPPING};
 use super::walk::Stack;
 use crate::plan::Plan;
@@ -23,6 +24,8 @@ pub struct Bounce<L: SimdFloat> {
     packets: Vec<Packet<L>>,
     /// One for each packet, in bounces of mirrored rays.
     parents: Vec<ReflectionParent<L>>,
+    /// What is found out about edges.
+    pub edges_are: Edges,
     /// One for each packet, where edges are noted.
     edges: Vec<EdgeInfo<L>>,
     /// What the rays can meet.
@@ -53,6 +56,7 @@ impl<L: SimdFloat> Bounce<L> {
         Self {
             packets: Vec::new(),
             parents: Vec::new(),
+            edges_are: Edges::Ignored,
             edges: Vec::new(),
             seen: Candidates::default(),
             roots: Roots::default(),
@@ -76,12 +80,12 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// Becomes the rays from the camera through the samples, which can meet what is in `seen`.
     #[inline(always)]
-    pub fn start(
+    pub fn start<const TREE: bool>(
         &mut self,
-        kernel: Kernel<L>,
+        kernel: Kernel<L, TREE>,
         samples: &Samples<L::Real>,
         seen: &Candidates,
-        with_edges: bool,
+        edges: Edges,
     ) {
         let (token, view) = (kernel.token, &kernel.plan.view);
         self.clear();
@@ -96,7 +100,8 @@ impl<L: SimdFloat> Bounce<L> {
             let rays = Ray { origin, direction };
             self.packets.push(Packet::new(kernel, rays, active));
         }
-        if with_edges {
+        self.edges_are = edges;
+        if edges != Edges::Ignored {
             let (width, spread) = view.footprint();
             let cone = RayCone {
                 width: L::splat(token, width),
@@ -106,18 +111,27 @@ impl<L: SimdFloat> Bounce<L> {
         }
     }
 
+    /// Whether what may slip between samples is looked for.
+    fn looks_beside(&self) -> bool {
+        self.edges_are == Edges::Near
+    }
+
     /// What the rays of a packet start on.
     #[inline(always)]
-    fn ignored_by(&self, packet: usize) -> IgnoredPrimitive<L> {
+    fn ignored_by(&self, token: L::Token, packet: usize) -> IgnoredPrimitive<L> {
         match self.parents.get(packet) {
-            None => IgnoredPrimitive::Nothing,
+            None => IgnoredPrimitive::nothing(token),
             Some(parent) => parent.ignored,
         }
     }
 
     /// Finds what the packets meet, and what can cast shadows there. Whether there is anything.
     #[inline(always)]
-    pub fn find(&mut self, kernel: Kernel<L>, scratch: &mut Scratch<L::Real>) -> bool {
+    pub fn find<const TREE: bool>(
+        &mut self,
+        kernel: Kernel<L, TREE>,
+        scratch: &mut Scratch<L::Real>,
+    ) -> bool {
         if self.seen.is_empty() {
             return false;
         }
@@ -129,7 +143,7 @@ impl<L: SimdFloat> Bounce<L> {
         let mut bounds = Bounds::new(kernel.token);
         let mut farthest = kernel.splat(0.0);
         for index in 0..self.packets.len() {
-            let ignored = self.ignored_by(index);
+            let ignored = self.ignored_by(kernel.token, index);
             let packet = &mut self.packets[index];
             let rays = packet.rays;
             let paths = Paths { rays, ignored };
@@ -141,19 +155,27 @@ impl<L: SimdFloat> Bounce<L> {
             packet.near = kernel.nearest(among, &paths, packet.active, &mut scratch.stack);
             let hit = packet.near.t.less(infinity) & packet.active;
             bounds.add(hit, rays.at(packet.near.t));
-            farthest = L::select(hit, farthest.max(packet.near.t), farthest);
+            if TREE {
+                farthest = L::select(hit, farthest.max(packet.near.t), farthest);
+            }
         }
         let Some(ball) = bounds.ball() else {
             return !self.thin.is_empty();
         };
         if plan.screen.is_some() {
             // Room for what passes beside the rays to the lights, closer than a pixel.
-            let footprint = self.widest(kernel) * L::Real::from_f64(LARGEST_STRETCH);
-            // A ray that has come far is off by a few roundings of its length.
-            let hits = bounds.around().widened(farthest.greatest() * roundings());
+            let footprint = self
+                .looks_beside()
+                .then(|| self.widest(kernel) * L::Real::from_f64(LARGEST_STRETCH));
             for (between, light) in self.lights.iter_mut().zip(&plan.lights) {
                 kernel.keep_between(between, light, (&ball, footprint), scratch);
-                kernel.enter_towards(between, light, &hits);
+            }
+            if TREE {
+                // A ray that has come far is off by a few roundings of its length.
+                let hits = bounds.around().widened(farthest.greatest() * roundings());
+                for (between, light) in self.lights.iter_mut().zip(&plan.lights) {
+                    kernel.enter_towards(between, light, &hits);
+                }
             }
         }
         true
@@ -161,10 +183,10 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// Finds where the packets can start to look into the trees.
     #[inline(always)]
-    fn enter(&mut self, kernel: Kernel<L>) {
+    fn enter<const TREE: bool>(&mut self, kernel: Kernel<L, TREE>) {
         self.roots.forget();
         let plan = kernel.plan;
-        let Some((geometry, _)) = plan.numbered_geometry() else {
+        let Some((geometry, _)) = kernel.geometry() else {
             return;
         };
         if !self.seen.has_geometry || !plan.is_boxed {
@@ -188,7 +210,7 @@ impl<L: SimdFloat> Bounce<L> {
     /// Finds what rays from the camera can meet, or just miss, between samples; nothing without
     /// edges. For mirrored rays, [`Self::aim`] knows.
     fn find_thin(&mut self, plan: &Plan<L::Real>) {
-        if self.edges.is_empty() {
+        if !self.looks_beside() {
             self.thin.clear();
         } else if self.parents.is_empty() {
             let slipping = L::Real::from_f64(SLIPPING);
@@ -200,7 +222,7 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// The widest pixel at what was hit; zero without edges.
     #[inline(always)]
-    fn widest(&self, kernel: Kernel<L>) -> L::Real {
+    fn widest<const TREE: bool>(&self, kernel: Kernel<L, TREE>) -> L::Real {
         let mut widest = kernel.splat(0.0);
         for (edge, packet) in self.edges.iter().zip(&self.packets) {
             let hit = packet.near.t.less(kernel.infinity()) & packet.active;
@@ -212,18 +234,20 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// Shades the packets; `next` gets the rays that mirrors send on.
     #[inline(always)]
-    pub fn shade(
+    pub fn shade<const TREE: bool>(
         &mut self,
-        kernel: Kernel<L>,
+        kernel: Kernel<L, TREE>,
         may_mirror: bool,
         next: &mut Self,
         (stack, rays): (&mut Stack<L::Real>, &mut Rays),
     ) {
+        let looks_beside = self.looks_beside();
         for index in 0..self.packets.len() {
-            let ignored = self.ignored_by(index);
+            let ignored = self.ignored_by(kernel.token, index);
             let shader = Shader {
                 kernel,
                 may_mirror,
+                looks_beside,
                 thin: &self.thin,
                 lights: &self.lights,
             };
@@ -249,7 +273,11 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// Finds what mirrored rays can meet.
     #[inline(always)]
-    pub fn aim(&mut self, kernel: Kernel<L>, scratch: &mut Scratch<L::Real>) {
+    pub fn aim<const TREE: bool>(
+        &mut self,
+        kernel: Kernel<L, TREE>,
+        scratch: &mut Scratch<L::Real>,
+    ) {
         let plan = kernel.plan;
         let rays = self
             .packets
@@ -260,22 +288,29 @@ impl<L: SimdFloat> Bounce<L> {
         } else {
             None
         };
-        let Some(beam) = beam else {
+        let Some(mut beam) = beam else {
             self.seen = Candidates::all(plan);
             self.thin.clone_from(&self.seen);
             return;
         };
-        // Room for what passes beside the rays, closer than a pixel.
         let (mut width, mut spread) = (kernel.splat(0.0), kernel.splat(0.0));
+        let mut narrowest = kernel.infinity();
         for (edge, packet) in self.edges.iter().zip(&self.packets) {
             width = L::select(packet.active, width.max(edge.cone.width), width);
             spread = L::select(packet.active, spread.max(edge.cone.spread), spread);
+            narrowest = L::select(packet.active, narrowest.min(edge.cone.spread), narrowest);
         }
         let (width, spread) = (width.greatest(), spread.greatest());
-        let beam = beam.widened(width, spread);
+        if self.looks_beside() && widest_spread(plan) < narrowest.least() {
+            self.edges_are = Edges::Signed;
+        }
+        if self.looks_beside() {
+            // Room for what passes beside the rays, closer than a pixel.
+            beam = beam.widened(width, spread);
+        }
         let start_plane = self.start_plane(plan);
         kernel.keep_met(&mut self.seen, &beam, start_plane, scratch);
-        if !self.edges.is_empty() {
+        if self.looks_beside() {
             let slipping = L::Real::from_f64(SLIPPING);
             self.thin.keep_narrow(&self.seen, plan, |center, radius| {
                 (width + spread * beam.distance(center, radius)) * slipping
@@ -285,12 +320,9 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// The plane that all rays start on, if they all start on one.
     fn start_plane(&self, plan: &Plan<L::Real>) -> Option<usize> {
-        let IgnoredPrimitive::Shared(first) = self.parents.first()?.ignored else {
-            return None;
-        };
-        let is_shared = self.parents.iter().all(
-            |parent| matches!(parent.ignored, IgnoredPrimitive::Shared(start) if start == first),
-        );
+        let first = self.parents.first()?.ignored.shared()?;
+        let mut parents = self.parents.iter();
+        let is_shared = parents.all(|parent| parent.ignored.shared() == Some(first));
         let plane = first.checked_sub(plan.primitives.firsts()[Kind::Plane as usize])?;
         (is_shared && plane < plan.primitives.planes.len()).then_some(plane)
     }

@@ -59,6 +59,15 @@ pub struct Beside<R> {
     pub thickest: R,
 }
 
+impl<R: Real> Beside<R> {
+    /// How far something may be from where rays start that go as far as `reach`, where a pixel is so wide.
+    #[inline(always)]
+    pub fn end<L: SimdFloat<Real = R>>(&self, reach: L, width: L) -> L {
+        // Round things count up to their own size behind the end.
+        reach + width * reach.like(self.thickest + R::ONE)
+    }
+}
+
 impl<L: SimdFloat> Bundle<L> {
     /// The rays where the mask is set, among things whose coordinates are at most `reach`.
     #[inline(always)]
@@ -115,10 +124,16 @@ impl<L: SimdFloat> Bundle<L> {
         &self.shaft
     }
 
-    /// Which of the rays meet the box at `place` of a node before their own `reach`: slabs, as Kay and
-    /// Kajiya, "Ray tracing complex scenes", SIGGRAPH 1986.
+    /// Which of the rays meet the box at `place` of a node, or pass within `beside` of its sides, before
+    /// their own `reach`: slabs, as Kay and Kajiya, "Ray tracing complex scenes", SIGGRAPH 1986.
     #[inline(always)]
-    pub fn each_meets(&self, node: &Node<L::Real>, place: usize, reach: L) -> L::Mask {
+    pub fn each_meets(
+        &self,
+        node: &Node<L::Real>,
+        place: usize,
+        reach: L,
+        beside: L::Real,
+    ) -> L::Mask {
         let mut near = reach.like(L::Real::ZERO);
         let mut far = reach;
         let [below, above] = &self.origins;
@@ -128,8 +143,8 @@ impl<L: SimdFloat> Bundle<L> {
             (below.z, above.z, self.inverse.z),
         ];
         for (axis, (below, above, inverse)) in origins.into_iter().enumerate() {
-            let low = reach.like(node.planes[0][axis][place]);
-            let high = reach.like(node.planes[1][axis][place]);
+            let low = reach.like(node.planes[0][axis][place] - beside);
+            let high = reach.like(node.planes[1][axis][place] + beside);
             // The origin is moved away from either plane, so that the box grows.
             let (low, high) = ((low - above) * inverse, (high - below) * inverse);
             near = near.max(low.min(high));
@@ -183,7 +198,8 @@ impl<R: Real> Shaft<R> {
         bits & node.filled()
     }
 
-    /// Which boxes of a node that hold something thin some ray may come close to before `reach`.
+    /// Which boxes of a node that hold something thin some ray may come close to before `reach`, and how
+    /// wide a pixel is there at most.
     #[inline(always)]
     pub fn grazes<L: SimdFloat<Real = R>>(
         &self,
@@ -191,17 +207,17 @@ impl<R: Real> Shaft<R> {
         node: &Node<R>,
         reach: R,
         beside: &Beside<R>,
+        widths: &mut [R; GROUP],
     ) -> u64 {
         let mut bits = 0;
         for first in (0..node.count).step_by(L::WIDTH) {
             let width = self.distance::<L>(token, node, first) * L::splat(token, beside.spread)
                 + L::splat(token, beside.width);
+            width.store(&mut widths[first..]);
             let thickness = L::load(token, &node.thickness[first..]);
             let is_thin = thickness.less(width * L::splat(token, beside.thickest));
             if is_thin.any() {
-                // Round things count up to their own size behind the end.
-                let behind = L::splat(token, beside.thickest + R::ONE);
-                let reach = L::splat(token, reach) + width * behind;
+                let reach = beside.end(L::splat(token, reach), width);
                 let (_, is_met) = self.slabs(node, first, reach, Some(width));
                 bits |= (is_thin & is_met).bits() << first;
             }

@@ -46,6 +46,17 @@ pub struct LightCandidates<R> {
 }
 
 impl Candidates {
+    /// Becomes those of `from` that may slip between samples where pixels are so wide; nothing without.
+    fn keep_slipping<R: Real>(&mut self, from: &Self, plan: &Plan<R>, footprint: Option<R>) {
+        match footprint {
+            None => self.clear(),
+            Some(width) => {
+                let slipping = width * R::from_f64(SLIPPING);
+                self.keep_narrow(from, plan, |_, _| slipping);
+            }
+        }
+    }
+
     /// Leaves out the planes that the rays of a tile pass by or leave behind.
     ///
     /// Height over the plane and speed towards it change along a row or column by equal steps, so
@@ -69,7 +80,7 @@ impl Candidates {
     }
 }
 
-impl<L: SimdFloat> Kernel<'_, L> {
+impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// `candidates` become what rays of the beam can meet, markers included, but for a plane that all of
     /// them start on.
     #[inline(always)]
@@ -92,13 +103,13 @@ impl<L: SimdFloat> Kernel<'_, L> {
     }
 
     /// `between` becomes what can stand between a light and some point of a ball, `footprint` around it
-    /// included.
+    /// included; without one, what is thin is not listed.
     #[inline(always)]
     pub fn keep_between(
         self,
         between: &mut LightCandidates<L::Real>,
         light: &PointLight<L::Real>,
-        (ball, footprint): (&Ball, L::Real),
+        (ball, footprint): (&Ball, Option<L::Real>),
         scratch: &mut Scratch<L::Real>,
     ) {
         let plan = self.plan;
@@ -110,14 +121,13 @@ impl<L: SimdFloat> Kernel<'_, L> {
         } = between;
         roots.forget();
         let from = light.position.to_dvec3();
-        let slipping = footprint * L::Real::from_f64(SLIPPING);
         let Some(beam) = Beam::to_ball(from, ball) else {
             *casters = Candidates::all_casting(plan);
-            thin.keep_narrow(casters, plan, |_, _| slipping);
+            thin.keep_slipping(casters, plan, footprint);
             *is_umbra = false;
             return;
         };
-        let beam = beam.widened(footprint, L::Real::ZERO);
+        let beam = beam.widened(footprint.unwrap_or(L::Real::ZERO), L::Real::ZERO);
         beam.gather::<L>(self.token, &plan.balls, &mut scratch.met);
         let omit = Omit::MarkersAndFaces(&light.shadow_culled_faces);
         casters.sort_by_kind(plan, &scratch.met, omit);
@@ -126,7 +136,7 @@ impl<L: SimdFloat> Kernel<'_, L> {
             let planes = 0..plan.primitives.planes.len() as u32;
             casters.planes_mut().extend(planes);
         }
-        thin.keep_narrow(casters, plan, |_, _| slipping);
+        thin.keep_slipping(casters, plan, footprint);
         let mut umbra = Umbra {
             casters,
             light: from,
@@ -138,7 +148,7 @@ impl<L: SimdFloat> Kernel<'_, L> {
     }
 }
 
-impl<L: SimdFloat> Kernel<'_, L> {
+impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// Finds where shadow rays from these hits to a light can start to look into the trees. Without the
     /// rule that starts them at the hits, they start anywhere.
     #[inline(always)]
@@ -149,7 +159,7 @@ impl<L: SimdFloat> Kernel<'_, L> {
         hits: &BoundingBox<L::Real>,
     ) {
         let plan = self.plan;
-        let Some((geometry, _)) = plan.numbered_geometry() else {
+        let Some((geometry, _)) = self.geometry() else {
             return;
         };
         let is_at_hits = matches!(plan.ray_origin, RayOrigin::AtHit);

@@ -10,17 +10,17 @@ use super::stats::Rays;
 use crate::simd::SimdFloat;
 
 /// What traces the samples of a tile.
-pub struct Engine<'a, L: SimdFloat> {
-    kernel: Kernel<'a, L>,
+pub struct Engine<'a, L: SimdFloat, const TREE: bool> {
+    kernel: Kernel<'a, L, TREE>,
     bounces: Vec<Bounce<L>>,
     scratch: Scratch<L::Real>,
     /// Rays traced so far.
     pub rays: Rays,
 }
 
-impl<'a, L: SimdFloat> Engine<'a, L> {
+impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
     /// An engine for a plan.
-    pub fn new(kernel: Kernel<'a, L>) -> Self {
+    pub fn new(kernel: Kernel<'a, L, TREE>) -> Self {
         Self {
             kernel,
             bounces: Vec::new(),
@@ -59,10 +59,10 @@ impl<'a, L: SimdFloat> Engine<'a, L> {
         if seen.is_empty() {
             return traced.fill(count, length, edges, clamped(kernel.plan.background));
         }
-        let with_edges = edges == Edges::Noted;
+        let with_edges = edges != Edges::Ignored;
         traced.resize(count, length, edges);
         self.grow(0);
-        self.bounces[0].start(kernel, samples, seen, with_edges);
+        self.bounces[0].start(kernel, samples, seen, edges);
 
         // Forth: each bounce sends the next one on its way.
         let mut depth = 0;
@@ -71,6 +71,7 @@ impl<'a, L: SimdFloat> Engine<'a, L> {
             let (bounces, deeper) = self.bounces.split_at_mut(depth + 1);
             let (bounce, next) = (&mut bounces[depth], &mut deeper[0]);
             next.clear();
+            next.edges_are = bounce.edges_are;
             let may_mirror = (depth as u32) < kernel.plan.reflection_limit;
             if bounce.find(kernel, &mut self.scratch) {
                 let counted = (&mut self.scratch.stack, &mut self.rays);

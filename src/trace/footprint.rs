@@ -63,6 +63,12 @@ impl<L: SimdFloat> Footprint<L> {
         }
     }
 
+    /// How much wider a pixel becomes along the rays that come here.
+    #[inline(always)]
+    pub fn spread(&self) -> L {
+        self.cone.spread
+    }
+
     /// How many pixels away a highlight is: half-vector and normal differ by `off`, its exponent
     /// is 1/`size`², and the light is at this distance. Infinity for one that is wider than
     /// [`SLIPPING`] pixels.

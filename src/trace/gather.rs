@@ -1,9 +1,12 @@
 //! Small things that look alike, put together so that rays which have met different ones are shaded as one
 //! packet.
 
+use super::columns::{Columns, CurvedColumns};
 use crate::plan::{Geometry, MeshInstance};
-use crate::primitive::{Flat, PackedSphere, PackedTriangle, Ray, Round, SurfacePoint};
-use crate::simd::{MAX_LANES, Real, SimdFloat, Vec3};
+use crate::primitive::{
+    CornerNormals, Flat, PackedSphere, PackedTriangle, Ray, Round, SurfacePoint,
+};
+use crate::simd::{MAX_LANES, Real, SimdFloat};
 
 /// A primitive in a tree, and what it must have in common with others to be shaded with them.
 pub struct Piece<'a, R> {
@@ -16,6 +19,7 @@ pub struct Piece<'a, R> {
 
 enum Form<'a, R> {
     Flat(&'a PackedTriangle<R>),
+    Curved(&'a PackedTriangle<R>, &'a CornerNormals<R>),
     Round(&'a PackedSphere<R>),
 }
 
@@ -25,8 +29,14 @@ impl<'a, R: Real> Piece<'a, R> {
     #[inline(always)]
     pub fn of(geometry: &'a Geometry<R>, index: usize) -> Option<Self> {
         if let Some(mesh) = geometry.mesh_of(index) {
+            let face = index - mesh.first;
+            let triangle = &mesh.mesh.triangles[face];
+            let form = match mesh.mesh.smooth.get(face) {
+                None => Form::Flat(triangle),
+                Some(normals) => Form::Curved(triangle, normals),
+            };
             return Some(Self {
-                form: Form::Flat(&mesh.mesh.triangles[index - mesh.first]),
+                form,
                 material: mesh.material,
                 mesh: Some(mesh),
             });
@@ -51,7 +61,9 @@ impl<'a, R: Real> Piece<'a, R> {
     pub fn is_like(&self, other: &Self) -> bool {
         let is_same_form = matches!(
             (&self.form, &other.form),
-            (Form::Flat(_), Form::Flat(_)) | (Form::Round(_), Form::Round(_))
+            (Form::Flat(_), Form::Flat(_))
+                | (Form::Curved(..), Form::Curved(..))
+                | (Form::Round(_), Form::Round(_))
         );
         let is_same_mesh = match (self.mesh, other.mesh) {
             (None, None) => true,
@@ -65,23 +77,30 @@ impl<'a, R: Real> Piece<'a, R> {
 /// What is needed of pieces where they are hit, lane by lane.
 pub struct Gathered<R> {
     /// A corner, or the middle.
-    place: [[R; MAX_LANES]; 3],
-    normal: [[R; MAX_LANES]; 3],
+    place: Columns<R>,
+    normal: Columns<R>,
     /// Whether it is in a mesh; or the radius, and one over it.
     measures: [[R; MAX_LANES]; 2],
+    /// What is needed of faces that are shaded as if they were curved, if they are.
+    curved: Option<CurvedColumns<R>>,
     /// 1 where there is something, else 0.
     is_there: [R; MAX_LANES],
 }
 
 impl<R: Real> Gathered<R> {
-    /// Nothing in any lane.
+    /// Nothing in any lane, and room for what is like a piece.
     #[inline(always)]
-    pub fn new() -> Self {
+    pub fn like(piece: &Piece<R>) -> Self {
         let zeros = [R::ZERO; MAX_LANES];
+        let curved = match piece.form {
+            Form::Curved(..) => Some(CurvedColumns::new()),
+            Form::Flat(_) | Form::Round(_) => None,
+        };
         Self {
-            place: [zeros; 3],
-            normal: [zeros; 3],
+            place: Columns::new(),
+            normal: Columns::new(),
             measures: [zeros; 2],
+            curved,
             is_there: zeros,
         }
     }
@@ -91,17 +110,26 @@ impl<R: Real> Gathered<R> {
     pub fn set(&mut self, lane: usize, piece: &Piece<R>) {
         self.is_there[lane] = R::ONE;
         match piece.form {
-            Form::Flat(triangle) => {
-                put(&mut self.place, lane, triangle.corners[0]);
-                put(&mut self.normal, lane, triangle.normal);
-                self.measures[0][lane] = if triangle.in_mesh { R::ONE } else { R::ZERO };
+            Form::Flat(triangle) => self.set_flat(lane, triangle),
+            Form::Curved(triangle, normals) => {
+                self.set_flat(lane, triangle);
+                if let Some(curved) = &mut self.curved {
+                    curved.set(lane, triangle, normals);
+                }
             }
             Form::Round(sphere) => {
-                put(&mut self.place, lane, sphere.center);
+                self.place.set(lane, sphere.center);
                 self.measures[0][lane] = sphere.radius;
                 self.measures[1][lane] = R::ONE / sphere.radius;
             }
         }
+    }
+
+    #[inline(always)]
+    fn set_flat(&mut self, lane: usize, triangle: &PackedTriangle<R>) {
+        self.place.set(lane, triangle.corners[0]);
+        self.normal.set(lane, triangle.normal);
+        self.measures[0][lane] = if triangle.in_mesh { R::ONE } else { R::ZERO };
     }
 
     /// Where there is something.
@@ -119,7 +147,7 @@ impl<R: Real> Gathered<R> {
         t: L,
     ) -> SurfacePoint<L> {
         let token = t.token();
-        let place = load::<L>(token, &self.place);
+        let place = self.place.load::<L>(token);
         let [first, second] = &self.measures;
         let (first, second) = (L::load(token, first), L::load(token, second));
         match (&piece.form, piece.mesh) {
@@ -131,53 +159,45 @@ impl<R: Real> Gathered<R> {
                 };
                 round.refine(rays, t)
             }
-            (Form::Flat(_), mesh) => {
+            (Form::Flat(_) | Form::Curved(..), mesh) => {
                 let flat = Flat {
                     corner: place,
-                    normal: load::<L>(token, &self.normal),
+                    normal: self.normal.load::<L>(token),
                     in_mesh: first,
                 };
                 match mesh {
                     None => flat.refine(rays, t),
-                    Some(mesh) => refine_in_mesh(mesh, &flat, rays, t),
+                    Some(mesh) => self.refine_in_mesh(mesh, &flat, rays, t),
                 }
             }
         }
     }
-}
 
-#[inline(always)]
-fn put<R: Real>(columns: &mut [[R; MAX_LANES]; 3], lane: usize, vector: Vec3<R>) {
-    for (column, part) in columns.iter_mut().zip(vector.to_array()) {
-        column[lane] = part;
-    }
-}
-
-#[inline(always)]
-fn load<L: SimdFloat>(token: L::Token, [x, y, z]: &[[L::Real; MAX_LANES]; 3]) -> Vec3<L> {
-    Vec3::new(L::load(token, x), L::load(token, y), L::load(token, z))
-}
-
-/// The hits on faces of a mesh, which are met from the mesh's own middle.
-#[inline(always)]
-fn refine_in_mesh<L: SimdFloat>(
-    instance: &MeshInstance<L::Real>,
-    flat: &Flat<L>,
-    rays: &Ray<L>,
-    t: L,
-) -> SurfacePoint<L> {
-    let centre = rays.origin.like(instance.centre);
-    let local = Ray {
-        origin: rays.origin - centre,
-        direction: rays.direction,
-    };
-    let surface = flat.refine(&local, t);
-    let point = surface.point + centre;
-    // Back in the world's coordinates it is rounded once more, and again where the next ray sets out.
-    let world = (point.max_abs() + centre.max_abs()) * t.like(L::Real::UNIT_ROUNDOFF);
-    SurfacePoint {
-        point,
-        slack: surface.slack + (world + world),
-        ..surface
+    /// The hits on faces of a mesh, which are met from the mesh's own middle.
+    #[inline(always)]
+    fn refine_in_mesh<L: SimdFloat<Real = R>>(
+        &self,
+        instance: &MeshInstance<R>,
+        flat: &Flat<L>,
+        rays: &Ray<L>,
+        t: L,
+    ) -> SurfacePoint<L> {
+        let centre = rays.origin.like(instance.centre);
+        let local = Ray {
+            origin: rays.origin - centre,
+            direction: rays.direction,
+        };
+        let mut surface = flat.refine(&local, t);
+        let point = surface.point + centre;
+        // Back in the world's coordinates it is rounded once more, and again where the next ray sets out.
+        let world = (point.max_abs() + centre.max_abs()) * t.like(R::UNIT_ROUNDOFF);
+        surface.slack = surface.slack + (world + world);
+        if let Some(curved) = &self.curved {
+            surface = curved.load(t.token()).bend(&surface, rays.direction);
+        }
+        SurfacePoint {
+            point: surface.point + centre,
+            ..surface
+        }
     }
 }

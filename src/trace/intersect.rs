@@ -5,13 +5,15 @@ use super::candidates::Among;
 use super::paths::{NOTHING, Paths, real};
 use super::scan::{Test, Thicket, scan_lists};
 use super::walk::Stack;
-use crate::plan::Plan;
+use crate::plan::{Geometry, Plan};
 use crate::primitive::Primitive;
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
-/// What the kernels of a picture share: the proof that the processor has the lanes, and the plan.
-pub struct Kernel<'a, L: SimdFloat> {
+/// What the kernels of a picture share: the proof that the processor has the lanes, and the plan. Without
+/// `TREE` they are compiled for plans that have no tree, and are faster: what may be in a list or in a tree
+/// is copied back and forth.
+pub struct Kernel<'a, L: SimdFloat, const TREE: bool> {
     /// Proof that the processor has these vectors.
     pub token: L::Token,
     /// The plan.
@@ -22,13 +24,13 @@ pub struct Kernel<'a, L: SimdFloat> {
     clippy::expl_impl_clone_on_copy,
     reason = "derived, it would ask for the same of every lane"
 )]
-impl<L: SimdFloat> Clone for Kernel<'_, L> {
+impl<L: SimdFloat, const TREE: bool> Clone for Kernel<'_, L, TREE> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<L: SimdFloat> Copy for Kernel<'_, L> {}
+impl<L: SimdFloat, const TREE: bool> Copy for Kernel<'_, L, TREE> {}
 
 /// The nearest primitives.
 #[derive(Clone, Copy, Debug)]
@@ -39,14 +41,24 @@ pub struct Nearest<L> {
     pub number: L,
 }
 
-impl<'a, L: SimdFloat> Kernel<'a, L> {
+impl<'a, L: SimdFloat, const TREE: bool> Kernel<'a, L, TREE> {
+    /// What stands in the plan's tree, with the number of its first primitive.
+    #[inline(always)]
+    pub fn geometry(self) -> Option<(&'a Geometry<L::Real>, usize)> {
+        if TREE {
+            self.plan.numbered_geometry()
+        } else {
+            None
+        }
+    }
+
     /// What stands in the plan's tree, if it is among these.
     #[inline(always)]
     pub fn thicket<'b>(self, among: Among<'b, L::Real>, active: L::Mask) -> Option<Thicket<'b, L>>
     where
         'a: 'b,
     {
-        let (geometry, first) = self.plan.numbered_geometry()?;
+        let (geometry, first) = self.geometry()?;
         among.candidates.has_geometry.then_some(Thicket {
             geometry,
             first,
@@ -59,7 +71,7 @@ impl<'a, L: SimdFloat> Kernel<'a, L> {
     }
 }
 
-impl<L: SimdFloat> Kernel<'_, L> {
+impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// The number in every lane.
     #[inline(always)]
     pub fn splat(self, value: f64) -> L {

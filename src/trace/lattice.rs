@@ -1,7 +1,7 @@
 //! The samples of a tile that its pixels share, and when a cell between them is subdivided.
 
 use super::samples::{Samples, Traced};
-use super::thresholds::{EDGE_CONTRAST, FINEST, NEAR, STRONG_CONTRAST};
+use super::thresholds::{EDGE_ERROR, FINEST, NEAR};
 use super::tile::{Tile, TileColors};
 use crate::scene::MAX_HALVINGS;
 use crate::simd::{Real, SimdFloat};
@@ -53,8 +53,19 @@ impl<R: Real> Limits<R> {
     pub fn new(contrast: f64, depth: u32) -> Self {
         Self {
             contrast: R::from_f64(contrast),
-            edge_contrast: R::from_f64(contrast.min(EDGE_CONTRAST)),
+            edge_contrast: R::from_f64(contrast.min(EDGE_ERROR)),
             depth: depth.min(MAX_HALVINGS),
+        }
+    }
+
+    /// For cells of a side in pixels: the smaller they are, the more their corners may differ.
+    #[inline(always)]
+    fn at(self, side: R) -> Self {
+        let edge_contrast = self.edge_contrast / side;
+        Self {
+            contrast: self.contrast.max(edge_contrast),
+            edge_contrast,
+            ..self
         }
     }
 
@@ -177,11 +188,8 @@ impl<R: Real> Lattice<R> {
             let [a, b, c, d] = corners.map(|corner| channel[corner]);
             contrast = contrast + range(a, b, c, d);
         }
-        if depth < limits.depth {
-            limits.want_more(contrast, is_same, is_near)
-        } else {
-            depth < limits.finest_depth() && (is_near || contrast > R::from_f64(STRONG_CONTRAST))
-        }
+        let side = R::from_f64(f64::from(cell.side) / FINEST as f64);
+        depth < limits.finest_depth() && limits.at(side).want_more(contrast, is_same, is_near)
     }
 
     /// Adds the mean of a cell's corners to its pixel, by its area.

@@ -28,6 +28,8 @@ mod scan;
 
 mod intersect;
 
+mod columns;
+
 mod gather;
 
 mod surface;
@@ -61,4 +63,5 @@ mod query;
 pub use query::{survey, visible};
 pub use stats::{Rays, RenderControl};
 pub use threads::{PoolError, Threads};
-pub use tracer::{Grid, Pass, Pixel, Tracer};
+pub use tile::{Grid, Pass};
+pub use tracer::{Pixel, Tracer};

@@ -44,7 +44,7 @@ pub struct EdgeInfo<L> {
 impl<L: SimdFloat> Packet<L> {
     /// Rays that have met nothing yet.
     #[inline(always)]
-    pub fn new(kernel: Kernel<L>, rays: Ray<L>, active: L::Mask) -> Self {
+    pub fn new<const TREE: bool>(kernel: Kernel<L, TREE>, rays: Ray<L>, active: L::Mask) -> Self {
         Self {
             rays,
             active,

@@ -15,14 +15,15 @@ pub struct Paths<L> {
 
 /// The primitives that rays start on.
 #[derive(Clone, Copy, Debug)]
-pub enum IgnoredPrimitive<L> {
-    /// None.
-    Nothing,
-    /// All rays start on the primitive of this number.
-    Shared(usize),
-    /// Each ray starts on the primitive whose number is in its lane; [`NOTHING`] for none.
-    Each(L),
+pub struct IgnoredPrimitive<L> {
+    /// The number in each lane; [`NOTHING`] for none.
+    numbers: L,
+    /// The one number in a list that all of them may be, [`UNLISTED`] if none is; `None` where they differ.
+    listed: Option<usize>,
 }
+
+/// A number that no list has.
+const UNLISTED: usize = usize::MAX;
 
 /// The number of no primitive.
 pub const NOTHING: f64 = -1.0;
@@ -34,30 +35,46 @@ pub fn real<R: Real>(number: usize) -> R {
 }
 
 impl<L: SimdFloat> IgnoredPrimitive<L> {
+    /// None.
+    #[inline(always)]
+    pub fn nothing(token: L::Token) -> Self {
+        Self::in_tree(L::splat(token, L::Real::from_f64(NOTHING)))
+    }
+
+    /// All rays that count start on the primitive of this number, which is that in their lanes.
+    #[inline(always)]
+    pub fn listed(number: usize, numbers: L) -> Self {
+        Self {
+            numbers,
+            listed: Some(number),
+        }
+    }
+
+    /// Each ray starts on the primitive whose number is in its lane, and which stands in a tree.
+    #[inline(always)]
+    pub fn in_tree(numbers: L) -> Self {
+        Self::listed(UNLISTED, numbers)
+    }
+
     /// This where the mask is set, `other` elsewhere.
     #[inline(always)]
-    pub fn over(self, token: L::Token, mask: L::Mask, other: Self) -> Self {
-        match (self, other) {
-            (Self::Nothing, Self::Nothing) => self,
-            (Self::Shared(this), Self::Shared(other)) if this == other => self,
-            _ => Self::Each(L::select(mask, self.numbers(token), other.numbers(token))),
+    pub fn over(self, mask: L::Mask, other: Self) -> Self {
+        Self {
+            numbers: L::select(mask, self.numbers, other.numbers),
+            listed: self.listed.filter(|_| self.listed == other.listed),
         }
     }
 
     /// Where it is the primitive of this number.
     #[inline(always)]
-    pub fn is(self, token: L::Token, number: usize) -> L::Mask {
-        self.numbers(token).same(L::splat(token, real(number)))
+    pub fn is(self, number: usize) -> L::Mask {
+        self.numbers.same(self.numbers.like(real(number)))
     }
 
-    /// The number in each lane; [`NOTHING`] for none.
+    /// The number in a list that all of them are, if they are one.
     #[inline(always)]
-    pub fn numbers(self, token: L::Token) -> L {
-        match self {
-            Self::Nothing => L::splat(token, L::Real::from_f64(NOTHING)),
-            Self::Shared(number) => L::splat(token, real(number)),
-            Self::Each(numbers) => numbers,
-        }
+    pub fn shared(self) -> Option<usize> {
+        self.listed.filter(|&number| number != UNLISTED)
     }
 }
 
@@ -72,14 +89,10 @@ impl<L: SimdFloat> Paths<L> {
         methods: &Methods,
     ) -> L {
         let rays = &self.rays;
-        match self.ignored {
-            IgnoredPrimitive::Shared(start) if start == number => primitive.exit(rays),
-            IgnoredPrimitive::Nothing | IgnoredPrimitive::Shared(_) => {
-                primitive.intersect(rays, prepared, methods)
-            }
-            IgnoredPrimitive::Each(_) => {
-                self.distance_in_tree(primitive, prepared, number, methods)
-            }
+        match self.ignored.listed {
+            Some(start) if start == number => primitive.exit(rays),
+            Some(_) => primitive.intersect(rays, prepared, methods),
+            None => self.distance_in_tree(primitive, prepared, number, methods),
         }
     }
 
@@ -95,7 +108,7 @@ impl<L: SimdFloat> Paths<L> {
     ) -> L {
         let rays = &self.rays;
         let t = primitive.intersect(rays, prepared, methods);
-        let own = self.ignored.is(t.token(), number);
+        let own = self.ignored.is(number);
         if !P::IS_CURVED || own.any() {
             L::select(own, primitive.exit(rays), t)
         } else {

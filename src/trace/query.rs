@@ -49,9 +49,9 @@ impl SceneQuery {
                 origin: Vec3::from_dvec3(origin - self.plan.centre),
                 direction: Vec3::from_dvec3(direction),
             },
-            ignored: IgnoredPrimitive::Nothing,
+            ignored: IgnoredPrimitive::nothing(()),
         };
-        let kernel = Kernel::<f64> {
+        let kernel = Kernel::<f64, true> {
             token: (),
             plan: &self.plan,
         };

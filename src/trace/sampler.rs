@@ -6,7 +6,7 @@ use super::candidates::Candidates;
 use super::engine::Engine;
 use super::lattice::{Cell, Lattice, Limits, range};
 use super::samples::{Edges, Samples, Traced};
-use super::thresholds::{FINEST, NEAR};
+use super::thresholds::{FINEST, LOOKING, NEAR};
 use super::tile::{Tile, TileColors};
 use crate::simd::{Real, SimdFloat};
 
@@ -41,9 +41,9 @@ impl<L: SimdFloat> Sampler<L> {
 
     /// The colours at the centres of these pixels (column, row), in their order, and some more.
     #[inline(always)]
-    pub fn centres(
+    pub fn centres<const TREE: bool>(
         &mut self,
-        engine: &mut Engine<L>,
+        engine: &mut Engine<L, TREE>,
         seen: &Candidates,
         pixels: impl Iterator<Item = (usize, usize)>,
     ) -> &Traced<L::Real> {
@@ -60,9 +60,9 @@ impl<L: SimdFloat> Sampler<L> {
     /// The colours of all pixels of a tile at (`x`, `y`) in each, from its upper left corner, row by
     /// row, and some more.
     #[inline(always)]
-    pub fn all(
+    pub fn all<const TREE: bool>(
         &mut self,
-        engine: &mut Engine<L>,
+        engine: &mut Engine<L, TREE>,
         seen: &Candidates,
         tile: &Tile,
         (x, y): (f64, f64),
@@ -85,9 +85,9 @@ impl<L: SimdFloat> Sampler<L> {
 
     /// The means of `side × side` samples in each pixel, each in the middle of its part.
     #[inline(always)]
-    pub fn grid(
+    pub fn grid<const TREE: bool>(
         &mut self,
-        engine: &mut Engine<L>,
+        engine: &mut Engine<L, TREE>,
         seen: &Candidates,
         tile: &Tile,
         side: u32,
@@ -112,9 +112,9 @@ impl<L: SimdFloat> Sampler<L> {
     /// Whitted, "An improved illumination model for shaded display", CACM 23(6), 1980; here with
     /// the things that were hit and lit, beside the colours, to tell the corners apart.
     #[inline(always)]
-    pub fn adaptive(
+    pub fn adaptive<const TREE: bool>(
         &mut self,
-        engine: &mut Engine<L>,
+        engine: &mut Engine<L, TREE>,
         seen: &Candidates,
         tile: &Tile,
         limits: Limits<L::Real>,
@@ -123,7 +123,7 @@ impl<L: SimdFloat> Sampler<L> {
         let columns = tile.columns.start..tile.columns.end + 1;
         let rows = tile.rows.start..tile.rows.end + 1;
         self.lay_out(columns, rows, (0.0, 0.0));
-        engine.trace(&self.samples, seen, Edges::Noted, &mut self.traced);
+        engine.trace(&self.samples, seen, Edges::Near, &mut self.traced);
         self.judge(tile, limits, colors);
         if self.split.is_empty() {
             return;
@@ -135,7 +135,12 @@ impl<L: SimdFloat> Sampler<L> {
                 self.lattice.subdivide(cell, &mut self.cells);
             }
             self.lattice.wanted_samples::<L>(tile, &mut self.samples);
-            engine.trace(&self.samples, seen, Edges::Noted, &mut self.traced);
+            let edges = if depth <= LOOKING {
+                Edges::Near
+            } else {
+                Edges::Signed
+            };
+            engine.trace(&self.samples, seen, edges, &mut self.traced);
             self.lattice.take_results(&self.traced);
             self.split.clear();
             for &cell in &self.cells {

@@ -8,8 +8,10 @@ use crate::simd::{Real, Vec3};
 pub enum Edges {
     /// Colours alone.
     Ignored,
-    /// Also what is needed to smooth edges: signatures, and what may slip between samples.
-    Noted,
+    /// Also signatures, which tell edges.
+    Signed,
+    /// Also what may slip between samples.
+    Near,
 }
 
 /// Places in the picture to be traced, in pixels from its left and upper edge; filled up to whole
@@ -105,7 +107,7 @@ impl<R: Real> Traced<R> {
         for column in [&mut self.red, &mut self.green, &mut self.blue] {
             column.resize(length, R::ZERO);
         }
-        let noted = if edges == Edges::Noted { length } else { 0 };
+        let noted = if edges == Edges::Ignored { 0 } else { length };
         self.near.resize(noted, R::ZERO);
         self.signature.resize(noted, 0);
     }

@@ -2,7 +2,7 @@
 
 use super::bundle::{Beside, Bundle};
 use super::candidates::Candidates;
-use super::paths::{IgnoredPrimitive, Paths};
+use super::paths::Paths;
 use super::roots::Roots;
 use super::walk::{Seek, Stack, walk, walk_beside};
 use crate::plan::{Geometry, MeshInstance, PackedMesh, Plan, PointLight};
@@ -104,12 +104,6 @@ impl<L: SimdFloat> Thicket<'_, L> {
     #[inline(always)]
     pub fn scan<T: Test<L>>(&self, paths: &Paths<L>, stack: &mut Stack<L::Real>, test: &mut T) {
         let bvh = &self.geometry.bvh;
-        // In one form, for all that is tested.
-        let token = paths.rays.origin.x.token();
-        let paths = &Paths {
-            ignored: IgnoredPrimitive::Each(paths.ignored.numbers(token)),
-            ..*paths
-        };
         let mut bundle = Bundle::new(&paths.rays, self.active, bvh.bounds.max_abs());
         if !self.is_boxed {
             bundle.meet_all();

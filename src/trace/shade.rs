@@ -22,11 +22,13 @@ use crate::simd::{Mask as _, SimdFloat, Vec3};
 const LIGHT_BITS: usize = 20;
 
 /// How packets are shaded.
-pub struct Shader<'a, L: SimdFloat> {
+pub struct Shader<'a, L: SimdFloat, const TREE: bool> {
     /// Vector token and plan.
-    pub kernel: Kernel<'a, L>,
+    pub kernel: Kernel<'a, L, TREE>,
     /// Whether mirrors send rays on.
     pub may_mirror: bool,
+    /// Whether what may slip between samples is looked for.
+    pub looks_beside: bool,
     /// What rays can meet, or just miss, that may slip between samples.
     pub thin: &'a Candidates,
     /// What can stand before each light.
@@ -64,7 +66,7 @@ struct LightSource<'a, R> {
     candidates: &'a LightCandidates<R>,
 }
 
-impl<'a, L: SimdFloat> Shader<'a, L> {
+impl<'a, L: SimdFloat, const TREE: bool> Shader<'a, L, TREE> {
     /// Colours what the packet has met, and notes its edges if they are wanted. Gives the rays that
     /// mirrors send on.
     #[inline(always)]
@@ -77,7 +79,7 @@ impl<'a, L: SimdFloat> Shader<'a, L> {
     ) -> Option<Mirrored<L>> {
         let kernel = self.kernel;
         let mut mirrored: Option<Mirrored<L>> = None;
-        if let Some(edge) = &mut edge {
+        if let Some(edge) = edge.as_mut().filter(|_| self.looks_beside) {
             let paths = Paths {
                 rays: packet.rays,
                 ignored,
@@ -86,6 +88,7 @@ impl<'a, L: SimdFloat> Shader<'a, L> {
                 paths: &paths,
                 active: packet.active,
                 cone: edge.cone,
+                spread: edge.cone.spread,
                 reach: packet.near.t,
             };
             edge.near = kernel.thin_distance(self.thin, &gaze, stack);
@@ -111,7 +114,7 @@ impl<'a, L: SimdFloat> Shader<'a, L> {
                     color = color + self.light(edge.as_deref_mut(), &point, &light, (stack, rays));
                 }
                 if let Some(filter) = surface.mirror.filter(|_| self.may_mirror) {
-                    mirrored = Some(join(kernel, mirrored, self.mirror(&point, filter)));
+                    mirrored = Some(join(mirrored, self.mirror(&point, filter)));
                 }
             }
             packet.color = Vec3::select(here, color, packet.color);
@@ -208,11 +211,12 @@ impl<'a, L: SimdFloat> Shader<'a, L> {
                 RayOrigin::AtHit | RayOrigin::Roundings => distance,
                 RayOrigin::Along(start) => distance - distance.like(start),
             };
-            if let Some((edge, footprint)) = &mut edge {
+            if let Some((edge, footprint)) = edge.as_mut().filter(|_| self.looks_beside) {
                 let gaze = Gaze {
                     paths: &paths,
                     active: facing,
                     cone: footprint.shadow(),
+                    spread: footprint.spread(),
                     reach,
                 };
                 let near = kernel.thin_distance(&candidates.thin, &gaze, stack);
@@ -259,11 +263,7 @@ impl<'a, L: SimdFloat> Shader<'a, L> {
 
 /// Merges the rays of several mirrors into one packet.
 #[inline(always)]
-fn join<L: SimdFloat>(
-    kernel: Kernel<L>,
-    before: Option<Mirrored<L>>,
-    new: Mirrored<L>,
-) -> Mirrored<L> {
+fn join<L: SimdFloat>(before: Option<Mirrored<L>>, new: Mirrored<L>) -> Mirrored<L> {
     let Some(before) = before else { return new };
     let is_new = new.active;
     let (ours, theirs) = (new.paths, before.paths);
@@ -271,7 +271,7 @@ fn join<L: SimdFloat>(
         origin: Vec3::select(is_new, ours.rays.origin, theirs.rays.origin),
         direction: Vec3::select(is_new, ours.rays.direction, theirs.rays.direction),
     };
-    let ignored = ours.ignored.over(kernel.token, is_new, theirs.ignored);
+    let ignored = ours.ignored.over(is_new, theirs.ignored);
     Mirrored {
         active: before.active | is_new,
         filter: Vec3::select(is_new, new.filter, before.filter),

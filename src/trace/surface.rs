@@ -22,7 +22,7 @@ pub struct Hit<L: SimdFloat> {
 
 struct Refine<'a, L: SimdFloat> {
     rays: &'a Ray<L>,
-    t: L,
+    nearest: &'a Nearest<L>,
     here: L::Mask,
     number: usize,
 }
@@ -34,25 +34,25 @@ impl<L: SimdFloat> WithPrimitive<L::Real> for Refine<'_, L> {
     fn run<P: Primitive<L::Real>>(self, primitive: &P) -> Hit<L> {
         Hit {
             here: self.here,
-            surface: primitive.refine(self.rays, self.t),
+            surface: primitive.refine(self.rays, self.nearest.t),
             material: primitive.material(),
-            own: IgnoredPrimitive::Shared(self.number),
+            own: IgnoredPrimitive::listed(self.number, self.nearest.number),
         }
     }
 }
 
-impl<L: SimdFloat> Kernel<'_, L> {
+impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// The hits on what the first of the rays in `left` (bit by bit) has met, which has met something.
     #[inline(always)]
     pub fn refine(self, rays: &Ray<L>, nearest: &Nearest<L>, left: u64) -> Hit<L> {
         let number = nearest.number.lane(left.trailing_zeros() as usize);
         let refine = Refine {
             rays,
-            t: nearest.t,
+            nearest,
             here: nearest.number.same(nearest.number.like(number)),
             number: number.to_f64() as usize,
         };
-        match self.plan.numbered_geometry() {
+        match self.geometry() {
             Some((geometry, first)) if refine.number >= first => {
                 let index = refine.number - first;
                 match Piece::of(geometry, index) {
@@ -88,12 +88,12 @@ impl<L: SimdFloat> Kernel<'_, L> {
         nearest: &Nearest<L>,
         left: u64,
     ) -> Hit<L> {
-        let mut gathered = Gathered::new();
+        let mut gathered = Gathered::like(piece);
         let mut left = left;
         while left != 0 {
             let lane = left.trailing_zeros() as usize;
             left &= left - 1;
-            if let Some((geometry, first)) = self.plan.numbered_geometry()
+            if let Some((geometry, first)) = self.geometry()
                 && let number = nearest.number.lane(lane).to_f64() as usize
                 && number >= first
                 && let Some(other) = Piece::of(geometry, number - first)
@@ -106,7 +106,7 @@ impl<L: SimdFloat> Kernel<'_, L> {
             here: gathered.mask::<L>(self.token),
             surface: gathered.refine(piece, rays, nearest.t),
             material: piece.material,
-            own: IgnoredPrimitive::Each(nearest.number),
+            own: IgnoredPrimitive::in_tree(nearest.number),
         }
     }
 
@@ -123,11 +123,11 @@ impl<L: SimdFloat> Kernel<'_, L> {
             RayOrigin::AtHit => (point + normal * slack, hit.own),
             RayOrigin::Along(distance) => (
                 point + direction * slack.like(distance),
-                IgnoredPrimitive::Nothing,
+                IgnoredPrimitive::nothing(self.token),
             ),
             RayOrigin::Roundings => (
                 point + roundings_along(point, normal),
-                IgnoredPrimitive::Nothing,
+                IgnoredPrimitive::nothing(self.token),
             ),
         };
         let rays = Ray { origin, direction };

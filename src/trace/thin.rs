@@ -6,14 +6,19 @@ use super::bundle::Beside;
 use super::candidates::{Among, Candidates};
 use super::footprint::{RayCone, pixels};
 use super::intersect::Kernel;
-use super::paths::{IgnoredPrimitive, Paths};
+use super::paths::Paths;
 use super::roots::Roots;
 use super::scan::{Test, Thicket, scan_lists};
-use super::thresholds::{CROWDED, NEAR, SLIPPING, SMALL};
+use super::thresholds::{CROWDED, LARGEST_SPREAD, NEAR, SLIPPING, SMALL};
 use super::walk::Stack;
-use crate::plan::PackedMesh;
+use crate::plan::{PackedMesh, Plan};
 use crate::primitive::{Approach, Primitive};
 use crate::simd::{Mask as _, Real, SimdFloat};
+
+/// How fast a pixel may widen along rays that look for what is thin, scene units per scene unit.
+pub fn widest_spread<R: Real>(plan: &Plan<R>) -> R {
+    plan.view.spread() * R::from_f64(LARGEST_SPREAD)
+}
 
 /// Rays that look beside themselves.
 #[derive(Clone, Copy, Debug)]
@@ -24,11 +29,14 @@ pub struct Gaze<'a, L: SimdFloat> {
     pub active: L::Mask,
     /// How wide a pixel is along them.
     pub cone: RayCone<L>,
+    /// How much it widens along rays that are mirrored there; those are not let look for which that is
+    /// more than [`LARGEST_SPREAD`].
+    pub spread: L,
     /// How far they go.
     pub reach: L,
 }
 
-impl<L: SimdFloat> Kernel<'_, L> {
+impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// How many pixels away from the rays the nearest of the primitives is that are narrower there
     /// than [`SLIPPING`] pixels; infinity for none.
     #[inline(always)]
@@ -38,6 +46,11 @@ impl<L: SimdFloat> Kernel<'_, L> {
         gaze: &Gaze<L>,
         stack: &mut Stack<L::Real>,
     ) -> L {
+        let widest = gaze.spread.like(widest_spread(self.plan));
+        let looking = gaze.active & gaze.spread.at_most(widest);
+        if !looking.any() {
+            return self.infinity();
+        }
         let counted = gaze.active | !gaze.active;
         let mut test = ThinTest {
             gaze,
@@ -53,10 +66,11 @@ impl<L: SimdFloat> Kernel<'_, L> {
             roots: &roots,
             light: None,
         };
-        match self.thicket(among, gaze.active) {
+        let best = match self.thicket(among, looking) {
             Some(thicket) => self.thin_in(&thicket, gaze, best, stack),
             None => best,
-        }
+        };
+        L::select(looking, best, self.infinity())
     }
 
     /// The nearest of `best` and what stands in the tree.
@@ -72,7 +86,7 @@ impl<L: SimdFloat> Kernel<'_, L> {
             self.token,
             #[inline(always)]
             || {
-                let (active, cone) = (gaze.active, gaze.cone);
+                let (active, cone) = (thicket.active, gaze.cone);
                 let zero = self.splat(0.0);
                 let beside = Beside {
                     width: L::select(active, cone.width, zero).greatest(),
@@ -170,8 +184,8 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         let is_before = from.less(*reach + primitive.margin(width));
         let mut thin = size.less(width * slipping) & zero.less(to) & is_before;
         // A curved surface surrounds the rays that start on it.
-        if P::IS_CURVED && !matches!(paths.ignored, IgnoredPrimitive::Nothing) {
-            thin = thin & !paths.ignored.is(to.token(), number);
+        if P::IS_CURVED {
+            thin = thin & !paths.ignored.is(number);
         }
         self.best = self.best.min(pixels(thin & self.counted, distance, width));
     }

@@ -18,11 +18,18 @@ pub const HIGHLIGHT_REACH: f64 = 3.0;
 /// Steps of the finest grid in a pixel: where something thinner than two pixels is, or a strong edge,
 /// the pixel is divided once more than elsewhere.
 pub const FINEST: usize = 1 << (MAX_HALVINGS + 1);
-/// Difference of the corners of a cell, summed over the channels, above which it is divided the last
-/// time: an edge along the finest cells may move by half of one, and must not show that.
-pub const STRONG_CONTRAST: f64 = 0.6;
-/// The same where the corners see different things: four levels of 255, which nobody sees.
+/// Difference of the corners of a cell, summed over the channels, times its side in pixels, above which it
+/// is divided where they see different things: an edge in it is off by half of its side at most, and the
+/// pixel by half of this, three levels of 255.
+pub const EDGE_ERROR: f64 = 0.025;
+/// So much light on a surface is an edge where it ends in shadow: four levels of 255, which nobody sees.
 pub const EDGE_CONTRAST: f64 = 4.0 / 255.0;
+/// How often a pixel is halved to look for what slips between samples; what is thinner than its quarters
+/// is met by some sample nearby, or shows too little.
+pub const LOOKING: u32 = 1;
+/// How many times as fast as the camera's own a pixel may widen along mirrored rays that still look for
+/// what slips between samples: in the image of a strongly curved mirror everything does, and samples meet it.
+pub const LARGEST_SPREAD: f64 = 24.0;
 /// A thing can be in a cell without being nearer than this to a corner, in sides of the cell: half
 /// its diagonal, and a little for the rounding.
 pub const NEAR: f64 = 0.75;

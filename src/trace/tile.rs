@@ -1,4 +1,4 @@
-//! A tile of the picture, and its colours.
+//! Tiles of the picture: which of their pixels are traced, and their colours.
 
 use std::ops::Range;
 
@@ -17,6 +17,54 @@ impl Tile {
     /// Pixels in a row.
     pub fn width(&self) -> usize {
         self.columns.len()
+    }
+}
+
+/// One pass over a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pass {
+    /// Every pixel, sampled as the picture asks.
+    Whole,
+    /// The centres of some pixels.
+    Centres(Grid),
+}
+
+/// The pixels of one pass over a picture: those whose x and y are multiples of `step`, without
+/// those of the coarser pass before. Passes with steps 8, 4, 2, 1 trace every pixel exactly once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Grid {
+    /// Distance of neighbours in pixels, ≥ 1.
+    pub step: usize,
+    /// Step of the pass before, a multiple of `step`.
+    pub coarser: Option<usize>,
+}
+
+impl Grid {
+    /// Every pixel.
+    pub const ALL: Self = Self {
+        step: 1,
+        coarser: None,
+    };
+
+    fn row_pixels(self, row: usize, from: usize, to: usize) -> impl Iterator<Item = usize> {
+        let Self { step, coarser } = self;
+        let first = from.next_multiple_of(step);
+        let coarser_row = coarser.filter(|&coarser| row.is_multiple_of(coarser));
+        let wanted = move |&x: &usize| coarser_row.is_none_or(|coarser| !x.is_multiple_of(coarser));
+        (first..to).step_by(step).filter(wanted)
+    }
+
+    /// The pixels of a tile that the pass takes, row by row.
+    pub fn pixels(self, tile: &Tile) -> impl Iterator<Item = (usize, usize)> {
+        let columns = tile.columns.clone();
+        let rows = tile
+            .rows
+            .clone()
+            .filter(move |row| row.is_multiple_of(self.step));
+        rows.flat_map(move |row| {
+            self.row_pixels(row, columns.start, columns.end)
+                .map(move |column| (column, row))
+        })
     }
 }
 
@@ -41,6 +89,33 @@ impl<R: Real> TileColors<R> {
         for channel in &mut self.channels {
             channel.clear();
             channel.resize(length, R::ZERO);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn nested_passes_take_every_pixel_once(width in 1..70_usize, height in 1..40_usize, side in 1..40_usize, levels in 0..5_u32) {
+            let mut taken = vec![0_u32; width * height];
+            let mut coarser = None;
+            for level in (0..=levels).rev() {
+                let grid = Grid { step: 1 << level, coarser };
+                for top in (0..height).step_by(side) {
+                    for left in (0..width).step_by(side) {
+                        let (columns, rows) = (left..(left + side).min(width), top..(top + side).min(height));
+                        for (x, y) in grid.pixels(&(Tile { columns, rows })) {
+                            taken[y * width + x] += 1;
+                        }
+                    }
+                }
+                coarser = Some(grid.step);
+            }
+            prop_assert!(taken.iter().all(|&count| count == 1));
         }
     }
 }

@@ -13,7 +13,7 @@ use super::lattice::Limits;
 use super::sampler::Sampler;
 use super::samples::Traced;
 use super::stats::{Rays, RenderControl};
-use super::tile::{Tile, TileColors};
+use super::tile::{Grid, Pass, Tile, TileColors};
 use crate::plan::{Plan, Planner, RenderRequest, is_uncountable, needs_double};
 use crate::scene::{Precision, Sampling, Scene};
 use crate::simd::{Level, Real, SimdFloat, SimdReal, WithSimd};
@@ -30,54 +30,6 @@ const PIXELS_PER_PRIMITIVE: u64 = 16_384;
 pub trait Pixel: Send {
     /// The pixel of a linear colour, 0–1.
     fn of<R: Real>(red: R, green: R, blue: R) -> Self;
-}
-
-/// One pass over a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pass {
-    /// Every pixel, sampled as the picture asks.
-    Whole,
-    /// The centres of some pixels.
-    Centres(Grid),
-}
-
-/// The pixels of one pass over a picture: those whose x and y are multiples of `step`, without
-/// those of the coarser pass before. Passes with steps 8, 4, 2, 1 trace every pixel exactly once.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Grid {
-    /// Distance of neighbours in pixels, ≥ 1.
-    pub step: usize,
-    /// Step of the pass before, a multiple of `step`.
-    pub coarser: Option<usize>,
-}
-
-impl Grid {
-    /// Every pixel.
-    const ALL: Self = Self {
-        step: 1,
-        coarser: None,
-    };
-
-    fn row_pixels(self, row: usize, from: usize, to: usize) -> impl Iterator<Item = usize> {
-        let Self { step, coarser } = self;
-        let first = from.next_multiple_of(step);
-        let coarser_row = coarser.filter(|&coarser| row.is_multiple_of(coarser));
-        let wanted = move |&x: &usize| coarser_row.is_none_or(|coarser| !x.is_multiple_of(coarser));
-        (first..to).step_by(step).filter(wanted)
-    }
-
-    /// The pixels of a tile that the pass takes, row by row.
-    fn pixels(self, tile: &Tile) -> impl Iterator<Item = (usize, usize)> {
-        let columns = tile.columns.clone();
-        let rows = tile
-            .rows
-            .clone()
-            .filter(move |row| row.is_multiple_of(self.step));
-        rows.flat_map(move |row| {
-            self.row_pixels(row, columns.start, columns.end)
-                .map(move |column| (column, row))
-        })
-    }
 }
 
 /// A picture of a scene, planned for the real type it needs.
@@ -250,9 +202,20 @@ impl<R: SimdReal, P: Pixel> WithSimd<R> for Band<'_, R, P> {
     type Output = Option<Rays>;
 
     #[inline(always)]
-    fn run<L: SimdFloat<Real = R>>(mut self, token: L::Token) -> Option<Rays> {
+    fn run<L: SimdFloat<Real = R>>(self, token: L::Token) -> Option<Rays> {
+        if self.plan.geometry.is_some() {
+            self.trace::<L, true>(token)
+        } else {
+            self.trace::<L, false>(token)
+        }
+    }
+}
+
+impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
+    #[inline(always)]
+    fn trace<L: SimdFloat<Real = R>, const TREE: bool>(mut self, token: L::Token) -> Option<Rays> {
         let plan = self.plan;
-        let mut engine = Engine::<L>::new(Kernel { token, plan });
+        let mut engine = Engine::<L, TREE>::new(Kernel { token, plan });
         let mut sampler = Sampler::new();
         let mut colors = TileColors::default();
         let (mut in_band, mut in_tile) = (Candidates::default(), Candidates::default());
@@ -292,9 +255,7 @@ impl<R: SimdReal, P: Pixel> WithSimd<R> for Band<'_, R, P> {
         }
         Some(engine.rays)
     }
-}
 
-impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
     /// Writes the colours of a whole tile, `stride` apart from row to row.
     #[inline(always)]
     fn fill(&mut self, tile: &Tile, stride: usize, [red, green, blue]: [&[R]; 3]) {
@@ -335,7 +296,6 @@ mod tests {
 
     use super::*;
     use crate::trace::Threads;
-    use proptest::prelude::*;
 
     impl Pixel for [u64; 3] {
         fn of<R: Real>(red: R, green: R, blue: R) -> Self {
@@ -426,25 +386,5 @@ mod tests {
             traced <= most,
             "{traced} pixels after the stop, {most} at most"
         );
-    }
-
-    proptest! {
-        #[test]
-        fn nested_passes_take_every_pixel_once(width in 1..70_usize, height in 1..40_usize, levels in 0..5_u32) {
-            let mut taken = vec![0_u32; width * height];
-            let mut coarser = None;
-            for level in (0..=levels).rev() {
-                let grid = Grid { step: 1 << level, coarser };
-                for y in (0..height).filter(|y| y % grid.step == 0) {
-                    for left in (0..width).step_by(SMALL_TILE) {
-                        for x in grid.row_pixels(y, left, (left + SMALL_TILE).min(width)) {
-                            taken[y * width + x] += 1;
-                        }
-                    }
-                }
-                coarser = Some(grid.step);
-            }
-            prop_assert!(taken.iter().all(|&count| count == 1));
-        }
     }
 }

@@ -83,7 +83,10 @@ pub fn walk<L: SimdFloat>(
                 inner => &bvh.nodes[inner as usize],
             };
             let place = next.place as usize;
-            if next.near <= farthest && bundle.each_meets(around, place, reach).any() {
+            if next.near <= farthest && {
+                let none = L::Real::ZERO;
+                bundle.each_meets(around, place, reach, none).any()
+            } {
                 break next.inner;
             }
         };
@@ -102,13 +105,19 @@ pub fn walk_beside<L: SimdFloat>(
 ) {
     let bottom = stack.len();
     let reach = seek.reach();
-    let (token, reach, shaft) = (reach.token(), reach.greatest(), bundle.shaft());
+    let (token, farthest, shaft) = (reach.token(), reach.greatest(), bundle.shaft());
     let mut index = 0;
     while let Some(node) = bvh.nodes.get(index as usize) {
-        let mut bits = shaft.grazes::<L>(token, node, reach, beside);
+        let mut widths = [L::Real::ZERO; GROUP];
+        let mut bits = shaft.grazes::<L>(token, node, farthest, beside, &mut widths);
         while bits != 0 {
             let place = bits.trailing_zeros();
             bits &= bits - 1;
+            let width = widths[place as usize];
+            let end = beside.end(reach, reach.like(width));
+            if !bundle.each_meets(node, place as usize, end, width).any() {
+                continue;
+            }
             match node.child(place as usize) {
                 Child::Member(member) => seek.meet(member, stack),
                 Child::Node(inner) => stack.push(Waiting {

@@ -6,12 +6,13 @@ use egui::{CentralPanel, Context, Frame, Margin, Panel, Theme, Ui, ViewportComma
 use super::autosave::Autosave;
 use super::commands::{Command, is_about_files, pressed};
 use super::exports::Exports;
-use super::files::{FileOutcome, Files, Next, import_mesh};
+use super::files::{FileOutcome, Files, Next};
 use super::flying::Flying;
 use super::lab::Lab;
 use super::menu::Layout;
 use super::outliner::Outliner;
 use super::pictures::Pictures;
+use super::reading::Reading;
 use super::requests::UiRequests;
 use super::screenshot::Screenshot;
 use super::setup::Setup;
@@ -103,7 +104,7 @@ impl App {
         };
         app.exports.is_open = setup.exports;
         if let Some(path) = setup.scene {
-            app.files.open(&mut app.editor, &path);
+            app.files.open_now(&mut app.editor, &path);
         }
         app.autosave = Autosave::start(setup.data_folder.as_deref(), &mut app.editor);
         Ok(app)
@@ -116,7 +117,9 @@ impl App {
 
     /// Whether the picture on screen is the finished one of the newest scene.
     pub fn is_settled(&self) -> bool {
-        self.pictures.is_settled(&self.editor) && self.editor.wanted_survey().is_none()
+        self.pictures.is_settled(&self.editor)
+            && self.editor.wanted_survey().is_none()
+            && self.files.reading().is_none()
     }
 
     /// Whether frames are being exported, or a video of them made.
@@ -143,7 +146,10 @@ impl App {
             let live = frame.map_or(String::new(), |frame| describe(frame, self.editor.shown()));
             let text = self.lab.describe().unwrap_or(live);
             let kept = self.autosave.kept_since();
-            status::show(ui, &text, &self.pictures.activity(), kept, out);
+            let reading = self.files.reading().map(Reading::describe);
+            let note = reading.or_else(|| self.exports.describe(&self.pictures));
+            let note = note.or_else(|| kept.map(status::autosaved));
+            status::show(ui, &text, &self.pictures.activity(), note, out);
         });
         if self.lab.is_open {
             let panel = Panel::bottom("lab").frame(side).resizable(true);
@@ -226,7 +232,11 @@ impl App {
     pub(super) fn act_on(&mut self, ctx: &Context, outcome: Option<FileOutcome>) {
         match outcome {
             None => {}
-            Some(FileOutcome::Quit) => {
+            Some(FileOutcome::Quit) if self.exports.describe(&self.pictures).is_some() => {
+                let going = self.exports.describe(&self.pictures);
+                self.files.ask_to_leave(going.unwrap_or_default());
+            }
+            Some(FileOutcome::Quit | FileOutcome::Leave) => {
                 self.closing = Some(self.editor.revision());
                 if self.pictures.is_saving() {
                     self.editor
@@ -300,7 +310,7 @@ impl eframe::App for App {
         self.act_on(ctx, outcome);
         for file in ctx.input(|input| input.raw.dropped_files.clone()) {
             if is_mesh_file(file.path()) {
-                import_mesh(&mut self.editor, file.path());
+                self.files.import_mesh(ctx, &mut self.editor, file.path());
                 continue;
             }
             let next = Next::Open(file.path().to_owned());

@@ -1,7 +1,6 @@
 //! Opening and saving, from the wish to the file. A wish may have to wait for an answer; what
 //! follows it ([`Next`]) waits with it and is forgotten with it.
 
-use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::{Duration, Instant};
@@ -9,16 +8,19 @@ use std::time::{Duration, Instant};
 use egui::{Context, Ui};
 
 use super::dialogs::{Ask, Dialogs};
-use super::prompts::{Answer, PathPrompt, ask_about_changes, ask_to_quit};
-use crate::animate::{from_table, from_text, to_table, to_text};
+use super::interchange::{export_job, export_path, import_path};
+use super::outside::{Theirs, Watch};
+use super::prompts::{Answer, PathPrompt, ask_about_changes, ask_to_leave, ask_to_quit};
+use super::reading::{Read, Reading};
 use crate::editor::{Action, Edit, Editor};
-use crate::export::{Pattern, Sequence, job_template, write_text};
-use crate::image::Format;
-use crate::mesh::read_parts;
-use crate::scene::{Animation, read_text};
+use crate::files::Stamp;
+use crate::mesh::Part;
+use crate::scene::{Document, SceneError};
 
 /// A dialog that comes back empty sooner than a hand can cancel it was never shown.
 const NO_DIALOG: Duration = Duration::from_millis(400);
+/// How long a file that is read may hold the window up, so that small ones are there at once.
+const AT_ONCE: Duration = Duration::from_millis(30);
 /// Files that "Open recent" remembers.
 const RECENT: usize = 10;
 
@@ -40,8 +42,10 @@ pub enum Next {
 /// What became of the wishes, for the window to act on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileOutcome {
-    /// The window may close.
+    /// The window may close, as far as files go.
     Quit,
+    /// The window may close, whatever is going on.
+    Leave,
     /// The still picture is to be traced and written here.
     SaveImage(PathBuf),
     /// Frames are to be written here.
@@ -53,6 +57,8 @@ pub struct Files {
     dialogs: Box<dyn Dialogs>,
     waiting: Option<Waiting>,
     question: Option<Question>,
+    reading: Option<Reading>,
+    watch: Watch,
     /// Files that were opened or saved, newest first.
     pub recent: Vec<PathBuf>,
 }
@@ -78,6 +84,10 @@ enum Question {
     Saving(Next),
     Quit,
     Path(PathRequest, PathPrompt),
+    /// Exports are going on, in words.
+    Exports(String),
+    /// Another program has written the file; the wish is to save, if it is one.
+    Outside(Box<Theirs>, Option<PathRequest>),
 }
 
 impl Files {
@@ -87,6 +97,8 @@ impl Files {
             dialogs,
             waiting: None,
             question: None,
+            reading: None,
+            watch: Watch::default(),
             recent,
         }
     }
@@ -113,6 +125,11 @@ impl Files {
         } else {
             Question::Quit
         });
+    }
+
+    /// Closes the window, after asking whether what is going on is to be given up.
+    pub fn ask_to_leave(&mut self, going: String) {
+        self.question = Some(Question::Exports(going));
     }
 
     /// Writes the document to its file, or asks for one.
@@ -157,8 +174,19 @@ impl Files {
         }
     }
 
-    /// Takes answers up as they come.
+    /// The file that is being read.
+    pub fn reading(&self) -> Option<&Reading> {
+        self.reading.as_ref()
+    }
+
+    /// Takes answers and files up as they come.
     pub fn poll(&mut self, ctx: &Context, editor: &mut Editor) -> Option<FileOutcome> {
+        if self.reading.is_some() {
+            ctx.request_repaint_after(AT_ONCE);
+            self.take_read(ctx, editor, Duration::ZERO);
+        } else if !self.is_asking() && self.watch.is_due(ctx, editor) {
+            self.look_outside(editor);
+        }
         let Waiting {
             wish,
             answer,
@@ -203,7 +231,9 @@ impl Files {
             Question::Saving(_) if editor.is_making_keys() => Answer::Open,
             Question::Saving(_) => Answer::Yes,
             Question::Quit => ask_to_quit(&ctx),
+            Question::Exports(going) => ask_to_leave(&ctx, going),
             Question::Path(_, prompt) => prompt.show(&ctx),
+            Question::Outside(theirs, _) => theirs.ask(&ctx, &editor.title()),
         };
         if answer == Answer::Open {
             return None;
@@ -219,8 +249,12 @@ impl Files {
             }
             (Question::Unsaved(next), Answer::No) => self.go_on(&ctx, editor, next),
             (Question::Quit, Answer::Yes) => Some(FileOutcome::Quit),
+            (Question::Exports(_), Answer::No) => Some(FileOutcome::Leave),
             (Question::Path(wish, prompt), Answer::Yes) => {
                 self.answered(&ctx, editor, wish, prompt.path())
+            }
+            (Question::Outside(theirs, wish), answer) => {
+                self.settle_outside(&ctx, editor, (*theirs, answer), wish)
             }
             _ => None,
         }
@@ -234,13 +268,17 @@ impl Files {
         path: PathBuf,
     ) -> Option<FileOutcome> {
         match wish.ask {
-            Ask::OpenScene => self.open(editor, &path),
-            Ask::ImportMesh => import_mesh(editor, &path),
+            Ask::OpenScene => self.open(ctx, editor, &path),
+            Ask::ImportMesh => self.import_mesh(ctx, editor, &path),
             Ask::SaveImage => return Some(FileOutcome::SaveImage(path)),
             Ask::ExportFolder => return Some(FileOutcome::ExportFolder(path)),
             Ask::ImportPath => import_path(editor, &path),
             Ask::ExportPath => export_path(editor, &path),
             Ask::ExportJob => export_job(editor, &path),
+            Ask::SaveScene if editor.path() == Some(&*path) && editor.is_changed_outside() => {
+                let theirs = Theirs::new(editor, Document::load_stamped(&path));
+                self.question = Some(Question::Outside(Box::new(theirs), Some(wish)));
+            }
             Ask::SaveScene => match editor.save(&path) {
                 Ok(()) => {
                     self.remember(editor);
@@ -252,21 +290,111 @@ impl Files {
         None
     }
 
+    /// Reads a file anew that another program has written; asks where the document was changed too.
+    fn look_outside(&mut self, editor: &mut Editor) {
+        let Some(path) = editor.path().filter(|_| editor.is_changed_outside()) else {
+            return;
+        };
+        // What cannot be read may be half written: the next look tells, or the next save.
+        let Ok(theirs) = Document::load_stamped(path) else {
+            return;
+        };
+        if editor.is_dirty() {
+            let theirs = Theirs::new(editor, Ok(theirs));
+            self.question = Some(Question::Outside(Box::new(theirs), None));
+        } else {
+            editor.take_theirs(theirs);
+        }
+    }
+
+    fn settle_outside(
+        &mut self,
+        ctx: &Context,
+        editor: &mut Editor,
+        (theirs, answer): (Theirs, Answer),
+        wish: Option<PathRequest>,
+    ) -> Option<FileOutcome> {
+        let then = wish.as_ref().and_then(|wish| wish.then.clone());
+        match (theirs.document, answer) {
+            (theirs, Answer::Yes) => {
+                editor.keep_mine(theirs.ok());
+                self.watch.leave(editor);
+                return wish.and_then(|_| self.save_then(ctx, editor, then));
+            }
+            (Ok(theirs), Answer::No) => {
+                editor.take_theirs(theirs);
+                return then.and_then(|next| self.go_on(ctx, editor, next));
+            }
+            (_, Answer::Other) => {
+                let ask = Ask::SaveScene;
+                self.wish(ctx, editor, PathRequest { ask, then });
+            }
+            _ => self.watch.leave(editor),
+        }
+        None
+    }
+
     fn go_on(&mut self, ctx: &Context, editor: &mut Editor, next: Next) -> Option<FileOutcome> {
         match next {
             Next::New => editor.start_new(),
             Next::Demo => editor.start_demo(),
             Next::Choose => self.ask(ctx, editor, Ask::OpenScene),
-            Next::Open(path) => self.open(editor, &path),
+            Next::Open(path) => self.open(ctx, editor, &path),
             Next::Quit => return Some(FileOutcome::Quit),
         }
         None
     }
 
-    /// Opens a file; if it is refused, the document stays and the user is told why.
-    pub fn open(&mut self, editor: &mut Editor, path: &Path) {
-        match editor.open(path) {
-            Ok(()) => self.remember(editor),
+    /// Opens a file; if it is refused, the document stays and the user is told why. A large one is read
+    /// while the window goes on.
+    pub fn open(&mut self, ctx: &Context, editor: &mut Editor, path: &Path) {
+        self.reading = Some(Reading::scene(editor, path));
+        self.take_read(ctx, editor, AT_ONCE);
+    }
+
+    /// The same before there is a window.
+    pub fn open_now(&mut self, editor: &mut Editor, path: &Path) {
+        self.opened(editor, path, Document::load_stamped(path));
+    }
+
+    /// The parts of a mesh file become objects.
+    pub fn import_mesh(&mut self, ctx: &Context, editor: &mut Editor, path: &Path) {
+        self.reading = Some(Reading::parts(editor, path));
+        self.take_read(ctx, editor, AT_ONCE);
+    }
+
+    fn take_read(&mut self, ctx: &Context, editor: &mut Editor, wait: Duration) {
+        let Some(read) = self.reading.as_ref().and_then(|reading| reading.wait(wait)) else {
+            return;
+        };
+        let Some(reading) = self.reading.take() else {
+            return;
+        };
+        match read {
+            Read::Scene(_) if reading.is_outrun(editor) => {
+                self.start(ctx, editor, Next::Open(reading.path));
+            }
+            Read::Scene(document) => self.opened(editor, &reading.path, *document),
+            Read::Parts(Ok(parts)) => imported(editor, &reading.path, parts),
+            Read::Parts(Err(error)) => editor.report_error(error.to_string()),
+            Read::Nothing => {
+                let path = reading.path.display();
+                editor.report_error(format!("{path} could not be read: the reader stopped"));
+            }
+        }
+    }
+
+    fn opened(
+        &mut self,
+        editor: &mut Editor,
+        path: &Path,
+        document: Result<(Document, Stamp), SceneError>,
+    ) {
+        match document {
+            Ok(document) => {
+                editor.open(document, path);
+                self.remember(editor);
+            }
             Err(error) => {
                 self.recent
                     .retain(|recent| recent != path || recent.exists());
@@ -303,83 +431,8 @@ fn suggestion(editor: &Editor, ask: &Ask) -> PathBuf {
     }
 }
 
-/// The parts of a mesh file become objects.
-pub fn import_mesh(editor: &mut Editor, path: &Path) {
-    match read_parts(path) {
-        Ok(parts) => {
-            let count: usize = parts.iter().map(|part| part.triangles.faces().len()).sum();
-            editor.apply(Action::Edit(Edit::Import(parts)));
-            editor.notify(format!("{count} triangles from {}", path.display()));
-        }
-        Err(error) => editor.report_error(error.to_string()),
-    }
-}
-
-/// The keys of a file take the place of the camera's.
-fn import_path(editor: &mut Editor, path: &Path) {
-    let text = match read_text(path) {
-        Ok(text) => text,
-        Err(error) => return editor.report_error(error.to_string()),
-    };
-    let keys = if is_table(path) {
-        from_table(&text, &editor.shown().camera)
-    } else {
-        from_text(&text)
-    };
-    match keys {
-        Ok(keys) => {
-            let count = keys.len();
-            let animation = Animation {
-                keys,
-                take: None,
-                ..Animation::clone(&editor.scene().animation)
-            };
-            editor.apply(Action::Edit(Edit::animation(animation, "Import path")));
-            editor.notify(format!("{count} keys from {}", path.display()));
-        }
-        Err(error) => editor.report_error(format!("{}: {error}", path.display())),
-    }
-}
-
-fn export_path(editor: &mut Editor, path: &Path) {
-    let is_text = path
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("ron"));
-    if !is_table(path) && !is_text {
-        return editor.report_error(format!("{}: end it in .csv or .ron", path.display()));
-    }
-    let keys = &editor.scene().animation.keys;
-    let text = if is_table(path) {
-        Ok(to_table(keys.iter().map(|key| (key.time, &key.value))))
-    } else {
-        to_text(keys).map_err(Box::<dyn Error>::from)
-    };
-    match text.and_then(|text| Ok(write_text(path, &text)?)) {
-        Ok(()) => editor.notify(format!("Saved {}", path.display())),
-        Err(error) => editor.report_error(error.to_string()),
-    }
-}
-
-/// The template, and the scene as it is now beside it.
-fn export_job(editor: &mut Editor, path: &Path) {
-    let scene = path.with_extension("ron");
-    match write_job(editor, path, &scene) {
-        Ok(()) => editor.notify(format!("Saved {} and {}", path.display(), scene.display())),
-        Err(error) => editor.report_error(error.to_string()),
-    }
-}
-
-fn write_job(editor: &Editor, path: &Path, scene: &Path) -> Result<(), Box<dyn Error>> {
-    let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    let file = scene.file_name().unwrap_or_default().to_string_lossy();
-    let (pattern, folder) = (Pattern::default(), PathBuf::from("frames"));
-    let sequence = Sequence::new(editor.scene().clone(), None, pattern, Format::Ppm, folder)?;
-    write_text(path, &job_template(&sequence, &name, &file))?;
-    editor.document().save(scene)?;
-    Ok(())
-}
-
-fn is_table(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
+fn imported(editor: &mut Editor, path: &Path, parts: Vec<Part>) {
+    let count: usize = parts.iter().map(|part| part.triangles.faces().len()).sum();
+    editor.apply(Action::Edit(Edit::Import(parts)));
+    editor.notify(format!("{count} triangles from {}", path.display()));
 }

@@ -27,6 +27,12 @@ mod add;
 
 mod prompts;
 
+mod outside;
+
+mod interchange;
+
+mod reading;
+
 mod files;
 
 mod raster;
@@ -64,6 +70,6 @@ mod window;
 pub use app::App;
 pub use commands::{Command, FLIGHT, SHORTCUTS};
 pub use dialogs::{Ask, Dialogs};
-pub use lab::{chart_picture, stability_picture};
+pub use lab::{chart_picture, growth_picture, stability_picture};
 pub use setup::Setup;
 pub use window::{NoWindow, run};

@@ -17,6 +17,8 @@ pub enum Answer {
     Yes,
     /// The other way to go on.
     No,
+    /// A third one.
+    Other,
     /// Not at all.
     Cancel,
 }
@@ -54,6 +56,27 @@ pub fn ask_to_quit(ctx: &Context) -> Answer {
             }
             if ui.button("Stay").clicked() {
                 *answer = Answer::Cancel;
+            }
+        });
+    })
+}
+
+/// Asks whether exports that are going on are to be given up: Yes to stay, No to leave.
+pub fn ask_to_leave(ctx: &Context, going: &str) -> Answer {
+    question(ctx, "exports", 380.0, |ui, answer| {
+        ui.heading("Quit while exporting?");
+        ui.add_space(GRID);
+        ui.label(format!(
+            "Going on: {going}. What is done stays, and exporting again goes on from there."
+        ));
+        ui.add_space(2.0 * GRID);
+        ui.horizontal(|ui| {
+            let entered = ui.input(|input| input.key_pressed(Key::Enter));
+            if primary(ui, "Stay").clicked() || entered {
+                *answer = Answer::Yes;
+            }
+            if ui.button("Quit now").clicked() {
+                *answer = Answer::No;
             }
         });
     })
@@ -131,7 +154,8 @@ impl PathPrompt {
     }
 }
 
-fn question(
+/// A question over the window, which Escape answers with [`Answer::Cancel`].
+pub fn question(
     ctx: &Context,
     name: &str,
     width: f32,
@@ -150,7 +174,7 @@ fn question(
 }
 
 /// The button that Enter would press.
-fn primary(ui: &mut Ui, text: &str) -> egui::Response {
+pub fn primary(ui: &mut Ui, text: &str) -> egui::Response {
     let colors = palette(ui.ctx());
     ui.add(Button::new(RichText::new(text).color(colors.on_accent)).fill(colors.accent))
 }

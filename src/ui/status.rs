@@ -22,7 +22,7 @@ pub fn show(
     ui: &mut Ui,
     picture: &str,
     activity: &Activity,
-    autosaved: Option<Instant>,
+    note: Option<String>,
     out: &mut UiRequests,
 ) {
     ui.horizontal_centered(|ui| {
@@ -36,8 +36,8 @@ pub fn show(
                 progress(ui, *done, *total, *elapsed, out);
             }
             Activity::Idle => {
-                if let Some(at) = autosaved {
-                    ui.weak(format!("autosaved {}", ago(at.elapsed())));
+                if let Some(note) = note {
+                    ui.weak(note);
                 }
             }
             Activity::Live { .. } | Activity::Still { .. } => {
@@ -82,6 +82,11 @@ pub fn in_words(seconds: f64) -> String {
     } else {
         format!("{:.0} min", (seconds / 60.0).ceil())
     }
+}
+
+/// When the work was last kept.
+pub fn autosaved(at: Instant) -> String {
+    format!("autosaved {}", ago(at.elapsed()))
 }
 
 fn ago(time: Duration) -> String {

@@ -240,7 +240,7 @@ fn plan_says_what_a_scene_needs() {
     let run = glint(folder().path(), &["plan", DEMO, "--json"]);
     let json: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
     let needs = json.as_array().expect("an array");
-    assert_eq!(needs.len(), 10);
+    assert_eq!(needs.len(), 11);
     assert!(needs.iter().all(|need| {
         ["rule", "what", "why", "saves"]
             .iter()

@@ -518,6 +518,36 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
 }
 
 #[test]
+fn quitting_asks_while_frames_are_exported() {
+    let text = fs::read_to_string(FLIGHT).expect("readable");
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let folder = harness.folder.path().join("frames");
+    harness.press(CTRL.plus(Modifiers::SHIFT), Key::E);
+    harness.type_name("folder", folder.to_str().expect("plain"));
+    harness.type_into("export width", "512");
+    harness.type_into("export height", "512");
+    see(&mut harness, "202 frames to make");
+    harness.window.get_by_label("Start export").click();
+    harness.window.step();
+    see(&mut harness, "/202");
+    harness.window.key_press_modifiers(CTRL, Key::Q);
+    see(&mut harness, "Quit while exporting?");
+    harness
+        .window
+        .get_by_label_contains("exporting again goes on from there");
+    harness.window.get_by_label("Stay").click();
+    harness.window.step();
+    harness.window.step();
+    assert!(
+        harness
+            .window
+            .query_by_label("Quit while exporting?")
+            .is_none()
+    );
+    assert!(harness.window.state().is_exporting());
+}
+
+#[test]
 fn the_window_writes_a_farm_job_and_its_scene() {
     let answer = |folder: &Path| vec![(Ask::ExportJob, Some(folder.join("job.yaml")))];
     let mut harness = EditorHarness::with(answer, None);

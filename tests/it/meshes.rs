@@ -3,11 +3,12 @@
 use std::f64::consts::TAU;
 
 use glam::DVec3;
+use glint::animate::pose;
 use glint::image::{Image, render};
 use glint::mesh::{Triangles, icosphere};
 use glint::plan::{Model, RenderRequest};
 use glint::scene::{
-    Accelerator, Mesh, Object, Precision, Sampling, Scene, Shape, Sphere, Triangle,
+    Accelerator, Document, Mesh, Object, Precision, Sampling, Scene, Shape, Sphere, Triangle,
 };
 use glint::trace::{Rays, RenderControl};
 
@@ -156,7 +157,7 @@ fn a_tree_changes_no_bit_and_no_ray() {
                         continue;
                     }
                     // A list also counts as near what is thin beside the way behind a ray.
-                    assert_eq!(differing(&tree.0, &flat.0), 0, "{case}");
+                    assert_eq!(differing(&tree.0, &flat.0, 1), 0, "{case}");
                     let (ours, theirs) = (tree.1.camera as f64, flat.1.camera as f64);
                     assert!(
                         (ours / theirs - 1.0).abs() < 1e-3,
@@ -168,10 +169,11 @@ fn a_tree_changes_no_bit_and_no_ray() {
     }
 }
 
-fn differing(a: &Image, b: &Image) -> usize {
+/// How many pixels differ by more than so many levels of 255.
+fn differing(a: &Image, b: &Image, levels: u8) -> usize {
     let pairs = a.pixels.iter().zip(&b.pixels);
     pairs
-        .filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 1))
+        .filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > levels))
         .count()
 }
 
@@ -180,7 +182,7 @@ fn a_mesh_is_its_triangles() {
     let wanted = RenderRequest::sized(320, 240);
     let (whole, rays) = picture(&exhibition(), &wanted);
     let (pieces, other_rays) = picture(&apart(&exhibition()), &wanted);
-    let differ = differing(&whole, &pieces);
+    let differ = differing(&whole, &pieces, 1);
     assert!(differ <= 8, "{differ} of 76,800 pixels");
     let share = rays.shadow as f64 / other_rays.shadow as f64;
     assert!((share - 1.0).abs() < 1e-3, "{rays:?} {other_rays:?}");
@@ -204,6 +206,7 @@ fn where_a_mesh_is_costs_no_precision() {
     let differ = differing(
         &picture(&exhibition(), &wanted).0,
         &picture(&moved, &wanted).0,
+        1,
     );
     assert!(differ <= 8, "{differ} of 76,800 pixels");
 }
@@ -335,4 +338,83 @@ fn what_is_thin_in_a_mesh_is_found_and_what_is_thick_is_left_alone() {
     ));
     assert!(thin > 100_000, "{thin}");
     assert!(ball < 300_000, "{ball}");
+}
+
+/// A ball that is lit from one side over a floor, as it is made of `shape`.
+fn lit_ball(shape: impl Into<Shape>, is_mirror: bool) -> Scene {
+    let mut scene = Scene::demo();
+    scene
+        .objects
+        .retain(|object| matches!(object.shape, Shape::Plane(_)));
+    scene.light_visualization = false;
+    scene.packs_mut()["sphere 1"].reflective = is_mirror;
+    scene.objects.push(object("Ball", "sphere 1", shape));
+    scene.camera.position = DVec3::new(0.0, 45.0, 120.0);
+    scene.camera.look_at = DVec3::new(0.0, -0.1, -1.0);
+    scene.lights[0].position = DVec3::new(120.0, 60.0, 10.0);
+    scene.lights[1].visible = false;
+    scene
+}
+
+#[test]
+fn a_smooth_ball_of_triangles_is_shaded_like_a_ball() {
+    let center = DVec3::new(0.0, 30.0, -10.0);
+    for is_mirror in [false, true] {
+        let seen = |shape: Shape| {
+            let wanted = RenderRequest {
+                sampling: Sampling::Centres,
+                ..RenderRequest::sized(200, 200)
+            };
+            picture(&lit_ball(shape, is_mirror), &wanted).0
+        };
+        let mesh = |smooth: f64| {
+            seen(
+                Mesh {
+                    position: center,
+                    smooth,
+                    ..Mesh::of(icosphere(25.0))
+                }
+                .into(),
+            )
+        };
+        let ball = seen(
+            Sphere {
+                center,
+                radius: 25.0,
+            }
+            .into(),
+        );
+        let (smooth, flat) = (
+            differing(&mesh(60.0), &ball, 4),
+            differing(&mesh(0.0), &ball, 4),
+        );
+        assert!(smooth < 600 && flat > 2 * smooth, "{smooth} {flat}");
+    }
+}
+
+#[test]
+fn a_mesh_turns_along_its_track() {
+    let track = |name: &str| {
+        let text = format!(
+            "Scene(version: 1, objects: [
+                Object(name: \"Ball\", color_pack: \"a\", shape: Sphere(center: (0, 0, 0), radius: 1)),
+                Object(name: \"Card\", color_pack: \"a\", shape: Mesh(points: [(0, 0, 0), (1, 0, 0), (0, 1, 0)], faces: [(0, 1, 2)], smooth: 30)),
+            ], color_packs: {{\"a\": ColorPack()}}, animation: Animation(tracks: [
+                Track(target: ObjectRotation({name:?}), keys: [Key(time: 0, value: (0, 0, 0), interpolation: Linear), Key(time: 4, value: (0, 360, 0))]),
+            ]))"
+        );
+        Document::from_text(&text)
+    };
+    let scene = std::sync::Arc::new(track("Card").expect("a scene").scene);
+    let Shape::Mesh(turned) = &pose(&scene, 1.0).objects[1].shape else {
+        panic!("a mesh");
+    };
+    assert_eq!((turned.rotation, turned.smooth), (DVec3::Y * 90.0, 30.0));
+    let refused = track("Ball").expect_err("a ball has no rotation");
+    assert!(
+        refused
+            .to_string()
+            .contains("there is no mesh named \"Ball\""),
+        "{refused}"
+    );
 }

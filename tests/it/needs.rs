@@ -4,7 +4,7 @@
 use glam::DVec3;
 use glint::image::{Image, render};
 use glint::plan::{Kept, Model, Plan, RenderRequest, needs};
-use glint::scene::{Object, Sampling, Scene, Shape, Sphere};
+use glint::scene::{Object, Sampling, Scene, Shape, Sphere, Triangle};
 use glint::trace::{Rays, RenderControl};
 
 use crate::random;
@@ -154,17 +154,27 @@ fn without_mirrors_nothing_is_reflected_and_one_brings_it_back() {
 
 #[test]
 fn the_tree_begins_where_a_list_is_too_long() {
-    let crowd = |count: usize| {
+    let crowd = |balls: usize, triangles: usize| {
         let mut scene = Scene::empty();
         let pack = scene.color_packs.keys().next().expect("a pack").clone();
-        for n in 0..count {
-            scene.objects.push(Object {
-                name: format!("Ball {n}"),
-                color_pack: pack.clone(),
-                shape: Shape::Sphere(Sphere {
-                    center: DVec3::new(n as f64, 0.0, -50.0),
+        for n in 0..balls + triangles {
+            let center = DVec3::new(n as f64, 0.0, -50.0);
+            let shape = if n < balls {
+                Shape::Sphere(Sphere {
+                    center,
                     radius: 0.4,
-                }),
+                })
+            } else {
+                Shape::Triangle(Triangle {
+                    a: center,
+                    b: center + DVec3::X,
+                    c: center + DVec3::Y,
+                })
+            };
+            scene.objects.push(Object {
+                name: format!("Object {n}"),
+                color_pack: pack.clone(),
+                shape,
                 visible: true,
             });
         }
@@ -173,8 +183,8 @@ fn the_tree_begins_where_a_list_is_too_long() {
         let plan = Plan::<f32>::new(&scene, &request, &mut Kept::default());
         plan.geometry.is_some()
     };
-    assert!(!crowd(128));
-    assert!(crowd(129));
+    assert!(!crowd(384, 0) && !crowd(256, 128));
+    assert!(crowd(385, 0) && crowd(0, 129));
 }
 
 #[test]

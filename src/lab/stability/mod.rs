@@ -17,6 +17,8 @@ mod highlight;
 
 mod secondary;
 
+mod terminator;
+
 mod camera;
 
 mod keys;
@@ -35,6 +37,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     let mut maps = sphere::maps(effort);
     maps.extend(triangle::maps(effort));
     maps.extend(secondary::maps());
+    maps.extend(terminator::maps(effort));
     maps.extend(highlight::maps(effort));
     maps.push(plane::map(effort));
     maps.push(disc::map(effort));

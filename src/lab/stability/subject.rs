@@ -20,6 +20,8 @@ pub enum Subject {
     MeshAcne,
     /// Points in the shadow of meshes.
     MeshLeak,
+    /// Where light ends on meshes that are shaded as if they were curved.
+    Terminator,
     /// Phong highlights.
     Highlight,
     /// Rays that graze planes.
@@ -46,6 +48,7 @@ impl Subject {
             Self::ShadowLeak => "shadow leak",
             Self::MeshAcne => "mesh acne",
             Self::MeshLeak => "mesh leak",
+            Self::Terminator => "smooth terminator",
             Self::Highlight => "highlight",
             Self::Plane => "plane",
             Self::Disc => "disc",
@@ -77,7 +80,7 @@ impl Subject {
                 let packs = scene.color_packs.values().map(|pack| pack.phong_exponent);
                 packs.max_by(f64::total_cmp).map(|sharpest| (sharpest, 1.0))
             }
-            Self::Plane | Self::CameraTurns => None,
+            Self::Terminator | Self::Plane | Self::CameraTurns => None,
             Self::CameraPole => {
                 let pitch = Orientation::of(&scene.camera).pitch.to_degrees();
                 Some((90.0 - pitch.abs(), 1.0))

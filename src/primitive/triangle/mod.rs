@@ -1,11 +1,14 @@
 //! Ray against triangle. Both sides are hit.
 
+mod curved;
+
 mod packed;
 
 mod watertight;
 
 mod weak;
 
+pub use curved::{CornerNormals, Curved};
 pub use packed::{PackedTriangle, corner, count_corner_users, number_corners};
 use watertight::{Shear, watertight};
 

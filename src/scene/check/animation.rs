@@ -69,6 +69,7 @@ fn check_track(at: &At, scene: &Scene, track: &Track) -> Check {
         let owner = track.target.owner().unwrap_or_default();
         let kind = match track.target {
             Target::ObjectPosition(_) => "object",
+            Target::ObjectRotation(_) => "mesh",
             _ => "light",
         };
         return at
@@ -82,6 +83,12 @@ fn check_track(at: &At, scene: &Scene, track: &Track) -> Check {
     check_keys(&at, &track.keys)?;
     for (index, key) in track.keys.iter().enumerate() {
         let here = at.index(index);
+        let is_orbit = matches!(key.interpolation, Interpolation::Orbit { .. });
+        if is_orbit && matches!(track.target, Target::ObjectRotation(_)) {
+            return here
+                .field("interpolation")
+                .refuse("a rotation goes around no point: give it Smooth or Linear".to_owned());
+        }
         let at = here.field("value");
         match (key.value, sample) {
             (Value::Number(number), Value::Number(_)) => at.within(number, 0.0, 1.0)?,
@@ -90,7 +97,11 @@ fn check_track(at: &At, scene: &Scene, track: &Track) -> Check {
                 return at.refuse("an intensity is one number, 0–1".to_owned());
             }
             (_, Value::Point(_)) => {
-                return at.refuse("a position is three numbers such as (1, 2, 3)".to_owned());
+                let what = match track.target {
+                    Target::ObjectRotation(_) => "a rotation",
+                    _ => "a position",
+                };
+                return at.refuse(format!("{what} is three numbers such as (1, 2, 3)"));
             }
         }
     }

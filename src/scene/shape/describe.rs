@@ -68,6 +68,8 @@ pub enum FieldValue<'a> {
     Length(&'a mut f64),
     /// Degrees about x, y and z.
     Angles(&'a mut DVec3),
+    /// Degrees, 0–180.
+    Angle(&'a mut f64),
     /// Factors along x, y and z; none is 0.
     Factors(&'a mut DVec3),
 }

@@ -22,6 +22,8 @@ pub struct Mesh {
     pub rotation: DVec3,
     /// Factors along x, y and z, before the rotation; none is 0.
     pub scale: DVec3,
+    /// Degrees between faces below which they are shaded as one curved surface, at most 180; 0 for none.
+    pub smooth: f64,
 }
 
 /// Where the triangles of a mesh come from.
@@ -66,6 +68,12 @@ struct MeshText {
     rotation: DVec3,
     #[serde(default = "unscaled", skip_serializing_if = "is_unscaled")]
     scale: Scale,
+    #[serde(
+        default,
+        with = "notation::number",
+        skip_serializing_if = "notation::is_default"
+    )]
+    smooth: f64,
 }
 
 /// A point of a mesh as the file has it.
@@ -119,6 +127,7 @@ impl Serialize for Mesh {
             position: self.position,
             rotation: self.rotation,
             scale: Scale(self.scale),
+            smooth: self.smooth,
         };
         text.serialize(file)
     }
@@ -150,6 +159,7 @@ impl<'de> Deserialize<'de> for Mesh {
             position: text.position,
             rotation: text.rotation,
             scale: text.scale.0,
+            smooth: text.smooth,
         })
     }
 }
@@ -225,6 +235,7 @@ impl Mesh {
             position: DVec3::ZERO,
             rotation: DVec3::ZERO,
             scale: DVec3::ONE,
+            smooth: 0.0,
         }
     }
 
@@ -242,6 +253,7 @@ impl Mesh {
         match Triangles::new(points.collect(), triangles.faces().to_vec()) {
             Ok(moved) => Self {
                 position: self.position + middle,
+                smooth: self.smooth,
                 ..Self::of(moved)
             },
             Err(_) => self,
@@ -323,6 +335,11 @@ impl Describe for Mesh {
             name: "scale",
             hint: "Factors along x, y and z, before the rotation; none is 0",
             value: FieldValue::Factors(&mut self.scale),
+        });
+        visit(Field {
+            name: "smooth",
+            hint: "Degrees between faces below which they are shaded as one curved surface; 0 shows them flat",
+            value: FieldValue::Angle(&mut self.smooth),
         });
     }
 

@@ -96,6 +96,25 @@ impl Exports {
         });
     }
 
+    /// What is going on, in words; `None` if nothing is.
+    pub fn describe(&self, pictures: &Pictures) -> Option<String> {
+        let states = pictures.exports();
+        let mut going = states.iter().filter(|state| state.ended.is_none());
+        let Some(state) = going.next() else {
+            return (!self.videos.is_empty()).then(|| "making a video".to_owned());
+        };
+        let done = state.done.kept + state.done.written;
+        let left = match seconds_left(state) {
+            Some(seconds) => format!(" · {} left", in_words(seconds)),
+            None => String::new(),
+        };
+        let more = match going.count() {
+            0 => String::new(),
+            more => format!(" · {more} more"),
+        };
+        Some(format!("export {done}/{}{left}{more}", state.done.total))
+    }
+
     /// Whether there is something that the window should be drawn again for.
     pub fn is_busy(&self, pictures: &Pictures) -> bool {
         pictures.is_exporting() || !self.videos.is_empty() || self.looking.is_some()
@@ -254,25 +273,31 @@ impl Exports {
     }
 }
 
+/// How long an export will still take; `None` before its first frame, and while it waits.
+fn seconds_left(state: &ExportState) -> Option<f64> {
+    let done = state.done.kept + state.done.written;
+    let per_frame = state.busy.as_secs_f64() / state.done.written.max(1) as f64;
+    let is_known = state.done.written > 0 && !state.is_paused;
+    is_known.then_some((state.done.total - done) as f64 * per_frame)
+}
+
 /// How far an export is; what it waits for does not count as its time.
 fn show_state(ui: &mut Ui, state: &ExportState, pictures: &Pictures) {
     let done = state.done.kept + state.done.written;
     let share = done as f64 / state.done.total.max(1) as f64;
     let busy = state.busy.as_secs_f64();
     let rate = state.done.written as f64 / busy.max(1e-3);
-    let left = (state.done.total - done) as f64 / rate.max(1e-3);
     let text = match &state.ended {
         Some(Ok(())) => format!("{done} frames, {busy:.1} s"),
         Some(Err(_)) => format!("{done} of {}, failed", state.done.total),
         None if state.is_paused => format!("{done} of {}, paused", state.done.total),
-        None if state.done.written == 0 => format!("{done} of {}", state.done.total),
-        None => {
-            let left = in_words(left);
-            format!(
+        None => match seconds_left(state).map(in_words) {
+            None => format!("{done} of {}", state.done.total),
+            Some(left) => format!(
                 "{done} of {} · {rate:.0} frames/s · {left} left",
                 state.done.total
-            )
-        }
+            ),
+        },
     };
     let folder = state
         .folder

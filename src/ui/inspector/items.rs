@@ -83,6 +83,14 @@ fn angle(name: &'static str, hint: &'static str) -> Field {
     }
 }
 
+/// Degrees up to half a turn.
+fn half_turn(name: &'static str, hint: &'static str) -> Field {
+    Field {
+        range: 0.0..=180.0,
+        ..angle(name, hint)
+    }
+}
+
 /// What something is multiplied by.
 fn factor(name: &'static str, hint: &'static str) -> Field {
     Field {
@@ -207,6 +215,7 @@ fn shape_rows(rows: &mut Rows, shape: &mut Shape) {
         }
         FieldValue::Length(length) => rows.number(&self::length(name, hint, 50.0), length),
         FieldValue::Angles(angles) => rows.vector(&angle(name, hint), DVec3::ZERO, angles),
+        FieldValue::Angle(angle) => rows.number(&half_turn(name, hint), angle),
         FieldValue::Factors(factors) => rows.vector(&factor(name, hint), DVec3::ONE, factors),
     });
 }

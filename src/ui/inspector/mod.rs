@@ -22,7 +22,7 @@ use super::icons;
 use super::requests::UiRequests;
 use super::theme::GRID;
 use crate::editor::{Editor, Item, Kind, Selection};
-use crate::scene::Target;
+use crate::scene::{Shape, Target};
 
 /// Shows the selection and pushes its changes.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
@@ -57,8 +57,12 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
             }) => {
                 if let Some(value) = scene.objects.get(index) {
                     items::object(ui, scene, index, value, out);
-                    let owner = Target::ObjectPosition(value.name.clone());
-                    keys::of_values(ui, editor, &[("position", owner)], out);
+                    let owner = value.name.clone();
+                    let mut tracks = vec![("position", Target::ObjectPosition(owner.clone()))];
+                    if matches!(value.shape, Shape::Mesh(_)) {
+                        tracks.push(("rotation", Target::ObjectRotation(owner)));
+                    }
+                    keys::of_values(ui, editor, &tracks, out);
                 }
             }
             Selection::Item(Item {

@@ -8,9 +8,13 @@ use egui_plot::{
     PlotPoints, Points, Text,
 };
 
-use super::super::theme::palette;
+use super::super::raster::draw;
+use super::super::theme::{GRID, palette};
+use crate::image::Image;
 use crate::lab::front;
 
+/// Size of a picture of a chart, in points.
+const PICTURE: (u32, u32) = (800, 480);
 /// How near to a dot the pointer must be, in points.
 const REACH: f32 = 14.0;
 /// Names are written beside this many dots at most: the front's.
@@ -154,8 +158,16 @@ impl Chart {
     }
 }
 
+/// A picture of a chart that is drawn into all of it.
+pub fn picture(mut show: impl FnMut(&mut Ui)) -> Image {
+    draw(PICTURE.0, PICTURE.1, 2.0, |ui| {
+        let frame = egui::Frame::new().inner_margin(2.0 * GRID);
+        frame.show(ui, &mut show);
+    })
+}
+
 /// Marks at 1, 2, … 9 times every power of ten that is in sight.
-fn decades(input: &GridInput) -> Vec<GridMark> {
+pub fn decades(input: &GridInput) -> Vec<GridMark> {
     let (low, high) = (input.bounds.0.floor() as i32, input.bounds.1.ceil() as i32);
     // Zoomed far out, more marks than pixels would be of no use.
     if high - low > 40 {
@@ -171,7 +183,8 @@ fn decades(input: &GridInput) -> Vec<GridMark> {
     (low..=high).flat_map(decade).filter(in_sight).collect()
 }
 
-fn power_of_ten(mark: GridMark, _: &RangeInclusive<f64>) -> String {
+/// What stands at a mark: the powers of ten alone.
+pub fn power_of_ten(mark: GridMark, _: &RangeInclusive<f64>) -> String {
     if mark.step_size < 1.0 {
         return String::new();
     }

@@ -5,6 +5,8 @@ mod chart;
 
 mod comparison;
 
+mod growth;
+
 mod heat;
 
 mod stability;
@@ -13,13 +15,13 @@ use std::sync::Arc;
 
 use egui::{Button, DragValue, Key, Response, RichText, Ui};
 
+pub use self::growth::growth_picture;
 pub use self::stability::stability_picture;
 
-use self::chart::{Chart, ChartDot};
+use self::chart::{Chart, ChartDot, picture};
 use self::comparison::{Comparison, FACES, Face};
 use self::stability::Stability;
 use super::commands::Command;
-use super::raster::draw;
 use super::requests::UiRequests;
 use super::theme::{GRID, palette};
 use super::viewport::Place;
@@ -31,8 +33,6 @@ use crate::scene::{Render, Scene};
 
 /// Longer side of the pictures that are measured, in pixels: a study then takes seconds.
 const SIDE: u32 = 256;
-/// Size of a picture of the chart, in points.
-const PICTURE: (u32, u32) = (800, 480);
 /// Width of the column that tells of a dot.
 const DETAILS: f32 = 300.0;
 
@@ -365,10 +365,8 @@ impl Lab {
 /// A picture of the chart of time and RMSE, as the window would draw it.
 pub fn chart_picture(study: &Study) -> Image {
     let chart = chart(Some(study), (CostAxis::Time, ErrorAxis::Rmse), None);
-    draw(PICTURE.0, PICTURE.1, 2.0, |ui| {
-        egui::Frame::new().inner_margin(2.0 * GRID).show(ui, |ui| {
-            chart.show(ui);
-        });
+    picture(|ui| {
+        chart.show(ui);
     })
 }
 

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use glint::scene::{Document, Scene};
+use glint::scene::{Document, Scene, Shape};
 use glint::ui::Ask;
 
 use crate::harness::{CTRL, EditorHarness, radius};
@@ -209,4 +209,94 @@ fn a_mesh_is_imported_turned_and_taken_apart() {
     harness.click("Triangle 1");
     harness.click("Join connected");
     assert_eq!(harness.scene().objects.len(), before - 5);
+}
+
+/// The text of the demo with another radius of its first ball.
+fn demo_text(radius: f64) -> String {
+    let mut scene = Scene::demo();
+    let Shape::Sphere(ball) = &mut scene.objects[0].shape else {
+        panic!("a ball");
+    };
+    ball.radius = radius;
+    let document = Document {
+        header: String::new(),
+        scene,
+    };
+    document.to_text().expect("a text")
+}
+
+/// The window on a file, which another program then writes.
+fn changed_outside(edit: impl FnOnce(&mut EditorHarness)) -> (EditorHarness, PathBuf) {
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&demo_text(20.0)));
+    let path = harness.folder.path().join("given.ron");
+    edit(&mut harness);
+    std::fs::write(&path, demo_text(31.5)).expect("written");
+    (harness, path)
+}
+
+/// Steps until something is there, which takes the window a second to see.
+fn wait_for(harness: &mut EditorHarness, is_there: impl Fn(&EditorHarness) -> bool) {
+    let start = Instant::now();
+    while !is_there(harness) {
+        assert!(start.elapsed() < Duration::from_mins(1), "it never came");
+        std::thread::sleep(Duration::from_millis(20));
+        harness.settle();
+    }
+}
+
+#[test]
+fn what_another_program_writes_is_read_anew_and_can_be_undone() {
+    let (mut harness, _) = changed_outside(|_| {});
+    wait_for(&mut harness, |harness| radius(harness.scene(), 0) == 31.5);
+    assert!(!harness.editor().is_dirty());
+    harness
+        .window
+        .get_by_label_contains("changed by another program");
+    harness.press(CTRL, Key::Z);
+    assert_eq!(radius(harness.scene(), 0), 20.0);
+    assert!(harness.editor().is_dirty());
+}
+
+#[test]
+fn both_changed_one_is_asked_which_is_to_stay() {
+    let edit = |harness: &mut EditorHarness| {
+        harness.click("Sphere 2");
+        harness.type_into("radius", "7");
+    };
+    let is_asked = |harness: &EditorHarness| harness.window.query_by_label("Keep mine").is_some();
+    for answer in ["Keep mine", "Take theirs"] {
+        let (mut harness, path) = changed_outside(edit);
+        wait_for(&mut harness, is_asked);
+        harness
+            .window
+            .get_by_label_contains("2 objects changed: Sphere 1, Sphere 2");
+        harness.click(answer);
+        harness.press(CTRL, Key::S);
+        assert!(!is_asked(&harness));
+        let saved = Document::load(&path).expect("valid").scene;
+        let expected = if answer == "Keep mine" { 20.0 } else { 31.5 };
+        assert_eq!(radius(&saved, 0), expected, "{answer}");
+        assert_eq!(&saved, harness.scene());
+    }
+}
+
+#[test]
+fn a_save_replaces_nothing_that_was_not_seen() {
+    let (mut harness, path) = changed_outside(|harness| {
+        harness.click("Sphere 2");
+        harness.type_into("radius", "7");
+        // The window has looked at the file, and does so again only in a second.
+        harness.settle();
+    });
+    harness.press(CTRL, Key::S);
+    let on_disk = Document::load(&path).expect("valid").scene;
+    assert_eq!(radius(&on_disk, 0), 31.5);
+    harness.window.get_by_label("Keep mine");
+    harness.press(Modifiers::NONE, Key::Escape);
+    assert!(harness.editor().is_dirty());
+    harness.press(CTRL, Key::S);
+    harness.click("Keep mine");
+    let on_disk = Document::load(&path).expect("valid").scene;
+    assert_eq!(radius(&on_disk, 0), 20.0);
+    assert!(!harness.editor().is_dirty());
 }

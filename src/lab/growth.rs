@@ -1,0 +1,300 @@
+//! How the time of a picture grows with what is in the scene: a mesh of more and more faces, and more and
+//! more balls, over a floor and lit from two sides.
+
+use std::f64::consts::{PI, TAU};
+use std::time::Instant;
+
+use glam::DVec3;
+use serde::Serialize;
+
+use super::measure::trace_light;
+use super::table::written;
+use crate::mesh::Triangles;
+use crate::plan::{Planner, RenderRequest};
+use crate::scene::{
+    Camera, ColorPack, Light, List, Mesh, Object, Plane, Sampling, Scene, Shape, Sphere,
+};
+use crate::trace::{RenderControl, Tracer};
+
+/// How many primitives there are, at most a million.
+const COUNTS: [u32; 5] = [100, 1_000, 10_000, 100_000, 1_000_000];
+/// Pictures of each scene, of which the fastest counts.
+const ROUNDS: usize = 3;
+
+/// Irrational steps through a cube that fill it evenly: powers of the root of x⁴ = x + 1.
+const STEPS: [f64; 3] = [0.819_172_513, 0.671_043_606, 0.549_700_477];
+
+/// What fills a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Crowd {
+    /// Faces of one closed mesh.
+    Mesh,
+    /// Balls, none of them smaller than a pixel or two.
+    Balls,
+}
+
+/// A picture that was measured.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Cost {
+    /// What filled its scene.
+    pub crowd: Crowd,
+    /// Whether edges were smoothed.
+    pub is_clean: bool,
+    /// How many primitives there were.
+    pub primitives: u32,
+    /// Milliseconds, planning not counted: the fastest of a few.
+    pub ms: f64,
+    /// Milliseconds of planning, once.
+    pub plan_ms: f64,
+}
+
+/// Measures every crowd, one picture after the other, on the current rayon pool.
+#[derive(Debug)]
+pub struct Growth {
+    side: u32,
+    most: u32,
+    /// What is measured so far.
+    pub costs: Vec<Cost>,
+}
+
+impl Growth {
+    /// Pictures of so many by so many pixels, of scenes of at most `most` primitives.
+    pub fn new(side: u32, most: u32) -> Self {
+        let costs = Vec::new();
+        Self { side, most, costs }
+    }
+
+    /// Side of the pictures in pixels.
+    pub fn side(&self) -> u32 {
+        self.side
+    }
+
+    fn cases(&self) -> Vec<(Crowd, bool, u32)> {
+        let mut cases = Vec::new();
+        for crowd in [Crowd::Mesh, Crowd::Balls] {
+            // Balls are objects, each with a name: more of them say more of that than of tracing.
+            let most = if crowd == Crowd::Mesh {
+                1_000_000
+            } else {
+                100_000
+            };
+            for count in COUNTS
+                .into_iter()
+                .filter(|&count| count <= most.min(self.most))
+            {
+                cases.extend([(crowd, false, count), (crowd, true, count)]);
+            }
+        }
+        cases
+    }
+
+    /// Measures the next picture. Whether there was one.
+    pub fn step(&mut self) -> bool {
+        let Some(&(crowd, is_clean, primitives)) = self.cases().get(self.costs.len()) else {
+            return false;
+        };
+        let scene = match crowd {
+            Crowd::Mesh => mesh(primitives),
+            Crowd::Balls => balls(primitives),
+        };
+        let request = RenderRequest {
+            sampling: if is_clean {
+                Sampling::ADAPTIVE
+            } else {
+                Sampling::Centres
+            },
+            ..RenderRequest::sized(self.side, self.side)
+        };
+        let mut planner = Planner::default();
+        let since = Instant::now();
+        let _ = Tracer::planned(&scene, &request, &mut planner);
+        let plan_ms = since.elapsed().as_secs_f64() * 1e3;
+        let tracer = Tracer::planned(&scene, &request, &mut planner);
+        let time = |_| {
+            let since = Instant::now();
+            // Nobody stops it.
+            let _ = trace_light(&tracer, &RenderControl::default());
+            since.elapsed().as_secs_f64() * 1e3
+        };
+        self.costs.push(Cost {
+            crowd,
+            is_clean,
+            primitives,
+            ms: (0..ROUNDS).map(time).fold(f64::INFINITY, f64::min),
+            plan_ms,
+        });
+        true
+    }
+
+    /// Share of the pictures that are measured, 0–1.
+    pub fn progress(&self) -> f64 {
+        self.costs.len() as f64 / self.cases().len().max(1) as f64
+    }
+
+    /// All costs as comma-separated values.
+    ///
+    /// # Errors
+    /// None is known: everything is written to memory.
+    pub fn csv(&self) -> Result<String, csv::Error> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        for cost in &self.costs {
+            writer.serialize(cost)?;
+        }
+        written(writer)
+    }
+}
+
+impl Cost {
+    /// What it is a cost of.
+    pub fn name(&self) -> &'static str {
+        match (self.crowd, self.is_clean) {
+            (Crowd::Mesh, false) => "a mesh, one sample",
+            (Crowd::Mesh, true) => "a mesh, clean edges",
+            (Crowd::Balls, false) => "balls, one sample",
+            (Crowd::Balls, true) => "balls, clean edges",
+        }
+    }
+}
+
+/// A floor, two lights and a camera.
+fn stage() -> Scene {
+    let mut scene = Scene::empty();
+    scene.light_visualization = false;
+    let pack = |diffuse: f64| ColorPack {
+        ambient: DVec3::splat(diffuse),
+        diffuse: DVec3::splat(diffuse),
+        reflective: false,
+        ..ColorPack::default()
+    };
+    scene.packs_mut().insert("floor".to_owned(), pack(120.0));
+    scene.packs_mut().insert("thing".to_owned(), pack(220.0));
+    let floor = Plane {
+        point: DVec3::ZERO,
+        normal: DVec3::Y,
+    };
+    scene.objects = List::from(vec![object("Floor", "floor", floor.into())]);
+    let light = |name: &str, x: f64| Light {
+        name: name.to_owned(),
+        position: DVec3::new(x, 220.0, 160.0),
+        intensity: 0.5,
+        visible: true,
+        marker: None,
+    };
+    scene.lights = List::from(vec![light("Left", -150.0), light("Right", 180.0)]);
+    scene.camera = Camera {
+        position: DVec3::new(0.0, 80.0, 190.0),
+        look_at: DVec3::new(0.0, -0.25, -1.0),
+        up: DVec3::Y,
+        ..Camera::default()
+    };
+    scene
+}
+
+fn object(name: &str, pack: &str, shape: Shape) -> Object {
+    Object {
+        name: name.to_owned(),
+        color_pack: pack.to_owned(),
+        shape,
+        visible: true,
+    }
+}
+
+/// A ball with bumps, of about so many faces.
+fn mesh(faces: u32) -> Scene {
+    let rings = (f64::from(faces) / 4.0).sqrt().round().max(2.0) as u32;
+    let columns = 2 * rings;
+    let place = |ring: u32, column: u32| {
+        let down = f64::from(ring) / f64::from(rings) * PI;
+        let around = f64::from(column) / f64::from(columns) * TAU;
+        let radius = 42.0 + 4.0 * (6.0 * around).sin() * (5.0 * down).sin();
+        let (x, z) = (around.cos() * down.sin(), around.sin() * down.sin());
+        DVec3::new(x, down.cos(), z) * radius
+    };
+    let mut points = vec![place(0, 0), place(rings, 0)];
+    points.extend((1..rings).flat_map(|ring| (0..columns).map(move |column| place(ring, column))));
+    let number = |ring: u32, column: u32| match ring {
+        0 => 0,
+        _ if ring == rings => 1,
+        _ => 2 + (ring - 1) * columns + column % columns,
+    };
+    let mut all = Vec::new();
+    for ring in 0..rings {
+        for column in 0..columns {
+            let (a, b) = (number(ring, column), number(ring, column + 1));
+            let (c, d) = (number(ring + 1, column + 1), number(ring + 1, column));
+            // Clockwise seen from outside.
+            if ring > 0 {
+                all.push([a, b, c]);
+            }
+            if ring + 1 < rings {
+                all.push([a, c, d]);
+            }
+        }
+    }
+    let mut scene = stage();
+    let mesh = Mesh {
+        position: DVec3::new(0.0, 50.0, 0.0),
+        ..Mesh::of(Triangles::new(points, all).unwrap_or_default())
+    };
+    scene.objects.push(object("Ball", "thing", mesh.into()));
+    scene
+}
+
+/// Balls in a cube, the smaller the more there are: together they always cover about as much.
+fn balls(count: u32) -> Scene {
+    let mut scene = stage();
+    let radius = 60.0 / f64::from(count).sqrt();
+    for number in 0..count {
+        // Additive recurrence: no two of the axes run in step.
+        let share = |axis: usize| (f64::from(number) * STEPS[axis]).fract();
+        let center = DVec3::new(
+            (share(0) - 0.5) * 150.0,
+            radius + share(1) * 90.0,
+            (share(2) - 0.5) * 120.0,
+        );
+        let ball = Sphere { center, radius };
+        scene
+            .objects
+            .push(object(&format!("Ball {number}"), "thing", ball.into()));
+    }
+    scene
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::check;
+
+    #[test]
+    fn crowds_are_scenes_of_so_many_primitives() {
+        for count in [100, 1_000] {
+            let (mesh, balls) = (mesh(count), balls(count));
+            assert!(check(&mesh).is_ok() && check(&balls).is_ok());
+            assert!(
+                mesh.faces().abs_diff(count as usize) * 4 <= count as usize,
+                "{}",
+                mesh.faces()
+            );
+            assert_eq!(balls.objects.len(), count as usize + 1);
+        }
+    }
+
+    #[test]
+    fn every_crowd_is_measured_once() {
+        let mut growth = Growth::new(16, 1_000);
+        while growth.step() {}
+        assert_eq!((growth.costs.len(), growth.progress()), (8, 1.0));
+        assert!(
+            growth
+                .costs
+                .iter()
+                .all(|cost| cost.ms > 0.0 && cost.plan_ms > 0.0)
+        );
+        let text = growth.csv().expect("written");
+        assert!(
+            text.starts_with("crowd,is_clean,primitives,ms,plan_ms\nmesh,false,100,"),
+            "{text}"
+        );
+    }
+}

@@ -1,0 +1,143 @@
+//! Where light ends on faces that are shaded as one curved surface: points of a ball of triangles that the
+//! light reaches on the ball, and that its own flat faces put into shadow.
+
+use glam::DVec3;
+
+use super::map::{Axis, Map, Tries, scattered};
+use super::subject::Subject;
+use crate::mesh::Triangles;
+use crate::plan::PackedMesh;
+use crate::primitive::{Curved, PackedTriangle, Primitive as _, Ray, SurfacePoint};
+use crate::scene::{Mesh, Methods};
+use crate::simd::Vec3;
+
+/// How often the faces of an octahedron are split in four.
+const SPLITS: [u32; 4] = [1, 2, 3, 4];
+/// How high the light stands over the curved surface, in degrees.
+const HEIGHTS: [f64; 5] = [1.0, 3.0, 10.0, 20.0, 40.0];
+/// Tries in each cell for a first look.
+const TRIES: u64 = 150;
+/// What a coordinate of the ball may be off by.
+const SLACK: f32 = 1e-6;
+
+/// One map for each place where shadow rays can start: on the curved surface, or on the flat face.
+pub fn maps(effort: u32) -> Vec<Map> {
+    let balls = SPLITS.map(ball);
+    let map = |method: &str, is_lifted| {
+        let across = Axis {
+            name: "faces",
+            values: balls
+                .iter()
+                .map(|ball| ball.triangles.len() as f64)
+                .collect(),
+        };
+        let up = Axis {
+            name: "degrees of light",
+            values: HEIGHTS.to_vec(),
+        };
+        Map::measure(
+            (Subject::Terminator, "lit point that is dark"),
+            (method.to_owned(), is_lifted),
+            (across, up),
+            |faces, height| {
+                let ball = balls
+                    .iter()
+                    .find(|ball| ball.triangles.len() as f64 == faces);
+                let tries = (0..TRIES * u64::from(effort))
+                    .filter_map(|n| fails(ball?, n, height, is_lifted));
+                Tries::count(tries)
+            },
+        )
+    };
+    vec![map("lifted", true), map("flat", false)]
+}
+
+/// A ball of radius 1, shaded as one.
+fn ball(splits: u32) -> PackedMesh<f32> {
+    let mut points = vec![
+        DVec3::X,
+        DVec3::Y,
+        DVec3::Z,
+        -DVec3::X,
+        -DVec3::Y,
+        -DVec3::Z,
+    ];
+    let mut faces: Vec<[u32; 3]> = (0..8)
+        .map(|octant: u32| {
+            let end = |axis: u32| axis + 3 * (octant >> axis & 1);
+            // Clockwise seen from outside.
+            if octant.count_ones().is_multiple_of(2) {
+                [end(0), end(2), end(1)]
+            } else {
+                [end(0), end(1), end(2)]
+            }
+        })
+        .collect();
+    for _ in 0..splits {
+        faces = faces
+            .iter()
+            .flat_map(|&[a, b, c]| {
+                let mut middle = |from: u32, to: u32| {
+                    points.push((points[from as usize] + points[to as usize]).normalize());
+                    points.len() as u32 - 1
+                };
+                let (d, e, f) = (middle(a, b), middle(b, c), middle(c, a));
+                [[a, d, f], [d, b, e], [f, e, c], [d, e, f]]
+            })
+            .collect();
+    }
+    let triangles = Triangles::new(points, faces).unwrap_or_default();
+    PackedMesh::new(&Mesh {
+        smooth: 180.0,
+        ..Mesh::of(triangles)
+    })
+}
+
+fn fails(ball: &PackedMesh<f32>, number: u64, height: f64, is_lifted: bool) -> Option<bool> {
+    let random = |stream| scattered(number, stream);
+    let own = (random(0) * ball.triangles.len() as f64) as usize;
+    let (face, smooth) = (&ball.triangles[own], &ball.smooth[own]);
+    let point = place_on(face, random(1), random(2));
+    let flat = SurfacePoint {
+        point,
+        normal: face.normal,
+        curvature: 0.0,
+        slack: SLACK,
+    };
+    let curved = Curved {
+        corners: face.corners,
+        normals: smooth.normals,
+        curvature: smooth.curvature,
+    };
+    let bent = curved.bend(&flat, -face.normal);
+    let normal = bent.normal.to_dvec3();
+    let aside = DVec3::new(random(3) - 0.5, random(4) - 0.5, random(5) - 0.5);
+    let aside = normal.cross(aside).try_normalize()?;
+    let (sine, cosine) = height.to_radians().sin_cos();
+    let ray = Ray {
+        origin: if is_lifted {
+            bent.point
+        } else {
+            flat.point + flat.normal * flat.slack
+        },
+        direction: Vec3::from_dvec3(normal * sine + aside * cosine),
+    };
+    let others = ball
+        .triangles
+        .iter()
+        .enumerate()
+        .filter(|&(index, _)| index != own);
+    let mut met = others.map(|(_, other)| -> f32 { other.meet(&ray, &Methods::default()) });
+    Some(met.any(f32::is_finite))
+}
+
+/// A point of a triangle: two shares from 0 to 1 cover it evenly.
+fn place_on(face: &PackedTriangle<f32>, first: f64, second: f64) -> Vec3<f32> {
+    let (first, second) = if first + second > 1.0 {
+        (1.0 - first, 1.0 - second)
+    } else {
+        (first, second)
+    };
+    let [a, b, c] = face.corners;
+    a + (b - a) * first as f32 + (c - a) * second as f32
+}

@@ -1,0 +1,100 @@
+//! Normals at the corners of faces that are shaded as one curved surface.
+
+use crate::primitive::{CornerNormals, PackedTriangle, number_corners};
+use crate::simd::{Real, Vec3};
+
+/// At corners where more faces than this meet, they stay flat: each is held against all others.
+const MOST_AROUND: usize = 256;
+
+/// Normals at the corners of each triangle: the mean of its own and of those that turn from it by less than
+/// `degrees`, by the angles that they have there.
+///
+/// Thürmer and Wüthrich, "Computing vertex normals from polygonal facets", Journal of Graphics Tools 3(1),
+/// 1998.
+pub fn corner_normals<R: Real>(
+    triangles: &[PackedTriangle<R>],
+    degrees: f64,
+) -> Vec<CornerNormals<R>> {
+    let least_cosine = degrees.to_radians().cos();
+    let numbers = number_corners(triangles);
+    let around = Around::of(&numbers);
+    let faces = triangles.iter().zip(&numbers).enumerate();
+    let normals = faces.map(|(index, (triangle, numbers))| {
+        let own = triangle.normal.to_dvec3();
+        let normals = numbers.map(|number| {
+            let meeting = around.of_corner(number);
+            if meeting.len() > MOST_AROUND {
+                return triangle.normal;
+            }
+            let alike = meeting.iter().filter(|&&(face, _)| {
+                let other = triangles[face as usize].normal.to_dvec3();
+                face as usize == index || least_cosine < own.dot(other)
+            });
+            let sum = alike
+                .map(|&(face, corner)| {
+                    let face = &triangles[face as usize];
+                    face.normal.to_dvec3() * angle(face, corner as usize)
+                })
+                .sum::<glam::DVec3>();
+            Vec3::from_dvec3(sum.try_normalize().unwrap_or(own))
+        });
+        CornerNormals {
+            normals,
+            curvature: curvature(triangle, &normals),
+        }
+    });
+    normals.collect()
+}
+
+/// The angle of a triangle at one of its corners.
+fn angle<R: Real>(triangle: &PackedTriangle<R>, corner: usize) -> f64 {
+    let at = |step: usize| triangle.corners[(corner + step) % 3].to_dvec3();
+    (at(1) - at(0)).angle_between(at(2) - at(0))
+}
+
+fn curvature<R: Real>(triangle: &PackedTriangle<R>, normals: &[Vec3<R>; 3]) -> R {
+    let along = |from: usize, to: usize| {
+        let length = (triangle.corners[from] - triangle.corners[to]).length();
+        (normals[from] - normals[to]).length() / length
+    };
+    along(0, 1).max(along(1, 2)).max(along(2, 0))
+}
+
+/// For each corner the faces that meet there.
+struct Around {
+    /// Where those of each corner begin, and where the last ones end.
+    firsts: Vec<u32>,
+    /// Faces, and which of their corners it is.
+    faces: Vec<(u32, u8)>,
+}
+
+impl Around {
+    fn of(faces: &[[u32; 3]]) -> Self {
+        let corners = faces.iter().flatten().max().map_or(0, |last| last + 1);
+        let mut firsts = vec![0_u32; corners as usize + 1];
+        for &corner in faces.iter().flatten() {
+            firsts[corner as usize + 1] += 1;
+        }
+        for corner in 0..corners as usize {
+            firsts[corner + 1] += firsts[corner];
+        }
+        let mut free = firsts.clone();
+        let mut sorted = vec![(0, 0); faces.len() * 3];
+        for (face, corners) in faces.iter().enumerate() {
+            for (place, &corner) in corners.iter().enumerate() {
+                let next = &mut free[corner as usize];
+                sorted[*next as usize] = (face as u32, place as u8);
+                *next += 1;
+            }
+        }
+        Self {
+            firsts,
+            faces: sorted,
+        }
+    }
+
+    fn of_corner(&self, corner: u32) -> &[(u32, u8)] {
+        let corner = corner as usize;
+        &self.faces[self.firsts[corner] as usize..self.firsts[corner + 1] as usize]
+    }
+}

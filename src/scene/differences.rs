@@ -1,0 +1,103 @@
+//! What two scenes do not share, in words.
+
+use std::collections::BTreeMap;
+
+use super::whole::Scene;
+
+/// Most names that are listed.
+const NAMED: usize = 3;
+
+/// What is different in `other`, one line for each kind of thing: `2 objects added: A, B`. Nothing for equal
+/// scenes.
+pub fn differences(scene: &Scene, other: &Scene) -> Vec<String> {
+    let mut lines = Vec::new();
+    named(
+        ("object", "objects"),
+        scene.objects.iter().map(|object| (&object.name, object)),
+        other.objects.iter().map(|object| (&object.name, object)),
+        &mut lines,
+    );
+    named(
+        ("light", "lights"),
+        scene.lights.iter().map(|light| (&light.name, light)),
+        other.lights.iter().map(|light| (&light.name, light)),
+        &mut lines,
+    );
+    named(
+        ("colour pack", "colour packs"),
+        scene.color_packs.iter(),
+        other.color_packs.iter(),
+        &mut lines,
+    );
+    let parts = [
+        ("the camera", scene.camera != other.camera),
+        ("the animation", scene.animation != other.animation),
+        ("picture settings", scene.render != other.render),
+    ];
+    for (part, _) in parts.iter().filter(|(_, is_other)| *is_other) {
+        lines.push(format!("{part} changed"));
+    }
+    if lines.is_empty() && scene != other {
+        lines.push("the surroundings changed".to_owned());
+    }
+    lines
+}
+
+/// Things that are known by their names.
+fn named<'a, T: PartialEq + 'a>(
+    (one, many): (&str, &str),
+    before: impl Iterator<Item = (&'a String, &'a T)>,
+    after: impl Iterator<Item = (&'a String, &'a T)>,
+    lines: &mut Vec<String>,
+) {
+    let before: BTreeMap<_, _> = before.collect();
+    let after: BTreeMap<_, _> = after.collect();
+    let added = after.keys().filter(|name| !before.contains_key(*name));
+    let removed = before.keys().filter(|name| !after.contains_key(*name));
+    let changed = after
+        .iter()
+        .filter(|(name, thing)| before.get(*name).is_some_and(|old| old != *thing))
+        .map(|(name, _)| name);
+    let added: Vec<_> = added.collect();
+    let removed: Vec<_> = removed.collect();
+    let changed: Vec<_> = changed.collect();
+    for (what, names) in [("added", added), ("removed", removed), ("changed", changed)] {
+        if names.is_empty() {
+            continue;
+        }
+        let kind = if names.len() == 1 { one } else { many };
+        let listed: Vec<&str> = names.iter().take(NAMED).map(|name| name.as_str()).collect();
+        let more = if names.len() > NAMED { ", …" } else { "" };
+        lines.push(format!(
+            "{} {kind} {what}: {}{more}",
+            names.len(),
+            listed.join(", ")
+        ));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_differs_is_named() {
+        let scene = Scene::demo();
+        assert!(differences(&scene, &scene).is_empty());
+        let mut other = scene.clone();
+        other.objects[0].visible = false;
+        other.lights[1].name = "Lamp".to_owned();
+        other.camera.position.x += 1.0;
+        let lines = differences(&scene, &other);
+        assert_eq!(
+            lines[0],
+            format!("1 object changed: {}", scene.objects[0].name)
+        );
+        assert_eq!(lines[1], "1 light added: Lamp");
+        assert!(lines[2].starts_with("1 light removed: "));
+        assert_eq!(lines[3], "the camera changed");
+        let mut dimmed = scene.clone();
+        dimmed.ambient_intensity *= 0.5;
+        assert_eq!(differences(&scene, &dimmed), ["the surroundings changed"]);
+    }
+}

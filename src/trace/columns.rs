@@ -1,0 +1,72 @@
+//! Vectors of single things, put together lane by lane.
+
+use crate::primitive::{CornerNormals, Curved, PackedTriangle};
+use crate::simd::{MAX_LANES, Real, SimdFloat, Vec3};
+
+/// x, y and z of vectors, one in each lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Columns<R>([[R; MAX_LANES]; 3]);
+
+impl<R: Real> Columns<R> {
+    /// Zeros.
+    #[inline(always)]
+    pub fn new() -> Self {
+        Self([[R::ZERO; MAX_LANES]; 3])
+    }
+
+    /// Puts a vector into a lane.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, vector: Vec3<R>) {
+        for (column, part) in self.0.iter_mut().zip(vector.to_array()) {
+            column[lane] = part;
+        }
+    }
+
+    /// The vectors, in step.
+    #[inline(always)]
+    pub fn load<L: SimdFloat<Real = R>>(&self, token: L::Token) -> Vec3<L> {
+        let [x, y, z] = &self.0;
+        Vec3::new(L::load(token, x), L::load(token, y), L::load(token, z))
+    }
+}
+
+/// What is needed of faces that are shaded as if they were curved.
+pub struct CurvedColumns<R> {
+    corners: [Columns<R>; 3],
+    normals: [Columns<R>; 3],
+    curvature: [R; MAX_LANES],
+}
+
+impl<R: Real> CurvedColumns<R> {
+    /// Zeros.
+    #[inline(always)]
+    pub fn new() -> Self {
+        Self {
+            corners: [Columns::new(); 3],
+            normals: [Columns::new(); 3],
+            curvature: [R::ZERO; MAX_LANES],
+        }
+    }
+
+    /// Puts a face into a lane.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, triangle: &PackedTriangle<R>, smooth: &CornerNormals<R>) {
+        for place in 0..3 {
+            self.corners[place].set(lane, triangle.corners[place]);
+            self.normals[place].set(lane, smooth.normals[place]);
+        }
+        self.curvature[lane] = smooth.curvature;
+    }
+
+    /// The faces, in step.
+    #[inline(always)]
+    pub fn load<L: SimdFloat<Real = R>>(&self, token: L::Token) -> Curved<L> {
+        let [a, b, c] = &self.corners;
+        let [u, v, w] = &self.normals;
+        Curved {
+            corners: [a.load(token), b.load(token), c.load(token)],
+            normals: [u.load(token), v.load(token), w.load(token)],
+            curvature: L::load(token, &self.curvature),
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! Paths of the camera and jobs for farms, from and to files.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use crate::animate::{from_table, from_text, to_table, to_text};
+use crate::editor::{Action, Edit, Editor};
+use crate::export::{Pattern, Sequence, job_template, write_text};
+use crate::image::Format;
+use crate::scene::{Animation, read_text};
+
+/// The keys of a file take the place of the camera's.
+pub fn import_path(editor: &mut Editor, path: &Path) {
+    let text = match read_text(path) {
+        Ok(text) => text,
+        Err(error) => return editor.report_error(error.to_string()),
+    };
+    let keys = if is_table(path) {
+        from_table(&text, &editor.shown().camera)
+    } else {
+        from_text(&text)
+    };
+    match keys {
+        Ok(keys) => {
+            let count = keys.len();
+            let animation = Animation {
+                keys,
+                take: None,
+                ..Animation::clone(&editor.scene().animation)
+            };
+            editor.apply(Action::Edit(Edit::animation(animation, "Import path")));
+            editor.notify(format!("{count} keys from {}", path.display()));
+        }
+        Err(error) => editor.report_error(format!("{}: {error}", path.display())),
+    }
+}
+
+/// The keys of the camera, as CSV or RON by the ending of the file.
+pub fn export_path(editor: &mut Editor, path: &Path) {
+    let is_text = path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("ron"));
+    if !is_table(path) && !is_text {
+        return editor.report_error(format!("{}: end it in .csv or .ron", path.display()));
+    }
+    let keys = &editor.scene().animation.keys;
+    let text = if is_table(path) {
+        Ok(to_table(keys.iter().map(|key| (key.time, &key.value))))
+    } else {
+        to_text(keys).map_err(Box::<dyn Error>::from)
+    };
+    match text.and_then(|text| Ok(write_text(path, &text)?)) {
+        Ok(()) => editor.notify(format!("Saved {}", path.display())),
+        Err(error) => editor.report_error(error.to_string()),
+    }
+}
+
+/// The template, and the scene as it is now beside it.
+pub fn export_job(editor: &mut Editor, path: &Path) {
+    let scene = path.with_extension("ron");
+    match write_job(editor, path, &scene) {
+        Ok(()) => editor.notify(format!("Saved {} and {}", path.display(), scene.display())),
+        Err(error) => editor.report_error(error.to_string()),
+    }
+}
+
+fn write_job(editor: &Editor, path: &Path, scene: &Path) -> Result<(), Box<dyn Error>> {
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let file = scene.file_name().unwrap_or_default().to_string_lossy();
+    let (pattern, folder) = (Pattern::default(), PathBuf::from("frames"));
+    let sequence = Sequence::new(editor.scene().clone(), None, pattern, Format::Ppm, folder)?;
+    write_text(path, &job_template(&sequence, &name, &file))?;
+    editor.document().save(scene)?;
+    Ok(())
+}
+
+fn is_table(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
+}

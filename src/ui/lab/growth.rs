@@ -1,0 +1,76 @@
+//! The picture of how cost grows: lines on logarithmic axes.
+
+use egui::{Color32, Ui};
+use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoints, Points};
+
+use super::super::theme::{GRID, palette};
+use super::chart::{decades, picture, power_of_ten};
+use crate::image::Image;
+use crate::lab::{Cost, Growth};
+
+/// A picture of what was measured.
+pub fn growth_picture(growth: &Growth) -> Image {
+    picture(|ui| {
+        ui.label(egui::RichText::new(finding(growth)).heading());
+        ui.add_space(GRID);
+        show(ui, growth);
+    })
+}
+
+/// What the chart says, in a sentence.
+fn finding(growth: &Growth) -> String {
+    let mut plain: Vec<&Cost> = growth.costs.iter().collect();
+    plain.retain(|cost| cost.name() == "a mesh, one sample");
+    match (plain.first(), plain.last()) {
+        (Some(first), Some(last)) if first.primitives < last.primitives => format!(
+            "{} times the faces cost {:.1} times the time",
+            last.primitives / first.primitives,
+            last.ms / first.ms
+        ),
+        _ => "Time against primitives".to_owned(),
+    }
+}
+
+fn show(ui: &mut Ui, growth: &Growth) {
+    let colors = palette(ui.ctx());
+    let mut lines: Vec<(&str, Vec<[f64; 2]>)> = Vec::new();
+    for cost in &growth.costs {
+        let at = [f64::from(cost.primitives).log10(), cost.ms.log10()];
+        match lines.iter_mut().find(|(name, _)| *name == cost.name()) {
+            Some((_, points)) => points.push(at),
+            None => lines.push((cost.name(), vec![at])),
+        }
+    }
+    let side = growth.side();
+    Plot::new("growth chart")
+        .legend(Legend::default().position(Corner::LeftTop))
+        .x_axis_label("primitives")
+        .y_axis_label(format!("ms per {side}×{side} picture"))
+        .x_axis_formatter(power_of_ten)
+        .y_axis_formatter(power_of_ten)
+        .x_grid_spacer(|input| decades(&input))
+        .y_grid_spacer(|input| decades(&input))
+        .y_axis_min_width(48.0)
+        .set_margin_fraction(egui::vec2(0.06, 0.1))
+        .show(ui, |plot| {
+            for (name, points) in lines {
+                let color = color_of(name, colors.accent, colors.text);
+                let style = if name.ends_with("clean edges") {
+                    LineStyle::dashed_loose()
+                } else {
+                    LineStyle::Solid
+                };
+                let dots = Points::new(name, PlotPoints::from(points.clone()));
+                plot.points(dots.radius(4.0).color(color));
+                plot.line(Line::new(name, points).color(color).style(style).width(1.5));
+            }
+        });
+}
+
+fn color_of(name: &str, mesh: Color32, balls: Color32) -> Color32 {
+    if name.starts_with("a mesh") {
+        mesh
+    } else {
+        balls
+    }
+}

@@ -1,0 +1,95 @@
+//! The open file, written by another program: read anew, or held against the own changes.
+
+use std::time::{Duration, Instant};
+
+use egui::{Context, Ui};
+
+use super::prompts::{Answer, primary, question};
+use super::theme::GRID;
+use crate::editor::Editor;
+use crate::files::Stamp;
+use crate::scene::{Document, SceneError, differences};
+
+/// How often the open file is looked at.
+const RHYTHM: Duration = Duration::from_secs(1);
+/// Most lines of differences that are shown.
+const MOST_LINES: usize = 8;
+
+/// When the open file was looked at last, and what is known not to be wanted of it.
+#[derive(Default)]
+pub struct Watch {
+    looked: Option<Instant>,
+    /// The state of the editor that was left as it was: the file is not brought up again before the next save.
+    left: Option<u64>,
+}
+
+impl Watch {
+    /// Whether the file must be looked at again.
+    pub fn is_due(&mut self, ctx: &Context, editor: &Editor) -> bool {
+        if editor.path().is_none() {
+            return false;
+        }
+        ctx.request_repaint_after(RHYTHM);
+        let is_due = self.looked.is_none_or(|looked| looked.elapsed() >= RHYTHM);
+        if is_due {
+            self.looked = Some(Instant::now());
+        }
+        is_due && self.left != Some(editor.saves())
+    }
+
+    /// Says nothing more of the file as it is, until the document is saved or another one is open.
+    pub fn leave(&mut self, editor: &Editor) {
+        self.left = Some(editor.saves());
+    }
+}
+
+/// What another program has written, and how it differs.
+pub struct Theirs {
+    /// What it has written.
+    pub document: Result<(Document, Stamp), SceneError>,
+    lines: Vec<String>,
+}
+
+impl Theirs {
+    /// Beside the document in the editor.
+    pub fn new(editor: &Editor, document: Result<(Document, Stamp), SceneError>) -> Self {
+        let lines = match &document {
+            Ok((theirs, _)) => differences(editor.scene(), &theirs.scene),
+            Err(error) => vec![error.to_string()],
+        };
+        Self { document, lines }
+    }
+
+    /// Asks which of both is to stay: Yes for the own, No for theirs, and Other for both.
+    pub fn ask(&self, ctx: &Context, title: &str) -> Answer {
+        question(ctx, "changed outside", 460.0, |ui, answer| {
+            ui.heading(format!("{title} was changed by another program"));
+            ui.add_space(GRID);
+            self.describe(ui);
+            ui.add_space(2.0 * GRID);
+            ui.horizontal(|ui| {
+                if primary(ui, "Keep mine").clicked() {
+                    *answer = Answer::Yes;
+                }
+                let can_take = self.document.is_ok();
+                let take = egui::Button::new("Take theirs");
+                if ui.add_enabled(can_take, take).clicked() {
+                    *answer = Answer::No;
+                }
+                if ui.button("Save as…").clicked() {
+                    *answer = Answer::Other;
+                }
+            });
+        })
+    }
+
+    fn describe(&self, ui: &mut Ui) {
+        ui.label(match &self.document {
+            Ok(_) => "You have changes that are not saved. In the file, against yours:",
+            Err(_) => "The file cannot be read any more:",
+        });
+        for line in self.lines.iter().take(MOST_LINES) {
+            ui.weak(line);
+        }
+    }
+}

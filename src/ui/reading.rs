@@ -1,0 +1,79 @@
+//! A file that is read beside the window, which stays live meanwhile.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::time::{Duration, Instant};
+
+use crate::editor::Editor;
+use crate::files::Stamp;
+use crate::mesh::{MeshError, Part, read_parts};
+use crate::scene::{Document, Scene, SceneError};
+use crate::worker::run_in_background;
+
+/// What was read.
+pub enum Read {
+    /// A scene file with its meshes, which takes the place of the document.
+    Scene(Box<Result<(Document, Stamp), SceneError>>),
+    /// A mesh file, whose parts become objects.
+    Parts(Result<Vec<Part>, MeshError>),
+    /// Nothing: the reader stopped.
+    Nothing,
+}
+
+/// A file that is being read.
+pub struct Reading {
+    /// Where it is.
+    pub path: PathBuf,
+    answer: Receiver<Read>,
+    since: Instant,
+    /// The document when its reading began.
+    before: Arc<Scene>,
+}
+
+impl Reading {
+    /// Begins to read a scene.
+    pub fn scene(editor: &Editor, path: &Path) -> Self {
+        Self::start(editor, path, |path| {
+            Read::Scene(Box::new(Document::load_stamped(&path)))
+        })
+    }
+
+    /// Begins to read a mesh file.
+    pub fn parts(editor: &Editor, path: &Path) -> Self {
+        Self::start(editor, path, |path| Read::Parts(read_parts(&path)))
+    }
+
+    fn start(editor: &Editor, path: &Path, read: fn(PathBuf) -> Read) -> Self {
+        let own = path.to_owned();
+        Self {
+            path: path.to_owned(),
+            answer: run_in_background("glint-reader", move || read(own)),
+            since: Instant::now(),
+            before: Arc::clone(editor.scene()),
+        }
+    }
+
+    /// What was read, if that is known within so long.
+    pub fn wait(&self, most: Duration) -> Option<Read> {
+        match self.answer.recv_timeout(most) {
+            Ok(read) => Some(read),
+            Err(RecvTimeoutError::Timeout) => None,
+            Err(RecvTimeoutError::Disconnected) => Some(Read::Nothing),
+        }
+    }
+
+    /// Whether the document was changed since.
+    pub fn is_outrun(&self, editor: &Editor) -> bool {
+        editor.is_dirty() && !Arc::ptr_eq(&self.before, editor.scene())
+    }
+
+    /// In words, for the status line.
+    pub fn describe(&self) -> String {
+        let name = self.path.file_name().unwrap_or_default().to_string_lossy();
+        format!(
+            "reading {name}, {:.0} s",
+            self.since.elapsed().as_secs_f64()
+        )
+    }
+}
