@@ -43,6 +43,17 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
+/// When a file was written last, where the system tells.
+pub fn time_of(path: &Path) -> Option<SystemTime> {
+    fs::metadata(path).ok()?.modified().ok()
+}
+
+/// Whether two paths are those of one file, links followed.
+pub fn is_same_file(one: &Path, other: &Path) -> bool {
+    let found = |path: &Path| fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    one == other || found(one) == found(other)
+}
+
 /// What a file held when it was read or written last.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stamp {
@@ -52,23 +63,27 @@ pub struct Stamp {
 }
 
 impl Stamp {
-    /// Of a file that holds these bytes.
-    pub fn of(path: &Path, bytes: &[u8]) -> Self {
-        let modified = fs::metadata(path).and_then(|metadata| metadata.modified());
+    /// Of a file that holds these bytes, and was written at that time at the earliest.
+    pub fn of(bytes: &[u8], modified: Option<SystemTime>) -> Self {
         Self {
             hash: blake3::hash(bytes),
             length: bytes.len() as u64,
-            modified: modified.ok(),
+            modified,
         }
+    }
+
+    /// Whether the file may hold something else by now, by its length and time.
+    pub fn is_touched(&self, path: &Path) -> bool {
+        let metadata = fs::metadata(path).ok();
+        metadata.is_some_and(|metadata| {
+            metadata.len() != self.length || metadata.modified().ok() != self.modified
+        })
     }
 
     /// Whether the file holds something else by now. One that is gone holds nothing that could be lost.
     pub fn is_outdated(&self, path: &Path) -> bool {
-        let Ok(metadata) = fs::metadata(path) else {
-            return false;
-        };
-        let is_touched = metadata.len() != self.length || metadata.modified().ok() != self.modified;
-        is_touched && fs::read(path).is_ok_and(|bytes| blake3::hash(&bytes) != self.hash)
+        let is_file = fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
+        is_file && fs::read(path).is_ok_and(|bytes| blake3::hash(&bytes) != self.hash)
     }
 }
 

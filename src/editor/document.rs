@@ -11,7 +11,7 @@ use super::history::{History, Snapshot};
 use super::selection::Selection;
 use super::timeline::Timeline;
 use crate::animate::CameraPath;
-use crate::files::Stamp;
+use crate::files::{Stamp, is_same_file};
 use crate::scene::{DEMO_TEXT, Document, Orientation, Scene, SceneError, check_edit};
 
 /// The open document and everything about working on it.
@@ -200,7 +200,16 @@ impl Editor {
     /// Whether another program has written the document's file since this window read or wrote it.
     pub fn is_changed_outside(&self) -> bool {
         match (&self.path, &self.stamp) {
-            (Some(path), Some(stamp)) => stamp.is_outdated(path),
+            (Some(path), Some(stamp)) => stamp.is_touched(path) && stamp.is_outdated(path),
+            _ => false,
+        }
+    }
+
+    /// Whether saving to `path` would replace something in the document's own file that this window has not
+    /// seen.
+    pub fn would_lose(&self, path: &Path) -> bool {
+        match (&self.path, &self.stamp) {
+            (Some(own), Some(stamp)) => is_same_file(own, path) && stamp.is_outdated(own),
             _ => false,
         }
     }
@@ -212,6 +221,15 @@ impl Editor {
             selection: self.selection,
         };
         let theirs = Arc::new(document.scene);
+        if theirs == self.scene {
+            // Other words for the same.
+            self.header = document.header;
+            self.stamp = Some(stamp);
+            self.saves += 1;
+            self.saved = theirs;
+            self.is_dirty = false;
+            return;
+        }
         self.history.end_gesture();
         self.history.record("Reload".to_owned(), before, &theirs);
         self.history.end_gesture();

@@ -173,6 +173,12 @@ impl<R: Real> Geometry<R> {
         coarse.chain(meshes.filter(move |_| is_fine))
     }
 
+    /// How far above what is hit rays that go on from there may start.
+    pub fn lift(&self) -> R {
+        let lifts = self.meshes.iter().map(|instance| instance.mesh.lift);
+        lifts.fold(R::ZERO, R::max)
+    }
+
     fn packed_meshes(&self) -> Vec<Arc<PackedMesh<R>>> {
         let meshes = self.meshes.iter();
         meshes.map(|instance| Arc::clone(&instance.mesh)).collect()

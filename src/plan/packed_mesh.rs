@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3};
 
 use super::bvh::{Bvh, Member};
-use super::smooth::corner_normals;
+use super::smooth::{corner_normals, largest_lift};
 use super::thickness::{is_outside, measures};
 use crate::mesh::Triangles;
 use crate::primitive::{BoundingBox, CornerNormals, PackedTriangle};
@@ -20,6 +20,8 @@ pub struct PackedMesh<R> {
     pub triangles: Vec<PackedTriangle<R>>,
     /// Their normals where they are shaded as one curved surface; none if they are flat.
     pub smooth: Vec<CornerNormals<R>>,
+    /// How far above them rays that go on from there may start.
+    pub lift: R,
     /// The way to them.
     pub bvh: Bvh<R>,
     /// Whether it has an inside, and its normals point away from there.
@@ -69,6 +71,7 @@ impl<R: Real> PackedMesh<R> {
             Vec::new()
         };
         Self {
+            lift: largest_lift(&triangles, &smooth),
             smooth,
             bvh,
             is_solid: is_closed && volume(&triangles) > 0.0,

@@ -35,6 +35,7 @@ pub fn corner_normals<R: Real>(
                     let face = &triangles[face as usize];
                     face.normal.to_dvec3() * angle(face, corner as usize)
                 })
+                .filter(|weighted| weighted.is_finite())
                 .sum::<glam::DVec3>();
             Vec3::from_dvec3(sum.try_normalize().unwrap_or(own))
         });
@@ -44,6 +45,20 @@ pub fn corner_normals<R: Real>(
         }
     });
     normals.collect()
+}
+
+/// How far points of the faces are lifted at most onto the surface that they stand for, see
+/// [`crate::primitive::Curved::bend`].
+pub fn largest_lift<R: Real>(triangles: &[PackedTriangle<R>], smooth: &[CornerNormals<R>]) -> R {
+    let faces = triangles.iter().zip(smooth);
+    let lifts = faces.flat_map(|(triangle, smooth)| {
+        let corners = triangle.corners.into_iter().zip(smooth.normals);
+        corners.flat_map(|(corner, normal)| {
+            let others = triangle.corners.into_iter();
+            others.map(move |other| normal.dot(corner - other))
+        })
+    });
+    lifts.fold(R::ZERO, R::max)
 }
 
 /// The angle of a triangle at one of its corners.

@@ -38,7 +38,7 @@ pub fn differences(scene: &Scene, other: &Scene) -> Vec<String> {
         lines.push(format!("{part} changed"));
     }
     if lines.is_empty() && scene != other {
-        lines.push("the surroundings changed".to_owned());
+        lines.push("the surroundings or the order changed".to_owned());
     }
     lines
 }
@@ -98,6 +98,9 @@ mod tests {
         assert_eq!(lines[3], "the camera changed");
         let mut dimmed = scene.clone();
         dimmed.ambient_intensity *= 0.5;
-        assert_eq!(differences(&scene, &dimmed), ["the surroundings changed"]);
+        assert_eq!(
+            differences(&scene, &dimmed),
+            ["the surroundings or the order changed"]
+        );
     }
 }

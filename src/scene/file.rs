@@ -12,7 +12,7 @@ use super::check::{Problem, check};
 use super::locate::{claimed_version, has_inner_comments, header, locate};
 use super::parse_errors::sentence;
 use super::whole::{Scene, VERSION};
-use crate::files::{Stamp, write_atomic};
+use crate::files::{Stamp, time_of, write_atomic};
 
 /// The RON text of the demo scene, as embedded in the program.
 pub const DEMO_TEXT: &str = include_str!("../../scenes/demo.ron");
@@ -132,8 +132,10 @@ impl Document {
     /// # Errors
     /// See [`Self::load`].
     pub fn load_stamped(path: &Path) -> Result<(Self, Stamp), SceneError> {
+        // Of before: what is written while it is read counts as new.
+        let modified = time_of(path);
         let bytes = read_bounded(path)?;
-        let stamp = Stamp::of(path, &bytes);
+        let stamp = Stamp::of(&bytes, modified);
         let name = path.display().to_string();
         let text = String::from_utf8(bytes).map_err(|error| {
             let good = error.utf8_error().valid_up_to();
@@ -254,7 +256,7 @@ impl Document {
             .transpose()
             .map_err(disk)?;
         write_atomic(path, text.as_bytes()).map_err(disk)?;
-        Ok((backup, Stamp::of(path, text.as_bytes())))
+        Ok((backup, Stamp::of(text.as_bytes(), time_of(path))))
     }
 }
 

@@ -1,9 +1,11 @@
 //! Triangles that become one mesh, and a mesh that becomes triangles.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::animation::Target;
 use super::import::Names;
 use super::list::List;
 use super::object::Object;
@@ -98,6 +100,7 @@ impl Scene {
         if !(1..=MOST_SEPARATE).contains(&triangles.faces().len()) {
             return false;
         }
+        let rotation = Target::ObjectRotation(object.name.clone());
         let transform = mesh.transform();
         let is_mirrored = transform.matrix3.determinant() < 0.0;
         let others = self
@@ -120,6 +123,12 @@ impl Scene {
         let before = self.objects.iter().take(index).cloned();
         let after = self.objects.iter().skip(index + 1).cloned();
         self.objects = before.chain(pieces).chain(after).collect::<List<_>>();
+        // Triangles are not turned.
+        let tracks = &self.animation.tracks;
+        if tracks.iter().any(|track| track.target == rotation) {
+            let animation = Arc::make_mut(&mut self.animation);
+            animation.tracks.retain(|track| track.target != rotation);
+        }
         true
     }
 }

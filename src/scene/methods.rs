@@ -301,7 +301,7 @@ impl Method for Accelerator {
 
 /// Largest number of samples along a side of a pixel.
 pub const MAX_GRID: u32 = 256;
-/// How often a pixel can be halved, not counting the last time at strong edges.
+/// How often a pixel can be halved, not counting the last time, for the strongest edges.
 pub const MAX_HALVINGS: u32 = 3;
 
 /// Where in its pixels a picture is sampled.
@@ -315,7 +315,7 @@ pub enum Sampling {
     Adaptive {
         /// Difference of the corners, summed over the channels, from which on they differ.
         contrast: f64,
-        /// How often a pixel is halved, at most [`MAX_HALVINGS`]; at strong edges once more.
+        /// How often a pixel is halved, at most [`MAX_HALVINGS`]; once more at the strongest edges.
         depth: u32,
     },
 }

@@ -38,8 +38,11 @@ impl Target {
             }
             (Self::ObjectPosition(name), Value::Point(point)) => {
                 let object = scene.objects.find_mut(|object| object.name == *name);
-                if let Some(object) = object {
-                    object.shape = object.shape.moved(point - object.shape.position());
+                match object.map(|object| &mut object.shape) {
+                    None => {}
+                    // To and fro, it would be rounded.
+                    Some(Shape::Mesh(mesh)) => mesh.position = point,
+                    Some(shape) => *shape = shape.moved(point - shape.position()),
                 }
             }
             (Self::ObjectRotation(name), Value::Point(rotation)) => {

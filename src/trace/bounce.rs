@@ -16,7 +16,7 @@ use super::thin::widest_spread;
 use super::thresholds::{LARGEST_STRETCH, SLIPPING};
 use super::walk::Stack;
 use crate::plan::Plan;
-use crate::primitive::{Kind, Ray};
+use crate::primitive::{CAUTION, Kind, Ray};
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
 
 /// One bounce: its packets, and what they can meet.
@@ -159,9 +159,15 @@ impl<L: SimdFloat> Bounce<L> {
                 farthest = L::select(hit, farthest.max(packet.near.t), farthest);
             }
         }
-        let Some(ball) = bounds.ball() else {
+        let Some(mut ball) = bounds.ball() else {
             return !self.thin.is_empty();
         };
+        let mut lift = L::Real::ZERO;
+        if let Some((geometry, _)) = kernel.geometry() {
+            // Rays go on from the curved surfaces that flat faces stand for.
+            lift = geometry.lift() * L::Real::from_f64(1.0 + CAUTION);
+            ball.radius += lift.to_f64();
+        }
         if plan.screen.is_some() {
             // Room for what passes beside the rays to the lights, closer than a pixel.
             let footprint = self
@@ -172,7 +178,9 @@ impl<L: SimdFloat> Bounce<L> {
             }
             if TREE {
                 // A ray that has come far is off by a few roundings of its length.
-                let hits = bounds.around().widened(farthest.greatest() * roundings());
+                let hits = bounds
+                    .around()
+                    .widened(farthest.greatest() * roundings() + lift);
                 for (between, light) in self.lights.iter_mut().zip(&plan.lights) {
                     kernel.enter_towards(between, light, &hits);
                 }

@@ -42,7 +42,7 @@ pub fn range<R: Real>(a: R, b: R, c: R, d: R) -> R {
 pub struct Limits<R> {
     /// Difference of the corners of a cell, summed over the channels, above which it is subdivided.
     contrast: R,
-    /// The same where they see different things.
+    /// The same, times the side of the cell in pixels, where they see different things.
     edge_contrast: R,
     /// How often a pixel is subdivided, not counting the last time.
     depth: u32,

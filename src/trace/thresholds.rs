@@ -15,8 +15,7 @@ pub const GRAZING: f64 = 0.25;
 pub const LARGEST_STRETCH: f64 = 1.0 / GRAZING;
 /// Half the width of a highlight of exponent p, in units of 1/√p: it has fallen to 1 % there.
 pub const HIGHLIGHT_REACH: f64 = 3.0;
-/// Steps of the finest grid in a pixel: where something thinner than two pixels is, or a strong edge,
-/// the pixel is divided once more than elsewhere.
+/// Steps of the finest grid in a pixel.
 pub const FINEST: usize = 1 << (MAX_HALVINGS + 1);
 /// Difference of the corners of a cell, summed over the channels, times its side in pixels, above which it
 /// is divided where they see different things: an edge in it is off by half of its side at most, and the

@@ -232,11 +232,11 @@ impl App {
     pub(super) fn act_on(&mut self, ctx: &Context, outcome: Option<FileOutcome>) {
         match outcome {
             None => {}
-            Some(FileOutcome::Quit) if self.exports.describe(&self.pictures).is_some() => {
-                let going = self.exports.describe(&self.pictures);
-                self.files.ask_to_leave(going.unwrap_or_default());
-            }
-            Some(FileOutcome::Quit | FileOutcome::Leave) => {
+            Some(FileOutcome::Quit) => match self.exports.describe(&self.pictures) {
+                Some(going) => self.files.ask_to_leave(going),
+                None => self.act_on(ctx, Some(FileOutcome::Leave)),
+            },
+            Some(FileOutcome::Leave) => {
                 self.closing = Some(self.editor.revision());
                 if self.pictures.is_saving() {
                     self.editor

@@ -1,6 +1,7 @@
 //! Opening and saving, from the wish to the file. A wish may have to wait for an answer; what
 //! follows it ([`Next`]) waits with it and is forgotten with it.
 
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::{Duration, Instant};
@@ -57,7 +58,8 @@ pub struct Files {
     dialogs: Box<dyn Dialogs>,
     waiting: Option<Waiting>,
     question: Option<Question>,
-    reading: Option<Reading>,
+    /// Files that are being read, the first one first.
+    reading: VecDeque<Reading>,
     watch: Watch,
     /// Files that were opened or saved, newest first.
     pub recent: Vec<PathBuf>,
@@ -97,7 +99,7 @@ impl Files {
             dialogs,
             waiting: None,
             question: None,
-            reading: None,
+            reading: VecDeque::new(),
             watch: Watch::default(),
             recent,
         }
@@ -174,17 +176,22 @@ impl Files {
         }
     }
 
+    /// Whether nothing waits for an answer, which would be about another document than was asked about.
+    fn is_free(&self) -> bool {
+        self.question.is_none() && self.waiting.is_none()
+    }
+
     /// The file that is being read.
     pub fn reading(&self) -> Option<&Reading> {
-        self.reading.as_ref()
+        self.reading.front()
     }
 
     /// Takes answers and files up as they come.
     pub fn poll(&mut self, ctx: &Context, editor: &mut Editor) -> Option<FileOutcome> {
-        if self.reading.is_some() {
+        if !self.reading.is_empty() {
             ctx.request_repaint_after(AT_ONCE);
             self.take_read(ctx, editor, Duration::ZERO);
-        } else if !self.is_asking() && self.watch.is_due(ctx, editor) {
+        } else if self.is_free() && self.watch.is_due(ctx, editor) {
             self.look_outside(editor);
         }
         let Waiting {
@@ -275,7 +282,7 @@ impl Files {
             Ask::ImportPath => import_path(editor, &path),
             Ask::ExportPath => export_path(editor, &path),
             Ask::ExportJob => export_job(editor, &path),
-            Ask::SaveScene if editor.path() == Some(&*path) && editor.is_changed_outside() => {
+            Ask::SaveScene if editor.would_lose(&path) => {
                 let theirs = Theirs::new(editor, Document::load_stamped(&path));
                 self.question = Some(Question::Outside(Box::new(theirs), Some(wish)));
             }
@@ -299,7 +306,7 @@ impl Files {
         let Ok(theirs) = Document::load_stamped(path) else {
             return;
         };
-        if editor.is_dirty() {
+        if editor.is_dirty() && theirs.0.scene != **editor.scene() {
             let theirs = Theirs::new(editor, Ok(theirs));
             self.question = Some(Question::Outside(Box::new(theirs), None));
         } else {
@@ -348,7 +355,8 @@ impl Files {
     /// Opens a file; if it is refused, the document stays and the user is told why. A large one is read
     /// while the window goes on.
     pub fn open(&mut self, ctx: &Context, editor: &mut Editor, path: &Path) {
-        self.reading = Some(Reading::scene(editor, path));
+        self.reading.clear();
+        self.reading.push_back(Reading::scene(editor, path));
         self.take_read(ctx, editor, AT_ONCE);
     }
 
@@ -359,15 +367,16 @@ impl Files {
 
     /// The parts of a mesh file become objects.
     pub fn import_mesh(&mut self, ctx: &Context, editor: &mut Editor, path: &Path) {
-        self.reading = Some(Reading::parts(editor, path));
+        self.reading.push_back(Reading::parts(editor, path));
         self.take_read(ctx, editor, AT_ONCE);
     }
 
     fn take_read(&mut self, ctx: &Context, editor: &mut Editor, wait: Duration) {
-        let Some(read) = self.reading.as_ref().and_then(|reading| reading.wait(wait)) else {
+        let first = self.reading.front().filter(|_| self.is_free());
+        let Some(read) = first.and_then(|reading| reading.wait(wait)) else {
             return;
         };
-        let Some(reading) = self.reading.take() else {
+        let Some(reading) = self.reading.pop_front() else {
             return;
         };
         match read {

@@ -173,7 +173,7 @@ pub fn question(
     answer
 }
 
-/// The button that Enter would press.
+/// The button that is meant to be pressed.
 pub fn primary(ui: &mut Ui, text: &str) -> egui::Response {
     let colors = palette(ui.ctx());
     ui.add(Button::new(RichText::new(text).color(colors.on_accent)).fill(colors.accent))

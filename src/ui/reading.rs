@@ -65,7 +65,8 @@ impl Reading {
 
     /// Whether the document was changed since.
     pub fn is_outrun(&self, editor: &Editor) -> bool {
-        editor.is_dirty() && !Arc::ptr_eq(&self.before, editor.scene())
+        let is_other = !Arc::ptr_eq(&self.before, editor.scene());
+        (editor.is_dirty() && is_other) || editor.is_making_keys()
     }
 
     /// In words, for the status line.

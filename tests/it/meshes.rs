@@ -129,6 +129,11 @@ fn a_tree_changes_no_bit_and_no_ray() {
     }
     let mut mirrors = exhibition();
     mirrors.render.reflection_limit = 3;
+    for index in 0..mirrors.objects.len() {
+        if let Shape::Mesh(mesh) = &mut mirrors.objects[index].shape {
+            mesh.smooth = 70.0;
+        }
+    }
     for (number, scene) in [exhibition(), apart(&exhibition()), mirrors, crowd]
         .iter()
         .enumerate()

@@ -36,7 +36,7 @@ impl<L: SimdFloat> Curved<L> {
         let zero = direction.x.like(L::Real::ZERO);
         let is_away = zero.less(flat.normal.dot(direction));
         let face = Vec3::select(is_away, -flat.normal, flat.normal);
-        let weights = weights(self.corners, flat.point);
+        let weights = weights(self.corners, flat.normal, flat.point);
         let mut normal = Vec3::splat(zero);
         let mut lift = normal;
         for (place, weight) in weights.into_iter().enumerate() {
@@ -57,18 +57,23 @@ impl<L: SimdFloat> Curved<L> {
     }
 }
 
-/// How much each corner has of a point of the triangle.
+/// How much each corner has of a point of the triangle: the area on its other side.
 #[inline(always)]
-fn weights<L: SimdFloat>([a, b, c]: [Vec3<L>; 3], point: Vec3<L>) -> [L; 3] {
-    let (ab, ac, ap) = (b - a, c - a, point - a);
-    let (bb, bc, cc) = (ab.dot(ab), ab.dot(ac), ac.dot(ac));
-    let (along_b, along_c) = (ab.dot(ap), ac.dot(ap));
-    let one = bb.like(L::Real::ONE);
-    let zero = bb.like(L::Real::ZERO);
-    let scale = one / (bb * cc - bc * bc);
-    let b = ((cc * along_b - bc * along_c) * scale).max(zero).min(one);
-    let c = ((bb * along_c - bc * along_b) * scale).max(zero).min(one);
-    [(one - b - c).max(zero), b, c]
+fn weights<L: SimdFloat>([a, b, c]: [Vec3<L>; 3], normal: Vec3<L>, point: Vec3<L>) -> [L; 3] {
+    let (a, b, c) = (a - point, b - point, c - point);
+    let areas = [
+        normal.dot(b.cross(c)),
+        normal.dot(c.cross(a)),
+        normal.dot(a.cross(b)),
+    ];
+    let sum = areas[0] + areas[1] + areas[2];
+    let zero = sum.like(L::Real::ZERO);
+    let [a, b, c] = areas.map(
+        #[inline(always)]
+        |area| (area / sum).max(zero),
+    );
+    let scale = zero.like(L::Real::ONE) / (a + b + c);
+    [a * scale, b * scale, c * scale]
 }
 
 /// A normal like `normal` that mirrors rays to the side of the face where they come from.
@@ -83,6 +88,9 @@ fn kept_out<L: SimdFloat>(normal: Vec3<L>, face: Vec3<L>, direction: Vec3<L>) ->
     let raised = mirrored + face * (least - height);
     let raised = raised * (come.like(L::Real::ONE) / raised.length());
     let between = raised - direction;
-    let between = between * (come.like(L::Real::ONE) / between.length());
+    let length = between.length();
+    let between = between * (come.like(L::Real::ONE) / length);
+    // A ray along the face is mirrored by nothing else.
+    let between = Vec3::select(come.like(L::Real::ZERO).less(length), between, face);
     Vec3::select(height.less(least), between, normal)
 }

@@ -82,6 +82,11 @@ impl Exports {
                 video.making = Some(run_in_background("glint-video", make));
             }
         }
+        // One whose export was given up is not made either.
+        let states = pictures.exports();
+        let is_wanted = |video: &Following| states.iter().any(|state| state.id == video.id);
+        self.videos
+            .retain(|video| video.making.is_some() || is_wanted(video));
         self.videos.retain(|video| {
             let made = video.making.as_ref().map(Receiver::try_recv);
             match made {

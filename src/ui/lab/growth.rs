@@ -1,12 +1,12 @@
 //! The picture of how cost grows: lines on logarithmic axes.
 
-use egui::{Color32, Ui};
+use egui::Ui;
 use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoints, Points};
 
 use super::super::theme::{GRID, palette};
 use super::chart::{decades, picture, power_of_ten};
 use crate::image::Image;
-use crate::lab::{Cost, Growth};
+use crate::lab::{Cost, Crowd, Growth};
 
 /// A picture of what was measured.
 pub fn growth_picture(growth: &Growth) -> Image {
@@ -20,11 +20,11 @@ pub fn growth_picture(growth: &Growth) -> Image {
 /// What the chart says, in a sentence.
 fn finding(growth: &Growth) -> String {
     let mut plain: Vec<&Cost> = growth.costs.iter().collect();
-    plain.retain(|cost| cost.name() == "a mesh, one sample");
+    plain.retain(|cost| cost.crowd == Crowd::Mesh && !cost.is_clean);
     match (plain.first(), plain.last()) {
         (Some(first), Some(last)) if first.primitives < last.primitives => format!(
-            "{} times the faces cost {:.1} times the time",
-            last.primitives / first.primitives,
+            "{:.0} times the faces cost {:.1} times the time",
+            f64::from(last.primitives) / f64::from(first.primitives),
             last.ms / first.ms
         ),
         _ => "Time against primitives".to_owned(),
@@ -33,12 +33,15 @@ fn finding(growth: &Growth) -> String {
 
 fn show(ui: &mut Ui, growth: &Growth) {
     let colors = palette(ui.ctx());
-    let mut lines: Vec<(&str, Vec<[f64; 2]>)> = Vec::new();
+    let mut lines: Vec<(&Cost, Vec<[f64; 2]>)> = Vec::new();
     for cost in &growth.costs {
         let at = [f64::from(cost.primitives).log10(), cost.ms.log10()];
-        match lines.iter_mut().find(|(name, _)| *name == cost.name()) {
+        match lines
+            .iter_mut()
+            .find(|(first, _)| first.name() == cost.name())
+        {
             Some((_, points)) => points.push(at),
-            None => lines.push((cost.name(), vec![at])),
+            None => lines.push((cost, vec![at])),
         }
     }
     let side = growth.side();
@@ -53,9 +56,13 @@ fn show(ui: &mut Ui, growth: &Growth) {
         .y_axis_min_width(48.0)
         .set_margin_fraction(egui::vec2(0.06, 0.1))
         .show(ui, |plot| {
-            for (name, points) in lines {
-                let color = color_of(name, colors.accent, colors.text);
-                let style = if name.ends_with("clean edges") {
+            for (cost, points) in lines {
+                let name = cost.name();
+                let color = match cost.crowd {
+                    Crowd::Mesh => colors.accent,
+                    Crowd::Balls => colors.text,
+                };
+                let style = if cost.is_clean {
                     LineStyle::dashed_loose()
                 } else {
                     LineStyle::Solid
@@ -65,12 +72,4 @@ fn show(ui: &mut Ui, growth: &Growth) {
                 plot.line(Line::new(name, points).color(color).style(style).width(1.5));
             }
         });
-}
-
-fn color_of(name: &str, mesh: Color32, balls: Color32) -> Color32 {
-    if name.starts_with("a mesh") {
-        mesh
-    } else {
-        balls
-    }
 }
