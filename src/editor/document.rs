@@ -221,22 +221,18 @@ impl Editor {
             selection: self.selection,
         };
         let theirs = Arc::new(document.scene);
+        self.header = document.header;
+        self.stamp = Some(stamp);
+        self.saves += 1;
+        self.saved = Arc::clone(&theirs);
         if theirs == self.scene {
             // Other words for the same.
-            self.header = document.header;
-            self.stamp = Some(stamp);
-            self.saves += 1;
-            self.saved = theirs;
             self.is_dirty = false;
             return;
         }
         self.history.end_gesture();
         self.history.record("Reload".to_owned(), before, &theirs);
         self.history.end_gesture();
-        self.header = document.header;
-        self.stamp = Some(stamp);
-        self.saves += 1;
-        self.saved = Arc::clone(&theirs);
         self.set_scene(theirs);
         self.notify(format!(
             "{} was changed by another program and read anew; undo brings yours back",

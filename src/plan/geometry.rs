@@ -30,6 +30,8 @@ pub struct Geometry<R> {
     pub meshes: Vec<MeshInstance<R>>,
     /// The way to them: its members are the numbers of the primitives, then the meshes.
     pub bvh: Bvh<R>,
+    /// How far above what is hit rays that go on from there may start.
+    pub lift: R,
 }
 
 /// What a picture was planned from that the next one may need as well.
@@ -152,8 +154,10 @@ impl<R: Real> Geometry<R> {
         let mut members = Members(Vec::with_capacity(primitives.len()));
         primitives.visit(&mut members);
         members.0.extend(meshes.iter().map(MeshInstance::member));
+        let lifts = meshes.iter().map(|instance| instance.mesh.lift);
         Self {
             bvh: Bvh::new(&members.0),
+            lift: lifts.fold(R::ZERO, R::max),
             primitives,
             meshes,
         }
@@ -171,12 +175,6 @@ impl<R: Real> Geometry<R> {
         let is_fine = self.meshes.len() <= FINE_OUTLINE && self.primitives.is_empty();
         let coarse = self.bvh.outline().filter(move |_| !is_fine);
         coarse.chain(meshes.filter(move |_| is_fine))
-    }
-
-    /// How far above what is hit rays that go on from there may start.
-    pub fn lift(&self) -> R {
-        let lifts = self.meshes.iter().map(|instance| instance.mesh.lift);
-        lifts.fold(R::ZERO, R::max)
     }
 
     fn packed_meshes(&self) -> Vec<Arc<PackedMesh<R>>> {

@@ -165,7 +165,7 @@ impl<L: SimdFloat> Bounce<L> {
         let mut lift = L::Real::ZERO;
         if let Some((geometry, _)) = kernel.geometry() {
             // Rays go on from the curved surfaces that flat faces stand for.
-            lift = geometry.lift() * L::Real::from_f64(1.0 + CAUTION);
+            lift = geometry.lift * L::Real::from_f64(1.0 + CAUTION);
             ball.radius += lift.to_f64();
         }
         if plan.screen.is_some() {

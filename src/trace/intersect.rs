@@ -183,12 +183,12 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
 
 /// Looks for the nearest primitive. Of two at the same distance it is the one with the smaller number:
 /// the first that is tested, where they are tested in order.
-struct NearestTest<'a, L, const IN_ORDER: bool> {
+struct NearestTest<'a, L, const LISTED: bool> {
     methods: &'a Methods,
     best: Nearest<L>,
 }
 
-impl<L: SimdFloat, const IN_ORDER: bool> Test<L> for NearestTest<'_, L, IN_ORDER> {
+impl<L: SimdFloat, const LISTED: bool> Test<L> for NearestTest<'_, L, LISTED> {
     #[inline(always)]
     fn reach(&self) -> L {
         self.best.t
@@ -202,14 +202,10 @@ impl<L: SimdFloat, const IN_ORDER: bool> Test<L> for NearestTest<'_, L, IN_ORDER
         paths: &Paths<L>,
         number: usize,
     ) {
-        let t = if IN_ORDER {
-            paths.distance(primitive, prepared, number, self.methods)
-        } else {
-            paths.distance_in_tree(primitive, prepared, number, self.methods)
-        };
+        let t = paths.distance::<LISTED, P>(primitive, prepared, number, self.methods);
         let own = t.like(real(number));
         let mut closer = t.less(self.best.t);
-        if !IN_ORDER {
+        if !LISTED {
             closer = closer | (t.same(self.best.t) & own.less(self.best.number));
         }
         self.best.t = L::select(closer, t, self.best.t);
@@ -218,14 +214,14 @@ impl<L: SimdFloat, const IN_ORDER: bool> Test<L> for NearestTest<'_, L, IN_ORDER
 }
 
 /// Looks for anything before a distance.
-struct BlockedTest<'a, L: SimdFloat, const IN_LIST: bool> {
+struct BlockedTest<'a, L: SimdFloat, const LISTED: bool> {
     methods: &'a Methods,
     distance: L,
     /// Where nothing was met yet.
     free: L::Mask,
 }
 
-impl<L: SimdFloat, const IN_LIST: bool> Test<L> for BlockedTest<'_, L, IN_LIST> {
+impl<L: SimdFloat, const LISTED: bool> Test<L> for BlockedTest<'_, L, LISTED> {
     #[inline(always)]
     fn reach(&self) -> L {
         L::select(self.free, self.distance, self.distance.like_f64(-1.0))
@@ -244,11 +240,7 @@ impl<L: SimdFloat, const IN_LIST: bool> Test<L> for BlockedTest<'_, L, IN_LIST> 
         paths: &Paths<L>,
         number: usize,
     ) {
-        let t = if IN_LIST {
-            paths.distance(primitive, prepared, number, self.methods)
-        } else {
-            paths.distance_in_tree(primitive, prepared, number, self.methods)
-        };
+        let t = paths.distance::<LISTED, P>(primitive, prepared, number, self.methods);
         self.free = self.free & !t.less(self.distance);
     }
 }

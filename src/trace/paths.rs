@@ -79,9 +79,11 @@ impl<L: SimdFloat> IgnoredPrimitive<L> {
 }
 
 impl<L: SimdFloat> Paths<L> {
-    /// How far the primitive of this number is; infinity for none, and where the rays start on it.
+    /// How far the primitive of this number is; infinity for none, and where the rays start on it. Other
+    /// than `LISTED`, it is written for all cases at once: what stands in a tree is tested in several places,
+    /// and the compiler has each of them to work on.
     #[inline(always)]
-    pub fn distance<P: Primitive<L::Real>>(
+    pub fn distance<const LISTED: bool, P: Primitive<L::Real>>(
         &self,
         primitive: &P,
         prepared: &P::Prepared<L>,
@@ -89,24 +91,13 @@ impl<L: SimdFloat> Paths<L> {
         methods: &Methods,
     ) -> L {
         let rays = &self.rays;
-        match self.ignored.listed {
-            Some(start) if start == number => primitive.exit(rays),
-            Some(_) => primitive.intersect(rays, prepared, methods),
-            None => self.distance_in_tree(primitive, prepared, number, methods),
+        if LISTED && let Some(start) = self.ignored.listed {
+            return if start == number {
+                primitive.exit(rays)
+            } else {
+                primitive.intersect(rays, prepared, methods)
+            };
         }
-    }
-
-    /// The same, written for all cases at once: what stands in a tree is tested in several places, and the
-    /// compiler has each of them to work on.
-    #[inline(always)]
-    pub fn distance_in_tree<P: Primitive<L::Real>>(
-        &self,
-        primitive: &P,
-        prepared: &P::Prepared<L>,
-        number: usize,
-        methods: &Methods,
-    ) -> L {
-        let rays = &self.rays;
         let t = primitive.intersect(rays, prepared, methods);
         let own = self.ignored.is(number);
         if !P::IS_CURVED || own.any() {
