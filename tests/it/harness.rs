@@ -92,7 +92,9 @@ impl EditorHarness {
                 start.elapsed() < Duration::from_mins(1),
                 "the picture never came"
             );
-            std::thread::sleep(Duration::from_millis(2));
+            // Each step is a sixtieth of a second to the window: on a busy machine many of them would outlive
+            // its messages.
+            std::thread::sleep((start.elapsed() / 8).max(Duration::from_millis(2)));
             self.window.step();
         }
         self.window.step();

@@ -234,13 +234,13 @@ fn changed_outside(edit: impl FnOnce(&mut EditorHarness)) -> (EditorHarness, Pat
     (harness, path)
 }
 
-/// Steps until something is there, which takes the window a second to see.
+/// Steps until something is there, which takes the window a second to see; no step more, as messages go again.
 fn wait_for(harness: &mut EditorHarness, is_there: impl Fn(&EditorHarness) -> bool) {
     let start = Instant::now();
     while !is_there(harness) {
         assert!(start.elapsed() < Duration::from_mins(1), "it never came");
         std::thread::sleep(Duration::from_millis(20));
-        harness.settle();
+        harness.window.step();
     }
 }
 
