@@ -1,8 +1,10 @@
 //! What panels ask for, and what the user is told.
 
+use glam::DVec3;
+
 use super::edit::Edit;
 use super::fly::Motion;
-use super::selection::Selection;
+use super::selection::{Selected, Selection};
 use super::timeline::Time;
 
 /// What the picture area shows.
@@ -24,8 +26,14 @@ pub enum Action {
     Edit(Edit),
     /// Move the camera as part of a flight.
     Fly(Motion),
+    /// Move the camera around a point, turned to the right and upwards by so many radians.
+    Orbit(DVec3, (f64, f64)),
     /// Show something in the inspector.
     Select(Selection),
+    /// Select these items, and show the last of them in the inspector.
+    SelectItems(Selected),
+    /// Take back what was done since the pointer went down.
+    CancelGesture,
     /// Step back in the history.
     Undo,
     /// Step forward in the history.

@@ -8,31 +8,33 @@ use super::animation_state::AnimationState;
 use super::edit::Edit;
 use super::fly::Flight;
 use super::history::{History, Snapshot};
-use super::selection::Selection;
+use super::selection::{Selected, Selection};
 use super::timeline::Timeline;
 use crate::animate::CameraPath;
-use crate::files::{Stamp, is_same_file};
-use crate::scene::{DEMO_TEXT, Document, Orientation, Scene, SceneError, check_edit};
+use crate::files::Stamp;
+use crate::scene::{Document, EXAMPLES, Example, Orientation, Scene, SceneError, check_edit};
 
 /// The open document and everything about working on it.
 #[derive(Debug)]
 pub struct Editor {
     pub(super) scene: Arc<Scene>,
     revision: u64,
-    header: String,
-    path: Option<PathBuf>,
+    pub(super) header: String,
+    pub(super) path: Option<PathBuf>,
     /// What the document is called while it has no file.
     name: &'static str,
-    saved: Arc<Scene>,
+    pub(super) saved: Arc<Scene>,
     /// What its file held when this window read or wrote it last.
-    stamp: Option<Stamp>,
-    saves: u64,
-    is_dirty: bool,
-    history: History,
+    pub(super) stamp: Option<Stamp>,
+    pub(super) saves: u64,
+    documents: u64,
+    pub(super) is_dirty: bool,
+    pub(super) history: History,
     flight: Flight,
     pub(super) animation_state: AnimationState,
     /// What the inspector shows.
     pub selection: Selection,
+    selected: Selected,
     /// What the picture area shows.
     pub mode: Mode,
     /// What the user should read, oldest first; the window takes them away.
@@ -42,10 +44,10 @@ pub struct Editor {
 impl Editor {
     /// Opens the demo scene, as a new document.
     pub fn demo() -> Self {
-        let document = Document::from_text(DEMO_TEXT).unwrap_or_else(|_| Document::empty());
+        let [demo, ..] = &EXAMPLES;
         Self {
-            name: "demo",
-            ..Self::new(document, None)
+            name: demo.name,
+            ..Self::new(demo.document(), None)
         }
     }
 
@@ -61,10 +63,12 @@ impl Editor {
             name: "untitled",
             stamp: None,
             saves: 0,
+            documents: 0,
             is_dirty: false,
             history: History::default(),
             flight: Flight::default(),
             selection: Selection::default(),
+            selected: Selected::default(),
             mode: Mode::default(),
             messages: Vec::new(),
         }
@@ -143,6 +147,11 @@ impl Editor {
         self.history.redo_label()
     }
 
+    /// The items that are selected.
+    pub fn selected(&self) -> &Selected {
+        &self.selected
+    }
+
     /// The angles of the camera, from its vectors.
     pub fn orientation(&self) -> Orientation {
         self.flight.orientation(&self.shown().camera)
@@ -158,7 +167,21 @@ impl Editor {
                     .step(&self.animation_state.shown().camera, &motion);
                 self.edit(Edit::Camera(camera, "move"));
             }
-            Action::Select(selection) => self.selection = selection,
+            Action::Orbit(about, turn) => {
+                let camera = &self.animation_state.shown().camera;
+                let camera = self.flight.orbit(camera, about, turn);
+                self.edit(Edit::Camera(camera, "move"));
+            }
+            Action::Select(selection) => self.select(Selected::only(selection), selection),
+            Action::SelectItems(selected) => {
+                let selection = selected.selection();
+                self.select(selected, selection);
+            }
+            Action::CancelGesture => {
+                if let Some(before) = self.history.cancel_gesture() {
+                    self.return_to(before);
+                }
+            }
             Action::Undo => self.travel(History::undo),
             Action::Redo => self.travel(History::redo),
             Action::Show(mode) => self.mode = mode,
@@ -166,7 +189,7 @@ impl Editor {
         }
         self.animation_state.update(&self.scene);
         if matches!(self.selection, Selection::Keys) && self.timeline().selected.is_empty() {
-            self.selection = Selection::Camera;
+            self.select(Selected::default(), Selection::Camera);
         }
     }
 
@@ -180,9 +203,12 @@ impl Editor {
         self.replace(Document::empty(), None);
     }
 
-    /// Starts a document from the demo scene.
-    pub fn start_demo(&mut self) {
-        self.become_other(Self::demo());
+    /// Starts a document from an example.
+    pub fn start_example(&mut self, example: &Example) {
+        self.become_other(Self {
+            name: example.name,
+            ..Self::new(example.document(), None)
+        });
     }
 
     /// Takes what was read of a file in place of the document.
@@ -197,64 +223,13 @@ impl Editor {
         self.saves
     }
 
-    /// Whether another program has written the document's file since this window read or wrote it.
-    pub fn is_changed_outside(&self) -> bool {
-        match (&self.path, &self.stamp) {
-            (Some(path), Some(stamp)) => stamp.is_touched(path) && stamp.is_outdated(path),
-            _ => false,
-        }
-    }
-
-    /// Whether saving to `path` would replace something in the document's own file that this window has not
-    /// seen.
-    pub fn would_lose(&self, path: &Path) -> bool {
-        match (&self.path, &self.stamp) {
-            (Some(own), Some(stamp)) => is_same_file(own, path) && stamp.is_outdated(own),
-            _ => false,
-        }
-    }
-
-    /// Takes what another program has written in place of the scene, as a step that can be undone.
-    pub fn take_theirs(&mut self, (document, stamp): (Document, Stamp)) {
-        let before = Snapshot {
-            scene: Arc::clone(&self.scene),
-            selection: self.selection,
-        };
-        let theirs = Arc::new(document.scene);
-        self.header = document.header;
-        self.stamp = Some(stamp);
-        self.saves += 1;
-        self.saved = Arc::clone(&theirs);
-        if theirs == self.scene {
-            // Other words for the same.
-            self.is_dirty = false;
-            return;
-        }
-        self.history.end_gesture();
-        self.history.record("Reload".to_owned(), before, &theirs);
-        self.history.end_gesture();
-        self.set_scene(theirs);
-        self.notify(format!(
-            "{} was changed by another program and read anew; undo brings yours back",
-            self.title()
-        ));
-        self.tell_missing_meshes();
-    }
-
-    /// Keeps the scene beside what another program has written, if it can be read; the next save replaces
-    /// that.
-    pub fn keep_mine(&mut self, theirs: Option<(Document, Stamp)>) {
-        self.saves += 1;
-        let (theirs, stamp) = theirs.map_or((None, None), |(theirs, stamp)| {
-            (Some(Arc::new(theirs.scene)), Some(stamp))
-        });
-        self.is_dirty = theirs.as_ref() != Some(&self.scene);
-        self.saved = theirs.unwrap_or_else(|| Arc::clone(&self.saved));
-        self.stamp = stamp;
+    /// Grows when another document takes the place of the one that was open.
+    pub fn documents(&self) -> u64 {
+        self.documents
     }
 
     /// Says which meshes could not be read.
-    fn tell_missing_meshes(&mut self) {
+    pub(super) fn tell_missing_meshes(&mut self) {
         let mut problems = self.scene.mesh_problems();
         let Some((index, why)) = problems.next() else {
             return;
@@ -336,12 +311,13 @@ impl Editor {
     /// Takes another document's place; what is traced and what is said goes on.
     fn become_other(&mut self, other: Self) {
         let revision = self.revision + 1;
-        let saves = self.saves + 1;
+        let (saves, documents) = (self.saves + 1, self.documents + 1);
         let messages = std::mem::take(&mut self.messages);
         let animation_state = self.animation_state.start_again(&other.scene);
         *self = Self {
             revision,
             saves,
+            documents,
             animation_state,
             messages,
             ..other
@@ -366,33 +342,49 @@ impl Editor {
         if let Err(problem) = check_edit(&next, &self.scene) {
             return self.report_error(format!("{label}: {}", problem.sentence));
         }
-        let before = Snapshot {
-            scene: Arc::clone(&self.scene),
-            selection: self.selection,
-        };
+        let before = self.here();
         self.history.record(label, before, &next);
-        self.selection = selection;
+        if selection != self.selection {
+            self.select(Selected::only(selection), selection);
+        }
         self.set_scene(Arc::new(next));
     }
 
     fn travel(&mut self, step: fn(&mut History, Snapshot) -> Option<Snapshot>) {
-        let here = Snapshot {
-            scene: Arc::clone(&self.scene),
-            selection: self.selection,
-        };
+        let here = self.here();
         if let Some(there) = step(&mut self.history, here) {
-            self.selection = there.selection;
-            // Keys are known by their places, which may be others' now.
-            self.animation_state.deselect_keys();
-            self.set_scene(there.scene);
+            self.return_to(there);
         }
     }
 
-    fn set_scene(&mut self, scene: Arc<Scene>) {
+    pub(super) fn here(&self) -> Snapshot {
+        Snapshot {
+            scene: Arc::clone(&self.scene),
+            selection: self.selection,
+            selected: self.selected.clone(),
+        }
+    }
+
+    fn return_to(&mut self, there: Snapshot) {
+        self.select(there.selected, there.selection);
+        // Keys are known by their places, which may be others' now.
+        self.animation_state.deselect_keys();
+        self.set_scene(there.scene);
+    }
+
+    pub(super) fn select(&mut self, selected: Selected, selection: Selection) {
+        (self.selected, self.selection) = (selected, selection);
+    }
+
+    pub(super) fn set_scene(&mut self, scene: Arc<Scene>) {
         self.is_dirty = *scene != *self.saved;
         self.scene = scene;
         self.revision += 1;
-        self.selection = self.selection.within(&self.scene);
+        let items = self.selected.items().iter();
+        if items.clone().any(|item| item.name(&self.scene).is_none()) {
+            self.selection = self.selection.within(&self.scene);
+            self.selected = Selected::only(self.selection);
+        }
         if self.mode == Mode::HighRes {
             self.mode = Mode::Live;
         }

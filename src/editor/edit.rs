@@ -9,7 +9,9 @@ use crate::scene::{
     Animation, Camera, ColorPack, Light, LightObj, List, Mesh, Object, Render, Scene, Shape,
 };
 
+use super::clipboard::paste;
 use super::item::{Item, Kind};
+use super::names::{copy_offset, free_light_name, free_object_name, free_pack_name};
 use super::selection::Selection;
 
 /// A change of the scene. The `&'static str` names the field that changed: edits of one field
@@ -40,8 +42,10 @@ pub enum Edit {
     AddMesh(&'static str, Mesh),
     /// The parts of a mesh file as new objects.
     Import(Vec<Part>),
-    /// One mesh of this triangle and all that hang together with it.
-    Join(usize),
+    /// One mesh of these triangles and meshes, in ascending order.
+    Join(Vec<usize>),
+    /// Everything in this scene as well; packs that are there already are used.
+    Paste(Box<Scene>),
     /// Triangles of this mesh.
     Separate(usize),
     /// A new light here.
@@ -58,6 +62,8 @@ pub enum Edit {
     Move(Item, usize),
     /// A copy of its pack for this object alone.
     MakePackUnique(usize),
+    /// All of these, one after the other, in one step of this name.
+    Each(Vec<Edit>, String),
 }
 
 /// Why a change is refused.
@@ -99,7 +105,8 @@ impl Edit {
             Self::AddObject(shape) => format!("Add {}", shape.kind()),
             Self::AddMesh(name, _) => format!("Add {name}"),
             Self::Import(_) => "Import mesh".to_owned(),
-            Self::Join(index) => format!("Join {}", name(Item::object(*index))),
+            Self::Join(joined) => format!("Join {} objects", joined.len()),
+            Self::Paste(_) => "Paste".to_owned(),
             Self::Separate(index) => format!("Separate {}", name(Item::object(*index))),
             Self::AddLight(_) => "Add Light".to_owned(),
             Self::AddPack => "Add ColorPack".to_owned(),
@@ -110,6 +117,7 @@ impl Edit {
             Self::MakePackUnique(index) => {
                 format!("{}: own color pack", name(Item::object(*index)))
             }
+            Self::Each(_, label) => label.clone(),
         }
     }
 
@@ -138,7 +146,10 @@ impl Edit {
             }
             Self::AddMesh(name, mesh) => return Ok(select(add_object(scene, name, mesh.into()))),
             Self::Import(parts) => return Ok(select(Item::object(scene.add_parts(parts)))),
-            Self::Join(index) => return Ok(scene.join(index).map(Item::object).and_then(select)),
+            Self::Join(joined) => {
+                return Ok(scene.join(joined).map(Item::object).and_then(select));
+            }
+            Self::Paste(pasted) => paste(scene, &pasted),
             Self::Separate(index) => {
                 scene.separate(index);
             }
@@ -149,6 +160,11 @@ impl Edit {
             Self::Delete(item) => delete(scene, item)?,
             Self::Move(item, to) => return Ok(select(move_item(scene, item, to))),
             Self::MakePackUnique(index) => make_pack_unique(scene, index),
+            Self::Each(edits, _) => {
+                for edit in edits {
+                    edit.apply(scene)?;
+                }
+            }
         }
         Ok(None)
     }
@@ -163,36 +179,6 @@ fn replace<T: Clone>(list: &mut List<T>, index: usize, value: T) {
     if let Some(place) = list.get_mut(index) {
         *place = value;
     }
-}
-
-/// `wanted`, or the first of `BASE 2`, `BASE 3`, … that is not taken, where BASE is `wanted`
-/// without its number.
-fn free_name(wanted: &str, is_taken: impl Fn(&str) -> bool) -> String {
-    if !is_taken(wanted) {
-        return wanted.to_owned();
-    }
-    let base = wanted
-        .trim_end_matches(|c: char| c.is_ascii_digit())
-        .trim_end();
-    let base = if base.is_empty() { wanted } else { base };
-    let mut numbered = (1_u64..).map(|number| format!("{base} {number}"));
-    numbered.find(|name| !is_taken(name)).unwrap_or_default()
-}
-
-fn free_object_name(scene: &Scene, wanted: &str) -> String {
-    free_name(wanted, |name| {
-        scene.objects.iter().any(|object| object.name == name)
-    })
-}
-
-fn free_light_name(scene: &Scene, wanted: &str) -> String {
-    free_name(wanted, |name| {
-        scene.lights.iter().any(|light| light.name == name)
-    })
-}
-
-fn free_pack_name(scene: &Scene, wanted: &str) -> String {
-    free_name(wanted, |name| scene.color_packs.contains_key(name))
 }
 
 /// The pack that a new object or marker wears: the named one, any, or a new one.
@@ -273,20 +259,6 @@ fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
         kind,
         index: index + 1,
     })
-}
-
-/// From a shape to where its copy stands: two things in one place would shadow each other.
-fn copy_offset(scene: &Scene, shape: &Shape) -> DVec3 {
-    if let Some((low, high)) = shape.bounds() {
-        return DVec3::new((high - low).abs().max_element(), 0.0, 0.0);
-    }
-    let normal = shape
-        .endless_plane()
-        .and_then(|(_, normal)| normal.try_normalize());
-    let extent = scene
-        .bounds()
-        .map_or(1.0, |(low, high)| (high - low).length());
-    normal.map_or(DVec3::ZERO, |normal| normal * (extent / 20.0))
 }
 
 fn delete(scene: &mut Scene, item: Item) -> Result<(), EditError> {

@@ -6,7 +6,7 @@ use super::action::Mode;
 use super::animation_state::Pending;
 use super::document::Editor;
 use super::edit::Edit;
-use super::selection::Selection;
+use super::selection::{Selected, Selection};
 use super::timeline::{MEASURED_AT, Recording, Time};
 use crate::animate::{Seen, Simplified, simplify};
 use crate::scene::{Animation, Camera, Key, Take};
@@ -49,12 +49,13 @@ impl Editor {
                 self.leave_still();
             }
             Time::SelectKeys(places) => {
-                self.selection = if places.is_empty() {
+                let selection = if places.is_empty() {
                     Selection::Camera
                 } else {
                     Selection::Keys
                 };
                 timeline.selected = places;
+                self.select(Selected::default(), selection);
             }
             Time::Record if is_making_keys => {
                 self.notify("The last flight is still becoming keys".to_owned());

@@ -74,6 +74,21 @@ impl Flight {
         }
         next
     }
+
+    /// The camera on its way around a point, which stays where it is in the picture: turned to the right and
+    /// upwards by so many radians.
+    pub fn orbit(&mut self, camera: &Camera, about: DVec3, (yaw, pitch): (f64, f64)) -> Camera {
+        let turn = Motion {
+            yaw,
+            pitch,
+            ..Motion::default()
+        };
+        let mut next = self.step(camera, &turn);
+        if let (Some(from), Some(to)) = (camera.basis(), next.basis()) {
+            next.position = about + to * from.transpose().mul_vec3(camera.position - about);
+        }
+        next
+    }
 }
 
 #[cfg(test)]
@@ -96,6 +111,21 @@ mod tests {
         let (look, up) = (camera.look_at, camera.up);
         for error in [look.dot(look) - 1.0, up.dot(up) - 1.0, look.dot(up)] {
             assert!(error.abs() <= 1e-12, "{error:e}");
+        }
+    }
+
+    #[test]
+    fn what_is_circled_stays_where_it_is_in_the_picture() {
+        let (mut flight, mut camera) = (Flight::default(), Camera::default());
+        let about = camera.position + DVec3::new(-40.0, -60.0, -90.0);
+        let place = |camera: &Camera| camera.framing().and_then(|framing| framing.project(about));
+        let (before, distance) = (place(&camera), camera.position.distance(about));
+        for turn in [(0.4, 0.1), (-2.0, 3.0), (0.1, -0.7)] {
+            camera = flight.orbit(&camera, about, turn);
+            let [x, y] = place(&camera).expect("in front");
+            let [was_x, was_y] = before.expect("in front");
+            assert!((x - was_x).hypot(y - was_y) < 1e-9, "{turn:?}");
+            assert!((camera.position.distance(about) - distance).abs() < 1e-9);
         }
     }
 

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::selection::Selection;
+use super::selection::{Selected, Selection};
 use crate::scene::Scene;
 
 /// Steps that can be taken back; older ones are forgotten.
@@ -16,8 +16,10 @@ const MOST_BYTES: usize = 128 << 20;
 pub struct Snapshot {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// What was selected in it.
+    /// What the inspector showed.
     pub selection: Selection,
+    /// What was selected.
+    pub selected: Selected,
 }
 
 /// A step that was done, or taken back.
@@ -66,6 +68,12 @@ impl History {
         self.gesture = None;
     }
 
+    /// The state before the gesture that goes on, which is forgotten; `None` if nothing was done in it.
+    pub fn cancel_gesture(&mut self) -> Option<Snapshot> {
+        self.gesture.take()?;
+        self.done.pop_back().map(|step| step.there)
+    }
+
     /// The name of the last step.
     pub fn undo_label(&self) -> Option<&str> {
         self.done.back().map(|step| step.label.as_str())
@@ -109,6 +117,7 @@ mod tests {
         Snapshot {
             scene: Arc::new(scene.clone()),
             selection: Selection::default(),
+            selected: Selected::default(),
         }
     }
 

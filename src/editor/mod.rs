@@ -6,6 +6,10 @@ mod item;
 
 mod selection;
 
+mod names;
+
+mod clipboard;
+
 mod edit;
 
 mod fly;
@@ -20,14 +24,17 @@ mod animation_state;
 
 mod document;
 
+mod outside;
+
 mod flight;
 
 pub use action::{Action, Message, Mode};
+pub use clipboard::{excerpt, read};
 pub use document::Editor;
 pub use edit::{Edit, EditError};
 pub use fly::Motion;
 pub use item::{Item, Kind};
-pub use selection::Selection;
+pub use selection::{Selected, Selection};
 pub use timeline::{MEASURED_AT, Repeat, Time, Timeline};
 
 #[cfg(test)]

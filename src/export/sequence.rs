@@ -67,9 +67,16 @@ impl Sequence {
         })
     }
 
-    /// Frames per second of playing time.
+    /// Frames per second at which those that are exported play as fast as the animation: fewer where some
+    /// are left out.
     pub fn frames_per_second(&self) -> f64 {
-        self.scene.animation.frames_per_second
+        let whole = self.scene.animation.frames_per_second;
+        let (first, last) = (self.frames.iter().next(), self.frames.last());
+        let steps = self.frames.count().saturating_sub(1);
+        match (first, last) {
+            (Some(first), Some(last)) if steps > 0 => whole * steps as f64 / (last - first) as f64,
+            _ => whole,
+        }
     }
 
     /// Width and height in pixels.
@@ -190,5 +197,28 @@ fn disk(path: &Path, source: io::Error) -> ExportError {
     ExportError::Disk {
         path: path.to_owned(),
         source,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::EXAMPLES;
+
+    #[test]
+    fn every_third_frame_plays_at_the_speed_of_all() {
+        let flight = EXAMPLES.iter().find(|example| example.name == "flight");
+        let scene = Arc::new(flight.expect("the flight").document().scene);
+        for (frames, expected) in [("1-202", 14.0), ("1-202:3", 14.0 / 3.0), ("7", 14.0)] {
+            let sequence = Sequence::new(
+                Arc::clone(&scene),
+                Some(Frames::parse(frames).expect("frames")),
+                Pattern::default(),
+                Format::Ppm,
+                PathBuf::new(),
+            );
+            let found = sequence.expect("they are there").frames_per_second();
+            assert!((found - expected).abs() < 1e-12, "{frames}: {found}");
+        }
     }
 }

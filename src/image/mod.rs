@@ -6,6 +6,9 @@ mod encode;
 
 mod render;
 
+mod object_map;
+
 pub use buffer::Image;
 pub use encode::{Format, FormatError};
+pub use object_map::{ObjectMap, ObjectMapper, Thing};
 pub use render::{RenderCost, render, render_into};

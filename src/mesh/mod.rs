@@ -95,6 +95,17 @@ pub fn read_parts(path: &Path) -> Result<Vec<Part>, MeshError> {
     Ok(parts)
 }
 
+/// Reads a PLY file that is part of the program.
+///
+/// # Errors
+/// [`MeshError`]: where in it what is wrong.
+pub fn read_ply(bytes: &[u8]) -> Result<Triangles, MeshError> {
+    let path = Path::new("the program's own mesh");
+    let parts = ply::read(bytes, "").map_err(|fault| fault.of(path))?;
+    let triangles = parts.into_iter().next().map(|part| part.triangles);
+    Ok(triangles.unwrap_or_default())
+}
+
 /// Reads all parts of a mesh file as one mesh, in the coordinates of the file.
 ///
 /// # Errors

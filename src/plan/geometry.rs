@@ -38,6 +38,8 @@ pub struct Geometry<R> {
 #[derive(Clone, Debug, Default)]
 pub struct Kept<R> {
     last: Option<(Source, Arc<Geometry<R>>)>,
+    /// Meshes of other pictures.
+    others: Vec<Arc<PackedMesh<R>>>,
 }
 
 /// What the picture before was planned from, which the next one may need as well.
@@ -47,6 +49,14 @@ pub struct Planner {
     pub single: Kept<f32>,
     /// For double precision.
     pub double: Kept<f64>,
+}
+
+impl Planner {
+    /// What is planned next need not make meshes ready that are ready in `other`.
+    pub fn share_meshes(&mut self, other: &Self) {
+        self.single.share_meshes(&other.single);
+        self.double.share_meshes(&other.double);
+    }
 }
 
 /// What the geometry depends on.
@@ -75,6 +85,12 @@ impl Source {
 }
 
 impl<R: Real> Kept<R> {
+    fn share_meshes(&mut self, other: &Self) {
+        let theirs = other.last.iter();
+        let meshes = theirs.flat_map(|(_, last)| last.packed_meshes());
+        self.others = meshes.collect();
+    }
+
     /// The geometry of a scene, relative to `centre`: the last one, if nothing of it has changed.
     pub fn geometry(&mut self, scene: &Scene, centre: DVec3) -> Arc<Geometry<R>> {
         if let Some((source, geometry)) = &self.last
@@ -83,8 +99,14 @@ impl<R: Real> Kept<R> {
             return Arc::clone(geometry);
         }
         // The old one is not needed while the new one is made, but for meshes that have not changed.
-        let meshes = self.last.take().map(|(_, last)| last.packed_meshes());
-        let geometry = Geometry::new(scene, centre, meshes.unwrap_or_default());
+        let mut meshes = std::mem::take(&mut self.others);
+        meshes.extend(
+            self.last
+                .take()
+                .iter()
+                .flat_map(|(_, last)| last.packed_meshes()),
+        );
+        let geometry = Geometry::new(scene, centre, meshes);
         let geometry = Arc::new(geometry);
         self.last = Some((Source::of(scene, centre), Arc::clone(&geometry)));
         geometry
@@ -177,9 +199,9 @@ impl<R: Real> Geometry<R> {
         coarse.chain(meshes.filter(move |_| is_fine))
     }
 
-    fn packed_meshes(&self) -> Vec<Arc<PackedMesh<R>>> {
+    fn packed_meshes(&self) -> impl Iterator<Item = Arc<PackedMesh<R>>> {
         let meshes = self.meshes.iter();
-        meshes.map(|instance| Arc::clone(&instance.mesh)).collect()
+        meshes.map(|instance| Arc::clone(&instance.mesh))
     }
 
     /// How many primitives there are, triangles of meshes included.

@@ -49,10 +49,9 @@ impl Scene {
         (0..found.len()).filter(|&object| found[object]).collect()
     }
 
-    /// Puts a mesh in place of the triangle at `index` and all that hang together with it, with the name
-    /// and the pack of the first. Gives the index of the mesh; `None` if that is no triangle.
-    pub fn join(&mut self, index: usize) -> Option<usize> {
-        let joined = self.connected_triangles(index);
+    /// Puts a mesh in place of the triangles and meshes at these indices, in ascending order, with the name
+    /// and the pack of the first. Gives the index of the mesh; `None` if something else is among them.
+    pub fn join(&mut self, joined: Vec<usize>) -> Option<usize> {
         let first = *joined.first()?;
         let (mut numbers, mut points) = (HashMap::new(), Vec::new());
         let mut number = |point: DVec3| {
@@ -61,14 +60,22 @@ impl Scene {
                 points.len() as u32 - 1
             })
         };
-        let triangles = joined
-            .iter()
-            .filter_map(|&index| match &self.objects[index].shape {
-                Shape::Triangle(triangle) => Some(triangle.corners()),
-                _ => None,
-            });
-        let faces: Vec<_> = triangles.map(|corners| corners.map(&mut number)).collect();
-        let mesh = Mesh::of(Triangles::new(points, faces).ok()?).centred();
+        let (mut faces, mut smooth) = (Vec::new(), 0.0_f64);
+        for &index in &joined {
+            match &self.objects.get(index)?.shape {
+                Shape::Triangle(triangle) => faces.push(triangle.corners().map(&mut number)),
+                Shape::Mesh(mesh) => {
+                    smooth = smooth.max(mesh.smooth);
+                    let corners = world_corners(mesh);
+                    faces.extend(corners.map(|corners| corners.map(&mut number)));
+                }
+                _ => return None,
+            }
+        }
+        let mesh = Mesh {
+            smooth,
+            ..Mesh::of(Triangles::new(points, faces).ok()?).centred()
+        };
         let mut rest = joined.into_iter().peekable();
         let objects = self
             .objects
@@ -101,23 +108,16 @@ impl Scene {
             return false;
         }
         let rotation = Target::ObjectRotation(object.name.clone());
-        let transform = mesh.transform();
-        let is_mirrored = transform.matrix3.determinant() < 0.0;
         let others = self
             .objects
             .iter()
             .filter(|other| other.name != object.name);
         let mut names = Names::new(others.map(|other| other.name.as_str()));
-        let pieces: Vec<Object> = triangles
-            .corners()
-            .map(|corners| {
-                let [a, b, c] = corners.map(|corner| transform.transform_point3(corner));
-                let (b, c) = if is_mirrored { (c, b) } else { (b, c) };
-                Object {
-                    name: names.take(&object.name),
-                    shape: Triangle { a, b, c }.into(),
-                    ..object.clone()
-                }
+        let pieces: Vec<Object> = world_corners(mesh)
+            .map(|[a, b, c]| Object {
+                name: names.take(&object.name),
+                shape: Triangle { a, b, c }.into(),
+                ..object.clone()
             })
             .collect();
         let before = self.objects.iter().take(index).cloned();
@@ -131,6 +131,16 @@ impl Scene {
         }
         true
     }
+}
+
+/// The corners of each face where they are in the world, clockwise seen from outside.
+fn world_corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {
+    let transform = mesh.transform();
+    let is_mirrored = transform.matrix3.determinant() < 0.0;
+    mesh.source.triangles().corners().map(move |corners| {
+        let [a, b, c] = corners.map(|corner| transform.transform_point3(corner));
+        if is_mirrored { [a, c, b] } else { [a, b, c] }
+    })
 }
 
 #[cfg(test)]
@@ -148,7 +158,8 @@ mod tests {
             .position(is_triangle)
             .expect("a triangle");
         let mut scene = demo.clone();
-        assert_eq!(scene.join(first + 2), Some(first));
+        let connected = scene.connected_triangles(first + 2);
+        assert_eq!(scene.join(connected), Some(first));
         assert_eq!(scene.objects.len(), demo.objects.len() - 5);
         assert_eq!(check(&scene), Ok(()));
         assert_eq!(scene.objects[first].name, demo.objects[first].name);
@@ -164,5 +175,22 @@ mod tests {
         };
         assert_eq!(shapes(&scene), shapes(&demo));
         assert!(demo.connected_triangles(0).is_empty(), "a sphere");
+    }
+
+    #[test]
+    fn meshes_and_triangles_become_one_mesh_where_they_are() {
+        let mut scene = Scene::demo();
+        assert_eq!(scene.join(vec![0, 2]), None, "a sphere");
+        assert_eq!(scene.join(vec![2, 3, 4]), Some(2));
+        let Shape::Mesh(mesh) = &mut scene.objects[2].shape else {
+            panic!("a mesh");
+        };
+        (mesh.rotation, mesh.scale) = (DVec3::new(10.0, 20.0, 30.0), DVec3::new(-1.0, 2.0, 1.0));
+        let (low, high) = scene.objects[2].shape.bounds().expect("it ends");
+        assert_eq!(scene.join(vec![2, 3]), Some(2));
+        assert_eq!((scene.faces(), check(&scene)), (4, Ok(())));
+        let (new_low, new_high) = scene.objects[2].shape.bounds().expect("it ends");
+        let slack = DVec3::splat(60.0);
+        assert!(new_low.cmple(low + slack).all() && new_high.cmpge(high - slack).all());
     }
 }

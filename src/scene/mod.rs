@@ -30,6 +30,10 @@ mod whole;
 
 mod differences;
 
+mod aspect;
+
+mod hints;
+
 mod import;
 
 mod join;
@@ -44,15 +48,20 @@ mod parse_errors;
 
 mod file;
 
+mod examples;
+
 mod recovery;
 
 pub use animation::{
     Animation, Easing, Interpolation, Key, Lens, MAX_SECONDS, Sample, Take, Target, Track, Value,
 };
+pub use aspect::Aspect;
 pub use camera::{Camera, Framing, Projection};
 pub use check::{Problem, check, check_edit};
 pub use differences::differences;
+pub use examples::{EXAMPLES, Example};
 pub use file::{DEMO_TEXT, Document, SceneError, read_text};
+pub use hints::{About, Hint, hints};
 pub use join::MOST_SEPARATE;
 pub use list::List;
 pub use locate::PathStep;

@@ -151,7 +151,8 @@ impl Scene {
         scene
     }
 
-    fn change_meshes(&mut self, change: impl Fn(&Mesh) -> Mesh) {
+    /// Puts another mesh in place of each.
+    pub(super) fn change_meshes(&mut self, change: impl Fn(&Mesh) -> Mesh) {
         let meshes = self.objects.iter().enumerate();
         let meshes = meshes.filter_map(|(index, object)| match object.shape {
             Shape::Mesh(_) => Some(index),

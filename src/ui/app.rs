@@ -1,33 +1,37 @@
 //! The window's frame: reads input, shows the panels, applies what they asked for, and hands the
 //! scene to the render thread.
 
-use egui::{CentralPanel, Context, Frame, Margin, Panel, Theme, Ui, ViewportCommand};
+use egui::{Context, Theme, Ui, ViewportCommand};
 
 use super::autosave::Autosave;
 use super::commands::{Command, is_about_files, pressed};
+use super::examples::Examples;
 use super::exports::Exports;
 use super::files::{FileOutcome, Files, Next};
+use super::finder::Finder;
 use super::flying::Flying;
 use super::lab::Lab;
 use super::menu::Layout;
 use super::outliner::Outliner;
 use super::pictures::Pictures;
-use super::reading::Reading;
 use super::requests::UiRequests;
+use super::scene_check::SceneCheck;
 use super::screenshot::Screenshot;
 use super::setup::Setup;
-use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, TIMELINE, palette};
 use super::timeline::{Overlay, Thumbs, TimelinePanel};
 use super::toasts::Toasts;
-use super::viewport::{Place, describe, fit};
-use super::{help, inspector, menu, status, theme};
+use super::tools::Tools;
+use super::{help, theme};
 use crate::editor::{Action, Editor, Mode, Time};
 use crate::image::Image;
 use crate::mesh::is_mesh_file;
+use crate::scene::Scene;
 use crate::worker::{Answer, RenderThreadError};
 
 /// Where the list of recent files is kept between runs.
 const RECENT_KEY: &str = "recent files";
+/// Where it is kept which panels are shown.
+const LAYOUT_KEY: &str = "layout";
 /// Where the choice of the theme is kept between runs.
 const THEME_KEY: &str = "theme";
 
@@ -41,16 +45,26 @@ pub struct App {
     pub(super) timeline: TimelinePanel,
     pub(super) exports: Exports,
     pub(super) overlay: Overlay,
+    pub(super) tools: Tools,
     pub(super) thumbs: Thumbs,
     pub(super) toasts: Toasts,
     pub(super) flying: Flying,
     pub(super) layout: Layout,
     pub(super) shortcuts_open: bool,
+    /// Whether all panels are hidden.
+    pub(super) is_alone: bool,
+    pub(super) finder: Finder,
+    pub(super) examples: Examples,
+    pub(super) check: SceneCheck,
     pub(super) keys_are_taken: bool,
     /// Commands for the next frame.
     pub(super) deferred: Vec<Command>,
     /// The revision at which the user said that the window may close.
     pub(super) closing: Option<u64>,
+    /// The text that was copied last, and what it describes.
+    pub(super) copied: Option<(String, Scene)>,
+    /// When Escape had nothing to leave.
+    pub(super) escaped: Option<f64>,
     pub(super) title: String,
     pub(super) theme: Theme,
     pub(super) autosave: Autosave,
@@ -74,6 +88,10 @@ impl App {
         let recent = cc
             .storage
             .and_then(|storage| eframe::get_value(storage, RECENT_KEY));
+        let layout = cc
+            .storage
+            .and_then(|storage| eframe::get_value::<Layout>(storage, LAYOUT_KEY))
+            .unwrap_or_default();
         let mut app = Self {
             editor: Editor::demo(),
             pictures: Pictures::new(&cc.egui_ctx)?,
@@ -83,26 +101,28 @@ impl App {
             timeline: TimelinePanel::default(),
             exports: Exports::default(),
             overlay: Overlay::default(),
+            tools: Tools::default(),
             thumbs: Thumbs::default(),
             toasts: Toasts::default(),
             flying: Flying::default(),
-            layout: Layout {
-                outliner: true,
-                inspector: true,
-                flight: true,
-                shot: true,
-                actual_size: false,
-            },
+            layout,
             shortcuts_open: false,
+            is_alone: false,
+            finder: Finder::default(),
+            examples: Examples::default(),
+            check: SceneCheck::default(),
             keys_are_taken: false,
             deferred: Vec::new(),
             closing: None,
+            copied: None,
+            escaped: None,
             title: String::new(),
             theme: cc.egui_ctx.theme(),
             autosave: Autosave::default(),
             screenshot: setup.screenshot,
         };
         app.exports.is_open = setup.exports;
+        (app.timeline.is_open, app.lab.is_open) = (layout.timeline, layout.lab);
         if let Some(path) = setup.scene {
             app.files.open_now(&mut app.editor, &path);
         }
@@ -130,103 +150,6 @@ impl App {
     /// The picture on screen.
     pub fn shown_picture(&self) -> Option<&Image> {
         self.pictures.shown(&self.editor).map(|frame| &*frame.image)
-    }
-
-    fn show_panels(
-        &mut self,
-        ui: &mut Ui,
-        out: &mut UiRequests,
-    ) -> Option<(Place, egui::Response)> {
-        let side = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(GRID as i8, 0));
-        Panel::top("menu").show(ui, |ui| {
-            menu::show(ui, &self.editor, &self.files.recent, &mut self.layout, out);
-        });
-        Panel::bottom("status").exact_size(ROW).show(ui, |ui| {
-            let frame = self.pictures.shown(&self.editor);
-            let live = frame.map_or(String::new(), |frame| describe(frame, self.editor.shown()));
-            let text = self.lab.describe().unwrap_or(live);
-            let kept = self.autosave.kept_since();
-            let reading = self.files.reading().map(Reading::describe);
-            let note = reading.or_else(|| self.exports.describe(&self.pictures));
-            let note = note.or_else(|| kept.map(status::autosaved));
-            status::show(ui, &text, &self.pictures.activity(), note, out);
-        });
-        if self.lab.is_open {
-            let panel = Panel::bottom("lab").frame(side).resizable(true);
-            let shown = panel
-                .default_size(LAB)
-                .size_range(160.0..=600.0)
-                .show(ui, |ui| self.lab.show(ui, &self.editor, out));
-            if let Some(wish) = shown.inner {
-                self.pictures.fulfil(wish);
-            }
-        }
-        if self.timeline.is_open {
-            let per_second = self.pictures.per_second();
-            // Where nothing moves, the room is the picture's.
-            let panel = if self.editor.scene().animation.is_still() {
-                Panel::bottom("timeline without keys").exact_size(3.0 * ROW)
-            } else {
-                let panel = Panel::bottom("timeline").resizable(true);
-                panel.default_size(TIMELINE).size_range(64.0..=600.0)
-            };
-            panel.frame(side).show(ui, |ui| {
-                self.timeline
-                    .show(ui, &self.editor, &self.thumbs, per_second, out);
-            });
-        }
-        if self.layout.outliner {
-            Panel::left("outliner")
-                .frame(side)
-                .default_size(OUTLINER)
-                .size_range(160.0..=420.0)
-                .show(ui, |ui| {
-                    self.outliner.show(ui, &self.editor, out);
-                });
-        }
-        if self.layout.inspector {
-            Panel::right("inspector")
-                .frame(side)
-                .default_size(INSPECTOR)
-                .size_range(INSPECTOR..=480.0)
-                .show(ui, |ui| {
-                    inspector::show(ui, &self.editor, out);
-                });
-        }
-        let behind = Frame::new().fill(palette(ui.ctx()).window);
-        CentralPanel::no_frame()
-            .frame(behind)
-            .show(ui, |ui| self.show_picture(ui, out))
-            .inner
-    }
-
-    fn show_picture(
-        &mut self,
-        ui: &mut Ui,
-        out: &mut UiRequests,
-    ) -> Option<(Place, egui::Response)> {
-        let area = ui.max_rect();
-        let place = fit(
-            area.shrink(GRID),
-            self.editor.scene(),
-            ui.pixels_per_point(),
-        );
-        if let Some(response) = self.lab.show_picture(ui, place) {
-            return Some((place, response));
-        }
-        let is_still = self.pictures.shown_still(&self.editor).is_some();
-        let response = if is_still && self.layout.actual_size {
-            self.pictures.screen.show_still_at_actual_size(ui)?
-        } else {
-            self.pictures.screen.show(ui, place, is_still)
-        };
-        if !is_still && self.layout.flight {
-            self.overlay.show(ui, &self.editor, place.rect, out);
-        }
-        if !is_still && self.layout.shot {
-            self.thumbs.show_shot(ui, &self.editor, place.rect);
-        }
-        Some((place, response))
     }
 
     pub(super) fn act_on(&mut self, ctx: &Context, outcome: Option<FileOutcome>) {
@@ -294,13 +217,25 @@ impl eframe::App for App {
         self.pictures.poll(ctx, &mut self.editor);
         let is_measuring = self.pictures.is_measuring();
         self.lab.update(is_measuring, self.pictures.take_study());
-        self.thumbs.take(ctx, self.pictures.take_thumbnails());
+        let mut small = self.pictures.take_thumbnails();
+        self.examples.take(ctx, &mut small);
+        self.thumbs.take(ctx, small);
+        let wishes = self.examples.wishes(ctx.pixels_per_point());
+        if !wishes.is_empty() {
+            self.pictures.request_thumbnails(wishes);
+        }
         for answer in self.pictures.take_answers() {
             match answer {
                 Answer::Survey(take, seen) => {
                     self.editor.apply(Action::Time(Time::Surveyed(take, seen)));
                 }
                 Answer::Visible(revision, ticks) => self.overlay.take_visible(revision, ticks),
+                Answer::Objects(revision, map, without) => {
+                    let selected = self.tools.take(revision, map, &without);
+                    if let Some(selected) = selected {
+                        self.editor.apply(Action::SelectItems(selected));
+                    }
+                }
             }
         }
         self.exports.update(&mut self.editor, &self.pictures);
@@ -324,6 +259,9 @@ impl eframe::App for App {
             self.act_on(ctx, outcome);
         }
         self.autosave.tick(ctx, &mut self.editor);
+        let is_busy = ctx.input(|input| input.pointer.any_down());
+        self.check
+            .update(&self.editor, is_busy || self.flying.is_flying());
         self.theme = ctx.theme();
         self.show_title(ctx);
     }
@@ -349,15 +287,17 @@ impl eframe::App for App {
         let ctx = ui.ctx().clone();
         self.exports
             .show(&ctx, &mut self.editor, &self.pictures, &mut out);
+        self.finder.show(&ctx, &self.editor, &mut out);
         // Still pictures are looked at, not flown through: they would be gone.
         let flown = picture.as_ref().map(|(_, response)| response);
         let is_still = self.editor.mode == Mode::HighRes || self.lab.is_looking();
         let flown = flown.filter(|_| !is_still);
-        let motion = self
-            .flying
-            .step(ui, flown, keys_are_free, self.editor.scene());
+        // Space presses a button that has the focus, and does not lift the camera as well.
+        let flies = keys_are_free && ui.memory(|memory| memory.focused().is_none());
+        let motion = self.flying.step(ui, flown, flies, self.editor.scene());
         out.actions.extend(motion.map(Action::Fly));
         let questions = std::mem::take(&mut out.questions);
+        let before = self.editor.revision();
         for action in out.actions {
             self.editor.apply(action);
         }
@@ -369,6 +309,10 @@ impl eframe::App for App {
         for command in out.commands {
             self.run(&ctx, command);
         }
+        if self.editor.revision() != before {
+            // What was measured before is not what is edited.
+            self.lab.leave();
+        }
         let outcome = self.files.show(ui, &mut self.editor);
         self.act_on(&ctx, outcome);
         help::show(&ctx, &mut self.shortcuts_open);
@@ -376,13 +320,21 @@ impl eframe::App for App {
         if !is_gesture {
             self.editor.end_gesture();
         }
-        self.keys_are_taken =
-            ui.text_edit_focused() || egui::Popup::is_any_open(&ctx) || self.files.is_asking();
+        self.keys_are_taken = ui.text_edit_focused()
+            || egui::Popup::is_any_open(&ctx)
+            || self.files.is_asking()
+            || self.finder.is_open
+            || self.tools.is_dragging();
         let messages = std::mem::take(&mut self.editor.messages);
         self.toasts.push(&ctx, messages);
-        self.toasts.show(&ctx);
+        let whole = ctx.content_rect();
+        self.toasts.show(
+            &ctx,
+            picture.as_ref().map_or(whole, |(place, _)| place.rect),
+        );
         if let Some((place, _)) = picture {
-            self.pictures.submit(&self.editor, place.pixels);
+            self.pictures
+                .submit(&self.editor, place.pixels, self.layout.aspect);
             if let Some(wishes) = self.thumbs.wishes(&ctx, &self.editor, place.rect) {
                 self.pictures.request_thumbnails(wishes);
             }
@@ -400,6 +352,12 @@ impl eframe::App for App {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         eframe::set_value(storage, RECENT_KEY, &self.files.recent);
         eframe::set_value(storage, THEME_KEY, &self.theme);
+        let layout = Layout {
+            timeline: self.timeline.is_open,
+            lab: self.lab.is_open,
+            ..self.layout
+        };
+        eframe::set_value(storage, LAYOUT_KEY, &layout);
     }
 
     fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {

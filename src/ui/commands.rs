@@ -5,15 +5,15 @@ use std::path::PathBuf;
 
 use egui::{Event, Key, KeyboardShortcut, Modifiers, Ui};
 
-use crate::editor::{Editor, Motion};
+use crate::editor::Editor;
 
 /// Something the user asks of the window as a whole.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Command {
     /// Start an empty document.
     New,
-    /// Open the demo scene.
-    OpenDemo,
+    /// Open the example in this place of [`crate::scene::EXAMPLES`].
+    OpenExample(usize),
     /// Choose a file and open it.
     Open,
     /// Open this file.
@@ -32,6 +32,16 @@ pub enum Command {
     Undo,
     /// Bring the step taken back again.
     Redo,
+    /// Put the selected items on the clipboard, as text.
+    Copy,
+    /// The same, and delete them.
+    Cut,
+    /// Ask for what is on the clipboard.
+    RequestPaste,
+    /// Add what a text from the clipboard describes.
+    Paste(String),
+    /// Select all objects that wear the pack of the selected one.
+    SelectSamePack,
     /// Copy the selected item.
     Duplicate,
     /// Delete the selected item.
@@ -94,10 +104,24 @@ pub enum Command {
     ImportPath,
     /// Choose a file and write the keys to it.
     ExportPath,
+    /// Everything that is selected into the picture.
+    FrameSelected,
+    /// Everything into the picture.
+    FrameAll,
+    /// Look along -z.
+    ViewFront,
+    /// Look along -x.
+    ViewRight,
+    /// Look down.
+    ViewTop,
     /// Show or hide the timeline.
     Timeline,
     /// Show or hide the lab.
     Lab,
+    /// Hide all panels, or show them again.
+    PictureAlone,
+    /// Look for a command or a thing by its name.
+    Find,
     /// Show or hide the list of shortcuts.
     Shortcuts,
 }
@@ -144,7 +168,12 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     Perspective [plain(Key::P)] "Perspective projection",
     MarkersOff [plain(Key::U)] "Hide light markers",
     MarkersOn [plain(Key::I), plain(Key::Num1)] "Show light markers",
-    Escape [plain(Key::Escape)] "Leave the current mode; then quit",
+    FrameSelected [plain(Key::F)] "What is selected into the picture",
+    FrameAll [plain(Key::Home)] "Everything into the picture",
+    ViewFront [ctrl(Key::Num1)] "View from the front",
+    ViewRight [ctrl(Key::Num3)] "View from the right",
+    ViewTop [ctrl(Key::Num7)] "View from above",
+    Escape [plain(Key::Escape)] "Leave what is going on; then deselect",
     New [ctrl(Key::N)] "New scene",
     Open [ctrl(Key::O)] "Open a scene",
     SaveAs [ctrl_shift(Key::S)] "Save under another name",
@@ -154,8 +183,11 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     Quit [ctrl(Key::Q)] "Quit",
     Redo [ctrl_shift(Key::Z), ctrl(Key::Y)] "Redo",
     Undo [ctrl(Key::Z)] "Undo",
-    Duplicate [ctrl(Key::D)] "Duplicate the selected item",
-    Delete [plain(Key::Delete)] "Delete the selected item",
+    Copy [ctrl(Key::C)] "Copy what is selected, as text",
+    Cut [ctrl(Key::X)] "Cut what is selected",
+    RequestPaste [ctrl(Key::V)] "Paste objects and lights, also text written by hand",
+    Duplicate [ctrl(Key::D)] "Duplicate what is selected",
+    Delete [plain(Key::Delete)] "Delete what is selected",
     Rename [plain(Key::F2)] "Rename the selected item",
     MoveUp [alt(Key::ArrowUp)] "Move the selected item up",
     MoveDown [alt(Key::ArrowDown)] "Move the selected item down",
@@ -170,116 +202,26 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     NextKey [plain(Key::CloseBracket)] "Next key",
     FrameBack [plain(Key::Comma)] "One frame back",
     FrameOn [plain(Key::Period)] "One frame on",
-    FirstFrame [plain(Key::Home)] "First frame",
-    LastFrame [plain(Key::End)] "Last frame",
+    FirstFrame [ctrl(Key::Home)] "First frame",
+    LastFrame [ctrl(Key::End), plain(Key::End)] "Last frame",
+    PictureAlone [plain(Key::F11)] "Hide or show everything but the picture",
+    Find [ctrl(Key::K)] "Find a command or a thing by name",
     Shortcuts [plain(Key::F1)] "Show these shortcuts",
 };
 
-/// A key that flies the camera for as long as it is held.
-#[derive(Clone, Copy, Debug)]
-pub struct FlightKey {
-    /// The key; `None` is the control key by itself.
-    pub key: Option<Key>,
-    /// Direction: 1 is the flying speed, or the turning speed.
-    pub motion: Motion,
-    /// What Help says about it.
-    pub what: &'static str,
-}
-
-const STILL: Motion = Motion {
-    forward: 0.0,
-    right: 0.0,
-    up: 0.0,
-    yaw: 0.0,
-    pitch: 0.0,
-};
-
-/// Every flight key.
-pub const FLIGHT: &[FlightKey] = &[
-    FlightKey {
-        key: Some(Key::W),
-        motion: Motion {
-            forward: 1.0,
-            ..STILL
-        },
-        what: "Fly forward",
-    },
-    FlightKey {
-        key: Some(Key::S),
-        motion: Motion {
-            forward: -1.0,
-            ..STILL
-        },
-        what: "Fly back",
-    },
-    FlightKey {
-        key: Some(Key::A),
-        motion: Motion {
-            right: -1.0,
-            ..STILL
-        },
-        what: "Fly left",
-    },
-    FlightKey {
-        key: Some(Key::D),
-        motion: Motion {
-            right: 1.0,
-            ..STILL
-        },
-        what: "Fly right",
-    },
-    FlightKey {
-        key: Some(Key::Space),
-        motion: Motion { up: 1.0, ..STILL },
-        what: "Fly up",
-    },
-    FlightKey {
-        key: None,
-        motion: Motion { up: -1.0, ..STILL },
-        what: "Fly down",
-    },
-    FlightKey {
-        key: Some(Key::ArrowLeft),
-        motion: Motion { yaw: -1.0, ..STILL },
-        what: "Turn left",
-    },
-    FlightKey {
-        key: Some(Key::ArrowRight),
-        motion: Motion { yaw: 1.0, ..STILL },
-        what: "Turn right",
-    },
-    FlightKey {
-        key: Some(Key::ArrowUp),
-        motion: Motion {
-            pitch: 1.0,
-            ..STILL
-        },
-        what: "Look up",
-    },
-    FlightKey {
-        key: Some(Key::ArrowDown),
-        motion: Motion {
-            pitch: -1.0,
-            ..STILL
-        },
-        what: "Look down",
-    },
+/// The commands that have no key.
+pub const KEYLESS: &[(Command, &str)] = &[
+    (Command::Live, "Live view"),
+    (Command::OpenExample(0), "Open the demo"),
+    (Command::ImportMesh, "Import a mesh"),
+    (Command::ExportJob, "Export a job for a render farm"),
+    (Command::ImportPath, "Import the path of the camera"),
+    (Command::ExportPath, "Export the path of the camera"),
+    (
+        Command::SelectSamePack,
+        "Select all objects with the same color pack",
+    ),
 ];
-
-/// What the mouse does in the picture.
-pub const MOUSE: &[(&str, &str)] = &[
-    ("Right button, drag", "Look around"),
-    ("Wheel", "Fly forward and back"),
-    ("Shift, held", "Fly four times as fast"),
-    ("Left button, on a key", "Move the key"),
-];
-
-impl FlightKey {
-    /// The key in words.
-    pub fn name(&self) -> &'static str {
-        self.key.map_or("Left Ctrl", Key::name)
-    }
-}
 
 /// The commands whose keys were pressed in this frame. A key that repeats because it is held
 /// commands nothing more, but undo and redo; while keys fly the camera, none with Ctrl counts. Keys
@@ -288,6 +230,19 @@ pub fn pressed(ui: &Ui, is_flying: bool, is_heard: impl Fn(&Command) -> bool) ->
     let mut pressed = Vec::new();
     ui.input_mut(|input| {
         input.events.retain(|event| {
+            // The desktop's own keys for these come as what they mean.
+            let from_desktop = match event {
+                Event::Copy => Some(Command::Copy),
+                Event::Cut => Some(Command::Cut),
+                Event::Paste(text) => Some(Command::Paste(text.clone())),
+                _ => None,
+            };
+            if let Some(command) = from_desktop.filter(|command| is_heard(command)) {
+                // Selected words of a message can be copied too.
+                let is_copy = command == Command::Copy;
+                pressed.push(command);
+                return is_copy;
+            }
             let Event::Key {
                 key,
                 pressed: true,
@@ -347,23 +302,53 @@ pub fn name_of(ui: &Ui, keys: KeyboardShortcut) -> String {
         .fold(name, |name, (word, sign)| name.replace(word, sign))
 }
 
+/// Why the command would do nothing now, if so.
+pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
+    use crate::editor::Selection;
+    let nothing = "nothing is selected";
+    match command {
+        Command::Undo => editor.undo_label().is_none().then_some("nothing to undo"),
+        Command::Redo => editor.redo_label().is_none().then_some("nothing to redo"),
+        Command::Delete => {
+            let has = matches!(editor.selection, Selection::Item(_) | Selection::Keys);
+            (!has).then_some(nothing)
+        }
+        Command::Duplicate
+        | Command::Copy
+        | Command::Cut
+        | Command::SelectSamePack
+        | Command::Rename
+        | Command::MoveUp
+        | Command::MoveDown => {
+            let has = matches!(editor.selection, Selection::Item(_));
+            (!has).then_some(nothing)
+        }
+        Command::Play if editor.scene().animation.is_still() => Some("nothing moves yet"),
+        Command::SelectKeys
+        | Command::PreviousKey
+        | Command::NextKey
+        | Command::LookThrough
+        | Command::ExportPath => {
+            let has = !editor.scene().animation.keys.is_empty();
+            (!has).then_some("the camera has no keys yet")
+        }
+        Command::Record if editor.timeline().recorded().is_some() => Some("it records already"),
+        Command::StopRecording if editor.timeline().recorded().is_none() => {
+            Some("nothing is recorded")
+        }
+        _ => None,
+    }
+}
+
 /// Whether the command would do anything now.
 pub fn is_enabled(command: &Command, editor: &Editor) -> bool {
-    use crate::editor::Selection;
-    match command {
-        Command::Undo => editor.undo_label().is_some(),
-        Command::Redo => editor.redo_label().is_some(),
-        Command::Delete => matches!(editor.selection, Selection::Item(_) | Selection::Keys),
-        Command::Duplicate | Command::Rename | Command::MoveUp | Command::MoveDown => {
-            matches!(editor.selection, Selection::Item(_))
-        }
-        _ => true,
-    }
+    obstacle(command, editor).is_none()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ui::flight_keys::FLIGHT;
 
     #[test]
     fn no_key_does_two_things() {

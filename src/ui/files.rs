@@ -16,7 +16,7 @@ use super::reading::{Read, Reading};
 use crate::editor::{Action, Edit, Editor};
 use crate::files::Stamp;
 use crate::mesh::Part;
-use crate::scene::{Document, SceneError};
+use crate::scene::{Document, EXAMPLES, SceneError};
 
 /// A dialog that comes back empty sooner than a hand can cancel it was never shown.
 const NO_DIALOG: Duration = Duration::from_millis(400);
@@ -30,8 +30,8 @@ const RECENT: usize = 10;
 pub enum Next {
     /// Start an empty document.
     New,
-    /// Start from the demo.
-    Demo,
+    /// Start from the example in this place.
+    Example(usize),
     /// Choose a file and open it.
     Choose,
     /// Open this file.
@@ -344,7 +344,9 @@ impl Files {
     fn go_on(&mut self, ctx: &Context, editor: &mut Editor, next: Next) -> Option<FileOutcome> {
         match next {
             Next::New => editor.start_new(),
-            Next::Demo => editor.start_demo(),
+            Next::Example(place) => EXAMPLES.get(place).into_iter().for_each(|example| {
+                editor.start_example(example);
+            }),
             Next::Choose => self.ask(ctx, editor, Ask::OpenScene),
             Next::Open(path) => self.open(ctx, editor, &path),
             Next::Quit => return Some(FileOutcome::Quit),

@@ -3,7 +3,7 @@
 
 use egui::{Context, PointerButton, Response, Ui};
 
-use super::commands::{FLIGHT, FlightKey};
+use super::flight_keys::{FLIGHT, FlightKey};
 use crate::editor::Motion;
 use crate::scene::Scene;
 
@@ -23,8 +23,6 @@ const LONGEST_FRAME: f64 = 0.1;
 const CTRL_DELAY: f64 = 0.2;
 /// Seconds without the wheel after which its next turn is a step of its own.
 const WHEEL_QUIET: f64 = 0.4;
-/// Scene extents per point of wheel movement.
-const WHEEL_EXTENTS: f64 = 0.0008;
 
 /// What the flight keys need to remember.
 #[derive(Debug, Default)]
@@ -71,9 +69,8 @@ impl Flying {
         if self.keys_fly {
             ui.request_repaint();
         }
-        let wheel = picture.map_or(0.0, |picture| self.wheel(ui, picture));
         let mut motion = Motion::default();
-        if self.keys_fly || wheel != 0.0 {
+        if self.keys_fly {
             let fast = if ui.input(|input| input.modifiers.shift) {
                 FAST
             } else {
@@ -82,7 +79,6 @@ impl Flying {
             let speed = speed(scene) * fast;
             let seconds = f64::from(ui.input(|input| input.stable_dt)).min(LONGEST_FRAME);
             motion = held.times(speed * seconds, TURN_SPEED * seconds);
-            motion.forward += wheel * WHEEL_EXTENTS / EXTENTS_PER_SECOND * speed;
         }
         if let Some(picture) = picture.filter(|p| p.dragged_by(PointerButton::Secondary)) {
             let moved = picture.drag_motion();
@@ -93,7 +89,7 @@ impl Flying {
     }
 
     /// Points that the wheel turned over the picture.
-    fn wheel(&mut self, ui: &Ui, picture: &Response) -> f64 {
+    pub fn wheel(&mut self, ui: &Ui, picture: &Response) -> f64 {
         if !picture.hovered() {
             return 0.0;
         }

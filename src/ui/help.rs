@@ -2,7 +2,8 @@
 
 use egui::{Context, Grid, RichText, ScrollArea, Ui, Window};
 
-use super::commands::{FLIGHT, MOUSE, SHORTCUTS, name_of};
+use super::commands::{SHORTCUTS, name_of};
+use super::flight_keys::{FLIGHT, MOUSE};
 use super::theme::{GRID, palette};
 
 /// Shows the list while `open`.

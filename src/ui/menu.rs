@@ -3,19 +3,22 @@
 use std::path::PathBuf;
 
 use egui::{Button, Context, MenuBar, Theme, Ui};
+use serde::{Deserialize, Serialize};
 
 use super::add::add_menu;
 use super::commands::{Command, is_enabled, key_of};
+use super::examples::Examples;
 use super::icons;
 use super::inspector::target;
 use super::menu_entry::{ITEM_COMMANDS, entry};
 use super::requests::UiRequests;
 use crate::animate::{Preset, Retime};
 use crate::editor::{Edit, Editor, Mode, Selection, Time};
-use crate::scene::{Animation, Projection};
+use crate::scene::{Animation, Aspect, Projection};
 
 /// What of the window can be shown or hidden.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a tick in the menu")]
 pub struct Layout {
     /// The panel on the left.
@@ -28,18 +31,40 @@ pub struct Layout {
     pub shot: bool,
     /// Whether the still picture is shown one pixel to one pixel, with scroll bars.
     pub actual_size: bool,
+    /// Whether the timeline was shown when the window was closed.
+    pub timeline: bool,
+    /// Whether the lab was.
+    pub lab: bool,
+    /// What of the light the live view shows.
+    #[serde(skip)]
+    pub aspect: Aspect,
+}
+
+impl Default for Layout {
+    fn default() -> Self {
+        Self {
+            outliner: true,
+            inspector: true,
+            flight: true,
+            shot: true,
+            actual_size: false,
+            timeline: true,
+            lab: false,
+            aspect: Aspect::All,
+        }
+    }
 }
 
 /// Shows the bar.
 pub fn show(
     ui: &mut Ui,
     editor: &Editor,
-    recent: &[PathBuf],
+    (recent, examples): (&[PathBuf], &mut Examples),
     layout: &mut Layout,
     out: &mut UiRequests,
 ) {
     MenuBar::new().ui(ui, |ui| {
-        ui.menu_button("File", |ui| file_menu(ui, recent, out));
+        ui.menu_button("File", |ui| file_menu(ui, (recent, examples), out));
         ui.menu_button("Edit", |ui| edit_menu(ui, editor, out));
         ui.menu_button("Add", |ui| add_menu(ui, editor.scene(), out));
         ui.menu_button("View", |ui| view_menu(ui, editor, layout, out));
@@ -54,6 +79,7 @@ pub fn show(
         });
         ui.menu_button("Animate", |ui| animate_menu(ui, editor, out));
         ui.menu_button("Help", |ui| {
+            entry(ui, "Find by name…", Command::Find, true, out);
             entry(ui, "Shortcuts", Command::Shortcuts, true, out);
             ui.separator();
             ui.weak(concat!("Glint ", env!("CARGO_PKG_VERSION")));
@@ -64,7 +90,7 @@ pub fn show(
     });
 }
 
-fn file_menu(ui: &mut Ui, recent: &[PathBuf], out: &mut UiRequests) {
+fn file_menu(ui: &mut Ui, (recent, examples): (&[PathBuf], &mut Examples), out: &mut UiRequests) {
     entry(ui, "New", Command::New, true, out);
     entry(ui, "Open…", Command::Open, true, out);
     ui.add_enabled_ui(!recent.is_empty(), |ui| {
@@ -84,7 +110,7 @@ fn file_menu(ui: &mut Ui, recent: &[PathBuf], out: &mut UiRequests) {
             }
         });
     });
-    entry(ui, "Open demo", Command::OpenDemo, true, out);
+    ui.menu_button("Open example", |ui| examples.menu(ui, out));
     entry(ui, "Import mesh…", Command::ImportMesh, true, out);
     ui.separator();
     entry(ui, "Save", Command::Save, true, out);
@@ -122,6 +148,7 @@ fn edit_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         let enabled = is_enabled(&command, editor);
         entry(ui, text, command, enabled, out);
     }
+    entry(ui, "Paste", Command::RequestPaste, true, out);
 }
 
 fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequests) {
@@ -130,6 +157,27 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
     entry(ui, "Perspective", Command::Perspective, true, out);
     entry(ui, "Orthographic", Command::Orthographic, true, out);
     ui.separator();
+    for (text, command) in [
+        ("Frame what is selected", Command::FrameSelected),
+        ("Frame everything", Command::FrameAll),
+        ("From the front", Command::ViewFront),
+        ("From the right", Command::ViewRight),
+        ("From above", Command::ViewTop),
+    ] {
+        entry(ui, text, command, true, out);
+    }
+    ui.separator();
+    ui.menu_button("Show of the light", |ui| {
+        for (aspect, name, hint) in Aspect::EACH {
+            if ui
+                .radio(layout.aspect == aspect, name)
+                .on_hover_text(hint)
+                .clicked()
+            {
+                layout.aspect = aspect;
+            }
+        }
+    });
     ui.checkbox(&mut layout.actual_size, "High-res at actual size");
     ui.checkbox(&mut layout.outliner, "Outliner");
     ui.checkbox(&mut layout.inspector, "Inspector");

@@ -6,8 +6,11 @@ use super::commands::{Command, key_of};
 use super::requests::UiRequests;
 
 /// What can be done to the selected item.
-pub const ITEM_COMMANDS: [(&str, Command); 5] = [
+pub const ITEM_COMMANDS: [(&str, Command); 8] = [
+    ("Cut", Command::Cut),
+    ("Copy", Command::Copy),
     ("Rename", Command::Rename),
+    ("Select all with this pack", Command::SelectSamePack),
     ("Duplicate", Command::Duplicate),
     ("Move up", Command::MoveUp),
     ("Move down", Command::MoveDown),

@@ -3,6 +3,8 @@
 
 mod autosave;
 
+mod flight_keys;
+
 mod commands;
 
 mod dialogs;
@@ -35,6 +37,10 @@ mod reading;
 
 mod files;
 
+mod upload;
+
+mod examples;
+
 mod raster;
 
 mod rows;
@@ -45,15 +51,19 @@ mod menu;
 
 mod outliner;
 
+mod finder;
+
+mod scene_check;
+
 mod status;
 
 mod toasts;
 
-mod upload;
+mod viewport;
+
+mod tools;
 
 mod timeline;
-
-mod viewport;
 
 mod lab;
 
@@ -63,13 +73,16 @@ mod exports;
 
 mod app;
 
+mod panels;
+
 mod run;
 
 mod window;
 
 pub use app::App;
-pub use commands::{Command, FLIGHT, SHORTCUTS};
+pub use commands::{Command, SHORTCUTS};
 pub use dialogs::{Ask, Dialogs};
+pub use flight_keys::FLIGHT;
 pub use lab::{chart_picture, growth_picture, stability_picture};
 pub use setup::Setup;
 pub use window::{NoWindow, run};

@@ -14,7 +14,7 @@ use crate::export::{ExportError, Sequence};
 use crate::image::Image;
 use crate::lab::Study;
 use crate::plan::RenderRequest;
-use crate::scene::{Sampling, Take};
+use crate::scene::{Aspect, Sampling, Take};
 use crate::worker::{
     Activity, Answer, BUDGET, Event, ExportState, Frame, LiveJob, Pace, QueryJob, Question,
     RenderThreadError, StillJob, ThumbnailJob, Worker,
@@ -59,7 +59,7 @@ pub struct Pictures {
     /// The pictures on the graphics card.
     pub screen: Display,
     rhythm: Rhythm,
-    submitted: Option<(u64, (u32, u32), Pace)>,
+    submitted: Option<(u64, (u32, u32), Pace, Aspect)>,
     still_requested: Option<(u64, (u32, u32))>,
     /// The take whose survey was asked for.
     surveyed: Option<Arc<Take>>,
@@ -249,8 +249,9 @@ impl Pictures {
         self.worker.cancel_still();
     }
 
-    /// Asks for what the picture area, `pixels` large, needs and does not have.
-    pub fn submit(&mut self, editor: &Editor, pixels: (u32, u32)) {
+    /// Asks for what the picture area, `pixels` large, needs and does not have; the live view shows
+    /// `aspect` of the light.
+    pub fn submit(&mut self, editor: &Editor, pixels: (u32, u32), aspect: Aspect) {
         let revision = editor.shown_revision();
         if editor.mode == Mode::HighRes {
             let wanted = (revision, still_size(editor));
@@ -270,13 +271,16 @@ impl Pictures {
             }
             Mode::Live | Mode::HighRes => (pixels, Pace::Within(BUDGET)),
         };
-        if self.submitted == Some((revision, size, pace)) {
+        if self.submitted == Some((revision, size, pace, aspect)) {
             return;
         }
-        self.submitted = Some((revision, size, pace));
+        self.submitted = Some((revision, size, pace, aspect));
         self.worker.submit(LiveJob {
             revision,
-            scene: editor.shown().clone(),
+            scene: match aspect {
+                Aspect::All => editor.shown().clone(),
+                _ => Arc::new(aspect.of(editor.shown())),
+            },
             request: RenderRequest {
                 sampling: match pace {
                     Pace::Whole => Sampling::Centres,

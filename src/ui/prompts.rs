@@ -87,6 +87,8 @@ pub struct PathPrompt {
     ask: Ask,
     text: String,
     is_new: bool,
+    /// Why a folder could not be made.
+    problem: Option<String>,
 }
 
 impl PathPrompt {
@@ -96,6 +98,7 @@ impl PathPrompt {
             ask,
             text: suggested.display().to_string(),
             is_new: true,
+            problem: None,
         }
     }
 
@@ -117,12 +120,17 @@ impl PathPrompt {
             let label = ui.weak("Path (this desktop offers no file dialog)");
             let field = TextEdit::singleline(&mut self.text).desired_width(f32::INFINITY);
             let field = ui.add(field).labelled_by(label.id);
+            if field.changed() {
+                self.problem = None;
+            }
             if self.is_new {
                 field.request_focus();
                 self.is_new = false;
             }
-            let warning = self.warning().unwrap_or_default();
-            ui.colored_label(palette(ui.ctx()).accent, warning);
+            let warning = self.warning();
+            let is_possible = warning.as_ref().is_none_or(|warning| warning.is_possible);
+            let words = warning.map_or(String::new(), |warning| warning.words);
+            ui.colored_label(palette(ui.ctx()).accent, words);
             ui.add_space(GRID);
             ui.horizontal(|ui| {
                 let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
@@ -131,9 +139,21 @@ impl PathPrompt {
                 } else {
                     "Open file"
                 };
-                let is_done = primary(ui, word).clicked() || entered;
-                if is_done && !self.text.trim().is_empty() {
+                let can = is_possible && !self.text.trim().is_empty();
+                let button = ui.add_enabled_ui(can, |ui| primary(ui, word)).inner;
+                if can && (button.clicked() || entered) {
                     *answer = Answer::Yes;
+                } else if entered {
+                    // What was typed is not lost: it can be mended.
+                    field.request_focus();
+                }
+                if let Some(folder) = self.missing_folder()
+                    && ui.button("Create folder").clicked()
+                {
+                    let made = std::fs::create_dir_all(&folder);
+                    self.problem = made
+                        .err()
+                        .map(|error| format!("{}: {error}", folder.display()));
                 }
                 if ui.button("Cancel").clicked() {
                     *answer = Answer::Cancel;
@@ -142,16 +162,49 @@ impl PathPrompt {
         })
     }
 
-    fn warning(&self) -> Option<String> {
+    /// The folder of a file to be written, if it is not there.
+    fn missing_folder(&self) -> Option<PathBuf> {
         let path = self.path();
-        match (self.ask.writes(), path.is_file()) {
-            (true, true) => Some(format!("Replaces {}", path.display())),
-            (false, false) if !self.text.ends_with('/') => {
-                Some(format!("There is no {}", path.display()))
-            }
+        let folder = path.parent().filter(|_| self.ask.writes())?;
+        let is_there = folder.as_os_str().is_empty() || folder.is_dir();
+        (!is_there).then(|| folder.to_owned())
+    }
+
+    fn warning(&self) -> Option<Warning> {
+        let path = self.path();
+        let is_there = path.is_file() || self.ask == Ask::ExportFolder;
+        if let Some(words) = self.problem.clone() {
+            return Some(Warning {
+                words,
+                is_possible: false,
+            });
+        }
+        if let Some(folder) = self.missing_folder() {
+            let words = format!("There is no folder {}", folder.display());
+            return Some(Warning {
+                words,
+                is_possible: false,
+            });
+        }
+        match (self.ask.writes(), is_there) {
+            (true, true) if path.is_file() => Some(Warning {
+                words: format!("Replaces {}", path.display()),
+                is_possible: true,
+            }),
+            (false, false) => Some(Warning {
+                words: format!("There is no file {}", path.display()),
+                is_possible: false,
+            }),
             _ => None,
         }
     }
+}
+
+/// What is to be known of a path.
+struct Warning {
+    words: String,
+    /// Whether it can be used all the same.
+    is_possible: bool,
 }
 
 /// A question over the window, which Escape answers with [`Answer::Cancel`].

@@ -1,20 +1,32 @@
 //! What each command comes to.
 
-use egui::Context;
+use std::path::Path;
+
+use egui::{Context, ViewportCommand};
+use glam::DVec3;
 
 use super::app::App;
 use super::commands::{Command, is_enabled};
 use super::dialogs::Ask;
 use super::files::{FileOutcome, Next};
 use super::timeline::actions;
-use crate::editor::{Action, Edit, Editor, Mode, Selection, Time};
-use crate::scene::Projection;
+use super::tools::{axis_camera, framing_camera};
+use crate::editor::{
+    Action, Edit, Editor, Item, Kind, Mode, Selected, Selection, Time, excerpt, read,
+};
+use crate::scene::{Aspect, Document, Projection, Scene};
+
+/// Seconds within which Escape twice asks to quit.
+const TWICE: f64 = 3.0;
 
 impl App {
     pub(super) fn run(&mut self, ctx: &Context, command: Command) {
         let outcome = match command {
             Command::New => self.files.start(ctx, &mut self.editor, Next::New),
-            Command::OpenDemo => self.files.start(ctx, &mut self.editor, Next::Demo),
+            Command::OpenExample(place) => {
+                self.files
+                    .start(ctx, &mut self.editor, Next::Example(place))
+            }
             Command::Open => self.files.start(ctx, &mut self.editor, Next::Choose),
             Command::OpenRecent(path) => self.files.start(ctx, &mut self.editor, Next::Open(path)),
             Command::Quit => self.files.start(ctx, &mut self.editor, Next::Quit),
@@ -22,7 +34,7 @@ impl App {
             Command::SaveAs => self.ask(ctx, Ask::SaveScene),
             Command::SaveImage => self.ask(ctx, Ask::SaveImage),
             Command::Escape => {
-                self.escape();
+                self.escape(ctx);
                 None
             }
             Command::ImportMesh => self.ask(ctx, Ask::ImportMesh),
@@ -34,6 +46,24 @@ impl App {
             }
             Command::ExportJob => self.ask(ctx, Ask::ExportJob),
             Command::ExportFolder => self.ask(ctx, Ask::ExportFolder),
+            Command::Live | Command::LowRes | Command::HighRes if self.lab.leave() => {
+                return self.run(ctx, command);
+            }
+            Command::Copy | Command::Cut if is_enabled(&command, &self.editor) => {
+                self.copy(ctx);
+                if command == Command::Cut {
+                    return self.run(ctx, Command::Delete);
+                }
+                None
+            }
+            Command::RequestPaste => {
+                ctx.send_viewport_cmd(ViewportCommand::RequestPaste);
+                None
+            }
+            Command::Paste(text) => {
+                self.paste(&text);
+                None
+            }
             // The two share the room below the picture.
             Command::Lab => {
                 self.lab.is_open = !self.lab.is_open;
@@ -43,6 +73,14 @@ impl App {
             Command::Timeline => {
                 self.timeline.is_open = !self.timeline.is_open;
                 self.lab.is_open = false;
+                None
+            }
+            Command::PictureAlone => {
+                self.is_alone = !self.is_alone;
+                None
+            }
+            Command::Find => {
+                self.finder.open();
                 None
             }
             Command::Shortcuts => {
@@ -58,6 +96,54 @@ impl App {
             }
         };
         self.act_on(ctx, outcome);
+    }
+
+    fn copy(&mut self, ctx: &Context) {
+        let scene = excerpt(self.editor.scene(), self.editor.selected());
+        let document = Document {
+            header: String::new(),
+            scene,
+        };
+        match document.to_text() {
+            Ok(text) => {
+                ctx.copy_text(text.clone());
+                // Text says where the triangles of a mesh are, and not what they are.
+                self.copied = Some((text, document.scene));
+            }
+            Err(error) => self.editor.report_error(error.to_string()),
+        }
+    }
+
+    /// Adds what a text describes, and selects it.
+    fn paste(&mut self, text: &str) {
+        let copied = self.copied.as_ref().filter(|(copied, _)| copied == text);
+        let pasted = match copied {
+            Some((_, scene)) => Ok(scene.clone()),
+            None => read(text, self.editor.scene()).map(|mut scene| {
+                let path = self.editor.path();
+                scene.load_meshes(path.and_then(Path::parent));
+                scene
+            }),
+        };
+        let pasted = match pasted {
+            Ok(pasted) => pasted,
+            Err(error) => {
+                let problem = format!("The clipboard holds no objects or lights: {error}");
+                return self.editor.report_error(problem);
+            }
+        };
+        let before = self.editor.revision();
+        let (lights, objects) = (pasted.lights.len(), pasted.objects.len());
+        self.editor
+            .apply(Action::Edit(Edit::Paste(Box::new(pasted))));
+        if self.editor.revision() != before {
+            let scene = self.editor.scene();
+            let (all_lights, all_objects) = (scene.lights.len(), scene.objects.len());
+            let new = (all_lights - lights..all_lights).map(Item::light);
+            let new = new.chain((all_objects - objects..all_objects).map(Item::object));
+            let new = Selected::all(new);
+            self.editor.apply(Action::SelectItems(new));
+        }
     }
 
     /// The commands that are actions of the editor.
@@ -76,6 +162,16 @@ impl App {
                 self.pictures.cancel_still();
                 Action::Show(Mode::Live)
             }
+            Command::FrameSelected | Command::FrameAll => {
+                let only_selected = *command == Command::FrameSelected;
+                let Some(camera) = framing_camera(editor, only_selected) else {
+                    return;
+                };
+                Action::Edit(Edit::Camera(camera, "frame"))
+            }
+            Command::ViewFront => seen_along(editor, DVec3::NEG_Z),
+            Command::ViewRight => seen_along(editor, DVec3::NEG_X),
+            Command::ViewTop => seen_along(editor, DVec3::NEG_Y),
             Command::Perspective => projected(editor, Projection::Perspective),
             Command::Orthographic => projected(editor, Projection::Orthographic),
             Command::MarkersOn => Action::Edit(Edit::LightVisualization(true)),
@@ -87,6 +183,13 @@ impl App {
                     .without_keys(&editor.timeline().selected);
                 Action::Edit(Edit::animation(kept, "Delete keys"))
             }
+            Command::SelectSamePack => {
+                let Selection::Item(item) = editor.selection else {
+                    return;
+                };
+                Action::SelectItems(with_same_pack(editor.scene(), item))
+            }
+            many if editor.selected().items().len() > 1 => return on_many(editor, many),
             on_item => match (on_item, editor.selection) {
                 (Command::Rename, Selection::Item(item)) => {
                     self.layout.outliner = true;
@@ -112,12 +215,20 @@ impl App {
         None
     }
 
-    /// Leaves the innermost mode; in none, asks to quit.
-    fn escape(&mut self) {
-        if self.shortcuts_open {
+    /// Leaves the innermost of what is going on; where nothing is, the second time asks to quit.
+    fn escape(&mut self, ctx: &Context) {
+        let time = ctx.input(|input| input.time);
+        let last = self.escaped.take();
+        if self.is_alone {
+            self.is_alone = false;
+        } else if self.shortcuts_open {
             self.shortcuts_open = false;
-        } else if self.lab.leave() {
-            // The live view is back.
+        } else if self.exports.is_open {
+            self.exports.is_open = false;
+        } else if self.layout.aspect != Aspect::All {
+            self.layout.aspect = Aspect::All;
+        } else if self.outliner.clear_filter() || self.lab.leave() {
+            // Everything is listed, or the live view is back.
         } else if self.editor.timeline().recorded().is_some() {
             self.editor.apply(Action::Time(Time::Stop));
         } else if self.editor.timeline().is_playing {
@@ -125,10 +236,85 @@ impl App {
         } else if self.editor.mode != Mode::Live {
             self.pictures.cancel_still();
             self.editor.apply(Action::Show(Mode::Live));
-        } else {
+        } else if self.editor.looks_through() {
+            self.editor.apply(Action::Time(Time::LookThrough(false)));
+        } else if self.editor.selection != Selection::Camera {
+            self.editor.apply(Action::Select(Selection::Camera));
+        } else if last.is_some_and(|last| time - last < TWICE) {
             self.files.ask_to_quit(&self.editor);
+        } else {
+            self.escaped = Some(time);
+            self.editor
+                .notify("Ctrl+Q quits; so does Esc once more".to_owned());
         }
     }
+}
+
+/// Every object that wears the pack of an object, or the pack that is the item.
+fn with_same_pack(scene: &Scene, item: Item) -> Selected {
+    let pack = match item.kind {
+        Kind::Object => scene
+            .objects
+            .get(item.index)
+            .map(|object| &object.color_pack),
+        Kind::Pack => scene
+            .color_packs
+            .get_index(item.index)
+            .map(|(name, _)| name),
+        Kind::Light => None,
+    };
+    let objects = scene.objects.iter().enumerate();
+    let wearing = objects.filter(|(_, object)| Some(&object.color_pack) == pack);
+    let others = wearing
+        .map(|(index, _)| Item::object(index))
+        .filter(|other| *other != item);
+    let own = (item.kind == Kind::Object).then_some(item);
+    Selected::all(others.chain(own))
+}
+
+/// Does to everything that is selected what can be done to more than one thing.
+fn on_many(editor: &mut Editor, command: &Command) {
+    let mut items = editor.selected().items().to_vec();
+    items.sort_unstable_by_key(|item| item.index);
+    let count = items.len();
+    let before = editor.revision();
+    match command {
+        Command::Delete => {
+            // From the last on: what is done to one does not move those before it.
+            let edits = items.iter().rev().map(|item| Edit::Delete(*item));
+            let edit = Edit::Each(edits.collect(), format!("Delete {count} items"));
+            editor.apply(Action::Edit(edit));
+            if editor.revision() != before {
+                editor.apply(Action::Select(Selection::Camera));
+            }
+        }
+        Command::Duplicate => {
+            // Each copy stands behind its original, and moves those after it.
+            let moved = |item: &Item, by: usize| Item {
+                kind: item.kind,
+                index: item.index + by,
+            };
+            let earlier = |item: &Item| {
+                let is_earlier =
+                    |other: &&Item| other.kind == item.kind && other.index < item.index;
+                items.iter().filter(is_earlier).count()
+            };
+            let edits = items
+                .iter()
+                .map(|item| Edit::Duplicate(moved(item, earlier(item))));
+            let edit = Edit::Each(edits.collect(), format!("Duplicate {count} items"));
+            editor.apply(Action::Edit(edit));
+            if editor.revision() != before {
+                let copies = items.iter().map(|item| moved(item, earlier(item) + 1));
+                editor.apply(Action::SelectItems(Selected::all(copies)));
+            }
+        }
+        _ => {}
+    }
+}
+
+fn seen_along(editor: &Editor, direction: DVec3) -> Action {
+    Action::Edit(Edit::Camera(axis_camera(editor, direction), "view"))
 }
 
 fn projected(editor: &Editor, projection: Projection) -> Action {

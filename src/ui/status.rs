@@ -6,7 +6,9 @@ use egui::{Align, Layout, ProgressBar, RichText, Ui};
 
 use super::commands::Command;
 use super::requests::UiRequests;
+use super::scene_check::SceneCheck;
 use super::theme::palette;
+use crate::scene::Scene;
 use crate::worker::Activity;
 
 /// Time after which a running picture is worth showing that it runs.
@@ -23,10 +25,13 @@ pub fn show(
     picture: &str,
     activity: &Activity,
     note: Option<String>,
+    (check, scene): (&SceneCheck, &Scene),
     out: &mut UiRequests,
 ) {
     ui.horizontal_centered(|ui| {
         ui.label(RichText::new(picture).monospace().weak());
+        ui.spacing_mut().interact_size.y = BAR;
+        check.show(ui, scene, out);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| match activity {
             Activity::Still {
                 done,

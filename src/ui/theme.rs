@@ -64,7 +64,21 @@ pub struct Palette {
     pub selected: Color32,
     /// Errors, and nothing else.
     pub error: Color32,
+    /// The x, y and z axes.
+    pub axes: [Color32; 3],
+    /// What is drawn over pictures.
+    pub on_picture: Color32,
+    /// Around that, so that it is seen on any picture.
+    pub halo: Color32,
 }
+
+const AXES: [Color32; 3] = [
+    Color32::from_rgb(0xF0, 0x85, 0x5A),
+    Color32::from_rgb(0x8F, 0xD1, 0x6A),
+    Color32::from_rgb(0x6F, 0xA8, 0xF5),
+];
+const ON_PICTURE: Color32 = Color32::from_rgb(0xF4, 0xF5, 0xF8);
+const HALO: Color32 = Color32::from_rgba_premultiplied(0, 0, 0, 150);
 
 const DARK: Palette = Palette {
     window: Color32::from_rgb(0x16, 0x18, 0x1D),
@@ -79,6 +93,9 @@ const DARK: Palette = Palette {
     curve: Color32::from_rgb(0x5C, 0xC8, 0xC2),
     selected: Color32::from_rgb(0x4A, 0x3D, 0x22),
     error: Color32::from_rgb(0xFF, 0x6B, 0x6B),
+    axes: AXES,
+    on_picture: ON_PICTURE,
+    halo: HALO,
 };
 
 const LIGHT: Palette = Palette {
@@ -94,6 +111,9 @@ const LIGHT: Palette = Palette {
     curve: Color32::from_rgb(0x00, 0x86, 0x80),
     selected: Color32::from_rgb(0xF6, 0xE2, 0xB8),
     error: Color32::from_rgb(0xC6, 0x28, 0x28),
+    axes: AXES,
+    on_picture: ON_PICTURE,
+    halo: HALO,
 };
 
 /// The colours of the theme that is on.

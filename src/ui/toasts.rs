@@ -1,6 +1,6 @@
-//! Messages in the lower right corner: what happened, until read; what went wrong, until dismissed.
+//! Messages in the lower right corner of the picture: what happened, until read; what went wrong, until dismissed.
 
-use egui::{Align2, Area, Context, Frame, Id, Margin, RichText, ScrollArea, Stroke, vec2};
+use egui::{Align2, Area, Context, Frame, Id, Margin, Rect, RichText, ScrollArea, Stroke, vec2};
 
 use super::icons;
 use super::theme::{GRID, palette};
@@ -38,8 +38,8 @@ impl Toasts {
         self.shown.drain(..excess);
     }
 
-    /// Draws them above the status line.
-    pub fn show(&mut self, ctx: &Context) {
+    /// Draws them at the lower edge of the picture area.
+    pub fn show(&mut self, ctx: &Context, area: Rect) {
         let now = ctx.input(|input| input.time);
         self.shown
             .retain(|toast| toast.message.is_error || now - toast.since < LIFETIME);
@@ -51,17 +51,18 @@ impl Toasts {
         if let Some(seconds) = next.reduce(f64::min) {
             ctx.request_repaint_after_secs(seconds as f32);
         }
-        let mut height = 4.0 * GRID;
+        let mut height = 2.0 * GRID;
         let mut dismissed = None;
         for (index, toast) in self.shown.iter().enumerate().rev() {
-            let area = Area::new(Id::unique(("toast", index)))
-                .anchor(Align2::RIGHT_BOTTOM, vec2(-2.0 * GRID, -height))
+            let shown = Area::new(Id::unique(("toast", index)))
+                .pivot(Align2::RIGHT_BOTTOM)
+                .fixed_pos(area.max - vec2(2.0 * GRID, height))
                 .order(egui::Order::Foreground)
                 .show(ctx, |ui| draw(ui, &toast.message));
-            if area.inner {
+            if shown.inner {
                 dismissed = Some(index);
             }
-            height += area.response.rect.height() + GRID;
+            height += shown.response.rect.height() + GRID;
         }
         if let Some(index) = dismissed {
             self.shown.remove(index);

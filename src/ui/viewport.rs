@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use egui::{
     Color32, Context, Painter, Pos2, Rect, Response, ScrollArea, Sense, Stroke, StrokeKind,
-    TextureFilter, TextureHandle, TextureOptions, TextureWrapMode, Ui, Vec2, pos2, vec2,
+    TextureFilter, TextureHandle, TextureOptions, TextureWrapMode, Ui, UiBuilder, Vec2, pos2, vec2,
 };
 
-use super::theme::palette;
+use super::icons;
+use super::theme::{GRID, ROW, palette};
 use super::upload::{changes, piece, whole};
 use crate::scene::{Sampling, Scene};
 use crate::worker::Frame;
@@ -134,6 +135,22 @@ impl Display {
             .rect_stroke(place.rect, 0, line, StrokeKind::Outside);
         response
     }
+}
+
+/// Says in a corner of the picture what it is, where it is not the live view. Whether that is to be left.
+pub fn badge(ui: &mut Ui, place: Place, name: &str) -> bool {
+    let corner = place.rect.min + vec2(GRID, GRID);
+    let size = vec2(place.rect.width() - 2.0 * GRID, ROW);
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    let room = UiBuilder::new().max_rect(Rect::from_min_size(corner, size));
+    let words = (name, icons::text(icons::CLOSE));
+    let shown = ui.scope_builder(room.layout(layout), |ui| {
+        let button = egui::Button::new(words).fill(palette(ui.ctx()).panel);
+        ui.add(button)
+            .accessible_name(format!("Leave {name}"))
+            .on_hover_text("Back to the live view (Esc)")
+    });
+    shown.inner.clicked()
 }
 
 /// A coarse picture has every `step`-th pixel: each is drawn as a square around its own place, so

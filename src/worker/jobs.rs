@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use crate::animate::Seen;
 use crate::export::Exported;
-use crate::image::{Image, RenderCost};
+use crate::image::{Image, ObjectMap, RenderCost, Thing};
 use crate::plan::RenderRequest;
 use crate::scene::{Camera, Sampling, Scene, Take};
 
@@ -74,6 +74,9 @@ pub enum Question {
     Survey(Arc<Take>, Vec<Vec<Seen>>),
     /// Which points the camera sees; the number is the asker's.
     Visible(u64, Box<Camera>, Vec<DVec3>),
+    /// Which object is seen at each pixel of a picture, as if these were not there; the number is the
+    /// asker's.
+    Objects(u64, Box<RenderRequest>, Vec<Thing>),
 }
 
 /// The answer to a [`Question`].
@@ -83,6 +86,8 @@ pub enum Answer {
     Survey(Arc<Take>, Vec<Vec<Seen>>),
     /// For the question of this number: whether nothing stands before each point.
     Visible(u64, Vec<(DVec3, bool)>),
+    /// For the question of this number: what is seen at each pixel without these.
+    Objects(u64, ObjectMap, Vec<Thing>),
 }
 
 /// A small picture for the side: traced when no live view waits, never stopped, one sample per pixel.

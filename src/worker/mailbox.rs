@@ -46,6 +46,7 @@ impl Job {
                 (&old.question, &new.question),
                 (Question::Survey(..), Question::Survey(..))
                     | (Question::Visible(..), Question::Visible(..))
+                    | (Question::Objects(..), Question::Objects(..))
             ),
             (Self::Thumbnail(old), Self::Thumbnail(new)) => old.name == new.name,
             // A still picture to look at is of the past once the scene has changed.

@@ -12,7 +12,7 @@ use super::mailbox::Job;
 use super::shared::Shared;
 use super::task::panic_text;
 use crate::export::{ExportStep, Exporting, save_image};
-use crate::image::{Image, render_into};
+use crate::image::{Image, ObjectMapper, render_into};
 use crate::lab::Study;
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::Sampling;
@@ -36,6 +36,7 @@ pub fn run(shared: &Shared, threads: &Threads) {
     let mut budget = Budget::new();
     let mut frame_pool = FramePool::default();
     let mut planner = Planner::default();
+    let mut mapper = ObjectMapper::default();
     let mut woken = Instant::now();
     while let Some((mut job, control)) = next_job(shared) {
         let outcome = catch_unwind(AssertUnwindSafe(|| {
@@ -51,7 +52,7 @@ pub fn run(shared: &Shared, threads: &Threads) {
                     live.run(&control, &mut budget, start);
                     JobOutcome::Ended
                 }
-                Job::Query(job) => answer(shared, job, &control),
+                Job::Query(job) => answer(shared, job, &mut mapper, (&planner, &control)),
                 Job::Thumbnail(job) => thumbnail(shared, job, &mut planner),
                 Job::Still(job) => still(shared, job, &mut planner, &control),
                 Job::Export(_, exporting) => JobOutcome::Export(exporting.step(&control)),
@@ -173,13 +174,21 @@ fn finish_piece(shared: &Shared, study: Box<Study>, outcome: &JobOutcome) -> boo
     has_more && is_wanted
 }
 
-fn answer(shared: &Shared, job: &mut QueryJob, control: &RenderControl) -> JobOutcome {
+fn answer(
+    shared: &Shared,
+    job: &mut QueryJob,
+    mapper: &mut ObjectMapper,
+    (planner, control): (&Planner, &RenderControl),
+) -> JobOutcome {
     let answer = match &mut job.question {
         Question::Survey(take, seen) => survey(take, &job.scene, seen, control)
             .then(|| Answer::Survey(Arc::clone(take), std::mem::take(seen))),
         Question::Visible(name, camera, points) => {
             visible(&job.scene, camera, points, control).map(|seen| Answer::Visible(*name, seen))
         }
+        Question::Objects(name, request, without) => mapper
+            .map(&job.scene, request, without, (planner, control))
+            .map(|map| Answer::Objects(*name, map, std::mem::take(without))),
     };
     match answer {
         Some(answer) => {

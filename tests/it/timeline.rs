@@ -312,7 +312,7 @@ fn the_playhead_is_dragged_and_stepped_and_the_picture_follows() {
     assert!((harness.editor().shown_time() - 1.1).abs() < 1e-12);
     harness.press(Modifiers::NONE, Key::End);
     assert_eq!(harness.editor().shown_time(), 2.0);
-    harness.press(Modifiers::NONE, Key::Home);
+    harness.press(CTRL, Key::Home);
     assert_eq!(harness.editor().shown_time(), 0.0);
 }
 
@@ -436,7 +436,7 @@ fn what_has_keys_is_keyed_by_changing_it() {
     assert_eq!(harness.scene().lights[0].position.x, 90.0);
     assert_eq!(harness.scene().lights[0].intensity, 0.2);
     assert_eq!(harness.scene().animation.tracks[0].keys.len(), 2);
-    harness.press(Modifiers::NONE, Key::Home);
+    harness.press(CTRL, Key::Home);
     for _ in 0..10 {
         harness.press(Modifiers::NONE, Key::Period);
     }
@@ -569,7 +569,7 @@ fn a_frame_is_the_same_from_the_command_line_and_in_the_window() {
     let frame = 77;
     let time = harness.scene().animation.time_of(frame);
     assert!(!harness.editor().is_dirty(), "opening changes nothing");
-    harness.press(Modifiers::NONE, Key::Home);
+    harness.press(CTRL, Key::Home);
     for _ in 1..frame {
         harness.window.key_press(Key::Period);
         harness.window.step();

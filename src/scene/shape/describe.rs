@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 /// What every kind of primitive tells about itself.
 pub trait Describe: Clone + Debug + PartialEq + Sized {
@@ -31,6 +31,10 @@ pub trait Describe: Clone + Debug + PartialEq + Sized {
     #[must_use]
     fn moved(&self, by: DVec3) -> Self;
 
+    /// The same, turned about a point.
+    #[must_use]
+    fn turned(&self, about: DVec3, by: DQuat) -> Self;
+
     /// A point of it and its smallest measure in world units; `None` for what has none.
     fn feature(&self) -> Option<(DVec3, f64)>;
 
@@ -44,6 +48,11 @@ pub trait Describe: Clone + Debug + PartialEq + Sized {
     fn endless_plane(&self) -> Option<(DVec3, DVec3)> {
         None
     }
+}
+
+/// Where a point is when it is turned about another one.
+pub fn turned(point: DVec3, about: DVec3, by: DQuat) -> DVec3 {
+    about + by * (point - about)
 }
 
 /// One property of a primitive.

@@ -1,9 +1,9 @@
 //! The flat disc: a floor or a mirror that ends.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Field, FieldValue};
+use super::describe::{Describe, Field, FieldValue, turned};
 use crate::scene::notation;
 
 /// A flat disc.
@@ -65,6 +65,14 @@ impl Describe for Disc {
     fn moved(&self, by: DVec3) -> Self {
         Self {
             center: self.center + by,
+            ..*self
+        }
+    }
+
+    fn turned(&self, about: DVec3, by: DQuat) -> Self {
+        Self {
+            center: turned(self.center, about, by),
+            normal: by * self.normal,
             ..*self
         }
     }

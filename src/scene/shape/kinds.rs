@@ -3,7 +3,7 @@
 use std::fmt::{self, Formatter};
 use std::marker::PhantomData;
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, EnumAccess, MapAccess, VariantAccess as _, Visitor};
 use serde::{Deserialize, Serialize};
@@ -109,6 +109,12 @@ macro_rules! shapes {
             #[must_use]
             pub fn moved(&self, by: DVec3) -> Self {
                 match self { $(Self::$kind(shape) => Self::$kind(shape.moved(by))),* }
+            }
+
+            /// The same shape, turned about a point.
+            #[must_use]
+            pub fn turned(&self, about: DVec3, by: DQuat) -> Self {
+                match self { $(Self::$kind(shape) => Self::$kind(shape.turned(about, by))),* }
             }
 
             /// A point of it and its smallest measure, see [`Describe::feature`].

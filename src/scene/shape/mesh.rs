@@ -1,13 +1,14 @@
 //! Many triangles as one thing: written in the scene file, or in a file of their own.
 
-use std::path::{Component, Path, PathBuf};
+use std::path::{Component, Path};
 use std::sync::Arc;
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::describe::{Describe, Field, FieldValue};
+use super::describe::{Describe, Field, FieldValue, turned};
+use super::mesh_source::MeshSource;
 use crate::mesh::{FARTHEST, Triangles, icosphere, read_triangles};
 use crate::scene::notation;
 
@@ -24,24 +25,6 @@ pub struct Mesh {
     pub scale: DVec3,
     /// Degrees between faces below which they are shaded as one curved surface, at most 180; 0 for none.
     pub smooth: f64,
-}
-
-/// Where the triangles of a mesh come from.
-#[derive(Clone, Debug)]
-pub enum MeshSource {
-    /// The scene file.
-    Inline(Arc<Triangles>),
-    /// A file of their own.
-    File {
-        /// Its path from the folder of the scene file.
-        path: String,
-        /// That folder, once it is known.
-        folder: Option<PathBuf>,
-        /// What was read.
-        triangles: Arc<Triangles>,
-        /// Why nothing was read, as a sentence without its full stop.
-        problem: Option<String>,
-    },
 }
 
 /// A mesh as the file has it.
@@ -164,69 +147,6 @@ impl<'de> Deserialize<'de> for Mesh {
     }
 }
 
-impl PartialEq for MeshSource {
-    fn eq(&self, other: &Self) -> bool {
-        let is_same = || {
-            let (ours, theirs) = (self.triangles(), other.triangles());
-            Arc::ptr_eq(ours, theirs) || ours == theirs
-        };
-        match (self, other) {
-            (Self::Inline(_), Self::Inline(_)) => is_same(),
-            (
-                Self::File { path, problem, .. },
-                Self::File {
-                    path: their_path,
-                    problem: their_problem,
-                    ..
-                },
-            ) => path == their_path && problem == their_problem && is_same(),
-            _ => false,
-        }
-    }
-}
-
-impl MeshSource {
-    /// Why the file that it refers to could not be read.
-    pub fn problem(&self) -> Option<&str> {
-        match self {
-            Self::Inline(_) => None,
-            Self::File { problem, .. } => problem.as_deref(),
-        }
-    }
-
-    /// The same in a scene file of this folder: triangles that were read from elsewhere are taken in.
-    pub fn taken_to(&self, folder: &Path) -> Self {
-        match self {
-            Self::File {
-                folder: own,
-                triangles,
-                problem: None,
-                ..
-            } if own.as_deref() != Some(folder) && !triangles.faces().is_empty() => {
-                Self::Inline(Arc::clone(triangles))
-            }
-            _ => self.clone(),
-        }
-    }
-
-    /// A stand-in that is written in few words and is another one for other triangles.
-    pub fn abridged(&self) -> Self {
-        Self::File {
-            path: self.triangles().fingerprint().to_string(),
-            folder: None,
-            triangles: Arc::default(),
-            problem: None,
-        }
-    }
-
-    /// The triangles; none where a file could not be read.
-    pub fn triangles(&self) -> &Arc<Triangles> {
-        match self {
-            Self::Inline(triangles) | Self::File { triangles, .. } => triangles,
-        }
-    }
-}
-
 impl Mesh {
     /// Triangles where they are.
     pub fn of(triangles: Triangles) -> Self {
@@ -301,6 +221,11 @@ impl Mesh {
             * DMat3::from_diagonal(self.scale)
     }
 
+    fn orientation(&self) -> DQuat {
+        let [x, y, z] = self.rotation.to_array().map(f64::to_radians);
+        DQuat::from_euler(EulerRot::ZYX, z, y, x)
+    }
+
     /// From the triangles' own coordinates to the world's.
     pub fn transform(&self) -> DAffine3 {
         DAffine3 {
@@ -308,6 +233,12 @@ impl Mesh {
             translation: self.position,
         }
     }
+}
+
+/// Degrees about x, then y, then z.
+fn angles_of(orientation: DQuat) -> DVec3 {
+    let (z, y, x) = orientation.to_euler(EulerRot::ZYX);
+    DVec3::new(x.to_degrees(), y.to_degrees(), z.to_degrees())
 }
 
 impl Describe for Mesh {
@@ -380,6 +311,14 @@ impl Describe for Mesh {
         }
     }
 
+    fn turned(&self, about: DVec3, by: DQuat) -> Self {
+        Self {
+            position: turned(self.position, about, by),
+            rotation: angles_of(by * self.orientation()),
+            ..self.clone()
+        }
+    }
+
     /// A mesh as a whole: that a triangle of it is small hurts nothing, its neighbours are moved with it.
     fn feature(&self) -> Option<(DVec3, f64)> {
         let (low, high) = self.bounds()?;
@@ -407,6 +346,25 @@ mod tests {
         );
         let (low, high) = mesh.bounds().expect("it has an end");
         assert!(low.x < -0.9 && high.x > 0.9 && low.z > 6.0 && high.z < 8.0);
+    }
+
+    #[test]
+    fn turned_twice_it_is_where_its_points_were_turned_to() {
+        let mut mesh = Mesh {
+            position: DVec3::new(3.0, -2.0, 7.0),
+            rotation: DVec3::new(20.0, -70.0, 130.0),
+            scale: DVec3::new(1.0, 2.0, 3.0),
+            ..Mesh::example(DVec3::ZERO, 1.0)
+        };
+        let (about, corner) = (DVec3::new(1.0, 1.0, 1.0), DVec3::new(0.3, 0.2, -0.4));
+        let mut expected = mesh.transform().transform_point3(corner);
+        for axis in [DVec3::X, DVec3::new(0.6, 0.0, -0.8)] {
+            let by = DQuat::from_axis_angle(axis, 1.3);
+            expected = turned(expected, about, by);
+            mesh = mesh.turned(about, by);
+        }
+        let found = mesh.transform().transform_point3(corner);
+        assert!((found - expected).length() < 1e-12, "{found} {expected}");
     }
 
     #[test]

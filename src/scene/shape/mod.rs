@@ -7,6 +7,8 @@ mod describe;
 
 mod disc;
 
+mod mesh_source;
+
 mod mesh;
 
 mod plane;
@@ -20,7 +22,8 @@ mod kinds;
 pub use describe::{Describe, Field, FieldValue};
 pub use disc::Disc;
 pub use kinds::Shape;
-pub use mesh::{Mesh, MeshSource};
+pub use mesh::Mesh;
+pub use mesh_source::MeshSource;
 pub use plane::Plane;
 pub use sphere::Sphere;
 pub use triangle::Triangle;

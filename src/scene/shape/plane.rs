@@ -1,9 +1,9 @@
 //! The endless plane.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Field, FieldValue};
+use super::describe::{Describe, Field, FieldValue, turned};
 use crate::scene::notation;
 
 /// An endless plane.
@@ -53,6 +53,13 @@ impl Describe for Plane {
         Self {
             point: self.point + by,
             ..*self
+        }
+    }
+
+    fn turned(&self, about: DVec3, by: DQuat) -> Self {
+        Self {
+            point: turned(self.point, about, by),
+            normal: by * self.normal,
         }
     }
 

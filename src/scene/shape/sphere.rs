@@ -1,9 +1,9 @@
 //! The ball.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Field, FieldValue};
+use super::describe::{Describe, Field, FieldValue, turned};
 use crate::scene::notation;
 
 /// A ball.
@@ -53,6 +53,13 @@ impl Describe for Sphere {
     fn moved(&self, by: DVec3) -> Self {
         Self {
             center: self.center + by,
+            ..*self
+        }
+    }
+
+    fn turned(&self, about: DVec3, by: DQuat) -> Self {
+        Self {
+            center: turned(self.center, about, by),
             ..*self
         }
     }

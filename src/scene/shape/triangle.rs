@@ -1,9 +1,9 @@
 //! The flat triangle.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Field, FieldValue};
+use super::describe::{Describe, Field, FieldValue, turned};
 use crate::scene::notation;
 
 /// Smallest ratio of a triangle's height to its longest side; below it rounding decides what is hit.
@@ -86,6 +86,14 @@ impl Describe for Triangle {
             a: self.a + by,
             b: self.b + by,
             c: self.c + by,
+        }
+    }
+
+    fn turned(&self, about: DVec3, by: DQuat) -> Self {
+        Self {
+            a: turned(self.a, about, by),
+            b: turned(self.b, about, by),
+            c: turned(self.c, about, by),
         }
     }
 

@@ -30,6 +30,8 @@ pub struct Settings {
     /// Where to.
     pub folder: String,
     frames: String,
+    /// All frames that the scene had.
+    all_frames: String,
     name: String,
     format: Format,
     width: u32,
@@ -49,9 +51,11 @@ impl Settings {
             .unwrap_or_default();
         let title = editor.title();
         let stem = title.strip_suffix(".ron").unwrap_or(&title);
+        let frames = Frames::up_to(scene.animation.frame_count()).to_string();
         Self {
             folder: folder.join(format!("{stem} frames")).display().to_string(),
-            frames: Frames::up_to(scene.animation.frame_count()).to_string(),
+            all_frames: frames.clone(),
+            frames,
             name: Pattern::default().text(),
             format: Format::Ppm,
             width: scene.render.width,
@@ -60,6 +64,34 @@ impl Settings {
             antialias: scene.render.antialias,
             video: VIDEOS[0],
         }
+    }
+
+    /// The same for a scene that asks for `fresh` now: the frames are those of the scene, where they were.
+    pub fn for_scene(&self, fresh: Self) -> Self {
+        let were_all = self.all_frames == self.frames;
+        Self {
+            frames: if were_all {
+                fresh.frames
+            } else {
+                self.frames.clone()
+            },
+            all_frames: fresh.all_frames,
+            ..self.clone()
+        }
+    }
+
+    /// What an export of a document is called.
+    pub fn describe(&self, title: &str) -> String {
+        let Self {
+            frames,
+            width,
+            height,
+            ..
+        } = self;
+        format!(
+            "{title} · {frames} · {width}×{height} · {}",
+            self.format.ending()
+        )
     }
 
     /// The sequence, with the scene as it is now.
@@ -122,7 +154,7 @@ pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
             ),
             (
                 "PNG",
-                "Clean edges, compressed",
+                "Clean edges, compressed, numbers of four digits",
                 Format::Png,
                 Sampling::ADAPTIVE,
                 false,
@@ -137,6 +169,14 @@ pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
         ] {
             if ui.button(name).on_hover_text(hint).clicked() {
                 settings.format = format;
+                // What sorts by name plays in order; the original program did not fill up.
+                let is_original = format == Format::Ppm;
+                let name = if is_original {
+                    "rayTrace%d"
+                } else {
+                    "rayTrace%04d"
+                };
+                name.clone_into(&mut settings.name);
                 settings.antialias = antialias;
                 let size = |side: u32| if half { side.div_ceil(2) } else { side };
                 (settings.width, settings.height) = (size(own.0), size(own.1));

@@ -27,6 +27,10 @@ pub struct Exports {
     /// Whether the window is shown.
     pub is_open: bool,
     settings: Option<Settings>,
+    /// The settings that were asked for last, for each document by its title.
+    kept: Vec<(String, Settings)>,
+    /// What each export is called.
+    names: Vec<(u64, String)>,
     /// What was found in the folder, for these settings, this state of the scene, and so many exports
     /// that have ended.
     found: Option<(Settings, (u64, usize), Option<Found>)>,
@@ -148,8 +152,25 @@ impl Exports {
             });
         self.is_open = is_open && self.is_open;
         if !self.is_open {
-            self.settings = None;
+            self.keep(editor);
         }
+    }
+
+    /// Puts the settings away, for the next time that this document is exported.
+    fn keep(&mut self, editor: &Editor) {
+        if let Some(settings) = self.settings.take() {
+            let title = editor.title();
+            self.kept.retain(|(of, _)| *of != title);
+            self.kept.push((title, settings));
+        }
+    }
+
+    /// The settings that were put away, for the scene as it is now.
+    fn settings(&self, editor: &Editor) -> Settings {
+        let title = editor.title();
+        let kept = self.kept.iter().find(|(of, _)| *of == title);
+        let fresh = Settings::of(editor);
+        kept.map_or(fresh.clone(), |(_, kept)| kept.for_scene(fresh))
     }
 
     fn show_settings(
@@ -159,7 +180,8 @@ impl Exports {
         pictures: &Pictures,
         out: &mut UiRequests,
     ) {
-        let mut settings = self.settings.take().unwrap_or_else(|| Settings::of(editor));
+        let kept = self.settings.take();
+        let mut settings = kept.unwrap_or_else(|| self.settings(editor));
         presets(ui, &mut settings, editor.scene());
         Grid::new("export settings")
             .num_columns(2)
@@ -187,6 +209,7 @@ impl Exports {
             self.found = None;
             match pictures.export(sequence.clone()) {
                 Ok(id) => {
+                    self.names.push((id, settings.describe(&editor.title())));
                     if let Some((path, video)) = settings.video(&sequence) {
                         self.videos.push(Following {
                             id,
@@ -247,7 +270,9 @@ impl Exports {
             ui.separator();
             ui.horizontal(|ui| {
                 self.show_thumb(ui, state);
-                ui.vertical(|ui| show_state(ui, state, pictures));
+                let name = self.names.iter().find(|(id, _)| *id == state.id);
+                let name = name.map_or("", |(_, name)| name);
+                ui.vertical(|ui| show_state(ui, (name, state), pictures));
             });
         }
     }
@@ -287,7 +312,7 @@ fn seconds_left(state: &ExportState) -> Option<f64> {
 }
 
 /// How far an export is; what it waits for does not count as its time.
-fn show_state(ui: &mut Ui, state: &ExportState, pictures: &Pictures) {
+fn show_state(ui: &mut Ui, (name, state): (&str, &ExportState), pictures: &Pictures) {
     let done = state.done.kept + state.done.written;
     let share = done as f64 / state.done.total.max(1) as f64;
     let busy = state.busy.as_secs_f64();
@@ -304,13 +329,7 @@ fn show_state(ui: &mut Ui, state: &ExportState, pictures: &Pictures) {
             ),
         },
     };
-    let folder = state
-        .folder
-        .file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
-    ui.label(folder)
+    ui.label(name)
         .on_hover_text(state.folder.display().to_string());
     ui.horizontal(|ui| {
         let bar = ProgressBar::new(share as f32).desired_width(FIELDS - 120.0);

@@ -134,7 +134,7 @@ pub fn object(ui: &mut Ui, scene: &Scene, index: usize, before: &Object, out: &m
         "An invisible object casts no shadow and no reflection",
         &mut object.visible,
     );
-    mesh_tools(&mut rows, index, &before.shape, out);
+    mesh_tools(&mut rows, (scene, index), &before.shape, out);
     rows.heading("ColorPack");
     pack_choice(&mut rows, scene, &mut object.color_pack);
     if let Some(field) = rows.changed().filter(|_| object != *before) {
@@ -158,12 +158,17 @@ pub fn object(ui: &mut Ui, scene: &Scene, index: usize, before: &Object, out: &m
 }
 
 /// What turns triangles into a mesh and back.
-fn mesh_tools(rows: &mut Rows, index: usize, shape: &Shape, out: &mut UiRequests) {
+fn mesh_tools(
+    rows: &mut Rows,
+    (scene, index): (&Scene, usize),
+    shape: &Shape,
+    out: &mut UiRequests,
+) {
     match shape {
         Shape::Triangle(_) => {
             let hint = "Make one mesh of this triangle and all that share corners with it";
             if tool(rows, "Join connected", hint, true) {
-                out.edit(Edit::Join(index));
+                out.edit(Edit::Join(scene.connected_triangles(index)));
             }
         }
         Shape::Mesh(mesh) => {

@@ -6,6 +6,8 @@ mod camera;
 
 mod items;
 
+mod many;
+
 mod keys;
 
 mod needs;
@@ -30,6 +32,9 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         ui.add_space(GRID / 2.0);
         let scene = editor.shown();
         match editor.selection {
+            Selection::Item(_) if editor.selected().items().len() > 1 => {
+                many::show(ui, editor, out);
+            }
             Selection::Camera => camera::show(ui, editor, out),
             Selection::Keys => keys::show(ui, editor, out),
             Selection::World => {

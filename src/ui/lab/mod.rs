@@ -3,6 +3,8 @@
 
 mod chart;
 
+mod dots;
+
 mod comparison;
 
 mod growth;
@@ -15,19 +17,20 @@ use std::sync::Arc;
 
 use egui::{Button, DragValue, Key, Response, RichText, Ui};
 
+pub use self::dots::chart_picture;
 pub use self::growth::growth_picture;
 pub use self::stability::stability_picture;
 
-use self::chart::{Chart, ChartDot, picture};
+use self::chart::Chart;
 use self::comparison::{Comparison, FACES, Face};
+use self::dots::{CostAxis, ErrorAxis, chart, figures};
 use self::stability::Stability;
 use super::commands::Command;
 use super::requests::UiRequests;
 use super::theme::{GRID, palette};
 use super::viewport::Place;
 use crate::editor::{Edit, Editor};
-use crate::image::Image;
-use crate::lab::{DOUBTFUL, EIGHT_BIT_FLOOR, Measurement, Study, cheapest_within};
+use crate::lab::{EIGHT_BIT_FLOOR, Study, cheapest_within};
 use crate::plan::Model;
 use crate::scene::{Render, Scene};
 
@@ -42,21 +45,6 @@ pub enum LabRequest {
     Measure(Box<Study>),
     /// Give the measuring up.
     Stop,
-}
-
-/// What the axis to the right measures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum CostAxis {
-    Time,
-    Rays,
-}
-
-/// What the axis upwards measures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum ErrorAxis {
-    Rmse,
-    Max,
-    Visible,
 }
 
 /// The lab's state.
@@ -123,6 +111,13 @@ impl Lab {
             "lab: {name} · {}×{} · {words}",
             image.width, image.height
         ))
+    }
+
+    /// What is looked at in place of the live view.
+    pub fn name(&self) -> String {
+        let measured = self.study.as_ref().map(|study| &study.measurements);
+        let dot = self.chosen.and_then(|place| measured?.get(place));
+        dot.map_or(String::new(), |dot| format!("Lab: {}", dot.candidate.name))
     }
 
     /// Leaves the dot that is looked at; whether there was one.
@@ -360,88 +355,4 @@ impl Lab {
         let axes = (self.cost, self.error);
         chart(self.study.as_deref(), axes, self.chosen)
     }
-}
-
-/// A picture of the chart of time and RMSE, as the window would draw it.
-pub fn chart_picture(study: &Study) -> Image {
-    let chart = chart(Some(study), (CostAxis::Time, ErrorAxis::Rmse), None);
-    picture(|ui| {
-        chart.show(ui);
-    })
-}
-
-/// The dots of a study, as far as they are measured.
-fn chart(study: Option<&Study>, axes: (CostAxis, ErrorAxis), chosen: Option<usize>) -> Chart {
-    let measurements = study.map_or(&[][..], |study| &study.measurements);
-    let error = |dot: &Measurement| {
-        dot.metrics.map_or(f64::NAN, |metrics| match axes.1 {
-            ErrorAxis::Rmse => metrics.rmse,
-            ErrorAxis::Max => metrics.max,
-            ErrorAxis::Visible => metrics.visible,
-        })
-    };
-    let cost = |dot: &Measurement| match axes.0 {
-        CostAxis::Time => dot.timing().map_or(f64::NAN, |timing| timing.median),
-        CostAxis::Rays => dot.rays_per_pixel,
-    };
-    let spots = measurements.iter().map(|dot| ChartDot {
-        name: dot.candidate.name.clone(),
-        cost: cost(dot),
-        // A logarithm has no zero.
-        error: Some(error(dot))
-            .filter(|error| *error != 0.0)
-            .unwrap_or(f64::NAN),
-        words: format!("{}\n{}", dot.candidate.words(), figures(dot)),
-        is_doubtful: axes.0 == CostAxis::Time
-            && dot.timing().is_some_and(|timing| timing.spread > DOUBTFUL),
-    });
-    let truth = study.and_then(|study| study.reference.as_ref());
-    let levels = match (axes.1, truth) {
-        (ErrorAxis::Rmse, Some(truth)) => vec![
-            ("8 bits show no less", EIGHT_BIT_FLOOR),
-            ("the reference's own error", truth.rmse),
-        ],
-        _ => Vec::new(),
-    };
-    Chart {
-        cost: match axes.0 {
-            CostAxis::Time => "ms per picture",
-            CostAxis::Rays => "rays per pixel",
-        },
-        error: match axes.1 {
-            ErrorAxis::Rmse => "RMSE",
-            ErrorAxis::Max => "worst",
-            ErrorAxis::Visible => "share > 4/255",
-        },
-        spots: spots.collect(),
-        levels,
-        chosen,
-    }
-}
-
-/// The numbers of a dot, one in each line.
-fn figures(dot: &Measurement) -> String {
-    let time = dot.timing().map_or("not timed yet".to_owned(), |timing| {
-        let doubt = if timing.spread > DOUBTFUL {
-            " (doubtful)"
-        } else {
-            ""
-        };
-        let spread = timing.spread * 100.0;
-        format!(
-            "{:.3} ms ± {spread:.0} %{doubt}, {} runs",
-            timing.median, timing.runs
-        )
-    });
-    let Some(metrics) = dot.metrics else {
-        return time;
-    };
-    format!(
-        "{time}\n{:.2} rays/px\nRMSE {:.2e}, {:.1} dB\nworst {:.4}, {:.3} % > 4/255",
-        dot.rays_per_pixel,
-        metrics.rmse,
-        metrics.psnr(),
-        metrics.max,
-        metrics.visible * 100.0,
-    )
 }

@@ -7,9 +7,10 @@ use egui::{Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 use glam::DVec3;
 
 use crate::editor::{Edit, Editor, Time};
-use crate::scene::{Camera, Framing, Projection};
+use crate::scene::{Camera, Projection};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
+use crate::ui::tools::Lens;
 use crate::worker::Question;
 
 /// Most ticks that are drawn.
@@ -33,25 +34,6 @@ pub struct Overlay {
     dragged: Option<(usize, f64)>,
 }
 
-/// From the scene to the screen.
-struct ViewProjection {
-    framing: Framing,
-    view: Rect,
-}
-
-impl ViewProjection {
-    fn place(&self, point: DVec3) -> Option<Pos2> {
-        let [x, y] = self.framing.project(point)?;
-        let height = self.view.height();
-        Some(self.view.center() + vec2(x as f32 * height, -y as f32 * height))
-    }
-
-    fn ray(&self, at: Pos2) -> (DVec3, DVec3) {
-        let off = (at - self.view.center()) / self.view.height();
-        self.framing.ray([f64::from(off.x), f64::from(-off.y)])
-    }
-}
-
 impl Overlay {
     /// Draws the flight over the picture at `view`, unless the picture is the flight's own.
     pub fn show(&mut self, ui: &mut Ui, editor: &Editor, view: Rect, out: &mut UiRequests) {
@@ -60,10 +42,9 @@ impl Overlay {
             self.dragged = None;
             return;
         }
-        let Some(framing) = editor.shown().camera.framing() else {
+        let Some(lens) = Lens::new(&editor.shown().camera, view) else {
             return;
         };
-        let lens = ViewProjection { framing, view };
         self.update(editor, out);
         let painter = ui.painter().with_clip_rect(view);
         let colors = palette(ui.ctx());
@@ -131,7 +112,7 @@ impl Overlay {
         }
     }
 
-    fn draw_way(&self, painter: &Painter, lens: &ViewProjection, color: Color32) {
+    fn draw_way(&self, painter: &Painter, lens: &Lens, color: Color32) {
         let places: Vec<(Option<Pos2>, bool)> = self
             .ticks
             .iter()
@@ -164,7 +145,7 @@ impl Overlay {
         &mut self,
         ui: &Ui,
         editor: &Editor,
-        lens: &ViewProjection,
+        lens: &Lens,
         place: usize,
         out: &mut UiRequests,
     ) {
@@ -210,13 +191,7 @@ impl Overlay {
 }
 
 /// A pyramid from the eye to the frame of the picture, or the frame alone where rays run side by side.
-fn draw_camera(
-    painter: &Painter,
-    lens: &ViewProjection,
-    camera: &Camera,
-    size: f64,
-    color: Color32,
-) {
+fn draw_camera(painter: &Painter, lens: &Lens, camera: &Camera, size: f64, color: Color32) {
     let Some(framing) = camera.framing() else {
         return;
     };

@@ -21,7 +21,12 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
             out.commands.push(command);
         }
     };
-    press(ui, icons::FIRST, "First frame (Home)", Command::FirstFrame);
+    press(
+        ui,
+        icons::FIRST,
+        "First frame (Ctrl+Home)",
+        Command::FirstFrame,
+    );
     press(
         ui,
         icons::PREVIOUS,

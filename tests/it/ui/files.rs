@@ -34,7 +34,8 @@ fn a_scene_is_saved_and_opened_through_dialogs() {
     assert!(harness.scene().objects.is_empty());
     harness.press(Modifiers::COMMAND, Key::O);
     assert_eq!(harness.scene(), &saved.scene);
-    harness.choose("File", "Open demo");
+    harness.choose("File", "Open example");
+    harness.click("demo");
     harness
         .window
         .get_by_role_and_label(Role::Button, "File")
@@ -242,6 +243,8 @@ fn wait_for(harness: &mut EditorHarness, is_there: impl Fn(&EditorHarness) -> bo
         std::thread::sleep(Duration::from_millis(20));
         harness.window.step();
     }
+    // What appears is measured in its first frame, and seen in its second.
+    harness.window.step();
 }
 
 #[test]

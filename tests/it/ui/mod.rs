@@ -5,4 +5,5 @@ mod inspector;
 mod lab;
 mod outliner;
 mod shortcuts;
+mod tools;
 mod viewport;

@@ -63,6 +63,7 @@ fn keys_switch_projection_markers_and_resolution() {
     harness.press(Modifiers::NONE, Key::Escape);
     assert_eq!(harness.editor().mode, Mode::Live);
     harness.press(Modifiers::NONE, Key::Escape);
+    harness.press(Modifiers::NONE, Key::Escape);
     harness.window.get_by_label("Quit Glint?");
     harness.click("Stay");
     assert!(harness.window.query_by_label("Quit Glint?").is_none());

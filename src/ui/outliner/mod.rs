@@ -1,94 +1,34 @@
 //! The panel on the left: everything in the scene by name. Only the rows in sight are laid out, so
 //! ten thousand objects cost no more than twenty.
 
-use egui::text::{CCursor, CCursorRange};
-use egui::{
-    Align, Button, Id, Key, Layout, Rect, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2,
-};
-use egui_material_icons::MaterialIcon;
+mod entry;
 
+mod lines;
+
+use egui::text::{CCursor, CCursorRange};
+use egui::{Align, Id, Key, Layout, Rect, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2};
+
+use self::entry::{RowStyle, entry, eye, look, reorder, row};
+use self::lines::{Entries, Line, Lines};
 use super::add::add_menu;
 use super::icons;
 use super::inspector::name_field;
 use super::menu_entry::{ITEM_COMMANDS, entry as menu_entry};
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW, palette};
-use crate::editor::{Edit, Editor, Item, Kind, Selection};
+use crate::editor::{Action, Edit, Editor, Item, Kind, Selected, Selection};
 use crate::scene::Scene;
 
 /// What the panel remembers between frames.
 #[derive(Debug, Default)]
 pub struct Outliner {
     filter: String,
+    /// Which of the documents it listed, see [`Editor::documents`], and what was selected in it.
+    listed: (u64, Selection),
+    /// Where the list is scrolled to, and how much of it is seen, in points.
+    scrolled: (f32, f32),
     folded: Vec<Kind>,
     renaming: Option<Item>,
-}
-
-/// One line of the list.
-enum Line {
-    Single(Selection, MaterialIcon, &'static str),
-    Group(Kind, usize),
-    Entry(Item),
-}
-
-/// Which entries of a group are listed.
-enum Entries {
-    /// The first so many: all of them, or none.
-    All(usize),
-    /// Those at these indices.
-    Some(Vec<usize>),
-}
-
-/// All lines, made one by one as they are asked for: a list of ten thousand would take as long as
-/// everything else together.
-struct Lines([(Kind, usize, Entries); 3]);
-
-/// What is above the groups.
-const SINGLES: [(Selection, MaterialIcon, &str); 3] = [
-    (Selection::Camera, icons::CAMERA, "Camera"),
-    (Selection::World, icons::WORLD, "World"),
-    (Selection::Render, icons::IMAGE, "Picture"),
-];
-
-impl Entries {
-    fn len(&self) -> usize {
-        match self {
-            Self::All(count) => *count,
-            Self::Some(indices) => indices.len(),
-        }
-    }
-
-    fn get(&self, row: usize) -> Option<usize> {
-        match self {
-            Self::All(count) => (row < *count).then_some(row),
-            Self::Some(indices) => indices.get(row).copied(),
-        }
-    }
-}
-
-impl Lines {
-    fn len(&self) -> usize {
-        let groups = self.0.iter().map(|(.., entries)| 1 + entries.len());
-        SINGLES.len() + groups.sum::<usize>()
-    }
-
-    fn get(&self, index: usize) -> Option<Line> {
-        if let Some((selection, icon, name)) = SINGLES.get(index) {
-            return Some(Line::Single(*selection, *icon, name));
-        }
-        let mut row = index - SINGLES.len();
-        for (kind, count, entries) in &self.0 {
-            if row == 0 {
-                return Some(Line::Group(*kind, *count));
-            }
-            row -= 1;
-            if let Some(index) = entries.get(row) {
-                return Some(Line::Entry(Item { kind: *kind, index }));
-            }
-            row -= entries.len();
-        }
-        None
-    }
 }
 
 impl Outliner {
@@ -99,41 +39,82 @@ impl Outliner {
         self.renaming = Some(item);
     }
 
+    /// Lists everything again. Whether not everything was listed.
+    pub fn clear_filter(&mut self) -> bool {
+        let is_filtered = !self.filter.is_empty();
+        self.filter.clear();
+        is_filtered
+    }
+
     /// Shows the panel and pushes what is asked for.
     pub fn show(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         ui.add_space(GRID / 2.0);
+        if self.listed.0 != editor.documents() {
+            self.clear_filter();
+        }
         ui.horizontal(|ui| {
-            let width = ui.available_width() - ROW - GRID;
+            let buttons = if self.filter.is_empty() { 1.0 } else { 2.0 };
+            let width = ui.available_width() - (ROW + GRID) * buttons;
             let field = TextEdit::singleline(&mut self.filter).hint_text("Filter");
             ui.add_sized([width, ROW], field.align(egui::Align2::LEFT_CENTER))
                 .accessible_name("Filter");
+            if !self.filter.is_empty()
+                && icons::button(ui, icons::CLOSE, "Clear the filter").clicked()
+            {
+                self.clear_filter();
+            }
             let add = icons::button(ui, icons::ADD, "Add to scene");
             egui::Popup::menu(&add).show(|ui| add_menu(ui, editor.scene(), out));
         });
         let lines = self.lines(editor.scene());
         ui.spacing_mut().item_spacing.y = 0.0;
-        ScrollArea::vertical()
-            .auto_shrink(false)
-            .show_rows(ui, ROW, lines.len(), |ui, range| {
-                for index in range {
-                    match lines.get(index) {
-                        Some(Line::Single(selection, icon, name)) => {
-                            let rect = row(ui);
-                            let look = RowStyle {
-                                icon,
-                                is_bright: true,
-                                is_selected: editor.selection == selection,
-                            };
-                            if entry(ui, rect, look, name).clicked() {
-                                out.select(selection);
-                            }
+        let mut area = ScrollArea::vertical().auto_shrink(false);
+        if let Some(to) = self.to_reveal(editor, &lines) {
+            area = area.vertical_scroll_offset(to);
+        }
+        self.listed = (editor.documents(), editor.selection);
+        let shown = area.show_rows(ui, ROW, lines.len(), |ui, range| {
+            for index in range {
+                match lines.get(index) {
+                    Some(Line::Single(selection, icon, name)) => {
+                        let rect = row(ui);
+                        let look = RowStyle {
+                            icon,
+                            is_bright: true,
+                            is_selected: editor.selection == selection,
+                        };
+                        if entry(ui, rect, look, name).clicked() {
+                            out.select(selection);
                         }
-                        Some(Line::Group(kind, count)) => self.group(ui, kind, count),
-                        Some(Line::Entry(item)) => self.item(ui, editor, item, out),
-                        None => {}
                     }
+                    Some(Line::Group(kind, count)) => {
+                        let listed = lines.listed(kind);
+                        let is_all = self.filter.is_empty() || self.folded.contains(&kind);
+                        let words = if is_all {
+                            count.to_string()
+                        } else {
+                            format!("{listed} of {count}")
+                        };
+                        self.group(ui, kind, &words);
+                    }
+                    Some(Line::Entry(item)) => self.item(ui, editor, item, out),
+                    None => {}
                 }
-            });
+            }
+        });
+        self.scrolled = (shown.state.clamped_offset().y, shown.inner_rect.height());
+    }
+
+    /// Where to scroll to, so that what was just selected elsewhere is seen.
+    fn to_reveal(&self, editor: &Editor, lines: &Lines) -> Option<f32> {
+        let Selection::Item(item) = editor.selection else {
+            return None;
+        };
+        let is_new = self.listed != (editor.documents(), editor.selection);
+        let top = lines.row_of(item).filter(|_| is_new)? as f32 * ROW;
+        let (from, height) = self.scrolled;
+        let is_seen = top >= from && top + ROW <= from + height;
+        (!is_seen).then(|| (top - (height - ROW) / 2.0).max(0.0))
     }
 
     fn lines(&self, scene: &Scene) -> Lines {
@@ -163,7 +144,7 @@ impl Outliner {
         Lines(groups.map(|(kind, count)| (kind, count, entries(kind, count))))
     }
 
-    fn group(&mut self, ui: &mut Ui, kind: Kind, count: usize) {
+    fn group(&mut self, ui: &mut Ui, kind: Kind, words: &str) {
         let name = match kind {
             Kind::Light => "Lights",
             Kind::Object => "Objects",
@@ -197,7 +178,7 @@ impl Outliner {
         painter.text(
             pos2(rect.right() - GRID, rect.center().y),
             egui::Align2::RIGHT_CENTER,
-            count,
+            words,
             font,
             colors.muted,
         );
@@ -218,7 +199,7 @@ impl Outliner {
             return;
         }
         let (icon, visible) = look(scene, item);
-        let is_selected = editor.selection == Selection::Item(item);
+        let is_selected = editor.selected().has(item);
         let (mut rect, mut eye_rect) = (row(ui), Rect::NOTHING);
         if visible.is_some() {
             (rect, eye_rect) = rect.split_left_right_at_x(rect.right() - ROW - GRID / 2.0);
@@ -234,14 +215,16 @@ impl Outliner {
             name,
         );
         if response.clicked() {
-            out.select(Selection::Item(item));
+            select_clicked(ui, editor, item, out);
         }
         if response.double_clicked() {
             self.renaming = Some(item);
         }
         reorder(ui, &response, item, out);
         response.context_menu(|ui| {
-            out.select(Selection::Item(item));
+            if !is_selected {
+                out.select(Selection::Item(item));
+            }
             for (text, command) in ITEM_COMMANDS {
                 menu_entry(ui, text, command, true, out);
             }
@@ -285,6 +268,33 @@ impl Outliner {
     }
 }
 
+/// Selects an item: with Ctrl besides the others, with Shift all from the last one on.
+fn select_clicked(ui: &Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
+    let modifiers = ui.input(|input| input.modifiers);
+    let selected = editor.selected();
+    let last = selected.items().last();
+    let last = last.filter(|last| last.kind == item.kind && modifiers.shift);
+    let selected = match last {
+        Some(last) => {
+            let (from, to) = (last.index.min(item.index), last.index.max(item.index));
+            let between = (from..=to).map(|index| Item {
+                kind: item.kind,
+                index,
+            });
+            let others = selected.items().iter().copied();
+            Selected::all(
+                others
+                    .chain(between)
+                    .filter(|other| *other != item)
+                    .chain([item]),
+            )
+        }
+        None if modifiers.command => selected.toggled(item),
+        None => Selected::all([item]),
+    };
+    out.actions.push(Action::SelectItems(selected));
+}
+
 /// Typing shall replace the old name.
 fn select_all(ui: &Ui, id: Id, text: &str) {
     let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
@@ -293,113 +303,4 @@ fn select_all(ui: &Ui, id: Id, text: &str) {
         .cursor
         .set_char_range(Some(CCursorRange::two(CCursor::new(0), end)));
     state.store(ui.ctx(), id);
-}
-
-/// The symbol of an item, and whether it is visible if it can be hidden.
-fn look(scene: &Scene, item: Item) -> (MaterialIcon, Option<bool>) {
-    match item.kind {
-        Kind::Light => (
-            icons::LIGHT,
-            scene.lights.get(item.index).map(|light| light.visible),
-        ),
-        Kind::Object => {
-            let object = scene.objects.get(item.index);
-            let icon = object.map_or(icons::SPHERE, |object| icons::of_shape(&object.shape));
-            (icon, object.map(|object| object.visible))
-        }
-        Kind::Pack => (icons::PACK, None),
-    }
-}
-
-/// The next row of the list, over its whole width.
-fn row(ui: &mut Ui) -> Rect {
-    ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover())
-        .0
-}
-
-/// How an entry looks.
-#[derive(Clone, Copy)]
-struct RowStyle {
-    icon: MaterialIcon,
-    is_bright: bool,
-    is_selected: bool,
-}
-
-/// An entry that can be selected and dragged.
-fn entry(ui: &mut Ui, rect: Rect, look: RowStyle, name: &str) -> egui::Response {
-    let colors = palette(ui.ctx());
-    let color = if look.is_bright {
-        colors.text
-    } else {
-        colors.muted
-    };
-    let texts = (
-        icons::text(look.icon).color(color),
-        egui::RichText::new(name).color(color),
-    );
-    let button = Button::selectable(look.is_selected, texts)
-        .right_text("")
-        .truncate()
-        .sense(Sense::click_and_drag())
-        .min_size(rect.size());
-    ui.put(rect, button).accessible_name(name)
-}
-
-/// Drag a row onto another to put it there.
-fn reorder(ui: &Ui, response: &egui::Response, item: Item, out: &mut UiRequests) {
-    response.dnd_set_drag_payload(item);
-    let fits = |dragged: &Item| dragged.kind == item.kind && dragged.index != item.index;
-    if let Some(dragged) = response
-        .dnd_hover_payload::<Item>()
-        .filter(|dragged| fits(dragged))
-    {
-        let y = if dragged.index < item.index {
-            response.rect.bottom()
-        } else {
-            response.rect.top()
-        };
-        ui.painter()
-            .hline(response.rect.x_range(), y, (2.0, palette(ui.ctx()).accent));
-    }
-    if let Some(dragged) = response
-        .dnd_release_payload::<Item>()
-        .filter(|dragged| fits(dragged))
-    {
-        out.edit(Edit::Move(*dragged, item.index));
-    }
-}
-
-/// Shows or hides an item by this name.
-fn eye(ui: &mut Ui, scene: &Scene, item: Item, name: &str, out: &mut UiRequests) {
-    let visible = match item.kind {
-        Kind::Light => scene.lights[item.index].visible,
-        Kind::Object => scene.objects[item.index].visible,
-        Kind::Pack => return,
-    };
-    let (icon, verb) = if visible {
-        (icons::VISIBLE, "Hide")
-    } else {
-        (icons::HIDDEN, "Show")
-    };
-    if !icons::button(ui, icon, &format!("{verb} {name}")).clicked() {
-        return;
-    }
-    let field = if visible { "hide" } else { "show" };
-    match item.kind {
-        Kind::Light => {
-            let light = crate::scene::Light {
-                visible: !visible,
-                ..scene.lights[item.index].clone()
-            };
-            out.edit(Edit::Light(item.index, light, field));
-        }
-        Kind::Object => {
-            let object = crate::scene::Object {
-                visible: !visible,
-                ..scene.objects[item.index].clone()
-            };
-            out.edit(Edit::Object(item.index, object, field));
-        }
-        Kind::Pack => {}
-    }
 }

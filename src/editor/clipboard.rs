@@ -1,0 +1,178 @@
+//! What is copied and pasted: the text of a scene with nothing else in it.
+
+use std::fmt::Write as _;
+
+use indexmap::IndexMap;
+
+use super::item::{Item, Kind};
+use super::names::{copy_offset, free_light_name, free_object_name, free_pack_name};
+use super::selection::Selected;
+use crate::scene::{ColorPack, Document, Scene, SceneError};
+
+/// The selected things alone, with the packs that they wear.
+pub fn excerpt(scene: &Scene, selected: &Selected) -> Scene {
+    let of = |kind: Kind| {
+        let items = selected.items().iter();
+        let mut places: Vec<usize> = items
+            .filter(|item| item.kind == kind)
+            .map(|item| item.index)
+            .collect();
+        places.sort_unstable();
+        places.into_iter()
+    };
+    let objects = of(Kind::Object).filter_map(|index| scene.objects.get(index).cloned());
+    let lights = of(Kind::Light).filter_map(|index| scene.lights.get(index).cloned());
+    let mut part = Scene {
+        objects: objects.collect(),
+        lights: lights.collect(),
+        ..Scene::empty()
+    };
+    let markers = part.lights.iter().filter_map(|light| light.marker.as_ref());
+    let worn = part.objects.iter().map(|object| &object.color_pack);
+    let worn: Vec<&String> = worn
+        .chain(markers.map(|marker| &marker.color_pack))
+        .collect();
+    let chosen: Vec<usize> = of(Kind::Pack).collect();
+    let packs = scene.color_packs.iter().enumerate();
+    let packs = packs.filter(|(place, (name, _))| worn.contains(name) || chosen.contains(place));
+    let packs: IndexMap<String, ColorPack> = packs
+        .map(|(_, (name, pack))| (name.clone(), pack.clone()))
+        .collect();
+    *part.packs_mut() = packs;
+    part
+}
+
+/// What a text means that is pasted into a scene: the text of a scene, or of objects, or of lights. Packs that
+/// objects wear are looked up in the scene.
+///
+/// # Errors
+/// [`SceneError::Refused`]: why it is neither; places are those of the whole that the text is part of.
+pub fn read(text: &str, scene: &Scene) -> Result<Scene, SceneError> {
+    let text = text.trim().trim_end_matches(',');
+    let word = text.split(|c: char| !c.is_alphanumeric()).next();
+    if !matches!(word, Some("Object" | "Light")) {
+        return Document::from_text(text).map(|document| document.scene);
+    }
+    let mut packs = String::new();
+    for name in scene.color_packs.keys() {
+        let _ = write!(packs, "{name:?}: ColorPack(),");
+    }
+    let (objects, lights) = if word == Some("Object") {
+        (text, "")
+    } else {
+        ("", text)
+    };
+    let whole = format!(
+        "Scene(version: 1, color_packs: {{{packs}}}, objects: [\n{objects}\n], lights: [{lights}])"
+    );
+    let mut read = Document::from_text(&whole)?.scene;
+    // The scene has them as they are.
+    read.color_packs = scene.color_packs.clone();
+    Ok(excerpt(&read, &Selected::all(items(&read))))
+}
+
+/// All lights and objects of a scene.
+fn items(scene: &Scene) -> impl Iterator<Item = Item> {
+    let lights = (0..scene.lights.len()).map(Item::light);
+    lights.chain((0..scene.objects.len()).map(Item::object))
+}
+
+/// Adds everything in `pasted`, behind what is there: packs that are there already are used, others get a name
+/// that is free.
+pub fn paste(scene: &mut Scene, pasted: &Scene) {
+    let mut names = IndexMap::new();
+    for (name, pack) in pasted.color_packs.iter() {
+        let is_there = scene.color_packs.get(name) == Some(pack);
+        let free = if is_there {
+            name.clone()
+        } else {
+            free_pack_name(scene, name)
+        };
+        if !is_there {
+            scene.packs_mut().insert(free.clone(), pack.clone());
+        }
+        names.insert(name.clone(), free);
+    }
+    let known = |name: &mut String| {
+        if let Some(free) = names.get(name) {
+            name.clone_from(free);
+        }
+    };
+    for object in &pasted.objects {
+        let mut object = object.clone();
+        known(&mut object.color_pack);
+        object.name = free_object_name(scene, &object.name);
+        // Two things in one place would shadow each other.
+        while scene
+            .objects
+            .iter()
+            .any(|other| other.shape == object.shape)
+        {
+            let by = copy_offset(scene, &object.shape);
+            if by == glam::DVec3::ZERO {
+                break;
+            }
+            object.shape = object.shape.moved(by);
+        }
+        scene.objects.push(object);
+    }
+    for light in &pasted.lights {
+        let mut light = light.clone();
+        if let Some(marker) = &mut light.marker {
+            known(&mut marker.color_pack);
+        }
+        light.name = free_light_name(scene, &light.name);
+        scene.lights.push(light);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::check;
+
+    #[test]
+    fn what_is_copied_is_pasted_beside_it_with_its_packs() {
+        let mut scene = Scene::demo();
+        let selected = Selected::all([Item::object(1), Item::light(0), Item::object(0)]);
+        let part = excerpt(&scene, &selected);
+        let document = Document {
+            header: String::new(),
+            scene: part.clone(),
+        };
+        let text = document.to_text().expect("a text");
+        let found = read(&text, &scene).expect("a scene");
+        assert_eq!(found, part);
+        let packs = scene.color_packs.clone();
+        paste(&mut scene, &found);
+        assert_eq!((scene.objects.len(), scene.lights.len()), (11, 3));
+        assert_eq!(scene.color_packs, packs);
+        assert_eq!(scene.objects[9].name, "Sphere 3");
+        assert_ne!(scene.objects[9].shape, scene.objects[0].shape);
+        assert_eq!(check(&scene), Ok(()));
+        // Elsewhere the packs come with it.
+        let mut other = Scene::empty();
+        paste(&mut other, &part);
+        assert_eq!((other.objects.len(), check(&other)), (2, Ok(())));
+    }
+
+    #[test]
+    fn objects_and_lights_can_be_written_by_hand() {
+        let scene = Scene::demo();
+        let ball = r#"Object(name: "b", color_pack: "plane", shape: Sphere(center: (0, 1, 2), radius: 3)),"#;
+        let found = read(
+            &format!("{ball}\n{ball}").replacen("\"b\"", "\"a\"", 1),
+            &scene,
+        );
+        let found = found.expect("objects");
+        assert_eq!(found.objects.len(), 2);
+        assert_eq!(
+            found.color_packs.get("plane"),
+            scene.color_packs.get("plane")
+        );
+        let light = read(r#"Light(name: "l", position: (1, 2, 3))"#, &scene);
+        assert_eq!(light.expect("a light").lights.len(), 1);
+        assert!(read("Object(name: 3)", &scene).is_err());
+        assert!(read("hello", &scene).is_err());
+    }
+}

@@ -1,0 +1,52 @@
+//! What a new thing is called, and where it stands.
+
+use glam::DVec3;
+
+use crate::scene::{Scene, Shape};
+
+/// `wanted`, or the first of `BASE 2`, `BASE 3`, … that is not taken, where BASE is `wanted`
+/// without its number.
+fn free_name(wanted: &str, is_taken: impl Fn(&str) -> bool) -> String {
+    if !is_taken(wanted) {
+        return wanted.to_owned();
+    }
+    let base = wanted
+        .trim_end_matches(|c: char| c.is_ascii_digit())
+        .trim_end();
+    let base = if base.is_empty() { wanted } else { base };
+    let mut numbered = (1_u64..).map(|number| format!("{base} {number}"));
+    numbered.find(|name| !is_taken(name)).unwrap_or_default()
+}
+
+/// A name for an object that no other has, like the one that is wanted.
+pub fn free_object_name(scene: &Scene, wanted: &str) -> String {
+    free_name(wanted, |name| {
+        scene.objects.iter().any(|object| object.name == name)
+    })
+}
+
+/// A name for a light that no other has, like the one that is wanted.
+pub fn free_light_name(scene: &Scene, wanted: &str) -> String {
+    free_name(wanted, |name| {
+        scene.lights.iter().any(|light| light.name == name)
+    })
+}
+
+/// A name for a pack that no other has, like the one that is wanted.
+pub fn free_pack_name(scene: &Scene, wanted: &str) -> String {
+    free_name(wanted, |name| scene.color_packs.contains_key(name))
+}
+
+/// From a shape to where its copy stands: two things in one place would shadow each other.
+pub fn copy_offset(scene: &Scene, shape: &Shape) -> DVec3 {
+    if let Some((low, high)) = shape.bounds() {
+        return DVec3::new((high - low).abs().max_element(), 0.0, 0.0);
+    }
+    let normal = shape
+        .endless_plane()
+        .and_then(|(_, normal)| normal.try_normalize());
+    let extent = scene
+        .bounds()
+        .map_or(1.0, |(low, high)| (high - low).length());
+    normal.map_or(DVec3::ZERO, |normal| normal * (extent / 20.0))
+}

@@ -1,0 +1,63 @@
+//! What other programs have written to the document's file.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::document::Editor;
+use crate::files::{Stamp, is_same_file};
+use crate::scene::Document;
+
+impl Editor {
+    /// Whether another program has written the document's file since this window read or wrote it.
+    pub fn is_changed_outside(&self) -> bool {
+        match (&self.path, &self.stamp) {
+            (Some(path), Some(stamp)) => stamp.is_touched(path) && stamp.is_outdated(path),
+            _ => false,
+        }
+    }
+
+    /// Whether saving to `path` would replace something in the document's own file that this window has not
+    /// seen.
+    pub fn would_lose(&self, path: &Path) -> bool {
+        match (&self.path, &self.stamp) {
+            (Some(own), Some(stamp)) => is_same_file(own, path) && stamp.is_outdated(own),
+            _ => false,
+        }
+    }
+
+    /// Takes what another program has written in place of the scene, as a step that can be undone.
+    pub fn take_theirs(&mut self, (document, stamp): (Document, Stamp)) {
+        let before = self.here();
+        let theirs = Arc::new(document.scene);
+        self.header = document.header;
+        self.stamp = Some(stamp);
+        self.saves += 1;
+        self.saved = Arc::clone(&theirs);
+        if theirs == self.scene {
+            // Other words for the same.
+            self.is_dirty = false;
+            return;
+        }
+        self.history.end_gesture();
+        self.history.record("Reload".to_owned(), before, &theirs);
+        self.history.end_gesture();
+        self.set_scene(theirs);
+        self.notify(format!(
+            "{} was changed by another program and read anew; undo brings yours back",
+            self.title()
+        ));
+        self.tell_missing_meshes();
+    }
+
+    /// Keeps the scene beside what another program has written, if it can be read; the next save replaces
+    /// that.
+    pub fn keep_mine(&mut self, theirs: Option<(Document, Stamp)>) {
+        self.saves += 1;
+        let (theirs, stamp) = theirs.map_or((None, None), |(theirs, stamp)| {
+            (Some(Arc::new(theirs.scene)), Some(stamp))
+        });
+        self.is_dirty = theirs.as_ref() != Some(&self.scene);
+        self.saved = theirs.unwrap_or_else(|| Arc::clone(&self.saved));
+        self.stamp = stamp;
+    }
+}

@@ -1,0 +1,158 @@
+//! One part of the light by itself, to see what it adds: the same scene with the rest of its terms at zero.
+
+use glam::DVec3;
+
+use super::material::ColorPack;
+use super::whole::Scene;
+
+/// What of the light is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Aspect {
+    /// All of it: the picture.
+    #[default]
+    All,
+    /// What is seen without any light.
+    Ambient,
+    /// The matte part of what the lights add.
+    Diffuse,
+    /// The highlights of the lights.
+    Specular,
+    /// All of it, but for mirror images.
+    WithoutMirrors,
+    /// The shape of things and their shadows, all of one grey.
+    Clay,
+    /// Each object in a colour of its own, without light.
+    Objects,
+}
+
+/// Golden angle in turns: hues so far apart differ for as many neighbours as can be.
+const GOLDEN: f64 = 0.381_966_011_250_105;
+/// Brightness of clay, 0–255.
+const CLAY: f64 = 200.0;
+
+impl Aspect {
+    /// Every aspect, with its name and what it shows.
+    pub const EACH: [(Self, &'static str, &'static str); 7] = [
+        (Self::All, "Everything", "The picture as it is"),
+        (
+            Self::Ambient,
+            "Ambient only",
+            "Ambient intensity · ambient colour: what is seen without any light",
+        ),
+        (
+            Self::Diffuse,
+            "Diffuse only",
+            "Σ intensity · diffuse colour · cosine of the angle to the light",
+        ),
+        (
+            Self::Specular,
+            "Specular only",
+            "Σ intensity · specular colour · highlight, without mirror images",
+        ),
+        (
+            Self::WithoutMirrors,
+            "Without mirrors",
+            "Everything but mirror images",
+        ),
+        (Self::Clay, "Clay", "Shapes and shadows, all of one grey"),
+        (
+            Self::Objects,
+            "Objects",
+            "Each object in a colour of its own",
+        ),
+    ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        let mut all = Self::EACH.iter();
+        all.find(|(aspect, ..)| *aspect == self)
+            .map_or("", |(_, name, _)| name)
+    }
+
+    /// The scene whose picture shows this of `scene`.
+    #[must_use]
+    pub fn of(self, scene: &Scene) -> Scene {
+        let mut shown = scene.clone();
+        let change = |shown: &mut Scene, change: fn(&mut ColorPack)| {
+            shown.packs_mut().values_mut().for_each(change);
+        };
+        match self {
+            Self::All => {}
+            Self::Ambient => {
+                for light in shown.lights.iter_mut() {
+                    light.intensity = 0.0;
+                }
+            }
+            Self::Diffuse => {
+                shown.ambient_intensity = 0.0;
+                change(&mut shown, |pack| pack.specular = DVec3::ZERO);
+            }
+            Self::Specular => {
+                shown.ambient_intensity = 0.0;
+                change(&mut shown, |pack| {
+                    pack.diffuse = DVec3::ZERO;
+                    pack.reflective = false;
+                });
+            }
+            Self::WithoutMirrors => change(&mut shown, |pack| pack.reflective = false),
+            Self::Clay => change(&mut shown, |pack| {
+                *pack = ColorPack {
+                    ambient: DVec3::splat(CLAY),
+                    diffuse: DVec3::splat(CLAY),
+                    specular: DVec3::ZERO,
+                    reflective: false,
+                    ..pack.clone()
+                };
+            }),
+            Self::Objects => flat(&mut shown),
+        }
+        shown
+    }
+}
+
+/// Gives each object a colour of its own, which no light changes.
+fn flat(shown: &mut Scene) {
+    for light in shown.lights.iter_mut() {
+        light.intensity = 0.0;
+    }
+    shown.ambient_intensity = 1.0;
+    let names: Vec<String> = (0..shown.objects.len())
+        .map(|index| format!("object {index}"))
+        .collect();
+    for (object, name) in shown.objects.iter_mut().zip(&names) {
+        object.color_pack.clone_from(name);
+    }
+    for (index, name) in names.into_iter().enumerate() {
+        let pack = ColorPack {
+            ambient: hue(index as f64 * GOLDEN),
+            ..ColorPack::default()
+        };
+        shown.packs_mut().insert(name, pack);
+    }
+}
+
+/// A light colour of a hue in turns.
+fn hue(turns: f64) -> DVec3 {
+    let channel = |off: f64| {
+        let wave = ((turns + off).fract() * 6.0 - 3.0).abs() - 1.0;
+        70.0 + 180.0 * wave.clamp(0.0, 1.0)
+    };
+    DVec3::new(channel(0.0), channel(2.0 / 3.0), channel(1.0 / 3.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::check;
+
+    #[test]
+    fn every_aspect_of_the_demo_is_a_valid_scene_of_its_own() {
+        let demo = Scene::demo();
+        assert_eq!(Aspect::All.of(&demo), demo);
+        for (aspect, name, _) in &Aspect::EACH[1..] {
+            let shown = aspect.of(&demo);
+            assert_ne!(shown, demo, "{name}");
+            assert_eq!(check(&shown), Ok(()), "{name}");
+        }
+    }
+}

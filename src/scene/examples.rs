@@ -1,0 +1,106 @@
+//! The scenes that every copy of the program has with it.
+
+use std::sync::Arc;
+
+use super::file::{DEMO_TEXT, Document};
+use super::shape::{Mesh, MeshSource};
+use crate::mesh::read_ply;
+
+/// A scene to begin with.
+#[derive(Debug)]
+pub struct Example {
+    /// What it is called: the name of its file, without the ending.
+    pub name: &'static str,
+    text: &'static str,
+    /// What its mesh file holds, if it refers to one.
+    mesh: Option<&'static [u8]>,
+}
+
+macro_rules! example {
+    ($name:literal) => {
+        Example {
+            name: $name,
+            text: include_str!(concat!("../../scenes/", $name, ".ron")),
+            mesh: None,
+        }
+    };
+}
+
+/// Every example, the demo first.
+pub const EXAMPLES: [Example; 7] = [
+    Example {
+        name: "demo",
+        text: DEMO_TEXT,
+        mesh: None,
+    },
+    Example {
+        mesh: Some(include_bytes!("../../scenes/knot.ply")),
+        ..example!("knot")
+    },
+    example!("mirrors"),
+    example!("sunflower"),
+    example!("discs"),
+    example!("orthographic"),
+    example!("flight"),
+];
+
+impl Example {
+    /// The example, ready to be opened; an empty scene if it is none, which a test rules out.
+    pub fn document(&self) -> Document {
+        let mut document = Document::from_text(self.text).unwrap_or_else(|_| Document::empty());
+        let triangles = self
+            .mesh
+            .and_then(|bytes| read_ply(bytes).ok())
+            .map(Arc::new);
+        if let Some(read) = triangles {
+            document.scene.change_meshes(|mesh| {
+                let mut source = mesh.source.clone();
+                if let MeshSource::File {
+                    triangles, problem, ..
+                } = &mut source
+                {
+                    (*triangles, *problem) = (Arc::clone(&read), None);
+                }
+                Mesh {
+                    source,
+                    ..mesh.clone()
+                }
+            });
+        }
+        document
+    }
+
+    /// What it shows, in a sentence.
+    pub fn words(&self) -> &'static str {
+        let line = self.text.lines().next().unwrap_or_default();
+        line.trim_start_matches("//").trim()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_shipped_scene_is_an_example_that_opens() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
+        let files = std::fs::read_dir(folder).expect("a folder");
+        let paths = files.map(|file| file.expect("a file").path());
+        let scenes = paths.filter(|path| path.extension().is_some_and(|ending| ending == "ron"));
+        let mut count = 0;
+        for path in scenes {
+            let name = path
+                .file_stem()
+                .expect("a name")
+                .to_string_lossy()
+                .into_owned();
+            let example = EXAMPLES.iter().find(|example| example.name == name);
+            let example = example.unwrap_or_else(|| panic!("{name} is no example"));
+            let document = Document::load(&path).expect("valid");
+            assert_eq!(example.document().scene, document.scene, "{name}");
+            assert!(example.words().len() > 10, "{name}");
+            count += 1;
+        }
+        assert_eq!(count, EXAMPLES.len());
+    }
+}

@@ -1,0 +1,205 @@
+//! What is probably not meant in a scene, though it is valid.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use super::shape::Shape;
+use super::whole::Scene;
+
+/// Most objects that are held against each other.
+const MOST: usize = 20_000;
+/// How near to a surface a light counts as on it, as a share of the distance that matters.
+const ON: f64 = 1e-9;
+/// Cosine between a view and a plane below which the plane is seen edge-on.
+const EDGE_ON: f64 = 1e-3;
+
+/// Something that is probably not meant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hint {
+    /// What, as a sentence.
+    pub words: String,
+    /// What it is about.
+    pub about: About,
+}
+
+/// What a hint is about, by its place in the scene's list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum About {
+    /// The camera.
+    Camera,
+    /// A light.
+    Light(usize),
+    /// An object.
+    Object(usize),
+    /// A color pack.
+    Pack(usize),
+}
+
+/// Everything that is probably not meant.
+pub fn hints(scene: &Scene) -> Vec<Hint> {
+    let mut hints = Vec::new();
+    let mut add = |words: String, about: About| hints.push(Hint { words, about });
+    let visible = scene.objects.iter().enumerate();
+    let visible = || visible.clone().filter(|(_, object)| object.visible);
+    let eye = scene.camera.position;
+    for (index, object) in visible() {
+        let name = &object.name;
+        if is_inside(&object.shape, eye) {
+            add(format!("The camera is inside {name}"), About::Camera);
+        }
+        if is_edge_on(&object.shape, scene) {
+            let words = format!("{name} is seen edge-on: the camera is in its plane");
+            add(words, About::Object(index));
+        }
+    }
+    for (index, light) in scene.lights.iter().enumerate() {
+        let lit = || visible().filter(|_| light.visible && light.intensity > 0.0);
+        for (_, object) in lit() {
+            let name = &object.name;
+            if is_on(&object.shape, light.position) {
+                let words = format!("{} is on the surface of {name}", light.name);
+                add(words, About::Light(index));
+            } else if is_inside(&object.shape, light.position) {
+                let words = format!("{} is inside {name}, which shuts it in", light.name);
+                add(words, About::Light(index));
+            }
+        }
+    }
+    for (index, (name, _)) in scene.color_packs.iter().enumerate() {
+        if !is_worn(scene, name) {
+            add(format!("No object wears {name}"), About::Pack(index));
+        }
+    }
+    if scene.objects.len() <= MOST {
+        add_coincident(scene, &mut add);
+    }
+    hints
+}
+
+fn is_worn(scene: &Scene, pack: &str) -> bool {
+    let mut markers = scene
+        .lights
+        .iter()
+        .filter_map(|light| light.marker.as_ref());
+    let mut objects = scene.objects.iter();
+    markers.any(|marker| marker.color_pack == pack)
+        || objects.any(|object| object.color_pack == pack)
+}
+
+/// Two visible objects in one place: which of them is seen, rounding decides.
+fn add_coincident(scene: &Scene, add: &mut impl FnMut(String, About)) {
+    let mut known: HashMap<String, &str> = HashMap::new();
+    for (index, object) in scene.objects.iter().enumerate() {
+        if !object.visible || matches!(object.shape, Shape::Mesh(_)) {
+            continue;
+        }
+        let key = match &object.shape {
+            Shape::Plane(plane) => {
+                // The same plane through another point of it.
+                let normal = plane.normal.normalize_or_zero();
+                let normal = if normal.dot(DVec3::new(1.0, 1e-3, 1e-6)) < 0.0 {
+                    -normal
+                } else {
+                    normal
+                };
+                format!("{normal} {:.9e}", normal.dot(plane.point) + 0.0)
+            }
+            shape => format!("{shape:?}"),
+        };
+        if let Some(other) = known.insert(key, &object.name) {
+            let words = format!("{} is in the same place as {other}", object.name);
+            add(words, About::Object(index));
+        }
+    }
+}
+
+fn is_inside(shape: &Shape, point: DVec3) -> bool {
+    match shape {
+        Shape::Sphere(ball) => ball.center.distance(point) < ball.radius * (1.0 - ON),
+        _ => false,
+    }
+}
+
+fn is_on(shape: &Shape, point: DVec3) -> bool {
+    let on_plane = |at: DVec3, normal: DVec3| {
+        let off = (point - at).dot(normal.normalize_or_zero()).abs();
+        off <= ON * (point.length() + at.length())
+    };
+    match shape {
+        Shape::Sphere(ball) => {
+            let off = (ball.center.distance(point) - ball.radius).abs();
+            off <= ON * (ball.radius + point.length())
+        }
+        Shape::Plane(plane) => on_plane(plane.point, plane.normal),
+        Shape::Disc(disc) => {
+            on_plane(disc.center, disc.normal) && disc.center.distance(point) <= disc.radius
+        }
+        Shape::Triangle(triangle) => {
+            let [a, b, c] = triangle.corners();
+            let normal = (b - a).cross(c - a);
+            let side = |from: DVec3, to: DVec3| (to - from).cross(point - from).dot(normal);
+            let sides = [side(a, b), side(b, c), side(c, a)];
+            on_plane(a, normal) && sides.iter().all(|side| *side >= 0.0)
+        }
+        Shape::Mesh(_) => false,
+    }
+}
+
+fn is_edge_on(shape: &Shape, scene: &Scene) -> bool {
+    let Some((at, normal)) = shape.endless_plane() else {
+        return false;
+    };
+    let (arm, normal) = (scene.camera.position - at, normal.normalize_or_zero());
+    let extent = scene
+        .objects_bounds()
+        .map_or(1.0, |(low, high)| (high - low).length());
+    arm.dot(normal).abs() < EDGE_ON * extent
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words(scene: &Scene) -> Vec<String> {
+        hints(scene).into_iter().map(|hint| hint.words).collect()
+    }
+
+    #[test]
+    fn nothing_is_said_of_the_demo() {
+        assert_eq!(words(&Scene::demo()), Vec::<String>::new());
+    }
+
+    #[test]
+    fn what_is_probably_not_meant_is_said() {
+        let demo = Scene::demo();
+        let mut scene = demo.clone();
+        scene.camera.position = scene.objects[0].shape.position();
+        scene.lights[0].position = scene.objects[1].shape.position();
+        scene.lights[1].position = DVec3::new(3.0, 0.0, 4.0);
+        scene
+            .packs_mut()
+            .insert("idle".to_owned(), crate::scene::ColorPack::default());
+        let mut copy = scene.objects[8].clone();
+        "Plane 2".clone_into(&mut copy.name);
+        copy.shape = copy.shape.moved(DVec3::X);
+        scene.objects.push(copy);
+        assert_eq!(
+            words(&scene),
+            [
+                "The camera is inside Sphere 1",
+                "Light 1 is inside Sphere 2, which shuts it in",
+                "Light 2 is on the surface of Plane",
+                "Light 2 is on the surface of Plane 2",
+                "No object wears idle",
+                "Plane 2 is in the same place as Plane",
+            ]
+        );
+        let mut edge = demo;
+        edge.camera.position.y = 0.0;
+        assert_eq!(
+            words(&edge),
+            ["Plane is seen edge-on: the camera is in its plane"]
+        );
+    }
+}

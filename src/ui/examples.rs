@@ -1,0 +1,72 @@
+//! The menu of the examples, each with a small picture.
+
+use egui::{Button, Context, Image, TextureHandle, TextureOptions, Ui, load::SizedTexture, vec2};
+
+use super::commands::Command;
+use super::requests::UiRequests;
+use super::upload::whole;
+use crate::scene::EXAMPLES;
+use crate::worker::ThumbnailJob;
+
+/// The name of the first example's picture; others follow, and no key has such a name.
+const FIRST: u64 = 1 << 48;
+/// Size of the pictures, in points.
+const SIZE: [u32; 2] = [96, 64];
+
+/// The pictures.
+#[derive(Default)]
+pub struct Examples {
+    pictures: [Option<TextureHandle>; EXAMPLES.len()],
+    is_seen: bool,
+    is_asked: bool,
+}
+
+impl Examples {
+    /// Takes the finished pictures of examples out of all.
+    pub fn take(&mut self, ctx: &Context, pictures: &mut Vec<(u64, crate::image::Image)>) {
+        pictures.retain(|(name, image)| {
+            let place = name.checked_sub(FIRST).map(|place| place as usize);
+            let Some(picture) = place.and_then(|place| self.pictures.get_mut(place)) else {
+                return true;
+            };
+            *picture = Some(ctx.load_texture("example", whole(image), TextureOptions::LINEAR));
+            false
+        });
+    }
+
+    /// What is to be traced, once the menu was opened.
+    pub fn wishes(&mut self, scale: f32) -> Vec<ThumbnailJob> {
+        if !self.is_seen || std::mem::replace(&mut self.is_asked, true) {
+            return Vec::new();
+        }
+        let size = SIZE.map(|side| (side as f32 * scale).round() as u32);
+        let jobs = EXAMPLES.iter().zip(FIRST..);
+        let jobs = jobs.map(|(example, name)| ThumbnailJob {
+            name,
+            scene: example.document().scene.into(),
+            size: (size[0], size[1]),
+        });
+        jobs.collect()
+    }
+
+    /// The entries of the menu.
+    pub fn menu(&mut self, ui: &mut Ui, out: &mut UiRequests) {
+        self.is_seen = true;
+        let size = vec2(SIZE[0] as f32, SIZE[1] as f32);
+        for (place, (example, picture)) in EXAMPLES.iter().zip(&self.pictures).enumerate() {
+            let (name, words) = (example.name, example.words());
+            let button = match picture {
+                Some(picture) => {
+                    let picture = SizedTexture::new(picture.id(), size);
+                    Button::image_and_text(Image::from_texture(picture), name)
+                }
+                None => Button::new(name),
+            };
+            let entry = ui.add(button.min_size(vec2(2.0 * size.x, size.y)));
+            if entry.accessible_name(name).on_hover_text(words).clicked() {
+                out.commands.push(Command::OpenExample(place));
+                ui.close();
+            }
+        }
+    }
+}

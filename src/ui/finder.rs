@@ -1,0 +1,213 @@
+//! Everything by its name: commands, things of the scene, settings.
+
+use egui::{Button, Context, Frame, Id, Key, Modal, Modifiers, ScrollArea, TextEdit, Ui};
+
+use super::commands::{Command, KEYLESS, SHORTCUTS, name_of, obstacle};
+use super::requests::UiRequests;
+use super::theme::{GRID, ROW};
+use crate::editor::{Editor, Item, Selection};
+use crate::scene::{Method, Setting, VisitSetting};
+
+/// Width of the window in points.
+const WIDTH: f32 = 460.0;
+/// Most finds that are listed.
+const MOST: usize = 200;
+
+/// What is looked for.
+#[derive(Debug, Default)]
+pub struct Finder {
+    /// Whether it is asked.
+    pub is_open: bool,
+    text: String,
+    /// Which of the finds is meant.
+    meant: usize,
+}
+
+/// Something that has the name.
+struct Find {
+    name: String,
+    /// What stands to its right: its keys, what it is, or why it cannot be had.
+    aside: String,
+    what: Target,
+    is_enabled: bool,
+}
+
+enum Target {
+    Command(Command),
+    Selection(Selection),
+}
+
+impl Finder {
+    /// Starts looking.
+    pub fn open(&mut self) {
+        *self = Self {
+            is_open: true,
+            ..Self::default()
+        };
+    }
+
+    /// Shows the field and what it finds, while it is open.
+    pub fn show(&mut self, ctx: &Context, editor: &Editor, out: &mut UiRequests) {
+        if !self.is_open {
+            return;
+        }
+        let frame = Frame::popup(&ctx.global_style()).inner_margin(GRID);
+        let modal = Modal::new(Id::unique("finder")).frame(frame);
+        let shown = modal.show(ctx, |ui| {
+            ui.set_width(WIDTH);
+            self.ask(ui, editor)
+        });
+        if let Some(target) = shown.inner {
+            self.is_open = false;
+            match target {
+                Target::Command(command) => out.commands.push(command),
+                Target::Selection(selection) => out.select(selection),
+            }
+        } else if shown.should_close() {
+            self.is_open = false;
+        }
+    }
+
+    fn ask(&mut self, ui: &mut Ui, editor: &Editor) -> Option<Target> {
+        let step = |ui: &mut Ui, key: Key| {
+            ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key))
+        };
+        let (down, up) = (step(ui, Key::ArrowDown), step(ui, Key::ArrowUp));
+        let field = TextEdit::singleline(&mut self.text)
+            .hint_text("A command, an object, a light, a color pack, a setting")
+            .desired_width(f32::INFINITY);
+        let field = ui.add(field).on_hover_text("Enter does what is marked");
+        field.request_focus();
+        if field.changed() {
+            self.meant = 0;
+        }
+        let finds = finds(ui, editor, &self.text);
+        let last = finds.len().saturating_sub(1);
+        self.meant = (self.meant + down).saturating_sub(up).min(last);
+        let is_entered = ui.input(|input| input.key_pressed(Key::Enter));
+        let mut taken = is_entered.then_some(self.meant);
+        ui.add_space(GRID / 2.0);
+        ScrollArea::vertical()
+            .max_height(12.0 * ROW)
+            .auto_shrink([false, true])
+            .show(ui, |ui| {
+                for (place, find) in finds.iter().enumerate() {
+                    let button = Button::selectable(place == self.meant, &find.name)
+                        .right_text(&find.aside)
+                        .min_size(egui::vec2(ui.available_width(), ROW));
+                    let shown = ui.add_enabled(find.is_enabled, button);
+                    if place == self.meant && (down > 0 || up > 0) {
+                        shown.scroll_to_me(None);
+                    }
+                    if shown.accessible_name(&find.name).clicked() {
+                        taken = Some(place);
+                    }
+                }
+            });
+        if finds.is_empty() {
+            ui.weak("Nothing has this name.");
+        }
+        let find = finds.into_iter().nth(taken?)?;
+        find.is_enabled.then_some(find.what)
+    }
+}
+
+/// Everything whose name has all the words, first what begins with them.
+fn finds(ui: &Ui, editor: &Editor, text: &str) -> Vec<Find> {
+    let text = text.trim().to_lowercase();
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let has = |name: &str| {
+        let name = name.to_lowercase();
+        words.iter().all(|word| name.contains(word))
+    };
+    let mut finds: Vec<Find> = commands(ui, editor)
+        .filter(|find| has(&find.name))
+        .collect();
+    finds.extend(settings(editor).filter(|find| has(&find.name)));
+    // There may be very many.
+    let room = MOST.saturating_sub(finds.len());
+    finds.extend(things(editor, has).take(room));
+    finds.sort_by_key(|find| !find.name.to_lowercase().starts_with(&text));
+    finds
+}
+
+fn commands<'a>(ui: &'a Ui, editor: &'a Editor) -> impl Iterator<Item = Find> + 'a {
+    let keyed = SHORTCUTS.iter().map(|shortcut| {
+        let keys = name_of(ui, shortcut.keys[0]);
+        (shortcut.command.clone(), shortcut.what, keys)
+    });
+    let keyless = KEYLESS
+        .iter()
+        .map(|(command, what)| (command.clone(), *what, String::new()));
+    let all = keyed.chain(keyless);
+    let all = all.filter(|(command, ..)| !matches!(command, Command::Find | Command::Escape));
+    all.map(|(command, what, keys)| {
+        let obstacle = obstacle(&command, editor);
+        Find {
+            name: what.to_owned(),
+            aside: obstacle.map_or(keys, str::to_owned),
+            is_enabled: obstacle.is_none(),
+            what: Target::Command(command),
+        }
+    })
+}
+
+/// What stands on top of the outliner, and the settings of the picture.
+fn settings(editor: &Editor) -> impl Iterator<Item = Find> {
+    let mut names = vec![
+        ("Camera".to_owned(), Selection::Camera),
+        (
+            "World: background, ambient intensity".to_owned(),
+            Selection::World,
+        ),
+        (
+            "Picture: width, height, reflections".to_owned(),
+            Selection::Render,
+        ),
+    ];
+    let mut labels = Labels(Vec::new());
+    editor.scene().render.clone().visit_settings(&mut labels);
+    let labels = labels.0.into_iter();
+    names.extend(labels.map(|label| (format!("Picture: {label}"), Selection::Render)));
+    names.into_iter().map(|(name, selection)| Find {
+        name,
+        aside: "setting".to_owned(),
+        what: Target::Selection(selection),
+        is_enabled: true,
+    })
+}
+
+/// What the inspector calls the settings.
+struct Labels(Vec<&'static str>);
+
+impl VisitSetting for Labels {
+    fn visit<M: Method>(&mut self, setting: Setting, _: &mut M) {
+        self.0.push(setting.label);
+    }
+}
+
+fn things<'a>(
+    editor: &'a Editor,
+    has: impl Fn(&str) -> bool + 'a,
+) -> impl Iterator<Item = Find> + 'a {
+    let scene = editor.scene();
+    let lights = (0..scene.lights.len()).map(|index| (Item::light(index), "light"));
+    let objects = (0..scene.objects.len()).map(|index| {
+        let kind = scene
+            .objects
+            .get(index)
+            .map_or("", |object| object.shape.kind());
+        (Item::object(index), kind)
+    });
+    let packs = (0..scene.color_packs.len()).map(|index| (Item::pack(index), "color pack"));
+    let all = lights.chain(objects).chain(packs);
+    all.filter_map(move |(item, kind)| {
+        let name = item.name(scene).filter(|name| has(name))?;
+        Some(Find {
+            name: name.to_owned(),
+            aside: kind.to_owned(),
+            what: Target::Selection(Selection::Item(item)),
+            is_enabled: true,
+        })
+    })
+}

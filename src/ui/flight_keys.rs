@@ -1,0 +1,119 @@
+//! The keys that fly the camera, and what the mouse does, as Help lists them.
+
+use egui::Key;
+
+use crate::editor::Motion;
+
+/// A key that flies the camera for as long as it is held.
+#[derive(Clone, Copy, Debug)]
+pub struct FlightKey {
+    /// The key; `None` is the control key by itself.
+    pub key: Option<Key>,
+    /// Direction: 1 is the flying speed, or the turning speed.
+    pub motion: Motion,
+    /// What Help says about it.
+    pub what: &'static str,
+}
+
+const STILL: Motion = Motion {
+    forward: 0.0,
+    right: 0.0,
+    up: 0.0,
+    yaw: 0.0,
+    pitch: 0.0,
+};
+
+/// Every flight key.
+pub const FLIGHT: &[FlightKey] = &[
+    FlightKey {
+        key: Some(Key::W),
+        motion: Motion {
+            forward: 1.0,
+            ..STILL
+        },
+        what: "Fly forward",
+    },
+    FlightKey {
+        key: Some(Key::S),
+        motion: Motion {
+            forward: -1.0,
+            ..STILL
+        },
+        what: "Fly back",
+    },
+    FlightKey {
+        key: Some(Key::A),
+        motion: Motion {
+            right: -1.0,
+            ..STILL
+        },
+        what: "Fly left",
+    },
+    FlightKey {
+        key: Some(Key::D),
+        motion: Motion {
+            right: 1.0,
+            ..STILL
+        },
+        what: "Fly right",
+    },
+    FlightKey {
+        key: Some(Key::Space),
+        motion: Motion { up: 1.0, ..STILL },
+        what: "Fly up",
+    },
+    FlightKey {
+        key: None,
+        motion: Motion { up: -1.0, ..STILL },
+        what: "Fly down",
+    },
+    FlightKey {
+        key: Some(Key::ArrowLeft),
+        motion: Motion { yaw: -1.0, ..STILL },
+        what: "Turn left",
+    },
+    FlightKey {
+        key: Some(Key::ArrowRight),
+        motion: Motion { yaw: 1.0, ..STILL },
+        what: "Turn right",
+    },
+    FlightKey {
+        key: Some(Key::ArrowUp),
+        motion: Motion {
+            pitch: 1.0,
+            ..STILL
+        },
+        what: "Look up",
+    },
+    FlightKey {
+        key: Some(Key::ArrowDown),
+        motion: Motion {
+            pitch: -1.0,
+            ..STILL
+        },
+        what: "Look down",
+    },
+];
+
+/// What the mouse does in the picture.
+pub const MOUSE: &[(&str, &str)] = &[
+    ("Click", "Select; with Shift, select as well"),
+    ("Alt, click", "Select what is behind"),
+    ("Drag a thing", "Move it; with Shift, on its level"),
+    ("Drag a handle", "Move, turn, resize; type a value"),
+    ("Ctrl, while dragging", "Round values"),
+    ("Esc, while dragging", "Take it back"),
+    ("Drag elsewhere", "Circle what is selected"),
+    ("Shift, drag elsewhere", "Select all in a frame"),
+    ("Middle button, drag", "Pan"),
+    ("Right button, drag", "Look around"),
+    ("Wheel", "Towards the pointer, and away"),
+    ("Shift, held", "Fly four times as fast"),
+];
+
+impl FlightKey {
+    /// The key in words.
+    pub fn name(&self) -> &'static str {
+        self.key.map_or("Left Ctrl", Key::name)
+    }
+}

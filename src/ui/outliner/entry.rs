@@ -1,0 +1,122 @@
+//! A row of the outliner.
+
+use egui::{Button, Rect, Sense, Ui, vec2};
+use egui_material_icons::MaterialIcon;
+
+use crate::editor::{Edit, Item, Kind};
+use crate::scene::Scene;
+use crate::ui::icons;
+use crate::ui::requests::UiRequests;
+use crate::ui::theme::{ROW, palette};
+
+/// The symbol of an item, and whether it is visible if it can be hidden.
+pub fn look(scene: &Scene, item: Item) -> (MaterialIcon, Option<bool>) {
+    match item.kind {
+        Kind::Light => (
+            icons::LIGHT,
+            scene.lights.get(item.index).map(|light| light.visible),
+        ),
+        Kind::Object => {
+            let object = scene.objects.get(item.index);
+            let icon = object.map_or(icons::SPHERE, |object| icons::of_shape(&object.shape));
+            (icon, object.map(|object| object.visible))
+        }
+        Kind::Pack => (icons::PACK, None),
+    }
+}
+
+/// The next row of the list, over its whole width.
+pub fn row(ui: &mut Ui) -> Rect {
+    ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover())
+        .0
+}
+
+/// How an entry looks.
+#[derive(Clone, Copy)]
+pub struct RowStyle {
+    /// Its symbol.
+    pub icon: MaterialIcon,
+    /// Whether it can be seen in the picture.
+    pub is_bright: bool,
+    /// Whether it is selected.
+    pub is_selected: bool,
+}
+
+/// An entry that can be selected and dragged.
+pub fn entry(ui: &mut Ui, rect: Rect, look: RowStyle, name: &str) -> egui::Response {
+    let colors = palette(ui.ctx());
+    let color = if look.is_bright {
+        colors.text
+    } else {
+        colors.muted
+    };
+    let texts = (
+        icons::text(look.icon).color(color),
+        egui::RichText::new(name).color(color),
+    );
+    let button = Button::selectable(look.is_selected, texts)
+        .right_text("")
+        .truncate()
+        .sense(Sense::click_and_drag())
+        .min_size(rect.size());
+    ui.put(rect, button).accessible_name(name)
+}
+
+/// Drag a row onto another to put it there.
+pub fn reorder(ui: &Ui, response: &egui::Response, item: Item, out: &mut UiRequests) {
+    response.dnd_set_drag_payload(item);
+    let fits = |dragged: &Item| dragged.kind == item.kind && dragged.index != item.index;
+    if let Some(dragged) = response
+        .dnd_hover_payload::<Item>()
+        .filter(|dragged| fits(dragged))
+    {
+        let y = if dragged.index < item.index {
+            response.rect.bottom()
+        } else {
+            response.rect.top()
+        };
+        ui.painter()
+            .hline(response.rect.x_range(), y, (2.0, palette(ui.ctx()).accent));
+    }
+    if let Some(dragged) = response
+        .dnd_release_payload::<Item>()
+        .filter(|dragged| fits(dragged))
+    {
+        out.edit(Edit::Move(*dragged, item.index));
+    }
+}
+
+/// Shows or hides an item by this name.
+pub fn eye(ui: &mut Ui, scene: &Scene, item: Item, name: &str, out: &mut UiRequests) {
+    let visible = match item.kind {
+        Kind::Light => scene.lights[item.index].visible,
+        Kind::Object => scene.objects[item.index].visible,
+        Kind::Pack => return,
+    };
+    let (icon, verb) = if visible {
+        (icons::VISIBLE, "Hide")
+    } else {
+        (icons::HIDDEN, "Show")
+    };
+    if !icons::button(ui, icon, &format!("{verb} {name}")).clicked() {
+        return;
+    }
+    let field = if visible { "hide" } else { "show" };
+    match item.kind {
+        Kind::Light => {
+            let light = crate::scene::Light {
+                visible: !visible,
+                ..scene.lights[item.index].clone()
+            };
+            out.edit(Edit::Light(item.index, light, field));
+        }
+        Kind::Object => {
+            let object = crate::scene::Object {
+                visible: !visible,
+                ..scene.objects[item.index].clone()
+            };
+            out.edit(Edit::Object(item.index, object, field));
+        }
+        Kind::Pack => {}
+    }
+}

@@ -1,0 +1,87 @@
+//! What is probably not meant in the scene, with a way to it and, where there is one, a way out.
+
+use egui::{Popup, RichText, Ui};
+
+use super::icons;
+use super::requests::UiRequests;
+use super::theme::{GRID, palette};
+use crate::editor::{Edit, Editor, Item, Selection};
+use crate::scene::{About, Hint, Object, Scene, hints};
+
+/// Width of the list in points.
+const WIDTH: f32 = 420.0;
+
+/// What was found in a state of the scene.
+#[derive(Default)]
+pub struct SceneCheck {
+    of: Option<u64>,
+    hints: Vec<Hint>,
+}
+
+impl SceneCheck {
+    /// Looks at the scene again, if it has changed; not while something is dragged.
+    pub fn update(&mut self, editor: &Editor, is_busy: bool) {
+        if self.of != Some(editor.revision()) && !is_busy {
+            self.of = Some(editor.revision());
+            self.hints = hints(editor.scene());
+        }
+    }
+
+    /// A button that counts the hints, and the list of them.
+    pub fn show(&self, ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
+        let count = self.hints.len();
+        if count == 0 {
+            return;
+        }
+        let words = format!("{count} hint{}", if count == 1 { "" } else { "s" });
+        let color = palette(ui.ctx()).accent;
+        let button = egui::Button::new((
+            icons::text(icons::INFO).color(color),
+            RichText::new(&words).small().color(color),
+        ));
+        let button = ui.add(button.frame_when_inactive(false));
+        let button = button
+            .accessible_name(words)
+            .on_hover_text("What is probably not meant in the scene");
+        Popup::menu(&button).width(WIDTH).show(|ui| {
+            for hint in &self.hints {
+                ui.horizontal(|ui| {
+                    ui.label(&hint.words);
+                    ui.add_space(GRID);
+                    if ui.button("Select").clicked() {
+                        out.select(selection(hint.about));
+                    }
+                    if let Some((word, edit)) = way_out(scene, hint)
+                        && ui.button(word).clicked()
+                    {
+                        out.edit(edit);
+                    }
+                });
+            }
+        });
+    }
+}
+
+fn selection(about: About) -> Selection {
+    match about {
+        About::Camera => Selection::Camera,
+        About::Light(index) => Selection::Item(Item::light(index)),
+        About::Object(index) => Selection::Item(Item::object(index)),
+        About::Pack(index) => Selection::Item(Item::pack(index)),
+    }
+}
+
+/// What would mend it: packs that nothing wears can go, and what is there twice can be hidden.
+fn way_out(scene: &Scene, hint: &Hint) -> Option<(&'static str, Edit)> {
+    match hint.about {
+        About::Pack(index) => Some(("Delete", Edit::Delete(Item::pack(index)))),
+        About::Object(index) if hint.words.contains("in the same place") => {
+            let object = Object {
+                visible: false,
+                ..scene.objects.get(index)?.clone()
+            };
+            Some(("Hide", Edit::Object(index, object, "hide")))
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,234 @@
+//! What the pointer drags in the picture.
+
+use egui::{CursorIcon, Event, Key, Painter, Pos2, Rect, Response, Stroke, StrokeKind, Ui};
+use glam::DVec3;
+
+use super::gizmo::{Handle, label};
+use super::grip::{Grip, Pull};
+use super::lens::Lens;
+use super::navigate::{panned, surroundings, turn};
+use super::sight::{Sight, item_of};
+use super::subject::Subject;
+use crate::editor::{Action, Edit, Editor, Selected};
+use crate::image::Thing;
+use crate::scene::Shape;
+use crate::ui::requests::UiRequests;
+use crate::ui::theme::palette;
+use crate::ui::viewport::Place;
+
+/// How far away something is that nothing is known of, in world units.
+const SOMEWHERE: f64 = 100.0;
+
+/// What the pointer drags.
+pub enum Drag {
+    /// The camera around a point.
+    Orbit(DVec3),
+    /// The camera past a point.
+    Pan(DVec3),
+    /// A frame from here around what is to be selected, besides what is.
+    Frame(Pos2, Selected),
+    /// What is selected.
+    Grip(Box<Grip>),
+}
+
+/// The picture, and what it is seen through.
+pub struct View<'a> {
+    /// The document.
+    pub editor: &'a Editor,
+    /// Where the picture is.
+    pub place: Place,
+    /// Between it and the scene.
+    pub lens: Lens,
+    /// What is drawn over it.
+    pub painter: Painter,
+}
+
+impl View<'_> {
+    /// The point of the scene at a place of the picture; where nothing is, one as far away as the scene's
+    /// middle.
+    pub fn point_at(&self, sight: &Sight, at: Pos2) -> DVec3 {
+        let scene = self.editor.shown();
+        let seen = sight.at(self.editor, self.place.rect, at);
+        let shape = match seen {
+            Some(Thing::Object(index)) => scene.objects.get(index).map(|object| &object.shape),
+            _ => None,
+        };
+        let middle = match seen {
+            Some(Thing::Light(index)) => scene.lights.get(index).map(|light| light.position),
+            _ => surroundings(scene).map(|(low, high)| low * 0.5 + high * 0.5),
+        };
+        let on_shape = shape.and_then(|shape| self.lens.on_shape(at, shape));
+        let forward = self.lens.forward();
+        let level = || self.lens.on_plane(at, middle?, forward);
+        on_shape.or_else(level).unwrap_or_else(|| {
+            let (origin, direction) = self.lens.ray(at);
+            origin + direction * SOMEWHERE
+        })
+    }
+
+    /// What the camera is moved around: the middle of what is selected, if that is in the picture, or the
+    /// point at a place of it.
+    fn pivot(&self, sight: &Sight, at: Pos2) -> DVec3 {
+        let selected = Subject::of(self.editor.selected(), self.editor.shown());
+        let has_end = selected.iter().all(|subject| subject.bounds().is_some());
+        let middle = Subject::middle_of(&selected).filter(|middle| {
+            let place = self.lens.place(*middle);
+            has_end && place.is_some_and(|place| self.place.rect.contains(place))
+        });
+        middle.unwrap_or_else(|| self.point_at(sight, at))
+    }
+
+    /// What is seen at a place, if it is a body that can be taken hold of.
+    fn body_at(&self, sight: &Sight, at: Pos2) -> Option<Thing> {
+        let seen = sight.at(self.editor, self.place.rect, at)?;
+        let is_endless = match seen {
+            Thing::Object(index) => {
+                let object = self.editor.shown().objects.get(index)?;
+                matches!(object.shape, Shape::Plane(_))
+            }
+            Thing::Light(_) => false,
+        };
+        (!is_endless).then_some(seen)
+    }
+}
+
+impl Drag {
+    /// What a drag from a place of the picture is of, where this handle is.
+    pub fn start(
+        view: &View,
+        sight: &Sight,
+        (at, handle, is_shifted): (Pos2, Option<Handle>, bool),
+        out: &mut UiRequests,
+    ) -> Option<Self> {
+        let editor = view.editor;
+        if let Some(handle) = handle {
+            let before = Subject::of(editor.selected(), editor.shown());
+            return Grip::new(&view.lens, before, handle, at)
+                .map(|grip| Self::Grip(Box::new(grip)));
+        }
+        if editor.looks_through() {
+            return Some(Self::Orbit(view.pivot(sight, at)));
+        }
+        if let Some(body) = view.body_at(sight, at) {
+            let item = item_of(body);
+            let mut selected = editor.selected().clone();
+            if !selected.has(item) {
+                selected = Selected::all([item]);
+                out.actions.push(Action::SelectItems(selected.clone()));
+            }
+            let before = Subject::of(&selected, editor.shown());
+            let grip = Grip::body(before, at, view.point_at(sight, at));
+            return grip.map(|grip| Self::Grip(Box::new(grip)));
+        }
+        Some(if is_shifted {
+            Self::Frame(at, editor.selected().clone())
+        } else {
+            Self::Orbit(view.pivot(sight, at))
+        })
+    }
+
+    /// The handle that is held.
+    pub fn handle(&self) -> Option<Handle> {
+        match self {
+            Self::Grip(grip) => Some(grip.handle()),
+            _ => None,
+        }
+    }
+
+    /// Goes on by a frame. Whether it does: a button that is let go ends it, and Escape takes it back.
+    pub fn go_on(
+        &mut self,
+        ui: &Ui,
+        view: &View,
+        sight: &Sight,
+        response: &Response,
+        out: &mut UiRequests,
+    ) -> bool {
+        let is_cancelled =
+            ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, Key::Escape));
+        let pointer = ui.input(|input| input.pointer.interact_pos());
+        if is_cancelled {
+            out.actions.push(Action::CancelGesture);
+            return false;
+        }
+        let Some(at) = pointer else { return false };
+        let moved = response.drag_motion();
+        match self {
+            Self::Orbit(about) if moved != egui::Vec2::ZERO => {
+                out.actions.push(Action::Orbit(*about, turn(moved)));
+            }
+            Self::Pan(point) if moved != egui::Vec2::ZERO => {
+                let camera = panned(&view.editor.shown().camera, &view.lens, *point, moved);
+                out.edit(Edit::Camera(camera, "move"));
+            }
+            Self::Orbit(_) | Self::Pan(_) => {}
+            Self::Frame(from, before) => {
+                let part = Rect::from_two_pos(*from, at);
+                let found = sight.within(view.editor, view.place.rect, part);
+                if !response.dragged() {
+                    let items = before.items().iter().copied().chain(found);
+                    out.actions.push(Action::SelectItems(Selected::all(items)));
+                    return false;
+                }
+                show_frame(view, part, (at, found.len()));
+            }
+            Self::Grip(grip) => {
+                ui.set_cursor_icon(CursorIcon::Grabbing);
+                if type_into(ui, &mut grip.typed) {
+                    return false;
+                }
+                let modifiers = ui.input(|input| input.modifiers);
+                let pull = Pull {
+                    at,
+                    snaps: modifiers.command,
+                    is_level: modifiers.shift,
+                };
+                if response.dragged() {
+                    let outcome = grip.pull(&view.lens, pull);
+                    out.actions.extend(outcome.edit.map(Action::Edit));
+                    grip.label(&view.painter, at, &outcome.words);
+                }
+            }
+        }
+        response.dragged()
+    }
+}
+
+fn show_frame(view: &View, part: Rect, (at, count): (Pos2, usize)) {
+    let colors = palette(view.painter.ctx());
+    let fill = colors.accent.gamma_multiply(0.15);
+    let line = Stroke::new(1.0, colors.accent);
+    view.painter.rect(part, 0, fill, line, StrokeKind::Inside);
+    let plural = if count == 1 { "" } else { "s" };
+    label(&view.painter, at, &format!("{count} item{plural}"));
+}
+
+/// Takes digits up. Whether Enter was pressed after some.
+fn type_into(ui: &Ui, typed: &mut String) -> bool {
+    let events = ui.input(|input| input.filtered_events(&egui::EventFilter::default()));
+    let mut is_done = false;
+    for event in events {
+        match event {
+            Event::Text(text) => {
+                typed.extend(
+                    text.chars()
+                        .filter(|c| c.is_ascii_digit() || ".-".contains(*c)),
+                );
+            }
+            Event::Key {
+                key: Key::Backspace,
+                pressed: true,
+                ..
+            } => {
+                typed.pop();
+            }
+            Event::Key {
+                key: Key::Enter,
+                pressed: true,
+                ..
+            } => is_done = !typed.is_empty(),
+            _ => {}
+        }
+    }
+    is_done
+}

@@ -1,0 +1,325 @@
+//! Handles at what is selected: arrows and squares to move it, rings to turn it and to change its radius,
+//! dots for corners.
+
+use std::f64::consts::TAU;
+
+use egui::{Color32, FontId, Painter, Pos2, Stroke, StrokeKind, TextStyle, vec2};
+use glam::DVec3;
+
+use super::lens::Lens;
+use super::subject::Subject;
+use crate::editor::{Editor, Selected};
+use crate::scene::{Scene, Shape};
+use crate::ui::theme::{GRID, palette};
+
+/// Length of the arrows in points.
+pub const LENGTH: f64 = 76.0;
+/// Where the arrows begin, and the squares between them, in lengths.
+const GAP: f64 = 0.16;
+const SQUARE: (f64, f64) = (0.3, 0.5);
+/// Radius of the rings that turn, in lengths.
+pub const RING: f64 = 1.2;
+/// How near to a handle the pointer must be, in points.
+const REACH: f32 = 7.0;
+/// Shortest arrow that is shown, in points: a shorter one points at the eye.
+const SHORTEST: f32 = 14.0;
+/// Corners of a drawn ring.
+const CORNERS: usize = 72;
+/// The axes and their names.
+pub const AXES: [(DVec3, &str); 3] = [(DVec3::X, "x"), (DVec3::Y, "y"), (DVec3::Z, "z")];
+
+/// What can be grabbed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Handle {
+    /// Moves along this axis.
+    Along(usize),
+    /// Moves across this axis.
+    Across(usize),
+    /// Moves in the plane of the camera, or on a level while shift is held.
+    Free,
+    /// Changes the radius.
+    Radius,
+    /// Moves a corner of a triangle in the plane of the camera.
+    Corner(usize),
+    /// Turns what a plane or a disc faces.
+    Normal,
+    /// Turns about this axis.
+    Turn(usize),
+}
+
+/// A handle as it is drawn: a line, closed where it is a surface.
+struct Drawn {
+    handle: Handle,
+    line: Vec<Pos2>,
+    is_closed: bool,
+}
+
+impl Drawn {
+    fn distance(&self, at: Pos2) -> f32 {
+        let pairs = self.line.windows(2).map(|pair| (pair[0], pair[1]));
+        let last = self.line.last().zip(self.line.first());
+        let closing = last.filter(|_| self.is_closed).map(|(a, b)| (*a, *b));
+        let nearest = pairs
+            .chain(closing)
+            .map(|(a, b)| {
+                let along = b - a;
+                let share = (at - a).dot(along) / along.length_sq().max(f32::EPSILON);
+                (a + along * share.clamp(0.0, 1.0) - at).length()
+            })
+            .fold(f32::INFINITY, f32::min);
+        match (self.handle, self.line.first()) {
+            (Handle::Across(_), _) if is_inside(&self.line, at) => 0.0,
+            // Dots come before the lines that end in them.
+            (Handle::Free | Handle::Corner(_), Some(dot)) => ((*dot - at).length() - 2.0).max(0.0),
+            _ => nearest,
+        }
+    }
+}
+
+fn is_inside(corners: &[Pos2], at: Pos2) -> bool {
+    let side = |n: usize| {
+        let (a, b) = (corners[n], corners[(n + 1) % corners.len()]);
+        let (along, arm) = (b - a, at - a);
+        along.x * arm.y - along.y * arm.x > 0.0
+    };
+    let first = side(0);
+    (1..corners.len()).all(|n| side(n) == first)
+}
+
+/// A circle on the screen around an axis of length 1.
+fn ring(lens: &Lens, middle: DVec3, axis: DVec3, radius: f64) -> Vec<Pos2> {
+    let (u, v) = axis.any_orthonormal_pair();
+    let at = |n: usize| {
+        let (sine, cosine) = (n as f64 / CORNERS as f64 * TAU).sin_cos();
+        lens.place(middle + (u * cosine + v * sine) * radius)
+    };
+    let all: Option<Vec<Pos2>> = (0..CORNERS).map(at).collect();
+    all.unwrap_or_default()
+}
+
+/// The rim of a ball as it is seen.
+fn rim(lens: &Lens, center: DVec3, radius: f64) -> Vec<Pos2> {
+    let Some(at) = lens.place(center) else {
+        return Vec::new();
+    };
+    let (origin, axis) = lens.ray(at);
+    let arm = center - origin;
+    let distance = arm.length();
+    // In parallel projection rays start anywhere along the axis: the rim is that around the middle.
+    let is_parallel = axis.dot(lens.forward()) > 1.0 - 1e-12 && lens.ray(lens.view.min).1 == axis;
+    if is_parallel {
+        return ring(lens, center, axis, radius);
+    }
+    if distance <= radius {
+        return Vec::new();
+    }
+    let nearer = radius * radius / distance;
+    let seen = radius * (1.0 - (radius / distance).powi(2)).sqrt();
+    ring(lens, center - axis * nearer, axis, seen)
+}
+
+/// Everything that can be grabbed at what is selected.
+fn handles(lens: &Lens, subjects: &[Subject]) -> Vec<Drawn> {
+    let Some(middle) = Subject::middle_of(subjects) else {
+        return Vec::new();
+    };
+    let Some(place) = lens.place(middle) else {
+        return Vec::new();
+    };
+    let length = lens.unit_at(middle) * LENGTH;
+    let mut drawn = Vec::new();
+    let mut add = |handle: Handle, line: Option<Vec<Pos2>>, is_closed: bool| {
+        if let Some(line) = line.filter(|line| !line.is_empty()) {
+            drawn.push(Drawn {
+                handle,
+                line,
+                is_closed,
+            });
+        }
+    };
+    let at = |point: DVec3| lens.place(point);
+    if let [subject] = subjects {
+        own_handles(lens, subject, length, &mut add);
+    }
+    for (axis, (direction, _)) in AXES.iter().enumerate() {
+        let line = at(middle + *direction * length * GAP).zip(at(middle + *direction * length));
+        let line = line.filter(|(from, to)| (*to - *from).length() >= SHORTEST);
+        add(
+            Handle::Along(axis),
+            line.map(|(from, to)| vec![from, to]),
+            false,
+        );
+        let (u, v) = (AXES[(axis + 1) % 3].0, AXES[(axis + 2) % 3].0);
+        let corner = |a: f64, b: f64| at(middle + (u * a + v * b) * length);
+        let (near, far) = SQUARE;
+        let square: Option<Vec<Pos2>> = [
+            corner(near, near),
+            corner(far, near),
+            corner(far, far),
+            corner(near, far),
+        ]
+        .into_iter()
+        .collect();
+        let is_edge_on = |line: &Vec<Pos2>| {
+            let (a, b) = (line[1] - line[0], line[3] - line[0]);
+            (a.x * b.y - a.y * b.x).abs() < SHORTEST
+        };
+        add(
+            Handle::Across(axis),
+            square.filter(|line| !is_edge_on(line)),
+            true,
+        );
+        if can_turn(subjects) {
+            let line = ring(lens, middle, *direction, length * RING);
+            add(Handle::Turn(axis), Some(line), true);
+        }
+    }
+    add(Handle::Free, Some(vec![place]), false);
+    drawn
+}
+
+/// Whether there is something to turn: a mesh, or several things around each other.
+fn can_turn(subjects: &[Subject]) -> bool {
+    let is_mesh = |subject: &Subject| matches!(subject.shape(), Some(Shape::Mesh(_)));
+    subjects.len() > 1 || subjects.iter().any(is_mesh)
+}
+
+/// The handles that only this kind of thing has.
+fn own_handles(
+    lens: &Lens,
+    subject: &Subject,
+    length: f64,
+    add: &mut impl FnMut(Handle, Option<Vec<Pos2>>, bool),
+) {
+    let normal = |from: DVec3, normal: DVec3| {
+        let tip = from + normal.normalize_or_zero() * length * RING;
+        Some(vec![lens.place(from)?, lens.place(tip)?])
+    };
+    match subject {
+        Subject::Light(_, light) => {
+            let radius = light.marker.as_ref().map(|marker| marker.radius);
+            let line = radius.map(|radius| rim(lens, light.position, radius));
+            add(Handle::Radius, line, true);
+        }
+        Subject::Object(_, object) => match &object.shape {
+            Shape::Sphere(ball) => {
+                add(
+                    Handle::Radius,
+                    Some(rim(lens, ball.center, ball.radius)),
+                    true,
+                );
+            }
+            Shape::Disc(disc) => {
+                let axis = disc.normal.normalize_or(DVec3::Y);
+                add(
+                    Handle::Radius,
+                    Some(ring(lens, disc.center, axis, disc.radius)),
+                    true,
+                );
+                add(Handle::Normal, normal(disc.center, disc.normal), false);
+            }
+            Shape::Plane(plane) => add(Handle::Normal, normal(plane.point, plane.normal), false),
+            Shape::Triangle(triangle) => {
+                for (corner, point) in triangle.corners().into_iter().enumerate() {
+                    let dot = lens.place(point).map(|dot| vec![dot]);
+                    add(Handle::Corner(corner), dot, false);
+                }
+            }
+            Shape::Mesh(_) => {}
+        },
+    }
+}
+
+/// The handle under the pointer.
+pub fn handle_at(lens: &Lens, selected: &Selected, scene: &Scene, at: Pos2) -> Option<Handle> {
+    let drawn = handles(lens, &Subject::of(selected, scene));
+    let near = drawn.iter().map(|drawn| (drawn.distance(at), drawn.handle));
+    let near = near.filter(|(distance, _)| *distance <= REACH);
+    near.min_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, handle)| handle)
+}
+
+/// Draws the handles; the one that is meant is bright.
+pub fn show(painter: &Painter, lens: &Lens, editor: &Editor, meant: Option<Handle>) {
+    let colors = palette(painter.ctx());
+    let subjects = Subject::of(editor.selected(), editor.shown());
+    for Drawn {
+        handle,
+        line,
+        is_closed,
+    } in handles(lens, &subjects)
+    {
+        let is_meant = meant == Some(handle);
+        let color = match handle {
+            _ if is_meant => colors.accent,
+            Handle::Along(axis) | Handle::Across(axis) | Handle::Turn(axis) => colors.axes[axis],
+            _ => colors.on_picture,
+        };
+        let width = if is_meant { 3.0 } else { 2.0 };
+        draw(
+            painter,
+            (handle, &line, is_closed),
+            Stroke::new(width, color),
+        );
+    }
+}
+
+fn draw(painter: &Painter, (handle, line, is_closed): (Handle, &[Pos2], bool), stroke: Stroke) {
+    let halo = Stroke::new(stroke.width + 2.0, palette(painter.ctx()).halo);
+    match (handle, line) {
+        (Handle::Free | Handle::Corner(_), [dot]) => {
+            painter.circle(*dot, 5.0, stroke.color, Stroke::new(1.5, halo.color));
+        }
+        (Handle::Across(_), corners) => {
+            let fill = stroke.color.gamma_multiply(0.35);
+            let edge = Stroke::new(1.0, stroke.color);
+            painter.add(egui::Shape::convex_polygon(corners.to_vec(), fill, edge));
+        }
+        (Handle::Along(_) | Handle::Normal, [from, to]) => {
+            for stroke in [halo, stroke] {
+                painter.line_segment([*from, *to], stroke);
+            }
+            arrow_head(painter, *from, *to, stroke.color, halo.color);
+        }
+        (_, points) => {
+            // Thin lines one by one: corners of a line that turns back would be spikes.
+            for stroke in [halo, stroke] {
+                for n in 0..points.len() - usize::from(!is_closed) {
+                    let next = points[(n + 1) % points.len()];
+                    painter.line_segment([points[n], next], stroke);
+                }
+            }
+        }
+    }
+}
+
+fn arrow_head(painter: &Painter, from: Pos2, to: Pos2, color: Color32, halo: Color32) {
+    let along = (to - from).normalized();
+    let across = vec2(-along.y, along.x);
+    let tip = vec![to + along * 9.0, to + across * 5.0, to - across * 5.0];
+    painter.add(egui::Shape::convex_polygon(
+        tip,
+        color,
+        Stroke::new(1.0, halo),
+    ));
+}
+
+/// Words beside the pointer.
+pub fn label(painter: &Painter, at: Pos2, words: &str) {
+    let colors = palette(painter.ctx());
+    let font: FontId = TextStyle::Monospace.resolve(&painter.ctx().global_style());
+    let text = painter.layout_no_wrap(words.to_owned(), font, colors.text);
+    let corner = at + vec2(2.0 * GRID, 2.0 * GRID);
+    let rect = egui::Rect::from_min_size(corner, text.size()).expand2(vec2(6.0, 3.0));
+    // Within the picture.
+    let off = (painter.clip_rect().max - rect.max).min(egui::Vec2::ZERO);
+    let rect = rect.translate(off);
+    painter.rect(
+        rect,
+        4,
+        colors.panel,
+        Stroke::new(1.0, colors.line),
+        StrokeKind::Inside,
+    );
+    painter.galley(rect.min + vec2(6.0, 3.0), text, colors.text);
+}

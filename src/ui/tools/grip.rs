@@ -1,0 +1,278 @@
+//! A handle that is held: what pulling it comes to.
+
+use egui::{Painter, Pos2};
+use glam::{DQuat, DVec3};
+
+use super::gizmo::{AXES, Handle, LENGTH, RING, label};
+use super::lens::Lens;
+use super::subject::{Subject, together};
+use crate::editor::Edit;
+use crate::scene::{Disc, Plane, Shape, format_number};
+
+/// Degrees to which turns snap.
+const DEGREES: f64 = 15.0;
+
+/// A handle that was grabbed.
+#[derive(Clone, Debug)]
+pub struct Grip {
+    handle: Handle,
+    /// Everything as it was.
+    before: Vec<Subject>,
+    /// The middle of it.
+    middle: DVec3,
+    /// Where it was grabbed: on the screen, and in the scene.
+    from: (Pos2, DVec3),
+    /// What is typed in place of being pointed at.
+    pub typed: String,
+}
+
+/// How the pointer is meant.
+#[derive(Clone, Copy, Debug)]
+pub struct Pull {
+    /// Where it is.
+    pub at: Pos2,
+    /// Whether values are to be round.
+    pub snaps: bool,
+    /// Whether a free move stays on its level.
+    pub is_level: bool,
+}
+
+/// What a grip comes to.
+pub struct Outcome {
+    /// The change, if the pointer is where it has a meaning.
+    pub edit: Option<Edit>,
+    /// What changes, and by how much, in words.
+    pub words: String,
+}
+
+impl Grip {
+    /// Grabs a handle of these things at a place on the screen.
+    pub fn new(lens: &Lens, before: Vec<Subject>, handle: Handle, at: Pos2) -> Option<Self> {
+        let middle = Subject::middle_of(&before)?;
+        let mut grip = Self {
+            handle,
+            before,
+            middle,
+            from: (at, middle),
+            typed: String::new(),
+        };
+        grip.from.1 = grip.pointed_at(lens, at)?;
+        Some(grip)
+    }
+
+    /// Takes hold of these things where one of them was pointed at.
+    pub fn body(before: Vec<Subject>, at: Pos2, point: DVec3) -> Option<Self> {
+        Some(Self {
+            handle: Handle::Free,
+            middle: Subject::middle_of(&before)?,
+            before,
+            from: (at, point),
+            typed: String::new(),
+        })
+    }
+
+    /// What is held.
+    pub fn handle(&self) -> Handle {
+        self.handle
+    }
+
+    /// The point that a place on the screen means to the handle.
+    fn pointed_at(&self, lens: &Lens, at: Pos2) -> Option<DVec3> {
+        let held = self.from.1;
+        match self.handle {
+            Handle::Along(axis) => {
+                let direction = AXES[axis].0;
+                Some(self.middle + direction * lens.along(at, self.middle, direction)?)
+            }
+            Handle::Across(axis) | Handle::Turn(axis) => {
+                lens.on_plane(at, self.middle, AXES[axis].0)
+            }
+            Handle::Free | Handle::Normal => lens.on_plane(at, held, lens.forward()),
+            Handle::Corner(corner) => lens.on_plane(at, self.corner(corner)?, lens.forward()),
+            Handle::Radius => Some(held),
+        }
+    }
+
+    fn corner(&self, corner: usize) -> Option<DVec3> {
+        match self.before.first()?.shape()? {
+            Shape::Triangle(triangle) => Some(triangle.corners()[corner]),
+            _ => None,
+        }
+    }
+
+    /// What a pull comes to.
+    pub fn pull(&self, lens: &Lens, pull: Pull) -> Outcome {
+        let (edit, words) = self
+            .pulled(lens, pull)
+            .map_or((None, String::new()), |(edit, words)| (edit, words));
+        Outcome { edit, words }
+    }
+
+    fn pulled(&self, lens: &Lens, pull: Pull) -> Option<(Option<Edit>, String)> {
+        let unit = lens.unit_at(self.middle);
+        let round = |value: f64| rounded(value, unit, pull.snaps);
+        let typed = self.typed.parse::<f64>().ok();
+        match self.handle {
+            Handle::Along(axis) => {
+                let (direction, name) = AXES[axis];
+                let to = self.pointed_at(lens, pull.at)?;
+                let start = self.middle.dot(direction);
+                let pulled = (to - self.from.1).dot(direction);
+                let by = typed.unwrap_or_else(|| round(start + pulled) - start);
+                let words = format!("{name} {}", signed(by));
+                Some((self.move_all(direction * by), words))
+            }
+            Handle::Across(_) | Handle::Free => {
+                let to = if pull.is_level && self.handle == Handle::Free {
+                    lens.on_plane(pull.at, self.from.1, DVec3::Y)?
+                } else {
+                    self.pointed_at(lens, pull.at)?
+                };
+                let by = to - self.from.1;
+                let fixed = |axis: usize| match self.handle {
+                    Handle::Across(across) => across == axis,
+                    _ => pull.is_level && axis == 1,
+                };
+                let part = |axis: usize| {
+                    let start = self.middle[axis];
+                    if fixed(axis) {
+                        0.0
+                    } else {
+                        round(start + by[axis]) - start
+                    }
+                };
+                let by = DVec3::new(part(0), part(1), part(2));
+                let words = [by.x, by.y, by.z].map(signed).join(", ");
+                Some((self.move_all(by), words))
+            }
+            Handle::Radius => {
+                let radius = typed.map_or_else(|| self.radius(lens, pull.at).map(round), Some)?;
+                let subject = self.before.first()?;
+                let edit = (radius > 0.0)
+                    .then(|| subject.with_radius(radius))
+                    .flatten();
+                Some((edit, format!("radius {}", plain(radius))))
+            }
+            Handle::Corner(corner) => {
+                let to = self.pointed_at(lens, pull.at)?;
+                let to = DVec3::new(round(to.x), round(to.y), round(to.z));
+                let subject = self.before.first()?;
+                let Shape::Triangle(mut triangle) = subject.shape()?.clone() else {
+                    return None;
+                };
+                *[&mut triangle.a, &mut triangle.b, &mut triangle.c][corner] = to;
+                let words = [to.x, to.y, to.z].map(plain).join(", ");
+                Some((Some(subject.reshaped(triangle.into(), "corner")), words))
+            }
+            Handle::Normal => self.face(lens, pull),
+            Handle::Turn(axis) => {
+                let degrees = typed.map_or_else(|| self.degrees(lens, axis, pull), Some)?;
+                let by = DQuat::from_axis_angle(AXES[axis].0, degrees.to_radians());
+                let edits = self
+                    .before
+                    .iter()
+                    .map(|subject| subject.turned(self.middle, by));
+                let words = format!("{} {}°", AXES[axis].1, signed(degrees));
+                Some((together(edits.collect(), "Turn"), words))
+            }
+        }
+    }
+
+    fn move_all(&self, by: DVec3) -> Option<Edit> {
+        let edits = self.before.iter().map(|subject| subject.moved(by));
+        together(edits.collect(), "Move")
+    }
+
+    /// How far the ray through a place passes from the middle; on a disc, where it meets it.
+    fn radius(&self, lens: &Lens, at: Pos2) -> Option<f64> {
+        if let Some(Shape::Disc(disc)) = self.before.first()?.shape() {
+            let to = lens.on_plane(at, disc.center, disc.normal)?;
+            return Some((to - disc.center).length());
+        }
+        let (origin, direction) = lens.ray(at);
+        Some((self.middle - origin).cross(direction).length())
+    }
+
+    fn degrees(&self, lens: &Lens, axis: usize, pull: Pull) -> Option<f64> {
+        let to = self.pointed_at(lens, pull.at)? - self.middle;
+        let from = self.from.1 - self.middle;
+        let direction = AXES[axis].0;
+        let degrees = direction
+            .dot(from.cross(to))
+            .atan2(from.dot(to))
+            .to_degrees();
+        let step = if pull.snaps { DEGREES } else { 0.5 };
+        Some((degrees / step).round() * step)
+    }
+
+    /// The normal points to where the pointer is on a ball around where it starts.
+    fn face(&self, lens: &Lens, pull: Pull) -> Option<(Option<Edit>, String)> {
+        let subject = self.before.first()?;
+        let mut shape = subject.shape()?.clone();
+        let (Shape::Plane(Plane { point, normal })
+        | Shape::Disc(Disc {
+            center: point,
+            normal,
+            ..
+        })) = &mut shape
+        else {
+            return None;
+        };
+        let length = lens.unit_at(*point) * LENGTH * RING;
+        let (origin, direction) = lens.ray(pull.at);
+        let arm = *point - origin;
+        let along = arm.dot(direction);
+        let off = (arm - direction * along).length();
+        let depth = (length * length - off * off).max(0.0).sqrt();
+        // On the side of the ball where it is already.
+        let depth = if normal.dot(direction) > 0.0 {
+            depth
+        } else {
+            -depth
+        };
+        let to = (origin + direction * (along + depth) - *point).try_normalize()?;
+        let step = if pull.snaps { 0.1 } else { 0.001 };
+        let to = DVec3::from_array(to.to_array().map(|part| (part / step).round() * step));
+        *normal = to;
+        let words = [to.x, to.y, to.z].map(plain).join(", ");
+        Some((Some(subject.reshaped(shape, "normal")), words))
+    }
+
+    /// Writes what changes beside the pointer.
+    pub fn label(&self, painter: &Painter, at: Pos2, words: &str) {
+        let words = if self.typed.is_empty() {
+            words.to_owned()
+        } else {
+            format!("{words} (Enter)")
+        };
+        label(painter, at, &words);
+    }
+}
+
+/// A value where a point of the screen is `unit` wide: no finer than that, or a round one.
+fn rounded(value: f64, unit: f64, snaps: bool) -> f64 {
+    let step = 10_f64.powf(if snaps {
+        (unit * 8.0).log10().ceil()
+    } else {
+        unit.log10().floor()
+    });
+    if !step.is_finite() || step == 0.0 {
+        return value;
+    }
+    // Divided by a whole number, tenths are the nearest numbers to tenths.
+    if step < 1.0 {
+        let parts = (1.0 / step).round();
+        (value * parts).round() / parts
+    } else {
+        (value / step).round() * step
+    }
+}
+
+fn plain(value: f64) -> String {
+    format_number((value * 1e6).round() / 1e6)
+}
+
+fn signed(value: f64) -> String {
+    let sign = if value >= 0.0 { "+" } else { "" };
+    format!("{sign}{}", plain(value))
+}

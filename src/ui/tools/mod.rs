@@ -1,0 +1,234 @@
+//! Hands in the picture: a click selects, a drag moves what is grabbed, or the camera around it.
+
+mod lens;
+
+mod outline;
+
+mod sight;
+
+mod navigate;
+
+mod subject;
+
+mod gizmo;
+
+mod grip;
+
+mod drag;
+
+pub use lens::Lens;
+
+use egui::{CursorIcon, Modifiers, PointerButton, Pos2, Rect, Response, Ui};
+use glam::DVec3;
+
+use self::drag::{Drag, View};
+use self::gizmo::{Handle, handle_at, label};
+use self::navigate::{along, dollied, framed, surroundings};
+use self::sight::{Sight, item_of, pixel, question};
+use self::subject::Subject;
+use super::requests::UiRequests;
+use super::viewport::Place;
+use crate::editor::{Action, Edit, Editor, Selected};
+use crate::image::{ObjectMap, Thing};
+use crate::scene::Camera;
+
+/// How far apart two clicks on one place may be, in points.
+const SAME_PLACE: f32 = 4.0;
+
+/// What the tools remember between frames.
+#[derive(Default)]
+pub struct Tools {
+    sight: Sight,
+    drag: Option<Drag>,
+    /// Where the wheel turns, and the point of the scene that is there.
+    wheel: Option<(Pos2, DVec3)>,
+    /// A click that waits to know what is there.
+    click: Option<(Pos2, Modifiers)>,
+    /// Where what is behind something was asked for, and what is before it.
+    behind: Option<(Pos2, Vec<Thing>)>,
+    /// Where the picture was.
+    view: Option<Rect>,
+}
+
+impl Tools {
+    /// Whether keys are meant for what is dragged.
+    pub fn is_dragging(&self) -> bool {
+        self.drag.is_some()
+    }
+
+    /// Takes up what is seen in the picture of a revision, as if nothing of `without` were there. What is to
+    /// be selected, if that was asked for.
+    pub fn take(&mut self, revision: u64, map: ObjectMap, without: &[Thing]) -> Option<Selected> {
+        if without.is_empty() {
+            self.sight.take(revision, map);
+            return None;
+        }
+        let (at, before) = self.behind.as_mut()?;
+        let [column, row] = pixel(&map, self.view?, *at)?;
+        if before != without {
+            return None;
+        }
+        // Behind the last is the first again.
+        match map.at(column, row) {
+            Some(next) => before.push(next),
+            None => before.truncate(1),
+        }
+        before.last().map(|thing| Selected::all([item_of(*thing)]))
+    }
+
+    /// The tools over the picture at `place`, which `response` is of; `wheel` is how far the wheel was turned
+    /// over it, and `is_busy` whether a gesture goes on elsewhere.
+    pub fn show(
+        &mut self,
+        ui: &Ui,
+        editor: &Editor,
+        (place, response): (Place, &Response),
+        (wheel, is_busy): (f64, bool),
+        out: &mut UiRequests,
+    ) {
+        let Some(lens) = Lens::new(&editor.shown().camera, place.rect) else {
+            return;
+        };
+        self.view = Some(place.rect);
+        let view = View {
+            editor,
+            place,
+            lens,
+            painter: ui.painter().with_clip_rect(place.rect),
+        };
+        let has_gizmo = !editor.looks_through();
+        let hovered = response.hover_pos().filter(|_| self.drag.is_none());
+        let mut meant = hovered
+            .filter(|_| has_gizmo)
+            .and_then(|at| handle_at(&view.lens, editor.selected(), editor.shown(), at));
+        self.start(ui, &view, response, has_gizmo, out);
+        if let Some(drag) = &mut self.drag {
+            meant = drag.handle();
+            if !drag.go_on(ui, &view, &self.sight, response, out) {
+                self.drag = None;
+            }
+        } else {
+            self.hover(ui, &view, hovered, meant);
+        }
+        if has_gizmo {
+            gizmo::show(&view.painter, &view.lens, editor, meant);
+        }
+        self.turn_wheel(&view, response, wheel, out);
+        if !is_busy && self.drag.is_none() {
+            self.wheel = None;
+            out.questions.extend(self.sight.wanted(editor, place));
+        }
+        if response.clicked() {
+            let at = response.interact_pointer_pos();
+            self.click = at.map(|at| (at, ui.input(|input| input.modifiers)));
+        }
+        self.select(&view, out);
+    }
+
+    fn start(
+        &mut self,
+        ui: &Ui,
+        view: &View,
+        response: &Response,
+        has_gizmo: bool,
+        out: &mut UiRequests,
+    ) {
+        let origin = ui.input(|input| input.pointer.press_origin());
+        let Some(at) = origin.filter(|_| self.drag.is_none()) else {
+            return;
+        };
+        if response.drag_started_by(PointerButton::Primary) {
+            let handle = handle_at(&view.lens, view.editor.selected(), view.editor.shown(), at);
+            let handle = handle.filter(|_| has_gizmo);
+            let is_shifted = ui.input(|input| input.modifiers.shift);
+            self.drag = Drag::start(view, &self.sight, (at, handle, is_shifted), out);
+        } else if response.drag_started_by(PointerButton::Middle) {
+            self.drag = Some(Drag::Pan(view.point_at(&self.sight, at)));
+        }
+    }
+
+    /// Shows what the pointer is over.
+    fn hover(&mut self, ui: &Ui, view: &View, at: Option<Pos2>, meant: Option<Handle>) {
+        let seen = at.and_then(|at| self.sight.at(view.editor, view.place.rect, at));
+        let item = seen.map(item_of).filter(|_| meant.is_none());
+        self.sight
+            .show(&view.painter, view.editor, view.place.rect, item);
+        if meant.is_some() {
+            ui.set_cursor_icon(CursorIcon::Grab);
+        }
+        let name = item.and_then(|item| item.name(view.editor.scene()));
+        let is_still = ui.input(|input| !input.pointer.any_down());
+        if let (Some(at), Some(name), true) = (at, name, is_still) {
+            label(&view.painter, at, name);
+        }
+    }
+
+    fn turn_wheel(&mut self, view: &View, response: &Response, wheel: f64, out: &mut UiRequests) {
+        let at = response.hover_pos().filter(|_| wheel != 0.0);
+        let Some(at) = at else { return };
+        let known = self
+            .wheel
+            .filter(|(before, _)| (*before - at).length() < SAME_PLACE);
+        let point = known.map_or_else(|| view.point_at(&self.sight, at), |(_, point)| point);
+        self.wheel = Some((at, point));
+        let camera = dollied(&view.editor.shown().camera, point, wheel);
+        out.edit(Edit::Camera(camera, "move"));
+    }
+
+    /// Selects what was clicked, once it is known.
+    fn select(&mut self, view: &View, out: &mut UiRequests) {
+        let Some((at, modifiers)) = self.click else {
+            return;
+        };
+        if self.sight.map(view.editor).is_none() {
+            return;
+        }
+        self.click = None;
+        let seen = self.sight.at(view.editor, view.place.rect, at);
+        if modifiers.alt {
+            return self.select_behind(view, at, seen, out);
+        }
+        self.behind = None;
+        let item = seen.map(item_of);
+        let selected = match (item, modifiers.shift || modifiers.command) {
+            (Some(item), true) => view.editor.selected().toggled(item),
+            (None, true) => return,
+            (item, false) => Selected::all(item),
+        };
+        out.actions.push(Action::SelectItems(selected));
+    }
+
+    fn select_behind(&mut self, view: &View, at: Pos2, seen: Option<Thing>, out: &mut UiRequests) {
+        let Some(first) = seen else { return };
+        let known = self.behind.take().filter(|(before, things)| {
+            (*before - at).length() < SAME_PLACE && things.first() == Some(&first)
+        });
+        let (at, before) = known.unwrap_or((at, vec![first]));
+        out.questions
+            .push(question(view.editor, view.place, before.clone()));
+        self.behind = Some((at, before));
+    }
+}
+
+/// The camera with everything in its picture, or everything that is selected.
+pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
+    let scene = editor.shown();
+    let selected = Subject::of(editor.selected(), scene);
+    let bounds = selected.iter().filter_map(Subject::bounds);
+    let around = bounds.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)));
+    let bounds = around
+        .filter(|_| only_selected)
+        .or_else(|| surroundings(scene))?;
+    let aspect = f64::from(scene.render.width) / f64::from(scene.render.height);
+    Some(framed(&scene.camera, aspect, bounds))
+}
+
+/// The camera that looks along a direction at what is selected, or at everything.
+pub fn axis_camera(editor: &Editor, direction: DVec3) -> Camera {
+    let scene = editor.shown();
+    let selected = Subject::of(editor.selected(), scene);
+    let middle = selected.first().map(Subject::middle);
+    let around = surroundings(scene).map(|(low, high)| low * 0.5 + high * 0.5);
+    let about = middle.or(around).unwrap_or_default();
+    along(&scene.camera, about, direction)
+}

@@ -1,0 +1,150 @@
+//! Moving the camera around what is looked at.
+
+use egui::Vec2;
+use glam::DVec3;
+
+use super::lens::Lens;
+use crate::scene::{Camera, Projection, Scene};
+
+/// Radians per point of mouse movement.
+const ORBIT: f64 = 0.008;
+/// How much nearer a point of wheel movement comes.
+const DOLLY: f64 = 0.003;
+/// Room around what is framed.
+const ROOM: f64 = 1.15;
+
+/// The turn of an orbit, to the right and upwards, of a movement of the mouse: what is circled follows it.
+pub fn turn(moved: Vec2) -> (f64, f64) {
+    (-f64::from(moved.x) * ORBIT, -f64::from(moved.y) * ORBIT)
+}
+
+/// The camera after a movement of the mouse that a point is to follow.
+pub fn panned(camera: &Camera, lens: &Lens, point: DVec3, moved: Vec2) -> Camera {
+    let mut next = camera.clone();
+    if let Some(basis) = camera.basis() {
+        let unit = lens.unit_at(point);
+        let (right, up) = (f64::from(moved.x) * unit, f64::from(moved.y) * unit);
+        next.position += basis.y_axis * up - basis.x_axis * right;
+    }
+    next
+}
+
+/// The camera after a turn of the wheel towards a point, which stays where it is in the picture.
+pub fn dollied(camera: &Camera, point: DVec3, wheel: f64) -> Camera {
+    let factor = (-wheel * DOLLY).exp();
+    let mut next = camera.clone();
+    match camera.projection {
+        Projection::Perspective => next.position = point + (camera.position - point) * factor,
+        Projection::Orthographic => {
+            let forward = camera.look_at.normalize_or_zero();
+            let arm = point - camera.position;
+            // The window shrinks around the point; how far it is away does not matter.
+            next.position += (arm - forward * arm.dot(forward)) * (1.0 - factor);
+            next.orthographic_height *= factor;
+        }
+    }
+    next
+}
+
+/// The camera where everything between two corners of a box is in its picture, looking the same way.
+pub fn framed(camera: &Camera, aspect: f64, (low, high): (DVec3, DVec3)) -> Camera {
+    let (middle, radius) = (low * 0.5 + high * 0.5, (high - low).length() * 0.5 * ROOM);
+    let forward = camera.look_at.normalize_or_zero();
+    let mut next = camera.clone();
+    // The narrower side of the picture, in picture heights.
+    let side = aspect.min(1.0);
+    let distance = match camera.projection {
+        Projection::Perspective => radius / (0.5 * side / camera.projection_distance).atan().sin(),
+        Projection::Orthographic => {
+            next.orthographic_height = 2.0 * radius / side;
+            (middle - camera.position).dot(forward).max(2.0 * radius)
+        }
+    };
+    next.position = middle - forward * distance;
+    next
+}
+
+/// The camera that looks along a direction at the same middle from the same distance.
+pub fn along(camera: &Camera, about: DVec3, direction: DVec3) -> Camera {
+    let distance = (about - camera.position).length();
+    let is_steep = direction.y.abs() > 0.5;
+    Camera {
+        position: about - direction * distance,
+        look_at: direction,
+        up: if is_steep { DVec3::NEG_Z } else { DVec3::Y },
+        ..camera.clone()
+    }
+}
+
+/// The box around everything that ends, or around where endless planes are known to be.
+pub fn surroundings(scene: &Scene) -> Option<(DVec3, DVec3)> {
+    scene.objects_bounds().or_else(|| scene.bounds())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::{Rect, pos2, vec2};
+
+    fn lens(camera: &Camera) -> Lens {
+        let view = Rect::from_min_size(pos2(0.0, 0.0), vec2(800.0, 400.0));
+        Lens::new(camera, view).expect("a basis")
+    }
+
+    fn cameras() -> [Camera; 2] {
+        [Projection::Perspective, Projection::Orthographic].map(|projection| Camera {
+            projection,
+            ..Camera::default()
+        })
+    }
+
+    #[test]
+    fn what_is_under_the_pointer_stays_there() {
+        for camera in cameras() {
+            let point = camera.position + DVec3::new(-60.0, -50.0, -90.0);
+            let before = lens(&camera).place(point).expect("in front");
+            let near = dollied(&camera, point, 120.0);
+            assert!((lens(&near).place(point).expect("in front") - before).length() < 1e-2);
+            let moved = vec2(31.0, -12.0);
+            let panned = panned(&camera, &lens(&camera), point, moved);
+            let after = lens(&panned).place(point).expect("in front");
+            assert!((after - before - moved).length() < 1e-2, "{after} {before}");
+        }
+    }
+
+    #[test]
+    fn what_is_framed_fits() {
+        let corners = (DVec3::new(-10.0, 0.0, -30.0), DVec3::new(20.0, 15.0, 5.0));
+        for camera in cameras() {
+            for aspect in [2.0, 0.5] {
+                let lens = Lens::new(
+                    &framed(&camera, aspect, corners),
+                    Rect::from_min_size(pos2(0.0, 0.0), vec2(400.0 * aspect as f32, 400.0)),
+                );
+                let lens = lens.expect("a basis");
+                for corner in 0..8 {
+                    let part = |axis: usize| {
+                        if corner >> axis & 1 == 0 {
+                            corners.0[axis]
+                        } else {
+                            corners.1[axis]
+                        }
+                    };
+                    let place = lens.place(DVec3::new(part(0), part(1), part(2)));
+                    assert!(
+                        lens.view.contains(place.expect("in front")),
+                        "{aspect} {place:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn views_along_axes_have_a_basis() {
+        let camera = Camera::default();
+        for direction in [DVec3::NEG_Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::Y] {
+            assert!(along(&camera, DVec3::ZERO, direction).basis().is_some());
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! What the tools move: the selected objects and lights, as they are on show.
+
+use glam::{DQuat, DVec3};
+
+use crate::editor::{Edit, Item, Kind, Selected};
+use crate::scene::{Light, Object, Scene, Shape};
+
+/// Something with a place.
+#[derive(Clone, Debug)]
+pub enum Subject {
+    /// An object of this place in the list.
+    Object(usize, Object),
+    /// A light of this place in the list.
+    Light(usize, Light),
+}
+
+impl Subject {
+    /// The item as it is on show, if it has a place.
+    fn new(scene: &Scene, Item { kind, index }: Item) -> Option<Self> {
+        match kind {
+            Kind::Object => Some(Self::Object(index, scene.objects.get(index)?.clone())),
+            Kind::Light => Some(Self::Light(index, scene.lights.get(index)?.clone())),
+            Kind::Pack => None,
+        }
+    }
+
+    /// What of a selection has a place.
+    pub fn of(selected: &Selected, scene: &Scene) -> Vec<Self> {
+        let items = selected.items().iter();
+        items.filter_map(|item| Self::new(scene, *item)).collect()
+    }
+
+    /// The middle of all.
+    pub fn middle_of(subjects: &[Self]) -> Option<DVec3> {
+        let sum: DVec3 = subjects.iter().map(Self::middle).sum();
+        (!subjects.is_empty()).then(|| sum / subjects.len() as f64)
+    }
+
+    /// The box around it, if it ends.
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        match self {
+            Self::Object(_, object) => object.shape.bounds(),
+            Self::Light(_, light) => {
+                let radius = light.marker.as_ref().map_or(0.0, |marker| marker.radius);
+                let reach = DVec3::splat(radius);
+                Some((light.position - reach, light.position + reach))
+            }
+        }
+    }
+
+    /// The shape of an object.
+    pub fn shape(&self) -> Option<&Shape> {
+        match self {
+            Self::Object(_, object) => Some(&object.shape),
+            Self::Light(..) => None,
+        }
+    }
+
+    /// Where it is: the middle of what ends.
+    pub fn middle(&self) -> DVec3 {
+        match self {
+            Self::Object(_, object) => match object.shape.bounds() {
+                Some((low, high)) => low * 0.5 + high * 0.5,
+                None => object.shape.position(),
+            },
+            Self::Light(_, light) => light.position,
+        }
+    }
+
+    /// The change that moves it.
+    pub fn moved(&self, by: DVec3) -> Edit {
+        match self {
+            Self::Object(_, object) => self.reshaped(object.shape.moved(by), "move"),
+            Self::Light(index, light) => {
+                let light = Light {
+                    position: light.position + by,
+                    ..light.clone()
+                };
+                Edit::Light(*index, light, "move")
+            }
+        }
+    }
+
+    /// The change that turns it about a point.
+    pub fn turned(&self, about: DVec3, by: DQuat) -> Edit {
+        match self {
+            Self::Object(_, object) => self.reshaped(object.shape.turned(about, by), "turn"),
+            Self::Light(_, light) => {
+                self.moved(by * (light.position - about) + about - light.position)
+            }
+        }
+    }
+
+    /// The change that gives it a radius, if it has one.
+    pub fn with_radius(&self, radius: f64) -> Option<Edit> {
+        match self {
+            Self::Object(_, object) => {
+                let mut shape = object.shape.clone();
+                match &mut shape {
+                    Shape::Sphere(ball) => ball.radius = radius,
+                    Shape::Disc(disc) => disc.radius = radius,
+                    _ => return None,
+                }
+                Some(self.reshaped(shape, "radius"))
+            }
+            Self::Light(index, light) => {
+                let mut light = light.clone();
+                light.marker.as_mut()?.radius = radius;
+                Some(Edit::Light(*index, light, "radius"))
+            }
+        }
+    }
+
+    /// The change that gives it another shape.
+    pub fn reshaped(&self, shape: Shape, field: &'static str) -> Edit {
+        match self {
+            Self::Object(index, object) => {
+                let object = Object {
+                    shape,
+                    ..object.clone()
+                };
+                Edit::Object(*index, object, field)
+            }
+            Self::Light(index, light) => Edit::Light(*index, light.clone(), field),
+        }
+    }
+}
+
+/// One change of all: by itself if it is one.
+pub fn together(mut edits: Vec<Edit>, verb: &str) -> Option<Edit> {
+    match edits.len() {
+        0 => None,
+        1 => edits.pop(),
+        count => Some(Edit::Each(edits, format!("{verb} {count} items"))),
+    }
+}

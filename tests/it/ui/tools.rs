@@ -1,0 +1,367 @@
+//! Hands in the picture: clicks, handles, and the camera.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
+use egui_kittest::kittest::Queryable as _;
+use glam::DVec3;
+use glint::editor::{Item, Selection};
+use glint::scene::{Scene, Shape, Triangle};
+
+use crate::harness::{CTRL, EditorHarness, radius};
+
+const SHIFT: Modifiers = Modifiers::SHIFT;
+const NONE: Modifiers = Modifiers::NONE;
+
+/// Where a point of the scene is on the screen.
+fn place(harness: &EditorHarness, point: DVec3) -> Pos2 {
+    let mut pictures = harness.window.get_all_by_role(Role::Image);
+    let view = pictures.next().expect("a picture").rect();
+    let framing = harness.scene().camera.framing().expect("a basis");
+    let [x, y] = framing.project(point).expect("in front");
+    view.center() + vec2(x as f32, -y as f32) * view.height()
+}
+
+fn button(
+    harness: &mut EditorHarness,
+    at: Pos2,
+    button: PointerButton,
+    pressed: bool,
+    modifiers: Modifiers,
+) {
+    harness.window.event(Event::ModifiersChanged(modifiers));
+    harness.window.event(Event::PointerButton {
+        pos: at,
+        button,
+        pressed,
+        modifiers,
+    });
+    harness.window.step();
+}
+
+fn hover(harness: &mut EditorHarness, at: Pos2) {
+    harness.window.event(Event::PointerMoved(at));
+    harness.window.step();
+}
+
+fn click(harness: &mut EditorHarness, at: Pos2, modifiers: Modifiers) {
+    // Two clicks are not to be one double-click.
+    (0..60).for_each(|_| harness.window.step());
+    hover(harness, at);
+    button(harness, at, PointerButton::Primary, true, modifiers);
+    button(harness, at, PointerButton::Primary, false, modifiers);
+    harness.window.event(Event::ModifiersChanged(NONE));
+    harness.settle();
+}
+
+/// Presses at one place and moves to another, in steps.
+fn pull(
+    harness: &mut EditorHarness,
+    from: Pos2,
+    to: Pos2,
+    with: PointerButton,
+    modifiers: Modifiers,
+) {
+    hover(harness, from);
+    button(harness, from, with, true, modifiers);
+    for part in 1..=6 {
+        hover(harness, from + (to - from) * (part as f32 / 6.0));
+    }
+}
+
+fn drop_at(harness: &mut EditorHarness, at: Pos2, with: PointerButton, modifiers: Modifiers) {
+    button(harness, at, with, false, modifiers);
+    harness.window.event(Event::ModifiersChanged(NONE));
+    harness.settle();
+}
+
+fn drag(
+    harness: &mut EditorHarness,
+    from: Pos2,
+    to: Pos2,
+    with: PointerButton,
+    modifiers: Modifiers,
+) {
+    pull(harness, from, to, with, modifiers);
+    drop_at(harness, to, with, modifiers);
+}
+
+fn center(scene: &Scene, object: usize) -> DVec3 {
+    scene.objects[object].shape.position()
+}
+
+fn names(harness: &EditorHarness) -> Vec<&str> {
+    let items = harness.editor().selected().items().iter();
+    items
+        .filter_map(|item| item.name(harness.scene()))
+        .collect()
+}
+
+#[test]
+fn a_click_selects_what_is_seen_there() {
+    let mut harness = EditorHarness::new();
+    let ball = place(&harness, center(harness.scene(), 0));
+    click(&mut harness, ball, NONE);
+    assert_eq!(names(&harness), ["Sphere 1"]);
+    assert_eq!(harness.editor().selection, Selection::Item(Item::object(0)));
+    let lamp = place(&harness, harness.scene().lights[0].position);
+    click(&mut harness, lamp, SHIFT);
+    assert_eq!(names(&harness), ["Sphere 1", "Light 1"]);
+    click(&mut harness, ball, SHIFT);
+    assert_eq!(names(&harness), ["Light 1"]);
+    let sky = place(&harness, DVec3::new(60.0, 190.0, -300.0));
+    click(&mut harness, sky, NONE);
+    assert_eq!(harness.editor().selection, Selection::Camera);
+    assert_eq!(harness.scene(), &Scene::demo(), "to look changes nothing");
+    assert!(!harness.editor().is_dirty());
+}
+
+#[test]
+fn alt_click_selects_what_is_behind() {
+    let mut harness = EditorHarness::new();
+    // Sphere 2 stands before Sphere 1, and the floor behind both.
+    let [front, back] = [1, 0].map(|object| place(&harness, center(harness.scene(), object)));
+    let at = front + (back - front) * 0.41;
+    for expected in ["Sphere 1", "Plane", "Sphere 2", "Sphere 1"] {
+        click(&mut harness, at, Modifiers::ALT);
+        assert_eq!(names(&harness), [expected]);
+    }
+}
+
+#[test]
+fn a_body_is_dragged_in_one_step_and_escape_takes_it_back() {
+    let mut harness = EditorHarness::new();
+    let before = center(harness.scene(), 0);
+    let from = place(&harness, before);
+    let to = from + vec2(60.0, -30.0);
+    drag(&mut harness, from, to, PointerButton::Primary, NONE);
+    assert_eq!(names(&harness), ["Sphere 1"]);
+    let after = center(harness.scene(), 0);
+    assert!(
+        (place(&harness, after) - to).length() < 25.0,
+        "it follows the pointer, which holds it in front of its middle"
+    );
+    assert_eq!(harness.scene().camera, Scene::demo().camera);
+    harness.press(CTRL, Key::Z);
+    assert_eq!(harness.scene(), &Scene::demo());
+
+    pull(&mut harness, from, to, PointerButton::Primary, NONE);
+    assert_ne!(harness.scene(), &Scene::demo());
+    harness.press(NONE, Key::Escape);
+    assert_eq!(harness.scene(), &Scene::demo());
+    drop_at(&mut harness, to, PointerButton::Primary, NONE);
+    assert_eq!(harness.scene(), &Scene::demo());
+    assert_eq!(harness.editor().undo_label(), None);
+    assert_eq!(names(&harness), ["Sphere 1"]);
+
+    drag(&mut harness, from, to, PointerButton::Primary, SHIFT);
+    let level = center(harness.scene(), 0);
+    assert_eq!(level.y, before.y);
+    assert_ne!(level, before);
+}
+
+#[test]
+fn an_arrow_moves_along_its_axis_and_takes_typed_values() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    let before = center(harness.scene(), 0);
+    let unit = harness
+        .window
+        .get_all_by_role(Role::Image)
+        .next()
+        .expect("a picture")
+        .rect()
+        .height();
+    let camera = &harness.scene().camera;
+    let depth = (before - camera.position).dot(camera.look_at.normalize());
+    // Half way along the arrow of 76 points.
+    let length = depth / camera.projection_distance / f64::from(unit) * 76.0;
+    let from = place(&harness, before + DVec3::Y * length * 0.6);
+    let to = place(&harness, before + DVec3::Y * (length * 0.6 + 30.0)) + vec2(9.0, 0.0);
+    drag(&mut harness, from, to, PointerButton::Primary, NONE);
+    let moved = center(harness.scene(), 0) - before;
+    assert!(
+        moved.x == 0.0 && moved.z == 0.0 && (moved.y - 30.0).abs() < 2.0,
+        "{moved}"
+    );
+    assert_eq!(harness.editor().undo_label(), Some("Sphere 1: move"));
+    harness.press(CTRL, Key::Z);
+
+    drag(&mut harness, from, to, PointerButton::Primary, CTRL);
+    assert_eq!(center(harness.scene(), 0).y % 10.0, 0.0);
+    harness.press(CTRL, Key::Z);
+
+    pull(&mut harness, from, to, PointerButton::Primary, NONE);
+    harness.window.event(Event::Text("12.5".to_owned()));
+    harness.window.step();
+    harness.press(NONE, Key::Enter);
+    drop_at(&mut harness, to, PointerButton::Primary, NONE);
+    assert_eq!(center(harness.scene(), 0) - before, DVec3::Y * 12.5);
+}
+
+#[test]
+fn the_rim_of_a_ball_is_its_radius_and_corners_are_moved_one_by_one() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    let middle = center(harness.scene(), 0);
+    let camera = &harness.scene().camera;
+    let basis = camera.basis().expect("a basis");
+    // To the left, where no arrow is.
+    let side = (basis.x_axis * -1.0 + basis.y_axis * -0.5).normalize();
+    let arm = middle - camera.position;
+    let side = (side - arm * (side.dot(arm) / arm.length_squared())).normalize();
+    let distance = arm.length();
+    let rim = |radius: f64| {
+        let nearer = arm * (radius * radius / distance / distance);
+        middle - nearer + side * (radius * (1.0 - (radius / distance).powi(2)).sqrt())
+    };
+    let (from, to) = (place(&harness, rim(50.0)), place(&harness, rim(62.0)));
+    drag(&mut harness, from, to, PointerButton::Primary, NONE);
+    let found = radius(harness.scene(), 0);
+    assert!((found - 62.0).abs() < 0.6, "{found}");
+    assert_eq!(center(harness.scene(), 0), middle);
+
+    harness.click("Triangle 2");
+    let Shape::Triangle(Triangle { a, .. }) = harness.scene().objects[3].shape else {
+        panic!("a triangle");
+    };
+    let from = place(&harness, a);
+    drag(
+        &mut harness,
+        from,
+        from + vec2(20.0, 12.0),
+        PointerButton::Primary,
+        NONE,
+    );
+    let Shape::Triangle(triangle) = harness.scene().objects[3].shape else {
+        panic!("a triangle");
+    };
+    assert_ne!(triangle.a, a);
+    assert!((place(&harness, triangle.a) - from - vec2(20.0, 12.0)).length() < 2.0);
+    let Shape::Triangle(old) = Scene::demo().objects[3].shape else {
+        panic!("a triangle");
+    };
+    assert_eq!((triangle.b, triangle.c), (old.b, old.c));
+}
+
+#[test]
+fn several_are_moved_turned_copied_and_deleted_as_one() {
+    let mut harness = EditorHarness::new();
+    let (one, other) = (center(harness.scene(), 0), center(harness.scene(), 1));
+    let both = [one, other].map(|point| place(&harness, point));
+    click(&mut harness, both[0], NONE);
+    click(&mut harness, both[1], SHIFT);
+    assert_eq!(names(&harness), ["Sphere 1", "Sphere 2"]);
+    drag(
+        &mut harness,
+        both[1],
+        both[1] + vec2(0.0, -40.0),
+        PointerButton::Primary,
+        NONE,
+    );
+    let moved = [
+        center(harness.scene(), 0) - one,
+        center(harness.scene(), 1) - other,
+    ];
+    assert!(
+        (moved[0] - moved[1]).length() < 1e-9 && moved[0].length() > 1.0,
+        "{moved:?}"
+    );
+    assert_eq!(harness.editor().undo_label(), Some("Move 2 items"));
+    harness.press(CTRL, Key::Z);
+    assert_eq!(harness.scene(), &Scene::demo());
+    assert_eq!(names(&harness), ["Sphere 1", "Sphere 2"]);
+
+    harness.press(CTRL, Key::D);
+    assert_eq!(names(&harness), ["Sphere 3", "Sphere 4"]);
+    harness.press(NONE, Key::Delete);
+    assert_eq!(harness.scene(), &Scene::demo());
+    assert_eq!(harness.editor().selection, Selection::Camera);
+    harness.press(CTRL, Key::Z);
+    assert_eq!(harness.scene().objects.len(), 11);
+}
+
+#[test]
+fn a_frame_selects_what_is_seen_in_it() {
+    let mut harness = EditorHarness::new();
+    let view = harness
+        .window
+        .get_all_by_role(Role::Image)
+        .next()
+        .expect("a picture")
+        .rect();
+    let (from, to) = (view.min + vec2(4.0, 4.0), view.max - vec2(4.0, 4.0));
+    drag(&mut harness, from, to, PointerButton::Primary, SHIFT);
+    let found = names(&harness);
+    assert!(
+        found.contains(&"Sphere 1") && found.contains(&"Light 1"),
+        "{found:?}"
+    );
+    assert!(!found.contains(&"Plane"), "{found:?}");
+    assert_eq!(harness.scene(), &Scene::demo());
+}
+
+#[test]
+fn the_camera_circles_pans_and_comes_nearer() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    let middle = center(harness.scene(), 0);
+    let start = harness.scene().camera.clone();
+    let at = place(&harness, middle);
+    let sky = place(&harness, DVec3::new(60.0, 190.0, -300.0));
+    drag(
+        &mut harness,
+        sky,
+        sky + vec2(40.0, 15.0),
+        PointerButton::Primary,
+        NONE,
+    );
+    let circled = harness.scene().camera.clone();
+    assert_ne!(circled.position, start.position);
+    assert!(
+        (place(&harness, middle) - at).length() < 1.0,
+        "it is circled"
+    );
+    harness.press(CTRL, Key::Z);
+    assert_eq!(harness.scene().camera, start);
+
+    drag(
+        &mut harness,
+        at,
+        at + vec2(40.0, 15.0),
+        PointerButton::Middle,
+        NONE,
+    );
+    assert_eq!(harness.scene().camera.look_at, start.look_at);
+    assert!((place(&harness, middle) - at - vec2(40.0, 15.0)).length() < 12.0);
+    harness.press(CTRL, Key::Z);
+
+    harness.press(NONE, Key::F);
+    let at = place(&harness, middle);
+    let view = harness
+        .window
+        .get_all_by_role(Role::Image)
+        .next()
+        .expect("a picture")
+        .rect();
+    assert!((at - view.center()).length() < 1.0);
+    harness.press(NONE, Key::Home);
+    harness.press(CTRL, Key::Num7);
+    assert_eq!(harness.scene().camera.look_at, DVec3::NEG_Y);
+    for _ in 0..3 {
+        harness.press(CTRL, Key::Z);
+    }
+    assert_eq!(harness.scene().camera, start);
+}
+
+#[test]
+fn escape_leaves_one_thing_after_the_other() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    harness.press(NONE, Key::Escape);
+    assert_eq!(harness.editor().selection, Selection::Camera);
+    harness.press(NONE, Key::Escape);
+    assert!(harness.window.query_by_label("Quit now").is_none());
+    harness.window.get_by_label_contains("Ctrl+Q quits");
+    harness.press(NONE, Key::Escape);
+    harness.window.get_by_label("Quit now");
+}
