@@ -43,6 +43,14 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
+/// Makes a folder, and those that it is in.
+///
+/// # Errors
+/// What the system answered.
+pub fn make_folder(path: &Path) -> io::Result<()> {
+    fs::create_dir_all(path)
+}
+
 /// When a file was written last, where the system tells.
 pub fn time_of(path: &Path) -> Option<SystemTime> {
     fs::metadata(path).ok()?.modified().ok()

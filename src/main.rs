@@ -24,7 +24,8 @@ fn main() -> ExitCode {
             scene,
             screenshot,
             exports,
-        } => open_editor(scene.as_deref(), screenshot, exports),
+            select,
+        } => open_editor(scene.as_deref(), screenshot, (exports, select)),
     };
     result.map_or_else(|error| error.report(), |()| ExitCode::SUCCESS)
 }
@@ -33,10 +34,10 @@ fn main() -> ExitCode {
 fn open_editor(
     scene: Option<&Path>,
     screenshot: Option<PathBuf>,
-    exports: bool,
+    (exports, select): (bool, Vec<String>),
 ) -> Result<(), CliError> {
     let is_screenshot = screenshot.is_some();
-    match ui::run(scene.map(Path::to_owned), screenshot, exports) {
+    match ui::run(scene.map(Path::to_owned), screenshot, (exports, select)) {
         Ok(()) => Ok(()),
         Err(NoWindow::Unavailable(reason)) if is_screenshot => {
             Err(CliError::failed(format!("no window: {reason}")))

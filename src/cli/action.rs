@@ -17,6 +17,8 @@ pub enum CliAction {
         screenshot: Option<PathBuf>,
         /// Whether the window of exports is opened first.
         exports: bool,
+        /// The names of what is selected first.
+        select: Vec<String>,
     },
     /// Draw the chart of a study into this file.
     Chart {

@@ -55,6 +55,9 @@ struct CliArgs {
     /// Open the window of exports first
     #[arg(long, requires = "screenshot")]
     exports: bool,
+    /// Select the object or light of this name first; may be given more than once
+    #[arg(long, value_name = "NAME", requires = "screenshot")]
+    select: Vec<String>,
     #[command(subcommand)]
     command: Option<CliCommand>,
 }
@@ -131,6 +134,7 @@ impl CliArgs {
             scene: self.scene,
             screenshot: self.screenshot,
             exports: self.exports,
+            select: self.select,
         })
     }
 }

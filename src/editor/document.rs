@@ -8,6 +8,7 @@ use super::animation_state::AnimationState;
 use super::edit::Edit;
 use super::fly::Flight;
 use super::history::{History, Snapshot};
+use super::item::Item;
 use super::selection::{Selected, Selection};
 use super::timeline::Timeline;
 use crate::animate::CameraPath;
@@ -150,6 +151,20 @@ impl Editor {
     /// The items that are selected.
     pub fn selected(&self) -> &Selected {
         &self.selected
+    }
+
+    /// Selects the objects and lights of these names.
+    pub fn select_named(&mut self, names: &[String]) {
+        let lights = (0..self.scene.lights.len()).map(Item::light);
+        let items = lights.chain((0..self.scene.objects.len()).map(Item::object));
+        let is_named = |item: &Item| {
+            let name = item.name(&self.scene);
+            name.is_some_and(|name| names.iter().any(|wanted| wanted == name))
+        };
+        let items = Selected::all(items.filter(is_named));
+        if !items.items().is_empty() {
+            self.apply(Action::SelectItems(items));
+        }
     }
 
     /// The angles of the camera, from its vectors.

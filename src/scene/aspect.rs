@@ -42,12 +42,12 @@ impl Aspect {
         (
             Self::Diffuse,
             "Diffuse only",
-            "Σ intensity · diffuse colour · cosine of the angle to the light",
+            "Each light: intensity · diffuse colour · cosine of the angle to it",
         ),
         (
             Self::Specular,
             "Specular only",
-            "Σ intensity · specular colour · highlight, without mirror images",
+            "Each light: intensity · specular colour · highlight; no mirror images",
         ),
         (
             Self::WithoutMirrors,

@@ -12,8 +12,15 @@ use crate::simd::{Real, SimdFloat};
 
 /// Samples the pixels of tiles; its buffers are used again.
 pub struct Sampler<L: SimdFloat> {
-    /// Places of the samples of a row.
+    /// Whether packets look at squares, as they should where they see many small things.
+    in_squares: bool,
+    /// Places of the samples of a row, and of the rows.
     columns: Vec<L::Real>,
+    rows: Vec<L::Real>,
+    /// Which sample of the tile, counted row by row, each is, if they are in another order.
+    order: Vec<u32>,
+    /// What was traced in that order.
+    unsorted: Traced<L::Real>,
     samples: Samples<L::Real>,
     traced: Traced<L::Real>,
     /// The largest difference of a pixel's corners, for each pixel of a tile.
@@ -25,10 +32,14 @@ pub struct Sampler<L: SimdFloat> {
 }
 
 impl<L: SimdFloat> Sampler<L> {
-    /// Nothing yet.
-    pub fn new() -> Self {
+    /// Nothing yet. Whether packets look at squares changes what a picture costs, and not what it shows.
+    pub fn new(in_squares: bool) -> Self {
         Self {
+            in_squares,
             columns: Vec::new(),
+            rows: Vec::new(),
+            order: Vec::new(),
+            unsorted: Traced::default(),
             samples: Samples::default(),
             traced: Traced::default(),
             contrast: Vec::new(),
@@ -67,20 +78,37 @@ impl<L: SimdFloat> Sampler<L> {
         tile: &Tile,
         (x, y): (f64, f64),
     ) -> &Traced<L::Real> {
-        self.lay_out(tile.columns.clone(), tile.rows.clone(), (x, y));
-        engine.trace(&self.samples, seen, Edges::Ignored, &mut self.traced);
+        let pixels = (tile.columns.clone(), tile.rows.clone());
+        self.trace(engine, seen, pixels, ((x, y), Edges::Ignored));
         &self.traced
     }
 
-    /// Lays out a sample at (`x`, `y`) in each pixel, row by row.
+    /// Traces a sample at (`x`, `y`) in each pixel; what is seen is in their order, row by row.
     #[inline(always)]
-    fn lay_out(&mut self, columns: Range<usize>, rows: Range<usize>, (x, y): (f64, f64)) {
+    fn trace<const TREE: bool>(
+        &mut self,
+        engine: &mut Engine<L, TREE>,
+        seen: &Candidates,
+        (columns, rows): (Range<usize>, Range<usize>),
+        ((x, y), edges): ((f64, f64), Edges),
+    ) {
         let place = |index: usize, off: f64| L::Real::from_f64(index as f64 + off);
         self.columns.clear();
         self.columns.extend(columns.map(|column| place(column, x)));
-        self.samples
-            .cross(&self.columns, rows.map(|row| place(row, y)));
-        self.samples.pad(L::WIDTH);
+        if TREE && self.in_squares {
+            self.rows.clear();
+            self.rows.extend(rows.map(|row| place(row, y)));
+            self.samples
+                .cross_in_squares(&self.columns, &self.rows, &mut self.order);
+            self.samples.pad(L::WIDTH);
+            engine.trace(&self.samples, seen, edges, &mut self.unsorted);
+            self.traced.take_sorted(&self.unsorted, &self.order);
+        } else {
+            self.samples
+                .cross(&self.columns, rows.map(|row| place(row, y)));
+            self.samples.pad(L::WIDTH);
+            engine.trace(&self.samples, seen, edges, &mut self.traced);
+        }
     }
 
     /// The means of `side × side` samples in each pixel, each in the middle of its part.
@@ -122,8 +150,7 @@ impl<L: SimdFloat> Sampler<L> {
     ) {
         let columns = tile.columns.start..tile.columns.end + 1;
         let rows = tile.rows.start..tile.rows.end + 1;
-        self.lay_out(columns, rows, (0.0, 0.0));
-        engine.trace(&self.samples, seen, Edges::Near, &mut self.traced);
+        self.trace(engine, seen, (columns, rows), ((0.0, 0.0), Edges::Near));
         self.judge(tile, limits, colors);
         if self.split.is_empty() {
             return;

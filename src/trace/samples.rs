@@ -1,6 +1,8 @@
 //! What goes into the tracing of a tile, and what comes out of it, one number per sample in each
 //! column.
 
+use std::ops::Range;
+
 use crate::simd::{Real, Vec3};
 
 /// What a trace finds out about its samples.
@@ -43,6 +45,18 @@ pub struct Traced<R> {
     pub near: Vec<R>,
 }
 
+/// Side of the squares that packets look at: sixteen rays, or two packets of eight.
+const SQUARE: usize = 4;
+
+/// Puts numbers into the places that `order` has for them; none if there are none.
+#[inline(always)]
+fn sort<T: Copy + Default>(to: &mut Vec<T>, from: &[T], order: &[u32]) {
+    to.resize(from.len(), T::default());
+    for (&number, &place) in from.iter().zip(order) {
+        to[place as usize] = number;
+    }
+}
+
 impl<R: Real> Samples<R> {
     /// Forgets all.
     pub fn clear(&mut self) {
@@ -73,6 +87,35 @@ impl<R: Real> Samples<R> {
         }
     }
 
+    /// The same, square by square: a packet then looks at what is close together. `order` becomes which
+    /// crossing, counted row by row, each sample is.
+    #[inline(always)]
+    pub fn cross_in_squares(&mut self, columns: &[R], rows: &[R], order: &mut Vec<u32>) {
+        self.clear();
+        order.clear();
+        let (whole_columns, whole_rows) = (
+            columns.len() / SQUARE * SQUARE,
+            rows.len() / SQUARE * SQUARE,
+        );
+        let mut add = |across: Range<usize>, down: Range<usize>| {
+            for row in down {
+                for column in across.clone() {
+                    self.x.push(columns[column]);
+                    self.y.push(rows[row]);
+                    order.push((row * columns.len() + column) as u32);
+                }
+            }
+        };
+        for top in (0..whole_rows).step_by(SQUARE) {
+            for left in (0..whole_columns).step_by(SQUARE) {
+                add(left..left + SQUARE, top..top + SQUARE);
+            }
+        }
+        // What is left over comes last, so that the squares are whole packets.
+        add(whole_columns..columns.len(), 0..whole_rows);
+        add(0..columns.len(), whole_rows..rows.len());
+    }
+
     /// Counts the places, and fills the last packet up.
     #[inline(always)]
     pub fn pad(&mut self, lanes: usize) {
@@ -86,6 +129,22 @@ impl<R: Real> Samples<R> {
 }
 
 impl<R: Real> Traced<R> {
+    /// Becomes what `other` is, each sample in the place that `order` has for it.
+    #[inline(always)]
+    pub fn take_sorted(&mut self, other: &Self, order: &[u32]) {
+        self.count = other.count;
+        let columns = [
+            (&mut self.red, &other.red),
+            (&mut self.green, &other.green),
+            (&mut self.blue, &other.blue),
+            (&mut self.near, &other.near),
+        ];
+        for (to, from) in columns {
+            sort(to, from, order);
+        }
+        sort(&mut self.signature, &other.signature, order);
+    }
+
     /// Red, green and blue.
     pub fn channels(&self) -> [&[R]; 3] {
         [&self.red, &self.green, &self.blue]

@@ -26,6 +26,10 @@ const SMALL_TILE: usize = 16;
 /// With fewer pixels than this for each bounded primitive, there is much to see.
 const PIXELS_PER_PRIMITIVE: u64 = 16_384;
 
+/// With fewer pixels than this for each, packets look at squares: what is seen in a row of sixteen pixels is
+/// more than in a square of them, but to put them in order costs time too.
+const PIXELS_IN_SQUARES: u64 = 64;
+
 /// What a colour becomes in a picture.
 pub trait Pixel: Send {
     /// The pixel of a linear colour, 0–1.
@@ -39,6 +43,7 @@ pub struct Tracer {
     height: usize,
     /// Side of a tile.
     tile: usize,
+    in_squares: bool,
     sampling: Sampling,
     level: Level,
     plan: PlanOf,
@@ -51,16 +56,13 @@ enum PlanOf {
 }
 
 impl PlanOf {
-    fn tile_side(&self, pixels: u64) -> usize {
-        let primitives = match self {
+    /// How many primitives have an end.
+    fn bounded(&self) -> u64 {
+        let count = match self {
             Self::Single(plan) => plan.bounded(),
             Self::Double(plan) => plan.bounded(),
         };
-        if primitives as u64 * PIXELS_PER_PRIMITIVE <= pixels {
-            LARGE_TILE
-        } else {
-            SMALL_TILE
-        }
+        count as u64
     }
 }
 
@@ -82,10 +84,13 @@ impl Tracer {
         } else {
             PlanOf::Single(Box::new(Plan::new(scene, request, &mut planner.single)))
         };
+        let pixels = u64::from(request.width) * u64::from(request.height);
+        let is_sparse = plan.bounded() * PIXELS_PER_PRIMITIVE <= pixels;
         Self {
             width: request.width as usize,
             height: request.height as usize,
-            tile: plan.tile_side(u64::from(request.width) * u64::from(request.height)),
+            tile: if is_sparse { LARGE_TILE } else { SMALL_TILE },
+            in_squares: plan.bounded() * PIXELS_IN_SQUARES > pixels,
             sampling: request.sampling,
             level: request.level.unwrap_or_else(Level::widest),
             plan,
@@ -172,6 +177,7 @@ impl Tracer {
                     seen: &seen,
                     width: self.width,
                     tile: self.tile,
+                    in_squares: self.in_squares,
                     rows: top..top + pixels.len() / self.width,
                     pixels,
                     grid,
@@ -191,6 +197,7 @@ struct Band<'a, R, P> {
     seen: &'a Candidates,
     width: usize,
     tile: usize,
+    in_squares: bool,
     rows: Range<usize>,
     pixels: &'a mut [P],
     grid: Grid,
@@ -216,7 +223,7 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
     fn trace<L: SimdFloat<Real = R>, const TREE: bool>(mut self, token: L::Token) -> Option<Rays> {
         let plan = self.plan;
         let mut engine = Engine::<L, TREE>::new(Kernel { token, plan });
-        let mut sampler = Sampler::new();
+        let mut sampler = Sampler::new(self.in_squares);
         let mut colors = TileColors::default();
         let (mut in_band, mut in_tile) = (Candidates::default(), Candidates::default());
         in_band.keep_seen(self.seen, plan, &self.rows, Span::Rows);

@@ -126,6 +126,7 @@ impl App {
         if let Some(path) = setup.scene {
             app.files.open_now(&mut app.editor, &path);
         }
+        app.editor.select_named(&setup.select);
         app.autosave = Autosave::start(setup.data_folder.as_deref(), &mut app.editor);
         Ok(app)
     }
@@ -140,6 +141,11 @@ impl App {
         self.pictures.is_settled(&self.editor)
             && self.editor.wanted_survey().is_none()
             && self.files.reading().is_none()
+    }
+
+    /// Whether a question stands over the window.
+    pub fn is_asking(&self) -> bool {
+        self.files.is_asking() || self.finder.is_open
     }
 
     /// Whether frames are being exported, or a video of them made.

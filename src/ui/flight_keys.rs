@@ -109,6 +109,8 @@ pub const MOUSE: &[(&str, &str)] = &[
     ("Right button, drag", "Look around"),
     ("Wheel", "Towards the pointer, and away"),
     ("Shift, held", "Fly four times as fast"),
+    ("Timeline: Ctrl, wheel", "Show less or more of it"),
+    ("Timeline: middle button", "Move it; Home shows all"),
 ];
 
 impl FlightKey {

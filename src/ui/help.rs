@@ -34,7 +34,7 @@ fn lists(ui: &mut Ui) {
         list(ui, "Flying (hold)", flight.collect());
         ui.add_space(2.0 * GRID);
         let mouse = MOUSE.iter().map(|(name, what)| ((*name).to_owned(), *what));
-        list(ui, "Mouse in the picture", mouse.collect());
+        list(ui, "Mouse", mouse.collect());
     });
 }
 

@@ -19,6 +19,8 @@ mod screenshot;
 
 mod setup;
 
+mod glyphs;
+
 mod theme;
 
 mod help;

@@ -144,7 +144,7 @@ impl App {
 
 /// What an empty scene is begun with.
 fn hint_at_beginning(ui: &Ui, place: Place) {
-    let words = "Nothing is here yet.\n\nAdd a shape with Add in the menu, drop a mesh or a scene file here,\nor begin with File → Open example.";
+    let words = "Nothing is here yet.\n\nAdd a shape with Add in the menu, drop a mesh or a scene file here,\nor begin with Open example in the File menu.";
     let font = TextStyle::Body.resolve(ui.style());
     let color = palette(ui.ctx()).on_picture;
     let painter = ui.painter().with_clip_rect(place.rect);

@@ -7,6 +7,7 @@ use egui::{Button, Context, Frame, Id, Key, Modal, RichText, TextEdit, Ui};
 
 use super::dialogs::Ask;
 use super::theme::{GRID, palette};
+use crate::files::make_folder;
 
 /// What the user said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,7 +151,7 @@ impl PathPrompt {
                 if let Some(folder) = self.missing_folder()
                     && ui.button("Create folder").clicked()
                 {
-                    let made = std::fs::create_dir_all(&folder);
+                    let made = make_folder(&folder);
                     self.problem = made
                         .err()
                         .map(|error| format!("{}: {error}", folder.display()));

@@ -75,6 +75,10 @@ impl App {
                 self.lab.is_open = false;
                 None
             }
+            Command::FrameAll if self.timeline.is_hovered => {
+                self.timeline.fit();
+                None
+            }
             Command::PictureAlone => {
                 self.is_alone = !self.is_alone;
                 None

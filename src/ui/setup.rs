@@ -20,6 +20,8 @@ pub struct Setup {
     pub screenshot: Option<Screenshot>,
     /// Whether the window of exports is open at first.
     pub exports: bool,
+    /// The names of objects and lights that are selected at first.
+    pub select: Vec<String>,
 }
 
 impl Setup {
@@ -31,6 +33,7 @@ impl Setup {
             data_folder: data_folder(),
             screenshot: None,
             exports: false,
+            select: Vec::new(),
         }
     }
 

@@ -6,6 +6,8 @@ use egui::{
     vec2,
 };
 
+use super::glyphs;
+
 /// Height of a row of widgets, in points.
 pub const ROW: f32 = 24.0;
 /// The grid: spacings are multiples of half of it.
@@ -131,6 +133,7 @@ fn of(theme: Theme) -> Palette {
 /// Gives the window its fonts and both its themes, of which `chosen` is on.
 pub fn install(ctx: &Context, chosen: Theme) {
     egui_material_icons::initialize(ctx);
+    glyphs::install(ctx);
     for theme in [Theme::Dark, Theme::Light] {
         ctx.style_mut_of(theme, |style| restyle(style, theme));
     }

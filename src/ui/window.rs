@@ -33,7 +33,8 @@ pub enum NoWindow {
 }
 
 /// Opens the window on a scene file (or the demo) and stays until it is closed, or until a
-/// picture of it is written to `screenshot`. `exports` opens the window of exports first.
+/// picture of it is written to `screenshot`. `exports` opens the window of exports first, and what is
+/// named in `select` is selected.
 ///
 /// # Errors
 /// [`NoWindow::Unavailable`] if there is no display, no OpenGL, or a system library is missing. The library
@@ -42,7 +43,7 @@ pub enum NoWindow {
 pub fn run(
     scene: Option<PathBuf>,
     screenshot: Option<PathBuf>,
-    exports: bool,
+    (exports, select): (bool, Vec<String>),
 ) -> Result<(), NoWindow> {
     let (screenshot, outcome) = screenshot.map(Screenshot::new).unzip();
     let persist_window = screenshot.is_none();
@@ -54,6 +55,7 @@ pub fn run(
             None => Setup::native(scene),
             Some(screenshot) => Setup {
                 exports,
+                select,
                 ..Setup::for_screenshot(scene, screenshot)
             },
         };

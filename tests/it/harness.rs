@@ -53,8 +53,16 @@ impl EditorHarness {
         answers: impl FnOnce(&std::path::Path) -> Vec<(Ask, Option<PathBuf>)>,
         scene: Option<&str>,
     ) -> Self {
+        Self::asked(|folder| Box::new(Scripted(answers(folder).into())), scene)
+    }
+
+    /// A window with these dialogs on a scene text (or the demo).
+    pub fn asked(
+        dialogs: impl FnOnce(&std::path::Path) -> Box<dyn Dialogs>,
+        scene: Option<&str>,
+    ) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
-        let dialogs = Box::new(Scripted(answers(folder.path()).into()));
+        let dialogs = dialogs(folder.path());
         let scene = scene.map(|text| {
             let path = folder.path().join("given.ron");
             std::fs::write(&path, text).expect("written");
@@ -73,6 +81,7 @@ impl EditorHarness {
                         data_folder: None,
                         screenshot: None,
                         exports: false,
+                        select: Vec::new(),
                     },
                 )
                 .expect("a render thread")

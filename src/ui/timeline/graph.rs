@@ -79,11 +79,11 @@ impl Graph {
                 .allow_double_click_reset(false)
                 .set_margin_fraction(vec2(0.0, 0.0))
                 .auto_bounds(Vec2b::FALSE)
-                .default_x_bounds(0.0, scale.end)
+                .default_x_bounds(scale.start, scale.end)
                 .default_y_bounds(-0.05, 1.1)
                 .label_formatter(|hover| self.label(hover))
                 .show(ui, |plot| {
-                    plot.set_plot_bounds_x(0.0..=scale.end);
+                    plot.set_plot_bounds_x(scale.start..=scale.end);
                     let speed = line(|step| step.speed, fastest);
                     plot.line(Line::new("speed", speed).color(colors.curve));
                     let turn = line(|step| step.turn, sharpest);

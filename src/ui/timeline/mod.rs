@@ -10,7 +10,7 @@ mod thumbs;
 
 mod transport;
 
-use egui::{ScrollArea, Ui};
+use egui::{Rect, ScrollArea, Ui};
 
 use self::graph::Graph;
 pub use self::overlay::Overlay;
@@ -34,8 +34,12 @@ pub struct TimelinePanel {
     pub is_open: bool,
     /// Whether speed and turns are shown below the keys.
     shows_graph: bool,
-    /// Last time that the line shows; it stays while something is dragged on it.
-    end: f64,
+    /// First and last time that the line shows; they stay while something is dragged on it.
+    span: (f64, f64),
+    /// The part of it that was chosen, if not all is shown.
+    chosen: Option<(f64, f64)>,
+    /// Whether the pointer is over it.
+    pub is_hovered: bool,
     drag: Option<Drag>,
     graph: Graph,
 }
@@ -45,7 +49,9 @@ impl Default for TimelinePanel {
         Self {
             is_open: true,
             shows_graph: true,
-            end: LEAST,
+            span: (0.0, LEAST),
+            chosen: None,
+            is_hovered: false,
             drag: None,
             graph: Graph::default(),
         }
@@ -88,16 +94,20 @@ impl TimelinePanel {
             });
             return;
         }
-        if !ui.input(|input| input.pointer.any_down()) {
-            self.end = shown_end(animation);
+        let end = shown_end(animation);
+        if self.chosen.is_some() || !ui.input(|input| input.pointer.any_down()) {
+            self.span = self.chosen.unwrap_or((0.0, end));
         }
+        let area = ui.max_rect();
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             let left = ui.max_rect().left() + TRACK_LABEL;
             let scale = Scale {
                 left,
                 width: ui.max_rect().right() - 2.0 * GRID - left,
-                end: self.end,
+                start: self.span.0,
+                end: self.span.1,
             };
+            self.zoom(ui, (&scale, area), end);
             tracks_area::ruler(ui, &scale, editor, out);
             if !animation.keys.is_empty() {
                 thumbs.show(ui, &scale, animation);
@@ -108,6 +118,40 @@ impl TimelinePanel {
                 self.graph.show(ui, &scale, editor);
             }
         });
+    }
+}
+
+impl TimelinePanel {
+    /// Shows all of the line again.
+    pub fn fit(&mut self) {
+        self.chosen = None;
+    }
+
+    /// Ctrl and the wheel show less or more of the line, the middle button moves it.
+    fn zoom(&mut self, ui: &Ui, (scale, area): (&Scale, Rect), end: f64) {
+        let at = ui.input(|input| input.pointer.hover_pos());
+        let at = at.filter(|at| area.contains(*at) && ui.ui_contains_pointer());
+        self.is_hovered = at.is_some();
+        let Some(at) = at else { return };
+        let (factor, moved, is_middle) = ui.input(|input| {
+            let pointer = &input.pointer;
+            (input.zoom_delta(), pointer.delta().x, pointer.middle_down())
+        });
+        let (start, last) = self.span;
+        let by = if is_middle {
+            scale.time(at.x) - scale.time(at.x + moved)
+        } else {
+            0.0
+        };
+        if factor == 1.0 && by == 0.0 {
+            return;
+        }
+        let held = scale.time(at.x);
+        let seconds = ((last - start) / f64::from(factor)).clamp(LEAST / 20.0, end);
+        // What the pointer is over stays there.
+        let start = held - (held - start) * seconds / (last - start) + by;
+        let start = start.clamp(0.0, (end - seconds).max(0.0));
+        self.chosen = (seconds < end).then_some((start, start + seconds));
     }
 }
 

@@ -108,6 +108,9 @@ impl Thumbs {
             let Some(texture) = texture else { continue };
             let size = texture.size_vec2();
             let width = THUMB * size.x / size.y;
+            if !scale.shows(key.time) {
+                continue;
+            }
             let left = scale.x(key.time) - width / 2.0;
             if left < free {
                 continue;

@@ -27,10 +27,12 @@ const SMALL: f32 = 10.0;
 /// From time to place on the screen.
 #[derive(Clone, Copy, Debug)]
 pub struct Scale {
-    /// Where time 0 is, in points.
+    /// Where it begins, in points.
     pub left: f32,
     /// Width of all of it, in points.
     pub width: f32,
+    /// The time at its left end, in seconds.
+    pub start: f64,
     /// The time at its right end, in seconds.
     pub end: f64,
 }
@@ -38,11 +40,21 @@ pub struct Scale {
 impl Scale {
     /// Place of a time.
     pub fn x(&self, time: f64) -> f32 {
-        self.left + (time / self.end) as f32 * self.width
+        self.left + ((time - self.start) / self.seconds()) as f32 * self.width
     }
 
-    fn time(&self, x: f32) -> f64 {
-        f64::from((x - self.left) / self.width) * self.end
+    /// The time of a place.
+    pub fn time(&self, x: f32) -> f64 {
+        self.start + f64::from((x - self.left) / self.width) * self.seconds()
+    }
+
+    /// Whether a time is shown.
+    pub fn shows(&self, time: f64) -> bool {
+        (self.start..=self.end).contains(&time)
+    }
+
+    fn seconds(&self) -> f64 {
+        self.end - self.start
     }
 }
 
@@ -65,21 +77,21 @@ pub fn ruler(ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) 
     let (rect, response) = band(ui, scale, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Playhead"));
     if let Some(pointer) = response.interact_pointer_pos() {
-        out.time(Time::Seek(scale.time(pointer.x)));
+        out.time(Time::Seek(scale.time(pointer.x).max(0.0)));
     }
     let colors = palette(ui.ctx());
     let painter = ui.painter();
     let animation = &editor.scene().animation;
-    let per_second = scale.width / scale.end as f32;
+    let per_second = scale.width / scale.seconds() as f32;
     let step = STEPS
         .iter()
         .find(|step| **step as f32 * per_second >= APART);
     let step = step.copied().unwrap_or(scale.end);
     let line = Stroke::new(1.0, colors.line);
-    for n in 0..=(scale.end / step) as u32 {
+    for n in (scale.start / step).ceil().max(0.0) as u32..=(scale.end / step) as u32 {
         let x = scale.x(f64::from(n) * step);
         painter.vline(x, rect.y_range(), line);
-        let text = format!("{} s", (f64::from(n) * step * 10.0).round() / 10.0);
+        let text = format!("{} s", (f64::from(n) * step * 100.0).round() / 100.0);
         let at = pos2(x + GRID / 2.0, rect.top());
         painter.text(
             at,
@@ -90,12 +102,17 @@ pub fn ruler(ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) 
         );
     }
     if per_second / animation.frames_per_second as f32 >= FRAME_APART {
-        for frame in 1..=animation.frame_count() {
+        let frame_at = |time: f64| (time.max(0.0) * animation.frames_per_second) as u64 + 1;
+        let last = animation.frame_count().min(frame_at(scale.end));
+        for frame in frame_at(scale.start)..=last {
             let x = scale.x(animation.time_of(frame));
             painter.vline(x, rect.bottom() - GRID / 2.0..=rect.bottom(), line);
         }
     }
     playhead(ui, scale, rect, editor);
+    if !scale.shows(editor.shown_time()) {
+        return;
+    }
     let x = scale.x(editor.shown_time());
     let tip = pos2(x, rect.bottom());
     let corners = vec![tip + vec2(-KEY, -KEY), tip + vec2(KEY, -KEY), tip];
@@ -104,9 +121,11 @@ pub fn ruler(ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) 
 }
 
 fn playhead(ui: &Ui, scale: &Scale, rect: Rect, editor: &Editor) {
-    let x = scale.x(editor.shown_time());
-    let stroke = Stroke::new(1.0, palette(ui.ctx()).accent);
-    ui.painter().vline(x, rect.y_range(), stroke);
+    let time = editor.shown_time();
+    if scale.shows(time) {
+        let stroke = Stroke::new(1.0, palette(ui.ctx()).accent);
+        ui.painter().vline(scale.x(time), rect.y_range(), stroke);
+    }
 }
 
 /// A strip as wide as the time, with the part for a label to its left.
@@ -164,17 +183,19 @@ pub fn keys(
     drag: &mut Option<Drag>,
     out: &mut UiRequests,
 ) {
-    let (rect, response) = band(ui, scale, Sense::click());
+    let (rect, response) = band(ui, scale, Sense::click_and_drag());
     if response.clicked() {
         out.time(Time::SelectKeys(BTreeSet::new()));
     }
+    select_between(ui, (scale, rect), &response, &editor.scene().animation, out);
     label(ui, rect, "Camera");
     let colors = palette(ui.ctx());
     let animation = &editor.scene().animation;
     ways(ui, scale, rect, animation);
     playhead(ui, scale, rect, editor);
     let selected = &editor.timeline().selected;
-    for (index, key) in animation.keys.iter().enumerate() {
+    let keys = animation.keys.iter().enumerate();
+    for (index, key) in keys.filter(|(_, key)| scale.shows(key.time)) {
         let at = pos2(scale.x(key.time), rect.center().y);
         let near = Rect::from_center_size(at, vec2(2.0 * KEY + 2.0, TRACK));
         let response = ui.interact(
@@ -202,6 +223,29 @@ pub fn keys(
     drag_to_pointer(ui, scale, editor, drag, out);
 }
 
+/// A drag from where no key is selects those that it passes.
+fn select_between(
+    ui: &Ui,
+    (scale, rect): (&Scale, Rect),
+    response: &Response,
+    animation: &Animation,
+    out: &mut UiRequests,
+) {
+    let from = ui.input(|input| input.pointer.press_origin());
+    let is_dragged = response.dragged_by(egui::PointerButton::Primary);
+    let span = from.zip(response.interact_pointer_pos());
+    let Some((from, to)) = span.filter(|_| is_dragged) else {
+        return;
+    };
+    let (first, last) = (from.x.min(to.x), from.x.max(to.x));
+    let keys = animation.keys.iter().enumerate();
+    let within = keys.filter(|(_, key)| (first..=last).contains(&scale.x(key.time)));
+    out.time(Time::SelectKeys(within.map(|(index, _)| index).collect()));
+    let part = Rect::from_x_y_ranges(first..=last, rect.y_range()).intersect(rect);
+    let fill = palette(ui.ctx()).accent.gamma_multiply(0.2);
+    ui.painter().rect_filled(part, 0, fill);
+}
+
 /// Lines between keys: straight ones thin, curves thick, none where it is held.
 fn ways(ui: &Ui, scale: &Scale, rect: Rect, animation: &Animation) {
     let color = palette(ui.ctx()).line;
@@ -211,7 +255,8 @@ fn ways(ui: &Ui, scale: &Scale, rect: Rect, animation: &Animation) {
             Interpolation::Linear => 1.0,
             Interpolation::Smooth | Interpolation::Orbit { .. } => 3.0,
         };
-        let span = scale.x(pair[0].time)..=scale.x(pair[1].time);
+        let ends = [pair[0].time, pair[1].time].map(|time| time.clamp(scale.start, scale.end));
+        let span = scale.x(ends[0])..=scale.x(ends[1]);
         ui.painter()
             .hline(span, rect.center().y, Stroke::new(width, color));
     }
@@ -353,7 +398,8 @@ pub fn tracks(
         let (rect, _) = band(ui, scale, Sense::hover());
         label(ui, rect, &track.target.name());
         playhead(ui, scale, rect, editor);
-        for (index, key) in track.keys.iter().enumerate() {
+        let keys = track.keys.iter().enumerate();
+        for (index, key) in keys.filter(|(_, key)| scale.shows(key.time)) {
             let at = pos2(scale.x(key.time), rect.center().y);
             let near = Rect::from_center_size(at, vec2(2.0 * KEY + 2.0, TRACK));
             let id = ui.scope_id().with(("value", &track.target.name(), index));

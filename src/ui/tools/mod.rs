@@ -32,6 +32,8 @@ use crate::editor::{Action, Edit, Editor, Selected};
 use crate::image::{ObjectMap, Thing};
 use crate::scene::Camera;
 
+/// Seconds that the pointer rests before it is told what it is over.
+const PATIENCE: f32 = 0.3;
 /// How far apart two clicks on one place may be, in points.
 const SAME_PLACE: f32 = 4.0;
 
@@ -157,9 +159,17 @@ impl Tools {
             ui.set_cursor_icon(CursorIcon::Grab);
         }
         let name = item.and_then(|item| item.name(view.editor.scene()));
-        let is_still = ui.input(|input| !input.pointer.any_down());
-        if let (Some(at), Some(name), true) = (at, name, is_still) {
+        let (is_down, rests) = ui.input(|input| {
+            let rests = input.pointer.time_since_last_movement();
+            (input.pointer.any_down(), rests)
+        });
+        let Some((at, name)) = at.zip(name).filter(|_| !is_down) else {
+            return;
+        };
+        if rests >= PATIENCE {
             label(&view.painter, at, name);
+        } else {
+            ui.request_repaint_after_secs(PATIENCE - rests);
         }
     }
 

@@ -3,6 +3,7 @@
 mod files;
 mod inspector;
 mod lab;
+mod monkey;
 mod outliner;
 mod shortcuts;
 mod tools;
