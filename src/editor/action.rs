@@ -32,7 +32,9 @@ pub enum Action {
     Select(Selection),
     /// Select these items, and show the last of them in the inspector.
     SelectItems(Selected),
-    /// Take back what was done since the pointer went down.
+    /// What comes is a step of its own in the history.
+    BeginGesture,
+    /// Take back what was done since the gesture began.
     CancelGesture,
     /// Step back in the history.
     Undo,

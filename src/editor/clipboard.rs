@@ -1,13 +1,18 @@
 //! What is copied and pasted: the text of a scene with nothing else in it.
 
+use std::collections::HashSet;
 use std::fmt::Write as _;
 
+use glam::DVec3;
 use indexmap::IndexMap;
 
 use super::item::{Item, Kind};
-use super::names::{copy_offset, free_light_name, free_object_name, free_pack_name};
+use super::names::{Taken, copy_offset, free_light_name, free_pack_name};
 use super::selection::Selected;
 use crate::scene::{ColorPack, Document, Scene, SceneError};
+
+/// How far a copy of a light alone is from it, in world units.
+const LIGHT_APART: f64 = 10.0;
 
 /// The selected things alone, with the packs that they wear.
 pub fn excerpt(scene: &Scene, selected: &Selected) -> Scene {
@@ -29,10 +34,10 @@ pub fn excerpt(scene: &Scene, selected: &Selected) -> Scene {
     };
     let markers = part.lights.iter().filter_map(|light| light.marker.as_ref());
     let worn = part.objects.iter().map(|object| &object.color_pack);
-    let worn: Vec<&String> = worn
+    let worn: HashSet<&String> = worn
         .chain(markers.map(|marker| &marker.color_pack))
         .collect();
-    let chosen: Vec<usize> = of(Kind::Pack).collect();
+    let chosen: HashSet<usize> = of(Kind::Pack).collect();
     let packs = scene.color_packs.iter().enumerate();
     let packs = packs.filter(|(place, (name, _))| worn.contains(name) || chosen.contains(place));
     let packs: IndexMap<String, ColorPack> = packs
@@ -98,32 +103,51 @@ pub fn paste(scene: &mut Scene, pasted: &Scene) {
             name.clone_from(free);
         }
     };
+    let by = way_aside(scene, pasted);
+    let mut taken = Taken::new(scene.objects.iter().map(|object| &object.name));
     for object in &pasted.objects {
         let mut object = object.clone();
         known(&mut object.color_pack);
-        object.name = free_object_name(scene, &object.name);
-        // Two things in one place would shadow each other.
-        while scene
-            .objects
-            .iter()
-            .any(|other| other.shape == object.shape)
-        {
-            let by = copy_offset(scene, &object.shape);
-            if by == glam::DVec3::ZERO {
-                break;
-            }
-            object.shape = object.shape.moved(by);
-        }
+        object.name = taken.take(&object.name);
+        object.shape = object.shape.moved(by);
         scene.objects.push(object);
     }
     for light in &pasted.lights {
         let mut light = light.clone();
+        light.position += by;
         if let Some(marker) = &mut light.marker {
             known(&mut marker.color_pack);
         }
         light.name = free_light_name(scene, &light.name);
         scene.lights.push(light);
     }
+}
+
+/// From where things were copied to where they do not stand in each other: two things in one place would
+/// shadow each other. All of them go the same way.
+fn way_aside(scene: &Scene, pasted: &Scene) -> DVec3 {
+    let Some(first) = pasted.objects.first() else {
+        let lights = scene.lights.iter();
+        let mut places = lights.map(|light| light.position);
+        let is_there = pasted
+            .lights
+            .first()
+            .is_some_and(|light| places.any(|place| place == light.position));
+        return DVec3::X * if is_there { LIGHT_APART } else { 0.0 };
+    };
+    let step = match pasted.objects_bounds() {
+        Some((low, high)) => DVec3::X * (high - low).max_element(),
+        None => copy_offset(scene, &first.shape),
+    };
+    let is_there = |by: DVec3| {
+        let shape = first.shape.moved(by);
+        scene.objects.iter().any(|other| other.shape == shape)
+    };
+    let mut by = DVec3::ZERO;
+    while step != DVec3::ZERO && is_there(by) {
+        by += step;
+    }
+    by
 }
 
 #[cfg(test)]

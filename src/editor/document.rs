@@ -192,6 +192,7 @@ impl Editor {
                 let selection = selected.selection();
                 self.select(selected, selection);
             }
+            Action::BeginGesture => self.history.end_gesture(),
             Action::CancelGesture => {
                 if let Some(before) = self.history.cancel_gesture() {
                     self.return_to(before);
@@ -344,7 +345,7 @@ impl Editor {
         let is_camera = matches!(edit, Edit::Camera(..));
         let mut next = Scene::clone(&self.scene);
         let selection = match edit.apply(&mut next) {
-            Ok(selection) => selection.unwrap_or(self.selection),
+            Ok(selection) => selection,
             Err(error) => return self.report_error(error.to_string()),
         };
         self.animation_state.key_tracked(&self.scene, &mut next);
@@ -359,8 +360,9 @@ impl Editor {
         }
         let before = self.here();
         self.history.record(label, before, &next);
-        if selection != self.selection {
-            self.select(Selected::only(selection), selection);
+        match selection {
+            Some(selection) => self.select(Selected::only(selection), selection),
+            None => self.follow(&next),
         }
         self.set_scene(Arc::new(next));
     }
@@ -385,6 +387,19 @@ impl Editor {
         // Keys are known by their places, which may be others' now.
         self.animation_state.deselect_keys();
         self.set_scene(there.scene);
+    }
+
+    /// What is selected stays so, wherever it is in the lists of the scene that comes.
+    pub(super) fn follow(&mut self, next: &Scene) {
+        let selected = self.selected.followed(&self.scene, next);
+        if selected == self.selected {
+            return;
+        }
+        // Where the only one is gone, what is in its place is next.
+        if !selected.items().is_empty() || self.selected.items().len() > 1 {
+            let selection = selected.selection();
+            self.select(selected, selection);
+        }
     }
 
     pub(super) fn select(&mut self, selected: Selected, selection: Selection) {

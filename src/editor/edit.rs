@@ -44,8 +44,9 @@ pub enum Edit {
     Import(Vec<Part>),
     /// One mesh of these triangles and meshes, in ascending order.
     Join(Vec<usize>),
-    /// Everything in this scene as well; packs that are there already are used.
-    Paste(Box<Scene>),
+    /// Everything in this scene as well; packs that are there already are used. The word is what the step is
+    /// called.
+    Paste(Box<Scene>, &'static str),
     /// Triangles of this mesh.
     Separate(usize),
     /// A new light here.
@@ -106,7 +107,7 @@ impl Edit {
             Self::AddMesh(name, _) => format!("Add {name}"),
             Self::Import(_) => "Import mesh".to_owned(),
             Self::Join(joined) => format!("Join {} objects", joined.len()),
-            Self::Paste(_) => "Paste".to_owned(),
+            Self::Paste(_, word) => (*word).to_owned(),
             Self::Separate(index) => format!("Separate {}", name(Item::object(*index))),
             Self::AddLight(_) => "Add Light".to_owned(),
             Self::AddPack => "Add ColorPack".to_owned(),
@@ -149,7 +150,7 @@ impl Edit {
             Self::Join(joined) => {
                 return Ok(scene.join(joined).map(Item::object).and_then(select));
             }
-            Self::Paste(pasted) => paste(scene, &pasted),
+            Self::Paste(pasted, _) => paste(scene, &pasted),
             Self::Separate(index) => {
                 scene.separate(index);
             }

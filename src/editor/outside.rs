@@ -41,6 +41,7 @@ impl Editor {
         self.history.end_gesture();
         self.history.record("Reload".to_owned(), before, &theirs);
         self.history.end_gesture();
+        self.follow(&theirs);
         self.set_scene(theirs);
         self.notify(format!(
             "{} was changed by another program and read anew; undo brings yours back",

@@ -1,8 +1,8 @@
 //! What is selected.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
-use super::item::Item;
+use super::item::{Item, Kind};
 use crate::scene::Scene;
 
 /// What the inspector shows.
@@ -73,6 +73,36 @@ impl Selected {
             None => items.push(item),
         }
         Self(items)
+    }
+
+    /// The same things in another state of the scene, by their names; without those that are not there. A
+    /// thing of another name in the same place is the same, if the old name is gone.
+    #[must_use]
+    pub fn followed(&self, from: &Scene, to: &Scene) -> Self {
+        let stays = |item: &Item| item.name(from) == item.name(to);
+        if self.0.iter().all(stays) {
+            return self.clone();
+        }
+        let mut places: HashMap<(Kind, &str), Item> = HashMap::new();
+        let lights = (0..to.lights.len()).map(Item::light);
+        let objects = (0..to.objects.len()).map(Item::object);
+        let packs = (0..to.color_packs.len()).map(Item::pack);
+        for item in lights.chain(objects).chain(packs) {
+            if let Some(name) = item.name(to) {
+                places.insert((item.kind, name), item);
+            }
+        }
+        let same_length = |kind: Kind| match kind {
+            Kind::Light => from.lights.len() == to.lights.len(),
+            Kind::Object => from.objects.len() == to.objects.len(),
+            Kind::Pack => from.color_packs.len() == to.color_packs.len(),
+        };
+        let followed = self.0.iter().filter_map(|item| {
+            let name = item.name(from)?;
+            let found = places.get(&(item.kind, name)).copied();
+            found.or_else(|| same_length(item.kind).then_some(*item))
+        });
+        Self::all(followed)
     }
 
     /// What the inspector shows of them.

@@ -146,3 +146,44 @@ proptest! {
         prop_assert_eq!(&**editor.scene(), &end);
     }
 }
+
+#[test]
+fn what_is_selected_is_followed_by_its_name() {
+    let mut editor = Editor::demo();
+    let names = |editor: &Editor| -> Vec<String> {
+        let items = editor.selected().items().iter();
+        let names = items.filter_map(|item| item.name(editor.scene()));
+        names.map(str::to_owned).collect()
+    };
+    let three = [Item::object(8), Item::object(4), Item::object(3)];
+    editor.apply(Action::SelectItems(Selected::all(three)));
+    editor.apply(Action::Edit(Edit::Delete(Item::object(0))));
+    assert_eq!(names(&editor), ["Plane", "Triangle 3", "Triangle 2"]);
+    editor.apply(Action::Edit(Edit::Delete(Item::object(3))));
+    assert_eq!(names(&editor), ["Plane", "Triangle 2"]);
+    assert_eq!(editor.selection, Selection::Item(Item::object(2)));
+    let renamed = Edit::Rename(Item::object(2), "Roof".to_owned());
+    editor.apply(Action::Edit(renamed));
+    assert_eq!(names(&editor), ["Plane", "Roof"]);
+    // What an edit makes is selected alone, also in the place of what was.
+    editor.apply(Action::Edit(Edit::Join(vec![2, 3])));
+    assert_eq!(names(&editor), ["Roof"]);
+    editor.apply(Action::Undo);
+    assert_eq!(names(&editor), ["Plane", "Roof"]);
+}
+
+#[test]
+fn a_gesture_that_is_cancelled_takes_back_its_own_and_nothing_else() {
+    let mut editor = Editor::demo();
+    let ambient = |value: f64| Action::Edit(Edit::Ambient(value));
+    editor.apply(ambient(0.1));
+    editor.apply(Action::BeginGesture);
+    editor.apply(Action::CancelGesture);
+    assert_eq!(editor.scene().ambient_intensity, 0.1);
+    editor.apply(ambient(0.2));
+    editor.apply(ambient(0.3));
+    editor.apply(Action::CancelGesture);
+    assert_eq!(editor.scene().ambient_intensity, 0.1);
+    editor.apply(Action::Undo);
+    assert_eq!(editor.scene(), &std::sync::Arc::new(Scene::demo()));
+}

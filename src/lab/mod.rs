@@ -15,9 +15,12 @@ mod table;
 
 mod growth;
 
+mod explain;
+
 pub mod stability;
 
 pub use candidates::{Candidate, candidates};
+pub use explain::{Lit, Share, Sight, explain};
 pub use growth::{Cost, Crowd, Growth};
 pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, LinearRgb, difference, trace_light};
 pub use pareto_front::{cheapest_within, front};

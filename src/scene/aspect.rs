@@ -143,7 +143,10 @@ fn hue(turns: f64) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::image::render;
+    use crate::plan::RenderRequest;
     use crate::scene::check;
+    use crate::trace::RenderControl;
 
     #[test]
     fn every_aspect_of_the_demo_is_a_valid_scene_of_its_own() {
@@ -153,6 +156,33 @@ mod tests {
             let shown = aspect.of(&demo);
             assert_ne!(shown, demo, "{name}");
             assert_eq!(check(&shown), Ok(()), "{name}");
+        }
+    }
+
+    /// The sum of two colours of 8 bits, each channel at most 255, but for rounding.
+    #[test]
+    fn the_terms_of_the_demo_add_up_to_its_picture_without_mirrors() {
+        let demo = Scene::demo();
+        let picture = |aspect: Aspect| {
+            let request = RenderRequest::sized(48, 48);
+            let shown = aspect.of(&demo);
+            let picture = render(&shown, &request, &RenderControl::default());
+            picture.expect("nobody stops it").0.pixels
+        };
+        let parts = [Aspect::Ambient, Aspect::Diffuse, Aspect::Specular].map(picture);
+        let whole = picture(Aspect::WithoutMirrors);
+        for (n, whole) in whole.iter().enumerate() {
+            for channel in 0..3 {
+                // The markers are seen in every aspect.
+                let parts = parts.each_ref().map(|part| u32::from(part[n][channel]));
+                let sum = parts.iter().sum::<u32>().min(255);
+                let whole = u32::from(whole[channel]);
+                let is_marker = parts.iter().all(|part| *part == whole);
+                assert!(
+                    is_marker || sum.abs_diff(whole) <= 2,
+                    "{n}: {parts:?} {whole}"
+                );
+            }
         }
     }
 }

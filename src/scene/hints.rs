@@ -1,18 +1,20 @@
 //! What is probably not meant in a scene, though it is valid.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
+use super::camera::{Camera, Projection};
 use super::shape::Shape;
 use super::whole::Scene;
 
-/// Most objects that are held against each other.
-const MOST: usize = 20_000;
+/// Most objects that are held against each other, and against the lights.
+const MOST: usize = 2_000;
 /// How near to a surface a light counts as on it, as a share of the distance that matters.
 const ON: f64 = 1e-9;
-/// Cosine between a view and a plane below which the plane is seen edge-on.
-const EDGE_ON: f64 = 1e-3;
+/// Height of the eye above a plane below which it is seen edge-on, as a share of the scene's extent; or, where
+/// rays run side by side, their cosine with its normal.
+const EDGE_ON: f64 = 1e-6;
 
 /// Something that is probably not meant.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +23,8 @@ pub struct Hint {
     pub words: String,
     /// What it is about.
     pub about: About,
+    /// Whether it is there twice: one of both can be hidden.
+    pub is_twice: bool,
 }
 
 /// What a hint is about, by its place in the scene's list.
@@ -39,36 +43,49 @@ pub enum About {
 /// Everything that is probably not meant.
 pub fn hints(scene: &Scene) -> Vec<Hint> {
     let mut hints = Vec::new();
-    let mut add = |words: String, about: About| hints.push(Hint { words, about });
+    let mut add = |words: String, about: About, is_twice: bool| {
+        hints.push(Hint {
+            words,
+            about,
+            is_twice,
+        });
+    };
+    let extent = scene
+        .objects_bounds()
+        .map_or(1.0, |(low, high)| (high - low).length());
     let visible = scene.objects.iter().enumerate();
     let visible = || visible.clone().filter(|(_, object)| object.visible);
     let eye = scene.camera.position;
     for (index, object) in visible() {
         let name = &object.name;
         if is_inside(&object.shape, eye) {
-            add(format!("The camera is inside {name}"), About::Camera);
+            let words = format!("The camera is inside {name}");
+            add(words, About::Camera, false);
         }
-        if is_edge_on(&object.shape, scene) {
+        if is_edge_on(&object.shape, &scene.camera, extent) {
             let words = format!("{name} is seen edge-on: the camera is in its plane");
-            add(words, About::Object(index));
+            add(words, About::Object(index), false);
         }
     }
-    for (index, light) in scene.lights.iter().enumerate() {
+    let is_small = scene.objects.len() <= MOST;
+    for (index, light) in scene.lights.iter().enumerate().filter(|_| is_small) {
         let lit = || visible().filter(|_| light.visible && light.intensity > 0.0);
         for (_, object) in lit() {
             let name = &object.name;
             if is_on(&object.shape, light.position) {
                 let words = format!("{} is on the surface of {name}", light.name);
-                add(words, About::Light(index));
+                add(words, About::Light(index), false);
             } else if is_inside(&object.shape, light.position) {
                 let words = format!("{} is inside {name}, which shuts it in", light.name);
-                add(words, About::Light(index));
+                add(words, About::Light(index), false);
             }
         }
     }
+    let worn = worn(scene);
     for (index, (name, _)) in scene.color_packs.iter().enumerate() {
-        if !is_worn(scene, name) {
-            add(format!("No object wears {name}"), About::Pack(index));
+        if !worn.contains(name) {
+            let words = format!("No object wears {name}");
+            add(words, About::Pack(index), false);
         }
     }
     if scene.objects.len() <= MOST {
@@ -77,18 +94,16 @@ pub fn hints(scene: &Scene) -> Vec<Hint> {
     hints
 }
 
-fn is_worn(scene: &Scene, pack: &str) -> bool {
-    let mut markers = scene
-        .lights
-        .iter()
-        .filter_map(|light| light.marker.as_ref());
-    let mut objects = scene.objects.iter();
-    markers.any(|marker| marker.color_pack == pack)
-        || objects.any(|object| object.color_pack == pack)
+/// The names of the packs that something wears.
+fn worn(scene: &Scene) -> HashSet<&String> {
+    let markers = scene.lights.iter();
+    let markers = markers.filter_map(|light| Some(&light.marker.as_ref()?.color_pack));
+    let objects = scene.objects.iter().map(|object| &object.color_pack);
+    objects.chain(markers).collect()
 }
 
 /// Two visible objects in one place: which of them is seen, rounding decides.
-fn add_coincident(scene: &Scene, add: &mut impl FnMut(String, About)) {
+fn add_coincident(scene: &Scene, add: &mut impl FnMut(String, About, bool)) {
     let mut known: HashMap<String, &str> = HashMap::new();
     for (index, object) in scene.objects.iter().enumerate() {
         if !object.visible || matches!(object.shape, Shape::Mesh(_)) {
@@ -103,13 +118,15 @@ fn add_coincident(scene: &Scene, add: &mut impl FnMut(String, About)) {
                 } else {
                     normal
                 };
+                // Zero is written in one way.
+                let normal = normal + DVec3::ZERO;
                 format!("{normal} {:.9e}", normal.dot(plane.point) + 0.0)
             }
             shape => format!("{shape:?}"),
         };
         if let Some(other) = known.insert(key, &object.name) {
             let words = format!("{} is in the same place as {other}", object.name);
-            add(words, About::Object(index));
+            add(words, About::Object(index), true);
         }
     }
 }
@@ -146,15 +163,15 @@ fn is_on(shape: &Shape, point: DVec3) -> bool {
     }
 }
 
-fn is_edge_on(shape: &Shape, scene: &Scene) -> bool {
+fn is_edge_on(shape: &Shape, camera: &Camera, extent: f64) -> bool {
     let Some((at, normal)) = shape.endless_plane() else {
         return false;
     };
-    let (arm, normal) = (scene.camera.position - at, normal.normalize_or_zero());
-    let extent = scene
-        .objects_bounds()
-        .map_or(1.0, |(low, high)| (high - low).length());
-    arm.dot(normal).abs() < EDGE_ON * extent
+    let normal = normal.normalize_or_zero();
+    match camera.projection {
+        Projection::Perspective => (camera.position - at).dot(normal).abs() < EDGE_ON * extent,
+        Projection::Orthographic => camera.look_at.normalize_or_zero().dot(normal).abs() < EDGE_ON,
+    }
 }
 
 #[cfg(test)]
@@ -195,6 +212,15 @@ mod tests {
                 "Plane 2 is in the same place as Plane",
             ]
         );
+        let mut twin = demo.clone();
+        let mut copy = twin.objects[8].clone();
+        "Plane 2".clone_into(&mut copy.name);
+        let Shape::Plane(plane) = &mut copy.shape else {
+            panic!("a plane");
+        };
+        plane.normal = -plane.normal;
+        twin.objects.push(copy);
+        assert_eq!(words(&twin), ["Plane 2 is in the same place as Plane"]);
         let mut edge = demo;
         edge.camera.position.y = 0.0;
         assert_eq!(

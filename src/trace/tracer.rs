@@ -302,6 +302,7 @@ mod tests {
     use std::sync::atomic::{AtomicBool, AtomicU64};
 
     use super::*;
+    use crate::scene::Accelerator;
     use crate::trace::Threads;
 
     impl Pixel for [u64; 3] {
@@ -332,6 +333,29 @@ mod tests {
             for other in &pictures[1..] {
                 assert!(*other == pictures[0], "{sampling:?}");
             }
+        }
+    }
+
+    #[test]
+    fn packets_in_squares_give_the_same_bits() {
+        let scene = Scene::demo();
+        for (sampling, tile) in [(Sampling::Centres, 16), (Sampling::Grid(2), 13)] {
+            let pictures = [false, true].map(|in_squares| {
+                let request = RenderRequest {
+                    sampling,
+                    accelerator: Accelerator::Bvh,
+                    ..RenderRequest::sized(83, 61)
+                };
+                let tracer = Tracer {
+                    tile,
+                    in_squares,
+                    ..Tracer::new(&scene, &request)
+                };
+                let mut pixels = vec![[0_u64; 3]; 83 * 61];
+                let rays = tracer.pass(&mut pixels, Pass::Whole, &RenderControl::default());
+                (pixels, rays)
+            });
+            assert!(pictures[0] == pictures[1], "{sampling:?}");
         }
     }
 

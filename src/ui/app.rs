@@ -21,6 +21,7 @@ use super::setup::Setup;
 use super::timeline::{Overlay, Thumbs, TimelinePanel};
 use super::toasts::Toasts;
 use super::tools::Tools;
+use super::why::Why;
 use super::{help, theme};
 use crate::editor::{Action, Editor, Mode, Time};
 use crate::image::Image;
@@ -54,6 +55,7 @@ pub struct App {
     /// Whether all panels are hidden.
     pub(super) is_alone: bool,
     pub(super) finder: Finder,
+    pub(super) why: Why,
     pub(super) examples: Examples,
     pub(super) check: SceneCheck,
     pub(super) keys_are_taken: bool,
@@ -109,6 +111,7 @@ impl App {
             shortcuts_open: false,
             is_alone: false,
             finder: Finder::default(),
+            why: Why::default(),
             examples: Examples::default(),
             check: SceneCheck::default(),
             keys_are_taken: false,
@@ -266,8 +269,8 @@ impl eframe::App for App {
         }
         self.autosave.tick(ctx, &mut self.editor);
         let is_busy = ctx.input(|input| input.pointer.any_down());
-        self.check
-            .update(&self.editor, is_busy || self.flying.is_flying());
+        let is_busy = is_busy || self.flying.is_gesture(ctx);
+        self.check.update(&self.editor, is_busy);
         self.theme = ctx.theme();
         self.show_title(ctx);
     }
@@ -294,10 +297,11 @@ impl eframe::App for App {
         self.exports
             .show(&ctx, &mut self.editor, &self.pictures, &mut out);
         self.finder.show(&ctx, &self.editor, &mut out);
+        self.why.show(&ctx);
         // Still pictures are looked at, not flown through: they would be gone.
         let flown = picture.as_ref().map(|(_, response)| response);
         let is_still = self.editor.mode == Mode::HighRes || self.lab.is_looking();
-        let flown = flown.filter(|_| !is_still);
+        let flown = flown.filter(|_| !is_still && !self.tools.is_dragging());
         // Space presses a button that has the focus, and does not lift the camera as well.
         let flies = keys_are_free && ui.memory(|memory| memory.focused().is_none());
         let motion = self.flying.step(ui, flown, flies, self.editor.scene());

@@ -4,11 +4,12 @@
 use std::path::PathBuf;
 
 use egui::{Event, Key, KeyboardShortcut, Modifiers, Ui};
+use glam::DVec3;
 
 use crate::editor::Editor;
 
 /// Something the user asks of the window as a whole.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// Start an empty document.
     New,
@@ -120,6 +121,10 @@ pub enum Command {
     Lab,
     /// Hide all panels, or show them again.
     PictureAlone,
+    /// Explain what a ray sees: from where, and in which direction.
+    Why(DVec3, DVec3),
+    /// Hide or show what is selected.
+    ToggleVisible,
     /// Look for a command or a thing by its name.
     Find,
     /// Show or hide the list of shortcuts.
@@ -187,6 +192,7 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     Cut [ctrl(Key::X)] "Cut what is selected",
     RequestPaste [ctrl(Key::V)] "Paste objects and lights, also text written by hand",
     Duplicate [ctrl(Key::D)] "Duplicate what is selected",
+    ToggleVisible [ctrl(Key::H)] "Hide or show what is selected",
     Delete [plain(Key::Delete)] "Delete what is selected",
     Rename [plain(Key::F2)] "Rename the selected item",
     MoveUp [alt(Key::ArrowUp)] "Move the selected item up",
@@ -237,7 +243,8 @@ pub fn pressed(ui: &Ui, is_flying: bool, is_heard: impl Fn(&Command) -> bool) ->
                 Event::Paste(text) => Some(Command::Paste(text.clone())),
                 _ => None,
             };
-            if let Some(command) = from_desktop.filter(|command| is_heard(command)) {
+            let from_desktop = from_desktop.filter(|command| is_heard(command) && !is_flying);
+            if let Some(command) = from_desktop {
                 // Selected words of a message can be copied too.
                 let is_copy = command == Command::Copy;
                 pressed.push(command);
@@ -317,12 +324,17 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
         | Command::Copy
         | Command::Cut
         | Command::SelectSamePack
-        | Command::Rename
-        | Command::MoveUp
-        | Command::MoveDown => {
+        | Command::ToggleVisible => {
             let has = matches!(editor.selection, Selection::Item(_));
             (!has).then_some(nothing)
         }
+        Command::Rename | Command::MoveUp | Command::MoveDown => match editor.selection {
+            Selection::Item(_) if editor.selected().items().len() > 1 => {
+                Some("several things are selected")
+            }
+            Selection::Item(_) => None,
+            _ => Some(nothing),
+        },
         Command::Play if editor.scene().animation.is_still() => Some("nothing moves yet"),
         Command::SelectKeys
         | Command::PreviousKey

@@ -9,13 +9,12 @@ use std::time::{Duration, Instant};
 use egui::{Context, Ui};
 
 use super::dialogs::{Ask, Dialogs};
-use super::interchange::{export_job, export_path, import_path};
+use super::interchange::{export_job, export_path, import_path, imported};
 use super::outside::{Theirs, Watch};
 use super::prompts::{Answer, PathPrompt, ask_about_changes, ask_to_leave, ask_to_quit};
 use super::reading::{Read, Reading};
-use crate::editor::{Action, Edit, Editor};
+use crate::editor::Editor;
 use crate::files::Stamp;
-use crate::mesh::Part;
 use crate::scene::{Document, EXAMPLES, SceneError};
 
 /// A dialog that comes back empty sooner than a hand can cancel it was never shown.
@@ -188,6 +187,10 @@ impl Files {
 
     /// Takes answers and files up as they come.
     pub fn poll(&mut self, ctx: &Context, editor: &mut Editor) -> Option<FileOutcome> {
+        // What is dragged is not to be pulled from under the hand.
+        if ctx.input(|input| input.pointer.any_down()) {
+            return None;
+        }
         if !self.reading.is_empty() {
             ctx.request_repaint_after(AT_ONCE);
             self.take_read(ctx, editor, Duration::ZERO);
@@ -440,10 +443,4 @@ fn suggestion(editor: &Editor, ask: &Ask) -> PathBuf {
         Ask::ExportJob => folder.join(format!("{stem} job.yaml")),
         Ask::SaveScene | Ask::SaveImage => folder.join(format!("{stem}.{}", ask.endings()[0])),
     }
-}
-
-fn imported(editor: &mut Editor, path: &Path, parts: Vec<Part>) {
-    let count: usize = parts.iter().map(|part| part.triangles.faces().len()).sum();
-    editor.apply(Action::Edit(Edit::Import(parts)));
-    editor.notify(format!("{count} triangles from {}", path.display()));
 }

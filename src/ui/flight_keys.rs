@@ -107,6 +107,7 @@ pub const MOUSE: &[(&str, &str)] = &[
     ("Shift, drag elsewhere", "Select all in a frame"),
     ("Middle button, drag", "Pan"),
     ("Right button, drag", "Look around"),
+    ("Right button", "A menu; why a colour is what it is"),
     ("Wheel", "Towards the pointer, and away"),
     ("Shift, held", "Fly four times as fast"),
     ("Timeline: Ctrl, wheel", "Show less or more of it"),

@@ -1,7 +1,7 @@
 //! From held keys and mouse moves to steps of a flight. Speeds are per second, whatever the frame
 //! rate.
 
-use egui::{Context, PointerButton, Response, Ui};
+use egui::{Context, Event, PointerButton, Response, Ui};
 
 use super::flight_keys::{FLIGHT, FlightKey};
 use crate::editor::Motion;
@@ -62,7 +62,9 @@ impl Flying {
         let held = if keys_are_free && picture.is_some() {
             self.held(ui)
         } else {
-            self.ctrl = Ctrl::Up;
+            // A key that was held for something else flies only when it is pressed anew.
+            let is_held = ui.input(|input| input.modifiers.ctrl);
+            self.ctrl = if is_held { Ctrl::Shortcut } else { Ctrl::Up };
             Motion::default()
         };
         self.keys_fly = held != Motion::default();
@@ -119,7 +121,7 @@ impl Flying {
     fn held(&mut self, ui: &Ui) -> Motion {
         let (ctrl, alt, now) =
             ui.input(|input| (input.modifiers.ctrl, input.modifiers.alt, input.time));
-        let any_key = ui.input(|input| !input.keys_down.is_empty());
+        let any_key = ui.input(is_held_for_more);
         self.ctrl = match self.ctrl {
             _ if !ctrl => Ctrl::Up,
             Ctrl::Up if self.keys_fly => Ctrl::Flying,
@@ -140,6 +142,17 @@ impl Flying {
         });
         held.fold(Motion::default(), |sum, flight| sum.plus(&flight.motion))
     }
+}
+
+/// Whether the control key is held with something else: a key, a button, the wheel, or what the desktop
+/// makes of it.
+fn is_held_for_more(input: &egui::InputState) -> bool {
+    let is_from_desktop =
+        |event: &Event| matches!(event, Event::Copy | Event::Cut | Event::Paste(_));
+    !input.keys_down.is_empty()
+        || input.pointer.any_down()
+        || input.zoom_delta() != 1.0
+        || input.events.iter().any(is_from_desktop)
 }
 
 /// Whether the key is held; the control key is not asked here, it has two meanings.

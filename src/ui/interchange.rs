@@ -7,6 +7,7 @@ use crate::animate::{from_table, from_text, to_table, to_text};
 use crate::editor::{Action, Edit, Editor};
 use crate::export::{Pattern, Sequence, job_template, write_text};
 use crate::image::Format;
+use crate::mesh::Part;
 use crate::scene::{Animation, read_text};
 
 /// The keys of a file take the place of the camera's.
@@ -77,4 +78,11 @@ fn write_job(editor: &Editor, path: &Path, scene: &Path) -> Result<(), Box<dyn E
 fn is_table(path: &Path) -> bool {
     path.extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
+}
+
+/// The parts of a mesh file become objects.
+pub fn imported(editor: &mut Editor, path: &Path, parts: Vec<Part>) {
+    let count: usize = parts.iter().map(|part| part.triangles.faces().len()).sum();
+    editor.apply(Action::Edit(Edit::Import(parts)));
+    editor.notify(format!("{count} triangles from {}", path.display()));
 }

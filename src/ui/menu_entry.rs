@@ -6,9 +6,10 @@ use super::commands::{Command, key_of};
 use super::requests::UiRequests;
 
 /// What can be done to the selected item.
-pub const ITEM_COMMANDS: [(&str, Command); 8] = [
+pub const ITEM_COMMANDS: [(&str, Command); 9] = [
     ("Cut", Command::Cut),
     ("Copy", Command::Copy),
+    ("Hide or show", Command::ToggleVisible),
     ("Rename", Command::Rename),
     ("Select all with this pack", Command::SelectSamePack),
     ("Duplicate", Command::Duplicate),

@@ -55,6 +55,8 @@ mod outliner;
 
 mod finder;
 
+mod why;
+
 mod scene_check;
 
 mod status;

@@ -102,6 +102,7 @@ impl App {
             ui.pixels_per_point(),
         );
         if let Some(response) = self.lab.show_picture(ui, place) {
+            self.tools.rest();
             if badge(ui, place, &self.lab.name()) {
                 self.lab.leave();
             }
@@ -129,7 +130,9 @@ impl App {
         if is_still && badge(ui, place, "High-res picture") {
             out.commands.push(Command::Live);
         }
-        if !is_still && self.editor.mode != Mode::HighRes {
+        if is_still || self.editor.mode == Mode::HighRes {
+            self.tools.rest();
+        } else {
             let wheel = self.flying.wheel(ui, &response);
             let is_busy = ui.input(|input| input.pointer.any_down())
                 || self.flying.is_gesture(ui.ctx())

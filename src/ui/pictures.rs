@@ -14,7 +14,7 @@ use crate::export::{ExportError, Sequence};
 use crate::image::Image;
 use crate::lab::Study;
 use crate::plan::RenderRequest;
-use crate::scene::{Aspect, Sampling, Take};
+use crate::scene::{Aspect, Sampling, Scene, Take};
 use crate::worker::{
     Activity, Answer, BUDGET, Event, ExportState, Frame, LiveJob, Pace, QueryJob, Question,
     RenderThreadError, StillJob, ThumbnailJob, Worker,
@@ -60,6 +60,8 @@ pub struct Pictures {
     pub screen: Display,
     rhythm: Rhythm,
     submitted: Option<(u64, (u32, u32), Pace, Aspect)>,
+    /// The scene that was shown in an aspect last, and what it became.
+    aspect: Option<(Aspect, Arc<Scene>, Arc<Scene>)>,
     still_requested: Option<(u64, (u32, u32))>,
     /// The take whose survey was asked for.
     surveyed: Option<Arc<Take>>,
@@ -78,6 +80,7 @@ impl Pictures {
             screen: Display::default(),
             rhythm: Rhythm::default(),
             submitted: None,
+            aspect: None,
             still_requested: None,
             surveyed: None,
         })
@@ -249,6 +252,34 @@ impl Pictures {
         self.worker.cancel_still();
     }
 
+    /// The scene whose picture shows an aspect of another one's. Where only the camera has moved, its lists
+    /// are the same as before, and nothing is planned anew.
+    fn in_aspect(&mut self, aspect: Aspect, scene: &Arc<Scene>) -> Arc<Scene> {
+        if aspect == Aspect::All {
+            return Arc::clone(scene);
+        }
+        let known = self.aspect.take().filter(|(of, from, _)| {
+            *of == aspect
+                && from.objects.is_same(&scene.objects)
+                && from.lights.is_same(&scene.lights)
+                && Arc::ptr_eq(&from.color_packs, &scene.color_packs)
+                && from.ambient_intensity == scene.ambient_intensity
+        });
+        let shown = match known {
+            Some((.., before)) => Arc::new(Scene {
+                camera: scene.camera.clone(),
+                background: scene.background,
+                light_visualization: scene.light_visualization,
+                render: scene.render.clone(),
+                animation: Arc::clone(&scene.animation),
+                ..Scene::clone(&before)
+            }),
+            None => Arc::new(aspect.of(scene)),
+        };
+        self.aspect = Some((aspect, Arc::clone(scene), Arc::clone(&shown)));
+        shown
+    }
+
     /// Asks for what the picture area, `pixels` large, needs and does not have; the live view shows
     /// `aspect` of the light.
     pub fn submit(&mut self, editor: &Editor, pixels: (u32, u32), aspect: Aspect) {
@@ -275,12 +306,10 @@ impl Pictures {
             return;
         }
         self.submitted = Some((revision, size, pace, aspect));
+        let scene = self.in_aspect(aspect, editor.shown());
         self.worker.submit(LiveJob {
             revision,
-            scene: match aspect {
-                Aspect::All => editor.shown().clone(),
-                _ => Arc::new(aspect.of(editor.shown())),
-            },
+            scene,
             request: RenderRequest {
                 sampling: match pace {
                     Pace::Whole => Sampling::Centres,

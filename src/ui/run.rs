@@ -14,7 +14,7 @@ use super::tools::{axis_camera, framing_camera};
 use crate::editor::{
     Action, Edit, Editor, Item, Kind, Mode, Selected, Selection, Time, excerpt, read,
 };
-use crate::scene::{Aspect, Document, Projection, Scene};
+use crate::scene::{Aspect, Document, Light, Object, Projection, Scene};
 
 /// Seconds within which Escape twice asks to quit.
 const TWICE: f64 = 3.0;
@@ -50,8 +50,7 @@ impl App {
                 return self.run(ctx, command);
             }
             Command::Copy | Command::Cut if is_enabled(&command, &self.editor) => {
-                self.copy(ctx);
-                if command == Command::Cut {
+                if self.copy(ctx) && command == Command::Cut {
                     return self.run(ctx, Command::Delete);
                 }
                 None
@@ -75,12 +74,16 @@ impl App {
                 self.lab.is_open = false;
                 None
             }
-            Command::FrameAll if self.timeline.is_hovered => {
+            Command::FrameAll if self.timeline.is_hovered(ctx.cumulative_frame_nr()) => {
                 self.timeline.fit();
                 None
             }
             Command::PictureAlone => {
                 self.is_alone = !self.is_alone;
+                None
+            }
+            Command::Why(origin, direction) => {
+                self.why.ask(self.editor.shown(), (origin, direction));
                 None
             }
             Command::Find => {
@@ -102,7 +105,8 @@ impl App {
         self.act_on(ctx, outcome);
     }
 
-    fn copy(&mut self, ctx: &Context) {
+    /// Puts what is selected on the clipboard. Whether it is there.
+    fn copy(&mut self, ctx: &Context) -> bool {
         let scene = excerpt(self.editor.scene(), self.editor.selected());
         let document = Document {
             header: String::new(),
@@ -113,8 +117,12 @@ impl App {
                 ctx.copy_text(text.clone());
                 // Text says where the triangles of a mesh are, and not what they are.
                 self.copied = Some((text, document.scene));
+                true
             }
-            Err(error) => self.editor.report_error(error.to_string()),
+            Err(error) => {
+                self.editor.report_error(error.to_string());
+                false
+            }
         }
     }
 
@@ -136,18 +144,7 @@ impl App {
                 return self.editor.report_error(problem);
             }
         };
-        let before = self.editor.revision();
-        let (lights, objects) = (pasted.lights.len(), pasted.objects.len());
-        self.editor
-            .apply(Action::Edit(Edit::Paste(Box::new(pasted))));
-        if self.editor.revision() != before {
-            let scene = self.editor.scene();
-            let (all_lights, all_objects) = (scene.lights.len(), scene.objects.len());
-            let new = (all_lights - lights..all_lights).map(Item::light);
-            let new = new.chain((all_objects - objects..all_objects).map(Item::object));
-            let new = Selected::all(new);
-            self.editor.apply(Action::SelectItems(new));
-        }
+        add(&mut self.editor, pasted, "Paste");
     }
 
     /// The commands that are actions of the editor.
@@ -187,6 +184,7 @@ impl App {
                     .without_keys(&editor.timeline().selected);
                 Action::Edit(Edit::animation(kept, "Delete keys"))
             }
+            Command::ToggleVisible => return toggle_visible(editor),
             Command::SelectSamePack => {
                 let Selection::Item(item) = editor.selection else {
                     return;
@@ -227,6 +225,8 @@ impl App {
             self.is_alone = false;
         } else if self.shortcuts_open {
             self.shortcuts_open = false;
+        } else if self.why.is_open() {
+            self.why.close();
         } else if self.exports.is_open {
             self.exports.is_open = false;
         } else if self.layout.aspect != Aspect::All {
@@ -254,6 +254,37 @@ impl App {
     }
 }
 
+/// Hides everything that is selected, or shows it if all of it is hidden.
+fn toggle_visible(editor: &mut Editor) {
+    let scene = editor.scene();
+    let items = editor.selected().items();
+    let is_visible = |item: &Item| match item.kind {
+        Kind::Object => scene.objects.get(item.index).map(|object| object.visible),
+        Kind::Light => scene.lights.get(item.index).map(|light| light.visible),
+        Kind::Pack => None,
+    };
+    let visible = !items.iter().filter_map(is_visible).any(|visible| visible);
+    let field = if visible { "show" } else { "hide" };
+    let edits = items.iter().filter_map(|item| match item.kind {
+        Kind::Object => {
+            let object = scene.objects.get(item.index)?.clone();
+            Some(Edit::Object(
+                item.index,
+                Object { visible, ..object },
+                field,
+            ))
+        }
+        Kind::Light => {
+            let light = scene.lights.get(item.index)?.clone();
+            Some(Edit::Light(item.index, Light { visible, ..light }, field))
+        }
+        Kind::Pack => None,
+    });
+    let edits: Vec<Edit> = edits.collect();
+    let label = format!("{field} {} items", edits.len());
+    editor.apply(Action::Edit(Edit::Each(edits, label)));
+}
+
 /// Every object that wears the pack of an object, or the pack that is the item.
 fn with_same_pack(scene: &Scene, item: Item) -> Selected {
     let pack = match item.kind {
@@ -265,15 +296,34 @@ fn with_same_pack(scene: &Scene, item: Item) -> Selected {
             .color_packs
             .get_index(item.index)
             .map(|(name, _)| name),
-        Kind::Light => None,
+        Kind::Light => {
+            let light = scene.lights.get(item.index);
+            let marker = light.and_then(|light| light.marker.as_ref());
+            marker.map(|marker| &marker.color_pack)
+        }
     };
     let objects = scene.objects.iter().enumerate();
     let wearing = objects.filter(|(_, object)| Some(&object.color_pack) == pack);
     let others = wearing
         .map(|(index, _)| Item::object(index))
         .filter(|other| *other != item);
-    let own = (item.kind == Kind::Object).then_some(item);
+    // What was selected stays so, and is what the inspector shows.
+    let own = Some(item);
     Selected::all(others.chain(own))
+}
+
+/// Adds everything of a scene, and selects it.
+fn add(editor: &mut Editor, part: Scene, word: &'static str) {
+    let before = editor.revision();
+    let (lights, objects) = (part.lights.len(), part.objects.len());
+    editor.apply(Action::Edit(Edit::Paste(Box::new(part), word)));
+    if editor.revision() != before {
+        let scene = editor.scene();
+        let (all_lights, all_objects) = (scene.lights.len(), scene.objects.len());
+        let new = (all_lights - lights..all_lights).map(Item::light);
+        let new = new.chain((all_objects - objects..all_objects).map(Item::object));
+        editor.apply(Action::SelectItems(Selected::all(new)));
+    }
 }
 
 /// Does to everything that is selected what can be done to more than one thing.
@@ -293,25 +343,8 @@ fn on_many(editor: &mut Editor, command: &Command) {
             }
         }
         Command::Duplicate => {
-            // Each copy stands behind its original, and moves those after it.
-            let moved = |item: &Item, by: usize| Item {
-                kind: item.kind,
-                index: item.index + by,
-            };
-            let earlier = |item: &Item| {
-                let is_earlier =
-                    |other: &&Item| other.kind == item.kind && other.index < item.index;
-                items.iter().filter(is_earlier).count()
-            };
-            let edits = items
-                .iter()
-                .map(|item| Edit::Duplicate(moved(item, earlier(item))));
-            let edit = Edit::Each(edits.collect(), format!("Duplicate {count} items"));
-            editor.apply(Action::Edit(edit));
-            if editor.revision() != before {
-                let copies = items.iter().map(|item| moved(item, earlier(item) + 1));
-                editor.apply(Action::SelectItems(Selected::all(copies)));
-            }
+            let part = excerpt(editor.scene(), editor.selected());
+            add(editor, part, "Duplicate");
         }
         _ => {}
     }

@@ -1,15 +1,17 @@
 //! What is probably not meant in the scene, with a way to it and, where there is one, a way out.
 
-use egui::{Popup, RichText, Ui};
+use egui::{Popup, RichText, ScrollArea, Ui};
 
 use super::icons;
 use super::requests::UiRequests;
-use super::theme::{GRID, palette};
+use super::theme::{GRID, ROW, palette};
 use crate::editor::{Edit, Editor, Item, Selection};
 use crate::scene::{About, Hint, Object, Scene, hints};
 
 /// Width of the list in points.
 const WIDTH: f32 = 420.0;
+/// Most rows that are seen at once.
+const MOST_ROWS: f32 = 12.0;
 
 /// What was found in a state of the scene.
 #[derive(Default)]
@@ -44,20 +46,23 @@ impl SceneCheck {
             .accessible_name(words)
             .on_hover_text("What is probably not meant in the scene");
         Popup::menu(&button).width(WIDTH).show(|ui| {
-            for hint in &self.hints {
-                ui.horizontal(|ui| {
-                    ui.label(&hint.words);
-                    ui.add_space(GRID);
-                    if ui.button("Select").clicked() {
-                        out.select(selection(hint.about));
-                    }
-                    if let Some((word, edit)) = way_out(scene, hint)
-                        && ui.button(word).clicked()
-                    {
-                        out.edit(edit);
-                    }
-                });
-            }
+            let area = ScrollArea::vertical().max_height(MOST_ROWS * ROW);
+            area.show_rows(ui, ROW, count, |ui, rows| {
+                for hint in &self.hints[rows] {
+                    ui.horizontal(|ui| {
+                        ui.label(&hint.words);
+                        ui.add_space(GRID);
+                        if ui.button("Select").clicked() {
+                            out.select(selection(hint.about));
+                        }
+                        if let Some((word, edit)) = way_out(scene, hint)
+                            && ui.button(word).clicked()
+                        {
+                            out.edit(edit);
+                        }
+                    });
+                }
+            });
         });
     }
 }
@@ -75,7 +80,7 @@ fn selection(about: About) -> Selection {
 fn way_out(scene: &Scene, hint: &Hint) -> Option<(&'static str, Edit)> {
     match hint.about {
         About::Pack(index) => Some(("Delete", Edit::Delete(Item::pack(index)))),
-        About::Object(index) if hint.words.contains("in the same place") => {
+        About::Object(index) if hint.is_twice => {
             let object = Object {
                 visible: false,
                 ..scene.objects.get(index)?.clone()

@@ -24,19 +24,27 @@ const VIDEOS: [&str; 6] = ["none", "mp4", "mov", "mkv", "gif", "apng"];
 /// Bytes of a PNG for each of a PPM, about.
 const PNG_SHARE: f64 = 0.35;
 
+/// What a scene asks for itself.
+#[derive(Clone, Debug, PartialEq)]
+struct Own {
+    frames: String,
+    size: (u32, u32),
+    fps: f64,
+}
+
 /// What is asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Where to.
     pub folder: String,
     frames: String,
-    /// All frames that the scene had.
-    all_frames: String,
     name: String,
     format: Format,
     width: u32,
     height: u32,
     fps: f64,
+    /// What the scene asked for when the settings were made.
+    own: Own,
     antialias: Sampling,
     video: &'static str,
 }
@@ -54,7 +62,11 @@ impl Settings {
         let frames = Frames::up_to(scene.animation.frame_count()).to_string();
         Self {
             folder: folder.join(format!("{stem} frames")).display().to_string(),
-            all_frames: frames.clone(),
+            own: Own {
+                frames: frames.clone(),
+                size: (scene.render.width, scene.render.height),
+                fps: scene.animation.frames_per_second,
+            },
             frames,
             name: Pattern::default().text(),
             format: Format::Ppm,
@@ -66,18 +78,20 @@ impl Settings {
         }
     }
 
-    /// The same for a scene that asks for `fresh` now: the frames are those of the scene, where they were.
+    /// The same for a scene that asks for `fresh` now: what was the scene's own is so again.
     pub fn for_scene(&self, fresh: Self) -> Self {
-        let were_all = self.all_frames == self.frames;
-        Self {
-            frames: if were_all {
-                fresh.frames
-            } else {
-                self.frames.clone()
-            },
-            all_frames: fresh.all_frames,
-            ..self.clone()
+        let mut settings = self.clone();
+        if self.frames == self.own.frames {
+            settings.frames.clone_from(&fresh.frames);
         }
+        if (self.width, self.height) == self.own.size {
+            (settings.width, settings.height) = fresh.own.size;
+        }
+        if self.fps == self.own.fps {
+            settings.fps = fresh.fps;
+        }
+        settings.own = fresh.own;
+        settings
     }
 
     /// What an export of a document is called.

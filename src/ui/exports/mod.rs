@@ -2,6 +2,7 @@
 
 mod fields;
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::Duration;
@@ -26,9 +27,10 @@ use crate::worker::{ExportState, run_in_background};
 pub struct Exports {
     /// Whether the window is shown.
     pub is_open: bool,
-    settings: Option<Settings>,
-    /// The settings that were asked for last, for each document by its title.
-    kept: Vec<(String, Settings)>,
+    /// What is asked for, and of which document, see [`Editor::documents`].
+    settings: Option<(u64, Settings)>,
+    /// What was asked for last, for each document.
+    kept: HashMap<u64, Settings>,
     /// What each export is called.
     names: Vec<(u64, String)>,
     /// What was found in the folder, for these settings, this state of the scene, and so many exports
@@ -54,7 +56,7 @@ struct Following {
 impl Exports {
     /// The folder that was chosen.
     pub fn choose_folder(&mut self, folder: &Path) {
-        if let Some(settings) = &mut self.settings {
+        if let Some((_, settings)) = &mut self.settings {
             settings.folder = folder.display().to_string();
         }
     }
@@ -152,25 +154,24 @@ impl Exports {
             });
         self.is_open = is_open && self.is_open;
         if !self.is_open {
-            self.keep(editor);
+            self.keep();
         }
     }
 
     /// Puts the settings away, for the next time that this document is exported.
-    fn keep(&mut self, editor: &Editor) {
-        if let Some(settings) = self.settings.take() {
-            let title = editor.title();
-            self.kept.retain(|(of, _)| *of != title);
-            self.kept.push((title, settings));
+    fn keep(&mut self) {
+        if let Some((document, settings)) = self.settings.take() {
+            self.kept.insert(document, settings);
         }
     }
 
     /// The settings that were put away, for the scene as it is now.
     fn settings(&self, editor: &Editor) -> Settings {
-        let title = editor.title();
-        let kept = self.kept.iter().find(|(of, _)| *of == title);
         let fresh = Settings::of(editor);
-        kept.map_or(fresh.clone(), |(_, kept)| kept.for_scene(fresh))
+        match self.kept.get(&editor.documents()) {
+            Some(kept) => kept.for_scene(fresh),
+            None => fresh,
+        }
     }
 
     fn show_settings(
@@ -180,8 +181,16 @@ impl Exports {
         pictures: &Pictures,
         out: &mut UiRequests,
     ) {
-        let kept = self.settings.take();
-        let mut settings = kept.unwrap_or_else(|| self.settings(editor));
+        let document = editor.documents();
+        if self
+            .settings
+            .as_ref()
+            .is_some_and(|(of, _)| *of != document)
+        {
+            self.keep();
+        }
+        let shown = self.settings.take().map(|(_, settings)| settings);
+        let mut settings = shown.unwrap_or_else(|| self.settings(editor));
         presets(ui, &mut settings, editor.scene());
         Grid::new("export settings")
             .num_columns(2)
@@ -223,7 +232,7 @@ impl Exports {
                 Err(error) => editor.report_error(error.to_string()),
             }
         }
-        self.settings = Some(settings);
+        self.settings = Some((document, settings));
     }
 
     /// Looks on a thread of its own what is in the folder already.

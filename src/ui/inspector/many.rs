@@ -11,6 +11,9 @@ use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::GRID;
 
+/// Most things that are compared, in every frame of the window.
+const MOST: usize = 500;
+
 /// The properties of what was selected last; a change is made to all that have the property.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let (scene, selected) = (editor.shown(), editor.selected().items());
@@ -227,11 +230,12 @@ fn differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'static str
         .iter()
         .filter(|item| item.kind == Kind::Object)
         .filter_map(of)
+        .take(MOST)
         .collect();
+    let theirs: Vec<_> = others.iter().map(|other| values(&other.shape)).collect();
     let mut names = Vec::new();
     for (name, value) in values(&object.shape) {
-        let is_alike = |other: &&Object| values(&other.shape).contains(&(name, value));
-        if !others.iter().all(is_alike) {
+        if !theirs.iter().all(|values| values.contains(&(name, value))) {
             names.push(name);
         }
     }

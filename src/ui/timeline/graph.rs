@@ -3,7 +3,7 @@
 use egui::{Ui, Vec2b, vec2};
 use egui_plot::{HoverPosition, Line, MarkerShape, Plot, PlotPoint, PlotPoints, Points};
 
-use super::tracks_area::Scale;
+use super::scale::Scale;
 use crate::animate::{CameraChange, CameraPath, motion_between};
 use crate::editor::Editor;
 use crate::scene::{Animation, Camera, Interpolation, Key};

@@ -1,5 +1,7 @@
 //! The timeline: playing, recording, keys on a line of time, and what they do to speed.
 
+mod scale;
+
 mod overlay;
 
 mod tracks_area;
@@ -14,8 +16,9 @@ use egui::{Rect, ScrollArea, Ui};
 
 use self::graph::Graph;
 pub use self::overlay::Overlay;
+use self::scale::Scale;
 pub use self::thumbs::Thumbs;
-use self::tracks_area::{Drag, Scale};
+use self::tracks_area::Drag;
 pub use self::transport::actions;
 use super::commands::Command;
 use super::requests::UiRequests;
@@ -38,8 +41,12 @@ pub struct TimelinePanel {
     span: (f64, f64),
     /// The part of it that was chosen, if not all is shown.
     chosen: Option<(f64, f64)>,
-    /// Whether the pointer is over it.
-    pub is_hovered: bool,
+    /// The document that the part is of.
+    document: u64,
+    /// The frame of the window in which the pointer was over it.
+    hovered_in: u64,
+    /// The frame of the window in which it was shown last.
+    frame: u64,
     drag: Option<Drag>,
     graph: Graph,
 }
@@ -51,7 +58,9 @@ impl Default for TimelinePanel {
             shows_graph: true,
             span: (0.0, LEAST),
             chosen: None,
-            is_hovered: false,
+            document: 0,
+            hovered_in: 0,
+            frame: 0,
             drag: None,
             graph: Graph::default(),
         }
@@ -95,6 +104,11 @@ impl TimelinePanel {
             return;
         }
         let end = shown_end(animation);
+        self.chosen = self
+            .chosen
+            .filter(|(_, last)| self.document == editor.documents() && *last <= end);
+        self.document = editor.documents();
+        self.frame = ui.cumulative_frame_nr();
         if self.chosen.is_some() || !ui.input(|input| input.pointer.any_down()) {
             self.span = self.chosen.unwrap_or((0.0, end));
         }
@@ -127,12 +141,17 @@ impl TimelinePanel {
         self.chosen = None;
     }
 
+    /// Whether the pointer is over the line, in this frame of the window.
+    pub fn is_hovered(&self, frame: u64) -> bool {
+        self.hovered_in == frame && self.is_open
+    }
+
     /// Ctrl and the wheel show less or more of the line, the middle button moves it.
     fn zoom(&mut self, ui: &Ui, (scale, area): (&Scale, Rect), end: f64) {
         let at = ui.input(|input| input.pointer.hover_pos());
         let at = at.filter(|at| area.contains(*at) && ui.ui_contains_pointer());
-        self.is_hovered = at.is_some();
         let Some(at) = at else { return };
+        self.hovered_in = self.frame;
         let (factor, moved, is_middle) = ui.input(|input| {
             let pointer = &input.pointer;
             (input.zoom_delta(), pointer.delta().x, pointer.middle_down())

@@ -2,7 +2,7 @@
 
 use egui::{Context, Pos2, Rect, Sense, TextureHandle, TextureOptions, Ui, pos2, vec2};
 
-use super::tracks_area::Scale;
+use super::scale::Scale;
 use crate::animate::shot;
 use crate::editor::Editor;
 use crate::image::Image;

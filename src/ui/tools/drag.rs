@@ -29,6 +29,8 @@ pub enum Drag {
     Frame(Pos2, Selected),
     /// What is selected.
     Grip(Box<Grip>),
+    /// What is here, once it is known, while shift was held.
+    Undecided(Pos2, bool),
 }
 
 /// The picture, and what it is seen through.
@@ -88,7 +90,16 @@ impl View<'_> {
             }
             Thing::Light(_) => false,
         };
-        (!is_endless).then_some(seen)
+        // What the eye is in surrounds it on all sides, as the sky does.
+        let eye = self.editor.shown().camera.position;
+        let surrounds = match seen {
+            Thing::Object(index) => match &self.editor.shown().objects.get(index)?.shape {
+                Shape::Sphere(ball) => ball.center.distance(eye) < ball.radius,
+                _ => false,
+            },
+            Thing::Light(_) => false,
+        };
+        (!is_endless && !surrounds).then_some(seen)
     }
 }
 
@@ -106,8 +117,11 @@ impl Drag {
             return Grip::new(&view.lens, before, handle, at)
                 .map(|grip| Self::Grip(Box::new(grip)));
         }
-        if editor.looks_through() {
+        if editor.looks_through() || editor.timeline().is_playing {
             return Some(Self::Orbit(view.pivot(sight, at)));
+        }
+        if sight.map(editor).is_none() {
+            return Some(Self::Undecided(at, is_shifted));
         }
         if let Some(body) = view.body_at(sight, at) {
             let item = item_of(body);
@@ -152,6 +166,15 @@ impl Drag {
             return false;
         }
         let Some(at) = pointer else { return false };
+        if let Self::Undecided(from, is_shifted) = *self {
+            if sight.map(view.editor).is_some() {
+                match Self::start(view, sight, (from, None, is_shifted), out) {
+                    Some(drag) => *self = drag,
+                    None => return false,
+                }
+            }
+            return response.dragged();
+        }
         let moved = response.drag_motion();
         match self {
             Self::Orbit(about) if moved != egui::Vec2::ZERO => {
@@ -161,7 +184,7 @@ impl Drag {
                 let camera = panned(&view.editor.shown().camera, &view.lens, *point, moved);
                 out.edit(Edit::Camera(camera, "move"));
             }
-            Self::Orbit(_) | Self::Pan(_) => {}
+            Self::Orbit(_) | Self::Pan(_) | Self::Undecided(..) => {}
             Self::Frame(from, before) => {
                 let part = Rect::from_two_pos(*from, at);
                 let found = sight.within(view.editor, view.place.rect, part);
@@ -174,7 +197,7 @@ impl Drag {
             }
             Self::Grip(grip) => {
                 ui.set_cursor_icon(CursorIcon::Grabbing);
-                if type_into(ui, &mut grip.typed) {
+                if grip.takes_numbers() && type_into(ui, &mut grip.typed) {
                     return false;
                 }
                 let modifiers = ui.input(|input| input.modifiers);

@@ -71,6 +71,14 @@ impl Grip {
         })
     }
 
+    /// Whether a number can be typed in place of a pull.
+    pub fn takes_numbers(&self) -> bool {
+        matches!(
+            self.handle,
+            Handle::Along(_) | Handle::Radius | Handle::Turn(_)
+        )
+    }
+
     /// What is held.
     pub fn handle(&self) -> Handle {
         self.handle

@@ -82,7 +82,10 @@ impl Lens {
                 let along = arm.dot(direction);
                 let off = (arm - direction * along).length_squared();
                 let half = (ball.radius * ball.radius - off).max(0.0).sqrt();
-                Some(origin + direction * (along - half))
+                // From inside, the far side is seen.
+                let near = along - half;
+                let t = if near > 0.0 { near } else { along + half };
+                Some(origin + direction * t)
             }
             Shape::Plane(plane) => self.on_plane(at, plane.point, plane.normal),
             Shape::Disc(disc) => self.on_plane(at, disc.center, disc.normal),

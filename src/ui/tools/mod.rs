@@ -26,6 +26,8 @@ use self::gizmo::{Handle, handle_at, label};
 use self::navigate::{along, dollied, framed, surroundings};
 use self::sight::{Sight, item_of, pixel, question};
 use self::subject::Subject;
+use super::commands::{Command, is_enabled};
+use super::menu_entry::{ITEM_COMMANDS, entry};
 use super::requests::UiRequests;
 use super::viewport::Place;
 use crate::editor::{Action, Edit, Editor, Selected};
@@ -34,6 +36,8 @@ use crate::scene::Camera;
 
 /// Seconds that the pointer rests before it is told what it is over.
 const PATIENCE: f32 = 0.3;
+/// Least size of what is framed, as a share of everything.
+const LEAST_FRAMED: f64 = 0.02;
 /// How far apart two clicks on one place may be, in points.
 const SAME_PLACE: f32 = 4.0;
 
@@ -44,10 +48,14 @@ pub struct Tools {
     drag: Option<Drag>,
     /// Where the wheel turns, and the point of the scene that is there.
     wheel: Option<(Pos2, DVec3)>,
-    /// A click that waits to know what is there.
-    click: Option<(Pos2, Modifiers)>,
-    /// Where what is behind something was asked for, and what is before it.
-    behind: Option<(Pos2, Vec<Thing>)>,
+    /// A click that waits to know what is there, and the picture of which revision was clicked.
+    click: Option<(Pos2, Modifiers, u64)>,
+    /// Where what is behind something was asked for, in the picture of which revision, and what is before it.
+    behind: Option<(Pos2, u64, Vec<Thing>)>,
+    /// The document that all this is about.
+    document: u64,
+    /// Where the menu was opened.
+    menu_at: Option<Pos2>,
     /// Where the picture was.
     view: Option<Rect>,
 }
@@ -58,6 +66,11 @@ impl Tools {
         self.drag.is_some()
     }
 
+    /// Lets go of everything: the picture is another one, or none that can be taken hold of.
+    pub fn rest(&mut self) {
+        (self.drag, self.click, self.behind, self.wheel) = (None, None, None, None);
+    }
+
     /// Takes up what is seen in the picture of a revision, as if nothing of `without` were there. What is to
     /// be selected, if that was asked for.
     pub fn take(&mut self, revision: u64, map: ObjectMap, without: &[Thing]) -> Option<Selected> {
@@ -65,9 +78,9 @@ impl Tools {
             self.sight.take(revision, map);
             return None;
         }
-        let (at, before) = self.behind.as_mut()?;
+        let (at, of, before) = self.behind.as_mut()?;
         let [column, row] = pixel(&map, self.view?, *at)?;
-        if before != without {
+        if before != without || *of != revision {
             return None;
         }
         // Behind the last is the first again.
@@ -91,6 +104,10 @@ impl Tools {
         let Some(lens) = Lens::new(&editor.shown().camera, place.rect) else {
             return;
         };
+        if self.document != editor.documents() {
+            self.rest();
+            self.document = editor.documents();
+        }
         self.view = Some(place.rect);
         let view = View {
             editor,
@@ -115,16 +132,57 @@ impl Tools {
         if has_gizmo {
             gizmo::show(&view.painter, &view.lens, editor, meant);
         }
-        self.turn_wheel(&view, response, wheel, out);
-        if !is_busy && self.drag.is_none() {
-            self.wheel = None;
+        if self.drag.is_none() {
+            self.turn_wheel(&view, response, wheel, out);
+        }
+        self.show_menu(ui, &view, response, out);
+        let waits = matches!(self.drag, Some(Drag::Undecided(..)));
+        if waits || (!is_busy && self.drag.is_none()) {
             out.questions.extend(self.sight.wanted(editor, place));
         }
+        if !is_busy && self.drag.is_none() {
+            self.wheel = None;
+        }
         if response.clicked() {
-            let at = response.interact_pointer_pos();
-            self.click = at.map(|at| (at, ui.input(|input| input.modifiers)));
+            let (at, revision) = (response.interact_pointer_pos(), editor.shown_revision());
+            self.click = at.map(|at| (at, ui.input(|input| input.modifiers), revision));
         }
         self.select(&view, out);
+    }
+
+    /// The menu of the right button: what is there is selected, and what can be done to it is listed.
+    fn show_menu(&mut self, ui: &Ui, view: &View, response: &Response, out: &mut UiRequests) {
+        if response.secondary_clicked() {
+            self.menu_at = ui.input(|input| input.pointer.interact_pos());
+            let seen = self.menu_at;
+            let seen = seen.and_then(|at| self.sight.at(view.editor, view.place.rect, at));
+            if let Some(item) = seen.map(item_of)
+                && !view.editor.selected().has(item)
+            {
+                out.actions.push(Action::SelectItems(Selected::all([item])));
+            }
+        }
+        response.context_menu(|ui| {
+            if let Some(at) = self.menu_at
+                && ui.button("Why this colour").clicked()
+            {
+                let (origin, direction) = view.lens.ray(at);
+                out.commands.push(Command::Why(origin, direction));
+            }
+            ui.separator();
+            for (text, command) in ITEM_COMMANDS {
+                let can = is_enabled(&command, view.editor);
+                entry(ui, text, command, can, out);
+            }
+            ui.separator();
+            entry(ui, "Paste", Command::RequestPaste, true, out);
+            for (text, command) in [
+                ("Frame what is selected", Command::FrameSelected),
+                ("Frame everything", Command::FrameAll),
+            ] {
+                entry(ui, text, command, true, out);
+            }
+        });
     }
 
     fn start(
@@ -143,8 +201,10 @@ impl Tools {
             let handle = handle_at(&view.lens, view.editor.selected(), view.editor.shown(), at);
             let handle = handle.filter(|_| has_gizmo);
             let is_shifted = ui.input(|input| input.modifiers.shift);
+            out.actions.push(Action::BeginGesture);
             self.drag = Drag::start(view, &self.sight, (at, handle, is_shifted), out);
         } else if response.drag_started_by(PointerButton::Middle) {
+            out.actions.push(Action::BeginGesture);
             self.drag = Some(Drag::Pan(view.point_at(&self.sight, at)));
         }
     }
@@ -187,7 +247,12 @@ impl Tools {
 
     /// Selects what was clicked, once it is known.
     fn select(&mut self, view: &View, out: &mut UiRequests) {
-        let Some((at, modifiers)) = self.click else {
+        // What was clicked in a picture that is gone, nobody means any more.
+        let revision = view.editor.shown_revision();
+        self.click = self
+            .click
+            .filter(|(.., of)| *of == revision && self.drag.is_none());
+        let Some((at, modifiers, _)) = self.click else {
             return;
         };
         if self.sight.map(view.editor).is_none() {
@@ -210,13 +275,15 @@ impl Tools {
 
     fn select_behind(&mut self, view: &View, at: Pos2, seen: Option<Thing>, out: &mut UiRequests) {
         let Some(first) = seen else { return };
-        let known = self.behind.take().filter(|(before, things)| {
-            (*before - at).length() < SAME_PLACE && things.first() == Some(&first)
+        let revision = view.editor.shown_revision();
+        let known = self.behind.take().filter(|(before, of, things)| {
+            let is_there = (*before - at).length() < SAME_PLACE && *of == revision;
+            is_there && things.first() == Some(&first)
         });
-        let (at, before) = known.unwrap_or((at, vec![first]));
+        let (at, _, before) = known.unwrap_or((at, revision, vec![first]));
         out.questions
             .push(question(view.editor, view.place, before.clone()));
-        self.behind = Some((at, before));
+        self.behind = Some((at, revision, before));
     }
 }
 
@@ -226,9 +293,13 @@ pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
     let selected = Subject::of(editor.selected(), scene);
     let bounds = selected.iter().filter_map(Subject::bounds);
     let around = bounds.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)));
-    let bounds = around
-        .filter(|_| only_selected)
-        .or_else(|| surroundings(scene))?;
+    let all = surroundings(scene);
+    let (low, high) = around.filter(|_| only_selected).or(all)?;
+    // A light without a marker is a point: some of what is around it is to be seen.
+    let size = all.map_or(0.0, |(low, high)| (high - low).length());
+    let least = DVec3::splat(if size > 0.0 { size * LEAST_FRAMED } else { 1.0 });
+    let middle = low * 0.5 + high * 0.5;
+    let bounds = (low.min(middle - least), high.max(middle + least));
     let aspect = f64::from(scene.render.width) / f64::from(scene.render.height);
     Some(framed(&scene.camera, aspect, bounds))
 }

@@ -1,7 +1,7 @@
 //! What is seen where: the map of the picture's objects, asked for when nothing moves, and the lines drawn
 //! after it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
 use egui::{Color32, Context, Painter, Pos2, Rect, TextureHandle, TextureOptions, pos2, vec2};
 
@@ -151,9 +151,10 @@ impl Lines {
             return;
         }
         let (_, color, items) = &wanted;
+        let all: HashSet<Item> = items.iter().copied().collect();
         let made = (!items.is_empty()).then(|| {
             let colors = (*color, palette(ctx).halo);
-            outline(map, colors, |thing| items.contains(&item_of(thing)))
+            outline(map, colors, |thing| all.contains(&item_of(thing)))
         });
         self.shown = made.flatten().map(|outline| {
             let [left, top] = outline.corner.map(|place| place as f32);

@@ -1,0 +1,348 @@
+//! Why a pixel has its colour: every term of the shading sum as a number, mirror by mirror.
+//!
+//! Written plainly and apart from the tracer, one ray at a time in double precision; a test holds both against
+//! each other.
+
+use glam::DVec3;
+
+use crate::scene::{ColorPack, Scene, Shape};
+
+/// Roundings of the largest coordinate by which a ray must have left a surface to meet it again.
+const LEFT: f64 = 1e-10;
+
+/// What a ray sees, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sight {
+    /// Nothing: the background's colour, linear 0–1.
+    Sky(DVec3),
+    /// The marker of a light of this name, in its full ambient colour.
+    Marker(String, DVec3),
+    /// A surface.
+    Surface(Box<Lit>),
+}
+
+/// A place on an object, and the terms that add up to its colour: linear, 0–1 each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lit {
+    /// The object's name.
+    pub object: String,
+    /// The name of its color pack.
+    pub pack: String,
+    /// Where it is, in world units.
+    pub point: DVec3,
+    /// The unit normal, turned to the viewer.
+    pub normal: DVec3,
+    /// How far from where the ray set out, in world units.
+    pub distance: f64,
+    /// Ambient intensity · ambient colour.
+    pub ambient: DVec3,
+    /// What each light that shines adds.
+    pub lights: Vec<Share>,
+    /// Σ intensity · specular colour, and what is seen in the mirror; `None` if it is none.
+    pub mirror: Option<(DVec3, Sight)>,
+}
+
+/// What a light adds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Share {
+    /// The light's name.
+    pub light: String,
+    /// Its intensity, 0–1.
+    pub intensity: f64,
+    /// Cosine of the angle between the normal and the light; it lights nothing where that is negative.
+    pub cosine: f64,
+    /// The object that stands before it, if one does.
+    pub blocker: Option<String>,
+    /// Intensity · diffuse colour · cosine.
+    pub diffuse: DVec3,
+    /// Intensity · specular colour · (normal · half vector) ^ exponent.
+    pub specular: DVec3,
+}
+
+impl Sight {
+    /// The colour: the sum of the terms, each channel at most 1.
+    pub fn color(&self) -> DVec3 {
+        match self {
+            Self::Sky(color) | Self::Marker(_, color) => *color,
+            Self::Surface(lit) => lit.color(),
+        }
+    }
+}
+
+impl Lit {
+    fn color(&self) -> DVec3 {
+        let lights = self
+            .lights
+            .iter()
+            .map(|share| share.diffuse + share.specular);
+        let mirror = self.mirror.as_ref();
+        let mirror = mirror.map_or(DVec3::ZERO, |(filter, seen)| *filter * seen.color());
+        let sum = self.ambient + lights.sum::<DVec3>() + mirror;
+        sum.clamp(DVec3::ZERO, DVec3::ONE)
+    }
+}
+
+/// What a ray with a unit direction sees in a scene, which must pass [`crate::scene::check`]. The faces of
+/// meshes are flat here.
+pub fn explain(scene: &Scene, origin: DVec3, direction: DVec3) -> Sight {
+    look(scene, (origin, direction), 0)
+}
+
+/// Something that a ray has met.
+struct Met<'a> {
+    t: f64,
+    normal: DVec3,
+    what: What<'a>,
+}
+
+#[derive(Clone, Copy)]
+enum What<'a> {
+    Object(usize),
+    Marker(&'a str, &'a str),
+}
+
+fn linear(color: DVec3) -> DVec3 {
+    color / 255.0
+}
+
+fn look(scene: &Scene, (origin, direction): (DVec3, DVec3), bounces: u32) -> Sight {
+    let Some(met) = nearest(scene, origin, direction) else {
+        return Sight::Sky(linear(scene.background));
+    };
+    let pack_of = |name: &str| scene.color_packs.get(name).cloned().unwrap_or_default();
+    let index = match met.what {
+        What::Marker(light, pack) => {
+            return Sight::Marker(light.to_owned(), linear(pack_of(pack).ambient));
+        }
+        What::Object(index) => index,
+    };
+    let object = &scene.objects[index];
+    let pack = pack_of(&object.color_pack);
+    let point = origin + direction * met.t;
+    let normal = if met.normal.dot(direction) > 0.0 {
+        -met.normal
+    } else {
+        met.normal
+    };
+    let shining = scene.lights.iter().filter(|light| light.visible);
+    let lights = shining.clone().filter(|light| light.intensity > 0.0);
+    let lights = lights.map(|light| share(scene, &pack, light, (point, normal, direction)));
+    let mirror = (pack.reflective && bounces < scene.render.reflection_limit).then(|| {
+        let mirrored = direction - normal * (2.0 * direction.dot(normal));
+        let intensities: f64 = shining.map(|light| light.intensity).sum();
+        let seen = look(scene, (point, mirrored.normalize_or_zero()), bounces + 1);
+        (linear(pack.specular) * intensities, seen)
+    });
+    Sight::Surface(Box::new(Lit {
+        object: object.name.clone(),
+        pack: object.color_pack.clone(),
+        point,
+        normal,
+        distance: met.t,
+        ambient: linear(pack.ambient) * scene.ambient_intensity,
+        lights: lights.collect(),
+        mirror,
+    }))
+}
+
+/// Phong's model with Blinn's half vector: "Models of light reflection for computer synthesized pictures",
+/// SIGGRAPH 1977.
+fn share(
+    scene: &Scene,
+    pack: &ColorPack,
+    light: &crate::scene::Light,
+    (point, normal, direction): (DVec3, DVec3, DVec3),
+) -> Share {
+    let arm = light.position - point;
+    let towards = arm.normalize_or_zero();
+    let cosine = normal.dot(towards);
+    let blocker = (cosine > 0.0)
+        .then(|| blocker(scene, point, towards, arm.length()))
+        .flatten();
+    let half = (towards - direction).normalize_or_zero();
+    let highlight = normal.dot(half).max(0.0).powf(pack.phong_exponent);
+    let shines = if cosine > 0.0 && blocker.is_none() {
+        light.intensity
+    } else {
+        0.0
+    };
+    Share {
+        light: light.name.clone(),
+        intensity: light.intensity,
+        cosine,
+        blocker,
+        diffuse: linear(pack.diffuse) * (shines * cosine.max(0.0)),
+        specular: linear(pack.specular) * (shines * highlight),
+    }
+}
+
+fn nearest(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<Met<'_>> {
+    let objects = scene.objects.iter().enumerate();
+    let objects = objects
+        .filter(|(_, object)| object.visible)
+        .filter_map(|(index, object)| {
+            let (t, normal) = meet(&object.shape, origin, direction)?;
+            let what = What::Object(index);
+            Some(Met { t, normal, what })
+        });
+    let lights = scene.lights.iter();
+    let lights = lights.filter(|light| light.visible && scene.light_visualization);
+    let markers = lights.filter_map(|light| {
+        let marker = light.marker.as_ref()?;
+        let (t, normal) = meet_ball(light.position, marker.radius, origin, direction)?;
+        let what = What::Marker(&light.name, &marker.color_pack);
+        Some(Met { t, normal, what })
+    });
+    objects
+        .chain(markers)
+        .min_by(|one, other| one.t.total_cmp(&other.t))
+}
+
+/// The name of something that stands between a point and a light.
+fn blocker(scene: &Scene, point: DVec3, towards: DVec3, distance: f64) -> Option<String> {
+    let mut objects = scene.objects.iter().filter(|object| object.visible);
+    let found = objects.find(|object| {
+        let met = meet(&object.shape, point, towards);
+        met.is_some_and(|(t, _)| t < distance * (1.0 - LEFT))
+    });
+    found.map(|object| object.name.clone())
+}
+
+/// How far along a ray a shape is, and its unit normal there.
+fn meet(shape: &Shape, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
+    match shape {
+        Shape::Sphere(ball) => meet_ball(ball.center, ball.radius, origin, direction),
+        Shape::Plane(plane) => meet_plane(plane.point, plane.normal, origin, direction),
+        Shape::Disc(disc) => {
+            let met = meet_plane(disc.center, disc.normal, origin, direction)?;
+            let off = (origin + direction * met.0 - disc.center).length();
+            (off <= disc.radius).then_some(met)
+        }
+        Shape::Triangle(triangle) => meet_triangle(triangle.corners(), origin, direction),
+        Shape::Mesh(mesh) => {
+            let transform = mesh.transform();
+            let faces = mesh.source.triangles().corners();
+            let hits = faces.filter_map(|corners| {
+                let corners = corners.map(|corner| transform.transform_point3(corner));
+                meet_triangle(corners, origin, direction)
+            });
+            hits.min_by(|one, other| one.0.total_cmp(&other.0))
+        }
+    }
+}
+
+/// What is met no sooner than the rounding of where the ray sets out.
+fn left(origin: DVec3) -> f64 {
+    LEFT * (1.0 + origin.abs().max_element())
+}
+
+fn meet_ball(center: DVec3, radius: f64, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
+    let x = origin - center;
+    let along = direction.dot(x);
+    let off = (x - direction * along).length_squared();
+    let root = (radius * radius - off).max(0.0).sqrt();
+    if off > radius * radius {
+        return None;
+    }
+    let least = left(origin) + LEFT * radius;
+    let t = [-along - root, -along + root]
+        .into_iter()
+        .find(|t| *t > least)?;
+    Some((t, (origin + direction * t - center) / radius))
+}
+
+fn meet_plane(
+    point: DVec3,
+    normal: DVec3,
+    origin: DVec3,
+    direction: DVec3,
+) -> Option<(f64, DVec3)> {
+    let normal = normal.try_normalize()?;
+    let t = (point - origin).dot(normal) / direction.dot(normal);
+    (t.is_finite() && t > left(origin)).then_some((t, normal))
+}
+
+fn meet_triangle([a, b, c]: [DVec3; 3], origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
+    let (t, normal) = meet_plane(a, (c - a).cross(b - a), origin, direction)?;
+    let p = origin + direction * t;
+    let is_inside = [(a, b), (b, c), (c, a)]
+        .iter()
+        .all(|&(from, to)| (to - from).cross(p - from).dot(normal) <= 0.0);
+    is_inside.then_some((t, normal))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::render;
+    use crate::plan::RenderRequest;
+    use crate::scene::{EXAMPLES, Precision, Shape};
+    use crate::trace::RenderControl;
+
+    const SIDE: usize = 40;
+
+    /// Channels that differ by more than a level from the picture of the tracer.
+    fn differences(scene: &Scene) -> usize {
+        let request = RenderRequest {
+            precision: Precision::Double,
+            ..RenderRequest::sized(SIDE as u32, SIDE as u32)
+        };
+        let picture = render(scene, &request, &RenderControl::default());
+        let picture = picture.expect("nobody stops it").0;
+        let framing = scene.camera.framing().expect("a basis");
+        let mut count = 0;
+        for (index, pixel) in picture.pixels.iter().enumerate() {
+            let middle = |place: usize| (place as f64 + 0.5) / SIDE as f64 - 0.5;
+            let (x, y) = (middle(index % SIDE), -middle(index / SIDE));
+            let (origin, direction) = framing.ray([x, y]);
+            let color = explain(scene, origin, direction).color() * 255.0;
+            let off = color.to_array().into_iter().zip(pixel);
+            count += off
+                .filter(|(channel, level)| (channel - f64::from(**level)).abs() > 0.51)
+                .count();
+        }
+        count
+    }
+
+    #[test]
+    fn the_terms_add_up_to_what_the_tracer_draws() {
+        for example in &EXAMPLES {
+            let mut scene = example.document().scene;
+            // A ray against each of 24,000 faces takes long.
+            if scene.faces() > 1000 {
+                continue;
+            }
+            scene.render.reflection_limit = 3;
+            assert_eq!(differences(&scene), 0, "{}", example.name);
+        }
+        let mut wrong = Scene::demo();
+        wrong.lights[0].intensity += 0.05;
+        let Shape::Sphere(ball) = &mut wrong.objects[0].shape else {
+            panic!("a ball");
+        };
+        ball.radius += 1.0;
+        assert_eq!(differences(&wrong), 0);
+    }
+
+    #[test]
+    fn what_stands_before_a_light_is_named() {
+        let scene = Scene::demo();
+        // Sphere 1 over the floor, Light 1 above to the left.
+        let lamp = scene.lights[0].position;
+        let ball = scene.objects[0].shape.position();
+        let towards = (ball - lamp).normalize();
+        let floor = lamp + towards * (lamp.y / -towards.y);
+        let eye = floor + DVec3::new(0.0, 1.0, 0.0);
+        let Sight::Surface(lit) = explain(&scene, eye, DVec3::NEG_Y) else {
+            panic!("the floor");
+        };
+        assert_eq!(lit.object, "Plane");
+        let first = &lit.lights[0];
+        assert_eq!(
+            (first.light.as_str(), first.blocker.as_deref()),
+            ("Light 1", Some("Sphere 1"))
+        );
+        assert_eq!((first.diffuse, first.specular), (DVec3::ZERO, DVec3::ZERO));
+        assert!(lit.mirror.is_some());
+    }
+}

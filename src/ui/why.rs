@@ -1,0 +1,177 @@
+//! Why a place of the picture has its colour: the terms of the shading, as numbers.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, TryRecvError};
+
+use egui::{Color32, Context, Grid, RichText, Sense, Ui, Window, vec2};
+use glam::DVec3;
+
+use super::theme::{GRID, ROW, palette};
+use crate::lab::{Lit, Share, Sight, explain};
+use crate::scene::{Scene, format_number};
+use crate::worker::run_in_background;
+
+/// Decimals of the numbers.
+const DECIMALS: usize = 3;
+
+/// What is asked, and the answer.
+#[derive(Default)]
+pub struct Why {
+    answer: Option<Sight>,
+    waiting: Option<Receiver<Sight>>,
+}
+
+impl Why {
+    /// Asks what a ray sees, and why. It is found out elsewhere: a mesh may have many faces.
+    pub fn ask(&mut self, scene: &Arc<Scene>, (origin, direction): (DVec3, DVec3)) {
+        let scene = Arc::clone(scene);
+        let look = move || explain(&scene, origin, direction);
+        self.waiting = Some(run_in_background("glint-why", look));
+    }
+
+    /// Whether an answer is shown.
+    pub fn is_open(&self) -> bool {
+        self.answer.is_some()
+    }
+
+    /// Forgets the answer.
+    pub fn close(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Shows the answer, once it is there.
+    pub fn show(&mut self, ctx: &Context) {
+        match self.waiting.as_ref().map(Receiver::try_recv) {
+            None => {}
+            Some(Err(TryRecvError::Empty)) => ctx.request_repaint(),
+            Some(Err(TryRecvError::Disconnected)) => self.waiting = None,
+            Some(Ok(answer)) => {
+                self.answer = Some(answer);
+                self.waiting = None;
+            }
+        }
+        let Some(answer) = &self.answer else { return };
+        let mut is_open = true;
+        Window::new("Why this colour")
+            .open(&mut is_open)
+            .collapsible(false)
+            .default_width(480.0)
+            .show(ctx, |ui| {
+                egui::ScrollArea::vertical().show(ui, |ui| show(ui, answer, 0));
+            });
+        if !is_open {
+            self.close();
+        }
+    }
+}
+
+fn show(ui: &mut Ui, sight: &Sight, depth: usize) {
+    match sight {
+        Sight::Sky(color) => {
+            term(ui, "background: nothing is met", *color);
+        }
+        Sight::Marker(light, color) => {
+            term(
+                ui,
+                &format!("marker of {light}: its full ambient colour"),
+                *color,
+            );
+        }
+        Sight::Surface(lit) => show_surface(ui, lit, depth),
+    }
+}
+
+fn show_surface(ui: &mut Ui, lit: &Lit, depth: usize) {
+    let color = Sight::Surface(Box::new(lit.clone())).color();
+    ui.horizontal(|ui| {
+        swatch(ui, color);
+        ui.label(RichText::new(&lit.object).strong());
+        ui.weak(format!("in {}, {} away", lit.pack, number(lit.distance)));
+    });
+    let place = |vector: DVec3| vector.to_array().map(number).join(", ");
+    ui.weak(format!(
+        "at {}, normal {}",
+        place(lit.point),
+        place(lit.normal)
+    ));
+    ui.indent(("why", depth), |ui| {
+        term(ui, "ambient intensity · ambient", lit.ambient);
+        for share in &lit.lights {
+            show_light(ui, share);
+        }
+        if let Some((filter, seen)) = &lit.mirror {
+            let what = format!(
+                "mirror: sum of intensities · specular = {}",
+                channels(*filter)
+            );
+            term(ui, &what, *filter * seen.color());
+            ui.weak("times what is seen there:");
+            show(ui, seen, depth + 1);
+        }
+        ui.separator();
+        term(ui, "sum, each channel at most 1", color);
+    });
+}
+
+fn show_light(ui: &mut Ui, share: &Share) {
+    let Share {
+        light,
+        intensity,
+        cosine,
+        blocker,
+        ..
+    } = share;
+    let intensity = number(*intensity);
+    match blocker {
+        Some(blocker) => {
+            term(
+                ui,
+                &format!("{light}: in the shadow of {blocker}"),
+                DVec3::ZERO,
+            );
+        }
+        None if *cosine <= 0.0 => {
+            let words = format!("{light}: behind the surface, cosine {}", number(*cosine));
+            term(ui, &words, DVec3::ZERO);
+        }
+        None => {
+            let words = format!(
+                "{light}: {intensity} · diffuse · cosine {}",
+                number(*cosine)
+            );
+            term(ui, &words, share.diffuse);
+            let words = format!("{light}: {intensity} · specular · highlight");
+            term(ui, &words, share.specular);
+        }
+    }
+}
+
+/// A term with its colour, and its channels from 0 to 1.
+fn term(ui: &mut Ui, words: &str, color: DVec3) {
+    Grid::new(ui.next_auto_id()).num_columns(3).show(ui, |ui| {
+        swatch(ui, color);
+        ui.label(RichText::new(channels(color)).monospace());
+        ui.add(egui::Label::new(words).wrap());
+        ui.end_row();
+    });
+}
+
+fn swatch(ui: &mut Ui, color: DVec3) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ROW, ROW - GRID / 2.0), Sense::hover());
+    let [red, green, blue] = (color * 255.0)
+        .to_array()
+        .map(|channel| channel.round() as u8);
+    let fill = Color32::from_rgb(red, green, blue);
+    let line = egui::Stroke::new(1.0, palette(ui.ctx()).line);
+    ui.painter()
+        .rect(rect, 2, fill, line, egui::StrokeKind::Inside);
+}
+
+fn channels(color: DVec3) -> String {
+    let channel = |value: f64| format!("{value:.DECIMALS$}");
+    color.to_array().map(channel).join(" ")
+}
+
+fn number(value: f64) -> String {
+    format_number((value * 1e3).round() / 1e3)
+}
