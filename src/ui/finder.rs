@@ -1,6 +1,8 @@
 //! Everything by its name: commands, things of the scene, settings.
 
-use egui::{Button, Context, Frame, Id, Key, Modal, Modifiers, ScrollArea, TextEdit, Ui};
+use egui::{
+    AtomExt as _, Button, Context, Frame, Id, Key, Modal, Modifiers, ScrollArea, TextEdit, Ui,
+};
 
 use super::commands::{Command, KEYLESS, SHORTCUTS, name_of, obstacle};
 use super::requests::UiRequests;
@@ -92,7 +94,9 @@ impl Finder {
             .auto_shrink([false, true])
             .show(ui, |ui| {
                 for (place, find) in finds.iter().enumerate() {
-                    let button = Button::selectable(place == self.meant, &find.name)
+                    let name = egui::RichText::new(&find.name).atom_shrink(true);
+                    let button = Button::selectable(place == self.meant, name)
+                        .truncate()
                         .right_text(&find.aside)
                         .min_size(egui::vec2(ui.available_width(), ROW));
                     let shown = ui.add_enabled(find.is_enabled, button);

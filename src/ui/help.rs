@@ -26,9 +26,13 @@ fn lists(ui: &mut Ui) {
         let keys: Vec<String> = shortcut.keys.iter().map(|key| name_of(ui, *key)).collect();
         (keys.join(", "), shortcut.what)
     });
-    let commands: Vec<_> = commands.collect();
+    let mut commands: Vec<_> = commands.collect();
+    // Two columns: all of it is seen without scrolling.
+    let rest = commands.split_off(commands.len().div_ceil(2));
     list(ui, "Commands", commands);
-    ui.add_space(3.0 * GRID);
+    ui.add_space(2.0 * GRID);
+    list(ui, "More commands", rest);
+    ui.add_space(2.0 * GRID);
     ui.vertical(|ui| {
         let flight = FLIGHT.iter().map(|key| (key.name().to_owned(), key.what));
         list(ui, "Flying (hold)", flight.collect());
@@ -41,11 +45,11 @@ fn lists(ui: &mut Ui) {
 fn list(ui: &mut Ui, title: &str, keys: Vec<(String, &str)>) {
     ui.vertical(|ui| {
         ui.label(RichText::new(title).strong());
+        ui.spacing_mut().interact_size.y = 0.0;
         Grid::new(title)
             .num_columns(2)
-            .spacing([2.0 * GRID, GRID / 2.0])
+            .spacing([GRID, GRID / 4.0])
             .show(ui, |ui| {
-                ui.spacing_mut().interact_size.y = 0.0;
                 for (key, what) in keys {
                     ui.label(
                         RichText::new(key)

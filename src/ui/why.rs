@@ -56,6 +56,7 @@ impl Why {
             .open(&mut is_open)
             .collapsible(false)
             .default_width(480.0)
+            .default_pos([300.0, 60.0])
             .show(ctx, |ui| {
                 egui::ScrollArea::vertical().show(ui, |ui| show(ui, answer, 0));
             });
@@ -173,5 +174,6 @@ fn channels(color: DVec3) -> String {
 }
 
 fn number(value: f64) -> String {
-    format_number((value * 1e3).round() / 1e3)
+    // Zero has no sign.
+    format_number((value * 1e3).round() / 1e3 + 0.0)
 }

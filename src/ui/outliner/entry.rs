@@ -1,6 +1,6 @@
 //! A row of the outliner.
 
-use egui::{Button, Rect, Sense, Ui, vec2};
+use egui::{AtomExt as _, Button, Color32, Rect, Sense, Ui, vec2};
 use egui_material_icons::MaterialIcon;
 
 use crate::editor::{Edit, Item, Kind};
@@ -8,6 +8,9 @@ use crate::scene::Scene;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{ROW, palette};
+
+/// Letters that a row has room for, about.
+const LONG: usize = 18;
 
 /// The symbol of an item, and whether it is visible if it can be hidden.
 pub fn look(scene: &Scene, item: Item) -> (MaterialIcon, Option<bool>) {
@@ -23,6 +26,21 @@ pub fn look(scene: &Scene, item: Item) -> (MaterialIcon, Option<bool>) {
         }
         Kind::Pack => (icons::PACK, None),
     }
+}
+
+/// The colour of an object or a pack: the matte one, or that without light where there is none.
+pub fn color_of(scene: &Scene, item: Item) -> Option<Color32> {
+    let pack = match item.kind {
+        Kind::Light => return None,
+        Kind::Object => scene
+            .color_packs
+            .get(&scene.objects.get(item.index)?.color_pack)?,
+        Kind::Pack => scene.color_packs.get_index(item.index)?.1,
+    };
+    let is_matte = pack.diffuse.abs().max_element() > 0.0;
+    let color = if is_matte { pack.diffuse } else { pack.ambient };
+    let [red, green, blue] = color.to_array().map(|channel| channel.round() as u8);
+    Some(Color32::from_rgb(red, green, blue))
 }
 
 /// The next row of the list, over its whole width.
@@ -52,14 +70,19 @@ pub fn entry(ui: &mut Ui, rect: Rect, look: RowStyle, name: &str) -> egui::Respo
     };
     let texts = (
         icons::text(look.icon).color(color),
-        egui::RichText::new(name).color(color),
+        // A long name is cut, not the symbol.
+        egui::RichText::new(name).color(color).atom_shrink(true),
     );
     let button = Button::selectable(look.is_selected, texts)
         .right_text("")
         .truncate()
         .sense(Sense::click_and_drag())
         .min_size(rect.size());
-    ui.put(rect, button).accessible_name(name)
+    let shown = ui.put(rect, button).accessible_name(name);
+    if name.chars().count() > LONG {
+        return shown.on_hover_text(name);
+    }
+    shown
 }
 
 /// Drag a row onto another to put it there.

@@ -8,7 +8,7 @@ mod lines;
 use egui::text::{CCursor, CCursorRange};
 use egui::{Align, Id, Key, Layout, Rect, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2};
 
-use self::entry::{RowStyle, entry, eye, look, reorder, row};
+use self::entry::{RowStyle, color_of, entry, eye, look, reorder, row};
 use self::lines::{Entries, Line, Lines};
 use super::add::add_menu;
 use super::icons;
@@ -203,6 +203,12 @@ impl Outliner {
         let (mut rect, mut eye_rect) = (row(ui), Rect::NOTHING);
         if visible.is_some() {
             (rect, eye_rect) = rect.split_left_right_at_x(rect.right() - ROW - GRID / 2.0);
+        }
+        if let Some(color) = color_of(scene, item) {
+            let place;
+            (rect, place) = rect.split_left_right_at_x(rect.right() - 2.0 * GRID);
+            let square = Rect::from_center_size(place.center(), vec2(GRID, GRID) * 1.25);
+            ui.painter().rect_filled(square, 2, color);
         }
         let response = entry(
             ui,

@@ -18,7 +18,7 @@ mod drag;
 
 pub use lens::Lens;
 
-use egui::{CursorIcon, Modifiers, PointerButton, Pos2, Rect, Response, Ui};
+use egui::{CursorIcon, Modifiers, PointerButton, Popup, Pos2, Rect, Response, Ui};
 use glam::DVec3;
 
 use self::drag::{Drag, View};
@@ -223,7 +223,8 @@ impl Tools {
             let rests = input.pointer.time_since_last_movement();
             (input.pointer.any_down(), rests)
         });
-        let Some((at, name)) = at.zip(name).filter(|_| !is_down) else {
+        let is_covered = is_down || Popup::is_any_open(ui.ctx());
+        let Some((at, name)) = at.zip(name).filter(|_| !is_covered) else {
             return;
         };
         if rests >= PATIENCE {
