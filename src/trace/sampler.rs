@@ -95,7 +95,7 @@ impl<L: SimdFloat> Sampler<L> {
         let place = |index: usize, off: f64| L::Real::from_f64(index as f64 + off);
         self.columns.clear();
         self.columns.extend(columns.map(|column| place(column, x)));
-        if TREE && self.in_squares {
+        if TREE && self.in_squares && seen.has_geometry {
             self.rows.clear();
             self.rows.extend(rows.map(|row| place(row, y)));
             self.samples

@@ -1,7 +1,7 @@
 //! The window's frame: reads input, shows the panels, applies what they asked for, and hands the
 //! scene to the render thread.
 
-use egui::{Context, Theme, Ui, ViewportCommand};
+use egui::{Context, Event, Theme, Ui, ViewportCommand};
 
 use super::autosave::Autosave;
 use super::commands::{Command, is_about_files, pressed};
@@ -356,6 +356,14 @@ impl eframe::App for App {
             && screenshot.tick(&ctx, is_settled)
         {
             self.closing = Some(self.editor.revision());
+        }
+    }
+
+    /// A picture of the window shows nothing of where the pointer happens to be.
+    fn raw_input_hook(&mut self, _ctx: &Context, input: &mut egui::RawInput) {
+        if self.screenshot.is_some() {
+            let is_pointer = |event: &Event| matches!(event, Event::PointerMoved(_));
+            input.events.retain(|event| !is_pointer(event));
         }
     }
 

@@ -53,10 +53,10 @@ impl Settings {
     /// What an editor's scene asks for.
     pub fn of(editor: &Editor) -> Self {
         let scene = editor.scene();
-        let folder = editor.path().and_then(Path::parent).map(Path::to_owned);
-        let folder = folder
-            .or_else(|| std::env::current_dir().ok())
-            .unwrap_or_default();
+        // Where the program works is not said: it is the same for every file there.
+        let here = std::env::current_dir().unwrap_or_default();
+        let folder = editor.path().and_then(Path::parent).unwrap_or(&here);
+        let folder = folder.strip_prefix(&here).unwrap_or(folder);
         let title = editor.title();
         let stem = title.strip_suffix(".ron").unwrap_or(&title);
         let frames = Frames::up_to(scene.animation.frame_count()).to_string();

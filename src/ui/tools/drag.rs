@@ -80,16 +80,20 @@ impl View<'_> {
         middle.unwrap_or_else(|| self.point_at(sight, at))
     }
 
+    /// Whether something never ends.
+    pub fn is_endless(&self, thing: Thing) -> bool {
+        match thing {
+            Thing::Object(index) => {
+                let object = self.editor.shown().objects.get(index);
+                object.is_some_and(|object| object.shape.bounds().is_none())
+            }
+            Thing::Light(_) => false,
+        }
+    }
+
     /// What is seen at a place, if it is a body that can be taken hold of.
     fn body_at(&self, sight: &Sight, at: Pos2) -> Option<Thing> {
         let seen = sight.at(self.editor, self.place.rect, at)?;
-        let is_endless = match seen {
-            Thing::Object(index) => {
-                let object = self.editor.shown().objects.get(index)?;
-                matches!(object.shape, Shape::Plane(_))
-            }
-            Thing::Light(_) => false,
-        };
         // What the eye is in surrounds it on all sides, as the sky does.
         let eye = self.editor.shown().camera.position;
         let surrounds = match seen {
@@ -99,7 +103,7 @@ impl View<'_> {
             },
             Thing::Light(_) => false,
         };
-        (!is_endless && !surrounds).then_some(seen)
+        (!self.is_endless(seen) && !surrounds).then_some(seen)
     }
 }
 

@@ -119,9 +119,14 @@ fn rim(lens: &Lens, center: DVec3, radius: f64) -> Vec<Pos2> {
 }
 
 /// Everything that can be grabbed at what is selected.
-fn handles(lens: &Lens, subjects: &[Subject]) -> Vec<Drawn> {
-    let Some(middle) = Subject::middle_of(subjects) else {
+fn handles(lens: &Lens, selected: &Selected, scene: &Scene) -> Vec<Drawn> {
+    let Some(middle) = Subject::middle_of_selected(selected, scene) else {
         return Vec::new();
+    };
+    // Of many, nothing is copied: this is done in every frame.
+    let only = match selected.items() {
+        [item] => Subject::new(scene, *item),
+        _ => None,
     };
     let Some(place) = lens.place(middle) else {
         return Vec::new();
@@ -138,7 +143,7 @@ fn handles(lens: &Lens, subjects: &[Subject]) -> Vec<Drawn> {
         }
     };
     let at = |point: DVec3| lens.place(point);
-    if let [subject] = subjects {
+    if let Some(subject) = &only {
         own_handles(lens, subject, length, &mut add);
     }
     for (axis, (direction, _)) in AXES.iter().enumerate() {
@@ -169,7 +174,7 @@ fn handles(lens: &Lens, subjects: &[Subject]) -> Vec<Drawn> {
             square.filter(|line| !is_edge_on(line)),
             true,
         );
-        if can_turn(subjects) {
+        if only.as_ref().is_none_or(is_mesh) {
             let line = ring(lens, middle, *direction, length * RING);
             add(Handle::Turn(axis), Some(line), true);
         }
@@ -178,10 +183,9 @@ fn handles(lens: &Lens, subjects: &[Subject]) -> Vec<Drawn> {
     drawn
 }
 
-/// Whether there is something to turn: a mesh, or several things around each other.
-fn can_turn(subjects: &[Subject]) -> bool {
-    let is_mesh = |subject: &Subject| matches!(subject.shape(), Some(Shape::Mesh(_)));
-    subjects.len() > 1 || subjects.iter().any(is_mesh)
+/// Whether there is something to turn about the middle of a single thing; several are turned around each other.
+fn is_mesh(subject: &Subject) -> bool {
+    matches!(subject.shape(), Some(Shape::Mesh(_)))
 }
 
 /// The handles that only this kind of thing has.
@@ -232,7 +236,7 @@ fn own_handles(
 
 /// The handle under the pointer.
 pub fn handle_at(lens: &Lens, selected: &Selected, scene: &Scene, at: Pos2) -> Option<Handle> {
-    let drawn = handles(lens, &Subject::of(selected, scene));
+    let drawn = handles(lens, selected, scene);
     let near = drawn.iter().map(|drawn| (drawn.distance(at), drawn.handle));
     let near = near.filter(|(distance, _)| *distance <= REACH);
     near.min_by(|a, b| a.0.total_cmp(&b.0))
@@ -242,12 +246,12 @@ pub fn handle_at(lens: &Lens, selected: &Selected, scene: &Scene, at: Pos2) -> O
 /// Draws the handles; the one that is meant is bright.
 pub fn show(painter: &Painter, lens: &Lens, editor: &Editor, meant: Option<Handle>) {
     let colors = palette(painter.ctx());
-    let subjects = Subject::of(editor.selected(), editor.shown());
+    let (selected, scene) = (editor.selected(), editor.shown());
     for Drawn {
         handle,
         line,
         is_closed,
-    } in handles(lens, &subjects)
+    } in handles(lens, selected, scene)
     {
         let is_meant = meant == Some(handle);
         let color = match handle {

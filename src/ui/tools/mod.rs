@@ -213,8 +213,11 @@ impl Tools {
     fn hover(&mut self, ui: &Ui, view: &View, at: Option<Pos2>, meant: Option<Handle>) {
         let seen = at.and_then(|at| self.sight.at(view.editor, view.place.rect, at));
         let item = seen.map(item_of).filter(|_| meant.is_none());
+        // A line around the floor would be one around everything that stands on it.
+        let outlined = seen.filter(|thing| !view.is_endless(*thing));
+        let outlined = outlined.map(item_of).filter(|_| meant.is_none());
         self.sight
-            .show(&view.painter, view.editor, view.place.rect, item);
+            .show(&view.painter, view.editor, view.place.rect, outlined);
         if meant.is_some() {
             ui.set_cursor_icon(CursorIcon::Grab);
         }

@@ -16,7 +16,7 @@ pub enum Subject {
 
 impl Subject {
     /// The item as it is on show, if it has a place.
-    fn new(scene: &Scene, Item { kind, index }: Item) -> Option<Self> {
+    pub fn new(scene: &Scene, Item { kind, index }: Item) -> Option<Self> {
         match kind {
             Kind::Object => Some(Self::Object(index, scene.objects.get(index)?.clone())),
             Kind::Light => Some(Self::Light(index, scene.lights.get(index)?.clone())),
@@ -28,6 +28,19 @@ impl Subject {
     pub fn of(selected: &Selected, scene: &Scene) -> Vec<Self> {
         let items = selected.items().iter();
         items.filter_map(|item| Self::new(scene, *item)).collect()
+    }
+
+    /// The middle of all that is selected and has a place.
+    pub fn middle_of_selected(selected: &Selected, scene: &Scene) -> Option<DVec3> {
+        let middles = selected.items().iter().filter_map(|item| match item.kind {
+            Kind::Object => Some(middle_of_shape(&scene.objects.get(item.index)?.shape)),
+            Kind::Light => Some(scene.lights.get(item.index)?.position),
+            Kind::Pack => None,
+        });
+        let (sum, count) = middles.fold((DVec3::ZERO, 0), |(sum, count), middle| {
+            (sum + middle, count + 1)
+        });
+        (count > 0).then(|| sum / f64::from(count))
     }
 
     /// The middle of all.
@@ -59,10 +72,7 @@ impl Subject {
     /// Where it is: the middle of what ends.
     pub fn middle(&self) -> DVec3 {
         match self {
-            Self::Object(_, object) => match object.shape.bounds() {
-                Some((low, high)) => low * 0.5 + high * 0.5,
-                None => object.shape.position(),
-            },
+            Self::Object(_, object) => middle_of_shape(&object.shape),
             Self::Light(_, light) => light.position,
         }
     }
@@ -123,6 +133,14 @@ impl Subject {
             }
             Self::Light(index, light) => Edit::Light(*index, light.clone(), field),
         }
+    }
+}
+
+/// The middle of a shape that ends, or where it is.
+fn middle_of_shape(shape: &Shape) -> DVec3 {
+    match shape.bounds() {
+        Some((low, high)) => low * 0.5 + high * 0.5,
+        None => shape.position(),
     }
 }
 

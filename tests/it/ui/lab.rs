@@ -46,6 +46,13 @@ fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
     );
     assert_ne!(harness.scene().render, before.render);
     assert!(
+        harness.window.query_by_label("Lab picture").is_none(),
+        "what is edited is looked at"
+    );
+    harness.click("Cheapest within");
+    harness.window.get_by_label("Lab picture");
+    harness.window.get_by_label_contains("Leave Lab: ");
+    assert!(
         harness.window.query_by_label("stale").is_none(),
         "settings are what is compared"
     );

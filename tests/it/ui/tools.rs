@@ -365,3 +365,79 @@ fn escape_leaves_one_thing_after_the_other() {
     harness.press(NONE, Key::Escape);
     harness.window.get_by_label("Quit now");
 }
+
+#[test]
+fn text_is_pasted_and_what_is_none_is_refused() {
+    let mut harness = EditorHarness::new();
+    let text = r#"Object(name: "New", color_pack: "plane", shape: Sphere(center: (120, 90, -80), radius: 9))"#;
+    harness.window.event(Event::Paste(text.to_owned()));
+    harness.settle();
+    assert_eq!(names(&harness), ["New"]);
+    assert_eq!(radius(harness.scene(), 9), 9.0);
+    harness.window.event(Event::Cut);
+    harness.settle();
+    assert_eq!(harness.scene(), &Scene::demo());
+    harness
+        .window
+        .event(Event::Paste("half a sentence".to_owned()));
+    harness.settle();
+    harness
+        .window
+        .get_by_label_contains("The clipboard holds no objects or lights");
+    assert_eq!(harness.scene(), &Scene::demo());
+}
+
+#[test]
+fn everything_is_found_by_its_name() {
+    let mut harness = EditorHarness::new();
+    harness.press(CTRL, Key::K);
+    harness.window.event(Event::Text("here 2".to_owned()));
+    harness.settle();
+    harness.press(NONE, Key::Enter);
+    assert_eq!(names(&harness), ["Sphere 2"]);
+    harness.press(CTRL, Key::K);
+    harness.window.event(Event::Text("ortho".to_owned()));
+    harness.settle();
+    harness.press(NONE, Key::Enter);
+    assert_eq!(
+        harness.scene().camera.projection,
+        glint::scene::Projection::Orthographic
+    );
+    assert!(
+        harness
+            .window
+            .query_by_label_contains("Enter does what")
+            .is_none()
+    );
+}
+
+#[test]
+fn a_pixel_is_explained_and_parts_of_the_light_are_shown() {
+    let mut harness = EditorHarness::new();
+    let at = place(&harness, center(harness.scene(), 0));
+    hover(&mut harness, at);
+    button(&mut harness, at, PointerButton::Secondary, true, NONE);
+    button(&mut harness, at, PointerButton::Secondary, false, NONE);
+    harness.settle();
+    harness.click("Why this colour");
+    let start = std::time::Instant::now();
+    while harness
+        .window
+        .query_by_label("ambient intensity · ambient")
+        .is_none()
+    {
+        assert!(start.elapsed().as_secs() < 30, "never explained");
+        std::thread::sleep(std::time::Duration::from_millis(10));
+        harness.window.step();
+    }
+    harness.press(NONE, Key::Escape);
+    let whole = harness.picture();
+    harness.choose("View", "Show of the light");
+    harness.click("Clay");
+    assert!(harness.picture() != whole);
+    harness.window.get_by_label("Leave Clay");
+    harness.press(NONE, Key::Escape);
+    harness.press(NONE, Key::Escape);
+    assert!(harness.picture() == whole);
+    assert_eq!(harness.scene(), &Scene::demo());
+}
