@@ -28,7 +28,7 @@ const PIXELS_PER_PRIMITIVE: u64 = 16_384;
 
 /// With fewer pixels than this for each, packets look at squares: what is seen in a row of sixteen pixels is
 /// more than in a square of them, but to put them in order costs time too.
-const PIXELS_IN_SQUARES: u64 = 64;
+const PIXELS_IN_SQUARES: u64 = 128;
 
 /// What a colour becomes in a picture.
 pub trait Pixel: Send {
