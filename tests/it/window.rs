@@ -84,8 +84,6 @@ struct Program {
 
 impl Program {
     fn start(display: &Display, words: &[&str]) -> Self {
-        // Out of the picture, which says what the pointer is over.
-        display.tool("xdotool", &["mousemove", "1270", "792"]);
         let folder = tempfile::tempdir().expect("a folder");
         let child = command(display, folder.path())
             .args(words)
@@ -102,6 +100,14 @@ impl Program {
         let window = display.tool("xdotool", &["search", "--name", "^Glint"]);
         let window = window.lines().next().expect("a window").to_owned();
         display.tool("xdotool", &["windowfocus", "--sync", &window]);
+        // Out of the picture, which says what the pointer is over; a display without a program forgets where
+        // the pointer was.
+        display.tool("xdotool", &["mousemove", "1270", "792"]);
+        wait_for("rest", || {
+            let before = display.look();
+            std::thread::sleep(Duration::from_millis(500));
+            changed(&before, &display.look()) == 0
+        });
         program
     }
 
