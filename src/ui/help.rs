@@ -1,6 +1,6 @@
 //! Help → Shortcuts: every key, from the tables that drive the window.
 
-use egui::{Context, Grid, RichText, ScrollArea, Ui, Window};
+use egui::{Context, Grid, RichText, ScrollArea, Ui, Window, vec2};
 
 use super::commands::{SHORTCUTS, name_of};
 use super::flight_keys::{FLIGHT, MOUSE};
@@ -14,10 +14,14 @@ pub fn show(ctx: &Context, open: &mut bool) {
         .resizable(false)
         .anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0])
         .show(ctx, |ui| {
-            let height = ctx.content_rect().height() - 12.0 * GRID;
-            ScrollArea::vertical().max_height(height).show(ui, |ui| {
-                ui.horizontal_top(lists);
-            });
+            // All of it in a window of usual size; in a small one, what has room.
+            let room = ctx.content_rect().size() - vec2(6.0, 12.0) * GRID;
+            ScrollArea::both()
+                .max_width(room.x)
+                .max_height(room.y)
+                .show(ui, |ui| {
+                    ui.horizontal_top(lists);
+                });
         });
 }
 

@@ -36,6 +36,8 @@ use crate::scene::Camera;
 
 /// Seconds that the pointer rests before it is told what it is over.
 const PATIENCE: f32 = 0.3;
+/// Most letters of a name beside the pointer.
+const LONGEST: usize = 32;
 /// Least size of what is framed, as a share of everything.
 const LEAST_FRAMED: f64 = 0.02;
 /// How far apart two clicks on one place may be, in points.
@@ -231,7 +233,10 @@ impl Tools {
             return;
         };
         if rests >= PATIENCE {
-            label(&view.painter, at, name);
+            let is_long = name.chars().count() > LONGEST;
+            let start: String = name.chars().take(LONGEST).collect();
+            let end = if is_long { "…" } else { "" };
+            label(&view.painter, at, &format!("{start}{end}"));
         } else {
             ui.request_repaint_after_secs(PATIENCE - rests);
         }
