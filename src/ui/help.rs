@@ -1,21 +1,25 @@
 //! Help → Shortcuts: every key, from the tables that drive the window.
 
-use egui::{Context, Grid, RichText, ScrollArea, Ui, Window, vec2};
+use egui::{Context, Grid, RichText, ScrollArea, Ui, Vec2, Window, vec2};
 
 use super::commands::{SHORTCUTS, name_of};
 use super::flight_keys::{FLIGHT, MOUSE};
 use super::theme::{GRID, palette};
 
+/// Room that all of it takes, in points.
+const SIZE: Vec2 = vec2(1180.0, 640.0);
+
 /// Shows the list while `open`.
 pub fn show(ctx: &Context, open: &mut bool) {
+    // All of it in a window of usual size; in a small one, what has room.
+    let room = ctx.content_rect().size() - vec2(6.0, 12.0) * GRID;
     Window::new("Shortcuts")
         .open(open)
+        .default_size(room.min(SIZE))
         .collapsible(false)
         .resizable(false)
         .anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0])
         .show(ctx, |ui| {
-            // All of it in a window of usual size; in a small one, what has room.
-            let room = ctx.content_rect().size() - vec2(6.0, 12.0) * GRID;
             ScrollArea::both()
                 .max_width(room.x)
                 .max_height(room.y)
