@@ -117,6 +117,12 @@ impl EditorHarness {
         self.editor().scene()
     }
 
+    /// Where the picture is in the window.
+    pub fn view(&self) -> egui::Rect {
+        let mut pictures = self.window.get_all_by_role(Role::Image);
+        pictures.next().expect("a picture").rect()
+    }
+
     pub fn picture(&self) -> Image {
         self.window
             .state()

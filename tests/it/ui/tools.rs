@@ -1,6 +1,5 @@
 //! Hands in the picture: clicks, handles, and the camera.
 
-use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
@@ -14,8 +13,7 @@ const NONE: Modifiers = Modifiers::NONE;
 
 /// Where a point of the scene is on the screen.
 fn place(harness: &EditorHarness, point: DVec3) -> Pos2 {
-    let mut pictures = harness.window.get_all_by_role(Role::Image);
-    let view = pictures.next().expect("a picture").rect();
+    let view = harness.view();
     let framing = harness.scene().camera.framing().expect("a basis");
     let [x, y] = framing.project(point).expect("in front");
     view.center() + vec2(x as f32, -y as f32) * view.height()
@@ -164,13 +162,7 @@ fn an_arrow_moves_along_its_axis_and_takes_typed_values() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
     let before = center(harness.scene(), 0);
-    let unit = harness
-        .window
-        .get_all_by_role(Role::Image)
-        .next()
-        .expect("a picture")
-        .rect()
-        .height();
+    let unit = harness.view().height();
     let camera = &harness.scene().camera;
     let depth = (before - camera.position).dot(camera.look_at.normalize());
     // Half way along the arrow of 76 points.
@@ -283,12 +275,7 @@ fn several_are_moved_turned_copied_and_deleted_as_one() {
 #[test]
 fn a_frame_selects_what_is_seen_in_it() {
     let mut harness = EditorHarness::new();
-    let view = harness
-        .window
-        .get_all_by_role(Role::Image)
-        .next()
-        .expect("a picture")
-        .rect();
+    let view = harness.view();
     let (from, to) = (view.min + vec2(4.0, 4.0), view.max - vec2(4.0, 4.0));
     drag(&mut harness, from, to, PointerButton::Primary, SHIFT);
     let found = names(&harness);
@@ -337,12 +324,7 @@ fn the_camera_circles_pans_and_comes_nearer() {
 
     harness.press(NONE, Key::F);
     let at = place(&harness, middle);
-    let view = harness
-        .window
-        .get_all_by_role(Role::Image)
-        .next()
-        .expect("a picture")
-        .rect();
+    let view = harness.view();
     assert!((at - view.center()).length() < 1.0);
     harness.press(NONE, Key::Home);
     harness.press(CTRL, Key::Num7);

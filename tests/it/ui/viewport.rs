@@ -1,6 +1,5 @@
 //! The picture: modes, projections, flying.
 
-use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use glint::editor::Mode;
@@ -202,13 +201,7 @@ fn a_turn_of_the_wheel_is_one_step_and_spares_the_still_picture() {
     let mut harness = EditorHarness::new();
     let start = harness.scene().camera.clone();
     let turn = |harness: &mut EditorHarness| {
-        let middle = harness
-            .window
-            .get_all_by_role(Role::Image)
-            .next()
-            .expect("a picture")
-            .rect()
-            .center();
+        let middle = harness.view().center();
         harness.window.hover_at(middle);
         harness.window.step();
         harness.window.event(Event::MouseWheel {
