@@ -89,6 +89,23 @@ impl Edit {
         Self::Animation(Arc::new(animation), what)
     }
 
+    /// Shows or hides an item, if it can be hidden.
+    pub fn visible(scene: &Scene, item: Item, visible: bool) -> Option<Self> {
+        let field = if visible { "show" } else { "hide" };
+        let index = item.index;
+        match item.kind {
+            Kind::Light => {
+                let light = scene.lights.get(index)?.clone();
+                Some(Self::Light(index, Light { visible, ..light }, field))
+            }
+            Kind::Object => {
+                let object = scene.objects.get(index)?.clone();
+                Some(Self::Object(index, Object { visible, ..object }, field))
+            }
+            Kind::Pack => None,
+        }
+    }
+
     /// What the step is called in the history.
     pub fn label(&self, scene: &Scene) -> String {
         let name = |item: Item| item.name(scene).unwrap_or_default().to_owned();

@@ -14,7 +14,7 @@ use super::tools::{axis_camera, framing_camera};
 use crate::editor::{
     Action, Edit, Editor, Item, Kind, Mode, Selected, Selection, Time, excerpt, read,
 };
-use crate::scene::{Aspect, Document, Light, Object, Projection, Scene};
+use crate::scene::{Aspect, Document, Projection, Scene};
 
 /// Seconds within which Escape twice asks to quit.
 const TWICE: f64 = 3.0;
@@ -265,21 +265,8 @@ fn toggle_visible(editor: &mut Editor) {
     };
     let visible = !items.iter().filter_map(is_visible).any(|visible| visible);
     let field = if visible { "show" } else { "hide" };
-    let edits = items.iter().filter_map(|item| match item.kind {
-        Kind::Object => {
-            let object = scene.objects.get(item.index)?.clone();
-            Some(Edit::Object(
-                item.index,
-                Object { visible, ..object },
-                field,
-            ))
-        }
-        Kind::Light => {
-            let light = scene.lights.get(item.index)?.clone();
-            Some(Edit::Light(item.index, Light { visible, ..light }, field))
-        }
-        Kind::Pack => None,
-    });
+    let edits = items.iter();
+    let edits = edits.filter_map(|item| Edit::visible(scene, *item, visible));
     let edits: Vec<Edit> = edits.collect();
     let label = format!("{field} {} items", edits.len());
     editor.apply(Action::Edit(Edit::Each(edits, label)));

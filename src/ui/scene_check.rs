@@ -6,7 +6,7 @@ use super::icons;
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW, palette};
 use crate::editor::{Edit, Editor, Item, Selection};
-use crate::scene::{About, Hint, Object, Scene, hints};
+use crate::scene::{About, Hint, Scene, hints};
 
 /// Width of the list in points.
 const WIDTH: f32 = 420.0;
@@ -81,11 +81,7 @@ fn way_out(scene: &Scene, hint: &Hint) -> Option<(&'static str, Edit)> {
     match hint.about {
         About::Pack(index) => Some(("Delete", Edit::Delete(Item::pack(index)))),
         About::Object(index) if hint.is_twice => {
-            let object = Object {
-                visible: false,
-                ..scene.objects.get(index)?.clone()
-            };
-            Some(("Hide", Edit::Object(index, object, "hide")))
+            Some(("Hide", Edit::visible(scene, Item::object(index), false)?))
         }
         _ => None,
     }

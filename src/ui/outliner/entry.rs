@@ -124,22 +124,7 @@ pub fn eye(ui: &mut Ui, scene: &Scene, item: Item, name: &str, out: &mut UiReque
     if !icons::button(ui, icon, &format!("{verb} {name}")).clicked() {
         return;
     }
-    let field = if visible { "hide" } else { "show" };
-    match item.kind {
-        Kind::Light => {
-            let light = crate::scene::Light {
-                visible: !visible,
-                ..scene.lights[item.index].clone()
-            };
-            out.edit(Edit::Light(item.index, light, field));
-        }
-        Kind::Object => {
-            let object = crate::scene::Object {
-                visible: !visible,
-                ..scene.objects[item.index].clone()
-            };
-            out.edit(Edit::Object(item.index, object, field));
-        }
-        Kind::Pack => {}
+    if let Some(edit) = Edit::visible(scene, item, !visible) {
+        out.edit(edit);
     }
 }

@@ -211,9 +211,9 @@ impl Drag {
                     is_level: modifiers.shift,
                 };
                 if response.dragged() {
-                    let outcome = grip.pull(&view.lens, pull);
-                    out.actions.extend(outcome.edit.map(Action::Edit));
-                    grip.label(&view.painter, at, &outcome.words);
+                    let (edit, words) = grip.pull(&view.lens, pull).unwrap_or_default();
+                    out.actions.extend(edit.map(Action::Edit));
+                    grip.label(&view.painter, at, &words);
                 }
             }
         }

@@ -37,14 +37,6 @@ pub struct Pull {
     pub is_level: bool,
 }
 
-/// What a grip comes to.
-pub struct Outcome {
-    /// The change, if the pointer is where it has a meaning.
-    pub edit: Option<Edit>,
-    /// What changes, and by how much, in words.
-    pub words: String,
-}
-
 impl Grip {
     /// Grabs a handle of these things at a place on the screen.
     pub fn new(lens: &Lens, before: Vec<Subject>, handle: Handle, at: Pos2) -> Option<Self> {
@@ -108,15 +100,8 @@ impl Grip {
         }
     }
 
-    /// What a pull comes to.
-    pub fn pull(&self, lens: &Lens, pull: Pull) -> Outcome {
-        let (edit, words) = self
-            .pulled(lens, pull)
-            .map_or((None, String::new()), |(edit, words)| (edit, words));
-        Outcome { edit, words }
-    }
-
-    fn pulled(&self, lens: &Lens, pull: Pull) -> Option<(Option<Edit>, String)> {
+    /// What a pull comes to: the change, and by how much in words. `None` where the pointer has no meaning.
+    pub fn pull(&self, lens: &Lens, pull: Pull) -> Option<(Option<Edit>, String)> {
         let unit = lens.unit_at(self.middle);
         let round = |value: f64| rounded(value, unit, pull.snaps);
         let typed = self.typed.parse::<f64>().ok();

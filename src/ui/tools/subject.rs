@@ -37,16 +37,12 @@ impl Subject {
             Kind::Light => Some(scene.lights.get(item.index)?.position),
             Kind::Pack => None,
         });
-        let (sum, count) = middles.fold((DVec3::ZERO, 0), |(sum, count), middle| {
-            (sum + middle, count + 1)
-        });
-        (count > 0).then(|| sum / f64::from(count))
+        mean(middles)
     }
 
     /// The middle of all.
     pub fn middle_of(subjects: &[Self]) -> Option<DVec3> {
-        let sum: DVec3 = subjects.iter().map(Self::middle).sum();
-        (!subjects.is_empty()).then(|| sum / subjects.len() as f64)
+        mean(subjects.iter().map(Self::middle))
     }
 
     /// The box around it, if it ends.
@@ -134,6 +130,14 @@ impl Subject {
             Self::Light(index, light) => Edit::Light(*index, light.clone(), field),
         }
     }
+}
+
+/// The mean of points; `None` of none.
+fn mean(points: impl Iterator<Item = DVec3>) -> Option<DVec3> {
+    let (sum, count) = points.fold((DVec3::ZERO, 0), |(sum, count), point| {
+        (sum + point, count + 1)
+    });
+    (count > 0).then(|| sum / f64::from(count))
 }
 
 /// The middle of a shape that ends, or where it is.
