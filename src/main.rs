@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use glint::cli::{CliAction, CliError, picture_instead_of_window};
 use glint::export::save_image;
+use glint::image::Film;
 use glint::ui::NoWindow;
 use glint::{cli, ui};
 
@@ -12,13 +13,13 @@ fn main() -> ExitCode {
     let result = match cli::run(std::env::args_os()) {
         CliAction::Done(code) => return code,
         CliAction::Chart { study, path } => {
-            save_image(&ui::chart_picture(&study), &path).map_err(CliError::from)
+            save_image(&Film::Levels(ui::chart_picture(&study)), &path).map_err(CliError::from)
         }
         CliAction::Growth { growth, path } => {
-            save_image(&ui::growth_picture(&growth), &path).map_err(CliError::from)
+            save_image(&Film::Levels(ui::growth_picture(&growth)), &path).map_err(CliError::from)
         }
         CliAction::Stability { maps, path } => {
-            save_image(&ui::stability_picture(&maps), &path).map_err(CliError::from)
+            save_image(&Film::Levels(ui::stability_picture(&maps)), &path).map_err(CliError::from)
         }
         CliAction::Editor {
             scene,

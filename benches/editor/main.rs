@@ -146,7 +146,7 @@ fn five_hundred_steps_of_undo(bencher: Bencher) {
         for step in 0..500 {
             let mut object = editor.scene().objects[77_777].clone();
             object.shape = object.shape.moved(DVec3::X * f64::from(step % 7 - 3));
-            editor.apply(Action::Edit(Edit::Object(77_777, object, "center")));
+            editor.apply(Action::Edit(Edit::object(77_777, object, "center")));
             editor.end_gesture();
         }
     });
@@ -183,6 +183,7 @@ fn many(objects: u32) -> String {
                         }
                         .into(),
                         visible: number < 10,
+                        group: String::new(),
                     }
                 })
                 .collect(),

@@ -120,6 +120,7 @@ fn spheres_512(bencher: Bencher, count: u32) {
                 radius: 80.0 / side,
             }),
             visible: true,
+            group: String::new(),
         });
     }
     trace(bencher, &scene, RenderRequest::sized(512, 512), 2);

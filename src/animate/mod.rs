@@ -19,6 +19,8 @@ mod retime;
 
 mod smoothing;
 
+mod resample;
+
 mod simplify;
 
 mod table;
@@ -28,8 +30,9 @@ pub use curve::{Closing, Curve};
 pub use path::CameraPath;
 pub use pose::{CameraChange, motion_between, pose, shot};
 pub use presets::Preset;
+pub use resample::resampled;
 pub use retime::{Retime, paused_seconds};
-pub use simplify::{Seen, Simplified, deviation, simplify, worst_off};
+pub use simplify::{Seen, Simplified, Worst, deviation, simplify, worst_off};
 pub use table::{TableError, from_table, from_text, to_table, to_text};
 
 #[cfg(test)]

@@ -11,6 +11,13 @@ use crate::scene::{Camera, Interpolation, Key, Take};
 /// Keys to both sides whose removal a key feels: a smooth segment is shaped by its neighbours.
 const REACH: usize = 3;
 
+/// Least way of a jump, in image heights.
+const JUMP: f64 = 0.02;
+/// How many times farther than usual it is.
+const JUMP_FACTOR: f64 = 6.0;
+/// Steps to both sides that tell what is usual.
+const BESIDE: usize = 6;
+
 /// Widths in seconds over which a take may be smoothed, widest first.
 const SMOOTHING: [f64; 6] = [0.6, 0.4, 0.25, 0.15, 0.08, 0.04];
 
@@ -32,7 +39,18 @@ pub struct Simplified {
     /// The keys, at times of samples.
     pub keys: Vec<Key<Camera>>,
     /// How far off the picture is at most at a sample, in image heights.
-    pub worst: f64,
+    pub worst: Worst,
+    /// How often the hand jumped: the picture moved farther from one sample to the next than a hand moves.
+    pub jumps: usize,
+}
+
+/// Where keys are off a take the most.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Worst {
+    /// How far the picture is off, in image heights.
+    pub off: f64,
+    /// When, in seconds of the keys.
+    pub time: f64,
 }
 
 /// How far, in image heights, what was seen at known places is off through another camera.
@@ -59,13 +77,16 @@ pub fn deviation(camera: &Camera, seen: &[Seen]) -> f64 {
 /// A hand trembles: where the tolerance allows it, the keys are taken from a smoother flight that is
 /// itself off by no more than half of it.
 pub fn simplify(take: &Take, seen: &[Vec<Seen>], tolerance: f64) -> Simplified {
-    let cuts = cuts(take);
+    let (cuts, jumps) = (cuts(take), jumps(take, seen));
+    let edges: BTreeSet<usize> = cuts.union(&jumps).copied().collect();
     let search = Search {
         take,
-        cameras: smoothed_cameras(take, &cuts, seen, tolerance / 2.0),
+        // What jumps was not meant to be smooth there.
+        cameras: smoothed_cameras(take, &edges, seen, tolerance / 2.0),
         seen,
         tolerance,
         cuts,
+        edges,
     };
     let mut chosen = search.refined(search.ends());
     search.prune(&mut chosen);
@@ -73,7 +94,8 @@ pub fn simplify(take: &Take, seen: &[Vec<Seen>], tolerance: f64) -> Simplified {
     let chosen = search.refined(chosen);
     let keys = search.keys(chosen.iter().copied());
     let worst = worst_off(&CameraPath::new(&keys), take, seen);
-    Simplified { keys, worst }
+    let jumps = jumps.len();
+    Simplified { keys, worst, jumps }
 }
 
 /// The cameras of a take, as smooth as the tolerance allows.
@@ -99,18 +121,23 @@ fn smoothed_cameras(
     smooth.next().unwrap_or_else(plain)
 }
 
-/// How far keys are off a take at most, in image heights: it is flown in the time that the keys take.
-pub fn worst_off(path: &CameraPath, take: &Take, seen: &[Vec<Seen>]) -> f64 {
+/// Where keys are off a take the most: it is flown in the time that the keys take.
+pub fn worst_off(path: &CameraPath, take: &Take, seen: &[Vec<Seen>]) -> Worst {
     let times = |keys: &[Key<Camera>]| Some((keys.first()?.time, keys.last()?.time));
     let (Some((start, end)), [first, .., last]) = (times(path.keys()), &take.samples[..]) else {
-        return f64::INFINITY;
+        let off = f64::INFINITY;
+        return Worst { off, time: 0.0 };
     };
     let scale = (end - start) / (last.0 - first.0);
     let off = take.samples.iter().zip(seen).map(|(sample, seen)| {
-        let camera = path.at(start + (sample.0 - first.0) * scale);
-        camera.map_or(f64::INFINITY, |camera| deviation(&camera, seen))
+        let time = start + (sample.0 - first.0) * scale;
+        let camera = path.at(time);
+        let off = camera.map_or(f64::INFINITY, |camera| deviation(&camera, seen));
+        Worst { off, time }
     });
-    off.fold(0.0, f64::max)
+    off.fold(Worst::default(), |worst, this| {
+        if this.off > worst.off { this } else { worst }
+    })
 }
 
 struct Search<'t> {
@@ -121,6 +148,8 @@ struct Search<'t> {
     tolerance: f64,
     /// Last samples before the projection changes.
     cuts: BTreeSet<usize>,
+    /// The same, and before the hand jumped.
+    edges: BTreeSet<usize>,
 }
 
 /// The samples after which rays suddenly spread, or run side by side.
@@ -130,6 +159,25 @@ fn cuts(take: &Take) -> BTreeSet<usize> {
         is_cut.then(|| pair[1].from - 1)
     });
     changes.collect()
+}
+
+/// The samples after which the picture moves much farther than it did around them: a script or a touchpad
+/// moved the mouse, or the machine was busy with something else.
+fn jumps(take: &Take, seen: &[Vec<Seen>]) -> BTreeSet<usize> {
+    let cameras = (1..take.samples.len()).map(|n| take.camera(n));
+    let steps: Vec<f64> = cameras
+        .zip(seen)
+        .map(|(camera, seen)| camera.map_or(0.0, |camera| deviation(&camera, seen)))
+        .collect();
+    let is_jump = |n: &usize| {
+        let around = n.saturating_sub(BESIDE)..(n + 1 + BESIDE).min(steps.len());
+        let others = around.filter(|other| other != n).map(|other| steps[other]);
+        let mut others: Vec<f64> = others.collect();
+        others.sort_by(f64::total_cmp);
+        let usual = others.get(others.len() / 2).copied().unwrap_or(0.0);
+        steps[*n] > JUMP.max(usual * JUMP_FACTOR)
+    };
+    (0..steps.len()).filter(is_jump).collect()
 }
 
 impl Search<'_> {
@@ -158,11 +206,11 @@ impl Search<'_> {
         (worst.1 > self.tolerance).then_some(worst.0)
     }
 
-    /// The samples that are keys in any case: the ends, and both sides of cuts.
+    /// The samples that are keys in any case: the ends, and both sides of cuts and jumps.
     fn ends(&self) -> BTreeSet<usize> {
         let last = self.take.samples.len().saturating_sub(1);
-        let cuts = self.cuts.iter().flat_map(|&cut| [cut, cut + 1]);
-        [0, last].into_iter().chain(cuts).collect()
+        let edges = self.edges.iter().flat_map(|&edge| [edge, edge + 1]);
+        [0, last].into_iter().chain(edges).collect()
     }
 
     /// With the worst sample of each stretch added until none is off too far.
@@ -186,7 +234,7 @@ impl Search<'_> {
         let inner: Vec<usize> = chosen.iter().copied().collect();
         let inner = inner.get(1..inner.len().saturating_sub(1)).unwrap_or(&[]);
         for &sample in inner {
-            if self.cuts.contains(&sample) || (sample > 0 && self.cuts.contains(&(sample - 1))) {
+            if self.edges.contains(&sample) || (sample > 0 && self.edges.contains(&(sample - 1))) {
                 continue;
             }
             let mut around: Vec<usize> = chosen

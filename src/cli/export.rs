@@ -29,7 +29,7 @@ struct What {
     /// Names of the frames, with %d where the number goes, or %05d for five digits
     #[arg(long, value_name = "PATTERN", default_value = "rayTrace%d", value_parser = Pattern::parse)]
     name: Pattern,
-    /// Format of the frames: ppm or png
+    /// Format of the frames: ppm, png or exr (linear light)
     #[arg(long, default_value = "ppm", value_parser = format_of)]
     format: Format,
     /// Width in pixels; alone, it keeps the scene's aspect
@@ -78,11 +78,7 @@ pub struct JobArgs {
 }
 
 fn format_of(word: &str) -> Result<Format, String> {
-    match word {
-        "ppm" => Ok(Format::Ppm),
-        "png" => Ok(Format::Png),
-        _ => Err("expected ppm or png".to_owned()),
-    }
+    Format::of_ending(word).ok_or_else(|| "expected ppm, png or exr".to_owned())
 }
 
 impl What {

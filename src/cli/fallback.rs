@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::error::{CliError, say};
 use super::scene::read_scene;
 use crate::export::{free_path, save_image};
-use crate::image::render;
+use crate::image::{Film, render};
 use crate::plan::RenderRequest;
 use crate::scene::Scene;
 use crate::trace::{RenderControl, Threads};
@@ -40,12 +40,8 @@ pub fn picture_instead_of_window(scene: Option<&Path>, reason: &str) -> Result<(
     let traced = threads.run(|| render(&scene, &request, &RenderControl::default()));
     let (image, _) = traced.ok_or_else(|| CliError::failed("the trace ended without a picture"))?;
     let path = free_path(&name);
-    save_image(&image, &path)?;
-    say(&format!(
-        "{}: {}×{}",
-        path.display(),
-        image.width,
-        image.height
-    ));
+    let (width, height) = (image.width, image.height);
+    save_image(&Film::Levels(image), &path)?;
+    say(&format!("{}: {width}×{height}", path.display()));
     Ok(())
 }

@@ -16,9 +16,9 @@ use super::scene::read_scene;
 use super::settings::SettingArgs;
 use crate::animate::{CameraPath, shot};
 use crate::export::{NoSuchFrame, save_image};
-use crate::image::{Format, Image, RenderCost, render_into};
+use crate::image::{Film, Format, RenderCost};
 use crate::plan::{Planner, RenderRequest};
-use crate::scene::{MAX_SIDE, Projection, Scene};
+use crate::scene::{Aspect, MAX_SIDE, Projection, Scene};
 use crate::simd::Level;
 use crate::trace::{RenderControl, Threads};
 use crate::worker::run_in_background;
@@ -30,7 +30,7 @@ const PROGRESS_TICK: Duration = Duration::from_millis(100);
 pub struct RenderArgs {
     /// The scene file (RON)
     scene: PathBuf,
-    /// The picture to write; ends in .png or .ppm
+    /// The picture to write; ends in .png, .ppm or .exr (linear light)
     #[arg(short, long, value_name = "IMAGE", required_unless_present = "stats")]
     output: Option<PathBuf>,
     /// Width in pixels; alone, it keeps the scene's aspect
@@ -50,6 +50,8 @@ pub struct RenderArgs {
     /// Frame of the animation, from 1 [default: the scene's own camera and values]
     #[arg(long, value_name = "N", value_parser = frame)]
     frame: Option<u64>,
+    #[arg(long, value_name = "ASPECT", value_parser = aspect, help = aspect_help())]
+    show: Option<Aspect>,
     /// Tracing threads [default: one per core]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: Option<u16>,
@@ -101,7 +103,7 @@ fn lanes(word: &str) -> Result<Level, String> {
 /// [`CliError`]: a scene that is none, a frame that it does not have, or a picture that cannot be written.
 pub fn run(args: &RenderArgs) -> Result<(), CliError> {
     // A name that cannot be written is known before the first ray.
-    args.output.as_deref().map(Format::of_path).transpose()?;
+    let format = args.output.as_deref().map(Format::of_path).transpose()?;
     let mut scene = read_scene(&args.scene)?;
     let threads = Threads::new(args.threads.map(usize::from))?;
     if let Some(frame) = args.frame {
@@ -109,21 +111,38 @@ pub fn run(args: &RenderArgs) -> Result<(), CliError> {
         scene = at_frame(scene, frame).map_err(place)?;
     }
     args.settings.apply(&mut scene.render);
+    scene = args.show.unwrap_or_default().of(&scene);
     let request = args.request(&scene);
     let count = threads.count();
-    let traced = trace(scene, request, threads, args.repeat.get());
-    let (image, costs) =
+    let film = Film::new(format.unwrap_or(Format::Ppm));
+    let traced = trace(scene, (request, film), threads, args.repeat.get());
+    let (film, costs) =
         traced.ok_or_else(|| CliError::failed("the trace ended without a picture"))?;
     if let Some(path) = &args.output {
-        save_image(&image, path)?;
+        save_image(&film, path)?;
     }
-    let stats = stats(&image, &costs, count);
+    let stats = stats(film.size(), &costs, count);
     match (&args.output, args.stats) {
         (_, true) => say(&serde_json::to_string(&stats)?),
         (Some(path), false) => say(&summary(path, &stats)),
         (None, false) => {}
     }
     Ok(())
+}
+
+fn aspect(word: &str) -> Result<Aspect, String> {
+    let mut all = Aspect::EACH.into_iter();
+    let found = all.find(|(aspect, ..)| aspect.word() == word);
+    found
+        .map(|(aspect, ..)| aspect)
+        .ok_or_else(|| format!("expected {}", Aspect::words()))
+}
+
+fn aspect_help() -> String {
+    format!(
+        "Show one thing in place of the picture: {}",
+        Aspect::words()
+    )
 }
 
 fn frame(word: &str) -> Result<u64, String> {
@@ -152,6 +171,7 @@ impl RenderArgs {
                 CameraArg::Orthographic => Projection::Orthographic,
             }),
             level: self.lanes,
+            aspect: self.show.unwrap_or_default(),
             ..RenderRequest::of(scene, width, height)
         }
     }
@@ -177,10 +197,10 @@ fn in_proportion(side: u32, numerator: u32, denominator: u32) -> u32 {
 /// Traces `repeat` times, with a bar on a terminal if it takes a while.
 fn trace(
     scene: Scene,
-    request: RenderRequest,
+    (request, mut film): (RenderRequest, Film),
     threads: Threads,
     repeat: usize,
-) -> Option<(Image, Vec<RenderCost>)> {
+) -> Option<(Film, Vec<RenderCost>)> {
     let control = Arc::new(RenderControl::default());
     let total = u64::from(request.width) * u64::from(request.height) * repeat as u64;
     let result = run_in_background("glint-render", {
@@ -188,13 +208,13 @@ fn trace(
         move || {
             let mut costs = Vec::new();
             // They are all the same, and may be large.
-            let (mut image, mut planner) = (Image::default(), Planner::default());
+            let mut planner = Planner::default();
             for _ in 0..repeat {
-                let traced = || render_into(&mut image, &mut planner, &scene, &request, &control);
+                let traced = || film.expose(&mut planner, &scene, &request, &control);
                 let cost = threads.run(traced)?;
                 costs.push(cost);
             }
-            Some((image, costs))
+            Some((film, costs))
         }
     });
     let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {eta} left");
@@ -216,7 +236,7 @@ fn trace(
     }
 }
 
-fn stats(image: &Image, costs: &[RenderCost], threads: usize) -> Stats {
+fn stats((width, height): (usize, usize), costs: &[RenderCost], threads: usize) -> Stats {
     let mut millis: Vec<f64> = costs
         .iter()
         .map(|cost| cost.time.as_secs_f64() * 1e3)
@@ -239,8 +259,8 @@ fn stats(image: &Image, costs: &[RenderCost], threads: usize) -> Stats {
         },
         lanes,
         threads,
-        width: image.width,
-        height: image.height,
+        width,
+        height,
     }
 }
 

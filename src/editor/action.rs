@@ -51,6 +51,8 @@ pub enum Action {
 pub struct Message {
     /// Whether something went wrong.
     pub is_error: bool,
-    /// What happened and, for errors, what to do.
+    /// What happened and, for errors, what to do; nothing, where an action was only begun again.
     pub text: String,
+    /// The action that it is about: what went wrong in it is forgotten when it is begun again. Empty for none.
+    pub about: &'static str,
 }

@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use super::timeline::{MEASURED_AT, Timeline};
-use crate::animate::{CameraPath, Seen, pose, shot, worst_off};
-use crate::scene::{Scene, Take, Target};
+use crate::animate::{CameraPath, Seen, Worst, pose, shot, worst_off};
+use crate::scene::{Camera, Key, Scene, Take, Target};
 
 /// The finest tolerance of the slider, in pixels.
 const FINEST: f64 = 0.05;
+/// Flights that were made of recordings are known, so many of them.
+const MOST_MADE: usize = 16;
 
 /// What waits for the survey of a take.
 #[derive(Clone, Debug)]
@@ -44,6 +46,8 @@ pub struct AnimationState {
     pub survey: Option<(Arc<Take>, Vec<Vec<Seen>>)>,
     /// What is done with the survey once it is there.
     pub pending: Option<Pending>,
+    /// Keys that were made of recordings, and how far they might be off, in pixels.
+    made: Vec<(f64, Vec<Key<Camera>>)>,
 }
 
 impl AnimationState {
@@ -57,6 +61,7 @@ impl AnimationState {
             revision: 1,
             survey: None,
             pending: None,
+            made: Vec::new(),
         };
         animation_state.measure();
         animation_state
@@ -79,12 +84,26 @@ impl AnimationState {
             self.pending.get_or_insert(Pending::Measure(take));
             return;
         };
-        let worst = worst_off(&self.path, &take, seen) * MEASURED_AT;
-        self.timeline.worst = Some(worst);
-        if worst.is_finite() {
+        let Worst { off, time } = worst_off(&self.path, &take, seen);
+        let off = off * MEASURED_AT;
+        self.timeline.worst = Some(Worst { off, time });
+        let mut made = self.made.iter();
+        let made = made.find(|(_, keys)| *keys == animation.keys);
+        self.timeline.is_edited = made.is_none() && !self.made.is_empty();
+        if let Some((tolerance, _)) = made {
+            self.timeline.tolerance = *tolerance;
+        } else if off.is_finite() && self.made.is_empty() {
             // As the slider shows it: a hundredth more or less is no wish of the user's.
-            self.timeline.tolerance = (worst.max(FINEST) * 100.0).ceil() / 100.0;
+            self.timeline.tolerance = (off.max(FINEST) * 100.0).ceil() / 100.0;
         }
+    }
+
+    /// These keys were made of the recording with this tolerance.
+    pub fn note_made(&mut self, tolerance: f64, keys: Vec<Key<Camera>>) {
+        self.made.retain(|(_, other)| *other != keys);
+        self.made.push((tolerance, keys));
+        let excess = self.made.len().saturating_sub(MOST_MADE);
+        self.made.drain(..excess);
     }
 
     /// What the samples of a take see, if that is known.

@@ -40,6 +40,8 @@ pub struct Editor {
     pub mode: Mode,
     /// What the user should read, oldest first; the window takes them away.
     pub messages: Vec<Message>,
+    /// Whether the last edit was refused.
+    pub(super) is_refused: bool,
 }
 
 impl Editor {
@@ -72,6 +74,7 @@ impl Editor {
             selected: Selected::default(),
             mode: Mode::default(),
             messages: Vec::new(),
+            is_refused: false,
         }
     }
 
@@ -244,21 +247,6 @@ impl Editor {
         self.documents
     }
 
-    /// Says which meshes could not be read.
-    pub(super) fn tell_missing_meshes(&mut self) {
-        let mut problems = self.scene.mesh_problems();
-        let Some((index, why)) = problems.next() else {
-            return;
-        };
-        let more = match problems.count() {
-            0 => String::new(),
-            more => format!(" ({more} more are missing)"),
-        };
-        let name = &self.scene.objects[index].name;
-        let text = format!("{name:?} is not in the picture: {why}{more}");
-        self.report_error(text);
-    }
-
     /// Writes the document to `path`, which becomes its file.
     ///
     /// # Errors
@@ -304,20 +292,14 @@ impl Editor {
         }
     }
 
-    /// Tells the user something.
-    pub fn notify(&mut self, text: String) {
-        self.messages.push(Message {
-            is_error: false,
-            text,
-        });
-    }
-
-    /// Tells the user that something went wrong.
-    pub fn report_error(&mut self, text: String) {
-        self.messages.push(Message {
-            is_error: true,
-            text,
-        });
+    /// The document as it can be kept anywhere: a mesh that lies in no folder of this scene, where it would
+    /// not be found again, is taken in.
+    pub fn document_to_keep(&self) -> Document {
+        let folder = self.path().and_then(Path::parent);
+        Document {
+            header: self.header.clone(),
+            scene: self.scene.taken_to(folder.unwrap_or(Path::new(""))),
+        }
     }
 
     fn replace(&mut self, document: Document, path: Option<PathBuf>) {
@@ -346,7 +328,7 @@ impl Editor {
         let mut next = Scene::clone(&self.scene);
         let selection = match edit.apply(&mut next) {
             Ok(selection) => selection,
-            Err(error) => return self.report_error(error.to_string()),
+            Err(error) => return self.refuse(error.to_string()),
         };
         self.animation_state.key_tracked(&self.scene, &mut next);
         if is_camera {
@@ -356,8 +338,9 @@ impl Editor {
             return;
         }
         if let Err(problem) = check_edit(&next, &self.scene) {
-            return self.report_error(format!("{label}: {}", problem.sentence));
+            return self.refuse(format!("{label}: {}", problem.sentence));
         }
+        self.forget_refusal();
         let before = self.here();
         self.history.record(label, before, &next);
         match selection {

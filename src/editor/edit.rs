@@ -6,7 +6,8 @@ use glam::DVec3;
 
 use crate::mesh::Part;
 use crate::scene::{
-    Animation, Camera, ColorPack, Light, LightObj, List, Mesh, Object, Render, Scene, Shape,
+    Animation, Bookmark, Camera, ColorPack, Light, LightObj, List, Mesh, Object, Render, Scene,
+    Shape,
 };
 
 use super::clipboard::paste;
@@ -31,7 +32,7 @@ pub enum Edit {
     /// Other keys; the name is what was done to them.
     Animation(Arc<Animation>, &'static str),
     /// Another object in this place.
-    Object(usize, Object, &'static str),
+    Object(usize, Box<Object>, &'static str),
     /// Another light in this place.
     Light(usize, Light, &'static str),
     /// Another pack under the name in this place.
@@ -63,6 +64,12 @@ pub enum Edit {
     Move(Item, usize),
     /// A copy of its pack for this object alone.
     MakePackUnique(usize),
+    /// Each pack that is equal to one before it goes, and that one is worn in its place.
+    MergePacks,
+    /// The objects in these places are listed in the group of this name; in none, if it is empty.
+    Group(Vec<usize>, String),
+    /// Other bookmarks; the name is what was done to them.
+    Bookmarks(Vec<Bookmark>, &'static str),
     /// All of these, one after the other, in one step of this name.
     Each(Vec<Edit>, String),
 }
@@ -89,6 +96,11 @@ impl Edit {
         Self::Animation(Arc::new(animation), what)
     }
 
+    /// Another object in this place; `field` is what changed.
+    pub fn object(index: usize, object: Object, field: &'static str) -> Self {
+        Self::Object(index, Box::new(object), field)
+    }
+
     /// Shows or hides an item, if it can be hidden.
     pub fn visible(scene: &Scene, item: Item, visible: bool) -> Option<Self> {
         let field = if visible { "show" } else { "hide" };
@@ -100,7 +112,7 @@ impl Edit {
             }
             Kind::Object => {
                 let object = scene.objects.get(index)?.clone();
-                Some(Self::Object(index, Object { visible, ..object }, field))
+                Some(Self::object(index, Object { visible, ..object }, field))
             }
             Kind::Pack => None,
         }
@@ -116,7 +128,7 @@ impl Edit {
             Self::LightVisualization(true) => "Show light markers".to_owned(),
             Self::LightVisualization(false) => "Hide light markers".to_owned(),
             Self::Render(_, field) => format!("Render: {field}"),
-            Self::Animation(_, what) => (*what).to_owned(),
+            Self::Animation(_, what) | Self::Bookmarks(_, what) => (*what).to_owned(),
             Self::Object(index, _, field) => format!("{}: {field}", name(Item::object(*index))),
             Self::Light(index, _, field) => format!("{}: {field}", name(Item::light(*index))),
             Self::Pack(index, _, field) => format!("{}: {field}", name(Item::pack(*index))),
@@ -135,6 +147,9 @@ impl Edit {
             Self::MakePackUnique(index) => {
                 format!("{}: own color pack", name(Item::object(*index)))
             }
+            Self::MergePacks => "Merge equal packs".to_owned(),
+            Self::Group(_, name) if name.is_empty() => "Ungroup".to_owned(),
+            Self::Group(_, name) => format!("Group {name}"),
             Self::Each(_, label) => label.clone(),
         }
     }
@@ -152,7 +167,7 @@ impl Edit {
             Self::LightVisualization(visible) => scene.light_visualization = visible,
             Self::Render(render, _) => scene.render = render,
             Self::Animation(animation, _) => scene.animation = animation,
-            Self::Object(index, object, _) => replace(&mut scene.objects, index, object),
+            Self::Object(index, object, _) => replace(&mut scene.objects, index, *object),
             Self::Light(index, light, _) => replace(&mut scene.lights, index, light),
             Self::Pack(index, pack, _) => {
                 if let Some((_, place)) = scene.packs_mut().get_index_mut(index) {
@@ -178,6 +193,15 @@ impl Edit {
             Self::Delete(item) => delete(scene, item)?,
             Self::Move(item, to) => return Ok(select(move_item(scene, item, to))),
             Self::MakePackUnique(index) => make_pack_unique(scene, index),
+            Self::MergePacks => scene.merge_equal_packs(),
+            Self::Group(members, name) => {
+                for index in members {
+                    if let Some(object) = scene.objects.get_mut(index) {
+                        object.group.clone_from(&name);
+                    }
+                }
+            }
+            Self::Bookmarks(bookmarks, _) => scene.bookmarks = bookmarks,
             Self::Each(edits, _) => {
                 for edit in edits {
                     edit.apply(scene)?;
@@ -218,6 +242,7 @@ fn add_object(scene: &mut Scene, name: &str, shape: Shape) -> Item {
         color_pack,
         shape,
         visible: true,
+        group: String::new(),
     });
     Item::object(scene.objects.len() - 1)
 }

@@ -8,13 +8,16 @@ use super::document::Editor;
 use super::edit::Edit;
 use super::selection::{Selected, Selection};
 use super::timeline::{MEASURED_AT, Recording, Time};
-use crate::animate::{Seen, Simplified, simplify};
+use crate::animate::{Seen, Worst, resampled, simplify};
 use crate::scene::{Animation, Camera, Key, Take};
 
 /// Keys that a recording becomes, at first, and for each second: about as many as a hand can edit.
 const FEW: (f64, f64) = (8.0, 2.5);
-/// Where the search for a tolerance ends, in pixels.
-const COARSEST: f64 = 32.0;
+/// Where the search for a tolerance ends, in pixels: farther off, one would see it.
+const COARSEST: f64 = 6.0;
+/// If one of so many samples was in a step, it is told.
+const MOSTLY: usize = 5;
+
 impl Editor {
     pub(super) fn apply_time(&mut self, time: Time) {
         let scene = Arc::clone(&self.scene);
@@ -73,7 +76,7 @@ impl Editor {
             }
             Time::Stop => {
                 if let Some(Recording { take, .. }) = timeline.recording.take() {
-                    self.stop_recording(take);
+                    self.stop_recording(&take);
                 }
             }
             Time::Surveyed(take, seen) => self.survey_arrived(take, seen),
@@ -146,21 +149,29 @@ impl Editor {
                 }
                 self.animation_state.timeline.tolerance = pixels;
                 let old = Arc::clone(&self.scene);
+                let keys = in_the_time_of(&old.animation.keys, self.simplified(&take));
+                self.animation_state.note_made(pixels, keys.clone());
                 let animation = Animation {
-                    keys: in_the_time_of(&old.animation.keys, self.simplified(&take)),
+                    keys,
                     ..Animation::clone(&old.animation)
                 };
                 self.edit(Edit::animation(animation, "Simplify"));
-                self.animation_state.timeline.tolerance = pixels;
             }
             Pending::Measure(_) => self.animation_state.measure(),
         }
     }
 
     /// A recorded flight is kept, and made into keys as soon as it is known what it saw.
-    fn stop_recording(&mut self, take: Take) {
+    fn stop_recording(&mut self, take: &Take) {
         if take.samples.len() < 2 {
             return self.notify("Nothing was recorded".to_owned());
+        }
+        let (take, stepped) = resampled(take);
+        if stepped * MOSTLY > take.samples.len() {
+            self.notify(format!(
+                "The mouse moved in steps: {stepped} of {} samples are taken from the way between them",
+                take.samples.len()
+            ));
         }
         self.after_survey(Pending::Keep(Arc::new(take)));
     }
@@ -174,11 +185,20 @@ impl Editor {
         let mut keys = self.simplified(&take);
         // A trembling hand would leave a key in every frame.
         while keys.len() > few && self.animation_state.timeline.tolerance < COARSEST {
-            self.animation_state.timeline.tolerance *= 1.5;
+            let coarser = self.animation_state.timeline.tolerance * 1.5;
+            self.animation_state.timeline.tolerance = coarser.min(COARSEST);
             keys = self.simplified(&take);
         }
         let said = keys.len();
-        let worst = self.animation_state.timeline.worst.unwrap_or(0.0);
+        let timeline = &self.animation_state.timeline;
+        let worst = timeline.worst.map_or(0.0, |worst| worst.off);
+        let jumps = match timeline.jumps {
+            0 => String::new(),
+            1 => "; the mouse jumped once".to_owned(),
+            jumps => format!("; the mouse jumped {jumps} times"),
+        };
+        let tolerance = timeline.tolerance;
+        self.animation_state.note_made(tolerance, keys.clone());
         let animation = Animation {
             keys,
             take: Some(take),
@@ -191,7 +211,7 @@ impl Editor {
         self.animation_state.timeline.stays_outside = false;
         self.show_time();
         self.notify(format!(
-            "{count} samples became {said} keys, never more than {worst:.1} px off at 1024²"
+            "{count} samples became {said} keys, never more than {worst:.1} px off at 1024²{jumps}"
         ));
     }
 
@@ -199,10 +219,14 @@ impl Editor {
     fn simplified(&mut self, take: &Arc<Take>) -> Vec<Key<Camera>> {
         let state = &mut self.animation_state;
         let seen = state.seen_by(take).unwrap_or_default();
-        let Simplified { keys, worst } =
-            simplify(take, seen, state.timeline.tolerance / MEASURED_AT);
-        state.timeline.worst = Some(worst * MEASURED_AT);
-        keys
+        let tolerance = state.timeline.tolerance / MEASURED_AT;
+        let simplified = simplify(take, seen, tolerance);
+        state.timeline.worst = Some(Worst {
+            off: simplified.worst.off * MEASURED_AT,
+            ..simplified.worst
+        });
+        state.timeline.jumps = simplified.jumps;
+        simplified.keys
     }
 }
 

@@ -131,6 +131,7 @@ mod tests {
                 color_pack: "pack 1".to_owned(),
                 shape: shape.clone(),
                 visible: true,
+                group: String::new(),
             })
             .collect();
         scene

@@ -24,6 +24,8 @@ mod animation_state;
 
 mod document;
 
+mod messages;
+
 mod outside;
 
 mod flight;

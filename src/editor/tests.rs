@@ -10,7 +10,7 @@ fn radius_edit(editor: &Editor, radius: f64) -> Action {
     if let Shape::Sphere(Sphere { radius: r, .. }) = &mut object.shape {
         *r = radius;
     }
-    Action::Edit(Edit::Object(0, object, "radius"))
+    Action::Edit(Edit::object(0, object, "radius"))
 }
 
 fn steps(editor: &mut Editor) -> usize {

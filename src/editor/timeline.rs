@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use crate::animate::Seen;
+use crate::animate::{Seen, Worst};
 use crate::scene::{Animation, Camera, Orientation, Take};
 
 /// The picture that a deviation is told for, in pixels.
@@ -70,8 +70,12 @@ pub struct Timeline {
     pub selected: BTreeSet<usize>,
     /// How far keys made of a take may be off, in pixels of a picture 1024 high.
     pub tolerance: f64,
-    /// How far the keys are off the recording, in the same pixels; `None` without one.
-    pub worst: Option<f64>,
+    /// Where the keys are off the recording the most, in the same pixels; `None` without one.
+    pub worst: Option<Worst>,
+    /// How often the mouse jumped in the flight that was made into keys last.
+    pub jumps: usize,
+    /// Whether the keys are others than were made of the recording.
+    pub is_edited: bool,
     /// Whether the user has chosen to see the shot camera from outside.
     pub(super) stays_outside: bool,
     is_returning: bool,
@@ -97,6 +101,8 @@ impl Default for Timeline {
             selected: BTreeSet::new(),
             tolerance: 1.0,
             worst: None,
+            jumps: 0,
+            is_edited: false,
             stays_outside: false,
             is_returning: false,
             recording: None,

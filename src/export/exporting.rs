@@ -8,7 +8,7 @@ use std::time::Duration;
 use super::error::ExportError;
 use super::manifest::{Hash, Manifest};
 use super::sequence::Sequence;
-use crate::image::{Image, render_into};
+use crate::image::{Film, Image};
 use crate::plan::Planner;
 use crate::trace::RenderControl;
 
@@ -45,7 +45,7 @@ pub enum ExportStep {
 /// A picture on its way to the disk.
 struct WriteJob {
     frame: u64,
-    image: Image,
+    film: Film,
     fingerprint: Hash,
     time: Duration,
 }
@@ -53,7 +53,7 @@ struct WriteJob {
 /// What came of it, and the memory back.
 struct WriteResult {
     written: Result<(), ExportError>,
-    image: Image,
+    film: Film,
 }
 
 /// A sequence that is being exported.
@@ -63,7 +63,7 @@ pub struct Exporting {
     left: VecDeque<u64>,
     jobs: Option<SyncSender<WriteJob>>,
     results: Receiver<WriteResult>,
-    spare: Vec<Image>,
+    spare: Vec<Film>,
     planner: Planner,
     done: Exported,
     last: Option<Arc<Image>>,
@@ -150,19 +150,19 @@ impl Exporting {
             self.done.kept += 1;
             return ExportStep::Going;
         }
-        let mut image = self.spare.pop().unwrap_or_default();
+        let spare = self.spare.pop();
+        let mut film = spare.unwrap_or_else(|| Film::new(self.sequence.format));
         let request = self.sequence.request(&shown);
-        let Some(cost) = render_into(&mut image, &mut self.planner, &shown, &request, control)
-        else {
-            self.spare.push(image);
+        let Some(cost) = film.expose(&mut self.planner, &shown, &request, control) else {
+            self.spare.push(film);
             self.left.push_front(frame);
             return ExportStep::Stopped;
         };
-        let step = image.height.div_ceil(SMALL).max(1);
-        self.last = Some(Arc::new(image.decimated(step)));
+        let step = film.size().1.div_ceil(SMALL).max(1);
+        self.last = Some(Arc::new(film.decimated(step)));
         let job = WriteJob {
             frame,
-            image,
+            film,
             fingerprint,
             time: cost.time,
         };
@@ -190,7 +190,7 @@ impl Exporting {
     }
 
     fn take(&mut self, result: WriteResult) -> Result<(), ExportError> {
-        self.spare.push(result.image);
+        self.spare.push(result.film);
         result.written?;
         self.done.written += 1;
         Ok(())
@@ -202,13 +202,13 @@ fn write_all(sequence: &Sequence, jobs: &Receiver<WriteJob>, results: &Sender<Wr
     for job in jobs {
         let WriteJob {
             frame,
-            image,
+            film,
             fingerprint,
             time,
         } = job;
-        let written = sequence.write(frame, &image, &fingerprint, time);
+        let written = sequence.write(frame, &film, &fingerprint, time);
         let is_over = written.is_err();
-        if results.send(WriteResult { written, image }).is_err() || is_over {
+        if results.send(WriteResult { written, film }).is_err() || is_over {
             return;
         }
     }

@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 
 use super::error::ExportError;
 use crate::files::write_atomic;
-use crate::image::{Format, Image};
+use crate::image::{Film, Format};
 
 /// Writes a picture in the format of the file's ending, whole or not at all.
 ///
 /// # Errors
 /// [`ExportError`]; a file that was at `path` is then untouched.
-pub fn save_image(image: &Image, path: &Path) -> Result<(), ExportError> {
+pub fn save_image(film: &Film, path: &Path) -> Result<(), ExportError> {
     let format = Format::of_path(path)?;
-    let bytes = image.encode(format).map_err(|source| ExportError::Encode {
+    let bytes = film.encode(format).map_err(|source| ExportError::Encode {
         path: path.to_owned(),
         source,
     })?;

@@ -11,7 +11,7 @@ use super::frames::Frames;
 use super::manifest::{Hash, Manifest, add_note};
 use super::pattern::Pattern;
 use crate::animate::{CameraPath, shot};
-use crate::image::{Format, Image};
+use crate::image::{Film, Format};
 use crate::plan::RenderRequest;
 use crate::scene::{Method as _, Scene};
 
@@ -169,12 +169,12 @@ impl Sequence {
     pub fn write(
         &self,
         frame: u64,
-        image: &Image,
+        film: &Film,
         fingerprint: &Hash,
         time: Duration,
     ) -> Result<(), ExportError> {
         let path = self.path(frame);
-        let bytes = image
+        let bytes = film
             .encode(self.format)
             .map_err(|source| ExportError::Encode {
                 path: path.clone(),

@@ -2,15 +2,16 @@
 
 use std::borrow::Cow;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write as _};
+use std::io::{self, BufWriter, Cursor, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use image::codecs::gif::{GifEncoder, Repeat};
-use image::{Delay, Frame, RgbaImage};
+use image::{Delay, Frame, ImageFormat, RgbaImage};
 
 use super::sequence::Sequence;
+use crate::image::{Format, LinearImage};
 
 /// Speed of the GIF encoder's search for colours, 1 (slow) to 30.
 const GIF_SPEED: i32 = 10;
@@ -151,10 +152,9 @@ impl Video {
         done: &mut impl FnMut(usize),
     ) -> Result<(), VideoError> {
         let fps = sequence.frames_per_second().to_string();
-        let codec = if sequence.format == crate::image::Format::Ppm {
-            "ppm"
-        } else {
-            "png"
+        let codec = match sequence.format {
+            Format::Png => "png",
+            Format::Ppm | Format::Exr => "ppm",
         };
         let mut command = Command::new("ffmpeg");
         command
@@ -183,7 +183,13 @@ impl Video {
         if let Some(mut pipe) = ffmpeg.stdin.take() {
             for (index, frame) in sequence.frames.iter().enumerate() {
                 let file = sequence.path(frame);
-                let bytes = fs::read(&file).map_err(|error| unreadable(&file, error.into()))?;
+                let bytes = match sequence.format {
+                    // No pipe tells where one of these ends.
+                    Format::Exr => as_ppm(&file)?,
+                    Format::Png | Format::Ppm => {
+                        fs::read(&file).map_err(|error| unreadable(&file, error.into()))?
+                    }
+                };
                 // It hangs up when it fails; why, it says below.
                 if pipe.write_all(&bytes).is_err() {
                     break;
@@ -252,9 +258,29 @@ fn unreadable(path: &Path, source: image::ImageError) -> VideoError {
     }
 }
 
+fn as_ppm(path: &Path) -> Result<Vec<u8>, VideoError> {
+    let frame = image::DynamicImage::from(read(path)?).to_rgb8();
+    let mut bytes = Cursor::new(Vec::new());
+    frame
+        .write_to(&mut bytes, ImageFormat::Pnm)
+        .map_err(|source| unreadable(path, source))?;
+    Ok(bytes.into_inner())
+}
+
 fn read(path: &Path) -> Result<RgbaImage, VideoError> {
     let image = image::open(path).map_err(|source| unreadable(path, source))?;
-    Ok(image.to_rgba8())
+    let Some(light) = image.as_rgb32f() else {
+        return Ok(image.to_rgba8());
+    };
+    // As the tracer rounds: other libraries know of other curves.
+    let (width, height) = light.dimensions();
+    let levels = LinearImage {
+        width: width as usize,
+        height: height as usize,
+        pixels: light.pixels().map(|pixel| pixel.0).collect(),
+    };
+    let levels = levels.to_levels().pixels.concat();
+    Ok(RgbaImage::from_raw(width, height, levels).unwrap_or_default())
 }
 
 fn gif(sequence: &Sequence, path: &Path, done: &mut impl FnMut(usize)) -> Result<(), VideoError> {

@@ -3,26 +3,34 @@
 use crate::simd::Real;
 use crate::trace::{Pass, Pixel, Rays, RenderControl, Tracer};
 
-/// An 8-bit picture: RGBA, row by row from the top. Alpha is 255 where it was traced and says
-/// nothing else.
+/// An 8-bit picture: RGBA. Alpha is 255 where it was traced and says nothing else.
+pub type Image = Raster<[u8; 4]>;
+
+/// A picture of the light itself.
+pub type LinearImage = Raster<LinearRgb>;
+
+/// Linear red, green and blue, 0–1, before they become 8 bits.
+pub type LinearRgb = [f32; 3];
+
+/// A picture, row by row from the top.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Image {
+pub struct Raster<P> {
     /// Width in pixels.
     pub width: usize,
     /// Height in pixels.
     pub height: usize,
     /// `width × height` pixels.
-    pub pixels: Vec<[u8; 4]>,
+    pub pixels: Vec<P>,
 }
 
-impl Image {
+impl<P: Copy + Default> Raster<P> {
     /// A picture of which nothing is traced yet. The system hands out zeroed memory page by page as
     /// it is first touched, so that this costs the tracing threads and not the caller.
     pub fn new(width: usize, height: usize) -> Self {
         Self {
             width,
             height,
-            pixels: vec![[0; 4]; width * height],
+            pixels: vec![P::default(); width * height],
         }
     }
 
@@ -30,12 +38,7 @@ impl Image {
     /// there is kept, which saves the system handing out every page anew.
     pub fn resize(&mut self, width: usize, height: usize) {
         (self.width, self.height) = (width, height);
-        self.pixels.resize(width * height, [0; 4]);
-    }
-
-    /// Traces the pixels of `pass`; `None` if `control` said stop.
-    pub fn trace(&mut self, tracer: &Tracer, pass: Pass, control: &RenderControl) -> Option<Rays> {
-        tracer.pass(&mut self.pixels, pass, control)
+        self.pixels.resize(width * height, P::default());
     }
 
     /// The picture that a pass with this step has filled: every `step`-th pixel of every
@@ -51,6 +54,48 @@ impl Image {
             height: self.height.div_ceil(step),
             pixels,
         }
+    }
+}
+
+// Not for any pixel: the tracer's kernels are compiled here, once, and not by everyone who calls them.
+impl Image {
+    /// Traces the pixels of `pass`; `None` if `control` said stop.
+    pub fn trace(&mut self, tracer: &Tracer, pass: Pass, control: &RenderControl) -> Option<Rays> {
+        tracer.pass(&mut self.pixels, pass, control)
+    }
+
+    /// The light that the levels stand for, 0–1.
+    pub fn to_linear(&self) -> LinearImage {
+        let pixels = self.pixels.iter();
+        let share = |level: u8| f32::from(level) / 255.0;
+        LinearImage {
+            width: self.width,
+            height: self.height,
+            pixels: pixels.map(|&[r, g, b, _]| [r, g, b].map(share)).collect(),
+        }
+    }
+}
+
+impl LinearImage {
+    /// Traces the pixels of `pass`; `None` if `control` said stop.
+    pub fn trace(&mut self, tracer: &Tracer, pass: Pass, control: &RenderControl) -> Option<Rays> {
+        tracer.pass(&mut self.pixels, pass, control)
+    }
+
+    /// The same in 8 bits.
+    pub fn to_levels(&self) -> Image {
+        let pixels = self.pixels.iter();
+        Image {
+            width: self.width,
+            height: self.height,
+            pixels: pixels.map(|&[r, g, b]| Pixel::of(r, g, b)).collect(),
+        }
+    }
+}
+
+impl Pixel for LinearRgb {
+    fn of<R: Real>(red: R, green: R, blue: R) -> Self {
+        [red, green, blue].map(|channel| channel.to_f64() as f32)
     }
 }
 

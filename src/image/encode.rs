@@ -1,55 +1,95 @@
-//! Pictures as files: PNG and binary PPM.
+//! Pictures as files: PNG, binary PPM and EXR.
 
 use std::io::{Cursor, Seek, Write};
 use std::path::Path;
 
+use image::codecs::openexr::OpenExrEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::codecs::pnm::{PnmEncoder, PnmSubtype, SampleEncoding};
 use image::{ExtendedColorType, ImageEncoder as _, ImageError};
+use serde::{Deserialize, Serialize};
 
-use super::buffer::Image;
+use super::buffer::{Image, LinearImage};
 
 /// A file format.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Format {
     /// Portable Network Graphics, lossless and compressed.
     Png,
     /// Binary portable pixmap (P6), lossless and plain.
     Ppm,
+    /// EXR: linear light in single precision, lossless and compressed.
+    Exr,
 }
 
 /// A file name that says no known format.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
-#[error("{name:?} ends in no known picture format; end it in .png or .ppm")]
+#[error("{name:?} ends in no known picture format; end it in .png, .ppm or .exr")]
 pub struct FormatError {
     name: String,
 }
 
 impl Format {
+    /// Every format.
+    pub const ALL: [Self; 3] = [Self::Ppm, Self::Png, Self::Exr];
+
     /// The ending of such files.
     pub fn ending(self) -> &'static str {
         match self {
             Self::Png => "png",
             Self::Ppm => "ppm",
+            Self::Exr => "exr",
         }
+    }
+
+    /// The format with this ending, in lower case.
+    pub fn of_ending(ending: &str) -> Option<Self> {
+        Self::ALL
+            .into_iter()
+            .find(|format| format.ending() == ending)
     }
 
     /// The format that a file's ending asks for, in any case.
     ///
     /// # Errors
-    /// [`FormatError`] for any ending but `.png` and `.ppm`.
+    /// [`FormatError`] for any ending but `.png`, `.ppm` and `.exr`.
     pub fn of_path(path: &Path) -> Result<Self, FormatError> {
         let ending = path
             .extension()
             .map(|e| e.to_string_lossy().to_ascii_lowercase());
-        match ending.as_deref() {
-            Some("png") => Ok(Self::Png),
-            Some("ppm") => Ok(Self::Ppm),
-            _ => Err(FormatError {
+        ending
+            .as_deref()
+            .and_then(Self::of_ending)
+            .ok_or_else(|| FormatError {
                 name: path.display().to_string(),
-            }),
-        }
+            })
     }
+}
+
+impl LinearImage {
+    /// The bytes of an EXR file.
+    ///
+    /// # Errors
+    /// What the encoder says; none is known for a valid picture.
+    pub fn encode(&self) -> Result<Vec<u8>, ImageError> {
+        let channels = self.pixels.iter().flatten();
+        let bytes: Vec<u8> = channels.flat_map(|channel| channel.to_ne_bytes()).collect();
+        let mut file = Cursor::new(Vec::new());
+        let (width, height) = (short(self.width), short(self.height));
+        OpenExrEncoder::new(&mut file).write_image(
+            &bytes,
+            width,
+            height,
+            ExtendedColorType::Rgb32F,
+        )?;
+        Ok(file.into_inner())
+    }
+}
+
+/// Sides are far below what is cut off here.
+fn short(side: usize) -> u32 {
+    u32::try_from(side).unwrap_or(u32::MAX)
 }
 
 impl Image {
@@ -69,8 +109,11 @@ impl Image {
             .iter()
             .flat_map(|&[r, g, b, _]| [r, g, b])
             .collect();
-        let size = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
-        let (width, height, kind) = (size(self.width), size(self.height), ExtendedColorType::Rgb8);
+        let (width, height, kind) = (
+            short(self.width),
+            short(self.height),
+            ExtendedColorType::Rgb8,
+        );
         match format {
             Format::Png => {
                 PngEncoder::new_with_quality(file, CompressionType::Fast, FilterType::Adaptive)
@@ -79,6 +122,7 @@ impl Image {
             Format::Ppm => PnmEncoder::new(file)
                 .with_subtype(PnmSubtype::Pixmap(SampleEncoding::Binary))
                 .write_image(&rgb, width, height, kind),
+            Format::Exr => Ok(file.write_all(&self.to_linear().encode()?)?),
         }
     }
 }
@@ -92,7 +136,7 @@ mod tests {
         let mut image = Image::new(7, 3);
         image.pixels.fill([0, 0, 0, 255]);
         image.pixels[4] = [1, 2, 250, 255];
-        for format in [Format::Png, Format::Ppm] {
+        for format in Format::ALL {
             let bytes = image.encode(format).expect("encodes");
             let back = image::load_from_memory(&bytes).expect("decodes").to_rgba8();
             assert_eq!(back.into_raw(), image.pixels.concat());
@@ -106,7 +150,7 @@ mod tests {
         let refused = Format::of_path(Path::new("b.jpg")).expect_err("not a known format");
         assert_eq!(
             refused.to_string(),
-            r#""b.jpg" ends in no known picture format; end it in .png or .ppm"#
+            r#""b.jpg" ends in no known picture format; end it in .png, .ppm or .exr"#
         );
     }
 }

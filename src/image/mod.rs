@@ -6,9 +6,15 @@ mod encode;
 
 mod render;
 
+mod histogram;
+
+mod film;
+
 mod object_map;
 
-pub use buffer::Image;
+pub use buffer::{Image, LinearImage, LinearRgb, Raster};
 pub use encode::{Format, FormatError};
+pub use film::Film;
+pub use histogram::Histogram;
 pub use object_map::{ObjectMap, ObjectMapper, Thing};
-pub use render::{RenderCost, render, render_into};
+pub use render::{RenderCost, render, render_into, render_light_into};

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::buffer::Image;
+use super::buffer::{Image, LinearImage};
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::Scene;
 use crate::trace::{Pass, Rays, RenderControl, Tracer};
@@ -38,10 +38,36 @@ pub fn render_into(
     request: &RenderRequest,
     control: &RenderControl,
 ) -> Option<RenderCost> {
+    timed(scene, request, planner, |tracer| {
+        image.resize(tracer.width(), tracer.height());
+        image.trace(tracer, Pass::Whole, control)
+    })
+}
+
+/// [`render_into`] for the light itself.
+pub fn render_light_into(
+    image: &mut LinearImage,
+    planner: &mut Planner,
+    scene: &Scene,
+    request: &RenderRequest,
+    control: &RenderControl,
+) -> Option<RenderCost> {
+    timed(scene, request, planner, |tracer| {
+        image.resize(tracer.width(), tracer.height());
+        image.trace(tracer, Pass::Whole, control)
+    })
+}
+
+/// What it costs to plan a picture, and to do this with it.
+fn timed(
+    scene: &Scene,
+    request: &RenderRequest,
+    planner: &mut Planner,
+    work: impl FnOnce(&Tracer) -> Option<Rays>,
+) -> Option<RenderCost> {
     let start = Instant::now();
     let tracer = Tracer::planned(scene, request, planner);
-    image.resize(tracer.width(), tracer.height());
-    let rays = image.trace(&tracer, Pass::Whole, control)?;
+    let rays = work(&tracer)?;
     Some(RenderCost {
         time: start.elapsed(),
         rays,

@@ -200,6 +200,7 @@ fn object(name: &str, pack: &str, shape: Shape) -> Object {
         color_pack: pack.to_owned(),
         shape,
         visible: true,
+        group: String::new(),
     }
 }
 

@@ -1,8 +1,7 @@
 //! How far a picture is off.
 
-use crate::image::Image;
-use crate::simd::Real;
-use crate::trace::{Pass, Pixel, Rays, RenderControl, Tracer};
+use crate::image::{Image, LinearImage, LinearRgb};
+use crate::trace::{Pass, Rays, RenderControl, Tracer};
 
 /// The error that rounding to 8 bits leaves in the best of pictures: 1 / (255·√12), as a root mean
 /// square of linear colours from 0 to 1.
@@ -10,15 +9,6 @@ pub const EIGHT_BIT_FLOOR: f64 = 1.0 / (255.0 * 3.464_101_615_137_754_4);
 
 /// A channel that is off by more than this can be seen.
 const VISIBLE: f32 = 4.0 / 255.0;
-
-/// Linear red, green and blue, 0–1, before they become 8 bits.
-pub type LinearRgb = [f32; 3];
-
-impl Pixel for LinearRgb {
-    fn of<R: Real>(red: R, green: R, blue: R) -> Self {
-        [red, green, blue].map(|channel| channel.to_f64() as f32)
-    }
-}
 
 /// How far a picture is off, over all channels of all pixels; colours are linear, 0–1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -103,15 +93,13 @@ pub fn scaled(
 }
 
 /// Linear light as an 8-bit picture.
-pub fn eight_bits(light: &[LinearRgb], width: usize, height: usize) -> Image {
-    Image {
+pub fn eight_bits(light: Vec<LinearRgb>, (width, height): (usize, usize)) -> Image {
+    let light = LinearImage {
         width,
         height,
-        pixels: light
-            .iter()
-            .map(|&[red, green, blue]| Pixel::of(red, green, blue))
-            .collect(),
-    }
+        pixels: light,
+    };
+    light.to_levels()
 }
 
 #[cfg(test)]
@@ -135,7 +123,7 @@ mod tests {
         let light: Vec<LinearRgb> = (0..100_000)
             .map(|n| [0.0, 1.0, 2.0].map(|c| ((n as f32) * 0.618_034 + c * 0.37).fract()))
             .collect();
-        let image = eight_bits(&light, 1000, 100);
+        let image = eight_bits(light.clone(), (1000, 100));
         let back: Vec<LinearRgb> = image
             .pixels
             .iter()

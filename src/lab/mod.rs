@@ -22,7 +22,7 @@ pub mod stability;
 pub use candidates::{Candidate, candidates};
 pub use explain::{Lit, Share, Sight, explain};
 pub use growth::{Cost, Crowd, Growth};
-pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, LinearRgb, difference, trace_light};
+pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, difference, trace_light};
 pub use pareto_front::{cheapest_within, front};
 pub use study::{Measurement, Reference, Study, Timing};
 pub use table::{DOUBTFUL, csv, table};

@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::candidates::{Candidate, candidates};
-use super::measure::{ErrorMetrics, LinearRgb, difference, eight_bits, scaled, trace_light};
-use crate::image::{Image, render_into};
+use super::measure::{ErrorMetrics, difference, eight_bits, scaled, trace_light};
+use crate::image::{Image, LinearRgb, render_into};
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::{Precision, Sampling, Scene};
 use crate::trace::{RenderControl, Tracer};
@@ -181,7 +181,7 @@ impl Study {
             let rmse = difference(&self.references[1], &self.references[0]).rmse / 2.0_f64.sqrt();
             self.reference = Some(Reference {
                 rmse,
-                picture: Arc::new(eight_bits(&self.references[0], width, height)),
+                picture: Arc::new(eight_bits(self.references[0].to_vec(), (width, height))),
             });
             return;
         };
@@ -211,7 +211,7 @@ impl Study {
         let dot = &mut self.measurements[index];
         dot.metrics = Some(difference(&light, &self.references[0]));
         dot.rays_per_pixel = rays.total() as f64 / (size.0 * size.1) as f64;
-        dot.picture = Some(Arc::new(eight_bits(&light, size.0, size.1)));
+        dot.picture = Some(Arc::new(eight_bits(light, (size.0, size.1))));
         dot.lanes = tracer.lanes();
     }
 
@@ -260,7 +260,7 @@ fn draw(
     let (light, _) = trace_light(&tracer, control)?;
     let size = (scene.render.width as usize, scene.render.height as usize);
     let light = scaled(&light, (tracer.width(), tracer.height()), size);
-    Some(eight_bits(&light, size.0, size.1))
+    Some(eight_bits(light, (size.0, size.1)))
 }
 
 impl Measurement {

@@ -155,11 +155,11 @@ impl<R: Real> Member<R> {
 }
 
 impl<R: Real> Bvh<R> {
-    /// A tree of the members, which are numbered in their order.
-    pub fn new(members: &[Member<R>]) -> Self {
+    /// A tree of so many members, each given by its number: a million of them would take much room twice.
+    pub fn new(count: usize, member: impl Fn(usize) -> Member<R>) -> Self {
         let mut nodes = Vec::new();
-        if !members.is_empty() {
-            let pairs = build_pairs(members);
+        if count > 0 {
+            let pairs = build_pairs((0..count).map(&member));
             nodes = match widened(&pairs) {
                 Some(nodes) => nodes,
                 None => bundled(&pairs.primitive_indices),
@@ -170,17 +170,17 @@ impl<R: Real> Bvh<R> {
             bounds: BoundingBox::nothing(),
             thinnest: R::INFINITY,
         };
-        bvh.refit(members);
+        bvh.refit(member);
         bvh
     }
 
     /// Fits the boxes to the members, which have moved.
-    pub fn refit(&mut self, members: &[Member<R>]) {
+    pub fn refit(&mut self, member: impl Fn(usize) -> Member<R>) {
         // A node stands before those in its boxes.
         for index in (0..self.nodes.len()).rev() {
             for place in 0..self.nodes[index].count {
                 let held = match self.nodes[index].child(place) {
-                    Child::Member(member) => members[member as usize],
+                    Child::Member(number) => member(number as usize),
                     Child::Node(node) => self.nodes[node as usize].around(),
                 };
                 self.nodes[index].set(place, &held);
@@ -200,11 +200,10 @@ impl<R: Real> Bvh<R> {
 
 /// Boxes two by two: Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume
 /// Hierarchy Construction", TVCG 24(3), 2018, with some boxes put elsewhere afterwards.
-fn build_pairs<R: Real>(members: &[Member<R>]) -> Bvh2 {
+fn build_pairs<R: Real>(members: impl Iterator<Item = Member<R>>) -> Bvh2 {
     // Single precision is enough to decide what goes with what.
     let point = |v: Vec3<R>| Vec3A::from(v.to_dvec3().as_vec3());
     let boxes: Vec<Aabb> = members
-        .iter()
         .map(|member| Aabb::new(point(member.bounds.low), point(member.bounds.high)))
         .collect();
     let mut pairs = PlocBuilder::with_capacity(boxes.len()).build(
@@ -214,6 +213,7 @@ fn build_pairs<R: Real>(members: &[Member<R>]) -> Bvh2 {
         SortPrecision::U64,
         2,
     );
+    drop(boxes);
     ReinsertionOptimizer::default().run(&mut pairs, REINSERTED, None);
     pairs
 }
@@ -223,11 +223,21 @@ fn build_pairs<R: Real>(members: &[Member<R>]) -> Bvh2 {
 /// out stands there.
 type Shares = [u8; GROUP];
 
+/// The [`Shares`] of all pairs that have halves. Halves stand side by side behind the root: where they do says
+/// whose they are.
+struct AllShares(Vec<Shares>);
+
+impl AllShares {
+    fn of(&self, pairs: &Bvh2, pair: usize) -> &Shares {
+        &self.0[pairs.nodes[pair].first_index as usize / 2]
+    }
+}
+
 /// Shares out the places of nodes so that their boxes have the smallest surfaces together: what is met at
 /// random is met in proportion to its surface. Ylitie, Karras and Laine, "Efficient incoherent ray traversal
 /// on GPUs through compressed wide BVHs", HPG 2017, ch. 3; members cost the same wherever they are held.
-fn shared_out(pairs: &Bvh2) -> Vec<Shares> {
-    let mut shares = vec![[0; GROUP]; pairs.nodes.len()];
+fn shared_out(pairs: &Bvh2) -> AllShares {
+    let mut shares = vec![[0; GROUP]; pairs.nodes.len().div_ceil(2)];
     let mut waiting = vec![(0, false)];
     // The surfaces of all nodes in a pair, by the places that it may take up.
     let mut surfaces: Vec<[f32; GROUP]> = Vec::new();
@@ -240,11 +250,11 @@ fn shared_out(pairs: &Bvh2) -> Vec<Shares> {
             waiting.extend([(index, true), (first + 1, false), (first, false)]);
         } else if let (Some(second), Some(first)) = (surfaces.pop(), surfaces.pop()) {
             let (surface, share) = shared_among(node.aabb().half_area(), &first, &second);
-            shares[index] = share;
+            shares[node.first_index as usize / 2] = share;
             surfaces.push(surface);
         }
     }
-    shares
+    AllShares(shares)
 }
 
 /// The surfaces of a pair of this surface, whose halves have those, and how it is shared out.
@@ -277,31 +287,39 @@ fn shared_among(
 /// Nodes of pairs, from the largest pairs down; `None` if that becomes too deep.
 fn widened<R: Real>(pairs: &Bvh2) -> Option<Vec<Node<R>>> {
     let shares = shared_out(pairs);
-    let mut nodes = vec![Node::empty()];
-    let mut waiting = VecDeque::from([(0, 0, 1)]);
-    while let Some((index, pair, depth)) = waiting.pop_front() {
+    // The pair of each node, and how deep it is: nodes are large, and no more room is taken than they need.
+    let mut tops = vec![(0, 1)];
+    let mut at = 0;
+    while let Some(&(pair, depth)) = tops.get(at) {
         if depth > DEEPEST {
             return None;
         }
+        let held = opened(pairs, &shares, pair).into_iter();
+        let halved = held.filter(|&held| !pairs.nodes[held].is_leaf());
+        tops.extend(halved.map(|held| (held, depth + 1)));
+        at += 1;
+    }
+    let mut nodes = Vec::with_capacity(tops.len());
+    let mut next = 0;
+    for (pair, _) in tops {
+        let mut node = Node::empty();
         for held in opened(pairs, &shares, pair) {
-            let node = &pairs.nodes[held];
-            let child = if node.is_leaf() {
-                Child::Member(pairs.primitive_indices[node.first_index as usize])
+            let half = &pairs.nodes[held];
+            node.children[node.count] = if half.is_leaf() {
+                Child::Member(pairs.primitive_indices[half.first_index as usize])
             } else {
-                nodes.push(Node::empty());
-                waiting.push_back((nodes.len() - 1, held, depth + 1));
-                Child::Node(nodes.len() as u32 - 1)
+                next += 1;
+                Child::Node(next)
             };
-            let node: &mut Node<R> = &mut nodes[index];
-            node.children[node.count] = child;
             node.count += 1;
         }
+        nodes.push(node);
     }
     Some(nodes)
 }
 
 /// The pairs in the node of a pair.
-fn opened(pairs: &Bvh2, shares: &[Shares], pair: usize) -> Vec<usize> {
+fn opened(pairs: &Bvh2, shares: &AllShares, pair: usize) -> Vec<usize> {
     let mut held = Vec::with_capacity(GROUP);
     let halves = |pair: usize, places: usize, share: u8| {
         let (first, taken) = (pairs.nodes[pair].first_index as usize, usize::from(share));
@@ -310,10 +328,16 @@ fn opened(pairs: &Bvh2, shares: &[Shares], pair: usize) -> Vec<usize> {
     if pairs.nodes[pair].is_leaf() {
         return vec![pair];
     }
-    let mut waiting = Vec::from(halves(pair, GROUP, shares[pair][0]));
+    let share = shares.of(pairs, pair)[0];
+    let mut waiting = Vec::from(halves(pair, GROUP, share));
     while let Some((pair, places)) = waiting.pop() {
-        let share = shares[pair][places - 1];
-        if places == 1 || share == 0 || pairs.nodes[pair].is_leaf() {
+        let is_leaf = pairs.nodes[pair].is_leaf();
+        let share = if places == 1 || is_leaf {
+            0
+        } else {
+            shares.of(pairs, pair)[places - 1]
+        };
+        if share == 0 {
             held.push(pair);
         } else {
             waiting.extend(halves(pair, places, share));
@@ -363,6 +387,10 @@ mod tests {
         }
     }
 
+    fn tree(members: &[Member<f64>]) -> Bvh<f64> {
+        Bvh::new(members.len(), |n| members[n])
+    }
+
     fn holds(outer: &BoundingBox<f64>, inner: &BoundingBox<f64>) -> bool {
         outer.and(inner) == *outer
     }
@@ -396,22 +424,22 @@ mod tests {
         #[test]
         fn every_member_is_held_by_all_boxes_above_it(places in prop::collection::vec((vector(), 0.0..5.0_f64), 1..700)) {
             let mut members: Vec<_> = places.into_iter().map(member).collect();
-            let mut bvh = Bvh::new(&members);
+            let mut bvh = tree(&members);
             prop_assert!(is_whole(&bvh, &members));
             let thinnest = members.iter().map(|member| member.thickness).fold(f64::INFINITY, f64::min);
             prop_assert_eq!(bvh.thinnest, thinnest);
             for moved in &mut members {
                 moved.bounds.high = moved.bounds.high + Vec3::new(1.0, 2.0, 0.0);
             }
-            bvh.refit(&members);
+            bvh.refit(|n| members[n]);
             prop_assert!(is_whole(&bvh, &members));
         }
 
         #[test]
         fn a_list_becomes_a_flat_tree(length in 1..3000_usize) {
             let members: Vec<_> = (0..length).map(|at| member((DVec3::X * at as f64, 0.5))).collect();
-            let mut bvh = Bvh { nodes: bundled(&(0..length as u32).collect::<Vec<_>>()), ..Bvh::new(&members) };
-            bvh.refit(&members);
+            let mut bvh = Bvh { nodes: bundled(&(0..length as u32).collect::<Vec<_>>()), ..tree(&members) };
+            bvh.refit(|n| members[n]);
             prop_assert!(is_whole(&bvh, &members));
         }
     }
@@ -419,12 +447,12 @@ mod tests {
     #[test]
     fn a_thousand_members_in_one_place_are_found() {
         let members = vec![member((DVec3::ONE, 1.0)); 1000];
-        assert!(is_whole(&Bvh::new(&members), &members));
+        assert!(is_whole(&tree(&members), &members));
         // Each around the one before it: a chain of pairs.
         let nested: Vec<_> = (0..2000)
             .map(|at| member((DVec3::ZERO, f64::from(at))))
             .collect();
-        assert!(is_whole(&Bvh::new(&nested), &nested));
+        assert!(is_whole(&tree(&nested), &nested));
     }
 
     #[test]
@@ -433,7 +461,7 @@ mod tests {
             let (x, y) = (f64::from(at % 64), f64::from(at / 64));
             member((DVec3::new(x, y, 0.0), 0.5))
         });
-        let bvh = Bvh::new(&grid.collect::<Vec<_>>());
+        let bvh = tree(&grid.collect::<Vec<_>>());
         assert!(bvh.nodes.len() < 4096 / 8, "{} nodes", bvh.nodes.len());
     }
 }

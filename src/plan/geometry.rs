@@ -178,7 +178,7 @@ impl<R: Real> Geometry<R> {
         members.0.extend(meshes.iter().map(MeshInstance::member));
         let lifts = meshes.iter().map(|instance| instance.mesh.lift);
         Self {
-            bvh: Bvh::new(&members.0),
+            bvh: Bvh::new(members.0.len(), |number| members.0[number]),
             lift: lifts.fold(R::ZERO, R::max),
             primitives,
             meshes,

@@ -26,6 +26,8 @@ mod solids;
 
 mod view;
 
+mod show;
+
 mod pack;
 
 mod needs;
@@ -38,5 +40,6 @@ pub use needs::{Need, needs};
 pub use pack::{Plan, PointLight, RayOrigin};
 pub use packed_mesh::{MeshInstance, PackedMesh};
 pub use precision::{is_uncountable, needs_double};
-pub use request::{Model, RenderRequest};
+pub use request::{Model, Region, RenderRequest};
+pub use show::Show;
 pub use view::View;

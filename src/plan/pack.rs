@@ -10,6 +10,7 @@ use super::geometry::{Geometry, Kept, is_tree, material_number, measure_loose};
 use super::materials::{Material, linear, pack_materials};
 use super::plane_occluders::{PlaneOccluder, classify_planes};
 use super::request::{Model, RenderRequest};
+use super::show::Show;
 use super::solids::Solids;
 use super::view::View;
 use crate::primitive::{
@@ -44,6 +45,8 @@ pub struct Plan<R> {
     pub lights: Vec<PointLight<R>>,
     /// What the primitives' `material` numbers mean.
     pub materials: Vec<Material<R>>,
+    /// What is written.
+    pub show: Show<R>,
     /// Colour of a ray that hits nothing, 0–1.
     pub background: Vec3<R>,
     /// How many reflections a ray may have behind it and still spawn another.
@@ -123,6 +126,11 @@ impl<R: Real> Plan<R> {
                 model,
             ),
             materials: pack_materials(scene, request),
+            show: Show::new(
+                request.aspect,
+                scene,
+                request.projection.unwrap_or(scene.camera.projection),
+            ),
             background: linear(scene.background),
             reflection_limit: scene.render.reflection_limit,
             methods: request.methods,

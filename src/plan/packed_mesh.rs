@@ -110,19 +110,16 @@ fn volume<R: Real>(triangles: &[PackedTriangle<R>]) -> f64 {
 /// Sets how thick each of the triangles is, whose corners have these numbers. Gives the way to them, and
 /// whether they are closed.
 pub fn measure<R: Real>(triangles: &mut [PackedTriangle<R>], faces: &[[u32; 3]]) -> (Bvh<R>, bool) {
-    let members = |triangles: &[PackedTriangle<R>]| -> Vec<_> {
-        let member = |triangle: &PackedTriangle<R>| Member {
-            bounds: BoundingBox::around(&triangle.corners),
-            thickness: triangle.thickness,
-        };
-        triangles.iter().map(member).collect()
+    let member = |triangle: &PackedTriangle<R>| Member {
+        bounds: BoundingBox::around(&triangle.corners),
+        thickness: triangle.thickness,
     };
-    let mut bvh = Bvh::new(&members(triangles));
+    let mut bvh = Bvh::new(triangles.len(), |number| member(&triangles[number]));
     let measures = measures(triangles, faces, &bvh);
     for (triangle, thickness) in triangles.iter_mut().zip(measures.thicknesses) {
         triangle.thickness = triangle.thickness.max(thickness);
     }
-    bvh.refit(&members(triangles));
+    bvh.refit(|number| member(&triangles[number]));
     (bvh, measures.is_closed)
 }
 

@@ -1,6 +1,8 @@
 //! Which picture of a scene is asked for.
 
-use crate::scene::{Accelerator, Methods, Precision, Projection, Sampling, Scene};
+use std::ops::Range;
+
+use crate::scene::{Accelerator, Aspect, Methods, Precision, Projection, Sampling, Scene};
 use crate::simd::Level;
 
 /// Which picture of a scene is asked for.
@@ -22,6 +24,10 @@ pub struct RenderRequest {
     pub accelerator: Accelerator,
     /// Whether parts of the model that the scene does not need are left out.
     pub model: Model,
+    /// What of the light is shown, where that is not the scene's to say; see [`Aspect::of`].
+    pub aspect: Aspect,
+    /// The part of the picture that is traced, in whole tiles; all of it if `None`.
+    pub region: Option<Region>,
     /// The lanes of the kernel; the widest that there are if `None`.
     pub level: Option<Level>,
 }
@@ -55,8 +61,28 @@ impl RenderRequest {
             sampling: Sampling::Centres,
             accelerator: Accelerator::Auto,
             model: Model::Needed,
+            aspect: Aspect::All,
+            region: None,
             level: None,
         }
+    }
+}
+
+/// A rectangle of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// First column, and the one behind the last.
+    pub columns: (usize, usize),
+    /// First row, and the one behind the last.
+    pub rows: (usize, usize),
+}
+
+impl Region {
+    /// Whether some pixel of these columns and rows is in it.
+    pub fn meets(&self, columns: &Range<usize>, rows: &Range<usize>) -> bool {
+        let (left, right) = self.columns;
+        let (top, bottom) = self.rows;
+        columns.start < right && left < columns.end && rows.start < bottom && top < rows.end
     }
 }
 

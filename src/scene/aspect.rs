@@ -23,6 +23,16 @@ pub enum Aspect {
     Clay,
     /// Each object in a colour of its own, without light.
     Objects,
+    /// Which way surfaces are turned.
+    Normals,
+    /// How far things are.
+    Depth,
+    /// Which points lights reach.
+    Shadows,
+    /// What mirrors add.
+    Mirrors,
+    /// How many rays each pixel takes.
+    Cost,
 }
 
 /// Golden angle in turns: hues so far apart differ for as many neighbours as can be.
@@ -32,7 +42,7 @@ const CLAY: f64 = 200.0;
 
 impl Aspect {
     /// Every aspect, with its name and what it shows.
-    pub const EACH: [(Self, &'static str, &'static str); 7] = [
+    pub const EACH: [(Self, &'static str, &'static str); 12] = [
         (Self::All, "Everything", "The picture as it is"),
         (
             Self::Ambient,
@@ -60,6 +70,31 @@ impl Aspect {
             "Objects",
             "Each object in a colour of its own",
         ),
+        (
+            Self::Normals,
+            "Normals",
+            "Which way surfaces are turned: x, y and z from -1 to 1 as red, green and blue",
+        ),
+        (
+            Self::Depth,
+            "Depth",
+            "How far things are: white where the scene begins, black where it ends",
+        ),
+        (
+            Self::Shadows,
+            "Shadows only",
+            "How many of the lights reach a point: white is all of them",
+        ),
+        (
+            Self::Mirrors,
+            "Mirrors only",
+            "What mirrors add to the surfaces that they are",
+        ),
+        (
+            Self::Cost,
+            "Rays per pixel",
+            "What the picture costs, in squares of 8 pixels: black is 1 ray for each, white 1,000",
+        ),
     ];
 
     /// Its name.
@@ -67,6 +102,19 @@ impl Aspect {
         let mut all = Self::EACH.iter();
         all.find(|(aspect, ..)| *aspect == self)
             .map_or("", |(_, name, _)| name)
+    }
+
+    /// Its name on the command line.
+    pub fn word(self) -> String {
+        let name = self.name().to_lowercase();
+        name.strip_suffix(" only")
+            .unwrap_or(&name)
+            .replace(' ', "-")
+    }
+
+    /// All names on the command line.
+    pub fn words() -> String {
+        Self::EACH.map(|(aspect, ..)| aspect.word()).join(", ")
     }
 
     /// The scene whose picture shows this of `scene`.
@@ -77,7 +125,16 @@ impl Aspect {
             shown.packs_mut().values_mut().for_each(change);
         };
         match self {
-            Self::All => {}
+            Self::All | Self::Mirrors | Self::Cost => {}
+            Self::Normals | Self::Depth => unlit(&mut shown),
+            Self::Shadows => {
+                clay(&mut shown);
+                shown.background = DVec3::ZERO;
+                shown.ambient_intensity = 0.0;
+                for light in shown.lights.iter_mut() {
+                    light.intensity = 1.0;
+                }
+            }
             Self::Ambient => {
                 for light in shown.lights.iter_mut() {
                     light.intensity = 0.0;
@@ -95,18 +152,34 @@ impl Aspect {
                 });
             }
             Self::WithoutMirrors => change(&mut shown, |pack| pack.reflective = false),
-            Self::Clay => change(&mut shown, |pack| {
-                *pack = ColorPack {
-                    ambient: DVec3::splat(CLAY),
-                    diffuse: DVec3::splat(CLAY),
-                    specular: DVec3::ZERO,
-                    reflective: false,
-                    ..pack.clone()
-                };
-            }),
+            Self::Clay => clay(&mut shown),
             Self::Objects => flat(&mut shown),
         }
         shown
+    }
+}
+
+/// Gives everything one grey.
+fn clay(shown: &mut Scene) {
+    for pack in shown.packs_mut().values_mut() {
+        *pack = ColorPack {
+            ambient: DVec3::splat(CLAY),
+            diffuse: DVec3::splat(CLAY),
+            specular: DVec3::ZERO,
+            reflective: false,
+            ..pack.clone()
+        };
+    }
+}
+
+/// Takes away all light, and what stands behind everything.
+fn unlit(shown: &mut Scene) {
+    for light in shown.lights.iter_mut() {
+        light.intensity = 0.0;
+    }
+    shown.background = DVec3::ZERO;
+    for pack in shown.packs_mut().values_mut() {
+        pack.reflective = false;
     }
 }
 
@@ -154,9 +227,19 @@ mod tests {
         assert_eq!(Aspect::All.of(&demo), demo);
         for (aspect, name, _) in &Aspect::EACH[1..] {
             let shown = aspect.of(&demo);
-            assert_ne!(shown, demo, "{name}");
+            // What the tracer writes instead is not the scene's to say.
+            let is_traced = matches!(aspect, Aspect::Mirrors | Aspect::Cost);
+            assert_eq!(shown == demo, is_traced, "{name}");
             assert_eq!(check(&shown), Ok(()), "{name}");
         }
+    }
+
+    #[test]
+    fn words_are_short() {
+        assert_eq!(
+            Aspect::words(),
+            "everything, ambient, diffuse, specular, without-mirrors, clay, objects, normals, depth, shadows, mirrors, rays-per-pixel"
+        );
     }
 
     /// The sum of two colours of 8 bits, each channel at most 255, but for rounding.

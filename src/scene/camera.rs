@@ -29,6 +29,16 @@ pub struct Camera {
     pub orthographic_height: f64,
 }
 
+/// A view to come back to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Bookmark {
+    /// What it is called.
+    pub name: String,
+    /// The camera.
+    pub camera: Camera,
+}
+
 /// How rays leave the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Projection {

@@ -32,6 +32,8 @@ pub struct Hint {
 pub enum About {
     /// The camera.
     Camera,
+    /// The light that is everywhere.
+    World,
     /// A light.
     Light(usize),
     /// An object.

@@ -67,6 +67,7 @@ impl Scene {
                 color_pack,
                 shape: Mesh::of(triangles).centred().into(),
                 visible: true,
+                group: String::new(),
             });
         }
         first

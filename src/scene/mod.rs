@@ -56,7 +56,7 @@ pub use animation::{
     Animation, Easing, Interpolation, Key, Lens, MAX_SECONDS, Sample, Take, Target, Track, Value,
 };
 pub use aspect::Aspect;
-pub use camera::{Camera, Framing, Projection};
+pub use camera::{Bookmark, Camera, Framing, Projection};
 pub use check::{Problem, check, check_edit};
 pub use differences::differences;
 pub use examples::{EXAMPLES, Example};
@@ -70,6 +70,7 @@ pub use methods::{
     Accelerator, HighlightMethod, MAX_GRID, MAX_HALVINGS, Method, MethodInfo, Methods, Precision,
     RayOffset, Sampling, SphereMethod, TriangleMethod, UnknownMethod,
 };
+pub(crate) use notation::method;
 pub use notation::{format_number, parse_vec3};
 pub use object::{Light, LightObj, Object};
 pub use orientation::Orientation;

@@ -19,6 +19,9 @@ pub struct Object {
     /// An invisible object is not in the picture at all: no shadow, no reflection.
     #[serde(default = "yes", skip_serializing_if = "is_true")]
     pub visible: bool,
+    /// Name of the group that it is listed in; empty for none.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub group: String,
 }
 
 /// A point light that does not fall off with distance.

@@ -1,5 +1,6 @@
 //! The scene itself.
 
+use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -8,7 +9,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
 use super::animation::Animation;
-use super::camera::Camera;
+use super::camera::{Bookmark, Camera};
 use super::list::List;
 use super::material::{ColorPack, read_packs};
 use super::notation;
@@ -39,6 +40,9 @@ pub struct Scene {
     /// Where the picture is taken from.
     #[serde(default)]
     pub camera: Camera,
+    /// Views to come back to.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bookmarks: Vec<Bookmark>,
     /// Materials by name, shared by the objects that name them; the order is the file's.
     #[serde(default = "default_packs", deserialize_with = "read_packs")]
     pub color_packs: Arc<IndexMap<String, ColorPack>>,
@@ -66,6 +70,7 @@ impl Scene {
             ambient_intensity: default_ambient_intensity(),
             light_visualization: true,
             camera: Camera::default(),
+            bookmarks: Vec::new(),
             color_packs: Arc::new(IndexMap::from([
                 ("pack 1".to_owned(), ColorPack::default()),
                 ("light".to_owned(), light_pack()),
@@ -74,6 +79,36 @@ impl Scene {
             lights: List::from(vec![light]),
             render: Render::default(),
             animation: Arc::default(),
+        }
+    }
+
+    /// Takes away each pack that is equal to one before it, which is worn in its place.
+    pub fn merge_equal_packs(&mut self) {
+        let mut kept: Vec<(&String, &ColorPack)> = Vec::new();
+        let mut instead = HashMap::new();
+        for (name, pack) in self.color_packs.iter() {
+            match kept.iter().find(|(_, other)| *other == pack) {
+                Some((first, _)) => {
+                    instead.insert(name.clone(), (*first).clone());
+                }
+                None => kept.push((name, pack)),
+            }
+        }
+        if instead.is_empty() {
+            return;
+        }
+        self.packs_mut()
+            .retain(|name, _| !instead.contains_key(name));
+        for index in 0..self.objects.len() {
+            if let Some(name) = instead.get(&self.objects[index].color_pack) {
+                self.objects[index].color_pack.clone_from(name);
+            }
+        }
+        let markers = self.lights.iter_mut();
+        for marker in markers.filter_map(|light| light.marker.as_mut()) {
+            if let Some(name) = instead.get(&marker.color_pack) {
+                marker.color_pack.clone_from(name);
+            }
         }
     }
 

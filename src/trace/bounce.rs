@@ -254,6 +254,7 @@ impl<L: SimdFloat> Bounce<L> {
             let ignored = self.ignored_by(kernel.token, index);
             let shader = Shader {
                 kernel,
+                is_first: self.parents.is_empty(),
                 may_mirror,
                 looks_beside,
                 thin: &self.thin,

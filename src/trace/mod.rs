@@ -54,6 +54,8 @@ mod lattice;
 
 mod sampler;
 
+mod heat;
+
 mod tracer;
 
 mod threads;
@@ -63,5 +65,5 @@ mod query;
 pub use query::{survey, visible};
 pub use stats::{Rays, RenderControl};
 pub use threads::{PoolError, Threads};
-pub use tile::{Grid, Pass};
-pub use tracer::{Pixel, Tracer};
+pub use tile::{Grid, Pass, Pixel};
+pub use tracer::Tracer;

@@ -14,7 +14,7 @@ use super::surface::Hit;
 use super::thin::Gaze;
 use super::thresholds::EDGE_CONTRAST;
 use super::walk::Stack;
-use crate::plan::{PointLight, RayOrigin, Surface};
+use crate::plan::{PointLight, RayOrigin, Show, Surface};
 use crate::primitive::Ray;
 use crate::simd::{Mask as _, SimdFloat, Vec3};
 
@@ -25,6 +25,8 @@ const LIGHT_BITS: usize = 20;
 pub struct Shader<'a, L: SimdFloat, const TREE: bool> {
     /// Vector token and plan.
     pub kernel: Kernel<'a, L, TREE>,
+    /// Whether the rays come from the camera.
+    pub is_first: bool,
     /// Whether mirrors send rays on.
     pub may_mirror: bool,
     /// Whether what may slip between samples is looked for.
@@ -102,10 +104,15 @@ impl<'a, L: SimdFloat, const TREE: bool> Shader<'a, L, TREE> {
             let here = hit.here & packet.active;
             left &= !here.bits();
             let material = &kernel.plan.materials[hit.material as usize];
-            let mut color = Vec3::broadcast(kernel.token, material.base);
+            let instead = self.instead(packet, &hit);
+            let mut color = instead.unwrap_or(Vec3::broadcast(kernel.token, material.base));
             if let Some(surface) = &material.surface {
                 let point = self.shading_point(packet, hit, surface, here, edge.as_deref());
-                for (index, light) in kernel.plan.lights.iter().enumerate() {
+                let lights = match instead {
+                    None => &kernel.plan.lights[..],
+                    Some(_) => &[],
+                };
+                for (index, light) in lights.iter().enumerate() {
                     let light = LightSource {
                         index,
                         light,
@@ -119,7 +126,37 @@ impl<'a, L: SimdFloat, const TREE: bool> Shader<'a, L, TREE> {
             }
             packet.color = Vec3::select(here, color, packet.color);
         }
+        if kernel.plan.show == Show::Mirrors && self.is_first {
+            let dark = Vec3::splat(kernel.splat(0.0));
+            let met = nothing.less(packet.near.number);
+            packet.color = Vec3::select(met, packet.color, dark);
+        }
         mirrored
+    }
+
+    /// What is shown in place of the light that a surface gives off; `None` where that is shown.
+    #[inline(always)]
+    fn instead(&self, packet: &Packet<L>, hit: &Hit<L>) -> Option<Vec3<L>> {
+        let kernel = self.kernel;
+        match kernel.plan.show {
+            Show::Light | Show::Shadows(_) | Show::Cost => None,
+            Show::Mirrors => self.is_first.then(|| Vec3::splat(kernel.splat(0.0))),
+            Show::Normals => {
+                let normal = hit.surface.normal;
+                let half = kernel.splat(0.5);
+                let away = kernel.splat(0.0).less(normal.dot(packet.rays.direction));
+                let normal = Vec3::select(away, -normal, normal);
+                Some(normal * half + Vec3::splat(half))
+            }
+            Show::Depth {
+                nearest,
+                per_length,
+            } => {
+                let t = packet.near.t;
+                let depth = (t - t.like(nearest)) * t.like(per_length);
+                Some(Vec3::splat(kernel.splat(1.0) - depth))
+            }
+        }
     }
 
     /// The hits, with the pixel's footprint; both sides are lit: the normal is turned to the viewer.
@@ -240,6 +277,10 @@ impl<'a, L: SimdFloat, const TREE: bool> Shader<'a, L, TREE> {
             if !lit.any() {
                 return dark;
             }
+        }
+
+        if let Show::Shadows(share) = kernel.plan.show {
+            return Vec3::select(lit, Vec3::splat(distance.like(share)), dark);
         }
 
         // The colour of the light that arrives.

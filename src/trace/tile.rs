@@ -2,7 +2,14 @@
 
 use std::ops::Range;
 
+use crate::plan::Region;
 use crate::simd::Real;
+
+/// What a colour becomes in a picture.
+pub trait Pixel: Send {
+    /// The pixel of a linear colour, 0–1.
+    fn of<R: Real>(red: R, green: R, blue: R) -> Self;
+}
 
 /// A rectangle of pixels.
 #[derive(Clone, Debug)]
@@ -14,6 +21,11 @@ pub struct Tile {
 }
 
 impl Tile {
+    /// Whether some of its pixels are wanted.
+    pub fn is_in(&self, region: Option<Region>) -> bool {
+        region.is_none_or(|region| region.meets(&self.columns, &self.rows))
+    }
+
     /// Pixels in a row.
     pub fn width(&self) -> usize {
         self.columns.len()

@@ -8,33 +8,30 @@ use rayon::slice::ParallelSliceMut as _;
 
 use super::candidates::{Candidates, Span};
 use super::engine::Engine;
+use super::heat::heat;
 use super::intersect::Kernel;
 use super::lattice::Limits;
 use super::sampler::Sampler;
 use super::samples::Traced;
 use super::stats::{Rays, RenderControl};
-use super::tile::{Grid, Pass, Tile, TileColors};
-use crate::plan::{Plan, Planner, RenderRequest, is_uncountable, needs_double};
-use crate::scene::{Precision, Sampling, Scene};
-use crate::simd::{Level, Real, SimdFloat, SimdReal, WithSimd};
+use super::tile::{Grid, Pass, Pixel, Tile, TileColors};
+use crate::plan::{Plan, Planner, Region, RenderRequest, Show, is_uncountable, needs_double};
+use crate::scene::{Aspect, Precision, Sampling, Scene};
+use crate::simd::{Level, SimdFloat, SimdReal, WithSimd};
 
 /// Side of a tile in pixels where there is little to see. Large enough that the bookkeeping does not
 /// show, small enough that the rays of a tile stay in the cache and that threads end together.
 const LARGE_TILE: usize = 32;
 /// Side of a tile where there is much to see: it sees less of it.
 const SMALL_TILE: usize = 16;
+/// Side of a tile where the rays of each are shown.
+const COST_TILE: usize = 8;
 /// With fewer pixels than this for each bounded primitive, there is much to see.
 const PIXELS_PER_PRIMITIVE: u64 = 16_384;
 
 /// With fewer pixels than this for each, packets look at squares: what is seen in a row of sixteen pixels is
 /// more than in a square of them, but to put them in order costs time too.
 const PIXELS_IN_SQUARES: u64 = 128;
-
-/// What a colour becomes in a picture.
-pub trait Pixel: Send {
-    /// The pixel of a linear colour, 0–1.
-    fn of<R: Real>(red: R, green: R, blue: R) -> Self;
-}
 
 /// A picture of a scene, planned for the real type it needs.
 #[derive(Debug)]
@@ -44,6 +41,8 @@ pub struct Tracer {
     /// Side of a tile.
     tile: usize,
     in_squares: bool,
+    /// The part that is traced.
+    region: Option<Region>,
     sampling: Sampling,
     level: Level,
     plan: PlanOf,
@@ -89,8 +88,13 @@ impl Tracer {
         Self {
             width: request.width as usize,
             height: request.height as usize,
-            tile: if is_sparse { LARGE_TILE } else { SMALL_TILE },
+            tile: match request.aspect {
+                Aspect::Cost => COST_TILE,
+                _ if is_sparse => LARGE_TILE,
+                _ => SMALL_TILE,
+            },
             in_squares: plan.bounded() * PIXELS_IN_SQUARES > pixels,
+            region: request.region,
             sampling: request.sampling,
             level: request.level.unwrap_or_else(Level::widest),
             plan,
@@ -178,6 +182,7 @@ impl Tracer {
                     width: self.width,
                     tile: self.tile,
                     in_squares: self.in_squares,
+                    region: self.region,
                     rows: top..top + pixels.len() / self.width,
                     pixels,
                     grid,
@@ -198,6 +203,7 @@ struct Band<'a, R, P> {
     width: usize,
     tile: usize,
     in_squares: bool,
+    region: Option<Region>,
     rows: Range<usize>,
     pixels: &'a mut [P],
     grid: Grid,
@@ -226,16 +232,26 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
         let mut sampler = Sampler::new(self.in_squares);
         let mut colors = TileColors::default();
         let (mut in_band, mut in_tile) = (Candidates::default(), Candidates::default());
+        let band = Tile {
+            columns: 0..self.width,
+            rows: self.rows.clone(),
+        };
+        if !band.is_in(self.region) {
+            return Some(Rays::default());
+        }
         in_band.keep_seen(self.seen, plan, &self.rows, Span::Rows);
         for left in (0..self.width).step_by(self.tile) {
             if self.control.stop.load(Ordering::Relaxed) {
                 return None;
             }
-            let columns = left..(left + self.tile).min(self.width);
             let tile = Tile {
-                columns,
+                columns: left..(left + self.tile).min(self.width),
                 rows: self.rows.clone(),
             };
+            if !tile.is_in(self.region) {
+                continue;
+            }
+            let before = engine.rays.total();
             in_tile.keep_seen(&in_band, plan, &tile.columns, Span::Columns);
             if plan.screen.is_some() {
                 in_tile.drop_unseen_planes(self.plan, &tile);
@@ -259,8 +275,20 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
                     self.fill(&tile, colors.stride, colors.channels());
                 }
             }
+            if plan.show == Show::Cost {
+                self.fill_with_heat(&tile, engine.rays.total() - before);
+            }
         }
         Some(engine.rays)
+    }
+
+    /// Writes how many rays each pixel of a tile took.
+    fn fill_with_heat(&mut self, tile: &Tile, rays: u64) {
+        let count = self.grid.pixels(tile).count().max(1);
+        let [red, green, blue] = heat::<R>(rays as f64 / count as f64);
+        for (column, row) in self.grid.pixels(tile) {
+            self.pixels[(row - self.rows.start) * self.width + column] = P::of(red, green, blue);
+        }
     }
 
     /// Writes the colours of a whole tile, `stride` apart from row to row.
@@ -303,6 +331,7 @@ mod tests {
 
     use super::*;
     use crate::scene::Accelerator;
+    use crate::simd::Real;
     use crate::trace::Threads;
 
     impl Pixel for [u64; 3] {

@@ -10,6 +10,7 @@ use super::exports::Exports;
 use super::files::{FileOutcome, Files, Next};
 use super::finder::Finder;
 use super::flying::Flying;
+use super::histogram::Levels;
 use super::lab::Lab;
 use super::menu::Layout;
 use super::outliner::Outliner;
@@ -18,6 +19,7 @@ use super::requests::UiRequests;
 use super::scene_check::SceneCheck;
 use super::screenshot::Screenshot;
 use super::setup::Setup;
+use super::still::Still;
 use super::timeline::{Overlay, Thumbs, TimelinePanel};
 use super::toasts::Toasts;
 use super::tools::Tools;
@@ -26,13 +28,17 @@ use super::{help, theme};
 use crate::editor::{Action, Editor, Mode, Time};
 use crate::image::Image;
 use crate::mesh::is_mesh_file;
-use crate::scene::Scene;
+use crate::scene::{Aspect, Scene};
 use crate::worker::{Answer, RenderThreadError};
 
 /// Where the list of recent files is kept between runs.
 const RECENT_KEY: &str = "recent files";
 /// Where it is kept which panels are shown.
 const LAYOUT_KEY: &str = "layout";
+/// Where it is kept in which folders paths were chosen.
+const FOLDERS_KEY: &str = "folders";
+/// Where what was asked of exports is kept between runs.
+const EXPORTS_KEY: &str = "exports";
 /// Where the choice of the theme is kept between runs.
 const THEME_KEY: &str = "theme";
 
@@ -58,6 +64,8 @@ pub struct App {
     pub(super) why: Why,
     pub(super) examples: Examples,
     pub(super) check: SceneCheck,
+    pub(super) still: Still,
+    pub(super) levels: Levels,
     pub(super) keys_are_taken: bool,
     /// Commands for the next frame.
     pub(super) deferred: Vec<Command>,
@@ -90,6 +98,10 @@ impl App {
         let recent = cc
             .storage
             .and_then(|storage| eframe::get_value(storage, RECENT_KEY));
+        let folders = cc
+            .storage
+            .and_then(|storage| eframe::get_value(storage, FOLDERS_KEY))
+            .unwrap_or_default();
         let layout = cc
             .storage
             .and_then(|storage| eframe::get_value::<Layout>(storage, LAYOUT_KEY))
@@ -97,7 +109,7 @@ impl App {
         let mut app = Self {
             editor: Editor::demo(),
             pictures: Pictures::new(&cc.egui_ctx)?,
-            files: Files::new(setup.dialogs, recent.unwrap_or_default()),
+            files: Files::new(setup.dialogs, recent.unwrap_or_default(), folders),
             outliner: Outliner::default(),
             lab: Lab::default(),
             timeline: TimelinePanel::default(),
@@ -114,6 +126,8 @@ impl App {
             why: Why::default(),
             examples: Examples::default(),
             check: SceneCheck::default(),
+            still: Still::default(),
+            levels: Levels::default(),
             keys_are_taken: false,
             deferred: Vec::new(),
             closing: None,
@@ -124,6 +138,11 @@ impl App {
             autosave: Autosave::default(),
             screenshot: setup.screenshot,
         };
+        let kept = cc
+            .storage
+            .and_then(|storage| eframe::get_value(storage, EXPORTS_KEY));
+        let folder = setup.data_folder.clone();
+        app.exports = Exports::new(folder, kept.unwrap_or_default(), &mut app.editor);
         app.exports.is_open = setup.exports;
         (app.timeline.is_open, app.lab.is_open) = (layout.timeline, layout.lab);
         if let Some(path) = setup.scene {
@@ -271,6 +290,12 @@ impl eframe::App for App {
         let is_busy = ctx.input(|input| input.pointer.any_down());
         let is_busy = is_busy || self.flying.is_gesture(ctx);
         self.check.update(&self.editor, is_busy);
+        if let Some(frame) = self.pictures.shown(&self.editor).filter(|_| !is_busy)
+            && let Some(clipped) = self.levels.update(frame, self.editor.shown())
+            && self.layout.aspect == Aspect::All
+        {
+            self.check.take_clipped(clipped);
+        }
         self.theme = ctx.theme();
         self.show_title(ctx);
     }
@@ -299,12 +324,13 @@ impl eframe::App for App {
         self.finder.show(&ctx, &self.editor, &mut out);
         self.why.show(&ctx);
         // Still pictures are looked at, not flown through: they would be gone.
-        let flown = picture.as_ref().map(|(_, response)| response);
+        let (place, flown) = picture;
         let is_still = self.editor.mode == Mode::HighRes || self.lab.is_looking();
-        let flown = flown.filter(|_| !is_still && !self.tools.is_dragging());
+        let flown = Some(&flown).filter(|_| !is_still && !self.tools.is_dragging());
         // Space presses a button that has the focus, and does not lift the camera as well.
         let flies = keys_are_free && ui.memory(|memory| memory.focused().is_none());
-        let motion = self.flying.step(ui, flown, flies, self.editor.scene());
+        let speed = (&**self.editor.scene(), self.layout.fly_speed);
+        let motion = self.flying.step(ui, flown, flies, speed);
         out.actions.extend(motion.map(Action::Fly));
         let questions = std::mem::take(&mut out.questions);
         let before = self.editor.revision();
@@ -337,17 +363,11 @@ impl eframe::App for App {
             || self.tools.is_dragging();
         let messages = std::mem::take(&mut self.editor.messages);
         self.toasts.push(&ctx, messages);
-        let whole = ctx.content_rect();
-        self.toasts.show(
-            &ctx,
-            picture.as_ref().map_or(whole, |(place, _)| place.rect),
-        );
-        if let Some((place, _)) = picture {
-            self.pictures
-                .submit(&self.editor, place.pixels, self.layout.aspect);
-            if let Some(wishes) = self.thumbs.wishes(&ctx, &self.editor, place.rect) {
-                self.pictures.request_thumbnails(wishes);
-            }
+        self.toasts.show(&ctx, place.rect);
+        self.pictures
+            .submit(&self.editor, place.pixels, self.layout.aspect);
+        if let Some(wishes) = self.thumbs.wishes(&ctx, &self.editor, place.rect) {
+            self.pictures.request_thumbnails(wishes);
         }
         // A question would keep the live view waiting.
         self.pictures.ask(&self.editor, questions);
@@ -376,6 +396,8 @@ impl eframe::App for App {
             ..self.layout
         };
         eframe::set_value(storage, LAYOUT_KEY, &layout);
+        eframe::set_value(storage, FOLDERS_KEY, &self.files.folders);
+        eframe::set_value(storage, EXPORTS_KEY, &self.exports.kept_settings());
     }
 
     fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {

@@ -80,13 +80,8 @@ impl Autosave {
             return;
         }
         self.tried = Some(Instant::now());
-        let (mut document, path) = (editor.document(), editor.path().map(Path::to_owned));
-        // A mesh that lies in no folder of this scene would not be found again.
-        let folder = path
-            .as_deref()
-            .and_then(Path::parent)
-            .unwrap_or(Path::new(""));
-        document.scene = document.scene.taken_to(folder);
+        let document = editor.document_to_keep();
+        let path = editor.path().map(Path::to_owned);
         let written = run_in_background("glint-autosave", move || {
             let text = document.to_text().map_err(|error| error.to_string());
             text.and_then(|text| {

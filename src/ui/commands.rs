@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use egui::{Event, Key, KeyboardShortcut, Modifiers, Ui};
 use glam::DVec3;
 
-use crate::editor::Editor;
+use crate::editor::{Editor, Item, Kind, Selection};
 
 /// Something the user asks of the window as a whole.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,6 +43,16 @@ pub enum Command {
     Paste(String),
     /// Select all objects that wear the pack of the selected one.
     SelectSamePack,
+    /// List the selected objects as a group.
+    Group,
+    /// List the selected objects by themselves.
+    Ungroup,
+    /// Keep one of all packs that are equal.
+    MergePacks,
+    /// Come back to this view when asked to.
+    AddBookmark,
+    /// Look from the bookmark in this place.
+    GoToBookmark(usize),
     /// Copy the selected item.
     Duplicate,
     /// Delete the selected item.
@@ -59,6 +69,8 @@ pub enum Command {
     LowRes,
     /// The still picture.
     HighRes,
+    /// The still picture with its pixels as those of the screen, or all of it again.
+    ActualSize,
     /// Give the still picture up.
     CancelStill,
     /// Perspective projection.
@@ -191,6 +203,9 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     Copy [ctrl(Key::C)] "Copy what is selected, as text",
     Cut [ctrl(Key::X)] "Cut what is selected",
     RequestPaste [ctrl(Key::V)] "Paste objects and lights, also text written by hand",
+    Ungroup [ctrl_shift(Key::G)] "Take what is selected out of its group",
+    Group [ctrl(Key::G)] "Make a group of the selected objects",
+    AddBookmark [ctrl(Key::B)] "Set a bookmark at this view",
     Duplicate [ctrl(Key::D)] "Duplicate what is selected",
     ToggleVisible [ctrl(Key::H)] "Hide or show what is selected",
     Delete [plain(Key::Delete)] "Delete what is selected",
@@ -218,6 +233,7 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
 /// The commands that have no key.
 pub const KEYLESS: &[(Command, &str)] = &[
     (Command::Live, "Live view"),
+    (Command::ActualSize, "High-res picture at actual size"),
     (Command::OpenExample(0), "Open the demo"),
     (Command::ImportMesh, "Import a mesh"),
     (Command::ExportJob, "Export a job for a render farm"),
@@ -227,6 +243,7 @@ pub const KEYLESS: &[(Command, &str)] = &[
         Command::SelectSamePack,
         "Select all objects with the same color pack",
     ),
+    (Command::MergePacks, "Merge equal color packs"),
 ];
 
 /// The commands whose keys were pressed in this frame. A key that repeats because it is held
@@ -311,7 +328,6 @@ pub fn name_of(ui: &Ui, keys: KeyboardShortcut) -> String {
 
 /// Why the command would do nothing now, if so.
 pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
-    use crate::editor::Selection;
     let nothing = "nothing is selected";
     match command {
         Command::Undo => editor.undo_label().is_none().then_some("nothing to undo"),
@@ -327,6 +343,24 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
         | Command::ToggleVisible => {
             let has = matches!(editor.selection, Selection::Item(_));
             (!has).then_some(nothing)
+        }
+        Command::Group => {
+            let mut items = editor.selected().items().iter();
+            let has = items.any(|item| item.kind == Kind::Object);
+            (!has).then_some("no object is selected")
+        }
+        Command::Ungroup => {
+            let items = editor.selected().items().iter();
+            let mut objects = items.filter(|item| item.kind == Kind::Object);
+            let group = |item: &Item| Some(&editor.scene().objects.get(item.index)?.group);
+            let has = objects.any(|item| group(item).is_some_and(|group| !group.is_empty()));
+            (!has).then_some("nothing in a group is selected")
+        }
+        Command::MergePacks => {
+            let packs = &editor.scene().color_packs;
+            let mut pairs = (0..packs.len()).flat_map(|n| (0..n).map(move |m| (n, m)));
+            let has = pairs.any(|(n, m)| packs[n] == packs[m]);
+            (!has).then_some("no two color packs are equal")
         }
         Command::Rename | Command::MoveUp | Command::MoveDown => match editor.selection {
             Selection::Item(_) if editor.selected().items().len() > 1 => {

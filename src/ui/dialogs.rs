@@ -65,7 +65,7 @@ impl Ask {
         match self {
             Self::OpenScene | Self::SaveScene => &["ron"],
             Self::ImportMesh => &["obj", "stl", "ply", "glb", "gltf"],
-            Self::SaveImage => &["png", "ppm"],
+            Self::SaveImage => &["png", "ppm", "exr"],
             Self::ImportPath | Self::ExportPath => &["csv", "ron"],
             Self::ExportJob => &["yaml"],
             Self::ExportFolder => &[""],

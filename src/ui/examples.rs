@@ -3,6 +3,7 @@
 use egui::{Button, Context, Image, TextureHandle, TextureOptions, Ui, load::SizedTexture, vec2};
 
 use super::commands::Command;
+use super::hint::Hint as _;
 use super::requests::UiRequests;
 use super::upload::whole;
 use crate::scene::EXAMPLES;
@@ -63,7 +64,7 @@ impl Examples {
                 None => Button::new(name),
             };
             let entry = ui.add(button.min_size(vec2(2.0 * size.x, size.y)));
-            if entry.accessible_name(name).on_hover_text(words).clicked() {
+            if entry.accessible_name(name).hint(words).clicked() {
                 out.commands.push(Command::OpenExample(place));
                 ui.close();
             }

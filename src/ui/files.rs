@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use egui::{Context, Ui};
 
 use super::dialogs::{Ask, Dialogs};
+use super::folders::Folders;
 use super::interchange::{export_job, export_path, import_path, imported};
 use super::outside::{Theirs, Watch};
 use super::prompts::{Answer, PathPrompt, ask_about_changes, ask_to_leave, ask_to_quit};
@@ -62,6 +63,8 @@ pub struct Files {
     watch: Watch,
     /// Files that were opened or saved, newest first.
     pub recent: Vec<PathBuf>,
+    /// Where paths were chosen before.
+    pub folders: Folders,
 }
 
 /// A desktop dialog that is open.
@@ -93,7 +96,7 @@ enum Question {
 
 impl Files {
     /// Nothing in progress.
-    pub fn new(dialogs: Box<dyn Dialogs>, recent: Vec<PathBuf>) -> Self {
+    pub fn new(dialogs: Box<dyn Dialogs>, recent: Vec<PathBuf>, folders: Folders) -> Self {
         Self {
             dialogs,
             waiting: None,
@@ -101,6 +104,7 @@ impl Files {
             reading: VecDeque::new(),
             watch: Watch::default(),
             recent,
+            folders,
         }
     }
 
@@ -164,9 +168,8 @@ impl Files {
     /// One dialog at a time: while one is open, further wishes are not heard.
     fn wish(&mut self, ctx: &Context, editor: &Editor, wish: PathRequest) {
         if self.waiting.is_none() {
-            let answer = self
-                .dialogs
-                .ask(ctx, &wish.ask, suggestion(editor, &wish.ask));
+            let suggested = self.folders.suggest(editor, &wish.ask);
+            let answer = self.dialogs.ask(ctx, &wish.ask, suggested);
             self.waiting = Some(Waiting {
                 wish,
                 answer,
@@ -220,7 +223,7 @@ impl Files {
                 });
             }
             Ok(None) | Err(TryRecvError::Disconnected) if since.elapsed() < NO_DIALOG => {
-                let suggested = suggestion(editor, &wish.ask);
+                let suggested = self.folders.suggest(editor, &wish.ask);
                 self.prompt(wish, &suggested);
             }
             Ok(None) | Err(TryRecvError::Disconnected) => {}
@@ -277,6 +280,8 @@ impl Files {
         wish: PathRequest,
         path: PathBuf,
     ) -> Option<FileOutcome> {
+        editor.begin(wish.ask.title());
+        self.folders.note(&wish.ask, &path);
         match wish.ask {
             Ask::OpenScene => self.open(ctx, editor, &path),
             Ask::ImportMesh => self.import_mesh(ctx, editor, &path),
@@ -294,7 +299,7 @@ impl Files {
                     self.remember(editor);
                     return self.go_on(ctx, editor, wish.then?);
                 }
-                Err(error) => editor.report_error(error.to_string()),
+                Err(error) => editor.report_error_in(wish.ask.title(), error.to_string()),
             },
         }
         None
@@ -390,7 +395,9 @@ impl Files {
             }
             Read::Scene(document) => self.opened(editor, &reading.path, *document),
             Read::Parts(Ok(parts)) => imported(editor, &reading.path, parts),
-            Read::Parts(Err(error)) => editor.report_error(error.to_string()),
+            Read::Parts(Err(error)) => {
+                editor.report_error_in(Ask::ImportMesh.title(), error.to_string());
+            }
             Read::Nothing => {
                 let path = reading.path.display();
                 editor.report_error(format!("{path} could not be read: the reader stopped"));
@@ -406,13 +413,14 @@ impl Files {
     ) {
         match document {
             Ok(document) => {
+                editor.begin(Ask::OpenScene.title());
                 editor.open(document, path);
                 self.remember(editor);
             }
             Err(error) => {
                 self.recent
                     .retain(|recent| recent != path || recent.exists());
-                editor.report_error(error.to_string());
+                editor.report_error_in(Ask::OpenScene.title(), error.to_string());
             }
         }
     }
@@ -422,25 +430,5 @@ impl Files {
         self.recent.retain(|recent| recent != path);
         self.recent.insert(0, path.to_owned());
         self.recent.truncate(RECENT);
-    }
-}
-
-/// Beside the document, under its name.
-fn suggestion(editor: &Editor, ask: &Ask) -> PathBuf {
-    let folder = editor
-        .path()
-        .and_then(Path::parent)
-        .filter(|folder| !folder.as_os_str().is_empty());
-    let folder = folder
-        .map(Path::to_owned)
-        .or_else(|| std::env::current_dir().ok())
-        .unwrap_or_default();
-    let title = editor.title();
-    let stem = title.strip_suffix(".ron").unwrap_or(&title);
-    match ask {
-        Ask::OpenScene | Ask::ImportMesh | Ask::ImportPath | Ask::ExportFolder => folder.join(""),
-        Ask::ExportPath => folder.join(format!("{stem} path.csv")),
-        Ask::ExportJob => folder.join(format!("{stem} job.yaml")),
-        Ask::SaveScene | Ask::SaveImage => folder.join(format!("{stem}.{}", ask.endings()[0])),
     }
 }

@@ -5,6 +5,7 @@ use egui::{
 };
 
 use super::commands::{Command, KEYLESS, SHORTCUTS, name_of, obstacle};
+use super::hint::Hint as _;
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW};
 use crate::editor::{Editor, Item, Selection};
@@ -78,7 +79,7 @@ impl Finder {
         let field = TextEdit::singleline(&mut self.text)
             .hint_text("A command, an object, a light, a color pack, a setting")
             .desired_width(f32::INFINITY);
-        let field = ui.add(field).on_hover_text("Enter does what is marked");
+        let field = ui.add(field).hint("Enter does what is marked");
         field.request_focus();
         if field.changed() {
             self.meant = 0;

@@ -109,7 +109,10 @@ pub const MOUSE: &[(&str, &str)] = &[
     ("Right button, drag", "Look around"),
     ("Right button", "A menu; why a colour is what it is"),
     ("Wheel", "Towards the pointer, and away"),
+    ("High-res: wheel, drag", "Enlarge, move; twice shows all"),
+    ("High-res: Shift, drag", "Trace only this part anew"),
     ("Shift, held", "Fly four times as fast"),
+    ("Wheel, while flying", "Fly faster, or slower"),
     ("Timeline: Ctrl, wheel", "Show less or more of it"),
     ("Timeline: middle button", "Move it; Home shows all"),
 ];

@@ -17,6 +17,14 @@ const EXTENTS_PER_SECOND: f64 = 0.25;
 const PLAIN_SPEED: f64 = 50.0;
 /// How much faster shift is.
 const FAST: f64 = 4.0;
+/// Points of the wheel that double the speed.
+const WHEEL_DOUBLES: f64 = 100.0;
+/// The least and the most that the usual speed is multiplied by.
+pub const SLOWEST: f64 = 0.01;
+/// See [`SLOWEST`].
+pub const FASTEST: f64 = 100.0;
+/// Seconds for which a new speed is told.
+const TOLD: f64 = 1.2;
 /// Longest frame that counts, in seconds: after a stall the camera does not leap.
 const LONGEST_FRAME: f64 = 0.1;
 /// Seconds that the control key must be held by itself before it flies: it also starts shortcuts.
@@ -32,6 +40,8 @@ pub struct Flying {
     keys_fly: bool,
     /// When the wheel last turned.
     wheel_at: Option<f64>,
+    /// When the speed was last changed.
+    changed_at: Option<f64>,
 }
 
 /// What the control key is being held for.
@@ -57,7 +67,7 @@ impl Flying {
         ui: &Ui,
         picture: Option<&Response>,
         keys_are_free: bool,
-        scene: &Scene,
+        (scene, factor): (&Scene, f64),
     ) -> Option<Motion> {
         let held = if keys_are_free && picture.is_some() {
             self.held(ui)
@@ -78,7 +88,7 @@ impl Flying {
             } else {
                 1.0
             };
-            let speed = speed(scene) * fast;
+            let speed = speed(scene) * fast * factor;
             let seconds = f64::from(ui.input(|input| input.stable_dt)).min(LONGEST_FRAME);
             motion = held.times(speed * seconds, TURN_SPEED * seconds);
         }
@@ -90,16 +100,41 @@ impl Flying {
         (motion != Motion::default()).then_some(motion)
     }
 
-    /// Points that the wheel turned over the picture.
-    pub fn wheel(&mut self, ui: &Ui, picture: &Response) -> f64 {
-        if !picture.hovered() {
+    /// Points that the wheel turned over the picture. While the camera flies or looks around, the wheel
+    /// changes its speed instead: that is `factor` times the usual one.
+    pub fn wheel(&mut self, ui: &Ui, picture: &Response, factor: &mut f64) -> f64 {
+        let is_down = ui.input(|input| input.pointer.secondary_down());
+        let looks = is_down && picture.is_pointer_button_down_on();
+        if !picture.hovered() && !looks {
             return 0.0;
         }
         let wheel = f64::from(ui.input(|input| input.smooth_scroll_delta().y));
-        if wheel != 0.0 {
-            self.wheel_at = Some(ui.input(|input| input.time));
+        if wheel == 0.0 {
+            return 0.0;
         }
+        let now = ui.input(|input| input.time);
+        // What is left of the turn belongs to it.
+        let was_changed = self.changed_at.is_some_and(|at| now - at < WHEEL_QUIET);
+        if looks || self.keys_fly {
+            *factor = (*factor * (wheel / WHEEL_DOUBLES).exp2()).clamp(SLOWEST, FASTEST);
+            self.changed_at = Some(now);
+            return 0.0;
+        }
+        if was_changed {
+            return 0.0;
+        }
+        self.wheel_at = Some(now);
         wheel
+    }
+
+    /// Whether the speed was changed just now.
+    pub fn is_speed_told(&mut self, ctx: &Context) -> bool {
+        let now = ctx.input(|input| input.time);
+        self.changed_at = self.changed_at.filter(|at| now - at < TOLD);
+        if self.changed_at.is_some() {
+            ctx.request_repaint_after_secs(TOLD as f32);
+        }
+        self.changed_at.is_some()
     }
 
     /// Whether keys move the camera: they are then no shortcuts.

@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
+use super::dialogs::Ask;
 use crate::animate::{from_table, from_text, to_table, to_text};
 use crate::editor::{Action, Edit, Editor};
 use crate::export::{Pattern, Sequence, job_template, write_text};
@@ -14,7 +15,7 @@ use crate::scene::{Animation, read_text};
 pub fn import_path(editor: &mut Editor, path: &Path) {
     let text = match read_text(path) {
         Ok(text) => text,
-        Err(error) => return editor.report_error(error.to_string()),
+        Err(error) => return editor.report_error_in(Ask::ImportPath.title(), error.to_string()),
     };
     let keys = if is_table(path) {
         from_table(&text, &editor.shown().camera)
@@ -32,7 +33,12 @@ pub fn import_path(editor: &mut Editor, path: &Path) {
             editor.apply(Action::Edit(Edit::animation(animation, "Import path")));
             editor.notify(format!("{count} keys from {}", path.display()));
         }
-        Err(error) => editor.report_error(format!("{}: {error}", path.display())),
+        Err(error) => {
+            editor.report_error_in(
+                Ask::ImportPath.title(),
+                format!("{}: {error}", path.display()),
+            );
+        }
     }
 }
 
@@ -42,7 +48,8 @@ pub fn export_path(editor: &mut Editor, path: &Path) {
         .extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("ron"));
     if !is_table(path) && !is_text {
-        return editor.report_error(format!("{}: end it in .csv or .ron", path.display()));
+        let why = format!("{}: end it in .csv or .ron", path.display());
+        return editor.report_error_in(Ask::ExportPath.title(), why);
     }
     let keys = &editor.scene().animation.keys;
     let text = if is_table(path) {
@@ -52,7 +59,7 @@ pub fn export_path(editor: &mut Editor, path: &Path) {
     };
     match text.and_then(|text| Ok(write_text(path, &text)?)) {
         Ok(()) => editor.notify(format!("Saved {}", path.display())),
-        Err(error) => editor.report_error(error.to_string()),
+        Err(error) => editor.report_error_in(Ask::ExportPath.title(), error.to_string()),
     }
 }
 
@@ -61,7 +68,7 @@ pub fn export_job(editor: &mut Editor, path: &Path) {
     let scene = path.with_extension("ron");
     match write_job(editor, path, &scene) {
         Ok(()) => editor.notify(format!("Saved {} and {}", path.display(), scene.display())),
-        Err(error) => editor.report_error(error.to_string()),
+        Err(error) => editor.report_error_in(Ask::ExportJob.title(), error.to_string()),
     }
 }
 

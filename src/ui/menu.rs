@@ -2,15 +2,17 @@
 
 use std::path::PathBuf;
 
-use egui::{Button, Context, MenuBar, Theme, Ui};
+use egui::{Button, Context, DragValue, MenuBar, Theme, Ui};
 use serde::{Deserialize, Serialize};
 
 use super::add::add_menu;
-use super::commands::{Command, is_enabled, key_of};
+use super::commands::{Command, is_enabled};
 use super::examples::Examples;
+use super::flying::{FASTEST, SLOWEST};
+use super::hint::Hint as _;
 use super::icons;
 use super::inspector::target;
-use super::menu_entry::{ITEM_COMMANDS, entry};
+use super::menu_entry::{ITEM_COMMANDS, entry, switch, ticked};
 use super::requests::UiRequests;
 use crate::animate::{Preset, Retime};
 use crate::editor::{Edit, Editor, Mode, Selection, Time};
@@ -29,15 +31,28 @@ pub struct Layout {
     pub flight: bool,
     /// Whether the shot is shown in a corner of the view.
     pub shot: bool,
-    /// Whether the still picture is shown one pixel to one pixel, with scroll bars.
-    pub actual_size: bool,
+    /// Whether it is shown how bright the picture is.
+    pub histogram: bool,
     /// Whether the timeline was shown when the window was closed.
     pub timeline: bool,
     /// Whether the lab was.
     pub lab: bool,
+    /// How many times faster than usual the camera flies.
+    pub fly_speed: f64,
     /// What of the light the live view shows.
     #[serde(skip)]
     pub aspect: Aspect,
+}
+
+/// What is shown of the panels that commands show and hide.
+#[derive(Clone, Copy, Debug)]
+pub struct Panels {
+    /// The timeline.
+    pub timeline: bool,
+    /// The lab.
+    pub lab: bool,
+    /// Nothing but the picture.
+    pub is_alone: bool,
 }
 
 impl Default for Layout {
@@ -47,9 +62,10 @@ impl Default for Layout {
             inspector: true,
             flight: true,
             shot: true,
-            actual_size: false,
+            histogram: false,
             timeline: true,
             lab: false,
+            fly_speed: 1.0,
             aspect: Aspect::All,
         }
     }
@@ -60,16 +76,23 @@ pub fn show(
     ui: &mut Ui,
     editor: &Editor,
     (recent, examples): (&[PathBuf], &mut Examples),
-    layout: &mut Layout,
+    (layout, panels): (&mut Layout, Panels),
     out: &mut UiRequests,
 ) {
     MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| file_menu(ui, (recent, examples), out));
         ui.menu_button("Edit", |ui| edit_menu(ui, editor, out));
         ui.menu_button("Add", |ui| add_menu(ui, editor.scene(), out));
-        ui.menu_button("View", |ui| view_menu(ui, editor, layout, out));
+        ui.menu_button("View", |ui| view_menu(ui, editor, (layout, panels), out));
         ui.menu_button("Render", |ui| {
             entry(ui, "High-res picture", Command::HighRes, true, out);
+            entry(
+                ui,
+                "High-res at actual size",
+                Command::ActualSize,
+                true,
+                out,
+            );
             entry(ui, "Save image…", Command::SaveImage, true, out);
             entry(ui, "Export animation…", Command::Export, true, out);
             ui.separator();
@@ -100,11 +123,7 @@ fn file_menu(ui: &mut Ui, (recent, examples): (&[PathBuf], &mut Examples), out: 
                     .file_name()
                     .unwrap_or(path.as_os_str())
                     .to_string_lossy();
-                if ui
-                    .button(name)
-                    .on_hover_text(path.display().to_string())
-                    .clicked()
-                {
+                if ui.button(name).hint(path.display().to_string()).clicked() {
                     out.commands.push(Command::OpenRecent(path.clone()));
                 }
             }
@@ -149,13 +168,39 @@ fn edit_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         entry(ui, text, command, enabled, out);
     }
     entry(ui, "Paste", Command::RequestPaste, true, out);
+    let can_merge = is_enabled(&Command::MergePacks, editor);
+    entry(ui, "Merge equal packs", Command::MergePacks, can_merge, out);
 }
 
-fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequests) {
+fn bookmark_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+    entry(ui, "Add this view", Command::AddBookmark, true, out);
+    let bookmarks = &editor.scene().bookmarks;
+    if !bookmarks.is_empty() {
+        ui.separator();
+    }
+    for (index, bookmark) in bookmarks.iter().enumerate() {
+        entry(ui, &bookmark.name, Command::GoToBookmark(index), true, out);
+    }
+}
+
+fn view_menu(
+    ui: &mut Ui,
+    editor: &Editor,
+    (layout, panels): (&mut Layout, Panels),
+    out: &mut UiRequests,
+) {
     mode_entries(ui, editor, out);
     ui.separator();
-    entry(ui, "Perspective", Command::Perspective, true, out);
-    entry(ui, "Orthographic", Command::Orthographic, true, out);
+    let projection = editor.scene().camera.projection;
+    for (kind, command) in [
+        (Projection::Perspective, Command::Perspective),
+        (Projection::Orthographic, Command::Orthographic),
+    ] {
+        let name = format!("{kind:?}");
+        if ticked(ui, projection == kind, &name, Some(&command)).clicked() {
+            out.commands.push(command);
+        }
+    }
     ui.separator();
     for (text, command) in [
         ("Frame what is selected", Command::FrameSelected),
@@ -166,26 +211,41 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
     ] {
         entry(ui, text, command, true, out);
     }
+    ui.menu_button("Go to bookmark", |ui| bookmark_entries(ui, editor, out));
     ui.separator();
-    ui.menu_button("Show of the light", |ui| {
+    ui.menu_button("Show", |ui| {
         for (aspect, name, hint) in Aspect::EACH {
-            if ui
-                .radio(layout.aspect == aspect, name)
-                .on_hover_text(hint)
-                .clicked()
-            {
+            if ui.radio(layout.aspect == aspect, name).hint(hint).clicked() {
                 layout.aspect = aspect;
             }
         }
     });
-    ui.checkbox(&mut layout.actual_size, "High-res at actual size");
-    ui.checkbox(&mut layout.outliner, "Outliner");
-    ui.checkbox(&mut layout.inspector, "Inspector");
-    entry(ui, "Timeline", Command::Timeline, true, out);
-    entry(ui, "Lab", Command::Lab, true, out);
+    switch(ui, &mut layout.histogram, "Histogram");
+    switch(ui, &mut layout.outliner, "Outliner");
+    switch(ui, &mut layout.inspector, "Inspector");
+    for (is_on, name, command) in [
+        (panels.timeline, "Timeline", Command::Timeline),
+        (panels.lab, "Lab", Command::Lab),
+        (panels.is_alone, "Picture alone", Command::PictureAlone),
+    ] {
+        if ticked(ui, is_on, name, Some(&command)).clicked() {
+            out.commands.push(command);
+        }
+    }
     ui.separator();
-    ui.checkbox(&mut layout.flight, "Flight in the view");
-    ui.checkbox(&mut layout.shot, "Shot in a corner of the view");
+    switch(ui, &mut layout.flight, "Flight in the view");
+    switch(ui, &mut layout.shot, "Shot in a corner of the view");
+    ui.horizontal(|ui| {
+        ui.label("Flying speed");
+        let speed = DragValue::new(&mut layout.fly_speed)
+            .range(SLOWEST..=FASTEST)
+            .speed(0.02)
+            .max_decimals(2)
+            .suffix("×");
+        ui.add(speed)
+            .accessible_name("flying speed")
+            .hint("The wheel changes it while the camera flies or looks around");
+    });
     ui.separator();
     theme_choice(ui);
 }
@@ -238,7 +298,7 @@ fn preset_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     for preset in Preset::ALL {
         let (name, hint) = preset.words();
         let hint = format!("{hint}. Replaces the camera's keys");
-        if ui.button(name).on_hover_text(hint).clicked() {
+        if ui.button(name).hint(hint).clicked() {
             let keys = preset.keys(&editor.shown().camera, target(editor), PRESET_SECONDS);
             let changed = Animation {
                 keys,
@@ -267,7 +327,7 @@ fn retime_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         ),
         ("Smooth", "Takes corners off the flight", Retime::Smooth),
     ] {
-        if ui.button(name).on_hover_text(hint).clicked() {
+        if ui.button(name).hint(hint).clicked() {
             retimed = Some((retime, name));
         }
     }
@@ -283,7 +343,7 @@ fn retime_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
 fn theme_choice(ui: &mut Ui) {
     let ctx: Context = ui.ctx().clone();
     for (theme, name) in [(Theme::Dark, "Dark theme"), (Theme::Light, "Light theme")] {
-        if ui.radio(ctx.theme() == theme, name).clicked() {
+        if ticked(ui, ctx.theme() == theme, name, None).clicked() {
             ctx.set_theme(theme);
         }
     }
@@ -295,9 +355,7 @@ fn mode_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         (Mode::LowRes, "Low-res (64 pixels)", Command::LowRes),
         (Mode::HighRes, "High-res picture", Command::HighRes),
     ] {
-        let key = key_of(ui, &command).unwrap_or_default();
-        let button = Button::selectable(editor.mode == mode, text).shortcut_text(key);
-        if ui.add(button).accessible_name(text).clicked() {
+        if ticked(ui, editor.mode == mode, text, Some(&command)).clicked() {
             out.commands.push(command);
         }
     }
@@ -308,7 +366,7 @@ fn switches(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let scene = editor.scene();
     let markers = scene.light_visualization;
     let hint = "Show the markers of lights (I on, U off)";
-    if switch(
+    if bar_switch(
         ui,
         markers,
         (icons::text(icons::LIGHT), "Lights"),
@@ -328,7 +386,7 @@ fn switches(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         "Orthographic"
     };
     let hint = "Projection (P perspective, O orthographic); click to change";
-    if switch(
+    if bar_switch(
         ui,
         false,
         (icons::text(icons::CAMERA), name),
@@ -344,7 +402,7 @@ fn switches(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
     let is_still = editor.mode == Mode::HighRes;
     let hint = "Trace the picture at its full size (H); Esc goes back to the live view";
-    if switch(
+    if bar_switch(
         ui,
         is_still,
         (icons::text(icons::IMAGE), "High-res"),
@@ -368,11 +426,11 @@ fn switches(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     ));
     let live = live
         .accessible_name("Picture mode")
-        .on_hover_text("What the picture area shows");
+        .hint("What the picture area shows");
     egui::Popup::menu(&live).show(|ui| mode_entries(ui, editor, out));
 }
 
-fn switch<'a>(
+fn bar_switch<'a>(
     ui: &mut Ui,
     on: bool,
     text: impl egui::IntoAtoms<'a>,
@@ -381,6 +439,6 @@ fn switch<'a>(
 ) -> bool {
     ui.add(Button::selectable(on, text))
         .accessible_name(name)
-        .on_hover_text(hint)
+        .hint(hint)
         .clicked()
 }

@@ -1,32 +1,63 @@
 //! An entry of a menu, and those that several menus have.
 
-use egui::{Button, Ui};
+use egui::{Button, Color32, Response, Role, Ui, WidgetInfo};
 
 use super::commands::{Command, key_of};
+use super::icons;
 use super::requests::UiRequests;
 
 /// What can be done to the selected item.
-pub const ITEM_COMMANDS: [(&str, Command); 9] = [
+pub const ITEM_COMMANDS: [(&str, Command); 11] = [
     ("Cut", Command::Cut),
     ("Copy", Command::Copy),
     ("Hide or show", Command::ToggleVisible),
     ("Rename", Command::Rename),
     ("Select all with this pack", Command::SelectSamePack),
+    ("Group", Command::Group),
+    ("Ungroup", Command::Ungroup),
     ("Duplicate", Command::Duplicate),
     ("Move up", Command::MoveUp),
     ("Move down", Command::MoveDown),
     ("Delete", Command::Delete),
 ];
 
-/// A menu entry with its key.
-pub fn entry(ui: &mut Ui, text: &str, command: Command, enabled: bool, out: &mut UiRequests) {
+/// A menu entry with its key. Whether it was chosen.
+pub fn entry(
+    ui: &mut Ui,
+    text: &str,
+    command: Command,
+    enabled: bool,
+    out: &mut UiRequests,
+) -> bool {
     let key = key_of(ui, &command).unwrap_or_default();
     let button = Button::new(text).shortcut_text(key);
-    if ui
-        .add_enabled(enabled, button)
-        .accessible_name(text)
-        .clicked()
-    {
+    let entry = ui.add_enabled(enabled, button).accessible_name(text);
+    let is_chosen = entry.clicked();
+    if is_chosen {
         out.commands.push(command);
+    }
+    is_chosen
+}
+
+/// An entry that is on or off: a tick before it says that it is on.
+pub fn ticked(ui: &mut Ui, is_on: bool, text: &str, command: Option<&Command>) -> Response {
+    let key = command.and_then(|command| key_of(ui, command));
+    let tick = icons::text(icons::CHECK);
+    let tick = if is_on {
+        tick
+    } else {
+        tick.color(Color32::TRANSPARENT)
+    };
+    let button = Button::new((tick, text)).shortcut_text(key.unwrap_or_default());
+    let entry = ui.add(button).accessible_name(text);
+    let role = Role::CheckBox;
+    entry.widget_info(|| WidgetInfo::selected(role, true, is_on, text));
+    entry
+}
+
+/// An entry that switches something on or off.
+pub fn switch(ui: &mut Ui, is_on: &mut bool, text: &str) {
+    if ticked(ui, *is_on, text, None).clicked() {
+        *is_on = !*is_on;
     }
 }

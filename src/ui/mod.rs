@@ -9,11 +9,11 @@ mod commands;
 
 mod dialogs;
 
+mod folders;
+
 mod flying;
 
 mod requests;
-
-mod menu_entry;
 
 mod screenshot;
 
@@ -25,7 +25,13 @@ mod theme;
 
 mod help;
 
+mod hint;
+
 mod icons;
+
+mod menu_entry;
+
+mod dress;
 
 mod add;
 
@@ -45,6 +51,8 @@ mod examples;
 
 mod raster;
 
+mod number;
+
 mod rows;
 
 mod inspector;
@@ -63,6 +71,10 @@ mod status;
 
 mod toasts;
 
+mod histogram;
+
+mod magnifier;
+
 mod viewport;
 
 mod tools;
@@ -72,6 +84,8 @@ mod timeline;
 mod lab;
 
 mod pictures;
+
+mod still;
 
 mod exports;
 

@@ -1,26 +1,87 @@
 //! The panels of the window, and the picture between them.
 
-use egui::{Align2, CentralPanel, Frame, Margin, Panel, TextStyle, Ui};
+use egui::containers::panel::PanelState;
+use egui::{
+    Align2, CentralPanel, Frame, IdSalt, Margin, Panel, Stroke, StrokeKind, TextStyle, Ui,
+    UiBuilder, Vec2,
+};
 
 use super::app::App;
 use super::commands::Command;
+use super::menu::Panels;
 use super::reading::Reading;
 use super::requests::UiRequests;
 use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, TIMELINE, palette};
+use super::timeline::clock;
+use super::tools::label;
 use super::viewport::{Place, badge, describe, fit};
 use super::{inspector, menu, status};
 use crate::editor::Mode;
 use crate::scene::Aspect;
 
+/// Width of the frame around a picture that is recorded, in points.
+const FRAME: f32 = 3.0;
+
 impl App {
+    /// The panels in the order in which Tab goes through them: outliner, picture, inspector, timeline.
     pub(super) fn show_panels(
         &mut self,
         ui: &mut Ui,
         out: &mut UiRequests,
-    ) -> Option<(Place, egui::Response)> {
-        if !self.is_alone {
-            self.show_sides(ui, out);
+    ) -> (Place, egui::Response) {
+        if self.is_alone {
+            return self.show_middle(ui, out);
         }
+        Panel::top("menu").show(ui, |ui| {
+            let files = (self.files.recent.as_slice(), &mut self.examples);
+            let panels = Panels {
+                timeline: self.timeline.is_open,
+                lab: self.lab.is_open,
+                is_alone: self.is_alone,
+            };
+            let layout = (&mut self.layout, panels);
+            menu::show(ui, &self.editor, files, layout, out);
+        });
+        // What stands below is as high as in the frame before, and drawn last.
+        let mut upper = ui.available_rect_before_wrap();
+        upper.max.y -= self.height_below(ui);
+        // It takes no room itself: the panels below do.
+        let mut above = ui.new_child(UiBuilder::new().max_rect(upper));
+        let picture = self.show_upper(&mut above, out);
+        self.show_below(ui, out);
+        picture
+    }
+
+    /// The outliner, the picture and the inspector.
+    fn show_upper(&mut self, ui: &mut Ui, out: &mut UiRequests) -> (Place, egui::Response) {
+        if self.layout.outliner {
+            Panel::left("outliner")
+                .frame(side(ui))
+                .default_size(OUTLINER)
+                .size_range(160.0..=420.0)
+                .show(ui, |ui| {
+                    self.outliner.show(ui, &self.editor, out);
+                });
+        }
+        let mut middle = ui.available_rect_before_wrap();
+        if self.layout.inspector {
+            middle.max.x -= size_of(ui, "inspector").map_or(INSPECTOR, |size| size.x);
+        }
+        let mut between = ui.new_child(UiBuilder::new().max_rect(middle));
+        let picture = self.show_middle(&mut between, out);
+        if self.layout.inspector {
+            Panel::right("inspector")
+                .frame(side(ui))
+                .default_size(INSPECTOR)
+                .size_range(INSPECTOR..=480.0)
+                .show(ui, |ui| {
+                    inspector::show(ui, &self.editor, out);
+                });
+        }
+        picture
+    }
+
+    fn show_middle(&mut self, ui: &mut Ui, out: &mut UiRequests) -> (Place, egui::Response) {
         let behind = Frame::new().fill(palette(ui.ctx()).window);
         CentralPanel::no_frame()
             .frame(behind)
@@ -28,13 +89,33 @@ impl App {
             .inner
     }
 
-    /// Everything around the picture.
-    fn show_sides(&mut self, ui: &mut Ui, out: &mut UiRequests) {
-        let side = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(GRID as i8, 0));
-        Panel::top("menu").show(ui, |ui| {
-            let files = (self.files.recent.as_slice(), &mut self.examples);
-            menu::show(ui, &self.editor, files, &mut self.layout, out);
+    /// The panel of the timeline: where nothing moves, the room is the picture's.
+    fn timeline_panel(&self) -> &'static str {
+        if self.editor.scene().animation.is_still() {
+            "timeline without keys"
+        } else {
+            "timeline"
+        }
+    }
+
+    /// How high the timeline, the lab and the status line were in the last frame.
+    fn height_below(&self, ui: &Ui) -> f32 {
+        let timeline = self.timeline_panel();
+        let panels = [
+            (true, "status", ROW),
+            (self.lab.is_open, "lab", LAB),
+            (self.timeline.is_open, timeline, TIMELINE),
+        ];
+        let open = panels.iter().filter(|(is_open, ..)| *is_open);
+        let heights = open.map(|(_, name, usual)| {
+            let size = size_of(ui, name);
+            size.map_or(*usual, |size| size.y)
         });
+        heights.sum()
+    }
+
+    /// The status line, the lab and the timeline, from below.
+    fn show_below(&mut self, ui: &mut Ui, out: &mut UiRequests) {
         Panel::bottom("status").exact_size(ROW).show(ui, |ui| {
             let frame = self.pictures.shown(&self.editor);
             let live = frame.map_or(String::new(), |frame| describe(frame, self.editor.shown()));
@@ -47,7 +128,7 @@ impl App {
             status::show(ui, &text, &self.pictures.activity(), note, check, out);
         });
         if self.lab.is_open {
-            let panel = Panel::bottom("lab").frame(side).resizable(true);
+            let panel = Panel::bottom("lab").frame(side(ui)).resizable(true);
             let shown = panel
                 .default_size(LAB)
                 .size_range(160.0..=600.0)
@@ -58,43 +139,21 @@ impl App {
         }
         if self.timeline.is_open {
             let per_second = self.pictures.per_second();
-            // Where nothing moves, the room is the picture's.
+            let panel = Panel::bottom(self.timeline_panel());
             let panel = if self.editor.scene().animation.is_still() {
-                Panel::bottom("timeline without keys").exact_size(3.0 * ROW)
+                panel.exact_size(3.0 * ROW)
             } else {
-                let panel = Panel::bottom("timeline").resizable(true);
+                let panel = panel.resizable(true);
                 panel.default_size(TIMELINE).size_range(64.0..=600.0)
             };
-            panel.frame(side).show(ui, |ui| {
+            panel.frame(side(ui)).show(ui, |ui| {
                 self.timeline
                     .show(ui, &self.editor, &self.thumbs, per_second, out);
             });
         }
-        if self.layout.outliner {
-            Panel::left("outliner")
-                .frame(side)
-                .default_size(OUTLINER)
-                .size_range(160.0..=420.0)
-                .show(ui, |ui| {
-                    self.outliner.show(ui, &self.editor, out);
-                });
-        }
-        if self.layout.inspector {
-            Panel::right("inspector")
-                .frame(side)
-                .default_size(INSPECTOR)
-                .size_range(INSPECTOR..=480.0)
-                .show(ui, |ui| {
-                    inspector::show(ui, &self.editor, out);
-                });
-        }
     }
 
-    fn show_picture(
-        &mut self,
-        ui: &mut Ui,
-        out: &mut UiRequests,
-    ) -> Option<(Place, egui::Response)> {
+    fn show_picture(&mut self, ui: &mut Ui, out: &mut UiRequests) -> (Place, egui::Response) {
         let area = ui.max_rect();
         let place = fit(
             area.shrink(GRID),
@@ -106,14 +165,18 @@ impl App {
             if badge(ui, place, &self.lab.name()) {
                 self.lab.leave();
             }
-            return Some((place, response));
+            return (place, response);
         }
-        let is_still = self.pictures.shown_still(&self.editor).is_some();
-        let response = if is_still && self.layout.actual_size {
-            self.pictures.screen.show_still_at_actual_size(ui)?
-        } else {
-            self.pictures.screen.show(ui, place, is_still)
+        let still = self.pictures.shown_still(&self.editor);
+        let still = still.map(|frame| frame.full_size);
+        let is_still = still.is_some();
+        let response = match still {
+            Some(size) => self.still.show(ui, place, &mut self.pictures, size),
+            None => self.pictures.screen.show(ui, place),
         };
+        if self.layout.histogram {
+            self.levels.show(ui, place.rect);
+        }
         if self.editor.scene().objects.is_empty() {
             hint_at_beginning(ui, place);
         }
@@ -127,13 +190,23 @@ impl App {
         if !is_still && aspect != Aspect::All && badge(ui, place, aspect.name()) {
             self.layout.aspect = Aspect::All;
         }
-        if is_still && badge(ui, place, "High-res picture") {
-            out.commands.push(Command::Live);
+        if let Some((_, seconds)) = self.editor.timeline().recorded() {
+            show_recording(ui, place, seconds);
+        }
+        if is_still && badge(ui, place, &self.still.name(self.pictures.region.is_some())) {
+            self.leave_still(out);
         }
         if is_still || self.editor.mode == Mode::HighRes {
             self.tools.rest();
         } else {
-            let wheel = self.flying.wheel(ui, &response);
+            let speed = &mut self.layout.fly_speed;
+            let wheel = self.flying.wheel(ui, &response, speed);
+            if self.flying.is_speed_told(ui.ctx()) {
+                let painter = ui.painter().with_clip_rect(place.rect);
+                let at = ui.input(|input| input.pointer.latest_pos());
+                let words = format!("Flying speed {:.2}×", self.layout.fly_speed);
+                label(&painter, at.unwrap_or(place.rect.min), &words);
+            }
             let is_busy = ui.input(|input| input.pointer.any_down())
                 || self.flying.is_gesture(ui.ctx())
                 || self.editor.timeline().is_playing;
@@ -141,8 +214,41 @@ impl App {
             self.tools
                 .show(ui, &self.editor, picture, (wheel, is_busy), out);
         }
-        Some((place, response))
+        (place, response)
     }
+}
+
+impl App {
+    /// From a part of the still picture to all of it, and from that to the live view.
+    fn leave_still(&mut self, out: &mut UiRequests) {
+        if self.pictures.region.take().is_none() {
+            out.commands.push(Command::Live);
+        }
+    }
+}
+
+/// The frame of the panels at the sides.
+fn side(ui: &Ui) -> Frame {
+    Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(GRID as i8, 0))
+}
+
+/// How large a panel was in the last frame.
+fn size_of(ui: &Ui, panel: &'static str) -> Option<Vec2> {
+    let state = PanelState::load(ui.ctx(), ui.scope_id().with_salt(IdSalt::new(panel)));
+    state.map(|state| state.size())
+}
+
+/// Around the picture while it is recorded: a frame, and how long that is.
+fn show_recording(ui: &Ui, place: Place, seconds: f64) {
+    let colors = palette(ui.ctx());
+    let painter = ui.painter().with_clip_rect(place.rect.expand(GRID));
+    let frame = Stroke::new(FRAME, colors.accent);
+    painter.rect_stroke(place.rect, 0, frame, StrokeKind::Outside);
+    label(
+        &painter,
+        place.rect.min,
+        &format!("Recording {}", clock(seconds)),
+    );
 }
 
 /// What an empty scene is begun with.

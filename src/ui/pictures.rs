@@ -7,13 +7,14 @@ use std::time::{Duration, Instant};
 
 use egui::Context;
 
+use super::dialogs::Ask;
 use super::lab::LabRequest;
 use super::viewport::{Display, low_res};
 use crate::editor::{Editor, Mode};
 use crate::export::{ExportError, Sequence};
 use crate::image::Image;
 use crate::lab::Study;
-use crate::plan::RenderRequest;
+use crate::plan::{Region, RenderRequest};
 use crate::scene::{Aspect, Sampling, Scene, Take};
 use crate::worker::{
     Activity, Answer, BUDGET, Event, ExportState, Frame, LiveJob, Pace, QueryJob, Question,
@@ -53,6 +54,9 @@ impl Rhythm {
     }
 }
 
+/// A still picture: revision, size and part.
+type StillKey = (u64, (u32, u32), Option<Region>);
+
 /// The render thread and its pictures.
 pub struct Pictures {
     worker: Worker,
@@ -62,7 +66,9 @@ pub struct Pictures {
     submitted: Option<(u64, (u32, u32), Pace, Aspect)>,
     /// The scene that was shown in an aspect last, and what it became.
     aspect: Option<(Aspect, Arc<Scene>, Arc<Scene>)>,
-    still_requested: Option<(u64, (u32, u32))>,
+    still_requested: Option<StillKey>,
+    /// The part of the still picture that is wanted, if not all of it is.
+    pub region: Option<Region>,
     /// The take whose survey was asked for.
     surveyed: Option<Arc<Take>>,
 }
@@ -82,6 +88,7 @@ impl Pictures {
             submitted: None,
             aspect: None,
             still_requested: None,
+            region: None,
             surveyed: None,
         })
     }
@@ -97,7 +104,7 @@ impl Pictures {
         for event in self.worker.take_events() {
             match event {
                 Event::Saved(path) => editor.notify(format!("Saved {}", path.display())),
-                Event::Failed(reason) => editor.report_error(reason),
+                Event::Failed(reason) => editor.report_error_in(Ask::SaveImage.title(), reason),
             }
         }
     }
@@ -218,7 +225,8 @@ impl Pictures {
         match editor.mode {
             Mode::HighRes => self
                 .screen
-                .still(editor.shown_revision(), still_size(editor)),
+                .still(editor.shown_revision(), still_size(editor))
+                .filter(|frame| frame.region.is_none() || frame.region == self.region),
             Mode::Live | Mode::LowRes => None,
         }
     }
@@ -237,11 +245,15 @@ impl Pictures {
     /// Asks for the still picture, and for a file of it.
     pub fn request_still(&mut self, editor: &Editor, save_to: Option<PathBuf>) {
         // What is written is also looked at.
-        self.still_requested = Some((editor.shown_revision(), still_size(editor)));
+        let region = self.region.filter(|_| save_to.is_none());
+        self.still_requested = Some((editor.shown_revision(), still_size(editor), region));
         self.worker.request_still(StillJob {
             revision: editor.shown_revision(),
             scene: editor.shown().clone(),
-            request: RenderRequest::still(editor.shown()),
+            request: RenderRequest {
+                region,
+                ..RenderRequest::still(editor.shown())
+            },
             save_to,
         });
     }
@@ -263,12 +275,12 @@ impl Pictures {
                 && from.objects.is_same(&scene.objects)
                 && from.lights.is_same(&scene.lights)
                 && Arc::ptr_eq(&from.color_packs, &scene.color_packs)
+                && from.background == scene.background
                 && from.ambient_intensity == scene.ambient_intensity
         });
         let shown = match known {
             Some((.., before)) => Arc::new(Scene {
                 camera: scene.camera.clone(),
-                background: scene.background,
                 light_visualization: scene.light_visualization,
                 render: scene.render.clone(),
                 animation: Arc::clone(&scene.animation),
@@ -285,7 +297,7 @@ impl Pictures {
     pub fn submit(&mut self, editor: &Editor, pixels: (u32, u32), aspect: Aspect) {
         let revision = editor.shown_revision();
         if editor.mode == Mode::HighRes {
-            let wanted = (revision, still_size(editor));
+            let wanted = (revision, still_size(editor), self.region);
             if self.shown_still(editor).is_none() && self.still_requested != Some(wanted) {
                 self.request_still(editor, None);
             }
@@ -315,6 +327,7 @@ impl Pictures {
                     Pace::Whole => Sampling::Centres,
                     Pace::Within(_) => editor.shown().render.antialias,
                 },
+                aspect,
                 ..RenderRequest::of(editor.shown(), size.0, size.1)
             },
             pace,

@@ -68,7 +68,7 @@ pub fn ask_to_leave(ctx: &Context, going: &str) -> Answer {
         ui.heading("Quit while exporting?");
         ui.add_space(GRID);
         ui.label(format!(
-            "Going on: {going}. What is done stays, and exporting again goes on from there."
+            "Going on: {going}. What is done stays; the window of exports resumes it next time."
         ));
         ui.add_space(2.0 * GRID);
         ui.horizontal(|ui| {

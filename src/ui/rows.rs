@@ -2,55 +2,16 @@
 //! double-click on its label brings the default back; vectors paste as `1, 2, 3`.
 
 use std::cell::Cell;
-use std::ops::RangeInclusive;
 
-use egui::{Align, ComboBox, DragValue, Key, Label, Layout, Response, RichText, Sense, Ui, vec2};
+use egui::{Align, ComboBox, DragValue, Label, Layout, Response, RichText, Sense, Ui, vec2};
 
 use glam::DVec3;
 
-use super::theme::{GRID, HEX, LABEL, ROW};
-use crate::scene::{format_number, parse_vec3};
-
-/// What a number may be, and what is said about it.
-#[derive(Clone, Debug)]
-pub struct Field {
-    /// Label, and accessible name of the value.
-    pub name: &'static str,
-    /// Tooltip: meaning and range.
-    pub hint: &'static str,
-    /// Behind the number.
-    pub unit: &'static str,
-    /// What a double-click on the label brings back.
-    pub default: f64,
-    /// Values outside are pulled to its ends.
-    pub range: RangeInclusive<f64>,
-    /// Change per point of dragging; `None` follows the value's size.
-    pub speed: Option<f64>,
-}
-
-/// A number without bounds, for positions.
-pub fn coordinate(name: &'static str, hint: &'static str) -> Field {
-    Field {
-        name,
-        hint,
-        unit: "",
-        default: 0.0,
-        range: -1e12..=1e12,
-        speed: None,
-    }
-}
-
-/// A number from 0 to 1.
-pub fn fraction(name: &'static str, hint: &'static str, default: f64) -> Field {
-    Field {
-        name,
-        hint,
-        unit: "",
-        default,
-        range: 0.0..=1.0,
-        speed: Some(0.005),
-    }
-}
+use super::hint::Hint as _;
+pub use super::number::{Field, coordinate, fraction};
+use super::number::{Number, drag, is_cancelled};
+use super::theme::{GRID, HEX, LABEL, ROW, palette};
+use crate::scene::format_number;
 
 /// A stack of rows that remembers which field was changed.
 pub struct Rows<'u> {
@@ -98,6 +59,7 @@ impl<'u> Rows<'u> {
                     name: field.name,
                     width: ui.available_width(),
                     pasted: None,
+                    axis: None,
                 };
                 drag(ui, &number, value);
             },
@@ -114,17 +76,20 @@ impl<'u> Rows<'u> {
             }
             let pasted = Cell::new(None);
             let width = (ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0;
-            for (axis, part) in [
+            let parts = [
                 ("x", &mut value.x),
                 ("y", &mut value.y),
                 ("z", &mut value.z),
-            ] {
+            ];
+            let colors = palette(ui.ctx()).axis_letters;
+            for ((axis, part), color) in parts.into_iter().zip(colors) {
                 let name = format!("{} {axis}", field.name);
                 let number = Number {
                     field,
                     name: &name,
                     width,
                     pasted: Some(&pasted),
+                    axis: Some((axis, color)),
                 };
                 drag(ui, &number, part);
             }
@@ -172,6 +137,7 @@ impl<'u> Rows<'u> {
                     name: &name,
                     width,
                     pasted: Some(&pasted),
+                    axis: None,
                 };
                 drag(ui, &number, part);
             }
@@ -186,10 +152,9 @@ impl<'u> Rows<'u> {
     /// A tick box.
     pub fn toggle(&mut self, name: &'static str, hint: &str, value: &mut bool) {
         let changed = labelled(self.ui, name, hint, |ui, label| {
-            ui.checkbox(value, "")
-                .labelled_by(label.id)
-                .on_hover_text(hint)
-                .changed()
+            let tick = ui.checkbox(value, "").labelled_by(label.id);
+            tick.hint_beside(ui, hint);
+            tick.changed()
         });
         self.note(name, changed);
     }
@@ -222,7 +187,7 @@ impl<'u> Rows<'u> {
                     })
                     .last()
             });
-            opened.response.labelled_by(label.id).on_hover_text(hint);
+            opened.response.labelled_by(label.id).hint_beside(ui, hint);
             opened.inner.flatten()
         });
         if let Some(option) = chosen {
@@ -262,7 +227,8 @@ fn labelled<T>(
                     .sense(Sense::click()),
             )
         });
-        let label = label.inner.on_hover_text(hint);
+        let label = label.inner;
+        label.hint_beside(ui, hint);
         // Narrow fields keep their digits clear of their borders, and no more.
         ui.spacing_mut().button_padding.x = GRID / 2.0;
         add(ui, &label)
@@ -270,95 +236,8 @@ fn labelled<T>(
     .inner
 }
 
-/// How a draggable number looks and what it takes.
-struct Number<'a> {
-    field: &'a Field,
-    /// What it is called; the field may have several.
-    name: &'a str,
-    width: f32,
-    /// Where three numbers go that are typed at once: a whole vector.
-    pasted: Option<&'a Cell<Option<DVec3>>>,
-}
-
-/// One draggable number.
-fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
-    let Number {
-        field,
-        name,
-        width,
-        pasted,
-    } = *number;
-    let by_size = || (value.abs() * 0.01).max(0.01);
-    let speed = field.speed.unwrap_or_else(by_size);
-    let parser = |text: &str| {
-        let text = text.trim().trim_end_matches(field.unit);
-        if let (Some(pasted), Some(whole)) = (pasted, parse_vec3(text)) {
-            pasted.set(Some(whole));
-            return Some(whole.x);
-        }
-        text.trim().parse().ok()
-    };
-    let mut edited = *value;
-    let widget = DragValue::new(&mut edited)
-        .speed(speed)
-        .range(field.range.clone())
-        .clamp_existing_to_range(false)
-        .update_while_editing(false)
-        .custom_formatter(|number, _| rounded(number, field.unit))
-        .suffix(field.unit)
-        .clip_text(true)
-        .custom_parser(parser);
-    let response = ui
-        .add_sized([width.max(8.0), ROW], widget)
-        .accessible_name(name);
-    // Formatting rounds what is shown; only a change by hand may reach the scene.
-    let is_cancelled = is_cancelled(ui, &response);
-    // A field that is left as it was entered gives back what it showed.
-    let is_as_shown =
-        !response.dragged() && rounded(edited, field.unit) == rounded(*value, field.unit);
-    if response.changed() && edited.is_finite() && !is_cancelled && !is_as_shown {
-        *value = edited.clamp(*field.range.start(), *field.range.end());
-    }
-    response.on_hover_text(field.hint);
-}
-
 fn format_vec3(v: DVec3) -> String {
     v.to_array().map(format_number).join(", ")
-}
-
-/// Whether the field was left with Escape, which gives what was typed up. A field counts as left
-/// for two frames, and in the second the key is gone: the first is remembered.
-fn is_cancelled(ui: &Ui, response: &Response) -> bool {
-    if !response.lost_focus() {
-        return false;
-    }
-    let (id, now) = (response.id.with("cancelled"), ui.cumulative_frame_nr());
-    if ui.input(|input| input.key_pressed(Key::Escape)) {
-        ui.data_mut(|data| data.insert_temp(id, now));
-        return true;
-    }
-    ui.data(|data| data.get_temp::<u64>(id))
-        .is_some_and(|then| now <= then + 2)
-}
-
-/// The number with enough decimals to see what dragging changes, without a tail of digits.
-fn rounded(value: f64, unit: &str) -> String {
-    let decimals = match value.abs() {
-        _ if unit == "°" => 2,
-        size if size >= 100.0 => 2,
-        size if size >= 1.0 => 3,
-        size if size >= 1e-3 => 5,
-        0.0 => return "0".to_owned(),
-        // All its digits would be wider than the field.
-        _ => return format!("{value:.2e}"),
-    };
-    let text = format!("{value:.decimals$}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" {
-        "0".to_owned()
-    } else {
-        text.to_owned()
-    }
 }
 
 fn swatch(ui: &mut Ui, name: &str, value: &mut DVec3) {
@@ -390,7 +269,7 @@ fn hex(ui: &mut Ui, name: &str, value: &mut DVec3) {
         let [_, r, g, b] = (edited as u32).to_be_bytes();
         *value = DVec3::new(f64::from(r), f64::from(g), f64::from(b));
     }
-    response.on_hover_text("Click to type or copy, for example #FF8040");
+    response.hint_beside(ui, "Click to type or copy, for example #FF8040");
 }
 
 fn parse_hex(text: &str) -> Option<u32> {

@@ -14,10 +14,13 @@ use super::tools::{axis_camera, framing_camera};
 use crate::editor::{
     Action, Edit, Editor, Item, Kind, Mode, Selected, Selection, Time, excerpt, read,
 };
-use crate::scene::{Aspect, Document, Projection, Scene};
+use crate::scene::{Aspect, Bookmark, Document, Projection, Scene};
 
 /// Seconds within which Escape twice asks to quit.
 const TWICE: f64 = 3.0;
+
+/// What messages about pasting are about.
+const PASTE: &str = "paste";
 
 impl App {
     pub(super) fn run(&mut self, ctx: &Context, command: Command) {
@@ -141,9 +144,10 @@ impl App {
             Ok(pasted) => pasted,
             Err(error) => {
                 let problem = format!("The clipboard holds no objects or lights: {error}");
-                return self.editor.report_error(problem);
+                return self.editor.report_error_in(PASTE, problem);
             }
         };
+        self.editor.begin(PASTE);
         add(&mut self.editor, pasted, "Paste");
     }
 
@@ -159,6 +163,10 @@ impl App {
             Command::Live => Action::Show(Mode::Live),
             Command::LowRes => Action::Show(Mode::LowRes),
             Command::HighRes => Action::Show(Mode::HighRes),
+            Command::ActualSize => {
+                self.still.toggle_actual_size();
+                Action::Show(Mode::HighRes)
+            }
             Command::CancelStill => {
                 self.pictures.cancel_still();
                 Action::Show(Mode::Live)
@@ -185,6 +193,19 @@ impl App {
                 Action::Edit(Edit::animation(kept, "Delete keys"))
             }
             Command::ToggleVisible => return toggle_visible(editor),
+            Command::Group => Action::Edit(Edit::Group(
+                selected_objects(editor),
+                free_group_name(editor.scene()),
+            )),
+            Command::Ungroup => Action::Edit(Edit::Group(selected_objects(editor), String::new())),
+            Command::MergePacks => Action::Edit(Edit::MergePacks),
+            Command::AddBookmark => add_bookmark(editor),
+            Command::GoToBookmark(index) => {
+                let Some(bookmark) = editor.scene().bookmarks.get(*index) else {
+                    return;
+                };
+                Action::Edit(Edit::Camera(bookmark.camera.clone(), "bookmark"))
+            }
             Command::SelectSamePack => {
                 let Selection::Item(item) = editor.selection else {
                     return;
@@ -237,6 +258,8 @@ impl App {
             self.editor.apply(Action::Time(Time::Stop));
         } else if self.editor.timeline().is_playing {
             self.editor.apply(Action::Time(Time::Play(false)));
+        } else if self.editor.mode == Mode::HighRes && self.pictures.region.take().is_some() {
+            // All of the picture is traced again.
         } else if self.editor.mode != Mode::Live {
             self.pictures.cancel_still();
             self.editor.apply(Action::Show(Mode::Live));
@@ -270,6 +293,32 @@ fn toggle_visible(editor: &mut Editor) {
     let edits: Vec<Edit> = edits.collect();
     let label = format!("{field} {} items", edits.len());
     editor.apply(Action::Edit(Edit::Each(edits, label)));
+}
+
+/// The places of the selected objects.
+fn selected_objects(editor: &Editor) -> Vec<usize> {
+    let items = editor.selected().items().iter();
+    let objects = items.filter(|item| item.kind == Kind::Object);
+    objects.map(|item| item.index).collect()
+}
+
+/// A name that no group has.
+fn free_group_name(scene: &Scene) -> String {
+    let is_taken = |name: &str| scene.objects.iter().any(|object| object.group == name);
+    let mut names = (1_u64..).map(|number| format!("Group {number}"));
+    names.find(|name| !is_taken(name)).unwrap_or_default()
+}
+
+/// This view as one more bookmark.
+fn add_bookmark(editor: &mut Editor) -> Action {
+    let mut bookmarks = editor.scene().bookmarks.clone();
+    let mut names = (1_u64..).map(|number| format!("View {number}"));
+    let is_free = |name: &String| bookmarks.iter().all(|bookmark| bookmark.name != *name);
+    let name = names.find(is_free).unwrap_or_default();
+    editor.notify(format!("{name} is a bookmark; the View menu goes there"));
+    let camera = editor.shown().camera.clone();
+    bookmarks.push(Bookmark { name, camera });
+    Action::Edit(Edit::Bookmarks(bookmarks, "Add bookmark"))
 }
 
 /// Every object that wears the pack of an object, or the pack that is the item.

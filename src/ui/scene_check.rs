@@ -2,6 +2,7 @@
 
 use egui::{Popup, RichText, ScrollArea, Ui};
 
+use super::hint::Hint as _;
 use super::icons;
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW, palette};
@@ -18,7 +19,12 @@ const MOST_ROWS: f32 = 12.0;
 pub struct SceneCheck {
     of: Option<u64>,
     hints: Vec<Hint>,
+    /// Whether too much of the picture is as bright as can be.
+    is_clipped: bool,
 }
+
+/// Share of the picture from which on it is told that it clips.
+const CLIPPED: f64 = 0.05;
 
 impl SceneCheck {
     /// Looks at the scene again, if it has changed; not while something is dragged.
@@ -26,7 +32,24 @@ impl SceneCheck {
         if self.of != Some(editor.revision()) && !is_busy {
             self.of = Some(editor.revision());
             self.hints = hints(editor.scene());
+            self.is_clipped = false;
         }
+    }
+
+    /// Takes up how much of the finished picture of the scene is as bright as can be, 0–1.
+    pub fn take_clipped(&mut self, clipped: f64) {
+        if clipped <= CLIPPED || self.is_clipped {
+            return;
+        }
+        self.is_clipped = true;
+        self.hints.push(Hint {
+            words: format!(
+                "{:.0} % of the picture is as bright as can be: less light shows more",
+                clipped * 100.0
+            ),
+            about: About::World,
+            is_twice: false,
+        });
     }
 
     /// A button that counts the hints, and the list of them.
@@ -44,7 +67,7 @@ impl SceneCheck {
         let button = ui.add(button.frame_when_inactive(false));
         let button = button
             .accessible_name(words)
-            .on_hover_text("What is probably not meant in the scene");
+            .hint("What is probably not meant in the scene");
         Popup::menu(&button).width(WIDTH).show(|ui| {
             let area = ScrollArea::vertical().max_height(MOST_ROWS * ROW);
             area.show_rows(ui, ROW, count, |ui, rows| {
@@ -70,6 +93,7 @@ impl SceneCheck {
 fn selection(about: About) -> Selection {
     match about {
         About::Camera => Selection::Camera,
+        About::World => Selection::World,
         About::Light(index) => Selection::Item(Item::light(index)),
         About::Object(index) => Selection::Item(Item::object(index)),
         About::Pack(index) => Selection::Item(Item::pack(index)),

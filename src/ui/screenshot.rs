@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use egui::{ColorImage, Context};
 
 use crate::export::{ExportError, save_image};
-use crate::image::Image;
+use crate::image::{Film, Image};
 
 /// Frames to wait for once the traced picture is there, so that the panels have their final size.
 const CALM_FRAMES: u32 = 8;
@@ -65,11 +65,11 @@ impl Screenshot {
             .map(egui::Color32::to_srgba_unmultiplied)
             .collect();
         let written = save_image(
-            &Image {
+            &Film::Levels(Image {
                 width,
                 height,
                 pixels,
-            },
+            }),
             &self.path,
         );
         // Whoever asked waits for the window to end before it looks.

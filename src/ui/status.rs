@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use egui::{Align, Layout, ProgressBar, RichText, Ui};
 
 use super::commands::Command;
+use super::hint::Hint as _;
 use super::requests::UiRequests;
 use super::scene_check::SceneCheck;
 use super::theme::palette;
@@ -59,7 +60,7 @@ fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut UiR
     let cancel = egui::Button::new(RichText::new("Cancel").small());
     if ui
         .add(cancel)
-        .on_hover_text("Give the high-res picture up (Esc)")
+        .hint("Give the high-res picture up (Esc)")
         .clicked()
     {
         out.commands.push(Command::CancelStill);

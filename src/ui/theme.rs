@@ -17,7 +17,7 @@ pub const LABEL: f32 = 80.0;
 /// Width of the outliner when it is first shown.
 pub const OUTLINER: f32 = 224.0;
 /// Width of the inspector; it does not follow its content.
-pub const INSPECTOR: f32 = 320.0;
+pub const INSPECTOR: f32 = 332.0;
 /// Height of the lab when it is first shown.
 pub const LAB: f32 = 280.0;
 /// Height of the timeline when it is first shown.
@@ -68,6 +68,8 @@ pub struct Palette {
     pub error: Color32,
     /// The x, y and z axes.
     pub axes: [Color32; 3],
+    /// The letters of the axes, in fields.
+    pub axis_letters: [Color32; 3],
     /// What is drawn over pictures.
     pub on_picture: Color32,
     /// Around that, so that it is seen on any picture.
@@ -96,6 +98,7 @@ const DARK: Palette = Palette {
     selected: Color32::from_rgb(0x4A, 0x3D, 0x22),
     error: Color32::from_rgb(0xFF, 0x6B, 0x6B),
     axes: AXES,
+    axis_letters: AXES,
     on_picture: ON_PICTURE,
     halo: HALO,
 };
@@ -107,13 +110,18 @@ const LIGHT: Palette = Palette {
     hovered: Color32::from_rgb(0xD5, 0xDA, 0xE3),
     line: Color32::from_rgb(0xC9, 0xCE, 0xD8),
     text: Color32::from_rgb(0x22, 0x26, 0x2E),
-    muted: Color32::from_rgb(0x5F, 0x68, 0x7A),
-    accent: Color32::from_rgb(0xB4, 0x77, 0x00),
+    muted: Color32::from_rgb(0x56, 0x5E, 0x70),
+    accent: Color32::from_rgb(0x94, 0x60, 0x00),
     on_accent: Color32::from_rgb(0xFF, 0xFF, 0xFF),
     curve: Color32::from_rgb(0x00, 0x86, 0x80),
     selected: Color32::from_rgb(0xF6, 0xE2, 0xB8),
     error: Color32::from_rgb(0xC6, 0x28, 0x28),
     axes: AXES,
+    axis_letters: [
+        Color32::from_rgb(0xA6, 0x3A, 0x0C),
+        Color32::from_rgb(0x2E, 0x6B, 0x10),
+        Color32::from_rgb(0x1A, 0x55, 0xAD),
+    ],
     on_picture: ON_PICTURE,
     halo: HALO,
 };
@@ -194,4 +202,54 @@ fn visuals(theme: Theme) -> Visuals {
     visuals.widgets.active = state(p.hovered, p.text, p.accent);
     visuals.widgets.open = state(p.hovered, p.text, Color32::TRANSPARENT);
     visuals
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The relative luminance of a colour; Web Content Accessibility Guidelines 2.2.
+    fn luminance(color: Color32) -> f64 {
+        let linear = |channel: u8| {
+            let share = f64::from(channel) / 255.0;
+            if share <= 0.040_45 {
+                share / 12.92
+            } else {
+                ((share + 0.055) / 1.055).powf(2.4)
+            }
+        };
+        0.2126 * linear(color.r()) + 0.7152 * linear(color.g()) + 0.0722 * linear(color.b())
+    }
+
+    fn contrast(one: Color32, other: Color32) -> f64 {
+        let (one, other) = (luminance(one), luminance(other));
+        (one.max(other) + 0.05) / (one.min(other) + 0.05)
+    }
+
+    #[test]
+    fn text_is_readable_in_both_themes() {
+        for theme in [Theme::Dark, Theme::Light] {
+            let p = of(theme);
+            let mut pairs = vec![
+                ("accent on panel", p.accent, p.panel),
+                ("text on selected", p.text, p.selected),
+                ("on accent", p.on_accent, p.accent),
+                ("error on panel", p.error, p.panel),
+                ("error on raised", p.error, p.raised),
+            ];
+            for ground in [p.window, p.panel, p.raised, p.hovered] {
+                pairs.push(("text", p.text, ground));
+            }
+            for ground in [p.window, p.panel, p.raised] {
+                pairs.push(("muted", p.muted, ground));
+            }
+            for letter in p.axis_letters {
+                pairs.push(("axis letter", letter, p.raised));
+            }
+            for (what, one, other) in pairs {
+                let contrast = contrast(one, other);
+                assert!(contrast >= 4.5, "{theme:?}, {what}: {contrast:.2}");
+            }
+        }
+    }
 }

@@ -31,6 +31,12 @@ impl Toasts {
     pub fn push(&mut self, ctx: &Context, messages: Vec<Message>) {
         let since = ctx.input(|input| input.time);
         for message in messages {
+            if message.text.is_empty() {
+                let is_it = |toast: &Toast| toast.message.about == message.about;
+                self.shown
+                    .retain(|toast| !(toast.message.is_error && is_it(toast)));
+                continue;
+            }
             self.shown.retain(|toast| toast.message != message);
             self.shown.push(Toast { message, since });
         }

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use egui::{
-    Color32, Context, Painter, Pos2, Rect, Response, ScrollArea, Sense, Stroke, StrokeKind,
-    TextureFilter, TextureHandle, TextureOptions, TextureWrapMode, Ui, UiBuilder, Vec2, pos2, vec2,
+    Color32, Context, Painter, Pos2, Rect, Response, Sense, Stroke, StrokeKind, TextureFilter,
+    TextureHandle, TextureOptions, TextureWrapMode, Ui, UiBuilder, Vec2, pos2, vec2,
 };
 
+use super::hint::Hint as _;
 use super::icons;
 use super::theme::{GRID, ROW, palette};
 use super::upload::{changes, piece, whole};
@@ -97,44 +98,40 @@ impl Display {
         self.live.as_ref().map(|shown| &shown.frame)
     }
 
-    /// Draws the still picture at its own size, with scroll bars.
-    pub fn show_still_at_actual_size(&self, ui: &mut Ui) -> Option<Response> {
-        let shown = self.still.as_ref()?;
-        let scale = ui.pixels_per_point();
-        let (width, height) = shown.frame.full_size;
-        let size = vec2(width as f32, height as f32) / scale;
-        let output = ScrollArea::both().auto_shrink(false).show(ui, |ui| {
-            let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-            let corner = (rect.min.to_vec2() * scale).round() / scale;
-            paint(
-                ui.painter(),
-                shown,
-                Rect::from_min_size(corner.to_pos2(), size),
-            );
-            response
-        });
-        Some(output.inner)
-    }
-
-    /// Draws the still picture or the newest live one into its place.
-    pub fn show(&self, ui: &mut Ui, place: Place, still: bool) -> Response {
+    /// Draws the still picture to `to`, as far as that is within the place of pictures; where it is not
+    /// traced, over the newest live one.
+    pub fn show_still(&self, ui: &mut Ui, place: Place, to: Rect) -> Response {
         let response = ui.allocate_rect(place.rect, Sense::click_and_drag());
-        let name = if still {
-            "High-res picture"
-        } else {
-            "Live view"
-        };
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
-        let shown = if still { &self.still } else { &self.live };
-        if let Some(shown) = shown {
-            paint(ui.painter(), shown, place.rect);
+        response
+            .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "High-res picture"));
+        let painter = ui.painter().with_clip_rect(place.rect);
+        if let Some(still) = &self.still {
+            if let Some(live) = self.live.as_ref().filter(|_| still.frame.region.is_some()) {
+                paint(&painter, live, to);
+            }
+            paint(&painter, still, to);
         }
-        // A black sky must not run into the dark window.
-        let line = Stroke::new(1.0, palette(ui.ctx()).line);
-        ui.painter()
-            .rect_stroke(place.rect, 0, line, StrokeKind::Outside);
+        frame(ui, place);
         response
     }
+
+    /// Draws the newest live picture into its place.
+    pub fn show(&self, ui: &mut Ui, place: Place) -> Response {
+        let response = ui.allocate_rect(place.rect, Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Live view"));
+        if let Some(shown) = &self.live {
+            paint(ui.painter(), shown, place.rect);
+        }
+        frame(ui, place);
+        response
+    }
+}
+
+/// A black sky must not run into the dark window.
+fn frame(ui: &Ui, place: Place) {
+    let line = Stroke::new(1.0, palette(ui.ctx()).line);
+    ui.painter()
+        .rect_stroke(place.rect, 0, line, StrokeKind::Outside);
 }
 
 /// Says in a corner of the picture what it is, where it is not the live view. Whether that is to be left.
@@ -148,7 +145,7 @@ pub fn badge(ui: &mut Ui, place: Place, name: &str) -> bool {
         let button = egui::Button::new(words).fill(palette(ui.ctx()).panel);
         ui.add(button)
             .accessible_name(format!("Leave {name}"))
-            .on_hover_text("Back to the live view (Esc)")
+            .hint("Back to the live view (Esc)")
     });
     shown.inner.clicked()
 }

@@ -9,7 +9,7 @@ use glam::DVec3;
 use crate::animate::Seen;
 use crate::export::Exported;
 use crate::image::{Image, ObjectMap, RenderCost, Thing};
-use crate::plan::RenderRequest;
+use crate::plan::{Region, RenderRequest};
 use crate::scene::{Camera, Sampling, Scene, Take};
 
 /// The kinds of work, the most urgent first.
@@ -146,6 +146,8 @@ pub struct Frame {
     pub sampling: Sampling,
     /// Whether this is the still picture and not the live view.
     pub is_still: bool,
+    /// The part that is traced, if not all of it is.
+    pub region: Option<Region>,
     /// What it cost so far.
     pub cost: RenderCost,
 }

@@ -105,6 +105,7 @@ impl Live<'_> {
             step,
             sampling,
             is_still: false,
+            region: None,
             cost: RenderCost {
                 time,
                 rays,

@@ -12,7 +12,7 @@ use super::mailbox::Job;
 use super::shared::Shared;
 use super::task::panic_text;
 use crate::export::{ExportStep, Exporting, save_image};
-use crate::image::{Image, ObjectMapper, render_into};
+use crate::image::{Film, Format, Image, ObjectMapper, render_into};
 use crate::lab::Study;
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::Sampling;
@@ -227,11 +227,14 @@ fn still(
     planner: &mut Planner,
     control: &RenderControl,
 ) -> JobOutcome {
-    let mut image = Image::default();
-    let Some(cost) = render_into(&mut image, planner, &job.scene, &job.request, control) else {
+    let path = job.save_to.as_deref();
+    let format = path.and_then(|path| Format::of_path(path).ok());
+    let mut film = Film::new(format.unwrap_or(Format::Png));
+    let Some(cost) = film.expose(planner, &job.scene, &job.request, control) else {
         return JobOutcome::Unfinished;
     };
-    let image = Arc::new(image);
+    let written = path.map(|path| (path, save_image(&film, path)));
+    let image = Arc::new(film.into_levels());
     shared.publish(Frame {
         revision: job.revision,
         full_size: (image.width, image.height),
@@ -239,11 +242,12 @@ fn still(
         step: 1,
         sampling: job.request.sampling,
         is_still: true,
+        region: job.request.region,
         cost,
     });
-    if let Some(path) = &job.save_to {
-        shared.tell(match save_image(&image, path) {
-            Ok(()) => Event::Saved(path.clone()),
+    if let Some((path, written)) = written {
+        shared.tell(match written {
+            Ok(()) => Event::Saved(path.to_owned()),
             Err(error) => Event::Failed(error.to_string()),
         });
     }

@@ -1,7 +1,8 @@
 //! Clean edges: against many samples per pixel, in double precision, on the published views.
 
 use glam::DVec3;
-use glint::lab::{LinearRgb, difference, trace_light};
+use glint::image::LinearRgb;
+use glint::lab::{difference, trace_light};
 use glint::plan::RenderRequest;
 use glint::scene::{Disc, Object, Precision, Sampling, Scene, Shape, Sphere, Triangle};
 use glint::trace::{Rays, RenderControl, Tracer};
@@ -88,6 +89,7 @@ fn poles() -> Scene {
             color_pack: "sphere 1".to_owned(),
             shape,
             visible: true,
+            group: String::new(),
         });
     };
     for n in 0..24 {
@@ -162,6 +164,7 @@ fn coins() -> Scene {
             }
             .into(),
             visible: true,
+            group: String::new(),
         });
     }
     scene

@@ -285,7 +285,7 @@ fn words_are_checked_before_anything_is_written() {
             &["--video", "a.avi"],
             "end it in .mp4, .mov, .mkv, .gif or .apng",
         ),
-        (&["--format", "jpg"], "expected ppm or png"),
+        (&["--format", "jpg"], "expected ppm, png or exr"),
     ] {
         let output = run(&mut export(&frames, words));
         let said = String::from_utf8_lossy(&output.stderr);
@@ -518,10 +518,10 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
 }
 
 #[test]
-fn quitting_asks_while_frames_are_exported() {
-    let text = fs::read_to_string(FLIGHT).expect("readable");
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
-    let folder = harness.folder.path().join("frames");
+fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
+    let data = tempfile::tempdir().expect("a folder");
+    let mut harness = EditorHarness::kept_in(data.path(), FLIGHT.into());
+    let folder = data.path().join("frames");
     harness.press(CTRL.plus(Modifiers::SHIFT), Key::E);
     harness.type_name("folder", folder.to_str().expect("plain"));
     harness.type_into("export width", "512");
@@ -534,7 +534,7 @@ fn quitting_asks_while_frames_are_exported() {
     see(&mut harness, "Quit while exporting?");
     harness
         .window
-        .get_by_label_contains("exporting again goes on from there");
+        .get_by_label_contains("the window of exports resumes it next time");
     harness.window.get_by_label("Stay").click();
     harness.window.step();
     harness.window.step();
@@ -545,6 +545,69 @@ fn quitting_asks_while_frames_are_exported() {
             .is_none()
     );
     assert!(harness.window.state().is_exporting());
+    let start = std::time::Instant::now();
+    while !folder.join("rayTrace3.ppm").exists() {
+        assert!(start.elapsed() < Duration::from_mins(1), "nothing is made");
+        sleep(Duration::from_millis(2));
+    }
+    drop(harness);
+
+    // The next window is on another scene, and makes the frames of this one.
+    let mut harness = EditorHarness::kept_in(data.path(), "scenes/mirrors.ron".into());
+    see(&mut harness, "An export was interrupted");
+    let before = fs::read_dir(&folder).expect("there").count();
+    assert!((2..203).contains(&before), "{before} files");
+    harness.press(CTRL.plus(Modifiers::SHIFT), Key::E);
+    harness.window.get_by_label("Interrupted");
+    harness.click("Resume");
+    finish(&mut harness);
+    harness.window.get_by_label_contains("202 frames are in");
+    assert!(harness.window.query_by_label("Interrupted").is_none());
+    drop(harness);
+    let sequence = |size: u32| {
+        let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
+        (scene.render.width, scene.render.height) = (size, size);
+        let (pattern, folder) = (Pattern::default(), folder.clone());
+        Sequence::new(scene.into(), None, pattern, Format::Ppm, folder).expect("a sequence")
+    };
+    assert_eq!(sequence(512).missing().expect("readable").len(), 0);
+    // It has ended: nobody is told of it again.
+    let harness = EditorHarness::kept_in(data.path(), FLIGHT.into());
+    let told = harness.window.query_by_label_contains("interrupted");
+    assert!(told.is_none());
+}
+
+#[test]
+fn frames_of_light_hold_what_eight_bits_round() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (light, levels) = (folder.path().join("exr"), folder.path().join("png"));
+    let gif = folder.path().join("flight.gif");
+    let gif = gif.to_str().expect("plain");
+    done(&mut export(
+        &light,
+        &["--frames", "1-5:2", "--format", "exr", "--video", gif],
+    ));
+    done(&mut export(
+        &levels,
+        &["--frames", "1-5:2", "--format", "png"],
+    ));
+    for frame in [1, 3, 5] {
+        let light = image::open(light.join(format!("rayTrace{frame}.exr"))).expect("an EXR");
+        let levels = image::open(levels.join(format!("rayTrace{frame}.png"))).expect("a PNG");
+        assert!(light.as_rgb32f().is_some(), "32 bits a channel");
+        let (light, levels) = (light.to_rgb32f().into_raw(), levels.to_rgb8().into_raw());
+        let off = light.iter().zip(&levels);
+        let off = off.map(|(light, level)| (light * 255.0 - f32::from(*level)).abs());
+        assert!(off.fold(0.0, f32::max) < 0.501, "frame {frame}");
+        let is_between = |light: &&f32| (**light * 255.0).fract() != 0.0;
+        assert!(light.iter().filter(is_between).count() > 100);
+    }
+    // What is there as it should be stays.
+    let said = done(&mut export(
+        &light,
+        &["--frames", "1-5:2", "--format", "exr"],
+    ));
+    assert!(said.contains("3 there already"), "{said}");
 }
 
 #[test]

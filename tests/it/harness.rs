@@ -1,7 +1,7 @@
 //! The window without a display, and hands for it.
 
 use std::collections::VecDeque;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
@@ -50,17 +50,14 @@ impl EditorHarness {
 
     /// A window with dialogs that answer as listed, on a scene text (or the demo).
     pub fn with(
-        answers: impl FnOnce(&std::path::Path) -> Vec<(Ask, Option<PathBuf>)>,
+        answers: impl FnOnce(&Path) -> Vec<(Ask, Option<PathBuf>)>,
         scene: Option<&str>,
     ) -> Self {
         Self::asked(|folder| Box::new(Scripted(answers(folder).into())), scene)
     }
 
     /// A window with these dialogs on a scene text (or the demo).
-    pub fn asked(
-        dialogs: impl FnOnce(&std::path::Path) -> Box<dyn Dialogs>,
-        scene: Option<&str>,
-    ) -> Self {
+    pub fn asked(dialogs: impl FnOnce(&Path) -> Box<dyn Dialogs>, scene: Option<&str>) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let dialogs = dialogs(folder.path());
         let scene = scene.map(|text| {
@@ -68,6 +65,22 @@ impl EditorHarness {
             std::fs::write(&path, text).expect("written");
             path
         });
+        Self::open(folder, dialogs, scene, None)
+    }
+
+    /// A window on a scene file, which keeps what is not finished in the folder `data`.
+    pub fn kept_in(data: &Path, scene: PathBuf) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let dialogs = Box::new(Scripted(VecDeque::new()));
+        Self::open(folder, dialogs, Some(scene), Some(data.to_owned()))
+    }
+
+    fn open(
+        folder: tempfile::TempDir,
+        dialogs: Box<dyn Dialogs>,
+        scene: Option<PathBuf>,
+        data_folder: Option<PathBuf>,
+    ) -> Self {
         let window = Harness::builder()
             .with_size([1280.0, 800.0])
             .with_step_dt(1.0 / 60.0)
@@ -78,7 +91,7 @@ impl EditorHarness {
                     Setup {
                         scene,
                         dialogs,
-                        data_folder: None,
+                        data_folder,
                         screenshot: None,
                         exports: false,
                         select: Vec::new(),

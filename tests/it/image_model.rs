@@ -355,6 +355,7 @@ fn ball() -> Scene {
             radius: 1.0,
         }),
         visible: true,
+        group: String::new(),
     });
     scene
 }

@@ -4,6 +4,7 @@
 
 mod antialias;
 mod architecture;
+mod aspects;
 mod bytes;
 mod cli;
 mod export;

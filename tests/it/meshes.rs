@@ -25,6 +25,7 @@ fn object(name: &str, color_pack: &str, shape: impl Into<Shape>) -> Object {
         color_pack: color_pack.to_owned(),
         shape: shape.into(),
         visible: true,
+        group: String::new(),
     }
 }
 

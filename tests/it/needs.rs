@@ -176,6 +176,7 @@ fn the_tree_begins_where_a_list_is_too_long() {
                 color_pack: pack.clone(),
                 shape,
                 visible: true,
+                group: String::new(),
             });
         }
         scene.light_visualization = false;

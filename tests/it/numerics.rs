@@ -229,6 +229,7 @@ fn object(name: &str, center: DVec3, radius: f64) -> Object {
         color_pack: "pack 1".to_owned(),
         shape: Shape::Sphere(Sphere { center, radius }),
         visible: true,
+        group: String::new(),
     }
 }
 

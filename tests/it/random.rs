@@ -88,6 +88,7 @@ pub fn with_discs(seed: u64) -> Scene {
             color_pack: format!("pack {}", number - 1),
             shape: disc.into(),
             visible: true,
+            group: String::new(),
         });
     }
     assert_eq!(check(&scene), Ok(()));
@@ -115,6 +116,7 @@ fn add_objects(scene: &mut Scene, dice: &mut Dice) {
             color_pack,
             shape,
             visible: true,
+            group: String::new(),
         });
     };
     for _ in 0..8 {

@@ -129,7 +129,7 @@ fn a_flight_is_recorded_and_becomes_keys_in_one_step() {
     editor.apply(Action::Time(Time::Simplify(100.0)));
     let coarse = editor.scene().animation.keys.len();
     assert!(coarse <= count && count <= fine, "{coarse} {count} {fine}");
-    assert!(editor.timeline().worst.expect("measured") <= 100.0);
+    assert!(editor.timeline().worst.expect("measured").off <= 100.0);
     assert_eq!(editor.scene().animation.take.as_deref(), Some(&*take));
     // One step back is before the recording.
     harness.press(Modifiers::COMMAND, Key::Z);
@@ -217,15 +217,15 @@ fn keys_made_anew_keep_the_time_that_the_flight_was_given() {
     survey_flight(&mut editor);
     let said = editor.timeline().worst.expect("a recording");
     assert!(
-        (1.0..200.0).contains(&said),
-        "known as soon as it is opened: {said}"
+        (0.5..2.0).contains(&said.off),
+        "known as soon as it is opened: {said:?}"
     );
     let before = editor.scene().clone();
     editor.apply(Action::Time(Time::SelectKeys([3].into())));
     editor.apply(Action::Time(Time::Simplify(5.0)));
-    assert!(editor.scene().animation.keys.len() > before.animation.keys.len());
+    assert!(editor.scene().animation.keys.len() < before.animation.keys.len());
     assert_eq!(editor.scene().animation.frame_count(), 202);
-    assert!(editor.timeline().worst.expect("measured") <= 5.0 * (1.0 + 1e-6));
+    assert!(editor.timeline().worst.expect("measured").off <= 5.0 * (1.0 + 1e-6));
     assert_eq!(editor.timeline().tolerance, 5.0);
     editor.apply(Action::Undo);
     assert_eq!(editor.scene().animation, before.animation);
@@ -477,7 +477,7 @@ fn an_object_with_keys_moves_and_its_corners_do_not_drift() {
         editor.apply(Action::Time(Time::Seek(f64::from(step) / 14.0)));
         let mut object = editor.shown().objects[index].clone();
         object.visible = step % 2 == 0;
-        editor.apply(Action::Edit(Edit::Object(index, object, "visible")));
+        editor.apply(Action::Edit(Edit::object(index, object, "visible")));
         assert_eq!(editor.scene().objects[index].shape, own, "bit by bit");
         assert_eq!(editor.scene().animation.tracks[0].keys.len(), 2);
     }

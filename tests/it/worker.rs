@@ -75,6 +75,7 @@ fn slow_scene() -> Arc<Scene> {
                 radius: 3.0,
             }),
             visible: true,
+            group: String::new(),
         });
     }
     Arc::new(scene)

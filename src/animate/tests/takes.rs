@@ -60,9 +60,9 @@ fn a_take_becomes_few_keys_within_its_tolerance() {
         let simplified = simplify(&take, &seen, tolerance);
         let count = simplified.keys.len();
         assert!(
-            simplified.worst <= tolerance,
+            simplified.worst.off <= tolerance,
             "{} of {tolerance}",
-            simplified.worst
+            simplified.worst.off
         );
         assert!(
             count <= last,
@@ -95,6 +95,30 @@ fn a_trembling_hand_costs_few_keys_where_the_tolerance_allows_it() {
     assert!(keys(8.0) < 20, "{} keys", keys(8.0));
 }
 
+/// A script moves the mouse, or a touchpad is touched anew: the view leaps from one sample to the next.
+#[test]
+fn a_hand_that_jumps_costs_a_few_keys_and_no_accuracy() {
+    let calm = take();
+    let mut jumpy = Take::default();
+    for (n, sample) in calm.samples.iter().enumerate() {
+        let tremor = if n % 2 == 0 { 0.001 } else { -0.001 };
+        let leaps = [60, 61, 130, 190].iter().filter(|leap| n >= **leap).count();
+        let angles = Orientation {
+            yaw: sample.2 + tremor + 0.4 * leaps as f64,
+            pitch: sample.3,
+            roll: sample.4,
+        };
+        let camera = angles.apply(&calm.camera(n).expect("a sample"));
+        jumpy.push(sample.0, &camera, angles);
+    }
+    let seen = seen(&jumpy);
+    let found = simplify(&jumpy, &seen, 6.0 / 1024.0);
+    assert_eq!(found.jumps, 4);
+    assert!(found.worst.off * 1024.0 <= 6.0, "{:?}", found.worst);
+    assert!(found.keys.len() < 40, "{} keys", found.keys.len());
+    assert_eq!(simplify(&calm, &self::seen(&calm), 6.0 / 1024.0).jumps, 0);
+}
+
 #[test]
 fn the_tolerance_is_kept_through_pauses_and_kinks() {
     let mut take = Take::default();
@@ -115,17 +139,17 @@ fn the_tolerance_is_kept_through_pauses_and_kinks() {
     }
     let seen = seen(&take);
     for pixels in [0.1, 0.3, 0.7, 1.5, 2.5, 5.0, 12.0, 40.0] {
-        let Simplified { keys, worst } = simplify(&take, &seen, pixels / 1024.0);
+        let Simplified { keys, worst, .. } = simplify(&take, &seen, pixels / 1024.0);
         assert!(
-            worst * 1024.0 <= pixels * (1.0 + 1e-9),
+            worst.off * 1024.0 <= pixels * (1.0 + 1e-9),
             "{} at {pixels}",
-            worst * 1024.0
+            worst.off * 1024.0
         );
         assert_eq!(worst, worst_off(&CameraPath::new(&keys), &take, &seen));
         // In another time it is the same flight.
         let slower = CameraPath::new(&Retime::Stretch(20.0).apply(&keys));
-        let off = worst_off(&slower, &take, &seen) * 1024.0;
-        assert!((off - worst * 1024.0).abs() < 0.05, "{off} stretched");
+        let off = worst_off(&slower, &take, &seen).off * 1024.0;
+        assert!((off - worst.off * 1024.0).abs() < 0.05, "{off} stretched");
     }
 }
 

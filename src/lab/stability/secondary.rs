@@ -120,6 +120,7 @@ fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
         color_pack: "chalk".to_owned(),
         shape,
         visible: true,
+        group: String::new(),
     };
     scene.objects = List::from(vec![
         object(

@@ -50,6 +50,12 @@ fn check_since(scene: &Scene, valid: Option<&Scene>) -> Result<(), Problem> {
     root.field("ambient_intensity")
         .within(scene.ambient_intensity, 0.0, 1.0)?;
     check_camera(&root.field("camera"), &scene.camera)?;
+    let bookmarks = root.field("bookmarks");
+    for (index, bookmark) in scene.bookmarks.iter().enumerate() {
+        let at = bookmarks.index(index);
+        check_name(&at.field("name"), &bookmark.name)?;
+        check_camera(&at.field("camera"), &bookmark.camera)?;
+    }
     let has_same_packs =
         valid.is_some_and(|valid| Arc::ptr_eq(&valid.color_packs, &scene.color_packs));
     if !has_same_packs {

@@ -4,12 +4,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use egui::{Align2, ComboBox, DragValue, TextEdit, Ui};
+use serde::{Deserialize, Serialize};
 
 use crate::editor::Editor;
 use crate::export::{Frames, FramesError, NoSuchFrame, Pattern, PatternError, Sequence, Video};
 use crate::image::Format;
 use crate::scene::{MAX_SIDE, Method as _, Problem, Sampling, Scene};
 use crate::ui::commands::Command;
+use crate::ui::hint::Hint as _;
 use crate::ui::requests::UiRequests;
 use crate::ui::status::in_words;
 use crate::ui::theme::ROW;
@@ -25,7 +27,7 @@ const VIDEOS: [&str; 6] = ["none", "mp4", "mov", "mkv", "gif", "apng"];
 const PNG_SHARE: f64 = 0.35;
 
 /// What a scene asks for itself.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Own {
     frames: String,
     size: (u32, u32),
@@ -33,7 +35,7 @@ struct Own {
 }
 
 /// What is asked for.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// Where to.
     pub folder: String,
@@ -45,8 +47,9 @@ pub struct Settings {
     fps: f64,
     /// What the scene asked for when the settings were made.
     own: Own,
+    #[serde(with = "crate::scene::method")]
     antialias: Sampling,
-    video: &'static str,
+    video: String,
 }
 
 impl Settings {
@@ -74,7 +77,7 @@ impl Settings {
             height: scene.render.height,
             fps: scene.animation.frames_per_second,
             antialias: scene.render.antialias,
-            video: VIDEOS[0],
+            video: VIDEOS[0].to_owned(),
         }
     }
 
@@ -181,7 +184,7 @@ pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
                 true,
             ),
         ] {
-            if ui.button(name).on_hover_text(hint).clicked() {
+            if ui.button(name).hint(hint).clicked() {
                 settings.format = format;
                 // What sorts by name plays in order; the original program did not fill up.
                 let is_original = format == Format::Ppm;
@@ -214,14 +217,14 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
     ui.weak("frames");
     let frames = TextEdit::singleline(&mut settings.frames).align(Align2::LEFT_CENTER);
     ui.add_sized([FIELDS, ROW], frames)
-        .on_hover_text("1-202, 1,4 or 1-10:3, counted from 1")
+        .hint("1-202, 1,4 or 1-10:3, counted from 1")
         .accessible_name("frames");
     ui.end_row();
     ui.weak("names");
     ui.horizontal(|ui| {
         let name = TextEdit::singleline(&mut settings.name).align(Align2::LEFT_CENTER);
         ui.add_sized([140.0, ROW], name)
-            .on_hover_text("%d is the number, %05d the number with five digits")
+            .hint("%d is the number, %05d the number with five digits")
             .accessible_name("names");
         if let (Ok(pattern), Ok(frames)) = (
             Pattern::parse(&settings.name),
@@ -251,7 +254,7 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
                     ui.selectable_value(&mut settings.antialias, method.value, method.id);
                 }
             });
-        for format in [Format::Ppm, Format::Png] {
+        for format in Format::ALL {
             ui.selectable_value(&mut settings.format, format, format.ending());
         }
     });
@@ -270,8 +273,8 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
                 "gif" | "apng" => "Made by Glint itself",
                 _ => "Made by ffmpeg, if that is installed",
             };
-            ui.selectable_value(&mut settings.video, video, video)
-                .on_hover_text(hint);
+            ui.selectable_value(&mut settings.video, video.to_owned(), video)
+                .hint(hint);
         }
     });
     ui.end_row();

@@ -2,17 +2,26 @@
 
 mod fields;
 
-use std::collections::HashMap;
+mod kept;
+
+mod order;
+
+mod progress;
+
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::Duration;
 
 use egui::{
-    Button, Context, Grid, Image as Picture, ProgressBar, RichText, TextureHandle, TextureOptions,
-    Ui, Window, vec2,
+    Button, Context, Grid, Image as Picture, RichText, TextureHandle, TextureOptions, Ui, Window,
+    vec2,
 };
 
-use self::fields::{FIELDS, Found, Settings, fields, forecast, presets};
+use self::fields::{Found, Settings, fields, forecast, presets};
+pub use self::kept::KeptSettings;
+use self::kept::Owner;
+use self::order::Order;
+use self::progress::{seconds_left, show_state};
 use super::pictures::Pictures;
 use super::requests::UiRequests;
 use super::status::in_words;
@@ -20,19 +29,34 @@ use super::theme::{GRID, THUMB, palette};
 use super::upload::whole;
 use crate::editor::Editor;
 use crate::export::{Sequence, Video, VideoError};
+use crate::ui::hint::Hint as _;
 use crate::worker::{ExportState, run_in_background};
+
+/// What messages about exports are about.
+const EXPORT: &str = "export";
+
+/// Settings on the screen.
+struct Shown {
+    /// See [`Editor::documents`].
+    document: u64,
+    owner: Owner,
+    settings: Settings,
+}
 
 /// The window and its exports.
 #[derive(Default)]
 pub struct Exports {
     /// Whether the window is shown.
     pub is_open: bool,
-    /// What is asked for, and of which document, see [`Editor::documents`].
-    settings: Option<(u64, Settings)>,
-    /// What was asked for last, for each document.
-    kept: HashMap<u64, Settings>,
-    /// What each export is called.
-    names: Vec<(u64, String)>,
+    /// The folder of the program's data, if there is one.
+    folder: Option<PathBuf>,
+    /// What is asked for.
+    shown: Option<Shown>,
+    kept: KeptSettings,
+    /// What each export was ordered with.
+    orders: Vec<(u64, Order)>,
+    /// What ended without being finished.
+    interrupted: Vec<Order>,
     /// What was found in the folder, for these settings, this state of the scene, and so many exports
     /// that have ended.
     found: Option<(Settings, (u64, usize), Option<Found>)>,
@@ -42,6 +66,8 @@ pub struct Exports {
     thumbs: Vec<(u64, usize, TextureHandle)>,
     /// Exports whose end was told.
     told: Vec<u64>,
+    /// What those are called.
+    ended: Vec<(u64, String)>,
 }
 
 /// A video that is made when its frames are there.
@@ -54,9 +80,40 @@ struct Following {
 }
 
 impl Exports {
+    /// With what was asked for before, and what programs that have ended left in the folder of the program's
+    /// data.
+    pub fn new(folder: Option<PathBuf>, kept: KeptSettings, editor: &mut Editor) -> Self {
+        let interrupted = folder.as_deref().map_or(Vec::new(), Order::left_in);
+        if let Some(order) = interrupted.first() {
+            let more = match interrupted.len() {
+                1 => String::new(),
+                more => format!(" and {} more", more - 1),
+            };
+            editor.notify(format!(
+                "An export was interrupted: {}{more}. Export animation in the File menu resumes it.",
+                order.name
+            ));
+        }
+        Self {
+            folder,
+            kept,
+            interrupted,
+            ..Self::default()
+        }
+    }
+
+    /// The settings of all documents with a file, for the next run.
+    pub fn kept_settings(&mut self) -> KeptSettings {
+        if let Some(shown) = &self.shown {
+            let (owner, settings) = (shown.owner.clone(), shown.settings.clone());
+            self.kept.keep(owner, settings);
+        }
+        self.kept.named()
+    }
+
     /// The folder that was chosen.
     pub fn choose_folder(&mut self, folder: &Path) {
-        if let Some((_, settings)) = &mut self.settings {
+        if let Some(Shown { settings, .. }) = &mut self.shown {
             settings.folder = folder.display().to_string();
         }
     }
@@ -75,11 +132,20 @@ impl Exports {
                     state.done.total,
                     state.folder.display()
                 )),
-                Err(error) => editor.report_error(format!(
-                    "{error}; what is done stays, and exporting again goes on from there"
+                Err(error) => editor.report_error_in(EXPORT, format!(
+                    "{error}; what is done stays, and Resume in the window of exports goes on from there"
                 )),
             }
             let is_done = ended.is_ok();
+            let ordered = self.orders.iter().position(|(id, _)| *id == state.id);
+            if let Some((_, order)) = ordered.map(|at| self.orders.remove(at)) {
+                self.ended.push((state.id, order.name.clone()));
+                if is_done {
+                    order.end();
+                } else {
+                    self.interrupted.push(order);
+                }
+            }
             self.videos.retain(|video| is_done || video.id != state.id);
             for video in self.videos.iter_mut().filter(|video| video.id == state.id) {
                 let (kind, sequence, path) =
@@ -151,24 +217,20 @@ impl Exports {
             .show(ctx, |ui| {
                 self.show_settings(ui, editor, pictures, out);
                 self.show_list(ui, pictures);
+                self.show_interrupted(ui, editor, pictures);
             });
         self.is_open = is_open && self.is_open;
-        if !self.is_open {
-            self.keep();
-        }
-    }
-
-    /// Puts the settings away, for the next time that this document is exported.
-    fn keep(&mut self) {
-        if let Some((document, settings)) = self.settings.take() {
-            self.kept.insert(document, settings);
+        if !self.is_open
+            && let Some(shown) = self.shown.take()
+        {
+            self.kept.keep(shown.owner, shown.settings);
         }
     }
 
     /// The settings that were put away, for the scene as it is now.
     fn settings(&self, editor: &Editor) -> Settings {
-        let fresh = Settings::of(editor);
-        match self.kept.get(&editor.documents()) {
+        let (fresh, owner) = (Settings::of(editor), Owner::of(editor));
+        match self.kept.of(&owner) {
             Some(kept) => kept.for_scene(fresh),
             None => fresh,
         }
@@ -182,15 +244,14 @@ impl Exports {
         out: &mut UiRequests,
     ) {
         let document = editor.documents();
-        if self
-            .settings
-            .as_ref()
-            .is_some_and(|(of, _)| *of != document)
-        {
-            self.keep();
-        }
-        let shown = self.settings.take().map(|(_, settings)| settings);
-        let mut settings = shown.unwrap_or_else(|| self.settings(editor));
+        let mut settings = match self.shown.take() {
+            Some(shown) if shown.document == document => shown.settings,
+            Some(other) => {
+                self.kept.keep(other.owner, other.settings);
+                self.settings(editor)
+            }
+            None => self.settings(editor),
+        };
         presets(ui, &mut settings, editor.scene());
         Grid::new("export settings")
             .num_columns(2)
@@ -215,24 +276,44 @@ impl Exports {
         if start.accessible_name("Start export").clicked()
             && let Ok(sequence) = sequence
         {
-            self.found = None;
-            match pictures.export(sequence.clone()) {
-                Ok(id) => {
-                    self.names.push((id, settings.describe(&editor.title())));
-                    if let Some((path, video)) = settings.video(&sequence) {
-                        self.videos.push(Following {
-                            id,
-                            sequence,
-                            path,
-                            video,
-                            making: None,
-                        });
-                    }
+            let order = Order::new(settings.clone(), editor, self.folder.as_deref());
+            self.begin(order, sequence, editor, pictures);
+        }
+        self.shown = Some(Shown {
+            document,
+            owner: Owner::of(editor),
+            settings,
+        });
+    }
+
+    /// Puts an order into the queue.
+    fn begin(
+        &mut self,
+        order: Order,
+        sequence: Sequence,
+        editor: &mut Editor,
+        pictures: &Pictures,
+    ) {
+        self.found = None;
+        editor.begin(EXPORT);
+        match pictures.export(sequence.clone()) {
+            Ok(id) => {
+                if let Some((path, video)) = order.settings.video(&sequence) {
+                    self.videos.push(Following {
+                        id,
+                        sequence,
+                        path,
+                        video,
+                        making: None,
+                    });
                 }
-                Err(error) => editor.report_error(error.to_string()),
+                self.orders.push((id, order));
+            }
+            Err(error) => {
+                order.end();
+                editor.report_error_in(EXPORT, error.to_string());
             }
         }
-        self.settings = Some((document, settings));
     }
 
     /// Looks on a thread of its own what is in the folder already.
@@ -273,16 +354,63 @@ impl Exports {
 
     fn show_list(&mut self, ui: &mut Ui, pictures: &Pictures) {
         let states = pictures.exports();
+        let mut given_up = None;
         self.thumbs
             .retain(|(id, ..)| states.iter().any(|state| state.id == *id));
         for state in &states {
             ui.separator();
             ui.horizontal(|ui| {
                 self.show_thumb(ui, state);
-                let name = self.names.iter().find(|(id, _)| *id == state.id);
-                let name = name.map_or("", |(_, name)| name);
-                ui.vertical(|ui| show_state(ui, (name, state), pictures));
+                let going = self.orders.iter().find(|(id, _)| *id == state.id);
+                let ended = self.ended.iter().find(|(id, _)| *id == state.id);
+                let name = going.map(|(_, order)| &order.name);
+                let name = name.or(ended.map(|(_, name)| name));
+                let name = name.map_or("", |name| name);
+                let is_given_up = ui
+                    .vertical(|ui| show_state(ui, (name, state), pictures))
+                    .inner;
+                if is_given_up {
+                    given_up = Some(state.id);
+                }
             });
+        }
+        let at = |id| self.orders.iter().position(|(of, _)| *of == id);
+        if let Some(at) = given_up.and_then(at) {
+            self.orders.remove(at).1.end();
+        }
+    }
+
+    /// What ended without being finished.
+    fn show_interrupted(&mut self, ui: &mut Ui, editor: &mut Editor, pictures: &Pictures) {
+        let mut resumed = None;
+        let mut removed = None;
+        for (index, order) in self.interrupted.iter().enumerate() {
+            ui.separator();
+            ui.label(&order.name).hint(&order.settings.folder);
+            ui.horizontal(|ui| {
+                ui.weak("Interrupted");
+                let resume = ui
+                    .button("Resume")
+                    .hint("With the scene as it was then; what is done stays");
+                if resume.clicked() {
+                    resumed = Some(index);
+                }
+                if ui.button("Remove").clicked() {
+                    removed = Some(index);
+                }
+            });
+        }
+        if let Some(index) = resumed {
+            let order = self.interrupted.remove(index);
+            match order.sequence() {
+                Ok(sequence) => self.begin(order, sequence, editor, pictures),
+                Err(error) => {
+                    editor.report_error(format!("{}: {error}", order.name));
+                    self.interrupted.insert(index, order);
+                }
+            }
+        } else if let Some(index) = removed {
+            self.interrupted.remove(index).end();
         }
     }
 
@@ -310,54 +438,4 @@ impl Exports {
             ui.add(Picture::new(texture).fit_to_exact_size(vec2(THUMB, THUMB)));
         }
     }
-}
-
-/// How long an export will still take; `None` before its first frame, and while it waits.
-fn seconds_left(state: &ExportState) -> Option<f64> {
-    let done = state.done.kept + state.done.written;
-    let per_frame = state.busy.as_secs_f64() / state.done.written.max(1) as f64;
-    let is_known = state.done.written > 0 && !state.is_paused;
-    is_known.then_some((state.done.total - done) as f64 * per_frame)
-}
-
-/// How far an export is; what it waits for does not count as its time.
-fn show_state(ui: &mut Ui, (name, state): (&str, &ExportState), pictures: &Pictures) {
-    let done = state.done.kept + state.done.written;
-    let share = done as f64 / state.done.total.max(1) as f64;
-    let busy = state.busy.as_secs_f64();
-    let rate = state.done.written as f64 / busy.max(1e-3);
-    let text = match &state.ended {
-        Some(Ok(())) => format!("{done} frames, {busy:.1} s"),
-        Some(Err(_)) => format!("{done} of {}, failed", state.done.total),
-        None if state.is_paused => format!("{done} of {}, paused", state.done.total),
-        None => match seconds_left(state).map(in_words) {
-            None => format!("{done} of {}", state.done.total),
-            Some(left) => format!(
-                "{done} of {} · {rate:.0} frames/s · {left} left",
-                state.done.total
-            ),
-        },
-    };
-    ui.label(name)
-        .on_hover_text(state.folder.display().to_string());
-    ui.horizontal(|ui| {
-        let bar = ProgressBar::new(share as f32).desired_width(FIELDS - 120.0);
-        ui.add(bar.text(RichText::new(text).small().color(palette(ui.ctx()).text)));
-        if state.ended.is_some() {
-            if ui.button("Remove").clicked() {
-                pictures.forget_export(state.id);
-            }
-            return;
-        }
-        let word = if state.is_paused { "Resume" } else { "Pause" };
-        if ui.button(word).clicked() {
-            pictures.pause_export(state.id, !state.is_paused);
-        }
-        let cancel = ui
-            .button("Cancel")
-            .on_hover_text("What is written stays; exporting again goes on from there");
-        if cancel.clicked() {
-            pictures.forget_export(state.id);
-        }
-    });
 }

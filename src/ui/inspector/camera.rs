@@ -1,13 +1,15 @@
 //! The camera: projection, place, angles and vectors.
 
-use egui::Ui;
+use egui::{Align, Id, Layout, Ui, vec2};
 
-use super::title::title;
+use super::title::{name_field, title};
 use crate::editor::{Edit, Editor};
-use crate::scene::{Camera, Orientation, Projection};
+use crate::scene::{Bookmark, Camera, Orientation, Projection};
+use crate::ui::commands::Command;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, coordinate};
+use crate::ui::theme::ROW;
 
 /// Every property of the camera.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
@@ -34,6 +36,40 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
     if let Some(field) = changed.filter(|_| camera != *before) {
         out.edit(Edit::Camera(camera, field));
+    }
+    bookmarks(ui, editor, out);
+}
+
+/// The views to come back to.
+fn bookmarks(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+    let before = &editor.scene().bookmarks;
+    if before.is_empty() {
+        return;
+    }
+    Rows::new(ui).heading("Bookmarks");
+    for (index, Bookmark { name, .. }) in before.iter().enumerate() {
+        let size = vec2(ui.available_width(), ROW);
+        let layout = Layout::right_to_left(Align::Center);
+        ui.allocate_ui_with_layout(size, layout, |ui| {
+            let mut bookmarks = before.clone();
+            let remove = icons::button(ui, icons::CLOSE, &format!("Remove {name}"));
+            if remove.clicked() {
+                bookmarks.remove(index);
+                return out.edit(Edit::Bookmarks(bookmarks, "Remove bookmark"));
+            }
+            let go = icons::button(ui, icons::CAMERA, &format!("Look from {name}"));
+            if go.clicked() {
+                out.commands.push(Command::GoToBookmark(index));
+            }
+            let (id, label) = (
+                Id::unique(("bookmark", index)),
+                format!("bookmark {}", index + 1),
+            );
+            if let Some(name) = name_field(ui, &label, id, name) {
+                bookmarks[index].name = name;
+                out.edit(Edit::Bookmarks(bookmarks, "Rename bookmark"));
+            }
+        });
     }
 }
 

@@ -9,6 +9,7 @@ use crate::editor::{Edit, Item, Selection};
 use crate::scene::{
     self, ColorPack, FieldValue, Light, LightObj, MOST_SEPARATE, Object, Scene, Shape,
 };
+use crate::ui::hint::Hint as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, coordinate, fraction};
@@ -138,7 +139,7 @@ pub fn object(ui: &mut Ui, scene: &Scene, index: usize, before: &Object, out: &m
     rows.heading("ColorPack");
     pack_choice(&mut rows, scene, &mut object.color_pack);
     if let Some(field) = rows.changed().filter(|_| object != *before) {
-        out.edit(Edit::Object(index, object, field));
+        out.edit(Edit::object(index, object, field));
     }
     let Some((place, name, value)) = scene.color_packs.get_full(&before.color_pack) else {
         return;
@@ -149,7 +150,7 @@ pub fn object(ui: &mut Ui, scene: &Scene, index: usize, before: &Object, out: &m
         ui.weak(format!("used by {users}"));
         let unique = ui.add_enabled(users > 1, egui::Button::new("Make unique"));
         if unique
-            .on_hover_text("Give this object a color pack of its own")
+            .hint("Give this object a color pack of its own")
             .clicked()
         {
             out.edit(Edit::MakePackUnique(index));
@@ -193,7 +194,7 @@ fn mesh_tools(
 
 fn tool(rows: &mut Rows, name: &str, hint: &str, is_enabled: bool) -> bool {
     let button = rows.ui.add_enabled(is_enabled, egui::Button::new(name));
-    button.on_hover_text(hint).clicked()
+    button.hint(hint).clicked()
 }
 
 /// How many things wear a pack. To count them takes a look at every object: what is dragged changes

@@ -8,6 +8,7 @@ use crate::editor::{Edit, Editor, Time};
 use crate::scene::{
     Animation, Camera, Easing, Interpolation, Key, MAX_SECONDS, Orientation, Target,
 };
+use crate::ui::hint::Hint as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, coordinate};
@@ -138,7 +139,7 @@ fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let indices = &editor.timeline().selected;
     let overwrite = ui.add_enabled(indices.len() == 1, Button::new("Overwrite with view"));
     let hint = "Put the camera of the view into this key";
-    if overwrite.on_hover_text(hint).clicked() {
+    if overwrite.hint(hint).clicked() {
         let view = editor.shown().camera.clone();
         let changed = animation.with_each(indices, |key| key.value = view.clone());
         out.edit(Edit::animation(changed, "Overwrite key"));
@@ -148,7 +149,7 @@ fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         .iter()
         .next()
         .and_then(|&index| animation.keys.get(index));
-    if go.on_hover_text("Put the playhead on this key").clicked()
+    if go.hint("Put the playhead on this key").clicked()
         && let Some(key) = key
     {
         out.time(Time::Seek(key.time));
@@ -177,7 +178,7 @@ pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[(&str, Target)], out: &
             } else {
                 "Set a key at the playhead; from then on, changes set keys"
             };
-            let button = ui.add(button).on_hover_text(hint);
+            let button = ui.add(button).hint(hint);
             if button.accessible_name(format!("key {name}")).clicked() {
                 let changed = if has_key {
                     Some(animation.without_value(target, time))

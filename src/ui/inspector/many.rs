@@ -7,6 +7,7 @@ use super::items;
 use super::title::title;
 use crate::editor::{Edit, Editor, Item, Kind};
 use crate::scene::{FieldValue, Light, Object, Scene, Shape};
+use crate::ui::hint::Hint as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::GRID;
@@ -32,11 +33,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let can_join = objects.len() == selected.len() && objects.iter().all(is_joinable);
     let join = ui.add_enabled(can_join, egui::Button::new("Join"));
     let hint = "Make one mesh of these triangles and meshes";
-    if join
-        .on_hover_text(hint)
-        .on_disabled_hover_text(hint)
-        .clicked()
-    {
+    if join.hint(hint).on_disabled_hover_text(hint).clicked() {
         out.edit(Edit::Join(objects));
     }
     ui.add_space(GRID);
@@ -120,7 +117,7 @@ fn like_object(
                 object.visible = new.visible;
             }
             take_changes(&mut object.shape, &old.shape, &new.shape);
-            Some(Edit::Object(index, object, field))
+            Some(Edit::object(index, object, field))
         }
         Kind::Light => {
             let mut light = scene.lights.get(index)?.clone();
@@ -164,7 +161,7 @@ fn like_light(
             if new.visible != old.visible {
                 object.visible = new.visible;
             }
-            Some(Edit::Object(index, object, field))
+            Some(Edit::object(index, object, field))
         }
         Kind::Pack => None,
     }

@@ -6,6 +6,7 @@ use egui::{CollapsingHeader, Id, RichText, Ui};
 
 use crate::editor::Editor;
 use crate::plan::{Need, RenderRequest, needs};
+use crate::ui::hint::Hint as _;
 use crate::ui::theme::GRID;
 
 /// The lines of the plan, made when the section is opened and on every edit while it is.
@@ -14,8 +15,7 @@ pub fn show(ui: &mut Ui, editor: &Editor) {
     let response = header.show(ui, |ui| {
         for need in lines(ui, editor).iter() {
             ui.add_space(GRID / 2.0);
-            ui.label(&need.what)
-                .on_hover_text(format!("Spares {}.", need.saves));
+            ui.label(&need.what).hint(format!("Spares {}.", need.saves));
             ui.label(
                 RichText::new(format!("because {}", need.why))
                     .small()
@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, editor: &Editor) {
     });
     response
         .header_response
-        .on_hover_text("What the tracer computes for this scene, what it leaves out, and why");
+        .hint("What the tracer computes for this scene, what it leaves out, and why");
 }
 
 fn lines(ui: &Ui, editor: &Editor) -> Arc<Vec<Need>> {

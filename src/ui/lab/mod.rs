@@ -33,6 +33,7 @@ use crate::editor::{Edit, Editor};
 use crate::lab::{EIGHT_BIT_FLOOR, Study, cheapest_within};
 use crate::plan::Model;
 use crate::scene::{Render, Scene};
+use crate::ui::hint::Hint as _;
 
 /// Longer side of the pictures that are measured, in pixels: a study then takes seconds.
 const SIDE: u32 = 256;
@@ -158,10 +159,7 @@ impl Lab {
         out: &mut UiRequests,
     ) -> Option<LabRequest> {
         let timeline = ui.selectable_label(false, "Timeline");
-        if timeline
-            .on_hover_text("Keys and playing (Ctrl+T)")
-            .clicked()
-        {
+        if timeline.hint("Keys and playing (Ctrl+T)").clicked() {
             out.commands.push(Command::Timeline);
         }
         for (maps, name, hint) in [
@@ -177,7 +175,7 @@ impl Lab {
             ),
         ] {
             ui.selectable_value(&mut self.shows_maps, maps, name)
-                .on_hover_text(hint);
+                .hint(hint);
         }
         ui.separator();
         if self.shows_maps {
@@ -197,7 +195,7 @@ impl Lab {
             ui.label(format!("{:.0} %{left}", (done * 100.0).floor()));
         } else if ui
             .button("Measure")
-            .on_hover_text("Trace the scene in every way there is, and compare: a few seconds")
+            .hint("Trace the scene in every way there is, and compare: a few seconds")
             .clicked()
         {
             let study = Box::new(Study::of_side(Arc::clone(editor.shown()), SIDE));
@@ -220,8 +218,7 @@ impl Lab {
                 "Rays per pixel: the same on every machine",
             ),
         ] {
-            ui.selectable_value(&mut self.cost, cost, name)
-                .on_hover_text(hint);
+            ui.selectable_value(&mut self.cost, cost, name).hint(hint);
         }
         ui.separator();
         for (error, name, hint) in [
@@ -241,15 +238,14 @@ impl Lab {
                 "Share of the pixels that are off by more than 4/255",
             ),
         ] {
-            ui.selectable_value(&mut self.error, error, name)
-                .on_hover_text(hint);
+            ui.selectable_value(&mut self.error, error, name).hint(hint);
         }
         ui.separator();
         self.show_bounds(ui);
         if self.is_stale(editor) {
             let hint = "The scene has changed since; measure again";
             ui.colored_label(palette(ui.ctx()).accent, "stale")
-                .on_hover_text(hint);
+                .hint(hint);
         }
         wish
     }
@@ -257,7 +253,7 @@ impl Lab {
     fn show_bounds(&mut self, ui: &mut Ui) {
         let pick = ui.add_enabled(self.study.is_some(), Button::new("Cheapest within"));
         let hint = "Choose the fastest dot whose RMSE and time are within these";
-        let is_asked = pick.on_hover_text(hint).clicked();
+        let is_asked = pick.hint(hint).clicked();
         let rmse = DragValue::new(&mut self.bounds.0)
             .speed(1e-5)
             .range(1e-6..=1.0);
@@ -290,8 +286,7 @@ impl Lab {
         ui.add_space(GRID / 2.0);
         ui.horizontal(|ui| {
             for (face, name, hint) in FACES {
-                ui.selectable_value(&mut self.face, face, name)
-                    .on_hover_text(hint);
+                ui.selectable_value(&mut self.face, face, name).hint(hint);
             }
         });
         let obstacle = match &dot.candidate {
@@ -306,7 +301,7 @@ impl Lab {
         let is_possible = dot.candidate.upscale == 1;
         let adopt = ui.add_enabled(is_possible, Button::new("Use this"));
         let hint = obstacle.unwrap_or("Trace the scene with these settings (one undo step)");
-        let adopt = adopt.on_hover_text(hint).on_disabled_hover_text(hint);
+        let adopt = adopt.hint(hint).on_disabled_hover_text(hint);
         if adopt.clicked() {
             let own = &editor.shown().render;
             let render = Render {

@@ -10,6 +10,7 @@ use super::heat;
 use crate::image::Image;
 use crate::lab::stability::{Map, maps};
 use crate::scene::Scene;
+use crate::ui::hint::Hint as _;
 use crate::worker::run_in_background;
 
 /// How many times more tries than for a first look: a second of computing.
@@ -87,7 +88,7 @@ impl Stability {
                 map.total().rate() * 100.0
             );
             let row = ui.selectable_label(place == self.chosen, RichText::new(text).monospace());
-            if row.on_hover_text(headline(map)).clicked() {
+            if row.hint(headline(map)).clicked() {
                 self.chosen = place;
             }
         }

@@ -1,10 +1,13 @@
 //! A row of the outliner.
 
-use egui::{AtomExt as _, Button, Color32, Rect, Sense, Ui, vec2};
+use egui::text::{CCursor, CCursorRange};
+use egui::{AtomExt as _, Button, Color32, Id, Rect, Sense, StrokeKind, TextEdit, Ui, vec2};
 use egui_material_icons::MaterialIcon;
 
-use crate::editor::{Edit, Item, Kind};
+use crate::editor::{Action, Edit, Editor, Item, Kind};
 use crate::scene::Scene;
+use crate::ui::dress::dressed;
+use crate::ui::hint::Hint as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{ROW, palette};
@@ -80,31 +83,44 @@ pub fn entry(ui: &mut Ui, rect: Rect, look: RowStyle, name: &str) -> egui::Respo
         .min_size(rect.size());
     let shown = ui.put(rect, button).accessible_name(name);
     if name.chars().count() > LONG {
-        return shown.on_hover_text(name);
+        return shown.hint(name);
     }
     shown
 }
 
-/// Drag a row onto another to put it there.
-pub fn reorder(ui: &Ui, response: &egui::Response, item: Item, out: &mut UiRequests) {
+/// Drag a row onto another to put it there; a pack onto an object, to be worn by it.
+pub fn take_dropped(
+    ui: &Ui,
+    editor: &Editor,
+    response: &egui::Response,
+    item: Item,
+    out: &mut UiRequests,
+) {
     response.dnd_set_drag_payload(item);
+    let accent = palette(ui.ctx()).accent;
+    let is_worn = |dragged: &Item| dragged.kind == Kind::Pack && item.kind == Kind::Object;
     let fits = |dragged: &Item| dragged.kind == item.kind && dragged.index != item.index;
-    if let Some(dragged) = response
-        .dnd_hover_payload::<Item>()
-        .filter(|dragged| fits(dragged))
-    {
-        let y = if dragged.index < item.index {
-            response.rect.bottom()
-        } else {
-            response.rect.top()
-        };
-        ui.painter()
-            .hline(response.rect.x_range(), y, (2.0, palette(ui.ctx()).accent));
+    if let Some(dragged) = response.dnd_hover_payload::<Item>() {
+        let rect = response.rect;
+        if is_worn(&dragged) {
+            ui.painter()
+                .rect_stroke(rect, 2, (1.0, accent), StrokeKind::Inside);
+        } else if fits(&dragged) {
+            let y = if dragged.index < item.index {
+                rect.bottom()
+            } else {
+                rect.top()
+            };
+            ui.painter().hline(rect.x_range(), y, (2.0, accent));
+        }
     }
-    if let Some(dragged) = response
-        .dnd_release_payload::<Item>()
-        .filter(|dragged| fits(dragged))
-    {
+    let Some(dragged) = response.dnd_release_payload::<Item>() else {
+        return;
+    };
+    if is_worn(&dragged) {
+        let edit = dressed(editor, *dragged, item);
+        out.actions.extend(edit.map(Action::Edit));
+    } else if fits(&dragged) {
         out.edit(Edit::Move(*dragged, item.index));
     }
 }
@@ -127,4 +143,14 @@ pub fn eye(ui: &mut Ui, scene: &Scene, item: Item, name: &str, out: &mut UiReque
     if let Some(edit) = Edit::visible(scene, item, !visible) {
         out.edit(edit);
     }
+}
+
+/// Typing shall replace the old name.
+pub fn select_all(ui: &Ui, id: Id, text: &str) {
+    let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
+    let end = CCursor::new(text.chars().count());
+    state
+        .cursor
+        .set_char_range(Some(CCursorRange::two(CCursor::new(0), end)));
+    state.store(ui.ctx(), id);
 }

@@ -1,28 +1,108 @@
 //! The lines of the outliner, made one by one as they are asked for.
 
+use std::collections::HashMap;
+
 use egui_material_icons::MaterialIcon;
 
 use crate::editor::{Item, Kind, Selection};
+use crate::scene::{List, Object};
 use crate::ui::icons;
 
 /// One line of the list.
 pub enum Line {
     Single(Selection, MaterialIcon, &'static str),
-    Group(Kind, usize),
-    Entry(Item),
+    Kind(Kind, usize),
+    /// A group of objects, by its place in [`Groups`].
+    Group(usize),
+    /// An item, and whether it is in a group.
+    Entry(Item, bool),
+}
+
+/// Objects that are listed together.
+#[derive(Debug, Default)]
+pub struct Group {
+    /// Its name.
+    pub name: String,
+    /// The places of its members.
+    pub members: Vec<usize>,
+}
+
+/// What stands in the list of objects where some are in groups.
+#[derive(Clone, Copy, Debug)]
+enum Row {
+    Group(usize),
+    Object(usize, bool),
+}
+
+/// The groups of a scene's objects.
+#[derive(Debug, Default)]
+pub struct Groups {
+    /// In the order of their first members.
+    pub all: Vec<Group>,
+    rows: Vec<Row>,
+    objects: List<Object>,
+    folded: Vec<String>,
+}
+
+impl Groups {
+    /// The groups of these objects, of which those of the names in `folded` show no members; no rows where no
+    /// object is in one.
+    pub fn update(&mut self, objects: &List<Object>, folded: &[String]) {
+        if self.objects.is_same(objects) && self.folded == folded {
+            return;
+        }
+        *self = Self {
+            objects: objects.clone(),
+            folded: folded.to_vec(),
+            ..Self::default()
+        };
+        let mut places: HashMap<&str, usize> = HashMap::new();
+        let mut tops = Vec::new();
+        for (index, object) in objects.iter().enumerate() {
+            if object.group.is_empty() {
+                tops.push(Row::Object(index, false));
+                continue;
+            }
+            let place = *places.entry(&object.group).or_insert_with(|| {
+                tops.push(Row::Group(self.all.len()));
+                self.all.push(Group {
+                    name: object.group.clone(),
+                    members: Vec::new(),
+                });
+                self.all.len() - 1
+            });
+            self.all[place].members.push(index);
+        }
+        if self.all.is_empty() {
+            return;
+        }
+        for top in tops {
+            self.rows.push(top);
+            if let Row::Group(place) = top {
+                let group = &self.all[place];
+                if !folded.contains(&group.name) {
+                    let members = group.members.iter();
+                    self.rows
+                        .extend(members.map(|index| Row::Object(*index, true)));
+                }
+            }
+        }
+    }
 }
 
 /// Which entries of a group are listed.
-pub enum Entries {
+pub enum Entries<'a> {
     /// The first so many: all of them, or none.
     All(usize),
     /// Those at these indices.
     Some(Vec<usize>),
+    /// All, some of them in groups.
+    Grouped(&'a Groups),
 }
 
 /// All lines, made one by one as they are asked for: a list of ten thousand would take as long as
 /// everything else together.
-pub struct Lines(pub [(Kind, usize, Entries); 3]);
+pub struct Lines<'a>(pub [(Kind, usize, Entries<'a>); 3]);
 
 /// What is above the groups.
 pub const SINGLES: [(Selection, MaterialIcon, &str); 3] = [
@@ -31,18 +111,21 @@ pub const SINGLES: [(Selection, MaterialIcon, &str); 3] = [
     (Selection::Render, icons::IMAGE, "Picture"),
 ];
 
-impl Entries {
+impl Entries<'_> {
     pub fn len(&self) -> usize {
         match self {
             Self::All(count) => *count,
             Self::Some(indices) => indices.len(),
+            Self::Grouped(groups) => groups.rows.len(),
         }
     }
 
-    pub fn get(&self, row: usize) -> Option<usize> {
+    fn get(&self, row: usize) -> Option<Row> {
+        let object = |index| Row::Object(index, false);
         match self {
-            Self::All(count) => (row < *count).then_some(row),
-            Self::Some(indices) => indices.get(row).copied(),
+            Self::All(count) => (row < *count).then_some(row).map(object),
+            Self::Some(indices) => indices.get(row).copied().map(object),
+            Self::Grouped(groups) => groups.rows.get(row).copied(),
         }
     }
 
@@ -50,11 +133,15 @@ impl Entries {
         match self {
             Self::All(count) => (index < *count).then_some(index),
             Self::Some(indices) => indices.binary_search(&index).ok(),
+            Self::Grouped(groups) => {
+                let mut rows = groups.rows.iter();
+                rows.position(|row| matches!(row, Row::Object(other, _) if *other == index))
+            }
         }
     }
 }
 
-impl Lines {
+impl Lines<'_> {
     pub fn len(&self) -> usize {
         let groups = self.0.iter().map(|(.., entries)| 1 + entries.len());
         SINGLES.len() + groups.sum::<usize>()
@@ -67,11 +154,15 @@ impl Lines {
         let mut row = index - SINGLES.len();
         for (kind, count, entries) in &self.0 {
             if row == 0 {
-                return Some(Line::Group(*kind, *count));
+                return Some(Line::Kind(*kind, *count));
             }
             row -= 1;
-            if let Some(index) = entries.get(row) {
-                return Some(Line::Entry(Item { kind: *kind, index }));
+            match entries.get(row) {
+                Some(Row::Group(place)) => return Some(Line::Group(place)),
+                Some(Row::Object(index, is_in)) => {
+                    return Some(Line::Entry(Item { kind: *kind, index }, is_in));
+                }
+                None => {}
             }
             row -= entries.len();
         }
@@ -79,7 +170,7 @@ impl Lines {
     }
 }
 
-impl Lines {
+impl Lines<'_> {
     /// How many entries of a group are listed.
     pub fn listed(&self, kind: Kind) -> usize {
         let mut groups = self.0.iter();

@@ -5,11 +5,13 @@ mod entry;
 
 mod lines;
 
-use egui::text::{CCursor, CCursorRange};
+mod groups;
+
 use egui::{Align, Id, Key, Layout, Rect, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2};
 
-use self::entry::{RowStyle, color_of, entry, eye, look, reorder, row};
-use self::lines::{Entries, Line, Lines};
+use self::entry::{RowStyle, color_of, entry, eye, look, row, select_all, take_dropped};
+use self::groups::GroupRows;
+use self::lines::{Entries, Groups, Line, Lines};
 use super::add::add_menu;
 use super::icons;
 use super::inspector::name_field;
@@ -29,6 +31,8 @@ pub struct Outliner {
     scrolled: (f32, f32),
     folded: Vec<Kind>,
     renaming: Option<Item>,
+    groups: Groups,
+    group_rows: GroupRows,
 }
 
 impl Outliner {
@@ -66,7 +70,9 @@ impl Outliner {
             let add = icons::button(ui, icons::ADD, "Add to scene");
             egui::Popup::menu(&add).show(|ui| add_menu(ui, editor.scene(), out));
         });
-        let lines = self.lines(editor.scene());
+        let mut groups = std::mem::take(&mut self.groups);
+        groups.update(&editor.scene().objects, &self.group_rows.folded);
+        let lines = self.lines(editor.scene(), &groups);
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut area = ScrollArea::vertical().auto_shrink(false);
         if let Some(to) = self.to_reveal(editor, &lines) {
@@ -87,7 +93,7 @@ impl Outliner {
                             out.select(selection);
                         }
                     }
-                    Some(Line::Group(kind, count)) => {
+                    Some(Line::Kind(kind, count)) => {
                         let listed = lines.listed(kind);
                         let is_all = self.filter.is_empty() || self.folded.contains(&kind);
                         let words = if is_all {
@@ -97,11 +103,15 @@ impl Outliner {
                         };
                         self.group(ui, kind, &words);
                     }
-                    Some(Line::Entry(item)) => self.item(ui, editor, item, out),
+                    Some(Line::Group(place)) => {
+                        self.group_rows.show(ui, editor, &groups.all[place], out);
+                    }
+                    Some(Line::Entry(item, is_in)) => self.item(ui, editor, (item, is_in), out),
                     None => {}
                 }
             }
         });
+        self.groups = groups;
         self.scrolled = (shown.state.clamped_offset().y, shown.inner_rect.height());
     }
 
@@ -117,9 +127,9 @@ impl Outliner {
         (!is_seen).then(|| (top - (height - ROW) / 2.0).max(0.0))
     }
 
-    fn lines(&self, scene: &Scene) -> Lines {
+    fn lines<'a>(&self, scene: &Scene, groups: &'a Groups) -> Lines<'a> {
         let filter = self.filter.trim().to_lowercase();
-        let groups = [
+        let kinds = [
             (Kind::Light, scene.lights.len()),
             (Kind::Object, scene.objects.len()),
             (Kind::Pack, scene.color_packs.len()),
@@ -127,6 +137,9 @@ impl Outliner {
         let entries = |kind: Kind, count: usize| {
             if self.folded.contains(&kind) {
                 return Entries::All(0);
+            }
+            if filter.is_empty() && kind == Kind::Object && !groups.all.is_empty() {
+                return Entries::Grouped(groups);
             }
             if filter.is_empty() {
                 return Entries::All(count);
@@ -141,7 +154,7 @@ impl Outliner {
             };
             Entries::Some((0..count).filter(matches).collect())
         };
-        Lines(groups.map(|(kind, count)| (kind, count, entries(kind, count))))
+        Lines(kinds.map(|(kind, count)| (kind, count, entries(kind, count))))
     }
 
     fn group(&mut self, ui: &mut Ui, kind: Kind, words: &str) {
@@ -191,7 +204,13 @@ impl Outliner {
         }
     }
 
-    fn item(&mut self, ui: &mut Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
+    fn item(
+        &mut self,
+        ui: &mut Ui,
+        editor: &Editor,
+        (item, is_in_group): (Item, bool),
+        out: &mut UiRequests,
+    ) {
         let scene = editor.scene();
         let Some(name) = item.name(scene) else { return };
         if self.renaming == Some(item) {
@@ -201,6 +220,9 @@ impl Outliner {
         let (icon, visible) = look(scene, item);
         let is_selected = editor.selected().has(item);
         let (mut rect, mut eye_rect) = (row(ui), Rect::NOTHING);
+        if is_in_group {
+            rect.min.x += ROW;
+        }
         if visible.is_some() {
             (rect, eye_rect) = rect.split_left_right_at_x(rect.right() - ROW - GRID / 2.0);
         }
@@ -226,7 +248,7 @@ impl Outliner {
         if response.double_clicked() {
             self.renaming = Some(item);
         }
-        reorder(ui, &response, item, out);
+        take_dropped(ui, editor, &response, item, out);
         response.context_menu(|ui| {
             if !is_selected {
                 out.select(Selection::Item(item));
@@ -299,14 +321,4 @@ fn select_clicked(ui: &Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
         None => Selected::all([item]),
     };
     out.actions.push(Action::SelectItems(selected));
-}
-
-/// Typing shall replace the old name.
-fn select_all(ui: &Ui, id: Id, text: &str) {
-    let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
-    let end = CCursor::new(text.chars().count());
-    state
-        .cursor
-        .set_char_range(Some(CCursorRange::two(CCursor::new(0), end)));
-    state.store(ui.ctx(), id);
 }

@@ -7,6 +7,7 @@ use super::scale::Scale;
 use crate::animate::{CameraChange, CameraPath, motion_between};
 use crate::editor::Editor;
 use crate::scene::{Animation, Camera, Interpolation, Key};
+use crate::ui::hint::Hint as _;
 use crate::ui::theme::{GRAPH, palette};
 
 /// Most places that are looked at; a longer flight is looked at in larger steps.
@@ -63,7 +64,7 @@ impl Graph {
                     ui.small(egui::RichText::new(format!("turn ≤ {sharpest:.0}°/s")).color(colors.muted));
                     if rough > 0 {
                         let text = egui::RichText::new(format!("{rough} jump{}", if rough == 1 { "" } else { "s" })).color(colors.accent);
-                        ui.small(text).on_hover_text("Frames where speed or turn changes abruptly, or turns by more than 120° a second");
+                        ui.small(text).hint("Frames where speed or turn changes abruptly, or turns by more than 120° a second");
                     }
                 });
             });

@@ -19,12 +19,13 @@ pub use self::overlay::Overlay;
 use self::scale::Scale;
 pub use self::thumbs::Thumbs;
 use self::tracks_area::Drag;
-pub use self::transport::actions;
+pub use self::transport::{actions, clock};
 use super::commands::Command;
 use super::requests::UiRequests;
 use super::theme::{GRID, TRACK_LABEL};
 use crate::editor::Editor;
 use crate::scene::Animation;
+use crate::ui::hint::Hint as _;
 
 /// Least time that the line shows, in seconds.
 const LEAST: f64 = 4.0;
@@ -81,10 +82,7 @@ impl TimelinePanel {
         ui.horizontal(|ui| {
             let _ = ui.selectable_label(true, "Timeline");
             let lab = ui.selectable_label(false, "Lab");
-            if lab
-                .on_hover_text("Speed against accuracy (Ctrl+L)")
-                .clicked()
-            {
+            if lab.hint("Speed against accuracy (Ctrl+L)").clicked() {
                 out.commands.push(Command::Lab);
             }
             ui.separator();

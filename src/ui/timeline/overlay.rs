@@ -19,6 +19,10 @@ const MOST_TICKS: u64 = 1500;
 const CAMERA_SHARE: f64 = 0.06;
 /// How near to a key the pointer must be, in points.
 const REACH: f32 = 9.0;
+/// Cameras nearer than this share of the flight's extent fade.
+const FADING: f64 = 0.3;
+/// Most points that a drawn camera is wide.
+const LARGEST: f32 = 60.0;
 /// How strongly what is hidden is drawn.
 const HIDDEN: f32 = 0.22;
 
@@ -62,7 +66,9 @@ impl Overlay {
             let color = if selected.contains(&place) {
                 colors.accent
             } else {
-                colors.curve
+                colors
+                    .curve
+                    .gamma_multiply(self.fade(&lens, key.value.position))
             };
             draw_camera(&painter, &lens, &key.value, size, color);
             self.handle(ui, editor, &lens, place, out);
@@ -132,6 +138,13 @@ impl Overlay {
         }
     }
 
+    /// How strongly a camera is drawn: what is near to the eye covers much of the picture and says little.
+    fn fade(&self, lens: &Lens, position: DVec3) -> f32 {
+        let (eye, _) = lens.ray(lens.view.center());
+        let far = self.extent() * FADING;
+        (eye.distance(position) / far).clamp(f64::from(HIDDEN), 1.0) as f32
+    }
+
     /// Size of the flight in world units.
     fn extent(&self) -> f64 {
         let points = self.ticks.iter().map(|(point, _)| (*point, *point));
@@ -195,20 +208,30 @@ fn draw_camera(painter: &Painter, lens: &Lens, camera: &Camera, size: f64, color
     let Some(framing) = camera.framing() else {
         return;
     };
-    let depth = match camera.projection {
-        Projection::Perspective => size,
-        Projection::Orthographic => 0.0,
+    let frame = |size: f64| -> Vec<Pos2> {
+        let depth = match camera.projection {
+            Projection::Perspective => size,
+            Projection::Orthographic => 0.0,
+        };
+        let corners = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]].into_iter();
+        let places: Option<Vec<Pos2>> = corners
+            .map(|at| {
+                let (origin, direction) = framing.ray(at);
+                lens.place(origin + direction * depth)
+            })
+            .collect();
+        places.unwrap_or_default()
     };
-    let corners = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
-    let corners: Option<Vec<Pos2>> = corners
-        .into_iter()
-        .map(|at| {
-            let (origin, direction) = framing.ray(at);
-            lens.place(origin + direction * depth)
-        })
-        .collect();
     let stroke = Stroke::new(1.0, color);
-    let (eye, corners) = (lens.place(camera.position), corners.unwrap_or_default());
+    let (eye, mut corners) = (lens.place(camera.position), frame(size));
+    let width = Rect::from_points(&corners).size().max_elem();
+    if width > LARGEST {
+        corners = frame(size * f64::from(LARGEST / width));
+    }
+    // What runs side by side has no size to choose.
+    if Rect::from_points(&corners).size().max_elem() > 4.0 * LARGEST {
+        corners.clear();
+    }
     if let (Some(eye), Projection::Perspective) = (eye, camera.projection) {
         for corner in &corners {
             painter.line_segment([eye, *corner], stroke);

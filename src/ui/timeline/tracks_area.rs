@@ -8,6 +8,7 @@ use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, 
 use super::scale::Scale;
 use crate::editor::{Edit, Editor, Time};
 use crate::scene::{Animation, Easing, Interpolation, Target};
+use crate::ui::hint::Hint as _;
 use crate::ui::inspector::target;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, TRACK, palette};
@@ -181,7 +182,7 @@ pub fn keys(
         diamond(ui, at, fill, key.interpolation == Interpolation::Hold);
         pick(&response, index, editor, drag, out);
         response.context_menu(|ui| menu(ui, index, editor, out));
-        response.on_hover_text(format!(
+        response.hint(format!(
             "{name}: {:.3} s, {}\nDrag to move, Ctrl-drag to copy, Shift-click for several",
             key.time,
             key.interpolation.name()

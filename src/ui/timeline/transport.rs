@@ -2,15 +2,20 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Button, DragValue, RichText, Slider, Ui};
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{Button, DragValue, PopupCloseBehavior, RichText, Slider, Ui};
 
 use crate::animate::{Retime, paused_seconds};
 use crate::editor::{Edit, Editor, Repeat, Time};
 use crate::scene::Animation;
 use crate::ui::commands::Command;
+use crate::ui::hint::Hint as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
+
+/// Width of a window in which everything has its place, in points.
+const WIDE: f32 = 1040.0;
 
 /// Playing, keys, and what time it is.
 pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out: &mut UiRequests) {
@@ -70,12 +75,12 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
     let frames = format!("{frame:>4}/{}", animation.frame_count());
     let hint = "Frame, from 1; the number that glint render --frame takes";
     ui.label(RichText::new(frames).monospace().weak())
-        .on_hover_text(hint);
+        .hint(hint);
     ui.separator();
     record_button(ui, editor, out);
-    let key = ui.button("Add key").on_hover_text(
-        "Set a key at the playhead from the view, in place of one that is there (K)",
-    );
+    let key = ui
+        .button("Add key")
+        .hint("Set a key at the playhead from the view, in place of one that is there (K)");
     if key.clicked() {
         out.commands.push(Command::AddKey);
     }
@@ -84,22 +89,27 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
         Button::selectable(editor.looks_through(), "Through shot"),
     );
     let hint = "Look through the shot camera, or at it from the view (C)";
-    if through.on_hover_text(hint).clicked() {
+    if through.hint(hint).clicked() {
         out.commands.push(Command::LookThrough);
     }
     ui.separator();
-    rates(ui, editor, out);
-    ui.toggle_value(graph, "Speed")
-        .on_hover_text("Show speed and turn rate below the keys");
+    if ui.content_rect().width() >= WIDE {
+        rates(ui, editor, graph, out);
+    } else {
+        let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+        let more = MenuButton::from_button(Button::new(icons::text(icons::OTHER))).config(stays);
+        let (button, _) = more.ui(ui, |ui| rates(ui, editor, graph, out));
+        button
+            .accessible_name("More of the timeline")
+            .hint("Length, frames per second, playing speed, graph of the speed");
+    }
     if timeline.is_playing {
         let text = format!(
             "{per_second:.1} of {:.0} fps",
             animation.frames_per_second * timeline.speed
         );
         ui.label(RichText::new(text).monospace().weak())
-            .on_hover_text(
-                "Pictures a second on screen; a slow scene loses resolution, never time",
-            );
+            .hint("Pictures a second on screen; a slow scene loses resolution, never time");
     }
 }
 
@@ -107,9 +117,7 @@ fn record_button(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let accent = palette(ui.ctx()).accent;
     if let Some((samples, seconds)) = editor.timeline().recorded() {
         let stop = Button::new((icons::text(icons::STOP).color(accent), "Stop"));
-        let stop = ui
-            .add(stop)
-            .on_hover_text("Stop recording and make keys (T)");
+        let stop = ui.add(stop).hint("Stop recording and make keys (T)");
         if stop.accessible_name("Stop recording").clicked() {
             out.commands.push(Command::StopRecording);
         }
@@ -118,15 +126,15 @@ fn record_button(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         return;
     }
     let record = Button::new((icons::text(icons::RECORD), "Record"));
-    let record = ui
-        .add(record)
-        .on_hover_text("Record the flight of the camera (R)");
+    let record = ui.add(record).hint("Record the flight of the camera (R)");
     if record.accessible_name("Record").clicked() {
         out.commands.push(Command::Record);
     }
 }
 
-fn rates(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+fn rates(ui: &mut Ui, editor: &Editor, graph: &mut bool, out: &mut UiRequests) {
+    ui.toggle_value(graph, "Speed")
+        .hint("Show speed and turn rate below the keys");
     let animation = &editor.scene().animation;
     length(ui, animation, out);
     let mut fps = animation.frames_per_second;
@@ -137,7 +145,7 @@ fn rates(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         .suffix(" fps");
     let hint = "Frames per second; the flight stays as it is";
     let drag = ui.add(drag).accessible_name("frames per second");
-    if drag.on_hover_text(hint).changed() && fps.is_finite() {
+    if drag.hint(hint).changed() && fps.is_finite() {
         let changed = Animation {
             frames_per_second: fps,
             ..Animation::clone(animation)
@@ -151,11 +159,7 @@ fn rates(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         .max_decimals(2)
         .suffix("×");
     let drag = ui.add(drag).accessible_name("playing speed");
-    if drag
-        .on_hover_text("Playing speed; 1 is real time")
-        .changed()
-        && speed.is_finite()
-    {
+    if drag.hint("Playing speed; 1 is real time").changed() && speed.is_finite() {
         out.time(Time::Speed(speed));
     }
 }
@@ -174,7 +178,7 @@ fn length(ui: &mut Ui, animation: &Animation, out: &mut UiRequests) {
         .suffix(" s");
     let drag = ui.add(drag).accessible_name("length of the flight");
     let hint = "Length of the flight; another one stretches it";
-    if drag.on_hover_text(hint).changed() && seconds.is_finite() {
+    if drag.hint(hint).changed() && seconds.is_finite() {
         let changed = Animation {
             keys: Retime::Stretch(seconds).apply(&animation.keys),
             ..Animation::clone(animation)
@@ -189,6 +193,7 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let Some(take) = &animation.take else { return };
     let before = editor.timeline().tolerance;
     let mut tolerance = before;
+    ui.weak("tolerance");
     let slider = Slider::new(&mut tolerance, 0.05..=1000.0)
         .clamping(egui::SliderClamping::Edits)
         .logarithmic(true)
@@ -197,19 +202,25 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let slider = ui.add(slider).accessible_name("tolerance");
     let hint = "Make the keys anew from the recording: how far they may be off. Other changes of the keys are lost (undo brings them back)";
     // The widget rounds what it is given: that is no wish of the user's.
-    if slider.on_hover_text(hint).changed() && (tolerance - before).abs() > 0.006 {
+    if slider.hint(hint).changed() && (tolerance - before).abs() > 0.006 {
         out.time(Time::Simplify(tolerance));
     }
     // Behind what is dragged, which must not move.
-    let off = editor.timeline().worst.map_or(String::new(), |worst| {
-        format!(", never more than {worst:.1} px off at 1024²")
-    });
     let text = format!(
-        "{} samples → {} keys{off}",
+        "{} samples → {} keys",
         take.samples.len(),
         animation.keys.len()
     );
     ui.label(RichText::new(text).monospace());
+    if let Some(worst) = editor.timeline().worst {
+        let text = format!("deviation {:.1} px at {:.1} s", worst.off, worst.time);
+        ui.label(RichText::new(text).monospace())
+            .hint("How far the picture of the keys is off that of the recording at most, at 1024², and when");
+    }
+    if editor.timeline().is_edited {
+        ui.weak("edited by hand")
+            .hint("The keys are not those that were made of the recording");
+    }
     ui.separator();
     let paused = paused_seconds(&animation.keys);
     if paused > 0.0 {
@@ -217,7 +228,7 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
     let forget = ui.button("Forget the recording");
     if forget
-        .on_hover_text("Keep the keys, and make the file smaller")
+        .hint("Keep the keys, and make the file smaller")
         .clicked()
     {
         let changed = Animation {
@@ -229,7 +240,7 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
 }
 
 /// Minutes, seconds and tenths.
-fn clock(seconds: f64) -> String {
+pub fn clock(seconds: f64) -> String {
     let tenths = (seconds * 10.0).round() as u64;
     format!(
         "{:02}:{:02}.{}",

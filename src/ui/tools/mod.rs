@@ -16,21 +16,23 @@ mod grip;
 
 mod drag;
 
+pub use gizmo::label;
 pub use lens::Lens;
 
 use egui::{CursorIcon, Modifiers, PointerButton, Popup, Pos2, Rect, Response, Ui};
 use glam::DVec3;
 
 use self::drag::{Drag, View};
-use self::gizmo::{Handle, handle_at, label};
+use self::gizmo::{Handle, handle_at};
 use self::navigate::{along, dollied, framed, surroundings};
 use self::sight::{Sight, item_of, pixel, question};
 use self::subject::Subject;
 use super::commands::{Command, is_enabled};
+use super::dress::{dressed, dropped_pack};
 use super::menu_entry::{ITEM_COMMANDS, entry};
 use super::requests::UiRequests;
 use super::viewport::Place;
-use crate::editor::{Action, Edit, Editor, Selected};
+use crate::editor::{Action, Edit, Editor, Item, Kind, Selected};
 use crate::image::{ObjectMap, Thing};
 use crate::scene::Camera;
 
@@ -150,6 +152,30 @@ impl Tools {
             self.click = at.map(|at| (at, ui.input(|input| input.modifiers), revision));
         }
         self.select(&view, out);
+        self.take_pack(ui, &view, response, out);
+    }
+
+    /// Takes a pack that is dropped on what shall wear it.
+    fn take_pack(&mut self, ui: &Ui, view: &View, response: &Response, out: &mut UiRequests) {
+        let dragged = response.dnd_hover_payload::<Item>();
+        let is_over = dragged.is_some_and(|item| item.kind == Kind::Pack);
+        let dropped = dropped_pack(response);
+        if !is_over && dropped.is_none() {
+            return;
+        }
+        let at = ui.input(|input| input.pointer.latest_pos());
+        let seen = at.and_then(|at| self.sight.at(view.editor, view.place.rect, at));
+        let item = seen.map(item_of);
+        match dropped {
+            Some(pack) => {
+                let edit = item.and_then(|item| dressed(view.editor, pack, item));
+                out.actions.extend(edit.map(Action::Edit));
+            }
+            None => {
+                self.sight
+                    .show(&view.painter, view.editor, view.place.rect, item);
+            }
+        }
     }
 
     /// The menu of the right button: what is there is selected, and what can be done to it is listed.

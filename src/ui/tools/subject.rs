@@ -125,7 +125,7 @@ impl Subject {
                     shape,
                     ..object.clone()
                 };
-                Edit::Object(*index, object, field)
+                Edit::object(*index, object, field)
             }
             Self::Light(index, light) => Edit::Light(*index, light.clone(), field),
         }

@@ -6,5 +6,6 @@ mod lab;
 mod monkey;
 mod outliner;
 mod shortcuts;
+mod sides;
 mod tools;
 mod viewport;

@@ -67,6 +67,7 @@ fn a_scene_of_thousands_shows_only_the_rows_in_sight() {
                 radius: 0.4,
             }),
             visible: n % 3 != 0,
+            group: String::new(),
         });
     }
     scene.render.width = 40;

@@ -12,14 +12,14 @@ const SHIFT: Modifiers = Modifiers::SHIFT;
 const NONE: Modifiers = Modifiers::NONE;
 
 /// Where a point of the scene is on the screen.
-fn place(harness: &EditorHarness, point: DVec3) -> Pos2 {
+pub fn place(harness: &EditorHarness, point: DVec3) -> Pos2 {
     let view = harness.view();
     let framing = harness.scene().camera.framing().expect("a basis");
     let [x, y] = framing.project(point).expect("in front");
     view.center() + vec2(x as f32, -y as f32) * view.height()
 }
 
-fn button(
+pub fn button(
     harness: &mut EditorHarness,
     at: Pos2,
     button: PointerButton,
@@ -36,7 +36,7 @@ fn button(
     harness.window.step();
 }
 
-fn hover(harness: &mut EditorHarness, at: Pos2) {
+pub fn hover(harness: &mut EditorHarness, at: Pos2) {
     harness.window.event(Event::PointerMoved(at));
     harness.window.step();
 }
@@ -52,7 +52,7 @@ fn click(harness: &mut EditorHarness, at: Pos2, modifiers: Modifiers) {
 }
 
 /// Presses at one place and moves to another, in steps.
-fn pull(
+pub fn pull(
     harness: &mut EditorHarness,
     from: Pos2,
     to: Pos2,
@@ -66,7 +66,7 @@ fn pull(
     }
 }
 
-fn drop_at(harness: &mut EditorHarness, at: Pos2, with: PointerButton, modifiers: Modifiers) {
+pub fn drop_at(harness: &mut EditorHarness, at: Pos2, with: PointerButton, modifiers: Modifiers) {
     button(harness, at, with, false, modifiers);
     harness.window.event(Event::ModifiersChanged(NONE));
     harness.settle();
@@ -83,7 +83,7 @@ fn drag(
     drop_at(harness, to, with, modifiers);
 }
 
-fn center(scene: &Scene, object: usize) -> DVec3 {
+pub fn center(scene: &Scene, object: usize) -> DVec3 {
     scene.objects[object].shape.position()
 }
 
@@ -414,7 +414,7 @@ fn a_pixel_is_explained_and_parts_of_the_light_are_shown() {
     }
     harness.press(NONE, Key::Escape);
     let whole = harness.picture();
-    harness.choose("View", "Show of the light");
+    harness.choose("View", "Show");
     harness.click("Clay");
     assert!(harness.picture() != whole);
     harness.window.get_by_label("Leave Clay");

@@ -8,6 +8,7 @@ use glint::plan::RenderRequest;
 use glint::scene::{Projection, Sampling, Scene};
 use glint::trace::RenderControl;
 
+use super::tools::{button, drop_at, hover, pull};
 use crate::harness::{CTRL, EditorHarness};
 
 #[test]
@@ -224,4 +225,79 @@ fn a_turn_of_the_wheel_is_one_step_and_spares_the_still_picture() {
         (harness.editor().mode, &harness.scene().camera),
         (Mode::HighRes, &start)
     );
+}
+
+#[test]
+fn the_still_picture_is_enlarged_moved_and_traced_in_part() {
+    let mut harness = EditorHarness::new();
+    harness.press(Modifiers::NONE, Key::H);
+    let whole = harness.picture();
+    let at = harness.view().center();
+    hover(&mut harness, at);
+    let turn = |harness: &mut EditorHarness, by: f32| {
+        harness.window.event(Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Line,
+            delta: egui::vec2(0.0, by),
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Wheel,
+            modifiers: Modifiers::NONE,
+        });
+        harness.settle();
+    };
+    turn(&mut harness, 1.0);
+    harness.window.get_by_label("Leave High-res picture 1:1");
+    turn(&mut harness, 1.0);
+    harness.window.get_by_label("Leave High-res picture 2:1");
+    turn(&mut harness, -1.0);
+    turn(&mut harness, -1.0);
+    harness.window.get_by_label("Leave High-res picture");
+    let (from, to) = (at - egui::vec2(60.0, 40.0), at + egui::vec2(20.0, 30.0));
+    let primary = egui::PointerButton::Primary;
+    pull(&mut harness, from, to, primary, Modifiers::SHIFT);
+    drop_at(&mut harness, to, primary, Modifiers::SHIFT);
+    harness.window.get_by_label("Leave High-res, a part");
+    assert!(harness.picture() == whole, "all of it is there already");
+    harness.press(Modifiers::NONE, Key::U);
+    harness.press(Modifiers::NONE, Key::H);
+    let part = harness.picture();
+    let traced = part.pixels.iter().filter(|pixel| pixel[3] == 255).count();
+    assert!((4_000..40_000).contains(&traced), "{traced}");
+    // First all of it, then the live view.
+    harness.press(Modifiers::NONE, Key::Escape);
+    let whole = harness.picture();
+    let same = part.pixels.iter().zip(&whole.pixels);
+    assert!(same.filter(|(part, _)| part[3] == 255).all(|(a, b)| a == b));
+    assert!(whole.pixels.iter().all(|pixel| pixel[3] == 255));
+    harness.press(Modifiers::NONE, Key::Escape);
+    assert_eq!(harness.editor().mode, Mode::Live);
+}
+
+#[test]
+fn the_wheel_changes_the_flying_speed_while_one_looks_around() {
+    let mut harness = EditorHarness::new();
+    let before = harness.scene().camera.clone();
+    let at = harness.view().center();
+    hover(&mut harness, at);
+    let secondary = egui::PointerButton::Secondary;
+    button(&mut harness, at, secondary, true, Modifiers::NONE);
+    hover(&mut harness, at + egui::vec2(20.0, 0.0));
+    harness.window.event(Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: egui::vec2(0.0, 100.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    });
+    (0..10).for_each(|_| harness.window.step());
+    button(&mut harness, at, secondary, false, Modifiers::NONE);
+    harness.settle();
+    let camera = &harness.scene().camera;
+    assert_eq!(camera.position, before.position, "nothing was flown");
+    assert_ne!(camera.look_at, before.look_at);
+    harness.press(Modifiers::NONE, Key::Escape);
+    harness.choose("View", "Histogram");
+    harness.window.get_by_label("View").click();
+    harness.settle();
+    let speed = harness.window.get_by_label("flying speed").value();
+    assert_ne!(speed.as_deref(), Some("1.00×"), "{speed:?}");
 }

@@ -1,0 +1,69 @@
+//! What the user is told.
+
+use super::action::Message;
+use super::document::Editor;
+
+/// What messages about edits are about.
+const EDIT: &str = "edit";
+
+impl Editor {
+    /// Tells the user something.
+    pub fn notify(&mut self, text: String) {
+        self.messages.push(Message {
+            is_error: false,
+            text,
+            about: "",
+        });
+    }
+
+    /// An action is begun: what went wrong in it before is forgotten.
+    pub fn begin(&mut self, about: &'static str) {
+        self.messages.push(Message {
+            is_error: false,
+            text: String::new(),
+            about,
+        });
+    }
+
+    /// Tells the user that something went wrong.
+    pub fn report_error(&mut self, text: String) {
+        self.report_error_in("", text);
+    }
+
+    /// Tells the user that something went wrong in an action, see [`Self::begin`].
+    pub fn report_error_in(&mut self, about: &'static str, text: String) {
+        self.messages.push(Message {
+            is_error: true,
+            text,
+            about,
+        });
+    }
+
+    /// Says which meshes could not be read.
+    pub(super) fn tell_missing_meshes(&mut self) {
+        let mut problems = self.scene.mesh_problems();
+        let Some((index, why)) = problems.next() else {
+            return;
+        };
+        let more = match problems.count() {
+            0 => String::new(),
+            more => format!(" ({more} more are missing)"),
+        };
+        let name = &self.scene.objects[index].name;
+        let text = format!("{name:?} is not in the picture: {why}{more}");
+        self.report_error(text);
+    }
+
+    /// Tells why an edit is not made.
+    pub(super) fn refuse(&mut self, why: String) {
+        self.is_refused = true;
+        self.report_error_in(EDIT, why);
+    }
+
+    /// An edit was made: why the last one was not is forgotten.
+    pub(super) fn forget_refusal(&mut self) {
+        if std::mem::take(&mut self.is_refused) {
+            self.begin(EDIT);
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! What a picture is traced onto before it becomes a file: as precise as the file can be.
+
+use std::borrow::Cow;
+
+use image::ImageError;
+
+use super::buffer::{Image, LinearImage};
+use super::encode::Format;
+use super::render::{RenderCost, render_into, render_light_into};
+use crate::plan::{Planner, RenderRequest};
+use crate::scene::Scene;
+use crate::trace::RenderControl;
+
+/// A picture for a file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Film {
+    /// For formats of 8 bits.
+    Levels(Image),
+    /// For those that hold the light itself.
+    Linear(LinearImage),
+}
+
+impl Film {
+    /// An empty one for this format.
+    pub fn new(format: Format) -> Self {
+        match format {
+            Format::Png | Format::Ppm => Self::Levels(Image::default()),
+            Format::Exr => Self::Linear(LinearImage::default()),
+        }
+    }
+
+    /// Traces a whole picture over what was there, see [`render_into`]; `None` if `control` said stop.
+    pub fn expose(
+        &mut self,
+        planner: &mut Planner,
+        scene: &Scene,
+        request: &RenderRequest,
+        control: &RenderControl,
+    ) -> Option<RenderCost> {
+        match self {
+            Self::Levels(image) => render_into(image, planner, scene, request, control),
+            Self::Linear(image) => render_light_into(image, planner, scene, request, control),
+        }
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> (usize, usize) {
+        match self {
+            Self::Levels(image) => (image.width, image.height),
+            Self::Linear(image) => (image.width, image.height),
+        }
+    }
+
+    /// Every `step`-th pixel of every `step`-th row, in 8 bits.
+    pub fn decimated(&self, step: usize) -> Image {
+        match self {
+            Self::Levels(image) => image.decimated(step),
+            Self::Linear(image) => image.decimated(step).to_levels(),
+        }
+    }
+
+    /// What a screen shows of it.
+    pub fn levels(&self) -> Cow<'_, Image> {
+        match self {
+            Self::Levels(image) => Cow::Borrowed(image),
+            Self::Linear(image) => Cow::Owned(image.to_levels()),
+        }
+    }
+
+    /// The same, and nothing more of it.
+    pub fn into_levels(self) -> Image {
+        match self {
+            Self::Levels(image) => image,
+            Self::Linear(image) => image.to_levels(),
+        }
+    }
+
+    /// The bytes of a file in this format.
+    ///
+    /// # Errors
+    /// What the encoder says; none is known for a valid picture.
+    pub fn encode(&self, format: Format) -> Result<Vec<u8>, ImageError> {
+        match (self, format) {
+            (Self::Linear(image), Format::Exr) => image.encode(),
+            _ => self.levels().encode(format),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_film_of_light_holds_more_than_eight_bits_and_shows_the_same() {
+        let scene = Scene::demo();
+        let request = RenderRequest::sized(40, 30);
+        let films = [Format::Png, Format::Exr].map(|format| {
+            let mut film = Film::new(format);
+            let control = RenderControl::default();
+            film.expose(&mut Planner::default(), &scene, &request, &control)
+                .expect("nobody stops it");
+            film
+        });
+        assert_eq!(films[0].levels(), films[1].levels());
+        let Film::Linear(light) = &films[1] else {
+            panic!("EXR holds light");
+        };
+        let is_between = |channel: &&f32| (**channel * 255.0).fract() != 0.0;
+        let between = light.pixels.iter().flatten().filter(is_between).count();
+        assert!(between > 100, "{between}");
+        let bytes = films[1].encode(Format::Exr).expect("encodes");
+        let back = image::load_from_memory(&bytes).expect("decodes");
+        assert_eq!(back.to_rgb32f().into_raw(), light.pixels.concat());
+    }
+}

@@ -1,0 +1,79 @@
+//! What the kernels write in place of the light.
+
+use crate::scene::{Aspect, Camera, Projection, Scene};
+use crate::simd::Real;
+
+/// What the kernels write; see [`Aspect`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Show<R> {
+    /// The light, as the scene has it.
+    Light,
+    /// Normals, turned to the viewer: each axis from -1 to 1 as a channel from 0 to 1.
+    Normals,
+    /// Distances: 1 at `nearest`, and so much less for each unit of length behind that.
+    Depth {
+        /// Where the scene can begin.
+        nearest: R,
+        /// One over how far behind that it can end.
+        per_length: R,
+    },
+    /// For each light that reaches a point this much.
+    Shadows(R),
+    /// What mirrors add to what they are seen in.
+    Mirrors,
+    /// The rays of each tile, for each of its pixels.
+    Cost,
+}
+
+/// How deep a scene without any end is shown, in distances from the eye to the origin.
+const DEEP: f64 = 4.0;
+
+impl<R: Real> Show<R> {
+    /// What is to be written for an aspect of a scene.
+    pub fn new(aspect: Aspect, scene: &Scene, projection: Projection) -> Self {
+        match aspect {
+            Aspect::Normals => Self::Normals,
+            Aspect::Depth => {
+                let (nearest, farthest) = range(scene, projection);
+                Self::Depth {
+                    nearest: R::from_f64(nearest),
+                    per_length: R::from_f64(1.0 / (farthest - nearest)),
+                }
+            }
+            Aspect::Shadows => {
+                let shining = scene.lights.iter().filter(|light| light.visible);
+                Self::Shadows(R::from_f64(1.0 / shining.count().max(1) as f64))
+            }
+            Aspect::Mirrors => Self::Mirrors,
+            Aspect::Cost => Self::Cost,
+            Aspect::All
+            | Aspect::Ambient
+            | Aspect::Diffuse
+            | Aspect::Specular
+            | Aspect::WithoutMirrors
+            | Aspect::Clay
+            | Aspect::Objects => Self::Light,
+        }
+    }
+}
+
+/// Between which distances from the camera a scene is, by the ball around it.
+fn range(scene: &Scene, projection: Projection) -> (f64, f64) {
+    let Camera { position, .. } = scene.camera;
+    let Some((low, high)) = scene.objects_bounds() else {
+        return (0.0, (position.length() * DEEP).max(1.0));
+    };
+    let (middle, radius) = (low.midpoint(high), low.distance(high) / 2.0);
+    let distance = match projection {
+        Projection::Perspective => position.distance(middle),
+        Projection::Orthographic => {
+            let forward = scene.camera.basis().map_or(middle, |basis| -basis.z_axis);
+            (middle - position).dot(forward)
+        }
+    };
+    let nearest = (distance - radius).max(0.0);
+    (
+        nearest,
+        (distance + radius).max(nearest + f64::MIN_POSITIVE.max(radius)),
+    )
+}

@@ -1,0 +1,54 @@
+//! What was asked of exports, for the next time.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::fields::Settings;
+use crate::editor::Editor;
+
+/// Documents whose settings are kept from one run to the next.
+const MOST_KEPT: usize = 32;
+
+/// The document that settings belong to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Owner {
+    /// One with a file.
+    File(PathBuf),
+    /// One without, see [`Editor::documents`].
+    Unnamed(u64),
+}
+
+impl Owner {
+    /// That of what is edited.
+    pub fn of(editor: &Editor) -> Self {
+        let path = editor.path().map(Path::to_owned);
+        path.map_or(Self::Unnamed(editor.documents()), Self::File)
+    }
+}
+
+/// What was asked for last, for each document, the newest last.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct KeptSettings(Vec<(Owner, Settings)>);
+
+impl KeptSettings {
+    /// Puts settings away, for the next time that their document is exported.
+    pub fn keep(&mut self, owner: Owner, settings: Settings) {
+        self.0.retain(|(other, _)| *other != owner);
+        self.0.push((owner, settings));
+    }
+
+    /// What was asked for last of this document.
+    pub fn of(&self, owner: &Owner) -> Option<&Settings> {
+        let found = self.0.iter().find(|(of, _)| of == owner);
+        found.map(|(_, settings)| settings)
+    }
+
+    /// Those of documents with a file, which the next run can know again.
+    pub fn named(&self) -> Self {
+        let is_named = |(owner, _): &&(Owner, Settings)| matches!(owner, Owner::File(_));
+        let named = self.0.iter().filter(is_named);
+        let skipped = named.clone().count().saturating_sub(MOST_KEPT);
+        Self(named.skip(skipped).cloned().collect())
+    }
+}

@@ -1,0 +1,153 @@
+//! What is needed to take an export up again, kept on disk until it has ended: a program that is killed
+//! forgets nothing of it.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+
+use super::fields::{Settings, SettingsError};
+use crate::editor::Editor;
+use crate::export::Sequence;
+use crate::scene::{Document, Leftover, Recovery, Scene};
+use crate::worker::run_in_background;
+
+/// First line of the scene that is kept: what is asked for follows.
+const MARK: &str = "// export: ";
+/// The folder of these files, in that of the program's data.
+const FOLDER: &str = "exports";
+
+/// An export that was asked for.
+pub struct Order {
+    /// What it is called.
+    pub name: String,
+    /// What is asked for.
+    pub settings: Settings,
+    /// The scene as it was then.
+    pub scene: Arc<Scene>,
+    /// Where it is kept; nowhere, if the system gives no place.
+    place: Option<Arc<Recovery>>,
+    /// The text on its way there.
+    writing: Option<Receiver<()>>,
+}
+
+impl Order {
+    /// An order for the scene of an editor, kept in the folder of the program's data.
+    pub fn new(settings: Settings, editor: &Editor, folder: Option<&Path>) -> Self {
+        let place = folder.and_then(|folder| Recovery::new(&folder.join(FOLDER)).ok());
+        let place = place.map(Arc::new);
+        let (document, path) = (editor.document_to_keep(), editor.path().map(Path::to_owned));
+        let writing = place.clone().map(|place| {
+            let settings = settings.clone();
+            run_in_background("glint-order", move || {
+                // Without it, an export that is killed has to be asked for again.
+                let text = text_of(&settings, document);
+                let _ = text.map(|text| place.keep(&text, path.as_deref()));
+            })
+        });
+        Self {
+            name: settings.describe(&editor.title()),
+            settings,
+            scene: Arc::clone(editor.scene()),
+            place,
+            writing,
+        }
+    }
+
+    /// What ended programs have left unfinished.
+    pub fn left_in(folder: &Path) -> Vec<Self> {
+        let folder = folder.join(FOLDER);
+        let mut found = Vec::new();
+        while folder.is_dir()
+            && let Ok(place) = Recovery::new(&folder)
+            && let Some(leftover) = place.take_leftover(None)
+        {
+            found.extend(Self::read(leftover, place));
+        }
+        found
+    }
+
+    fn read(leftover: Leftover, place: Recovery) -> Option<Self> {
+        let Leftover { document, path } = leftover;
+        let line = document.header.lines().next()?.strip_prefix(MARK)?;
+        let settings: Settings = serde_json::from_str(line).ok()?;
+        let title = path.as_deref().and_then(Path::file_name);
+        let title = title.map_or("a new scene".into(), |title| title.to_string_lossy());
+        let name = settings.describe(&title);
+        // It is taken out of the place where it was left, and belongs to this program now.
+        let kept = place.keep(&document.to_text().ok()?, path.as_deref());
+        Some(Self {
+            name,
+            settings,
+            scene: Arc::new(document.scene),
+            place: kept.ok().map(|()| Arc::new(place)),
+            writing: None,
+        })
+    }
+
+    /// The frames, as they were asked for.
+    ///
+    /// # Errors
+    /// [`SettingsError`], if the program has learnt since that they mean nothing.
+    pub fn sequence(&self) -> Result<Sequence, SettingsError> {
+        self.settings.sequence(&self.scene)
+    }
+
+    /// There is nothing left to take up.
+    pub fn end(self) {
+        if let Some(writing) = self.writing {
+            // What is still being written must not be there afterwards.
+            let _ = writing.recv();
+        }
+        if let Some(place) = self.place {
+            place.clear();
+        }
+    }
+}
+
+fn text_of(settings: &Settings, mut document: Document) -> Option<String> {
+    let settings = serde_json::to_string(settings).ok()?;
+    document.header = format!("{MARK}{settings}\n");
+    document.to_text().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_order_outlives_the_program_and_one_that_has_ended_does_not() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let editor = Editor::demo();
+        let settings = Settings::of(&editor);
+        let order = Order::new(settings.clone(), &editor, Some(folder.path()));
+        let name = order.name.clone();
+        order
+            .writing
+            .as_ref()
+            .expect("written")
+            .recv()
+            .expect("it is");
+        assert!(
+            Order::left_in(folder.path()).is_empty(),
+            "its program still runs"
+        );
+        drop(order);
+        // Found, and left again.
+        for _ in 0..2 {
+            let found = Order::left_in(folder.path());
+            let [order] = &found[..] else {
+                panic!("{} orders", found.len());
+            };
+            assert_eq!(order.settings, settings);
+            assert_eq!(order.scene, *editor.scene());
+            assert_eq!(
+                order.name.split_once(" · ").map(|(_, rest)| rest),
+                name.split_once(" · ").map(|(_, rest)| rest)
+            );
+        }
+        Order::left_in(folder.path())
+            .into_iter()
+            .for_each(Order::end);
+        assert!(Order::left_in(folder.path()).is_empty());
+    }
+}

@@ -1,0 +1,85 @@
+//! How bright the picture is, in a corner of it.
+
+use egui::{Color32, Context, Rect, Shape, Stroke, StrokeKind, TextStyle, Ui, pos2, vec2};
+
+use super::theme::{GRID, palette};
+use crate::image::Histogram;
+use crate::scene::Scene;
+use crate::worker::Frame;
+
+/// Width and height of the graph in points.
+const SIZE: (f32, f32) = (192.0, 64.0);
+/// Room for the words below.
+const WORDS: f32 = 18.0;
+
+/// The counts of the last finished picture.
+#[derive(Default)]
+pub struct Levels {
+    of: Option<(u64, bool, u64)>,
+    counted: Option<Histogram>,
+}
+
+impl Levels {
+    /// Counts a finished picture, if it is another one than before. The share that clips.
+    pub fn update(&mut self, frame: &Frame, scene: &Scene) -> Option<f64> {
+        let rays = frame.cost.rays.total();
+        let key = (frame.revision, frame.is_still, rays);
+        if frame.step != 1 || self.of == Some(key) {
+            return None;
+        }
+        self.of = Some(key);
+        let level = |channel: f64| channel.round().clamp(0.0, 255.0) as u8;
+        let background = scene.background.to_array().map(level);
+        let counted = Histogram::of(&frame.image, background);
+        let clipped = counted.clipped;
+        self.counted = Some(counted);
+        Some(clipped)
+    }
+
+    /// Draws the counts over the lower left corner of the picture.
+    pub fn show(&self, ui: &Ui, picture: Rect) {
+        let Some(histogram) = &self.counted else {
+            return;
+        };
+        let colors = palette(ui.ctx());
+        let size = vec2(SIZE.0, SIZE.1 + WORDS) + vec2(GRID, GRID) * 2.0;
+        let corner = picture.left_bottom() + vec2(GRID, -GRID - size.y);
+        let frame = Rect::from_min_size(corner, size);
+        let painter = ui.painter().with_clip_rect(picture);
+        let line = Stroke::new(1.0, colors.line);
+        let fill = colors.panel.gamma_multiply(0.9);
+        painter.rect(frame, 4, fill, line, StrokeKind::Inside);
+        let graph = Rect::from_min_size(frame.min + vec2(GRID, GRID), SIZE.into());
+        for (counts, color) in histogram.counts.iter().zip(channel_colors(ui.ctx())) {
+            painter.extend(curve(counts, histogram.highest(), graph, color));
+        }
+        let words = format!("{:.1} % at the brightest", histogram.clipped * 100.0);
+        let font = TextStyle::Small.resolve(ui.style());
+        let at = graph.left_bottom() + vec2(0.0, GRID / 2.0);
+        painter.text(at, egui::Align2::LEFT_TOP, words, font, colors.text);
+    }
+}
+
+/// Red, green and blue, as the axes have them.
+fn channel_colors(ctx: &Context) -> [Color32; 3] {
+    palette(ctx).axes
+}
+
+/// One line for a channel; the root of the counts, so that few are seen beside many.
+fn curve(counts: &[u32; 256], highest: u32, graph: Rect, color: Color32) -> Vec<Shape> {
+    let height = |count: u32| {
+        (f64::from(count) / f64::from(highest.max(1)))
+            .sqrt()
+            .min(1.0)
+    };
+    let points = counts.iter().enumerate().map(|(level, count)| {
+        let x = graph.left() + graph.width() * level as f32 / 255.0;
+        pos2(x, graph.bottom() - graph.height() * height(*count) as f32)
+    });
+    let points: Vec<_> = points.collect();
+    let stroke = Stroke::new(1.0, color);
+    let pairs = points.windows(2);
+    pairs
+        .map(|pair| Shape::line_segment([pair[0], pair[1]], stroke))
+        .collect()
+}

@@ -1,0 +1,193 @@
+//! A number that drags, types and steps.
+
+use std::cell::Cell;
+use std::ops::RangeInclusive;
+
+use egui::{Align, Atom, Color32, DragValue, Key, Layout, Response, RichText, Ui, vec2};
+use glam::DVec3;
+
+use super::hint::Hint as _;
+use super::theme::ROW;
+use crate::scene::parse_vec3;
+
+/// Letters that one of three fields in a row has room for.
+const NARROW: usize = 7;
+/// Letters that a field by itself has room for.
+const WIDE: usize = 16;
+
+/// What a number may be, and what is said about it.
+#[derive(Clone, Debug)]
+pub struct Field {
+    /// Label, and accessible name of the value.
+    pub name: &'static str,
+    /// Tooltip: meaning and range.
+    pub hint: &'static str,
+    /// Behind the number.
+    pub unit: &'static str,
+    /// What a double-click on the label brings back.
+    pub default: f64,
+    /// Values outside are pulled to its ends.
+    pub range: RangeInclusive<f64>,
+    /// Change per point of dragging; `None` follows the value's size.
+    pub speed: Option<f64>,
+}
+
+/// A number without bounds, for positions.
+pub fn coordinate(name: &'static str, hint: &'static str) -> Field {
+    Field {
+        name,
+        hint,
+        unit: "",
+        default: 0.0,
+        range: -1e12..=1e12,
+        speed: None,
+    }
+}
+
+/// A number from 0 to 1.
+pub fn fraction(name: &'static str, hint: &'static str, default: f64) -> Field {
+    Field {
+        name,
+        hint,
+        unit: "",
+        default,
+        range: 0.0..=1.0,
+        speed: Some(0.005),
+    }
+}
+
+/// How a draggable number looks and what it takes.
+pub struct Number<'a> {
+    /// What it may be.
+    pub field: &'a Field,
+    /// What it is called; the field may have several.
+    pub name: &'a str,
+    /// Width in points.
+    pub width: f32,
+    /// Where three numbers go that are typed at once: a whole vector.
+    pub pasted: Option<&'a Cell<Option<DVec3>>>,
+    /// The letter and the colour of the axis that it is along.
+    pub axis: Option<(&'static str, Color32)>,
+}
+
+/// One draggable number.
+pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
+    let Number {
+        field,
+        name,
+        width,
+        pasted,
+        axis,
+    } = *number;
+    let by_size = || (value.abs() * 0.01).max(0.01);
+    let speed = field.speed.unwrap_or_else(by_size);
+    let parser = |text: &str| {
+        let text = text.trim().trim_end_matches(field.unit);
+        if let (Some(pasted), Some(whole)) = (pasted, parse_vec3(text)) {
+            pasted.set(Some(whole));
+            return Some(whole.x);
+        }
+        text.trim().parse().ok()
+    };
+    // Three in a row have less room.
+    let most = if pasted.is_some() { NARROW } else { WIDE };
+    let shown = |value: f64| rounded(value, field.unit, most);
+    let mut edited = *value;
+    let widget = DragValue::new(&mut edited)
+        .speed(speed)
+        .range(field.range.clone())
+        .clamp_existing_to_range(false)
+        .update_while_editing(false)
+        .custom_formatter(|number, _| shown(number))
+        .clip_text(true)
+        .custom_parser(parser)
+        .prefix(Atom::grow());
+    let widget = match axis {
+        Some((letter, color)) => widget.prefix(RichText::new(letter).color(color)),
+        None => widget,
+    };
+    let widget = match field.unit {
+        "" => widget,
+        unit => widget.suffix(RichText::new(unit).weak()),
+    };
+    let size = vec2(width.max(8.0), ROW);
+    let layout = Layout::right_to_left(Align::Center).with_main_justify(true);
+    let response = ui.allocate_ui_with_layout(size, layout, |ui| {
+        ui.add(widget.min_size(size)).accessible_name(name)
+    });
+    let response = response.inner;
+    // Formatting rounds what is shown; only a change by hand may reach the scene.
+    let is_cancelled = is_cancelled(ui, &response);
+    // A field that is left as it was entered gives back what it showed.
+    let is_as_shown = !response.dragged() && shown(edited) == shown(*value);
+    if response.changed() && edited.is_finite() && !is_cancelled && !is_as_shown {
+        *value = edited.clamp(*field.range.start(), *field.range.end());
+    }
+    response.hint_beside(ui, field.hint);
+}
+
+/// Whether the field was left with Escape, which gives what was typed up. A field counts as left
+/// for two frames, and in the second the key is gone: the first is remembered.
+pub fn is_cancelled(ui: &Ui, response: &Response) -> bool {
+    if !response.lost_focus() {
+        return false;
+    }
+    let (id, now) = (response.id.with("cancelled"), ui.cumulative_frame_nr());
+    if ui.input(|input| input.key_pressed(Key::Escape)) {
+        ui.data_mut(|data| data.insert_temp(id, now));
+        return true;
+    }
+    ui.data(|data| data.get_temp::<u64>(id))
+        .is_some_and(|then| now <= then + 2)
+}
+
+/// The number with enough decimals to see what dragging changes, without a tail of digits, in at most so many
+/// letters.
+fn rounded(value: f64, unit: &str, most: usize) -> String {
+    let decimals = match value.abs() {
+        _ if unit == "°" => 2,
+        size if size >= 100.0 => 2,
+        size if size >= 1.0 => 3,
+        size if size >= 1e-3 => 5,
+        0.0 => return "0".to_owned(),
+        // All its digits would be wider than the field.
+        _ => return format!("{value:.1e}"),
+    };
+    let plain = (0..=decimals).rev().map(|decimals: usize| {
+        let text = format!("{value:.decimals$}");
+        let text = match decimals {
+            0 => &text,
+            _ => text.trim_end_matches('0').trim_end_matches('.'),
+        };
+        if text == "-0" {
+            "0".to_owned()
+        } else {
+            text.to_owned()
+        }
+    });
+    let mut fitting = plain.filter(|text| text.len() <= most);
+    fitting.next().unwrap_or_else(|| format!("{value:.1e}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stay_within_their_fields() {
+        for (value, narrow, wide) in [
+            (0.0, "0", "0"),
+            (-0.123_456_7, "-0.1235", "-0.12346"),
+            (-1234.567, "-1234.6", "-1234.57"),
+            (-12_345.678, "-12346", "-12345.68"),
+            (12_345_678.9, "1.2e7", "12345678.9"),
+            (-123_456_789.0, "-1.2e8", "-123456789"),
+            (-1.234e-10, "-1.2e-10", "-1.2e-10"),
+            (100.0, "100", "100"),
+            (-0.000_1, "-1.0e-4", "-1.0e-4"),
+        ] {
+            assert_eq!(rounded(value, "", NARROW), narrow);
+            assert_eq!(rounded(value, "", WIDE), wide);
+        }
+    }
+}

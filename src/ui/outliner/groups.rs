@@ -1,0 +1,125 @@
+//! The rows of groups in the list of objects.
+
+use egui::{Id, Key, Rect, Ui, UiBuilder};
+
+use super::entry::{RowStyle, entry, row, select_all};
+use super::lines::Group;
+use crate::editor::{Action, Edit, Editor, Item, Kind, Selected};
+use crate::ui::commands::Command;
+use crate::ui::icons;
+use crate::ui::inspector::name_field;
+use crate::ui::menu_entry;
+use crate::ui::requests::UiRequests;
+use crate::ui::theme::{GRID, ROW};
+
+/// What the rows of groups remember.
+#[derive(Debug, Default)]
+pub struct GroupRows {
+    /// The names of groups whose members are not listed.
+    pub folded: Vec<String>,
+    renaming: Option<String>,
+}
+
+impl GroupRows {
+    /// The row of a group: it folds and unfolds, selects, shows and hides its members, and takes in what is
+    /// dropped on it.
+    pub fn show(&mut self, ui: &mut Ui, editor: &Editor, group: &Group, out: &mut UiRequests) {
+        if self.renaming.as_ref() == Some(&group.name) {
+            return self.rename(ui, group, out);
+        }
+        let scene = editor.scene();
+        let members = || group.members.iter().map(|index| Item::object(*index));
+        let is_seen = |index: &usize| scene.objects.get(*index).is_some_and(|o| o.visible);
+        let is_bright = group.members.iter().any(is_seen);
+        let (rect, eye) = row(ui).split_left_right_at_x(ui.max_rect().right() - ROW - GRID / 2.0);
+        let (fold, rect) = rect.split_left_right_at_x(rect.left() + ROW);
+        self.fold_button(ui, fold, &group.name);
+        let look = RowStyle {
+            icon: icons::GROUP,
+            is_bright,
+            is_selected: members().all(|item| editor.selected().has(item)),
+        };
+        let response = entry(ui, rect, look, &group.name);
+        let all = || Action::SelectItems(Selected::all(members()));
+        if response.clicked() {
+            out.actions.push(all());
+        }
+        if response.double_clicked() {
+            self.renaming = Some(group.name.clone());
+        }
+        let dropped = response.dnd_release_payload::<Item>();
+        if let Some(item) = dropped.filter(|item| item.kind == Kind::Object) {
+            out.edit(Edit::Group(vec![item.index], group.name.clone()));
+        }
+        response.context_menu(|ui| {
+            if ui.button("Rename").clicked() {
+                self.renaming = Some(group.name.clone());
+            }
+            for (text, command) in [
+                ("Ungroup", Command::Ungroup),
+                ("Duplicate", Command::Duplicate),
+                ("Delete", Command::Delete),
+            ] {
+                if menu_entry::entry(ui, text, command, true, out) {
+                    out.actions.push(all());
+                }
+            }
+        });
+        let (icon, verb) = if is_bright {
+            (icons::VISIBLE, "Hide")
+        } else {
+            (icons::HIDDEN, "Show")
+        };
+        ui.scope_builder(UiBuilder::new().max_rect(eye), |ui| {
+            if icons::button(ui, icon, &format!("{verb} {}", group.name)).clicked() {
+                let edits = members().filter_map(|item| Edit::visible(scene, item, !is_bright));
+                let label = format!("{verb} {}", group.name);
+                out.edit(Edit::Each(edits.collect(), label));
+            }
+        });
+    }
+
+    fn fold_button(&mut self, ui: &mut Ui, rect: Rect, name: &str) {
+        let is_folded = self.folded.iter().any(|folded| folded == name);
+        let (icon, verb) = if is_folded {
+            (icons::FORTH, "Unfold")
+        } else {
+            (icons::MORE, "Fold")
+        };
+        let button = ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+            icons::button(ui, icon, &format!("{verb} {name}"))
+        });
+        if !button.inner.clicked() {
+            return;
+        }
+        if is_folded {
+            self.folded.retain(|folded| folded != name);
+        } else {
+            self.folded.push(name.to_owned());
+        }
+    }
+
+    fn rename(&mut self, ui: &mut Ui, group: &Group, out: &mut UiRequests) {
+        let rect = row(ui);
+        ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+            let id = Id::unique("name of the group");
+            if !ui.memory(|memory| memory.has_focus(id)) {
+                ui.memory_mut(|memory| memory.request_focus(id));
+                select_all(ui, id, &group.name);
+            }
+            let new = name_field(ui, "new name of the group", id, &group.name);
+            let is_left = ui.input(|input| {
+                input.key_pressed(Key::Enter)
+                    || input.key_pressed(Key::Escape)
+                    || input.pointer.any_click()
+            });
+            if is_left || new.is_some() {
+                self.renaming = None;
+            }
+            let new = new.map(|new| new.trim().to_owned());
+            if let Some(new) = new.filter(|new| !new.is_empty()) {
+                out.edit(Edit::Group(group.members.clone(), new));
+            }
+        });
+    }
+}

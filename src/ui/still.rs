@@ -1,0 +1,142 @@
+//! Hands in the still picture: the wheel enlarges it, a drag moves it, a drag with Shift marks the part that
+//! is traced anew.
+
+use egui::{Event, MouseWheelUnit, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui};
+
+use super::magnifier::Magnifier;
+use super::pictures::Pictures;
+use super::theme::palette;
+use super::viewport::Place;
+use crate::plan::Region;
+
+/// Points of a touchpad that are as much as one step of a wheel.
+const POINTS_PER_STEP: f32 = 50.0;
+
+/// How the still picture is looked at.
+#[derive(Default)]
+pub struct Still {
+    magnifier: Magnifier,
+    /// How far the wheel was turned since the last step.
+    turned: f32,
+    /// Where a part begins that is being marked.
+    from: Option<Pos2>,
+}
+
+impl Still {
+    /// Shows one pixel as one of the screen, or all of the picture again.
+    pub fn toggle_actual_size(&mut self) {
+        let is_actual = self.magnifier.factor == 1;
+        self.magnifier = Magnifier::default();
+        self.magnifier.factor = u32::from(!is_actual);
+    }
+
+    /// What the picture is called on itself.
+    pub fn name(&self, is_part: bool) -> String {
+        match (is_part, self.magnifier.factor) {
+            (true, _) => "High-res, a part".to_owned(),
+            (false, 0) => "High-res picture".to_owned(),
+            (false, factor) => format!("High-res picture {factor}:1"),
+        }
+    }
+
+    /// Draws the still picture, which is so many pixels large, and does what hands ask of it.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        place: Place,
+        pictures: &mut Pictures,
+        size: (usize, usize),
+    ) -> Response {
+        let scale = ui.pixels_per_point();
+        let to = self.magnifier.place(place.rect, size, scale);
+        let response = pictures.screen.show_still(ui, place, to);
+        if let Some(at) = response.hover_pos() {
+            self.turned += wheel(ui);
+            while self.turned.abs() >= 1.0 {
+                let up = self.turned > 0.0;
+                self.turned -= self.turned.signum();
+                self.magnifier.turn(up, at, (place.rect, size, scale));
+            }
+        }
+        if response.double_clicked() {
+            self.magnifier = Magnifier::default();
+        }
+        let is_shifted = ui.input(|input| input.modifiers.shift);
+        if response.drag_started_by(PointerButton::Primary) && is_shifted {
+            self.from = ui.input(|input| input.pointer.press_origin());
+        }
+        if let Some(from) = self.from {
+            self.mark(ui, (from, to), &response, (pictures, size));
+        } else if response.dragged() {
+            self.magnifier.pan(response.drag_delta(), to);
+        }
+        response
+    }
+
+    fn mark(
+        &mut self,
+        ui: &Ui,
+        (from, to): (Pos2, Rect),
+        response: &Response,
+        (pictures, size): (&mut Pictures, (usize, usize)),
+    ) {
+        let at = response.interact_pointer_pos().unwrap_or(from);
+        let marked = Rect::from_two_pos(from, at).intersect(response.rect);
+        if response.dragged() {
+            let line = Stroke::new(1.0, palette(ui.ctx()).accent);
+            ui.painter()
+                .rect_stroke(marked, 0, line, StrokeKind::Inside);
+            return;
+        }
+        self.from = None;
+        if let Some(region) = region(marked, to, size) {
+            pictures.region = Some(region);
+        }
+    }
+}
+
+/// How far the wheel was turned in this frame, in steps; up is positive.
+fn wheel(ui: &Ui) -> f32 {
+    ui.input(|input| {
+        let turned = input.events.iter().map(|event| match event {
+            Event::MouseWheel { unit, delta, .. } => match unit {
+                MouseWheelUnit::Point => delta.y / POINTS_PER_STEP,
+                MouseWheelUnit::Line | MouseWheelUnit::Page => delta.y.signum(),
+            },
+            _ => 0.0,
+        });
+        turned.sum()
+    })
+}
+
+/// The pixels of a picture of this size, drawn to `to`, that are in what was marked.
+fn region(marked: Rect, to: Rect, size: (usize, usize)) -> Option<Region> {
+    let pixel = |at: f32, from: f32, length: f32, count: usize| {
+        let share = ((at - from) / length).clamp(0.0, 1.0);
+        (f64::from(share) * count as f64).round() as usize
+    };
+    let column = |x: f32| pixel(x, to.left(), to.width(), size.0);
+    let row = |y: f32| pixel(y, to.top(), to.height(), size.1);
+    let region = Region {
+        columns: (column(marked.left()), column(marked.right())),
+        rows: (row(marked.top()), row(marked.bottom())),
+    };
+    let is_something = region.columns.0 < region.columns.1 && region.rows.0 < region.rows.1;
+    is_something.then_some(region)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::{pos2, vec2};
+
+    #[test]
+    fn what_is_marked_are_the_pixels_under_it() {
+        let to = Rect::from_min_size(pos2(-100.0, 50.0), vec2(800.0, 400.0));
+        let marked = Rect::from_min_max(pos2(0.0, 150.0), pos2(100.0, 9999.0));
+        let found = region(marked, to, (1600, 800)).expect("some pixels");
+        assert_eq!((found.columns, found.rows), ((200, 400), (200, 800)));
+        let outside = Rect::from_min_max(pos2(-300.0, 0.0), pos2(-200.0, 10.0));
+        assert_eq!(region(outside, to, (1600, 800)), None);
+    }
+}

@@ -1,0 +1,229 @@
+//! Groups, packs that are dragged, bookmarks, and the way of Tab through the panels.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, PointerButton, Pos2};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use glint::scene::{ColorPack, Document, Scene};
+
+use super::tools::{button, center, hover, place};
+use crate::harness::{CTRL, EditorHarness};
+
+const NONE: Modifiers = Modifiers::NONE;
+
+fn text(scene: Scene) -> String {
+    let header = String::new();
+    Document { header, scene }.to_text().expect("a text")
+}
+
+fn middle(harness: &EditorHarness, label: &str) -> Pos2 {
+    harness.window.get_by_label(label).rect().center()
+}
+
+fn carry(harness: &mut EditorHarness, from: Pos2, to: Pos2) {
+    hover(harness, from);
+    button(harness, from, PointerButton::Primary, true, NONE);
+    for part in 1..=6 {
+        hover(harness, from + (to - from) * (part as f32 / 6.0));
+    }
+    button(harness, to, PointerButton::Primary, false, NONE);
+    harness.settle();
+}
+
+#[test]
+fn a_group_is_listed_hidden_renamed_and_moved_as_one() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    harness.window.event(Event::ModifiersChanged(CTRL));
+    let second = middle(&harness, "Sphere 2");
+    hover(&mut harness, second);
+    button(&mut harness, second, PointerButton::Primary, true, CTRL);
+    button(&mut harness, second, PointerButton::Primary, false, CTRL);
+    harness.window.event(Event::ModifiersChanged(NONE));
+    harness.settle();
+    harness.press(CTRL, Key::G);
+    let groups = |harness: &EditorHarness| -> Vec<String> {
+        let objects = harness.scene().objects.iter();
+        objects.take(3).map(|object| object.group.clone()).collect()
+    };
+    assert_eq!(groups(&harness), ["Group 1", "Group 1", ""]);
+    harness.click("Hide Group 1");
+    let seen = |harness: &EditorHarness| {
+        let objects = harness.scene().objects.iter();
+        objects.filter(|object| object.visible).count()
+    };
+    assert_eq!(seen(&harness), 7);
+    assert_eq!(harness.editor().undo_label(), Some("Hide Group 1"));
+    harness.click("Show Group 1");
+    assert_eq!(seen(&harness), 9);
+    harness.click("Fold Group 1");
+    assert!(harness.window.query_by_label("Sphere 2").is_none());
+    harness.click("Unfold Group 1");
+    // One click takes hold of both.
+    harness.click("Sphere 1");
+    harness.click("Group 1");
+    assert_eq!(harness.editor().selected().items().len(), 2);
+    let at = middle(&harness, "Group 1");
+    (0..60).for_each(|_| harness.window.step());
+    for _ in 0..2 {
+        harness.window.drag_at(at);
+        harness.window.drop_at(at);
+    }
+    harness.settle();
+    harness.window.event(Event::Text("Balls".to_owned()));
+    harness.settle();
+    harness.press(NONE, Key::Enter);
+    assert_eq!(groups(&harness), ["Balls", "Balls", ""]);
+    // What is dropped on it is in it.
+    let (from, to) = (middle(&harness, "Plane"), middle(&harness, "Balls"));
+    carry(&mut harness, from, to);
+    let plane = harness.scene().objects.iter();
+    let mut plane = plane.filter(|object| object.name == "Plane");
+    assert_eq!(plane.next().expect("the plane").group, "Balls");
+    // A file keeps it.
+    let written = text(harness.scene().clone());
+    let read = Document::from_text(&written).expect("a scene").scene;
+    assert_eq!(&read, harness.scene());
+    harness.click("Balls");
+    harness.press(CTRL.plus(Modifiers::SHIFT), Key::G);
+    assert!(harness.scene().objects.iter().all(|o| o.group.is_empty()));
+}
+
+#[test]
+fn packs_are_dragged_onto_rows_and_into_the_picture() {
+    let mut harness = EditorHarness::new();
+    let pack =
+        |harness: &EditorHarness, index: usize| harness.scene().objects[index].color_pack.clone();
+    assert_eq!(pack(&harness, 0), "sphere 1");
+    let (from, to) = (middle(&harness, "plane"), middle(&harness, "Sphere 1"));
+    carry(&mut harness, from, to);
+    assert_eq!(pack(&harness, 0), "plane");
+    assert_eq!(harness.editor().undo_label(), Some("Wear plane"));
+    let to = place(&harness, center(harness.scene(), 1));
+    carry(&mut harness, from, to);
+    assert_eq!(pack(&harness, 1), "plane");
+    assert_eq!(pack(&harness, 0), "plane");
+}
+
+#[test]
+fn equal_packs_become_one() {
+    let mut scene = Scene::demo();
+    let twin: ColorPack = scene.color_packs["sphere 1"].clone();
+    scene.packs_mut().insert("twin".to_owned(), twin);
+    scene.objects[1].color_pack = "twin".to_owned();
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text(scene.clone())));
+    harness.choose("Edit", "Merge equal packs");
+    assert!(!harness.scene().color_packs.contains_key("twin"));
+    assert_eq!(harness.scene().objects[1].color_pack, "sphere 1");
+    harness.press(CTRL, Key::Z);
+    assert_eq!(harness.scene(), &scene);
+}
+
+#[test]
+fn a_bookmark_is_a_view_to_come_back_to() {
+    let mut harness = EditorHarness::new();
+    let before = harness.scene().camera.clone();
+    harness.press(CTRL, Key::B);
+    harness.press(CTRL, Key::Num7);
+    assert_ne!(harness.scene().camera, before);
+    harness.choose("View", "Go to bookmark");
+    harness.click("View 1");
+    assert_eq!(harness.scene().camera, before);
+    // It is in the file, and in the inspector of the camera.
+    harness.type_name("bookmark 1", "Front");
+    assert_eq!(harness.scene().bookmarks[0].name, "Front");
+    let written = text(harness.scene().clone());
+    let read = Document::from_text(&written).expect("a scene").scene;
+    assert_eq!(&read, harness.scene());
+    harness.click("Remove Front");
+    assert!(harness.scene().bookmarks.is_empty());
+}
+
+#[test]
+fn tab_goes_from_the_outliner_through_the_picture_to_the_inspector_and_the_timeline() {
+    let mut harness = EditorHarness::new();
+    harness.window.get_by_label("Filter").focus();
+    harness.settle();
+    let view = harness.view();
+    let mut places: Vec<&str> = Vec::new();
+    for _ in 0..160 {
+        let focused = harness.window.root().children_recursive();
+        let focused = focused.into_iter().find(egui_kittest::Node::is_focused);
+        let rect = focused.map(|node| node.rect());
+        let place = match rect {
+            Some(rect) if rect.top() >= view.bottom() => "timeline",
+            Some(rect) if rect.right() <= view.left() + 1.0 && rect.top() > 24.0 => "outliner",
+            Some(rect) if rect == view => "picture",
+            Some(rect) if rect.left() >= view.right() && rect.top() > 24.0 => "inspector",
+            _ => "elsewhere",
+        };
+        if places.last() != Some(&place) {
+            places.push(place);
+        }
+        if place == "timeline" {
+            break;
+        }
+        harness.window.key_press(Key::Tab);
+        harness.window.step();
+        harness.window.step();
+    }
+    let met: Vec<&str> = places.into_iter().filter(|p| *p != "elsewhere").collect();
+    assert_eq!(met, ["outliner", "picture", "inspector", "timeline"]);
+}
+
+#[test]
+fn what_a_number_means_is_told_beside_the_panel_and_not_while_it_is_dragged() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    let radius = |role| harness.window.get_by_role_and_label(role, "radius").rect();
+    let (field, column) = (radius(Role::SpinButton).center(), radius(Role::Label));
+    let hint = "In world units, greater than 0";
+    hover(&mut harness, field);
+    (0..60).for_each(|_| harness.window.step());
+    let shown = harness.window.get_by_label_contains(hint).rect();
+    assert!(shown.right() <= column.left(), "{shown:?} {column:?}");
+    button(&mut harness, field, PointerButton::Primary, true, NONE);
+    harness.window.step();
+    assert!(harness.window.query_by_label_contains(hint).is_none());
+    button(&mut harness, field, PointerButton::Primary, false, NONE);
+}
+
+#[test]
+fn an_error_goes_when_the_same_is_tried_again() {
+    let mut harness = EditorHarness::new();
+    harness
+        .window
+        .input_mut()
+        .events
+        .push(Event::Paste("nonsense".to_owned()));
+    harness.settle();
+    harness
+        .window
+        .get_by_label_contains("The clipboard holds no");
+    let light = r#"Light(name: "l", position: (1, 2, 3))"#;
+    harness
+        .window
+        .input_mut()
+        .events
+        .push(Event::Paste(light.to_owned()));
+    harness.settle();
+    assert_eq!(harness.scene().lights.len(), 3);
+    let told = harness
+        .window
+        .query_by_label_contains("The clipboard holds no");
+    assert!(told.is_none());
+}
+
+#[test]
+fn in_a_narrow_window_the_timeline_has_a_menu() {
+    let mut harness = EditorHarness::new();
+    let rate = "frames per second";
+    let menu = "More of the timeline";
+    harness.window.get_by_label(rate);
+    assert!(harness.window.query_by_label(menu).is_none());
+    harness.window.set_size(egui::vec2(1000.0, 700.0));
+    harness.settle();
+    assert!(harness.window.query_by_label(rate).is_none());
+    harness.click(menu);
+    harness.type_into(rate, "30");
+    assert_eq!(harness.scene().animation.frames_per_second, 30.0);
+}
