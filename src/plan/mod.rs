@@ -4,6 +4,8 @@
 
 mod balls;
 
+mod grouping;
+
 mod bvh;
 
 mod thickness;

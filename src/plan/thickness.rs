@@ -329,7 +329,12 @@ mod tests {
         };
         let members: Vec<_> = triangles.iter().map(member).collect();
         let points = number_corners(&triangles);
-        measures(&triangles, &points, &Bvh::new(members.len(), |n| members[n])).thicknesses
+        measures(
+            &triangles,
+            &points,
+            &Bvh::new(members.len(), |n| members[n]),
+        )
+        .thicknesses
     }
 
     fn at(x: f64, y: f64, z: f64) -> Vec3<f64> {

@@ -12,7 +12,7 @@ use super::finder::Finder;
 use super::flying::Flying;
 use super::histogram::Levels;
 use super::lab::Lab;
-use super::menu::Layout;
+use super::layout::Layout;
 use super::outliner::Outliner;
 use super::pictures::Pictures;
 use super::requests::UiRequests;

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use egui::{Button, Context, DragValue, MenuBar, Theme, Ui};
-use serde::{Deserialize, Serialize};
 
 use super::add::add_menu;
 use super::commands::{Command, is_enabled};
@@ -12,64 +11,12 @@ use super::flying::{FASTEST, SLOWEST};
 use super::hint::Hint as _;
 use super::icons;
 use super::inspector::target;
+use super::layout::{Layout, Panels};
 use super::menu_entry::{ITEM_COMMANDS, entry, switch, ticked};
 use super::requests::UiRequests;
 use crate::animate::{Preset, Retime};
 use crate::editor::{Edit, Editor, Mode, Selection, Time};
 use crate::scene::{Animation, Aspect, Projection};
-
-/// What of the window can be shown or hidden.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-#[serde(default)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a tick in the menu")]
-pub struct Layout {
-    /// The panel on the left.
-    pub outliner: bool,
-    /// The panel on the right.
-    pub inspector: bool,
-    /// Whether the flight of the camera is drawn into the view.
-    pub flight: bool,
-    /// Whether the shot is shown in a corner of the view.
-    pub shot: bool,
-    /// Whether it is shown how bright the picture is.
-    pub histogram: bool,
-    /// Whether the timeline was shown when the window was closed.
-    pub timeline: bool,
-    /// Whether the lab was.
-    pub lab: bool,
-    /// How many times faster than usual the camera flies.
-    pub fly_speed: f64,
-    /// What of the light the live view shows.
-    #[serde(skip)]
-    pub aspect: Aspect,
-}
-
-/// What is shown of the panels that commands show and hide.
-#[derive(Clone, Copy, Debug)]
-pub struct Panels {
-    /// The timeline.
-    pub timeline: bool,
-    /// The lab.
-    pub lab: bool,
-    /// Nothing but the picture.
-    pub is_alone: bool,
-}
-
-impl Default for Layout {
-    fn default() -> Self {
-        Self {
-            outliner: true,
-            inspector: true,
-            flight: true,
-            shot: true,
-            histogram: false,
-            timeline: true,
-            lab: false,
-            fly_speed: 1.0,
-            aspect: Aspect::All,
-        }
-    }
-}
 
 /// Shows the bar.
 pub fn show(
@@ -202,15 +149,23 @@ fn view_menu(
         }
     }
     ui.separator();
-    for (text, command) in [
-        ("Frame what is selected", Command::FrameSelected),
-        ("Frame everything", Command::FrameAll),
-        ("From the front", Command::ViewFront),
-        ("From the right", Command::ViewRight),
-        ("From above", Command::ViewTop),
-    ] {
-        entry(ui, text, command, true, out);
-    }
+    entry(
+        ui,
+        "Frame what is selected",
+        Command::FrameSelected,
+        true,
+        out,
+    );
+    entry(ui, "Frame everything", Command::FrameAll, true, out);
+    ui.menu_button("Look from", |ui| {
+        for (text, command) in [
+            ("The front", Command::ViewFront),
+            ("The right", Command::ViewRight),
+            ("Above", Command::ViewTop),
+        ] {
+            entry(ui, text, command, true, out);
+        }
+    });
     ui.menu_button("Go to bookmark", |ui| bookmark_entries(ui, editor, out));
     ui.separator();
     ui.menu_button("Show", |ui| {
@@ -220,19 +175,9 @@ fn view_menu(
             }
         }
     });
-    switch(ui, &mut layout.histogram, "Histogram");
-    switch(ui, &mut layout.outliner, "Outliner");
-    switch(ui, &mut layout.inspector, "Inspector");
-    for (is_on, name, command) in [
-        (panels.timeline, "Timeline", Command::Timeline),
-        (panels.lab, "Lab", Command::Lab),
-        (panels.is_alone, "Picture alone", Command::PictureAlone),
-    ] {
-        if ticked(ui, is_on, name, Some(&command)).clicked() {
-            out.commands.push(command);
-        }
-    }
+    ui.menu_button("Panels", |ui| panel_entries(ui, (layout, panels), out));
     ui.separator();
+    switch(ui, &mut layout.histogram, "Histogram");
     switch(ui, &mut layout.flight, "Flight in the view");
     switch(ui, &mut layout.shot, "Shot in a corner of the view");
     ui.horizontal(|ui| {
@@ -248,6 +193,20 @@ fn view_menu(
     });
     ui.separator();
     theme_choice(ui);
+}
+
+fn panel_entries(ui: &mut Ui, (layout, panels): (&mut Layout, Panels), out: &mut UiRequests) {
+    switch(ui, &mut layout.outliner, "Outliner");
+    switch(ui, &mut layout.inspector, "Inspector");
+    for (is_on, name, command) in [
+        (panels.timeline, "Timeline", Command::Timeline),
+        (panels.lab, "Lab", Command::Lab),
+        (panels.is_alone, "Picture alone", Command::PictureAlone),
+    ] {
+        if ticked(ui, is_on, name, Some(&command)).clicked() {
+            out.commands.push(command);
+        }
+    }
 }
 
 fn animate_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {

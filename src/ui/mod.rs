@@ -57,6 +57,8 @@ mod rows;
 
 mod inspector;
 
+mod layout;
+
 mod menu;
 
 mod outliner;

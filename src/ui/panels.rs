@@ -8,7 +8,7 @@ use egui::{
 
 use super::app::App;
 use super::commands::Command;
-use super::menu::Panels;
+use super::layout::Panels;
 use super::reading::Reading;
 use super::requests::UiRequests;
 use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, TIMELINE, palette};

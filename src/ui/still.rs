@@ -11,6 +11,8 @@ use crate::plan::Region;
 
 /// Points of a touchpad that are as much as one step of a wheel.
 const POINTS_PER_STEP: f32 = 50.0;
+/// Seconds between two steps.
+const PAUSE: f64 = 0.08;
 
 /// How the still picture is looked at.
 #[derive(Default)]
@@ -18,6 +20,8 @@ pub struct Still {
     magnifier: Magnifier,
     /// How far the wheel was turned since the last step.
     turned: f32,
+    /// When that was.
+    stepped_at: f64,
     /// Where a part begins that is being marked.
     from: Option<Pos2>,
 }
@@ -52,9 +56,13 @@ impl Still {
         let response = pictures.screen.show_still(ui, place, to);
         if let Some(at) = response.hover_pos() {
             self.turned += wheel(ui);
-            while self.turned.abs() >= 1.0 {
+            let now = ui.input(|input| input.time);
+            if now - self.stepped_at < PAUSE {
+                // One notch of a wheel can arrive as several.
+                self.turned = 0.0;
+            } else if self.turned.abs() >= 1.0 {
                 let up = self.turned > 0.0;
-                self.turned -= self.turned.signum();
+                (self.turned, self.stepped_at) = (0.0, now);
                 self.magnifier.turn(up, at, (place.rect, size, scale));
             }
         }

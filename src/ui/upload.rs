@@ -80,8 +80,9 @@ pub fn piece(image: &Image, part: &Part) -> ColorImage {
     ColorImage::new([part.columns.len(), part.rows.len()], pixels.collect())
 }
 
-fn color([red, green, blue, _]: [u8; 4]) -> Color32 {
-    Color32::from_rgb(red, green, blue)
+/// What is not traced shows what is below.
+fn color([red, green, blue, alpha]: [u8; 4]) -> Color32 {
+    Color32::from_rgba_premultiplied(red, green, blue, alpha)
 }
 
 #[cfg(test)]

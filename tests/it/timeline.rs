@@ -606,10 +606,8 @@ fn the_published_flight_is_what_it_says() {
     assert_eq!(animation.frame_count(), 202);
     assert_eq!(animation.frames_per_second, 14.0);
     let take = animation.take.as_ref().expect("the recording is kept");
-    assert!(
-        take.samples.len() > 500 && animation.keys.len() <= 40,
-        "few keys"
-    );
+    let (samples, keys) = (take.samples.len(), animation.keys.len());
+    assert!(samples > 500 && keys * 6 <= samples, "{keys} of {samples}");
     let path = CameraPath::new(&animation.keys);
     for frame in 1..=202 {
         let camera = path.at(animation.time_of(frame)).expect("a camera");

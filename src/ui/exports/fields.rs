@@ -302,7 +302,11 @@ pub fn forecast(
                 0 => String::new(),
                 replaced => format!(", {replaced} replace older files"),
             };
-            (*missing, format!("{missing} frames to make{stay}{replace}"))
+            let s = if *missing == 1 { "" } else { "s" };
+            (
+                *missing,
+                format!("{missing} frame{s} to make{stay}{replace}"),
+            )
         }
     };
     let share = if settings.format == Format::Png {

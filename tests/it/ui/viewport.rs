@@ -242,6 +242,8 @@ fn the_still_picture_is_enlarged_moved_and_traced_in_part() {
             source: egui::MouseWheelSource::Wheel,
             modifiers: Modifiers::NONE,
         });
+        // Longer than one notch.
+        (0..10).for_each(|_| harness.window.step());
         harness.settle();
     };
     turn(&mut harness, 1.0);
