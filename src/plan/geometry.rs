@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::bvh::{Bvh, Member};
-use super::packed_mesh::{MeshInstance, PackedMesh, measure};
+use super::packed_mesh::{MeshInstance, PackedMesh, measure, member};
 use crate::primitive::{
     BoundingBox, Kind, Packing, Primitive, Primitives, Visit, count_corner_users, number_corners,
 };
@@ -232,7 +232,8 @@ impl<R: Real> Geometry<R> {
 pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>) {
     let triangles = &mut primitives.triangles;
     let corners = number_corners(triangles);
-    measure(triangles, &corners);
+    let mut bvh = Bvh::new(triangles.len(), |number| member(&triangles[number]));
+    measure(triangles, &corners, &mut bvh);
 }
 
 /// The place of a pack among the materials.

@@ -8,7 +8,7 @@ use super::bvh::{Bvh, Member};
 use super::smooth::{corner_normals, largest_lift};
 use super::thickness::{is_outside, measures};
 use crate::mesh::Triangles;
-use crate::primitive::{BoundingBox, CornerNormals, PackedTriangle};
+use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle};
 use crate::scene::Mesh;
 use crate::simd::{Real, Vec3};
 
@@ -24,6 +24,10 @@ pub struct PackedMesh<R> {
     pub lift: R,
     /// The way to them.
     pub bvh: Bvh<R>,
+    /// How far they reach from the middle of the box around them.
+    pub reach: R,
+    /// Half of them are no thicker.
+    pub usual_thickness: R,
     /// Whether it has an inside, and its normals point away from there.
     is_solid: bool,
     /// The middle, from the origin of the mesh.
@@ -56,15 +60,20 @@ impl<R: Real> PackedMesh<R> {
         let middle = low * 0.5 + high * 0.5;
         let points: Vec<DVec3> = turned().map(|point| point - middle).collect();
         let is_mirrored = turn.determinant() < 0.0;
-        let packed = |&[a, b, c]: &[u32; 3]| {
-            // Clockwise seen from outside, as it was before.
-            let face = if is_mirrored { [a, c, b] } else { [a, b, c] };
-            let corners = face.map(|point| points[point as usize]);
-            Some((PackedTriangle::of_mesh(corners)?, face))
-        };
-        let faces = source.faces().iter().filter_map(packed);
-        let (mut triangles, faces): (Vec<_>, Vec<_>) = faces.unzip();
-        let (bvh, is_closed) = measure(&mut triangles, &faces);
+        // Clockwise seen from outside, as it was before.
+        let face = |&[a, b, c]: &[u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
+        let corners = |face: [u32; 3]| face.map(|point| points[point as usize]);
+        let packed = |face: &[u32; 3]| PackedTriangle::of_mesh(corners(*face));
+        let faces = source.faces().iter().map(face);
+        let faces: Vec<_> = faces.filter(|face| packed(face).is_some()).collect();
+        // The tree first: to build it takes more room than anything else.
+        let mut bvh = Bvh::new(faces.len(), |number| Member {
+            bounds: BoundingBox::around(&corners(faces[number]).map(Vec3::from_dvec3)),
+            thickness: R::INFINITY,
+        });
+        let mut triangles: Vec<_> = faces.iter().filter_map(packed).collect();
+        drop(points);
+        let is_closed = measure(&mut triangles, &faces, &mut bvh);
         let smooth = if mesh.smooth > 0.0 {
             corner_normals(&triangles, mesh.smooth)
         } else {
@@ -72,6 +81,8 @@ impl<R: Real> PackedMesh<R> {
         };
         Self {
             lift: largest_lift(&triangles, &smooth),
+            reach: reach(&triangles, bvh.bounds.ball().0),
+            usual_thickness: usual_thickness(&triangles),
             smooth,
             bvh,
             is_solid: is_closed && volume(&triangles) > 0.0,
@@ -107,20 +118,43 @@ fn volume<R: Real>(triangles: &[PackedTriangle<R>]) -> f64 {
     volumes.sum()
 }
 
-/// Sets how thick each of the triangles is, whose corners have these numbers. Gives the way to them, and
-/// whether they are closed.
-pub fn measure<R: Real>(triangles: &mut [PackedTriangle<R>], faces: &[[u32; 3]]) -> (Bvh<R>, bool) {
-    let member = |triangle: &PackedTriangle<R>| Member {
-        bounds: BoundingBox::around(&triangle.corners),
-        thickness: triangle.thickness,
-    };
-    let mut bvh = Bvh::new(triangles.len(), |number| member(&triangles[number]));
-    let measures = measures(triangles, faces, &bvh);
+/// Sets how thick each of the triangles is, whose corners have these numbers and that are in this tree, and how
+/// thick is what is in its boxes. Whether the triangles are closed.
+pub fn measure<R: Real>(
+    triangles: &mut [PackedTriangle<R>],
+    faces: &[[u32; 3]],
+    bvh: &mut Bvh<R>,
+) -> bool {
+    let measures = measures(triangles, faces, bvh);
     for (triangle, thickness) in triangles.iter_mut().zip(measures.thicknesses) {
         triangle.thickness = triangle.thickness.max(thickness);
     }
     bvh.refit(|number| member(&triangles[number]));
-    (bvh, measures.is_closed)
+    measures.is_closed
+}
+
+/// How far the corners of triangles are from a point, at most.
+fn reach<R: Real>(triangles: &[PackedTriangle<R>], from: Vec3<R>) -> R {
+    let corners = triangles.iter().flat_map(|triangle| triangle.corners);
+    let farthest = corners.map(|corner| (corner - from).length());
+    farthest.fold(R::ZERO, R::max) * R::from_f64(1.0 + CAUTION)
+}
+
+fn usual_thickness<R: Real>(triangles: &[PackedTriangle<R>]) -> R {
+    let mut all: Vec<f64> = triangles.iter().map(|t| t.thickness.to_f64()).collect();
+    if all.is_empty() {
+        return R::INFINITY;
+    }
+    let middle = all.len() / 2;
+    R::from_f64(*all.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// A triangle as a member of a tree.
+pub fn member<R: Real>(triangle: &PackedTriangle<R>) -> Member<R> {
+    Member {
+        bounds: BoundingBox::around(&triangle.corners),
+        thickness: triangle.thickness,
+    }
 }
 
 impl<R: Real> MeshInstance<R> {

@@ -107,7 +107,7 @@ pub const MOUSE: &[(&str, &str)] = &[
     ("Shift, drag elsewhere", "Select all in a frame"),
     ("Middle button, drag", "Pan"),
     ("Right button, drag", "Look around"),
-    ("Right button", "A menu; why a colour is what it is"),
+    ("Right button", "A menu; why this colour"),
     ("Wheel", "Towards the pointer, and away"),
     ("High-res: wheel, drag", "Enlarge, move; twice shows all"),
     ("High-res: Shift, drag", "Trace only this part anew"),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Color32, Painter, Pos2, Rect, Sense, Stroke, Ui, vec2};
 
 use glam::DVec3;
 
@@ -21,6 +21,10 @@ const CAMERA_SHARE: f64 = 0.06;
 const REACH: f32 = 9.0;
 /// Cameras nearer than this share of the flight's extent fade.
 const FADING: f64 = 0.3;
+/// Between cameras nearer to each other, in points, only dots are drawn.
+const APART: f32 = 30.0;
+/// Radius of the dot where a camera stands, in points.
+const EYE: f32 = 3.5;
 /// Most points that a drawn camera is wide.
 const LARGEST: f32 = 60.0;
 /// How strongly what is hidden is drawn.
@@ -62,15 +66,23 @@ impl Overlay {
         self.draw_way(&painter, &lens, colors.curve);
         let size = self.extent() * CAMERA_SHARE;
         let selected = &editor.timeline().selected;
+        let mut drawn: Vec<Pos2> = Vec::new();
         for (place, key) in animation.keys.iter().enumerate() {
-            let color = if selected.contains(&place) {
+            let is_selected = selected.contains(&place);
+            let color = if is_selected {
                 colors.accent
             } else {
-                colors
-                    .curve
-                    .gamma_multiply(self.fade(&lens, key.value.position))
+                let fade = self.fade(&lens, key.value.position);
+                colors.curve.gamma_multiply(fade)
             };
-            draw_camera(&painter, &lens, &key.value, size, color);
+            let eye = lens.place(key.value.position);
+            let is_apart = |eye: Pos2| drawn.iter().all(|other| other.distance(eye) > APART);
+            if is_selected || eye.is_some_and(is_apart) {
+                drawn.extend(eye);
+                draw_camera(&painter, &lens, &key.value, size, color);
+            } else if let Some(eye) = eye {
+                painter.circle_filled(eye, EYE, color);
+            }
             self.handle(ui, editor, &lens, place, out);
         }
         if let Some(shot) = editor.path_of_camera().at(editor.shown_time()) {
@@ -242,6 +254,6 @@ fn draw_camera(painter: &Painter, lens: &Lens, camera: &Camera, size: f64, color
         painter.line_segment([*corner, corners[(n + 1) % corners.len()]], stroke);
     }
     if let Some(eye) = eye {
-        painter.add(Shape::circle_filled(pos2(eye.x, eye.y), 3.5, color));
+        painter.circle_filled(eye, EYE, color);
     }
 }

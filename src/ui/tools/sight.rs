@@ -54,6 +54,10 @@ impl Sight {
     /// Takes up an answer.
     pub fn take(&mut self, revision: u64, map: ObjectMap) {
         self.map = Some((revision, map));
+        // Of another size, it has the lines elsewhere.
+        for lines in &mut self.lines {
+            lines.made_for = None;
+        }
     }
 
     /// The map, if it is that of the scene on show.
