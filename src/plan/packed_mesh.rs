@@ -26,8 +26,6 @@ pub struct PackedMesh<R> {
     pub bvh: Bvh<R>,
     /// How far they reach from the middle of the box around them.
     pub reach: R,
-    /// Half of them are no thicker.
-    pub usual_thickness: R,
     /// Whether it has an inside, and its normals point away from there.
     is_solid: bool,
     /// The middle, from the origin of the mesh.
@@ -82,7 +80,6 @@ impl<R: Real> PackedMesh<R> {
         Self {
             lift: largest_lift(&triangles, &smooth),
             reach: reach(&triangles, bvh.bounds.ball().0),
-            usual_thickness: usual_thickness(&triangles),
             smooth,
             bvh,
             is_solid: is_closed && volume(&triangles) > 0.0,
@@ -138,15 +135,6 @@ fn reach<R: Real>(triangles: &[PackedTriangle<R>], from: Vec3<R>) -> R {
     let corners = triangles.iter().flat_map(|triangle| triangle.corners);
     let farthest = corners.map(|corner| (corner - from).length());
     farthest.fold(R::ZERO, R::max) * R::from_f64(1.0 + CAUTION)
-}
-
-fn usual_thickness<R: Real>(triangles: &[PackedTriangle<R>]) -> R {
-    let mut all: Vec<f64> = triangles.iter().map(|t| t.thickness.to_f64()).collect();
-    if all.is_empty() {
-        return R::INFINITY;
-    }
-    let middle = all.len() / 2;
-    R::from_f64(*all.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// A triangle as a member of a tree.

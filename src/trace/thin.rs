@@ -131,19 +131,15 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         active: L::Mask,
     ) -> Option<L::Mask> {
         let (center, radius) = (mesh.bvh.bounds.ball().0, mesh.reach);
-        // With so many thin faces in a pixel, they are too many to look at one by one.
+        // With so many faces in a pixel, they are too many to look at one by one.
         let faces = L::Real::from_f64(mesh.triangles.len() as f64 / CROWDED);
+        let small = faces.sqrt().max(L::Real::from_f64(SMALL));
         let x = paths.rays.origin - paths.rays.origin.like(center);
         let along = -paths.rays.direction.dot(x);
         let off = (x + paths.rays.direction * along).length();
         let (radius, zero) = (off.like(radius), off.like(L::Real::ZERO));
         let width = self.gaze.cone.width_at(along.max(zero));
-        let size = radius + radius;
-        let is_thin = width
-            .like(mesh.usual_thickness)
-            .less(width * width.like_f64(SLIPPING));
-        let is_crowded = is_thin & size.less(width * width.like(faces.sqrt()));
-        let is_small = is_crowded | size.less(width * width.like_f64(SMALL));
+        let is_small = (radius + radius).less(width * width.like(small));
         let is_before = (along - radius).less(self.gaze.reach + width);
         let is_ahead = zero.less(along + radius);
         // Whether a ray meets what is inside, nobody asks: it passes closely enough.

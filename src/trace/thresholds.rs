@@ -6,8 +6,7 @@ use crate::scene::MAX_HALVINGS;
 pub const SLIPPING: f64 = 2.0;
 /// A mesh that is less than so many pixels large may slip between samples as a whole.
 pub const SMALL: f64 = 8.0;
-/// So does a larger one that has more faces than this for each pixel of the square around it, if most of them
-/// are thin.
+/// So does a larger one that has more faces than this for each pixel of the square around it.
 pub const CROWDED: f64 = 16.0;
 /// Cosine below which a surface seen at a grazing angle does not stretch a pixel any further: what
 /// [`LARGEST_STRETCH`] promises.

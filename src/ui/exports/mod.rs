@@ -355,8 +355,9 @@ impl Exports {
     fn show_list(&mut self, ui: &mut Ui, pictures: &Pictures) {
         let states = pictures.exports();
         let mut given_up = None;
-        self.thumbs
-            .retain(|(id, ..)| states.iter().any(|state| state.id == *id));
+        let is_listed = |id: u64| states.iter().any(|state| state.id == id);
+        self.thumbs.retain(|(id, ..)| is_listed(*id));
+        self.ended.retain(|(id, _)| is_listed(*id));
         for state in &states {
             ui.separator();
             ui.horizontal(|ui| {

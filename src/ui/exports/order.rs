@@ -32,7 +32,11 @@ pub struct Order {
 
 impl Order {
     /// An order for the scene of an editor, kept in the folder of the program's data.
-    pub fn new(settings: Settings, editor: &Editor, folder: Option<&Path>) -> Self {
+    pub fn new(mut settings: Settings, editor: &Editor, folder: Option<&Path>) -> Self {
+        // The next program may run elsewhere.
+        if let Ok(absolute) = std::path::absolute(settings.folder.trim()) {
+            settings.folder = absolute.display().to_string();
+        }
         let place = folder.and_then(|folder| Recovery::new(&folder.join(FOLDER)).ok());
         let place = place.map(Arc::new);
         let (document, path) = (editor.document_to_keep(), editor.path().map(Path::to_owned));
@@ -138,7 +142,8 @@ mod tests {
             let [order] = &found[..] else {
                 panic!("{} orders", found.len());
             };
-            assert_eq!(order.settings, settings);
+            assert!(Path::new(&order.settings.folder).is_absolute());
+            assert!(order.settings.folder.ends_with(&settings.folder));
             assert_eq!(order.scene, *editor.scene());
             assert_eq!(
                 order.name.split_once(" · ").map(|(_, rest)| rest),
