@@ -115,10 +115,17 @@ impl Sequence {
     /// # Errors
     /// [`ExportError::Unwritable`], for a scene that has no text.
     pub fn fingerprint(&self, shown: &Scene) -> Result<Hash, ExportError> {
-        let still = Scene {
+        let mut still = Scene {
             animation: Arc::default(),
+            // Neither these nor groups are seen.
+            bookmarks: Vec::new(),
             ..shown.abridged()
         };
+        for index in 0..still.objects.len() {
+            if !still.objects[index].group.is_empty() {
+                still.objects[index].group.clear();
+            }
+        }
         let text = ron::to_string(&still)?;
         let mut hasher = blake3::Hasher::new();
         hasher.update(env!("CARGO_PKG_VERSION").as_bytes());

@@ -2,16 +2,16 @@
 
 use std::borrow::Cow;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Cursor, Write as _};
+use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use image::codecs::gif::{GifEncoder, Repeat};
-use image::{Delay, Frame, ImageFormat, RgbaImage};
+use image::{Delay, Frame, RgbaImage};
 
 use super::sequence::Sequence;
-use crate::image::{Format, LinearImage};
+use crate::image::{Format, Image, LinearImage};
 
 /// Speed of the GIF encoder's search for colours, 1 (slow) to 30.
 const GIF_SPEED: i32 = 10;
@@ -259,12 +259,14 @@ fn unreadable(path: &Path, source: image::ImageError) -> VideoError {
 }
 
 fn as_ppm(path: &Path) -> Result<Vec<u8>, VideoError> {
-    let frame = image::DynamicImage::from(read(path)?).to_rgb8();
-    let mut bytes = Cursor::new(Vec::new());
-    frame
-        .write_to(&mut bytes, ImageFormat::Pnm)
-        .map_err(|source| unreadable(path, source))?;
-    Ok(bytes.into_inner())
+    let frame = read(path)?;
+    let image = Image {
+        width: frame.width() as usize,
+        height: frame.height() as usize,
+        pixels: frame.pixels().map(|pixel| pixel.0).collect(),
+    };
+    let encoded = image.encode(Format::Ppm);
+    encoded.map_err(|source| unreadable(path, source))
 }
 
 fn read(path: &Path) -> Result<RgbaImage, VideoError> {

@@ -78,6 +78,11 @@ pub struct Region {
 }
 
 impl Region {
+    /// How many pixels it has.
+    pub fn pixels(self) -> usize {
+        (self.columns.1 - self.columns.0) * (self.rows.1 - self.rows.0)
+    }
+
     /// Whether some pixel of these columns and rows is in it.
     pub fn meets(&self, columns: &Range<usize>, rows: &Range<usize>) -> bool {
         let (left, right) = self.columns;

@@ -1,9 +1,11 @@
 //! How bright the picture is, in a corner of it.
 
+use std::sync::Arc;
+
 use egui::{Color32, Context, Rect, Shape, Stroke, StrokeKind, TextStyle, Ui, pos2, vec2};
 
 use super::theme::{GRID, palette};
-use crate::image::Histogram;
+use crate::image::{Histogram, Image};
 use crate::scene::Scene;
 use crate::worker::Frame;
 
@@ -15,19 +17,18 @@ const WORDS: f32 = 18.0;
 /// The counts of the last finished picture.
 #[derive(Default)]
 pub struct Levels {
-    of: Option<(u64, bool, u64)>,
+    of: Option<Arc<Image>>,
     counted: Option<Histogram>,
 }
 
 impl Levels {
     /// Counts a finished picture, if it is another one than before. The share that clips.
     pub fn update(&mut self, frame: &Frame, scene: &Scene) -> Option<f64> {
-        let rays = frame.cost.rays.total();
-        let key = (frame.revision, frame.is_still, rays);
-        if frame.step != 1 || self.of == Some(key) {
+        let is_same = |of: &Arc<Image>| Arc::ptr_eq(of, &frame.image);
+        if frame.step != 1 || self.of.as_ref().is_some_and(is_same) {
             return None;
         }
-        self.of = Some(key);
+        self.of = Some(Arc::clone(&frame.image));
         let level = |channel: f64| channel.round().clamp(0.0, 255.0) as u8;
         let background = scene.background.to_array().map(level);
         let counted = Histogram::of(&frame.image, background);

@@ -37,6 +37,9 @@ impl Magnifier {
         let before = self.place(fitting, size, pixels_per_point);
         let under = (at - before.min) / before.size();
         let shown = before.width() * pixels_per_point / size.0.max(1) as f32;
+        if up && shown >= LARGEST as f32 {
+            return;
+        }
         self.factor = if up {
             let next = if self.factor == 0 {
                 (shown.floor() as u32 + 1).next_power_of_two()

@@ -69,6 +69,8 @@ pub struct Pictures {
     still_requested: Option<StillKey>,
     /// The part of the still picture that is wanted, if not all of it is.
     pub region: Option<Region>,
+    /// The document, and the size of its still picture, that the part is of.
+    region_of: (u64, (u32, u32)),
     /// The take whose survey was asked for.
     surveyed: Option<Arc<Take>>,
 }
@@ -89,6 +91,7 @@ impl Pictures {
             aspect: None,
             still_requested: None,
             region: None,
+            region_of: (0, (0, 0)),
             surveyed: None,
         })
     }
@@ -182,7 +185,15 @@ impl Pictures {
 
     /// What a pixel of the finished picture on screen took, in milliseconds.
     pub fn millis_per_pixel(&self, editor: &Editor) -> Option<f64> {
-        let frame = self.shown(editor).filter(|frame| frame.step == 1)?;
+        let is_whole = |frame: &&Frame| frame.step == 1 && frame.region.is_none();
+        let frame = self.shown(editor).filter(is_whole)?;
+        if !frame.is_still
+            && self
+                .submitted
+                .is_some_and(|(.., aspect)| aspect != Aspect::All)
+        {
+            return None;
+        }
         let pixels = (frame.image.width * frame.image.height) as f64;
         Some(frame.cost.time.as_secs_f64() * 1e3 / pixels.max(1.0))
     }
@@ -296,6 +307,10 @@ impl Pictures {
     /// `aspect` of the light.
     pub fn submit(&mut self, editor: &Editor, pixels: (u32, u32), aspect: Aspect) {
         let revision = editor.shown_revision();
+        let region_of = (editor.documents(), still_size(editor));
+        if self.region_of != region_of {
+            (self.region, self.region_of) = (None, region_of);
+        }
         if editor.mode == Mode::HighRes {
             let wanted = (revision, still_size(editor), self.region);
             if self.shown_still(editor).is_none() && self.still_requested != Some(wanted) {

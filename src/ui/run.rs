@@ -164,7 +164,7 @@ impl App {
             Command::LowRes => Action::Show(Mode::LowRes),
             Command::HighRes => Action::Show(Mode::HighRes),
             Command::ActualSize => {
-                self.still.toggle_actual_size();
+                self.still.show_actual_size(editor.mode == Mode::HighRes);
                 Action::Show(Mode::HighRes)
             }
             Command::CancelStill => {

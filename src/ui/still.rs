@@ -27,9 +27,9 @@ pub struct Still {
 }
 
 impl Still {
-    /// Shows one pixel as one of the screen, or all of the picture again.
-    pub fn toggle_actual_size(&mut self) {
-        let is_actual = self.magnifier.factor == 1;
+    /// Shows one pixel as one of the screen; all of the picture again, if that `is_seen` already.
+    pub fn show_actual_size(&mut self, is_seen: bool) {
+        let is_actual = is_seen && self.magnifier.factor == 1;
         self.magnifier = Magnifier::default();
         self.magnifier.factor = u32::from(!is_actual);
     }

@@ -11,6 +11,7 @@ use super::hint::Hint as _;
 use super::icons;
 use super::theme::{GRID, ROW, palette};
 use super::upload::{changes, piece, whole};
+use crate::plan::Region;
 use crate::scene::{Sampling, Scene};
 use crate::worker::Frame;
 
@@ -207,7 +208,8 @@ pub fn describe(frame: &Frame, scene: &Arc<Scene>) -> String {
     } else {
         format!("{thin}×{low} of {width}×{height}")
     };
-    let pixels = frame.image.pixels.len().max(1) as f64;
+    let all = frame.image.pixels.len();
+    let pixels = frame.region.map_or(all, Region::pixels).max(1) as f64;
     let per_pixel = frame.cost.rays.total() as f64 / pixels;
     let edges = match frame.sampling {
         Sampling::Centres => "",

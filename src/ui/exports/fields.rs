@@ -25,6 +25,8 @@ pub const FIELDS: f32 = 360.0;
 const VIDEOS: [&str; 6] = ["none", "mp4", "mov", "mkv", "gif", "apng"];
 /// Bytes of a PNG for each of a PPM, about.
 const PNG_SHARE: f64 = 0.35;
+/// Bytes of an EXR for each of its numbers as they are in memory, about.
+const EXR_SHARE: f64 = 0.6;
 
 /// What a scene asks for itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -309,12 +311,12 @@ pub fn forecast(
             )
         }
     };
-    let share = if settings.format == Format::Png {
-        PNG_SHARE
-    } else {
-        1.0
+    let bytes = match settings.format {
+        Format::Ppm => 3.0,
+        Format::Png => 3.0 * PNG_SHARE,
+        Format::Exr => 12.0 * EXR_SHARE,
     };
-    let megabytes = pixels * 3.0 * share * missing as f64 / 1e6;
+    let megabytes = pixels * bytes * missing as f64 / 1e6;
     let seconds = millis.map(|millis| millis * pixels * missing as f64 / 1e3);
     let time = seconds.map_or(String::new(), |seconds| {
         format!(", about {}", in_words(seconds))

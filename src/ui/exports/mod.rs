@@ -6,6 +6,8 @@ mod kept;
 
 mod order;
 
+mod following;
+
 mod progress;
 
 use std::path::{Path, PathBuf};
@@ -18,6 +20,7 @@ use egui::{
 };
 
 use self::fields::{Found, Settings, fields, forecast, presets};
+use self::following::Following;
 pub use self::kept::KeptSettings;
 use self::kept::Owner;
 use self::order::Order;
@@ -28,7 +31,7 @@ use super::status::in_words;
 use super::theme::{GRID, THUMB, palette};
 use super::upload::whole;
 use crate::editor::Editor;
-use crate::export::{Sequence, Video, VideoError};
+use crate::export::Sequence;
 use crate::ui::hint::Hint as _;
 use crate::worker::{ExportState, run_in_background};
 
@@ -68,15 +71,6 @@ pub struct Exports {
     told: Vec<u64>,
     /// What those are called.
     ended: Vec<(u64, String)>,
-}
-
-/// A video that is made when its frames are there.
-struct Following {
-    id: u64,
-    sequence: Sequence,
-    path: PathBuf,
-    video: Video,
-    making: Option<Receiver<Result<(), VideoError>>>,
 }
 
 impl Exports {
@@ -140,34 +134,40 @@ impl Exports {
             let ordered = self.orders.iter().position(|(id, _)| *id == state.id);
             if let Some((_, order)) = ordered.map(|at| self.orders.remove(at)) {
                 self.ended.push((state.id, order.name.clone()));
-                if is_done {
-                    order.end();
-                } else {
-                    self.interrupted.push(order);
+                let video = self.videos.iter_mut().find(|video| video.id == state.id);
+                match video {
+                    _ if !is_done => self.interrupted.push(order),
+                    // It has not ended before its video is there.
+                    Some(video) => video.order = Some(order),
+                    None => order.end(),
                 }
             }
             self.videos.retain(|video| is_done || video.id != state.id);
-            for video in self.videos.iter_mut().filter(|video| video.id == state.id) {
-                let (kind, sequence, path) =
-                    (video.video, video.sequence.clone(), video.path.clone());
-                let make = move || kind.make(&sequence, &path, |_| ());
-                video.making = Some(run_in_background("glint-video", make));
+            let mut videos = self.videos.iter_mut();
+            if let Some(video) = videos.find(|video| video.id == state.id) {
+                video.make();
             }
         }
         // One whose export was given up is not made either.
         let states = pictures.exports();
         let is_wanted = |video: &Following| states.iter().any(|state| state.id == video.id);
         self.videos
-            .retain(|video| video.making.is_some() || is_wanted(video));
-        self.videos.retain(|video| {
-            let made = video.making.as_ref().map(Receiver::try_recv);
+            .retain(|video| video.is_making() || is_wanted(video));
+        let interrupted = &mut self.interrupted;
+        self.videos.retain_mut(|video| {
+            let Some(made) = video.made() else {
+                return true;
+            };
+            let order = video.order.take();
             match made {
-                Some(Ok(Ok(()))) => editor.notify(format!("Saved {}", video.path.display())),
-                Some(Ok(Err(error))) => editor.report_error(error.to_string()),
-                Some(Err(TryRecvError::Disconnected)) => {
-                    editor.report_error("the video was not made".to_owned());
+                Ok(()) => {
+                    editor.notify(format!("Saved {}", video.path.display()));
+                    order.into_iter().for_each(Order::end);
                 }
-                Some(Err(TryRecvError::Empty)) | None => return true,
+                Err(error) => {
+                    editor.report_error_in(EXPORT, error);
+                    interrupted.extend(order);
+                }
             }
             false
         });
@@ -299,18 +299,14 @@ impl Exports {
         match pictures.export(sequence.clone()) {
             Ok(id) => {
                 if let Some((path, video)) = order.settings.video(&sequence) {
-                    self.videos.push(Following {
-                        id,
-                        sequence,
-                        path,
-                        video,
-                        making: None,
-                    });
+                    let following = Following::new(id, sequence, path, video);
+                    self.videos.push(following);
                 }
                 self.orders.push((id, order));
             }
             Err(error) => {
-                order.end();
+                // A folder that is not there now may be there later.
+                self.interrupted.push(order);
                 editor.report_error_in(EXPORT, error.to_string());
             }
         }

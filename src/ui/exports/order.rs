@@ -39,7 +39,12 @@ impl Order {
         }
         let place = folder.and_then(|folder| Recovery::new(&folder.join(FOLDER)).ok());
         let place = place.map(Arc::new);
-        let (document, path) = (editor.document_to_keep(), editor.path().map(Path::to_owned));
+        // With the triangles of its meshes: their files may be others when it goes on.
+        let document = Document {
+            header: String::new(),
+            scene: editor.scene().taken_to(Path::new("")),
+        };
+        let path = editor.path().map(Path::to_owned);
         let writing = place.clone().map(|place| {
             let settings = settings.clone();
             run_in_background("glint-order", move || {
@@ -60,30 +65,39 @@ impl Order {
     /// What ended programs have left unfinished.
     pub fn left_in(folder: &Path) -> Vec<Self> {
         let folder = folder.join(FOLDER);
-        let mut found = Vec::new();
+        let (mut found, mut unread) = (Vec::new(), Vec::new());
         while folder.is_dir()
             && let Ok(place) = Recovery::new(&folder)
             && let Some(leftover) = place.take_leftover(None)
         {
-            found.extend(Self::read(leftover, place));
+            match Self::read(leftover, place) {
+                Ok(order) => found.push(order),
+                // Another version of the program may know what it means: its place is kept until all are seen.
+                Err(place) => unread.push(place),
+            }
         }
         found
     }
 
-    fn read(leftover: Leftover, place: Recovery) -> Option<Self> {
+    /// An order that was left; its place, if it is none.
+    fn read(leftover: Leftover, place: Recovery) -> Result<Self, Recovery> {
         let Leftover { document, path } = leftover;
-        let line = document.header.lines().next()?.strip_prefix(MARK)?;
-        let settings: Settings = serde_json::from_str(line).ok()?;
+        // It was taken out of where it was left, and belongs to this program now.
+        let text = document.to_text().ok();
+        let kept = text.and_then(|text| place.keep(&text, path.as_deref()).ok());
+        let line = document.header.lines().next();
+        let line = line.and_then(|line| line.strip_prefix(MARK));
+        let settings = line.and_then(|line| serde_json::from_str::<Settings>(line).ok());
+        let Some(settings) = settings else {
+            return Err(place);
+        };
         let title = path.as_deref().and_then(Path::file_name);
         let title = title.map_or("a new scene".into(), |title| title.to_string_lossy());
-        let name = settings.describe(&title);
-        // It is taken out of the place where it was left, and belongs to this program now.
-        let kept = place.keep(&document.to_text().ok()?, path.as_deref());
-        Some(Self {
-            name,
+        Ok(Self {
+            name: settings.describe(&title),
             settings,
             scene: Arc::new(document.scene),
-            place: kept.ok().map(|()| Arc::new(place)),
+            place: kept.map(|()| Arc::new(place)),
             writing: None,
         })
     }
@@ -117,6 +131,24 @@ fn text_of(settings: &Settings, mut document: Document) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::DEMO_TEXT;
+
+    #[test]
+    fn what_another_version_wrote_stays() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let orders = folder.path().join(FOLDER);
+        let place = Recovery::new(&orders).expect("a place");
+        let text = format!("{MARK}{{\"of\": \"a later version\"}}\n{DEMO_TEXT}");
+        place.keep(&text, None).expect("kept");
+        drop(place);
+        for _ in 0..2 {
+            assert!(Order::left_in(folder.path()).is_empty());
+            let files = std::fs::read_dir(&orders).expect("there");
+            let names = files.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+            let kept: Vec<String> = names.filter(|name| name.ends_with(".ron")).collect();
+            assert_eq!(kept.len(), 1, "{kept:?}");
+        }
+    }
 
     #[test]
     fn an_order_outlives_the_program_and_one_that_has_ended_does_not() {

@@ -154,3 +154,9 @@ pub fn select_all(ui: &Ui, id: Id, text: &str) {
         .set_char_range(Some(CCursorRange::two(CCursor::new(0), end)));
     state.store(ui.ctx(), id);
 }
+
+/// Whether the pointer is in a row.
+pub fn is_within(input: &egui::InputState, row: Rect) -> bool {
+    let at = input.pointer.interact_pos();
+    at.is_some_and(|at| row.contains(at))
+}

@@ -2,7 +2,7 @@
 
 use egui::{Id, Key, Rect, Ui, UiBuilder};
 
-use super::entry::{RowStyle, entry, row, select_all};
+use super::entry::{RowStyle, entry, is_within, row, select_all};
 use super::lines::Group;
 use crate::editor::{Action, Edit, Editor, Item, Kind, Selected};
 use crate::ui::commands::Command;
@@ -49,7 +49,14 @@ impl GroupRows {
         }
         let dropped = response.dnd_release_payload::<Item>();
         if let Some(item) = dropped.filter(|item| item.kind == Kind::Object) {
-            out.edit(Edit::Group(vec![item.index], group.name.clone()));
+            let selected = editor.selected();
+            let all = selected.items().iter().filter(|_| selected.has(*item));
+            let objects = all.filter(|item| item.kind == Kind::Object);
+            let mut places: Vec<usize> = objects.map(|item| item.index).collect();
+            if places.is_empty() {
+                places.push(item.index);
+            }
+            out.edit(Edit::Group(places, group.name.clone()));
         }
         response.context_menu(|ui| {
             if ui.button("Rename").clicked() {
@@ -102,7 +109,7 @@ impl GroupRows {
     fn rename(&mut self, ui: &mut Ui, group: &Group, out: &mut UiRequests) {
         let rect = row(ui);
         ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
-            let id = Id::unique("name of the group");
+            let id = Id::unique(("name of the group", &group.name));
             if !ui.memory(|memory| memory.has_focus(id)) {
                 ui.memory_mut(|memory| memory.request_focus(id));
                 select_all(ui, id, &group.name);
@@ -111,7 +118,7 @@ impl GroupRows {
             let is_left = ui.input(|input| {
                 input.key_pressed(Key::Enter)
                     || input.key_pressed(Key::Escape)
-                    || input.pointer.any_click()
+                    || input.pointer.any_click() && !is_within(input, rect)
             });
             if is_left || new.is_some() {
                 self.renaming = None;

@@ -9,7 +9,7 @@ mod groups;
 
 use egui::{Align, Id, Key, Layout, Rect, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2};
 
-use self::entry::{RowStyle, color_of, entry, eye, look, row, select_all, take_dropped};
+use self::entry::{RowStyle, color_of, entry, eye, is_within, look, row, select_all, take_dropped};
 use self::groups::GroupRows;
 use self::lines::{Entries, Groups, Line, Lines};
 use super::add::add_menu;
@@ -283,7 +283,7 @@ impl Outliner {
                 let is_left = ui.input(|input| {
                     input.key_pressed(Key::Enter)
                         || input.key_pressed(Key::Escape)
-                        || input.pointer.any_click()
+                        || input.pointer.any_click() && !is_within(input, rect)
                 });
                 if let Some(new) = new {
                     out.edit(Edit::Rename(item, new));

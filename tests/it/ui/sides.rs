@@ -227,3 +227,13 @@ fn in_a_narrow_window_the_timeline_has_a_menu() {
     harness.type_into(rate, "30");
     assert_eq!(harness.scene().animation.frames_per_second, 30.0);
 }
+
+#[test]
+fn what_is_typed_counts_though_the_field_shows_less_of_it() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    for typed in [1234.56, 1234.62, 12_345_678.0, 12_300_000.0] {
+        harness.type_into("center x", &typed.to_string());
+        assert_eq!(center(harness.scene(), 0).x, typed);
+    }
+}
