@@ -36,6 +36,7 @@ pub use document::Editor;
 pub use edit::{Edit, EditError};
 pub use fly::Motion;
 pub use item::{Item, Kind};
+pub use names::{free_bookmark_name, free_group_name};
 pub use selection::{Selected, Selection};
 pub use timeline::{MEASURED_AT, Repeat, Time, Timeline};
 

@@ -44,6 +44,20 @@ pub fn free_pack_name(scene: &Scene, wanted: &str) -> String {
     free_name(wanted, |name| scene.color_packs.contains_key(name))
 }
 
+/// A name that no group has.
+pub fn free_group_name(scene: &Scene) -> String {
+    free_name("Group 1", |name| {
+        scene.objects.iter().any(|object| object.group == name)
+    })
+}
+
+/// A name that no bookmark has.
+pub fn free_bookmark_name(scene: &Scene) -> String {
+    free_name("View 1", |name| {
+        scene.bookmarks.iter().any(|bookmark| bookmark.name == name)
+    })
+}
+
 /// Names that are taken, for many new things at once.
 #[derive(Debug)]
 pub struct Taken {

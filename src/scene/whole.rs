@@ -174,6 +174,17 @@ impl Scene {
         scene
     }
 
+    /// The same scene with the triangles of all meshes: it needs no other files.
+    #[must_use]
+    pub fn taken_in(&self) -> Self {
+        let mut scene = self.clone();
+        scene.change_meshes(|mesh| Mesh {
+            source: mesh.source.taken_in(),
+            ..mesh.clone()
+        });
+        scene
+    }
+
     /// The same scene with a word in place of the triangles of each mesh, which is another word for other
     /// triangles: what tells scenes apart without writing them down.
     #[must_use]

@@ -12,7 +12,8 @@ use super::files::{FileOutcome, Next};
 use super::timeline::actions;
 use super::tools::{axis_camera, framing_camera};
 use crate::editor::{
-    Action, Edit, Editor, Item, Kind, Mode, Selected, Selection, Time, excerpt, read,
+    Action, Edit, Editor, Item, Kind, Mode, Selected, Selection, Time, excerpt, free_bookmark_name,
+    free_group_name, read,
 };
 use crate::scene::{Aspect, Bookmark, Document, Projection, Scene};
 
@@ -302,19 +303,10 @@ fn selected_objects(editor: &Editor) -> Vec<usize> {
     objects.map(|item| item.index).collect()
 }
 
-/// A name that no group has.
-fn free_group_name(scene: &Scene) -> String {
-    let is_taken = |name: &str| scene.objects.iter().any(|object| object.group == name);
-    let mut names = (1_u64..).map(|number| format!("Group {number}"));
-    names.find(|name| !is_taken(name)).unwrap_or_default()
-}
-
 /// This view as one more bookmark.
 fn add_bookmark(editor: &mut Editor) -> Action {
     let mut bookmarks = editor.scene().bookmarks.clone();
-    let mut names = (1_u64..).map(|number| format!("View {number}"));
-    let is_free = |name: &String| bookmarks.iter().all(|bookmark| bookmark.name != *name);
-    let name = names.find(is_free).unwrap_or_default();
+    let name = free_bookmark_name(editor.scene());
     editor.notify(format!("{name} is a bookmark; the View menu goes there"));
     let camera = editor.shown().camera.clone();
     bookmarks.push(Bookmark { name, camera });

@@ -56,14 +56,19 @@ impl MeshSource {
     /// The same in a scene file of this folder: triangles that were read from elsewhere are taken in.
     pub fn taken_to(&self, folder: &Path) -> Self {
         match self {
+            Self::File { folder: own, .. } if own.as_deref() != Some(folder) => self.taken_in(),
+            _ => self.clone(),
+        }
+    }
+
+    /// The same with its triangles, wherever they were read.
+    pub fn taken_in(&self) -> Self {
+        match self {
             Self::File {
-                folder: own,
                 triangles,
                 problem: None,
                 ..
-            } if own.as_deref() != Some(folder) && !triangles.faces().is_empty() => {
-                Self::Inline(Arc::clone(triangles))
-            }
+            } if !triangles.faces().is_empty() => Self::Inline(Arc::clone(triangles)),
             _ => self.clone(),
         }
     }

@@ -42,7 +42,7 @@ impl Order {
         // With the triangles of its meshes: their files may be others when it goes on.
         let document = Document {
             header: String::new(),
-            scene: editor.scene().taken_to(Path::new("")),
+            scene: editor.scene().taken_in(),
         };
         let path = editor.path().map(Path::to_owned);
         let writing = place.clone().map(|place| {

@@ -1,7 +1,7 @@
 //! A row of the outliner.
 
 use egui::text::{CCursor, CCursorRange};
-use egui::{AtomExt as _, Button, Color32, Id, Rect, Sense, StrokeKind, TextEdit, Ui, vec2};
+use egui::{AtomExt as _, Button, Color32, Id, Key, Rect, Sense, StrokeKind, TextEdit, Ui, vec2};
 use egui_material_icons::MaterialIcon;
 
 use crate::editor::{Action, Edit, Editor, Item, Kind};
@@ -9,6 +9,7 @@ use crate::scene::Scene;
 use crate::ui::dress::dressed;
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
+use crate::ui::inspector::name_field;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{ROW, palette};
 
@@ -132,31 +133,62 @@ pub fn eye(ui: &mut Ui, scene: &Scene, item: Item, name: &str, out: &mut UiReque
         Kind::Object => scene.objects[item.index].visible,
         Kind::Pack => return,
     };
+    if eye_button(ui, visible, name)
+        && let Some(edit) = Edit::visible(scene, item, !visible)
+    {
+        out.edit(edit);
+    }
+}
+
+/// A button that hides what is visible, and shows what is not. Whether it was pressed.
+pub fn eye_button(ui: &mut Ui, visible: bool, name: &str) -> bool {
     let (icon, verb) = if visible {
         (icons::VISIBLE, "Hide")
     } else {
         (icons::HIDDEN, "Show")
     };
-    if !icons::button(ui, icon, &format!("{verb} {name}")).clicked() {
-        return;
+    icons::button(ui, icon, &format!("{verb} {name}")).clicked()
+}
+
+/// What comes of a field for another name.
+pub enum Renaming {
+    /// It is being edited.
+    Going,
+    /// It was left as it was.
+    Left,
+    /// The new name.
+    To(String),
+}
+
+/// A field in a row for another name.
+pub fn rename_field(ui: &mut Ui, row: Rect, (label, id): (&str, Id), name: &str) -> Renaming {
+    if !ui.memory(|memory| memory.has_focus(id)) {
+        ui.memory_mut(|memory| memory.request_focus(id));
+        select_all(ui, id, name);
     }
-    if let Some(edit) = Edit::visible(scene, item, !visible) {
-        out.edit(edit);
+    if let Some(new) = name_field(ui, label, id, name) {
+        return Renaming::To(new);
+    }
+    let is_left = ui.input(|input| {
+        let at = input.pointer.interact_pos();
+        let is_within = at.is_some_and(|at| row.contains(at));
+        input.key_pressed(Key::Enter)
+            || input.key_pressed(Key::Escape)
+            || (input.pointer.any_click() && !is_within)
+    });
+    if is_left {
+        Renaming::Left
+    } else {
+        Renaming::Going
     }
 }
 
 /// Typing shall replace the old name.
-pub fn select_all(ui: &Ui, id: Id, text: &str) {
+fn select_all(ui: &Ui, id: Id, text: &str) {
     let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
     let end = CCursor::new(text.chars().count());
     state
         .cursor
         .set_char_range(Some(CCursorRange::two(CCursor::new(0), end)));
     state.store(ui.ctx(), id);
-}
-
-/// Whether the pointer is in a row.
-pub fn is_within(input: &egui::InputState, row: Rect) -> bool {
-    let at = input.pointer.interact_pos();
-    at.is_some_and(|at| row.contains(at))
 }

@@ -1,13 +1,12 @@
 //! The rows of groups in the list of objects.
 
-use egui::{Id, Key, Rect, Ui, UiBuilder};
+use egui::{Id, Rect, Ui, UiBuilder};
 
-use super::entry::{RowStyle, entry, is_within, row, select_all};
+use super::entry::{Renaming, RowStyle, entry, eye_button, rename_field, row};
 use super::lines::Group;
 use crate::editor::{Action, Edit, Editor, Item, Kind, Selected};
 use crate::ui::commands::Command;
 use crate::ui::icons;
-use crate::ui::inspector::name_field;
 use crate::ui::menu_entry;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, ROW};
@@ -72,13 +71,9 @@ impl GroupRows {
                 }
             }
         });
-        let (icon, verb) = if is_bright {
-            (icons::VISIBLE, "Hide")
-        } else {
-            (icons::HIDDEN, "Show")
-        };
         ui.scope_builder(UiBuilder::new().max_rect(eye), |ui| {
-            if icons::button(ui, icon, &format!("{verb} {}", group.name)).clicked() {
+            if eye_button(ui, is_bright, &group.name) {
+                let verb = if is_bright { "Hide" } else { "Show" };
                 let edits = members().filter_map(|item| Edit::visible(scene, item, !is_bright));
                 let label = format!("{verb} {}", group.name);
                 out.edit(Edit::Each(edits.collect(), label));
@@ -110,23 +105,17 @@ impl GroupRows {
         let rect = row(ui);
         ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
             let id = Id::unique(("name of the group", &group.name));
-            if !ui.memory(|memory| memory.has_focus(id)) {
-                ui.memory_mut(|memory| memory.request_focus(id));
-                select_all(ui, id, &group.name);
+            let label = "new name of the group";
+            match rename_field(ui, rect, (label, id), &group.name) {
+                Renaming::Going => return,
+                Renaming::Left => {}
+                Renaming::To(new) if new.trim().is_empty() => {}
+                Renaming::To(new) => {
+                    let name = new.trim().to_owned();
+                    out.edit(Edit::Group(group.members.clone(), name));
+                }
             }
-            let new = name_field(ui, "new name of the group", id, &group.name);
-            let is_left = ui.input(|input| {
-                input.key_pressed(Key::Enter)
-                    || input.key_pressed(Key::Escape)
-                    || input.pointer.any_click() && !is_within(input, rect)
-            });
-            if is_left || new.is_some() {
-                self.renaming = None;
-            }
-            let new = new.map(|new| new.trim().to_owned());
-            if let Some(new) = new.filter(|new| !new.is_empty()) {
-                out.edit(Edit::Group(group.members.clone(), new));
-            }
+            self.renaming = None;
         });
     }
 }

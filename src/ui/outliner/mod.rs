@@ -7,14 +7,15 @@ mod lines;
 
 mod groups;
 
-use egui::{Align, Id, Key, Layout, Rect, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2};
+use egui::{Align, Id, Layout, Rect, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2};
 
-use self::entry::{RowStyle, color_of, entry, eye, is_within, look, row, select_all, take_dropped};
+use self::entry::{
+    Renaming, RowStyle, color_of, entry, eye, look, rename_field, row, take_dropped,
+};
 use self::groups::GroupRows;
 use self::lines::{Entries, Groups, Line, Lines};
 use super::add::add_menu;
 use super::icons;
-use super::inspector::name_field;
 use super::menu_entry::{ITEM_COMMANDS, entry as menu_entry};
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW, palette};
@@ -275,22 +276,12 @@ impl Outliner {
                 ui.add_space(GRID);
                 ui.label(icons::text(look(scene, item).0));
                 let id = Id::unique(("rename", item));
-                if !ui.memory(|memory| memory.has_focus(id)) {
-                    ui.memory_mut(|memory| memory.request_focus(id));
-                    select_all(ui, id, name);
+                match rename_field(ui, rect, ("new name", id), name) {
+                    Renaming::Going => return,
+                    Renaming::Left => {}
+                    Renaming::To(new) => out.edit(Edit::Rename(item, new)),
                 }
-                let new = name_field(ui, "new name", id, name);
-                let is_left = ui.input(|input| {
-                    input.key_pressed(Key::Enter)
-                        || input.key_pressed(Key::Escape)
-                        || input.pointer.any_click() && !is_within(input, rect)
-                });
-                if let Some(new) = new {
-                    out.edit(Edit::Rename(item, new));
-                    self.renaming = None;
-                } else if is_left {
-                    self.renaming = None;
-                }
+                self.renaming = None;
             },
         );
     }
