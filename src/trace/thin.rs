@@ -130,7 +130,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         paths: &Paths<L>,
         active: L::Mask,
     ) -> Option<L::Mask> {
-        let (center, radius) = (mesh.bvh.bounds.ball().0, mesh.reach);
+        let (center, radius) = mesh.bvh.bounds.ball();
         // With so many faces in a pixel, they are too many to look at one by one.
         let faces = L::Real::from_f64(mesh.triangles.len() as f64 / CROWDED);
         let small = faces.sqrt().max(L::Real::from_f64(SMALL));
