@@ -53,8 +53,8 @@ pub trait SimdFloat:
     fn store(self, numbers: &mut [Self::Real]);
     /// The number in one lane, `index` < [`Self::WIDTH`].
     fn lane(self, index: usize) -> Self::Real;
-    /// Runs `work`, which must be `#[inline(always)]`, with the processor's instructions known to
-    /// the compiler: what a recursion needs, which cannot be inlined.
+    /// Runs `work`, which must be `#[inline(always)]`, as a function of its own, with the processor's
+    /// instructions known to the compiler: what a recursion needs, which cannot be inlined.
     fn vectorize<T>(token: Self::Token, work: impl FnOnce() -> T) -> T;
     /// Square root; NaN below zero.
     fn sqrt(self) -> Self;
@@ -182,7 +182,7 @@ macro_rules! single_lane {
             }
             #[inline(always)]
             fn vectorize<T>((): (), work: impl FnOnce() -> T) -> T {
-                work()
+                apart(work)
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
@@ -232,6 +232,13 @@ impl Mask for bool {
     fn any(self) -> bool {
         self
     }
+}
+
+/// Does the work in a function of its own. Inlined in every place that calls it, the kernels would take half
+/// as long again to compile, where the instructions are known everywhere and nothing else keeps them apart.
+#[inline(never)]
+fn apart<T>(work: impl FnOnce() -> T) -> T {
+    work()
 }
 
 /// The lanes of a vector register `V` of the processor kind `S`.
@@ -324,7 +331,7 @@ where
     }
     #[inline(always)]
     fn vectorize<T>(token: S, work: impl FnOnce() -> T) -> T {
-        token.vectorize(work)
+        apart(move || token.vectorize(work))
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
