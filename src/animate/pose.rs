@@ -6,17 +6,19 @@ use glam::DVec3;
 
 use super::path::{eased, orbit};
 use super::{ArcLengthSpline, CameraPath, Closing, Curve};
-use crate::scene::{Camera, Interpolation, Key, Orientation, Scene, Value};
+use crate::scene::{Camera, Interpolation, Key, Orientation, Owners, Scene, Value};
 
 /// The scene as it is at `time` in seconds, seen by its own camera: every track has set its value.
 pub fn pose(scene: &Arc<Scene>, time: f64) -> Arc<Scene> {
     if scene.animation.tracks.is_empty() {
         return Arc::clone(scene);
     }
+    let tracks = &scene.animation.tracks;
+    let owners = Owners::of(scene, tracks.iter().map(|track| &track.target));
     let mut posed = Scene::clone(scene);
-    for track in &scene.animation.tracks {
+    for track in tracks {
         if let Some(value) = value_at(&track.keys, time) {
-            track.target.set(&mut posed, value);
+            owners.set(&mut posed, &track.target, value);
         }
     }
     Arc::new(posed)

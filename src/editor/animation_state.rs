@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::timeline::{MEASURED_AT, Timeline};
 use crate::animate::{CameraPath, Seen, Worst, pose, shot, worst_off};
-use crate::scene::{Camera, Key, Scene, Take, Target};
+use crate::scene::{Camera, Key, Owners, Scene, Take, Target};
 
 /// The finest tolerance of the slider, in pixels.
 const FINEST: f64 = 0.05;
@@ -193,16 +193,20 @@ impl AnimationState {
             .iter()
             .map(|track| track.target.clone())
             .collect();
-        for target in targets {
-            let (own, shown) = (target.get(scene), target.get(&self.shown));
-            let (Some(own), Some(new)) = (own, target.get(next)) else {
+        // Positions in lists stay; each scene has its own.
+        let scenes = [scene, &self.shown, &*next];
+        let [in_scene, in_shown, in_next] = scenes.map(|scene| Owners::of(scene, &targets));
+        for target in &targets {
+            let own = in_scene.get(scene, target);
+            let shown = in_shown.get(&self.shown, target);
+            let (Some(own), Some(new)) = (own, in_next.get(next, target)) else {
                 continue;
             };
             if new != own && Some(new) != shown {
-                next.animation = Arc::new(next.animation.with_value(&target, time, new));
+                next.animation = Arc::new(next.animation.with_value(target, time, new));
             }
             if new != own {
-                restore(&target, scene, &self.shown, next);
+                restore(target, scene, &self.shown, next);
             }
         }
     }

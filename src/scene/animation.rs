@@ -94,7 +94,7 @@ pub struct Track {
 }
 
 /// What a track can move.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Target {
     /// [`super::Scene::ambient_intensity`].
     AmbientIntensity,

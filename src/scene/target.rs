@@ -1,7 +1,8 @@
 //! What tracks move in a scene.
 
+use std::collections::{HashMap, HashSet};
+
 use super::animation::{Target, Value};
-use super::object::Light;
 use super::shape::Shape;
 use super::whole::Scene;
 
@@ -9,13 +10,31 @@ impl Target {
     /// The value in a scene; `None` if the scene has no such light or object, or it
     /// has no such property.
     pub fn get(&self, scene: &Scene) -> Option<Value> {
-        let light = |name: &String| scene.lights.iter().find(|light| light.name == *name);
+        let name = self.owner();
+        let index = match self {
+            Self::AmbientIntensity => None,
+            Self::LightIntensity(_) | Self::LightPosition(_) => scene
+                .lights
+                .iter()
+                .position(|light| Some(&*light.name) == name),
+            Self::ObjectPosition(_) | Self::ObjectRotation(_) => scene
+                .objects
+                .iter()
+                .position(|object| Some(&*object.name) == name),
+        };
+        self.get_at(scene, index)
+    }
+
+    /// The value in a scene, where its owner is at `index`.
+    fn get_at(&self, scene: &Scene, index: Option<usize>) -> Option<Value> {
+        let light = || scene.lights.get(index?);
+        let shape = || Some(&scene.objects.get(index?)?.shape);
         Some(match self {
             Self::AmbientIntensity => Value::Number(scene.ambient_intensity),
-            Self::LightIntensity(name) => Value::Number(light(name)?.intensity),
-            Self::LightPosition(name) => Value::Point(light(name)?.position),
-            Self::ObjectPosition(name) => Value::Point(shape(scene, name)?.position()),
-            Self::ObjectRotation(name) => match shape(scene, name)? {
+            Self::LightIntensity(_) => Value::Number(light()?.intensity),
+            Self::LightPosition(_) => Value::Point(light()?.position),
+            Self::ObjectPosition(_) => Value::Point(shape()?.position()),
+            Self::ObjectRotation(_) => match shape()? {
                 Shape::Mesh(mesh) => Value::Point(mesh.rotation),
                 _ => return None,
             },
@@ -24,29 +43,37 @@ impl Target {
 
     /// Puts a value into a scene; one of the wrong kind, or for what is not there, changes nothing.
     pub fn set(&self, scene: &mut Scene, value: Value) {
+        Owners::of(scene, [self]).set(scene, self, value);
+    }
+
+    fn set_at(&self, scene: &mut Scene, index: Option<usize>, value: Value) {
+        let Some(index) = index else {
+            if let (Self::AmbientIntensity, Value::Number(number)) = (self, value) {
+                scene.ambient_intensity = number;
+            }
+            return;
+        };
         match (self, value) {
-            (Self::AmbientIntensity, Value::Number(number)) => scene.ambient_intensity = number,
-            (Self::LightIntensity(name), Value::Number(number)) => {
-                if let Some(light) = light(scene, name) {
+            (Self::LightIntensity(_), Value::Number(number)) => {
+                if let Some(light) = scene.lights.get_mut(index) {
                     light.intensity = number;
                 }
             }
-            (Self::LightPosition(name), Value::Point(point)) => {
-                if let Some(light) = light(scene, name) {
+            (Self::LightPosition(_), Value::Point(point)) => {
+                if let Some(light) = scene.lights.get_mut(index) {
                     light.position = point;
                 }
             }
-            (Self::ObjectPosition(name), Value::Point(point)) => {
-                let object = scene.objects.find_mut(|object| object.name == *name);
-                match object.map(|object| &mut object.shape) {
+            (Self::ObjectPosition(_), Value::Point(point)) => {
+                match scene.objects.get_mut(index).map(|object| &mut object.shape) {
                     None => {}
                     // To and fro, it would be rounded.
                     Some(Shape::Mesh(mesh)) => mesh.position = point,
                     Some(shape) => *shape = shape.moved(point - shape.position()),
                 }
             }
-            (Self::ObjectRotation(name), Value::Point(rotation)) => {
-                let object = scene.objects.find_mut(|object| object.name == *name);
+            (Self::ObjectRotation(_), Value::Point(rotation)) => {
+                let object = scene.objects.get_mut(index);
                 if let Some(Shape::Mesh(mesh)) = object.map(|object| &mut object.shape) {
                     mesh.rotation = rotation;
                 }
@@ -56,11 +83,62 @@ impl Target {
     }
 }
 
-fn shape<'s>(scene: &'s Scene, name: &str) -> Option<&'s Shape> {
-    let object = scene.objects.iter().find(|object| object.name == name)?;
-    Some(&object.shape)
+/// Where in a scene the lights and objects are that many targets name, found in one go.
+#[derive(Debug)]
+pub struct Owners<'a> {
+    lights: HashMap<&'a str, usize>,
+    objects: HashMap<&'a str, usize>,
 }
 
-fn light<'s>(scene: &'s mut Scene, name: &str) -> Option<&'s mut Light> {
-    scene.lights.find_mut(|light| light.name == name)
+impl<'a> Owners<'a> {
+    /// Where those of the targets are.
+    pub fn of(scene: &Scene, targets: impl IntoIterator<Item = &'a Target>) -> Self {
+        let (mut lights, mut objects) = (HashSet::new(), HashSet::new());
+        for target in targets {
+            let wanted = match target {
+                Target::LightIntensity(_) | Target::LightPosition(_) => &mut lights,
+                _ => &mut objects,
+            };
+            wanted.extend(target.owner());
+        }
+        Self {
+            lights: places(lights, scene.lights.iter().map(|light| &*light.name)),
+            objects: places(objects, scene.objects.iter().map(|object| &*object.name)),
+        }
+    }
+
+    fn index(&self, target: &Target) -> Option<usize> {
+        let places = match target {
+            Target::LightIntensity(_) | Target::LightPosition(_) => &self.lights,
+            _ => &self.objects,
+        };
+        places.get(target.owner()?).copied()
+    }
+
+    /// [`Target::get`] for one of the targets in this scene.
+    pub fn get(&self, scene: &Scene, target: &Target) -> Option<Value> {
+        target.get_at(scene, self.index(target))
+    }
+
+    /// [`Target::set`] for one of the targets in this scene.
+    pub fn set(&self, scene: &mut Scene, target: &Target, value: Value) {
+        target.set_at(scene, self.index(target), value);
+    }
+}
+
+/// Where the first of each wanted name is.
+fn places<'a, 's>(
+    mut wanted: HashSet<&'a str>,
+    names: impl Iterator<Item = &'s str>,
+) -> HashMap<&'a str, usize> {
+    let mut places = HashMap::with_capacity(wanted.len());
+    for (index, name) in names.enumerate() {
+        if wanted.is_empty() {
+            break;
+        }
+        if let Some(name) = wanted.take(name) {
+            places.insert(name, index);
+        }
+    }
+    places
 }

@@ -1,11 +1,14 @@
 //! Whether an animation means something.
 
+use std::collections::HashSet;
+
 use super::camera::{PROJECTION_DISTANCES, check_camera};
 use super::place::{At, Check};
 use crate::scene::animation::{
     Animation, Interpolation, Key, Lens, MAX_KEYS, MAX_SECONDS, Take, Target, Track, Value,
 };
 use crate::scene::notation::format_number;
+use crate::scene::target::Owners;
 use crate::scene::whole::Scene;
 
 /// Least time between two keys, in seconds: slopes between them are still numbers.
@@ -21,18 +24,18 @@ pub fn check_animation(at: &At, scene: &Scene) -> Check {
         check_camera(&here.index(index).field("value"), &key.value)?;
     }
     let here = at.field("tracks");
+    let targets = animation.tracks.iter().map(|track| &track.target);
+    let owners = Owners::of(scene, targets);
+    let mut known = HashSet::new();
     for (index, track) in animation.tracks.iter().enumerate() {
         let at = here.index(index);
-        if animation.tracks[..index]
-            .iter()
-            .any(|other| other.target == track.target)
-        {
+        if !known.insert(&track.target) {
             let name = track.target.name();
             return at
                 .field("target")
                 .refuse(format!("there is another track for {name:?}"));
         }
-        check_track(&at, scene, track)?;
+        check_track(&at, owners.get(scene, &track.target), track)?;
     }
     match &animation.take {
         Some(take) => check_take(&at.field("take"), take),
@@ -64,8 +67,8 @@ fn check_keys<T>(at: &At, keys: &[Key<T>]) -> Check {
     Ok(())
 }
 
-fn check_track(at: &At, scene: &Scene, track: &Track) -> Check {
-    let Some(sample) = track.target.get(scene) else {
+fn check_track(at: &At, now: Option<Value>, track: &Track) -> Check {
+    let Some(sample) = now else {
         let owner = track.target.owner().unwrap_or_default();
         let kind = match track.target {
             Target::ObjectPosition(_) => "object",
