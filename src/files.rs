@@ -5,6 +5,11 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use tempfile::NamedTempFile;
+
+/// How the names of unfinished files begin.
+const UNFINISHED: &str = ".glint-";
+
 /// Writes `bytes` to `path` so that a reader finds either the old file or the new one, whole: they
 /// go to a new file beside it, to the disk, and then under the name. Links are followed and the
 /// permissions of an existing file kept.
@@ -12,35 +17,107 @@ use std::time::SystemTime;
 /// # Errors
 /// Whatever the system answers; the file at `path` is then untouched.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let target = behind_links(path);
-    let existing = fs::metadata(&target).ok();
-    if existing
-        .as_ref()
-        .is_some_and(|metadata| !metadata.is_file())
-    {
-        return Err(io::Error::other(
-            "there is something of that name that is not a file",
-        ));
+    let beside = NewFile::beside(path)?;
+    beside.as_file().write_all(bytes)?;
+    beside.place_durably()
+}
+
+/// A new file beside the one whose place it will take: nobody else writes to it, and where it does not come to
+/// that, it is removed; [`remove_leftovers`] does so where the program was killed.
+#[derive(Debug)]
+pub struct NewFile {
+    file: NamedTempFile,
+    target: PathBuf,
+    folder: PathBuf,
+}
+
+impl NewFile {
+    /// A new file for `path`. Links are followed, and the permissions of an existing file kept.
+    ///
+    /// # Errors
+    /// Whatever the system answers, and where there is no folder for it, or something else of its name.
+    pub fn beside(path: &Path) -> io::Result<Self> {
+        let target = behind_links(path)?;
+        let existing = fs::metadata(&target).ok();
+        if existing
+            .as_ref()
+            .is_some_and(|metadata| !metadata.is_file())
+        {
+            return Err(io::Error::other(
+                "there is something of that name that is not a file",
+            ));
+        }
+        let folder = match target.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent,
+            _ => Path::new("."),
+        }
+        .to_owned();
+        if !folder.is_dir() {
+            let sentence = format!("the folder {} does not exist", folder.display());
+            return Err(io::Error::new(io::ErrorKind::NotFound, sentence));
+        }
+        let file = locked_file_in(&folder, &target)?;
+        if let Some(existing) = existing {
+            file.as_file().set_permissions(existing.permissions())?;
+        }
+        Ok(Self {
+            file,
+            target,
+            folder,
+        })
     }
-    let folder = match target.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
+
+    /// Where it is until it is placed; it ends as the other file does.
+    pub fn path(&self) -> &Path {
+        self.file.path()
+    }
+
+    /// The file itself.
+    pub fn as_file(&self) -> &File {
+        self.file.as_file()
+    }
+
+    /// Puts it in its place.
+    ///
+    /// # Errors
+    /// Whatever the system answers; what was there is then untouched.
+    pub fn place(self) -> io::Result<()> {
+        let placed = self.file.persist(&self.target);
+        placed.map(|_| ()).map_err(|error| error.error)
+    }
+
+    /// The same, so that it survives a power cut.
+    ///
+    /// # Errors
+    /// As [`Self::place`].
+    pub fn place_durably(self) -> io::Result<()> {
+        self.as_file().sync_all()?;
+        let folder = self.folder.clone();
+        self.place()?;
+        // Where folders cannot be synced, it is the system's business.
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
+        Ok(())
+    }
+}
+
+/// Removes the files from a folder that killed programs have left there unfinished.
+pub fn remove_leftovers(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else {
+        return;
     };
-    if !folder.is_dir() {
-        let sentence = format!("the folder {} does not exist", folder.display());
-        return Err(io::Error::new(io::ErrorKind::NotFound, sentence));
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let is_new_file = name.to_string_lossy().starts_with(UNFINISHED);
+        if !is_new_file {
+            continue;
+        }
+        // Whoever writes to it has locked it.
+        if let Ok(file) = File::open(entry.path())
+            && file.try_lock().is_ok()
+        {
+            let _ = fs::remove_file(entry.path());
+        }
     }
-    let mut beside = new_file_builder().tempfile_in(folder)?;
-    beside.write_all(bytes)?;
-    if let Some(existing) = existing {
-        beside.as_file().set_permissions(existing.permissions())?;
-    }
-    beside.as_file().sync_all()?;
-    beside.persist(&target).map_err(|error| error.error)?;
-    // The rename itself must survive a power cut too; where folders cannot be synced, it is the
-    // system's business.
-    let _ = File::open(folder).and_then(|folder| folder.sync_all());
-    Ok(())
 }
 
 /// Makes a folder, and those that it is in.
@@ -54,6 +131,15 @@ pub fn make_folder(path: &Path) -> io::Result<()> {
 /// When a file was written last, where the system tells.
 pub fn time_of(path: &Path) -> Option<SystemTime> {
     fs::metadata(path).ok()?.modified().ok()
+}
+
+/// The processor's name, where the system tells it.
+pub fn processor() -> String {
+    let told = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let line = told.lines().find(|line| line.starts_with("model name"));
+    let name = line.and_then(|line| line.split_once(':'));
+    let name = name.map_or("unknown processor", |(_, name)| name.trim());
+    name.replace("(R)", "").replace("(TM)", "")
 }
 
 /// Whether two paths are those of one file, links followed.
@@ -96,25 +182,40 @@ impl Stamp {
 }
 
 /// The file that a path means, links followed, whether or not it exists yet.
-fn behind_links(path: &Path) -> PathBuf {
+fn behind_links(path: &Path) -> io::Result<PathBuf> {
     let mut target = path.to_owned();
     // A system follows no more than 40 links either.
     for _ in 0..40 {
         let Ok(next) = fs::read_link(&target) else {
-            break;
+            return Ok(target);
         };
         target = target.parent().unwrap_or(Path::new("")).join(next);
     }
-    target
+    Err(io::Error::other("it is a link that leads back to itself"))
 }
 
-fn new_file_builder() -> tempfile::Builder<'static, 'static> {
+/// A new file that is locked. Until it is, another program may take it for one that was left, and remove it.
+fn locked_file_in(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
+    loop {
+        let file = new_file_in(folder, target)?;
+        // Where files cannot be locked, what a killed program leaves stays.
+        let is_locked = file.as_file().lock().is_ok();
+        if !is_locked || file.path().exists() {
+            return Ok(file);
+        }
+    }
+}
+
+fn new_file_in(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
+    // Encoders know the format by the ending.
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    let ending = format!("-{name}");
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".glint-").suffix(".tmp");
+    builder.prefix(UNFINISHED).suffix(&ending);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder
+    builder.tempfile_in(folder)
 }

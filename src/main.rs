@@ -3,24 +3,28 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use glint::cli::{CliAction, CliError, picture_instead_of_window};
+use glint::cli::{CliAction, CliError, PictureLook, picture_instead_of_window};
 use glint::export::save_image;
-use glint::image::Film;
-use glint::ui::NoWindow;
+use glint::image::{Film, Image};
+use glint::ui::{ChartLook, NoWindow};
 use glint::{cli, ui};
 
 fn main() -> ExitCode {
     let result = match cli::run(std::env::args_os()) {
         CliAction::Done(code) => return code,
-        CliAction::Chart { study, path } => {
-            save_image(&Film::Levels(ui::chart_picture(&study)), &path).map_err(CliError::from)
+        CliAction::Chart {
+            studies,
+            machine,
+            look,
+            path,
+        } => save(
+            ui::chart_picture(&studies, &machine, chart_look(look)),
+            &path,
+        ),
+        CliAction::Growth { growth, look, path } => {
+            save(ui::growth_picture(&growth, chart_look(look)), &path)
         }
-        CliAction::Growth { growth, path } => {
-            save_image(&Film::Levels(ui::growth_picture(&growth)), &path).map_err(CliError::from)
-        }
-        CliAction::Stability { maps, path } => {
-            save_image(&Film::Levels(ui::stability_picture(&maps)), &path).map_err(CliError::from)
-        }
+        CliAction::Stability { maps, path } => save(ui::stability_picture(&maps), &path),
         CliAction::Editor {
             scene,
             screenshot,
@@ -29,6 +33,15 @@ fn main() -> ExitCode {
         } => open_editor(scene.as_deref(), screenshot, (exports, select)),
     };
     result.map_or_else(|error| error.report(), |()| ExitCode::SUCCESS)
+}
+
+fn save(image: Image, path: &Path) -> Result<(), CliError> {
+    save_image(&Film::Levels(image), path).map_err(CliError::from)
+}
+
+fn chart_look(look: PictureLook) -> ChartLook {
+    let PictureLook { is_light, size } = look;
+    ChartLook { is_light, size }
 }
 
 /// Opens the window, or explains why there is none and traces a picture instead.

@@ -6,6 +6,15 @@ use std::process::ExitCode;
 use crate::lab::stability::Map;
 use crate::lab::{Growth, Study};
 
+/// How a picture that is drawn looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PictureLook {
+    /// Whether it is light.
+    pub is_light: bool,
+    /// Width and height in pixels.
+    pub size: (u32, u32),
+}
+
 /// What the command line asked for.
 #[derive(Debug)]
 pub enum CliAction {
@@ -20,10 +29,14 @@ pub enum CliAction {
         /// The names of what is selected first.
         select: Vec<String>,
     },
-    /// Draw the chart of a study into this file.
+    /// Draw the charts of studies into this file.
     Chart {
-        /// The study.
-        study: Box<Study>,
+        /// The studies, each with the name of its scene.
+        studies: Vec<(String, Study)>,
+        /// What was measured on.
+        machine: String,
+        /// How the picture looks.
+        look: PictureLook,
         /// The picture file; its ending is known to be good.
         path: PathBuf,
     },
@@ -31,6 +44,8 @@ pub enum CliAction {
     Growth {
         /// What was measured.
         growth: Growth,
+        /// How the picture looks.
+        look: PictureLook,
         /// The picture file; its ending is known to be good.
         path: PathBuf,
     },

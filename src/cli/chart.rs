@@ -1,31 +1,35 @@
 //! `glint chart`: what every way of tracing a scene costs, and how far it is off.
 
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::action::CliAction;
+use super::action::{CliAction, PictureLook};
 use super::error::{CliError, say};
 use super::scene::read_scene;
 use crate::export::write_text;
+use crate::files::processor;
 use crate::image::Format;
 use crate::lab::{Growth, Study, cheapest_within, csv, table};
 use crate::trace::{RenderControl, Threads};
 
 /// Primitives of the largest scene that growth is measured in.
 const MOST_PRIMITIVES: u32 = 1_000_000;
+/// Sides of the picture, in pixels: room for the words, and less than what a screen is out of.
+const SIDES: RangeInclusive<u32> = 480..=8192;
 /// Steps of the progress bar.
 const BAR: u64 = 1000;
 
 #[derive(Debug, Args)]
 pub struct ChartArgs {
-    /// The scene file (RON)
+    /// The scene files (RON); several become one picture with the same axes
     #[arg(required_unless_present = "growth")]
-    scene: Option<PathBuf>,
+    scenes: Vec<PathBuf>,
     /// Measure how time grows with the number of primitives, in scenes made for that, instead
-    #[arg(long, conflicts_with_all = ["scene", "within", "budget"])]
+    #[arg(long, conflicts_with_all = ["scenes", "within", "budget"])]
     growth: bool,
     /// Longer side of the pictures that are compared, in pixels
     #[arg(long, default_value = "256", value_parser = clap::value_parser!(u32).range(8..=2048))]
@@ -36,6 +40,12 @@ pub struct ChartArgs {
     /// Draw the chart into this picture (PNG or PPM)
     #[arg(long, value_name = "IMAGE")]
     png: Option<PathBuf>,
+    /// Colours of the picture
+    #[arg(long, value_name = "THEME", default_value = "dark")]
+    theme: PictureTheme,
+    /// Size of the picture in pixels
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1600x960", value_parser = picture_size)]
+    size: (u32, u32),
     /// Name the cheapest way whose RMSE (linear, 0–1) is at most this
     #[arg(long, value_name = "RMSE")]
     within: Option<f64>,
@@ -47,6 +57,22 @@ pub struct ChartArgs {
     threads: Option<u16>,
 }
 
+/// Colours of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum PictureTheme {
+    Light,
+    Dark,
+}
+
+impl ChartArgs {
+    fn look(&self) -> PictureLook {
+        PictureLook {
+            is_light: self.theme == PictureTheme::Light,
+            size: self.size,
+        }
+    }
+}
+
 /// Measures, prints the table, and writes what was asked for. The picture is left to whoever can draw.
 ///
 /// # Errors
@@ -55,22 +81,54 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
     // A name that cannot be written is known before the first ray.
     args.png.as_deref().map(Format::of_path).transpose()?;
     let threads = Threads::new(args.threads.map(usize::from))?;
-    let Some(scene) = &args.scene else {
+    if args.growth {
         return grow(args, &threads);
-    };
-    let scene = read_scene(scene)?;
-    let mut study = Study::of_side(Arc::new(scene), args.side);
-    measure(&mut study, &threads);
-    say(table(&study).trim_end());
-    if args.within.is_some() || args.budget.is_some() {
-        say(&advice(&study, args.within, args.budget));
+    }
+    // One that cannot be read is known before the first ray too.
+    let scenes = args.scenes.iter().map(|path| Ok((path, read_scene(path)?)));
+    let scenes = scenes.collect::<Result<Vec<_>, CliError>>()?;
+    let mut studies = Vec::new();
+    for (path, scene) in scenes {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let mut study = Study::of_side(Arc::new(scene), args.side);
+        measure(&mut study, &threads);
+        if args.scenes.len() > 1 {
+            say(&format!("{stem}:"));
+        }
+        say(table(&study).trim_end());
+        if args.within.is_some() || args.budget.is_some() {
+            say(&advice(&study, args.within, args.budget));
+        }
+        studies.push((capitalised(&stem), study));
     }
     if let Some(path) = &args.csv {
-        write_text(path, &csv(&study, &machine(), threads.count())?)?;
+        let machine = format!("{}, {}", processor(), std::env::consts::ARCH);
+        write_text(path, &csv(&studies, &machine, threads.count())?)?;
     }
-    let study = Box::new(study);
+    let machine = format!("{} threads, {}", threads.count(), processor());
+    let look = args.look();
     let path = args.png.clone();
-    Ok(path.map(|path| CliAction::Chart { study, path }))
+    Ok(path.map(|path| CliAction::Chart {
+        studies,
+        machine,
+        look,
+        path,
+    }))
+}
+
+fn capitalised(word: &str) -> String {
+    let mut letters = word.chars();
+    let first = letters.next().map(|first| first.to_uppercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
+}
+
+/// A size such as `1600x960`.
+fn picture_size(text: &str) -> Result<(u32, u32), String> {
+    let sides = text.split_once(['x', '×']);
+    let side = |text: &str| text.trim().parse().ok().filter(|side| SIDES.contains(side));
+    let size = sides.and_then(|(width, height)| Some((side(width)?, side(height)?)));
+    let (least, most) = (SIDES.start(), SIDES.end());
+    size.ok_or_else(|| format!("expected a size such as 1600x960, sides from {least} to {most}"))
 }
 
 /// The same for scenes of more and more primitives.
@@ -93,8 +151,9 @@ fn grow(args: &ChartArgs, threads: &Threads) -> Result<Option<CliAction>, CliErr
     if let Some(path) = &args.csv {
         write_text(path, &growth.csv()?)?;
     }
+    let look = args.look();
     let path = args.png.clone();
-    Ok(path.map(|path| CliAction::Growth { growth, path }))
+    Ok(path.map(|path| CliAction::Growth { growth, look, path }))
 }
 
 /// Draws to stderr, and only where that is a terminal.
@@ -134,13 +193,4 @@ fn advice(study: &Study, within: Option<f64>, budget: Option<f64>) -> String {
             format!("take {}: {}", candidate.name, candidate.words())
         },
     )
-}
-
-/// The processor's name where the system tells it, and its kind.
-fn machine() -> String {
-    let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let line = told.lines().find(|line| line.starts_with("model name"));
-    let name = line.and_then(|line| line.split_once(':'));
-    let name = name.map_or("unknown processor", |(_, name)| name.trim());
-    format!("{name}, {}", std::env::consts::ARCH)
 }

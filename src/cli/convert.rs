@@ -1,33 +1,56 @@
-//! `glint convert`: a mesh file becomes a scene.
+//! `glint convert`: a mesh file becomes a scene, or a scene a file for POV-Ray.
 
-use std::path::{PathBuf, absolute};
+use std::path::{Path, PathBuf, absolute};
 
 use clap::Args;
 
 use super::error::{CliError, say};
+use super::scene::read_scene;
+use crate::export::{povray_text, write_text};
 use crate::scene::{Document, Scene};
 
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
-    /// Mesh file: OBJ (with MTL), STL, PLY, glTF or GLB
-    #[arg(value_name = "MESH")]
+    /// Mesh file, OBJ (with MTL), STL, PLY, glTF or GLB; or a scene file (RON)
+    #[arg(value_name = "MESH|SCENE")]
     input: PathBuf,
-    /// Scene file (RON) to be written; refers to a mesh of one part beside it, and holds all others
-    #[arg(short, long, value_name = "SCENE")]
+    /// Scene file (RON) to be written; refers to a mesh of one part beside it, and holds all others. Of a scene, a
+    /// file for POV-Ray (.pov)
+    #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 }
 
-/// Writes a scene that shows the mesh whole, lit from two sides.
+/// Writes a scene that shows the mesh whole, lit from two sides; or the scene in POV-Ray's language.
 ///
 /// # Errors
-/// [`CliError`]: a mesh that cannot be read, or a scene that cannot be written.
+/// [`CliError`]: a file that cannot be read, or one that cannot be written.
 pub fn run(args: &ConvertArgs) -> Result<(), CliError> {
-    if args.output.extension().is_none_or(|ending| ending != "ron") {
-        return Err(CliError::usage(format!(
-            "{}: a scene file ends in .ron",
-            args.output.display()
-        )));
+    let ends_in = |path: &Path, ending: &str| path.extension().is_some_and(|end| end == ending);
+    let output = args.output.display();
+    match (ends_in(&args.input, "ron"), &args.output) {
+        (true, path) if ends_in(path, "pov") => write_povray(args),
+        (true, _) => Err(CliError::usage(format!(
+            "{output}: what is made of a scene ends in .pov"
+        ))),
+        (false, path) if ends_in(path, "ron") => write_scene(args),
+        (false, _) => Err(CliError::usage(format!(
+            "{output}: a scene file ends in .ron"
+        ))),
     }
+}
+
+fn write_povray(args: &ConvertArgs) -> Result<(), CliError> {
+    let scene = read_scene(&args.input)?;
+    write_text(&args.output, &povray_text(&scene))?;
+    let (width, height) = (scene.render.width, scene.render.height);
+    let path = args.output.display();
+    say(&format!(
+        "{path}: draw it with povray +I{path} +W{width} +H{height} -A File_Gamma=1.0 Dither=off"
+    ));
+    Ok(())
+}
+
+fn write_scene(args: &ConvertArgs) -> Result<(), CliError> {
     let input = absolute(&args.input).map_err(CliError::usage)?;
     let output = absolute(&args.output).map_err(CliError::usage)?;
     let scene = Scene::of_mesh_file(&input, output.parent()).map_err(CliError::usage)?;

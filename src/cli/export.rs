@@ -106,6 +106,11 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
     if args.dry_run {
         return tell_missing(&sequence);
     }
+    if let Some((path, _)) = video {
+        // It may be in the folder of the frames.
+        sequence.prepare()?;
+        Video::check_place(path).map_err(CliError::failed)?;
+    }
     let threads = Threads::new(args.threads.map(usize::from))?;
     let start = Instant::now();
     let reporter = ProgressReporter::new(&sequence, args.openjd);

@@ -23,6 +23,8 @@ mod chart;
 
 mod stability;
 
+mod referee;
+
 mod fallback;
 
 use std::ffi::OsString;
@@ -31,7 +33,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
 
-pub use action::CliAction;
+pub use action::{CliAction, PictureLook};
 pub use error::CliError;
 use error::WRONG;
 pub use fallback::picture_instead_of_window;
@@ -72,7 +74,7 @@ enum CliCommand {
     Job(export::JobArgs),
     /// Validate scene files
     Check(check::CheckArgs),
-    /// Make a scene of a mesh file
+    /// Make a scene of a mesh file, or a file for POV-Ray of a scene
     Convert(convert::ConvertArgs),
     /// Say what a scene needs of the tracer, and why
     Plan(plan::PlanArgs),
@@ -80,6 +82,8 @@ enum CliCommand {
     Chart(chart::ChartArgs),
     /// Say how often every formula fails, and where most
     Stability(stability::StabilityArgs),
+    /// Let POV-Ray draw the same scene, and say how far its picture differs
+    Referee(referee::RefereeArgs),
 }
 
 /// Reads the command line and runs its command, if it has one.
@@ -90,7 +94,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> CliAction {
     };
     if let Some(name) = unknown_command(&words) {
         return done(Err(CliError::usage(format!(
-            "there is no command {name:?}; there are render, export, job, check, convert, plan, chart and stability, and `glint SCENE` opens the editor"
+            "there is no command {name:?}; there are render, export, job, check, convert, plan, chart, stability and referee, and `glint SCENE` opens the editor"
         ))));
     }
     let words = match CliArgs::try_parse_from(words) {
@@ -114,6 +118,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> CliAction {
         Some(CliCommand::Plan(args)) => plan::run(args).map(|()| None),
         Some(CliCommand::Chart(args)) => chart::run(args),
         Some(CliCommand::Stability(args)) => stability::run(args),
+        Some(CliCommand::Referee(args)) => referee::run(args).map(|()| None),
         None => words.editor().map(Some),
     };
     match result {

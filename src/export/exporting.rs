@@ -83,6 +83,7 @@ impl Exporting {
     /// # Errors
     /// [`ExportError`], if the folder cannot be made or read.
     pub fn new(sequence: Sequence) -> Result<Self, ExportError> {
+        sequence.prepare()?;
         let manifest = sequence.manifest()?;
         let sequence = Arc::new(sequence);
         let (jobs, to_write) = sync_channel::<WriteJob>(WAITING);

@@ -26,14 +26,20 @@ pub enum FramesError {
         text: String,
     },
     /// More than can be handled at once.
-    #[error("there may be at most {MOST} frames at once")]
+    #[error("there may be at most {MOST} frames at once: ask for some of them, such as 1-{MOST}")]
     TooMany,
 }
 
 impl Frames {
     /// All frames from the first to this one.
-    pub fn up_to(last: u64) -> Self {
-        Self((1..=last.min(MOST)).collect())
+    ///
+    /// # Errors
+    /// [`FramesError::TooMany`].
+    pub fn up_to(last: u64) -> Result<Self, FramesError> {
+        if last > MOST {
+            return Err(FramesError::TooMany);
+        }
+        Ok(Self((1..=last).collect()))
     }
 
     /// Reads a set: numbers and ranges, apart by commas; a range may have a step.

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Read as _, Write as _};
+use std::io::{self, Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -95,10 +95,18 @@ pub fn add_note(
     fingerprint: &Hash,
     time: Duration,
 ) -> io::Result<()> {
-    let path = folder.join(MANIFEST);
+    let options = OpenOptions::new()
+        .create(true)
+        .append(true)
+        .read(true)
+        .clone();
+    let mut manifest = options.open(folder.join(MANIFEST))?;
     let mut line = String::new();
-    if !path.exists() {
-        let _ = writeln!(line, "{HEAD}");
+    match last_byte(&mut manifest)? {
+        None => drop(writeln!(line, "{HEAD}")),
+        Some(b'\n') => {}
+        // A line was cut off: it must not take this one with it.
+        Some(_) => line.push('\n'),
     }
     let _ = writeln!(
         line,
@@ -106,6 +114,15 @@ pub fn add_note(
         blake3::hash(bytes),
         time.as_secs_f64() * 1e3
     );
-    let mut manifest = OpenOptions::new().create(true).append(true).open(path)?;
     manifest.write_all(line.as_bytes())
+}
+
+fn last_byte(file: &mut File) -> io::Result<Option<u8>> {
+    if file.seek(SeekFrom::End(0))? == 0 {
+        return Ok(None);
+    }
+    file.seek(SeekFrom::End(-1))?;
+    let mut last = [0];
+    file.read_exact(&mut last)?;
+    Ok(Some(last[0]))
 }

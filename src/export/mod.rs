@@ -18,12 +18,15 @@ mod job;
 
 mod video;
 
+mod povray;
+
 pub use error::ExportError;
 pub use exporting::{ExportStep, Exported, Exporting};
 pub use frames::{Frames, FramesError};
 pub use job::job_template;
 pub use manifest::{Hash, Manifest};
 pub use pattern::{Pattern, PatternError};
+pub use povray::{ByPovray, PovrayError, by_povray, povray_text};
 pub use save::{free_path, save_image, write_text};
-pub use sequence::{NoSuchFrame, Sequence};
+pub use sequence::{NoSuchFrame, Sequence, SequenceError};
 pub use video::{Video, VideoError};

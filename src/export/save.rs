@@ -1,9 +1,10 @@
 //! Single pictures on disk.
 
+use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::error::ExportError;
-use crate::files::write_atomic;
+use crate::files::{NewFile, write_atomic};
 use crate::image::{Film, Format};
 
 /// Writes a picture in the format of the file's ending, whole or not at all.
@@ -12,14 +13,20 @@ use crate::image::{Film, Format};
 /// [`ExportError`]; a file that was at `path` is then untouched.
 pub fn save_image(film: &Film, path: &Path) -> Result<(), ExportError> {
     let format = Format::of_path(path)?;
-    let bytes = film.encode(format).map_err(|source| ExportError::Encode {
+    let disk = |source| ExportError::Disk {
+        path: path.to_owned(),
+        source,
+    };
+    let beside = NewFile::beside(path).map_err(disk)?;
+    let mut file = BufWriter::new(beside.as_file());
+    let encoded = film.encode(format, &mut file);
+    encoded.map_err(|source| ExportError::Encode {
         path: path.to_owned(),
         source,
     })?;
-    write_atomic(path, &bytes).map_err(|source| ExportError::Disk {
-        path: path.to_owned(),
-        source,
-    })
+    file.flush().map_err(disk)?;
+    drop(file);
+    beside.place_durably().map_err(disk)
 }
 
 /// Writes a text file, whole or not at all.

@@ -1,16 +1,16 @@
 //! An animation as files: which, where, and what each of them shows.
 
-use std::fs;
-use std::io;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
 use super::error::ExportError;
-use super::frames::Frames;
+use super::frames::{Frames, FramesError};
 use super::manifest::{Hash, Manifest, add_note};
 use super::pattern::Pattern;
 use crate::animate::{CameraPath, shot};
+use crate::files::{NewFile, make_folder, remove_leftovers};
 use crate::image::{Film, Format};
 use crate::plan::RenderRequest;
 use crate::scene::{Method as _, Scene};
@@ -40,22 +40,33 @@ pub struct NoSuchFrame {
     pub count: u64,
 }
 
+/// Why there is no sequence.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SequenceError {
+    /// The animation is shorter.
+    #[error(transparent)]
+    NoSuchFrame(#[from] NoSuchFrame),
+    /// All of its frames are too many.
+    #[error(transparent)]
+    Frames(#[from] FramesError),
+}
+
 impl Sequence {
     /// Frames of a scene; their size and how they are traced is what the scene's `render` says.
     ///
     /// # Errors
-    /// [`NoSuchFrame`], if the animation is shorter.
+    /// [`SequenceError`], if the animation is shorter, or longer than one sequence can be.
     pub fn new(
         scene: Arc<Scene>,
         frames: Option<Frames>,
         pattern: Pattern,
         format: Format,
         folder: PathBuf,
-    ) -> Result<Self, NoSuchFrame> {
+    ) -> Result<Self, SequenceError> {
         let count = scene.animation.frame_count();
-        let frames = frames.unwrap_or_else(|| Frames::up_to(count));
+        let frames = frames.map_or_else(|| Frames::up_to(count), Ok)?;
         if let Some(last) = frames.last().filter(|&last| last > count) {
-            return Err(NoSuchFrame { frame: last, count });
+            return Err(NoSuchFrame { frame: last, count }.into());
         }
         Ok(Self {
             path: CameraPath::new(&scene.animation.keys),
@@ -149,14 +160,22 @@ impl Sequence {
         Ok(missing)
     }
 
-    /// Makes the folder if it is not there, and reads its notes.
+    /// Makes the folder if it is not there, and removes what killed programs have left unfinished there.
+    ///
+    /// # Errors
+    /// [`ExportError::Disk`].
+    pub fn prepare(&self) -> Result<(), ExportError> {
+        make_folder(&self.folder).map_err(|source| disk(&self.folder, source))?;
+        remove_leftovers(&self.folder);
+        Ok(())
+    }
+
+    /// Reads the notes of the folder.
     ///
     /// # Errors
     /// [`ExportError::Disk`].
     pub fn manifest(&self) -> Result<Manifest, ExportError> {
-        let disk = |source| disk(&self.folder, source);
-        fs::create_dir_all(&self.folder).map_err(disk)?;
-        Manifest::read(&self.folder).map_err(disk)
+        Manifest::read(&self.folder).map_err(|source| disk(&self.folder, source))
     }
 
     /// Whether a frame is there, whole, and shows what it would show now.
@@ -181,21 +200,19 @@ impl Sequence {
         time: Duration,
     ) -> Result<(), ExportError> {
         let path = self.path(frame);
-        let bytes = film
-            .encode(self.format)
-            .map_err(|source| ExportError::Encode {
-                path: path.clone(),
-                source,
-            })?;
-        let file = self.file(frame);
-        // One name for each frame, so that what a killed program left is written over.
-        let beside = self.folder.join(format!(".{file}.part"));
-        let written = fs::write(&beside, &bytes).and_then(|()| fs::rename(&beside, &path));
-        if let Err(source) = written {
-            let _ = fs::remove_file(&beside);
-            return Err(disk(&path, source));
-        }
-        add_note(&self.folder, &file, &bytes, fingerprint, time)
+        let mut bytes = Vec::new();
+        let encoded = film.encode(self.format, &mut bytes);
+        encoded.map_err(|source| ExportError::Encode {
+            path: path.clone(),
+            source,
+        })?;
+        let beside = NewFile::beside(&path);
+        let written = beside.and_then(|beside| {
+            beside.as_file().write_all(&bytes)?;
+            beside.place()
+        });
+        written.map_err(|source| disk(&path, source))?;
+        add_note(&self.folder, &self.file(frame), &bytes, fingerprint, time)
             .map_err(|source| disk(&self.folder, source))
     }
 }

@@ -5,12 +5,12 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::Duration;
 
 use image::codecs::gif::{GifEncoder, Repeat};
 use image::{Delay, Frame, RgbaImage};
 
 use super::sequence::Sequence;
+use crate::files::{NewFile, remove_leftovers};
 use crate::image::{Format, Image, LinearImage};
 
 /// Speed of the GIF encoder's search for colours, 1 (slow) to 30.
@@ -128,20 +128,27 @@ impl Video {
         path: &Path,
         mut done: impl FnMut(usize),
     ) -> Result<(), VideoError> {
-        let unfinished_path = unfinished_path(path);
-        let made = match self {
-            Self::Gif => gif(sequence, &unfinished_path, &mut done),
-            Self::Apng => apng(sequence, &unfinished_path, &mut done),
+        let beside = NewFile::beside(path).map_err(|error| disk(path, &error))?;
+        match self {
+            Self::Gif => gif(sequence, beside.path(), &mut done)?,
+            Self::Apng => apng(sequence, beside.path(), &mut done)?,
             Self::H264 | Self::ProRes | Self::Lossless => {
-                self.by_ffmpeg(sequence, path, &unfinished_path, &mut done)
+                self.by_ffmpeg(sequence, path, beside.path(), &mut done)?;
             }
-        };
-        let placed = made
-            .and_then(|()| fs::rename(&unfinished_path, path).map_err(|error| disk(path, &error)));
-        if placed.is_err() {
-            let _ = fs::remove_file(&unfinished_path);
         }
-        placed
+        beside.place().map_err(|error| disk(path, &error))
+    }
+
+    /// Whether there could be a video at this path: asked before its frames are made.
+    ///
+    /// # Errors
+    /// [`VideoError::Disk`].
+    pub fn check_place(path: &Path) -> Result<(), VideoError> {
+        let beside = NewFile::beside(path).map_err(|error| disk(path, &error))?;
+        if let Some(folder) = beside.path().parent() {
+            remove_leftovers(folder);
+        }
+        Ok(())
     }
 
     fn by_ffmpeg(
@@ -205,7 +212,10 @@ impl Video {
         }
         let said = String::from_utf8_lossy(&output.stderr);
         let lines: Vec<&str> = said.lines().collect();
-        let said = lines[lines.len().saturating_sub(12)..].join("\n");
+        let mut said = lines[lines.len().saturating_sub(12)..].join("\n");
+        if output.status.code().is_none() {
+            said = format!("it was killed ({})\n{said}", output.status);
+        }
         Err(VideoError::Ffmpeg { said })
     }
 
@@ -238,12 +248,6 @@ fn quoted(word: &str) -> String {
     shlex::try_quote(word).map_or_else(|_| word.to_owned(), Cow::into_owned)
 }
 
-/// Beside the file, with its ending, by which encoders know the format.
-fn unfinished_path(path: &Path) -> PathBuf {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    path.with_file_name(format!(".part-{name}"))
-}
-
 fn disk(path: &Path, why: &dyn std::error::Error) -> VideoError {
     VideoError::Disk {
         path: path.to_owned(),
@@ -265,8 +269,10 @@ fn as_ppm(path: &Path) -> Result<Vec<u8>, VideoError> {
         height: frame.height() as usize,
         pixels: frame.pixels().map(|pixel| pixel.0).collect(),
     };
-    let encoded = image.encode(Format::Ppm);
-    encoded.map_err(|source| unreadable(path, source))
+    let mut bytes = Vec::new();
+    let encoded = image.encode(Format::Ppm, &mut bytes);
+    encoded.map_err(|source| unreadable(path, source))?;
+    Ok(bytes)
 }
 
 fn read(path: &Path) -> Result<RgbaImage, VideoError> {
@@ -290,15 +296,54 @@ fn gif(sequence: &Sequence, path: &Path, done: &mut impl FnMut(usize)) -> Result
     let mut encoder = GifEncoder::new_with_speed(BufWriter::new(file), GIF_SPEED);
     let wrong = |error: image::ImageError| disk(path, &error);
     encoder.set_repeat(Repeat::Infinite).map_err(wrong)?;
-    let delay = Duration::from_secs_f64(1.0 / sequence.frames_per_second());
-    for (index, frame) in sequence.frames.iter().enumerate() {
-        let image = read(&sequence.path(frame))?;
-        let delay = Delay::from_saturating_duration(delay);
-        let frame = Frame::from_parts(image, 0, 0, delay);
-        encoder.encode_frame(frame).map_err(wrong)?;
+    let ends = clock_ends(sequence.frames_per_second(), sequence.frames.count());
+    let mut start = 0;
+    for ((index, frame), end) in sequence.frames.iter().enumerate().zip(ends) {
+        if end > start {
+            let image = read(&sequence.path(frame))?;
+            let delay = Delay::from_numer_denom_ms((end - start) * 10, 1);
+            let frame = Frame::from_parts(image, 0, 0, delay);
+            encoder.encode_frame(frame).map_err(wrong)?;
+            start = end;
+        }
         done(index + 1);
     }
     Ok(())
+}
+
+/// When the frames of a GIF end, in hundredths of a second, its clock: as many pass in a second as shall. Where
+/// a frame would be shown for less than two, which players take for ten, it ends when the one before does: it
+/// is left out.
+fn clock_ends(frames_per_second: f64, count: usize) -> impl Iterator<Item = u32> {
+    let mut last = 0;
+    (1..=count).map(move |shown| {
+        let end = (shown as f64 * 100.0 / frames_per_second).round() as u32;
+        if end >= last + 2 {
+            last = end;
+        }
+        last
+    })
+}
+
+/// The fraction of two short whole numbers that is nearest to a number above 0: the last convergent of its
+/// continued fraction that they can hold (Hardy and Wright, "An introduction to the theory of numbers", ch. 10).
+fn nearest_fraction(number: f64) -> (u16, u16) {
+    let (mut before, mut best) = ((0.0, 1.0), (1.0, 0.0));
+    let mut rest = number;
+    for _ in 0..32 {
+        let whole = rest.floor();
+        let next = (whole * best.0 + before.0, whole * best.1 + before.1);
+        if next.0.max(next.1) > f64::from(u16::MAX) {
+            break;
+        }
+        (before, best) = (best, next);
+        // What is left is rounding.
+        if (best.0 / best.1 - number).abs() < 1e-12 * number {
+            break;
+        }
+        rest = 1.0 / (rest - whole);
+    }
+    (best.0 as u16, (best.1 as u16).max(1))
 }
 
 fn apng(sequence: &Sequence, path: &Path, done: &mut impl FnMut(usize)) -> Result<(), VideoError> {
@@ -311,9 +356,8 @@ fn apng(sequence: &Sequence, path: &Path, done: &mut impl FnMut(usize)) -> Resul
     encoder.set_compression(png::Compression::Fast);
     let count = u32::try_from(sequence.frames.count()).unwrap_or(u32::MAX);
     encoder.set_animated(count, 0).map_err(wrong)?;
-    // A delay is a fraction of two short whole numbers.
-    let thousandths = (1000.0 / sequence.frames_per_second()).round() as u16;
-    encoder.set_frame_delay(thousandths, 1000).map_err(wrong)?;
+    let (part, whole) = nearest_fraction(1.0 / sequence.frames_per_second());
+    encoder.set_frame_delay(part, whole).map_err(wrong)?;
     let mut writer = encoder.write_header().map_err(wrong)?;
     for (index, frame) in sequence.frames.iter().enumerate() {
         let image = image::DynamicImage::from(read(&sequence.path(frame))?).to_rgb8();
@@ -326,6 +370,41 @@ fn apng(sequence: &Sequence, path: &Path, done: &mut impl FnMut(usize)) -> Resul
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_gif_keeps_time_and_leaves_out_what_is_too_short() {
+        for fps in [1.0, 14.0, 14.0 / 3.0, 23.976, 24.0, 30.0, 50.0, 60.0, 120.0] {
+            let ends: Vec<u32> = clock_ends(fps, 1000).collect();
+            let exact = 1000.0 * 100.0 / fps;
+            let last = f64::from(*ends.last().expect("a thousand"));
+            assert!((last - exact).abs() <= 2.0, "{fps}: {last} of {exact}");
+            let mut shown = ends.clone();
+            shown.dedup();
+            shown.retain(|end| *end > 0);
+            let longest = (100.0 / fps).ceil() as u32;
+            let mut start = 0;
+            for end in shown {
+                assert!((2..=longest.max(3)).contains(&(end - start)), "{fps}");
+                start = end;
+            }
+        }
+    }
+
+    #[test]
+    fn a_frame_of_an_apng_is_shown_for_a_fraction_that_is_exact_where_it_can_be() {
+        for (fps, expected) in [
+            (14.0, (1, 14)),
+            (14.0 / 3.0, (3, 14)),
+            (24_000.0 / 1001.0, (1001, 24_000)),
+            (240.0, (1, 240)),
+            (0.01, (100, 1)),
+        ] {
+            assert_eq!(nearest_fraction(1.0 / fps), expected, "{fps}");
+        }
+        let (part, whole) = nearest_fraction(1.0 / 23.976);
+        let off = f64::from(part) / f64::from(whole) * 23.976 - 1.0;
+        assert!(off.abs() < 1e-8, "{off}");
+    }
 
     #[test]
     fn endings_name_the_kind() {

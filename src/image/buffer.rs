@@ -77,11 +77,6 @@ impl Image {
 }
 
 impl LinearImage {
-    /// Traces the pixels of `pass`; `None` if `control` said stop.
-    pub fn trace(&mut self, tracer: &Tracer, pass: Pass, control: &RenderControl) -> Option<Rays> {
-        tracer.pass(&mut self.pixels, pass, control)
-    }
-
     /// The same in 8 bits.
     pub fn to_levels(&self) -> Image {
         let pixels = self.pixels.iter();

@@ -1,11 +1,9 @@
 //! Pictures as files: PNG, binary PPM and EXR.
 
-use std::io::{Cursor, Seek, Write};
+use std::io::{self, Cursor, Write};
 use std::path::Path;
 
 use image::codecs::openexr::OpenExrEncoder;
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::codecs::pnm::{PnmEncoder, PnmSubtype, SampleEncoding};
 use image::{ExtendedColorType, ImageEncoder as _, ImageError};
 use serde::{Deserialize, Serialize};
 
@@ -71,19 +69,20 @@ impl LinearImage {
     /// The bytes of an EXR file.
     ///
     /// # Errors
-    /// What the encoder says; none is known for a valid picture.
-    pub fn encode(&self) -> Result<Vec<u8>, ImageError> {
+    /// What the encoder says, or the system.
+    pub fn encode(&self, file: &mut impl Write) -> Result<(), ImageError> {
         let channels = self.pixels.iter().flatten();
         let bytes: Vec<u8> = channels.flat_map(|channel| channel.to_ne_bytes()).collect();
-        let mut file = Cursor::new(Vec::new());
+        // The encoder goes back to where it has been.
+        let mut exr = Cursor::new(Vec::new());
         let (width, height) = (short(self.width), short(self.height));
-        OpenExrEncoder::new(&mut file).write_image(
+        OpenExrEncoder::new(&mut exr).write_image(
             &bytes,
             width,
             height,
             ExtendedColorType::Rgb32F,
         )?;
-        Ok(file.into_inner())
+        Ok(file.write_all(exr.get_ref())?)
     }
 }
 
@@ -93,37 +92,44 @@ fn short(side: usize) -> u32 {
 }
 
 impl Image {
-    /// The bytes of a file in this format, without alpha.
+    /// Writes it as a file in this format, without alpha, row by row.
     ///
     /// # Errors
-    /// What the encoder says; none is known for a valid picture.
-    pub fn encode(&self, format: Format) -> Result<Vec<u8>, ImageError> {
-        let mut file = Cursor::new(Vec::new());
-        self.encode_to(format, &mut file)?;
-        Ok(file.into_inner())
+    /// What the encoder says, or the system.
+    pub fn encode(&self, format: Format, file: &mut impl Write) -> Result<(), ImageError> {
+        match format {
+            Format::Png => self.write_png(file).map_err(io::Error::from)?,
+            Format::Ppm => {
+                write!(file, "P6\n{} {} 255\n", self.width, self.height)?;
+                self.write_rows(file)?;
+            }
+            Format::Exr => self.to_linear().encode(file)?,
+        }
+        Ok(())
     }
 
-    fn encode_to(&self, format: Format, file: &mut (impl Write + Seek)) -> Result<(), ImageError> {
-        let rgb: Vec<u8> = self
-            .pixels
-            .iter()
-            .flat_map(|&[r, g, b, _]| [r, g, b])
-            .collect();
-        let (width, height, kind) = (
-            short(self.width),
-            short(self.height),
-            ExtendedColorType::Rgb8,
-        );
-        match format {
-            Format::Png => {
-                PngEncoder::new_with_quality(file, CompressionType::Fast, FilterType::Adaptive)
-                    .write_image(&rgb, width, height, kind)
-            }
-            Format::Ppm => PnmEncoder::new(file)
-                .with_subtype(PnmSubtype::Pixmap(SampleEncoding::Binary))
-                .write_image(&rgb, width, height, kind),
-            Format::Exr => Ok(file.write_all(&self.to_linear().encode()?)?),
+    /// Fast rather than small, as pictures are written while the next one is traced.
+    fn write_png(&self, file: &mut impl Write) -> Result<(), png::EncodingError> {
+        let mut encoder = png::Encoder::new(file, short(self.width), short(self.height));
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::Fast);
+        encoder.set_filter(png::Filter::Adaptive);
+        let mut writer = encoder.write_header()?;
+        let mut rows = writer.stream_writer()?;
+        self.write_rows(&mut rows)?;
+        rows.finish()?;
+        writer.finish()
+    }
+
+    fn write_rows(&self, file: &mut impl Write) -> io::Result<()> {
+        let mut row = Vec::with_capacity(self.width * 3);
+        for pixels in self.pixels.chunks(self.width.max(1)) {
+            row.clear();
+            row.extend(pixels.iter().flat_map(|&[r, g, b, _]| [r, g, b]));
+            file.write_all(&row)?;
         }
+        Ok(())
     }
 }
 
@@ -137,7 +143,8 @@ mod tests {
         image.pixels.fill([0, 0, 0, 255]);
         image.pixels[4] = [1, 2, 250, 255];
         for format in Format::ALL {
-            let bytes = image.encode(format).expect("encodes");
+            let mut bytes = Vec::new();
+            image.encode(format, &mut bytes).expect("encodes");
             let back = image::load_from_memory(&bytes).expect("decodes").to_rgba8();
             assert_eq!(back.into_raw(), image.pixels.concat());
         }

@@ -1,6 +1,7 @@
 //! What a picture is traced onto before it becomes a file: as precise as the file can be.
 
 use std::borrow::Cow;
+use std::io::Write;
 
 use image::ImageError;
 
@@ -75,14 +76,14 @@ impl Film {
         }
     }
 
-    /// The bytes of a file in this format.
+    /// Writes it as a file in this format.
     ///
     /// # Errors
-    /// What the encoder says; none is known for a valid picture.
-    pub fn encode(&self, format: Format) -> Result<Vec<u8>, ImageError> {
+    /// What the encoder says, or the system.
+    pub fn encode(&self, format: Format, file: &mut impl Write) -> Result<(), ImageError> {
         match (self, format) {
-            (Self::Linear(image), Format::Exr) => image.encode(),
-            _ => self.levels().encode(format),
+            (Self::Linear(image), Format::Exr) => image.encode(file),
+            _ => self.levels().encode(format, file),
         }
     }
 }
@@ -109,7 +110,8 @@ mod tests {
         let is_between = |channel: &&f32| (**channel * 255.0).fract() != 0.0;
         let between = light.pixels.iter().flatten().filter(is_between).count();
         assert!(between > 100, "{between}");
-        let bytes = films[1].encode(Format::Exr).expect("encodes");
+        let mut bytes = Vec::new();
+        films[1].encode(Format::Exr, &mut bytes).expect("encodes");
         let back = image::load_from_memory(&bytes).expect("decodes");
         assert_eq!(back.to_rgb32f().into_raw(), light.pixels.concat());
     }

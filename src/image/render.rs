@@ -2,10 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use super::buffer::{Image, LinearImage};
+use super::buffer::{Image, LinearImage, Raster};
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::Scene;
-use crate::trace::{Pass, Rays, RenderControl, Tracer};
+use crate::trace::{Pass, Pixel, Rays, RenderControl, Tracer};
 
 /// What a picture cost.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,10 +38,7 @@ pub fn render_into(
     request: &RenderRequest,
     control: &RenderControl,
 ) -> Option<RenderCost> {
-    timed(scene, request, planner, |tracer| {
-        image.resize(tracer.width(), tracer.height());
-        image.trace(tracer, Pass::Whole, control)
-    })
+    render_pixels(image, planner, scene, request, control)
 }
 
 /// [`render_into`] for the light itself.
@@ -52,22 +49,21 @@ pub fn render_light_into(
     request: &RenderRequest,
     control: &RenderControl,
 ) -> Option<RenderCost> {
-    timed(scene, request, planner, |tracer| {
-        image.resize(tracer.width(), tracer.height());
-        image.trace(tracer, Pass::Whole, control)
-    })
+    render_pixels(image, planner, scene, request, control)
 }
 
-/// What it costs to plan a picture, and to do this with it.
-fn timed(
+// Not public: the tracer's kernels are compiled here, once, and not by everyone who calls them.
+fn render_pixels<P: Pixel + Copy + Default>(
+    image: &mut Raster<P>,
+    planner: &mut Planner,
     scene: &Scene,
     request: &RenderRequest,
-    planner: &mut Planner,
-    work: impl FnOnce(&Tracer) -> Option<Rays>,
+    control: &RenderControl,
 ) -> Option<RenderCost> {
     let start = Instant::now();
     let tracer = Tracer::planned(scene, request, planner);
-    let rays = work(&tracer)?;
+    image.resize(tracer.width(), tracer.height());
+    let rays = tracer.pass(&mut image.pixels, Pass::Whole, control)?;
     Some(RenderCost {
         time: start.elapsed(),
         rays,

@@ -6,11 +6,39 @@ use crate::scene::{
     Setting, SphereMethod, TriangleMethod, VisitSetting,
 };
 
+/// What a way of tracing differs in from the plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Family {
+    /// Where and how many samples there are, and how deep they go.
+    Sampling,
+    /// The formulas, and how primitives are found.
+    Formulas,
+    /// The real type.
+    Precision,
+    /// The size of the picture that is traced.
+    Resolution,
+    /// Everything, as in the program that this one grew from.
+    Original,
+}
+
+impl Family {
+    /// All of them, with their names.
+    pub const ALL: [(Self, &'static str); 5] = [
+        (Self::Sampling, "sampling"),
+        (Self::Formulas, "formulas"),
+        (Self::Precision, "precision"),
+        (Self::Resolution, "resolution"),
+        (Self::Original, "the original program"),
+    ];
+}
+
 /// One way of tracing a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
     /// What it is called in the chart.
     pub name: String,
+    /// What it differs in.
+    pub family: Family,
     /// Its settings. Width and height are those of the finished picture.
     pub render: Render,
     /// Whether parts of the model that the scene does not need are left out.
@@ -30,6 +58,7 @@ const ADAPTIVE: [(f64, u32); 5] = [(0.3, 1), (0.1, 1), (0.3, 3), (0.1, 2), (0.03
 pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
     let plan = Candidate {
         name: "the plan".to_owned(),
+        family: Family::Sampling,
         render: Render {
             width,
             height,
@@ -54,6 +83,7 @@ pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
     }
     all.push(Candidate {
         name: "the original program".to_owned(),
+        family: Family::Original,
         render: Render {
             antialias: Sampling::Centres,
             precision: Precision::Single,
@@ -66,24 +96,29 @@ pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
         model: Model::Everything,
         upscale: 1,
     });
-    let mut change = |name: String, change: &dyn Fn(&mut Render)| {
+    let mut change = |name: String, family: Family, change: &dyn Fn(&mut Render)| {
         let mut candidate = plan.clone();
-        candidate.name = name;
+        (candidate.name, candidate.family) = (name, family);
         change(&mut candidate.render);
         all.push(candidate);
     };
     // Every method of every setting but the plan's; of samplings there is a ladder below.
     for (name, render) in neighbours(&plan.render) {
-        change(name, &|own| *own = render.clone());
+        let family = if render.precision == plan.render.precision {
+            Family::Formulas
+        } else {
+            Family::Precision
+        };
+        change(name, family, &|own| *own = render.clone());
     }
     let limit = scene.render.reflection_limit;
     if limit > 0 {
-        change(bounces(limit - 1), &|render| {
+        change(bounces(limit - 1), Family::Sampling, &|render| {
             render.reflection_limit = limit - 1;
         });
     }
     if limit < MAX_REFLECTIONS {
-        change(bounces(limit + 1), &|render| {
+        change(bounces(limit + 1), Family::Sampling, &|render| {
             render.reflection_limit = limit + 1;
         });
     }
@@ -91,15 +126,18 @@ pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
         .chain(GRIDS.map(Sampling::Grid))
         .chain(ADAPTIVE.map(|(contrast, depth)| Sampling::Adaptive { contrast, depth }));
     for sampling in ladder {
-        change(sampling.id(), &|render| render.antialias = sampling);
+        change(sampling.id(), Family::Sampling, &|render| {
+            render.antialias = sampling;
+        });
     }
-    change("none, f64".to_owned(), &|render| {
+    change("none, f64".to_owned(), Family::Precision, &|render| {
         render.antialias = Sampling::Centres;
         render.precision = Precision::Double;
     });
     for upscale in [2, 4] {
         all.push(Candidate {
             name: format!("1/{upscale} size"),
+            family: Family::Resolution,
             upscale,
             ..plan.clone()
         });

@@ -11,6 +11,10 @@ mod pareto_front;
 
 mod study;
 
+mod clusters;
+
+mod finding;
+
 mod table;
 
 mod growth;
@@ -19,10 +23,12 @@ mod explain;
 
 pub mod stability;
 
-pub use candidates::{Candidate, candidates};
+pub use candidates::{Candidate, Family, candidates};
+pub use clusters::clusters;
 pub use explain::{Lit, Share, Sight, explain};
+pub use finding::finding;
 pub use growth::{Cost, Crowd, Growth};
 pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, difference, trace_light};
 pub use pareto_front::{cheapest_within, front};
 pub use study::{Measurement, Reference, Study, Timing};
-pub use table::{DOUBTFUL, csv, table};
+pub use table::{csv, table};

@@ -24,6 +24,9 @@ const SLOW: Duration = Duration::from_millis(250);
 /// Timed runs of such.
 const SLOW_ROUNDS: usize = 3;
 
+/// A spread above this makes a time doubtful.
+const DOUBTFUL: f64 = 0.2;
+
 /// One measured way of tracing.
 #[derive(Clone, Debug)]
 pub struct Measurement {
@@ -46,6 +49,8 @@ pub struct Measurement {
 pub struct Timing {
     /// Milliseconds; the middle of all runs.
     pub median: f64,
+    /// Milliseconds; a quarter of the runs was faster than the first, and slower than the second.
+    pub quartiles: (f64, f64),
     /// Distance of the quartiles, as a share of the median.
     pub spread: f64,
     /// How many runs there were.
@@ -274,6 +279,11 @@ impl Measurement {
         }
     }
 
+    /// Whether its runs differ by too much to trust their median.
+    pub fn is_doubtful(&self) -> bool {
+        self.timing().is_some_and(|timing| timing.spread > DOUBTFUL)
+    }
+
     /// Its time, once there is one.
     pub fn timing(&self) -> Option<Timing> {
         let mut times = self.times.clone();
@@ -282,6 +292,7 @@ impl Measurement {
         let (median, low, high) = (*at(0.5)?, *at(0.25)?, *at(0.75)?);
         Some(Timing {
             median,
+            quartiles: (low, high),
             spread: (high - low) / median,
             runs: times.len(),
         })

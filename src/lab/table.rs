@@ -7,9 +7,6 @@ use serde::Serialize;
 use super::pareto_front::front;
 use super::study::{Measurement, Study};
 
-/// A spread above this makes a time doubtful.
-pub const DOUBTFUL: f64 = 0.2;
-
 impl Study {
     /// Milliseconds and RMSE of each dot, as far as they are known; NaN elsewhere.
     pub fn costs(&self) -> Vec<(f64, f64)> {
@@ -20,12 +17,23 @@ impl Study {
             .map(|dot| (cost(dot), error(dot)))
             .collect()
     }
+
+    /// The same, without the times of those that are doubtful: they carry no front.
+    pub fn certain_costs(&self) -> Vec<(f64, f64)> {
+        let mut costs = self.costs();
+        for (cost, dot) in costs.iter_mut().zip(&self.measurements) {
+            if dot.is_doubtful() {
+                cost.0 = f64::NAN;
+            }
+        }
+        costs
+    }
 }
 
 /// The dots by time, for people; those on the front are marked.
 pub fn table(study: &Study) -> String {
     let costs = study.costs();
-    let front = front(&costs);
+    let front = front(&study.certain_costs());
     let mut order: Vec<usize> = (0..study.measurements.len()).collect();
     order.sort_by(|&a, &b| costs[a].0.total_cmp(&costs[b].0));
     let mut text = format!(
@@ -38,7 +46,7 @@ pub fn table(study: &Study) -> String {
             continue;
         };
         let mark = if front.contains(&place) { '*' } else { ' ' };
-        let doubt = if timing.spread > DOUBTFUL { "?" } else { "" };
+        let doubt = if dot.is_doubtful() { "?" } else { "" };
         let _ = writeln!(
             text,
             "{mark} {:<22} {:>9.3} {:>7} {:>9.2} {:>10.2e} {:>7.1} {:>7.4} {:>7.3}%",
@@ -85,18 +93,35 @@ struct Figures<'a> {
     lanes: &'a str,
     threads: usize,
     machine: &'a str,
+    scene: &'a str,
 }
 
-/// All figures of a study as comma-separated values, one line for each dot.
+/// All figures of studies, each with the name of its scene, as comma-separated values: one line for each dot.
 ///
 /// # Errors
 /// None is known: everything is written to memory.
-pub fn csv(study: &Study, machine: &str, threads: usize) -> Result<String, csv::Error> {
-    let front = front(&study.costs());
+pub fn csv(
+    studies: &[(String, Study)],
+    machine: &str,
+    threads: usize,
+) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for (scene, study) in studies {
+        write_figures(&mut writer, scene, study, (machine, threads))?;
+    }
+    written(writer)
+}
+
+fn write_figures(
+    writer: &mut csv::Writer<Vec<u8>>,
+    scene: &str,
+    study: &Study,
+    (machine, threads): (&str, usize),
+) -> Result<(), csv::Error> {
+    let front = front(&study.certain_costs());
     let reference = study.reference.as_ref();
     let reference_rmse = reference.map_or(f64::NAN, |truth| truth.rmse);
     let (width, height) = study.size();
-    let mut writer = csv::Writer::from_writer(Vec::new());
     for (index, dot) in study.measurements.iter().enumerate() {
         let (Some(timing), Some(metrics)) = (dot.timing(), dot.metrics) else {
             continue;
@@ -119,9 +144,10 @@ pub fn csv(study: &Study, machine: &str, threads: usize) -> Result<String, csv::
             lanes: &dot.lanes,
             threads,
             machine,
+            scene,
         })?;
     }
-    written(writer)
+    Ok(())
 }
 
 /// The text that a writer has made.

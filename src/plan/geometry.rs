@@ -1,5 +1,6 @@
 //! What many objects become: packed once, in a tree, and kept from picture to picture.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -9,7 +10,7 @@ use super::packed_mesh::{MeshInstance, PackedMesh, measure, member};
 use crate::primitive::{
     BoundingBox, Kind, Packing, Primitive, Primitives, Visit, count_corner_users, number_corners,
 };
-use crate::scene::{Accelerator, List, Object, Scene, Shape};
+use crate::scene::{Accelerator, Coincidence, List, Object, Scene, Shape, coincidences};
 use crate::simd::{Real, Vec3};
 
 /// Above so many, walking a tree costs less than testing every object that a tile can see.
@@ -38,6 +39,7 @@ pub struct Geometry<R> {
 #[derive(Clone, Debug, Default)]
 pub struct Kept<R> {
     last: Option<(Source, Arc<Geometry<R>>)>,
+    coincidences: Option<(List<Object>, Arc<[Coincidence]>)>,
     /// Meshes of other pictures.
     others: Vec<Arc<PackedMesh<R>>>,
 }
@@ -66,19 +68,23 @@ struct Source {
     centre: DVec3,
     /// The names of the packs in their order: their places are in the primitives.
     packs: Vec<String>,
+    /// The places of objects that stand apart from it.
+    apart: BTreeSet<usize>,
 }
 
 impl Source {
-    fn of(scene: &Scene, centre: DVec3) -> Self {
+    fn of(scene: &Scene, centre: DVec3, apart: &BTreeSet<usize>) -> Self {
         Self {
             objects: scene.objects.clone(),
             centre,
             packs: scene.color_packs.keys().cloned().collect(),
+            apart: apart.clone(),
         }
     }
 
-    fn is_of(&self, scene: &Scene, centre: DVec3) -> bool {
+    fn is_of(&self, scene: &Scene, centre: DVec3, apart: &BTreeSet<usize>) -> bool {
         self.centre == centre
+            && self.apart == *apart
             && self.objects.is_same(&scene.objects)
             && self.packs.iter().eq(scene.color_packs.keys())
     }
@@ -91,10 +97,28 @@ impl<R: Real> Kept<R> {
         self.others = meshes.collect();
     }
 
-    /// The geometry of a scene, relative to `centre`: the last one, if nothing of it has changed.
-    pub fn geometry(&mut self, scene: &Scene, centre: DVec3) -> Arc<Geometry<R>> {
+    /// The objects of a scene that fill the same surface; the last ones, if none has changed.
+    pub fn coincidences(&mut self, objects: &List<Object>, centre: DVec3) -> Arc<[Coincidence]> {
+        if let Some((of, found)) = &self.coincidences
+            && of.is_same(objects)
+        {
+            return Arc::clone(found);
+        }
+        let found: Arc<[Coincidence]> = coincidences(objects, centre).into();
+        self.coincidences = Some((objects.clone(), Arc::clone(&found)));
+        found
+    }
+
+    /// The geometry of a scene, relative to `centre`, without what stands apart: the last one, if nothing of
+    /// it has changed.
+    pub fn geometry(
+        &mut self,
+        scene: &Scene,
+        centre: DVec3,
+        apart: &BTreeSet<usize>,
+    ) -> Arc<Geometry<R>> {
         if let Some((source, geometry)) = &self.last
-            && source.is_of(scene, centre)
+            && source.is_of(scene, centre, apart)
         {
             return Arc::clone(geometry);
         }
@@ -106,9 +130,9 @@ impl<R: Real> Kept<R> {
                 .iter()
                 .flat_map(|(_, last)| last.packed_meshes()),
         );
-        let geometry = Geometry::new(scene, centre, meshes);
+        let geometry = Geometry::new(scene, (centre, apart), meshes);
         let geometry = Arc::new(geometry);
-        self.last = Some((Source::of(scene, centre), Arc::clone(&geometry)));
+        self.last = Some((Source::of(scene, centre, apart), Arc::clone(&geometry)));
         geometry
     }
 }
@@ -132,17 +156,23 @@ pub fn is_tree(scene: &Scene, accelerator: Accelerator, may_cull: bool) -> bool 
 }
 
 impl<R: Real> Geometry<R> {
-    /// Packs the visible objects that end, relative to `centre`, with those of the meshes that are packed
+    /// Packs the objects that are to stand in it, relative to `centre`, with those of the meshes that are packed
     /// already.
-    fn new(scene: &Scene, centre: DVec3, mut packed: Vec<Arc<PackedMesh<R>>>) -> Self {
+    fn new(
+        scene: &Scene,
+        (centre, apart): (DVec3, &BTreeSet<usize>),
+        mut packed: Vec<Arc<PackedMesh<R>>>,
+    ) -> Self {
         let (mut primitives, mut meshes) = (Primitives::default(), Vec::new());
         let packing = Packing {
             centre,
             corner_users: &count_corner_users(scene),
             projector: None,
         };
-        let visible = scene.objects.iter().filter(|object| object.visible);
-        for object in visible.filter(|object| object.shape.bounds().is_some()) {
+        for (index, object) in scene.objects.iter().enumerate() {
+            if !is_planted(object) || apart.contains(&index) {
+                continue;
+            }
             let material = material_number(scene, &object.color_pack);
             match &object.shape {
                 Shape::Mesh(mesh) => {
@@ -226,6 +256,11 @@ impl<R: Real> Geometry<R> {
         let after = self.meshes.partition_point(|mesh| mesh.first <= number);
         self.meshes.get(after.wrapping_sub(1))
     }
+}
+
+/// Whether an object stands in the tree of a scene that has one: where it ends and is visible.
+pub fn is_planted(object: &Object) -> bool {
+    object.visible && object.shape.bounds().is_some()
 }
 
 /// Measures how thick what loose triangles make is, where they hang together.

@@ -16,13 +16,19 @@ mod packed_mesh;
 
 mod geometry;
 
-mod precision;
-
 mod request;
+
+mod precision;
 
 mod materials;
 
 mod plane_occluders;
+
+mod contacts;
+
+mod lights;
+
+mod ray_origin;
 
 mod solids;
 
@@ -37,11 +43,13 @@ mod needs;
 pub use balls::Balls;
 pub use bvh::{Bvh, Child, GROUP, Node};
 pub use geometry::{Geometry, Kept, Planner};
+pub use lights::PointLight;
 pub use materials::{Material, Surface};
 pub use needs::{Need, needs};
-pub use pack::{Plan, PointLight, RayOrigin};
+pub use pack::Plan;
 pub use packed_mesh::{MeshInstance, PackedMesh};
-pub use precision::{is_uncountable, needs_double};
+pub use precision::is_double;
+pub use ray_origin::RayOrigin;
 pub use request::{Model, Region, RenderRequest};
 pub use show::Show;
 pub use view::View;

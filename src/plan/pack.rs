@@ -6,18 +6,22 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::balls::{Balls, balls_of};
-use super::geometry::{Geometry, Kept, is_tree, material_number, measure_loose};
+use super::contacts::{Contacts, Tie};
+use super::geometry::{Geometry, Kept, is_planted, is_tree, material_number, measure_loose};
+use super::lights::{PointLight, pack_lights};
 use super::materials::{Material, linear, pack_materials};
-use super::plane_occluders::{PlaneOccluder, classify_planes};
+use super::plane_occluders::classify_planes;
+use super::ray_origin::{RayOrigin, ray_origin};
 use super::request::{Model, RenderRequest};
 use super::show::Show;
 use super::solids::Solids;
 use super::view::View;
 use crate::primitive::{
-    BoundingBox, CAUTION, KINDS, Packing, Primitives, Projector, Rectangle, count_corner_users,
+    BoundingBox, CAUTION, KINDS, Packed, Packing, Primitives, Projector, Rectangle,
+    count_corner_users,
 };
 use crate::scene::{
-    Accelerator, Camera, LightObj, Methods, Projection, RayOffset, Sampling, Scene, Shape, Sphere,
+    Accelerator, Camera, LightObj, Methods, Object, Projection, Sampling, Scene, Shape, Sphere,
     SphereMethod,
 };
 use crate::simd::{Real, Vec3};
@@ -69,31 +73,14 @@ pub struct Plan<R> {
     pub in_balls: Vec<u32>,
     /// For each triangle, whether no camera ray needs it; empty where they all may.
     pub camera_culled_faces: Vec<bool>,
-}
-
-/// [`RayOffset`] with its lengths in the scene's units.
-#[derive(Clone, Copy, Debug)]
-pub enum RayOrigin<R> {
-    /// At the hit, ignoring the own primitive.
-    AtHit,
-    /// So far along the new ray.
-    Along(R),
-    /// 256 roundings along the normal.
-    Roundings,
-}
-
-/// A point light.
-#[derive(Clone, Debug)]
-pub struct PointLight<R> {
-    /// Where it shines from.
-    pub position: Vec3<R>,
-    /// > 0.
-    pub intensity: R,
-    /// For each triangle, whether another one casts all of its shadow; empty where none is known.
-    pub shadow_culled_faces: Vec<bool>,
-    /// For each mesh of the geometry, whether its faces that are turned to the light cast no shadow that
-    /// the others do not: rays that leave the mesh there have entered it elsewhere.
-    pub lit_faces_are_idle: Vec<bool>,
+    /// Numbers of primitives whose planes hold the eye: no camera ray needs them.
+    pub edge_on: Vec<usize>,
+    /// The number of what the camera's rays start on.
+    pub eye_on: Option<usize>,
+    /// Primitives in whose surface others lie, which are seen there.
+    pub ties: Vec<Tie>,
+    /// The largest coordinate of what ends.
+    pub extent: R,
 }
 
 /// Pixels added around everything for the rounding of the kernel.
@@ -105,9 +92,9 @@ const SMOOTH_MARGIN: f64 = 4.0;
 impl<R: Real> Plan<R> {
     /// Packs what `request` of `scene` can show. The scene must pass [`crate::scene::check`].
     pub fn new(scene: &Scene, request: &RenderRequest, kept: &mut Kept<R>) -> Self {
-        let centre = scene
-            .objects_bounds()
-            .map_or(scene.camera.position, |(low, high)| low * 0.5 + high * 0.5);
+        let bounds = scene.objects_bounds();
+        let centre = bounds.map_or(scene.camera.position, |(low, high)| low * 0.5 + high * 0.5);
+        let half = bounds.map_or(0.0, |(low, high)| (high * 0.5 - low * 0.5).max_element());
         let (occluders, model) = (classify_planes(scene, request), request.model);
         // The classic formula hits spheres where they are not: that must show.
         let may_cull = request.methods.sphere == SphereMethod::Stable && model == Model::Needed;
@@ -119,18 +106,9 @@ impl<R: Real> Plan<R> {
             geometry: None,
             is_boxed: may_cull && request.accelerator != Accelerator::List,
             outline: Vec::new(),
-            lights: pack_lights(
-                scene,
-                centre,
-                occluders.as_deref().unwrap_or_default(),
-                model,
-            ),
+            lights: Vec::new(),
             materials: pack_materials(scene, request),
-            show: Show::new(
-                request.aspect,
-                scene,
-                request.projection.unwrap_or(scene.camera.projection),
-            ),
+            show: Show::new(request.aspect, scene, request.projection_of(&scene.camera)),
             background: linear(scene.background),
             reflection_limit: scene.render.reflection_limit,
             methods: request.methods,
@@ -141,16 +119,37 @@ impl<R: Real> Plan<R> {
             balls: Balls::default(),
             in_balls: Vec::new(),
             camera_culled_faces: Vec::new(),
+            edge_on: Vec::new(),
+            eye_on: None,
+            ties: Vec::new(),
+            extent: R::from_f64(half),
         };
+        let found = kept.coincidences(&scene.objects, centre);
+        let contacts = Contacts::new(scene, request, &found);
         let projector = if may_cull {
             projector(scene, request)
         } else {
             None
         };
         if is_tree(scene, request.accelerator, may_cull) {
-            plan.take_geometry(kept.geometry(scene, centre), projector.as_ref(), centre);
+            let geometry = kept.geometry(scene, centre, contacts.apart());
+            plan.take_geometry(geometry, projector.as_ref(), centre);
         }
-        plan.pack(scene, centre, projector.as_ref());
+        let numbers = plan.pack(scene, &contacts, projector.as_ref());
+        let number = |place: &usize| numbers.get(place).copied();
+        plan.edge_on = contacts.edge_on.iter().filter_map(number).collect();
+        plan.eye_on = contacts.eye_on.as_ref().and_then(number);
+        plan.ties = contacts.ties(number);
+        let occluders = occluders.as_deref().unwrap_or_default();
+        let holders = |light: usize| {
+            let holders = contacts.lights_in.get(light).into_iter().flatten();
+            holders.filter_map(number).collect()
+        };
+        let touches = |light: usize| {
+            contacts.touching_lights.contains(&light)
+                || plan.is_at_mesh(scene.lights[light].position)
+        };
+        plan.lights = pack_lights(scene, centre, (occluders, model), (touches, holders));
         if matches!(request.sampling, Sampling::Adaptive { .. }) {
             measure_loose(&mut plan.primitives);
         }
@@ -163,6 +162,13 @@ impl<R: Real> Plan<R> {
             }
         }
         plan
+    }
+
+    /// Whether a point may be on a mesh.
+    fn is_at_mesh(&self, point: DVec3) -> bool {
+        let point = Vec3::from_dvec3(point - self.centre);
+        let meshes = self.geometry.iter().flat_map(|geometry| &geometry.meshes);
+        meshes.into_iter().any(|mesh| mesh.is_around(point))
     }
 
     /// Takes what stands in a tree, and surrounds it.
@@ -181,27 +187,54 @@ impl<R: Real> Plan<R> {
         self.geometry = Some(geometry);
     }
 
-    /// Packs the markers, then the visible objects that stand in no tree.
-    fn pack(&mut self, scene: &Scene, centre: DVec3, projector: Option<&Projector>) {
-        let is_listed = |shape: &Shape| self.geometry.is_none() || shape.bounds().is_none();
-        let visible = scene.objects.iter().filter(|object| object.visible);
-        let listed: Vec<_> = visible.filter(|object| is_listed(&object.shape)).collect();
+    /// Packs the markers, then the visible objects that stand in no tree. Gives the numbers of those that
+    /// stand apart, by their places in the scene.
+    fn pack(
+        &mut self,
+        scene: &Scene,
+        contacts: &Contacts,
+        projector: Option<&Projector>,
+    ) -> HashMap<usize, usize> {
         let corner_users = match self.geometry {
             Some(_) => HashMap::new(),
             None => count_corner_users(scene),
         };
         let packing = Packing {
-            centre,
+            centre: self.centre,
             corner_users: &corner_users,
             projector,
         };
         if scene.light_visualization {
             self.pack_markers(scene, &packing);
         }
-        for object in listed {
+        let apart = contacts.apart();
+        let is_listed = |index: usize, object: &Object| {
+            let is_planted = self.geometry.is_some() && is_planted(object);
+            object.visible && (!is_planted || apart.contains(&index))
+        };
+        let objects = scene.objects.iter().enumerate();
+        let listed: Vec<_> = objects
+            .filter(|(index, object)| is_listed(*index, object))
+            .collect();
+        let mut found = Vec::new();
+        for (index, object) in listed {
+            if contacts.covered.contains(&index) {
+                continue;
+            }
             let material = material_number(scene, &object.color_pack);
-            self.push(&object.shape, material, &packing);
+            let packed = self.push(&object.shape, material, &packing);
+            found.extend(
+                packed
+                    .filter(|_| apart.contains(&index))
+                    .map(|packed| (index, packed)),
+            );
         }
+        let firsts = self.primitives.firsts();
+        let number = |packed: &Packed| firsts[packed.kind as usize] + packed.index;
+        found
+            .iter()
+            .map(|(index, packed)| (*index, number(packed)))
+            .collect()
     }
 
     fn pack_markers(&mut self, scene: &Scene, packing: &Packing) {
@@ -220,18 +253,19 @@ impl<R: Real> Plan<R> {
         self.markers = self.primitives.spheres.len();
     }
 
-    fn push(&mut self, shape: &Shape, material: u32, packing: &Packing) {
-        let place = self.primitives.push(shape, material, packing);
-        if let (Some((kind, rectangle)), Some(screen)) = (place, &mut self.screen) {
-            screen[kind as usize].push(rectangle);
+    fn push(&mut self, shape: &Shape, material: u32, packing: &Packing) -> Option<Packed> {
+        let packed = self.primitives.push(shape, material, packing)?;
+        if let (Some(rectangle), Some(screen)) = (packed.rectangle, &mut self.screen) {
+            screen[packed.kind as usize].push(rectangle);
         }
+        Some(packed)
     }
 
     /// Finds the faces of solids that camera rays, and shadow rays to each light, can do without.
     fn drop_far_faces(&mut self, scene: &Scene, request: &RenderRequest, centre: DVec3) {
         let triangles = self.primitives.triangles.iter();
         let solids = Solids::among(triangles.map(|t| t.corners.map(Vec3::to_dvec3)).collect());
-        let projection = request.projection.unwrap_or(scene.camera.projection);
+        let projection = request.projection_of(&scene.camera);
         if projection == Projection::Perspective {
             self.camera_culled_faces = solids.turned_away(scene.camera.position - centre);
         }
@@ -243,7 +277,7 @@ impl<R: Real> Plan<R> {
     /// Finds the meshes whose faces towards a light need no shadow test: those with an inside where neither
     /// the eye nor the light is, so that no ray that counts sets out there either.
     fn drop_lit_faces(&mut self, scene: &Scene, request: &RenderRequest) {
-        let projection = request.projection.unwrap_or(scene.camera.projection);
+        let projection = request.projection_of(&scene.camera);
         let Some(geometry) = &self.geometry else {
             return;
         };
@@ -287,7 +321,7 @@ impl<R: Real> Plan<R> {
 
 fn projector(scene: &Scene, request: &RenderRequest) -> Option<Projector> {
     let camera = Camera {
-        projection: request.projection.unwrap_or(scene.camera.projection),
+        projection: request.projection_of(&scene.camera),
         ..scene.camera.clone()
     };
     let margin = match request.sampling {
@@ -295,48 +329,6 @@ fn projector(scene: &Scene, request: &RenderRequest) -> Option<Projector> {
         Sampling::Centres | Sampling::Grid(_) => MARGIN,
     };
     Projector::new(&camera, (request.width, request.height), margin)
-}
-
-fn ray_origin<R: Real>(scene: &Scene, offset: RayOffset) -> RayOrigin<R> {
-    let along = |distance| RayOrigin::Along(R::from_f64(distance));
-    match offset {
-        RayOffset::Robust => RayOrigin::AtHit,
-        RayOffset::Fixed(distance) => along(distance),
-        RayOffset::Relative(share) => {
-            let diagonal = scene
-                .bounds()
-                .map_or(1.0, |(low, high)| (high - low).length());
-            along(share * diagonal)
-        }
-        RayOffset::WachterBinder => RayOrigin::Roundings,
-    }
-}
-
-/// Lights that shine on what the eye can reach.
-fn pack_lights<R: Real>(
-    scene: &Scene,
-    centre: DVec3,
-    occluders: &[PlaneOccluder],
-    model: Model,
-) -> Vec<PointLight<R>> {
-    let all = model == Model::Everything;
-    let shining = scene
-        .lights
-        .iter()
-        .filter(|light| light.visible && (all || light.intensity > 0.0));
-    shining
-        .filter(|light| {
-            occluders
-                .iter()
-                .all(|plane| plane.side(light.position) >= 0.0)
-        })
-        .map(|light| PointLight {
-            position: Vec3::from_dvec3(light.position - centre),
-            intensity: R::from_f64(light.intensity),
-            shadow_culled_faces: Vec::new(),
-            lit_faces_are_idle: Vec::new(),
-        })
-        .collect()
 }
 
 #[cfg(test)]

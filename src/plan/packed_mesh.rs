@@ -8,7 +8,7 @@ use super::bvh::{Bvh, Member};
 use super::smooth::{corner_normals, largest_lift};
 use super::thickness::{is_outside, measures};
 use crate::mesh::Triangles;
-use crate::primitive::{BoundingBox, CornerNormals, PackedTriangle};
+use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle};
 use crate::scene::Mesh;
 use crate::simd::{Real, Vec3};
 
@@ -24,6 +24,8 @@ pub struct PackedMesh<R> {
     pub lift: R,
     /// The way to them.
     pub bvh: Bvh<R>,
+    /// How far they reach from the middle of the box around them.
+    pub reach: R,
     /// Whether it has an inside, and its normals point away from there.
     is_solid: bool,
     /// The middle, from the origin of the mesh.
@@ -77,6 +79,7 @@ impl<R: Real> PackedMesh<R> {
         };
         Self {
             lift: largest_lift(&triangles, &smooth),
+            reach: reach(&triangles, bvh.bounds.ball().0),
             smooth,
             bvh,
             is_solid: is_closed && volume(&triangles) > 0.0,
@@ -127,6 +130,13 @@ pub fn measure<R: Real>(
     measures.is_closed
 }
 
+/// How far the corners of triangles are from a point, at most.
+fn reach<R: Real>(triangles: &[PackedTriangle<R>], from: Vec3<R>) -> R {
+    let corners = triangles.iter().flat_map(|triangle| triangle.corners);
+    let farthest = corners.map(|corner| (corner - from).length());
+    farthest.fold(R::ZERO, R::max) * R::from_f64(1.0 + CAUTION)
+}
+
 /// A triangle as a member of a tree.
 pub fn member<R: Real>(triangle: &PackedTriangle<R>) -> Member<R> {
     Member {
@@ -140,6 +150,15 @@ impl<R: Real> MeshInstance<R> {
     pub fn is_seen_from_outside(&self, point: Vec3<R>) -> bool {
         let PackedMesh { triangles, bvh, .. } = &*self.mesh;
         self.mesh.is_solid && is_outside(triangles, bvh, point - self.centre)
+    }
+
+    /// Whether a point is in the box around it, or on it.
+    pub fn is_around(&self, point: Vec3<R>) -> bool {
+        let BoundingBox { low, high } = self.member().bounds;
+        let within = |low: R, at: R, high: R| low <= at && at <= high;
+        within(low.x, point.x, high.x)
+            && within(low.y, point.y, high.y)
+            && within(low.z, point.z, high.z)
     }
 
     /// The mesh as a member of the tree over all objects.

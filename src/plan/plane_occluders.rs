@@ -3,30 +3,20 @@
 use glam::DVec3;
 
 use super::request::{Model, RenderRequest};
-use crate::scene::{Projection, Scene};
+use crate::scene::{Outline, PlanePiece, Projection, Scene};
 
-/// A plane, its normal turned to the eye.
+/// A plane that is seen from one side.
 pub struct PlaneOccluder {
-    /// The unit normal.
-    normal: DVec3,
-    /// Any of its points.
-    point: DVec3,
+    piece: PlanePiece,
+    /// Whether its normal points away from the eye.
+    is_turned: bool,
 }
-
-/// Share of the coordinates within which a point counts as on a plane: what their own rounding
-/// may have moved it by.
-const ON_PLANE: f64 = 1e-12;
 
 impl PlaneOccluder {
     /// Above zero on the eye's side, below it behind the plane, zero on it.
     pub fn side(&self, point: DVec3) -> f64 {
-        let height = self.normal.dot(point - self.point);
-        let rounding = ON_PLANE * (point.abs().max_element() + self.point.abs().max_element());
-        if height.abs() <= rounding {
-            0.0
-        } else {
-            height
-        }
+        let height = self.piece.height(point);
+        if self.is_turned { -height } else { height }
     }
 }
 
@@ -35,26 +25,18 @@ impl PlaneOccluder {
 /// which start on both sides, for an eye on a plane, and for formulas whose failures shall show.
 pub fn classify_planes(scene: &Scene, request: &RenderRequest) -> Option<Vec<PlaneOccluder>> {
     let camera = &scene.camera;
-    let is_parallel = request.projection.unwrap_or(camera.projection) == Projection::Orthographic;
+    let is_parallel = request.projection_of(camera) == Projection::Orthographic;
     if is_parallel || !request.methods.is_sound() || request.model == Model::Everything {
         return None;
     }
     let visible = scene.objects.iter().filter(|object| object.visible);
-    let planes = visible.filter_map(|object| {
-        let (point, normal) = object.shape.endless_plane()?;
-        Some(PlaneOccluder {
-            normal: normal.try_normalize()?,
-            point,
-        })
-    });
+    let pieces = visible.filter_map(|object| object.shape.plane_piece());
+    let planes = pieces.filter(|piece| piece.outline == Outline::Endless);
     planes
-        .map(|plane| match plane.side(camera.position) {
-            0.0 => None,
-            side if side < 0.0 => Some(PlaneOccluder {
-                normal: -plane.normal,
-                ..plane
-            }),
-            _ => Some(plane),
+        .map(|piece| {
+            let height = piece.height(camera.position);
+            let is_turned = height < 0.0;
+            (height != 0.0).then_some(PlaneOccluder { piece, is_turned })
         })
         .collect()
 }

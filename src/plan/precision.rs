@@ -1,6 +1,9 @@
 //! Which real type a scene needs: single precision wherever its errors stay invisible.
 
-use crate::scene::Scene;
+use glam::DVec3;
+
+use super::request::RenderRequest;
+use crate::scene::{Light, List, Object, Outline, PlanePiece, Precision, Projection, Scene, Shape};
 
 /// Largest ratio of a sphere's distance to its radius in single precision: the perpendicular
 /// discriminant is then off by at most 3.2·u·ρ ≈ 1/1000 of the radius.
@@ -8,26 +11,52 @@ const MAX_DISTANCE_PER_RADIUS: f64 = 5e3;
 /// Largest ratio of the scene's extent to its smallest feature in single precision.
 const MAX_EXTENT_PER_FEATURE: f64 = 1e5;
 
-/// Smallest height of the eye over a sphere, in radii, in single precision: below it, the distance
-/// to the ground right ahead has lost its digits.
+/// Smallest height of the eye or a light over a sphere, in radii, in single precision: below it, the
+/// distance to the ground right ahead has lost its digits.
 const MIN_HEIGHT_PER_RADIUS: f64 = 1e-3;
+
+/// Smallest height of the eye over a plane, or of a light over anything flat, as a share of the scene's
+/// extent, in single precision: below it, rounding may put it on the other side.
+const MIN_HEIGHT_PER_EXTENT: f64 = 1e-5;
+/// Most pairs of an object and a light that are looked at.
+const MOST_PAIRS: usize = 100_000;
+
+/// Largest ratio of the distance of what parallel rays show to the height of their picture in single
+/// precision: 1/16 of a pixel, of a thousand.
+const MAX_DISTANCE_PER_HEIGHT: f64 = 1e3;
 
 /// Most things that single precision can number.
 const MAX_NUMBER: usize = 1 << 24;
 
+/// Whether a picture is traced in double precision.
+pub fn is_double(scene: &Scene, request: &RenderRequest) -> bool {
+    let is_needed = || match request.precision {
+        Precision::Auto => needs_double(scene, request.projection_of(&scene.camera)),
+        Precision::Single => false,
+        Precision::Double => true,
+    };
+    is_uncountable(scene) || is_needed()
+}
+
 /// Whether there are more things than single precision can number.
-pub fn is_uncountable(scene: &Scene) -> bool {
+fn is_uncountable(scene: &Scene) -> bool {
     scene.objects.len() + scene.lights.len() + scene.faces() >= MAX_NUMBER
 }
 
 /// Whether single precision would show in the picture.
-pub fn needs_double(scene: &Scene) -> bool {
+pub fn needs_double(scene: &Scene, projection: Projection) -> bool {
+    if projection == Projection::Orthographic && is_far_in_parallel(scene) {
+        return true;
+    }
     let Some((low, high)) = scene.bounds() else {
         return false;
     };
     let centre = (low + high) * 0.5;
     let eye = scene.camera.position;
     let extent = (high - low).length().max((eye - centre).length());
+    if is_just_above(scene, extent) {
+        return true;
+    }
     let visible = scene.objects.iter().filter(|object| object.visible);
     visible.map(|object| &object.shape).any(|shape| {
         shape.height_per_radius(eye) < MIN_HEIGHT_PER_RADIUS
@@ -41,22 +70,113 @@ pub fn needs_double(scene: &Scene) -> bool {
     })
 }
 
+/// Whether the eye is all but on a plane, or a light on anything: on something round, its shadow ends where
+/// rays graze.
+fn is_just_above(scene: &Scene, extent: f64) -> bool {
+    let is_just_above = |piece: &PlanePiece, point: DVec3| {
+        let height = piece.height(point).abs();
+        height > 0.0 && height < MIN_HEIGHT_PER_EXTENT * extent
+    };
+    let lights = match scene.objects.len() * scene.lights.len() {
+        0..=MOST_PAIRS => &scene.lights,
+        _ => &List::new(),
+    };
+    let visible = scene.objects.iter().filter(|object| object.visible);
+    let shapes = visible.map(|object| &object.shape);
+    // Without lights only planes count: many objects are not worth a closer look.
+    let mut looked_at =
+        shapes.filter(|shape| !lights.is_empty() || matches!(shape, Shape::Plane(_)));
+    looked_at.any(|shape| {
+        let Some(piece) = shape.plane_piece() else {
+            let height = |light: &Light| shape.height_per_radius(light.position);
+            return lights
+                .iter()
+                .any(|light| height(light) < MIN_HEIGHT_PER_RADIUS);
+        };
+        let is_seen = piece.outline == Outline::Endless;
+        is_seen && is_just_above(&piece, scene.camera.position)
+            || lights
+                .iter()
+                .any(|light| is_just_above(&piece, light.position))
+    })
+}
+
+/// Whether rays that run side by side come from too far.
+fn is_far_in_parallel(scene: &Scene) -> bool {
+    let camera = &scene.camera;
+    let direction = camera.look_at.normalize_or_zero();
+    let distance = |object: &Object| match object.shape.bounds() {
+        Some((low, high)) => (low * 0.5 + high * 0.5 - camera.position).length(),
+        // Where the middle of the picture meets it.
+        None => object.shape.plane_piece().map_or(0.0, |piece| {
+            let towards = direction.dot(piece.normal);
+            let distance = piece.height(camera.position) / -towards;
+            if distance.is_finite() {
+                distance.max(0.0)
+            } else {
+                0.0
+            }
+        }),
+    };
+    let visible = scene.objects.iter().filter(|object| object.visible);
+    let farthest = visible.map(distance).fold(0.0, f64::max);
+    farthest > MAX_DISTANCE_PER_HEIGHT * camera.orthographic_height
+}
+
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
+
+    #[test]
+    fn what_all_but_touches_needs_double_precision_and_what_touches_does_not() {
+        let mut scene = Scene::demo();
+        let eye = scene.camera.position;
+        for (height, expected) in [(0.0, false), (1e-4, true), (1.0, false)] {
+            scene.camera.position = DVec3 { y: height, ..eye };
+            assert_eq!(
+                needs_double(&scene, scene.camera.projection),
+                expected,
+                "eye at {height}"
+            );
+        }
+        scene.camera.position = eye;
+        for (height, expected) in [(0.0, false), (1e-4, true), (0.1, false)] {
+            scene.lights[0].position.y = height;
+            assert_eq!(
+                needs_double(&scene, scene.camera.projection),
+                expected,
+                "light at {height}"
+            );
+        }
+    }
+
+    #[test]
+    fn parallel_rays_may_come_from_a_thousand_heights_away() {
+        let mut scene = Scene::demo();
+        scene.objects.retain(|object| object.name == "Plane");
+        scene.lights.clear();
+        scene.camera.projection = Projection::Orthographic;
+        scene.camera.look_at = DVec3::new(0.0, -1.0, -1.0);
+        for (away, expected) in [(9e4, false), (2e5, true)] {
+            scene.camera.position = DVec3::new(0.0, away, away);
+            assert_eq!(
+                needs_double(&scene, scene.camera.projection),
+                expected,
+                "{away}"
+            );
+        }
+    }
 
     #[test]
     fn the_rule_flips_at_its_boundary() {
         let mut scene = Scene::demo();
-        assert!(!needs_double(&scene));
+        assert!(!needs_double(&scene, scene.camera.projection));
         scene.objects.retain(|object| object.name == "Sphere 1");
         scene.lights.clear();
         let away = |radii: f64| DVec3::new(125.0, 50.0, -150.0 + radii * 50.0);
         scene.camera.position = away(MAX_DISTANCE_PER_RADIUS * 0.999);
-        assert!(!needs_double(&scene));
+        assert!(!needs_double(&scene, scene.camera.projection));
         scene.camera.position = away(MAX_DISTANCE_PER_RADIUS * 1.001);
-        assert!(needs_double(&scene));
+        assert!(needs_double(&scene, scene.camera.projection));
     }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::scene::{Accelerator, Aspect, Methods, Precision, Projection, Sampling, Scene};
+use crate::scene::{Accelerator, Aspect, Camera, Methods, Precision, Projection, Sampling, Scene};
 use crate::simd::Level;
 
 /// Which picture of a scene is asked for.
@@ -33,6 +33,11 @@ pub struct RenderRequest {
 }
 
 impl RenderRequest {
+    /// How the picture is projected.
+    pub fn projection_of(&self, camera: &Camera) -> Projection {
+        self.projection.unwrap_or(camera.projection)
+    }
+
     /// The still picture that the scene itself asks for.
     pub fn still(scene: &Scene) -> Self {
         Self::of(scene, scene.render.width, scene.render.height)

@@ -30,7 +30,7 @@ impl<R: Real> View<R> {
     pub fn new(camera: &Camera, request: &RenderRequest, centre: DVec3) -> Self {
         let basis = camera.basis().unwrap_or(DMat3::IDENTITY);
         let (u, v, w) = (basis.x_axis, basis.y_axis, basis.z_axis);
-        let projection = request.projection.unwrap_or(camera.projection);
+        let projection = request.projection_of(camera);
         let (scale, forward) = match projection {
             Projection::Perspective => (1.0, -w * camera.projection_distance),
             Projection::Orthographic => (camera.orthographic_height, -w),

@@ -2,10 +2,20 @@
 
 use glam::DVec3;
 
+use crate::simd::Real;
+
 /// Share by which balls and angles are taken larger than computed, for the rounding of the kernel.
 pub const CAUTION: f64 = 1e-3;
 /// Share of a distance, for the same reason.
 pub const FAR_CAUTION: f64 = 1e-5;
+
+/// Roundings that the test of a primitive may add up to.
+const ROUNDINGS: f64 = 16.0;
+
+/// What the test of a primitive may be off by, as a share of the largest coordinate.
+pub fn roundings<R: Real>() -> R {
+    R::UNIT_ROUNDOFF * R::from_f64(ROUNDINGS)
+}
 
 /// A ball in double precision.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,7 +5,7 @@ use super::bounding_box::BoundingBox;
 use super::kind::{Approach, Packing, Primitive, SurfacePoint};
 use super::projector::{Projector, Rectangle};
 use super::ray::Ray;
-use crate::scene::{Disc, Methods};
+use crate::scene::{Disc, Methods, unit};
 use crate::simd::{Real, SimdFloat, Vec3};
 
 /// A flat disc: the points p with normal · (p - center) = 0 and |p - center| ≤ radius.
@@ -26,7 +26,7 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
     type Prepared<L: SimdFloat<Real = R>> = ();
 
     fn pack(description: &Disc, material: u32, packing: &Packing) -> Option<Self> {
-        let normal = description.normal.try_normalize()?;
+        let normal = unit(description.normal)?;
         Some(Self {
             center: Vec3::from_dvec3(description.center - packing.centre),
             normal: Vec3::from_dvec3(normal),

@@ -29,6 +29,17 @@ pub trait WithPrepared<L: SimdFloat> {
     fn run<P: Primitive<L::Real>>(&mut self, primitive: &P, prepared: &P::Prepared<L>);
 }
 
+/// Where a shape went that was packed.
+#[derive(Clone, Copy, Debug)]
+pub struct Packed {
+    /// The list.
+    pub kind: Kind,
+    /// The place in it.
+    pub index: usize,
+    /// Where it is in the picture, if there is a projector and it is bounded.
+    pub rectangle: Option<Rectangle>,
+}
+
 macro_rules! kinds {
     ($($kind:ident in $list:ident: $packed:ident),*) => {
         /// The kinds of primitives, in the order of their numbers.
@@ -68,14 +79,18 @@ macro_rules! kinds {
         }
 
         impl<R: Real> Primitives<R> {
-            /// Packs a shape, unless no ray can meet it. Returns its kind and its rectangle in the
-            /// picture, if there is a projector and it is bounded.
-            pub fn push(&mut self, shape: &Shape, material: u32, packing: &Packing) -> Option<(Kind, Rectangle)> {
+            /// Packs a shape, unless no ray can meet it. Tells where it went.
+            pub fn push(&mut self, shape: &Shape, material: u32, packing: &Packing) -> Option<Packed> {
                 match shape {
                     $(Shape::$kind(description) => {
+                        let index = self.$list.len();
                         self.$list.push($packed::pack(description, material, packing)?);
-                        let rectangle = $packed::<R>::rectangle(description, packing.projector?)?;
-                        Some((Kind::$kind, rectangle))
+                        let place = |projector| $packed::<R>::rectangle(description, projector);
+                        Some(Packed {
+                            kind: Kind::$kind,
+                            index,
+                            rectangle: packing.projector.and_then(place),
+                        })
                     }),*
                     // Many primitives, which are kept apart.
                     Shape::Mesh(_) => None,

@@ -23,11 +23,11 @@ mod disc;
 
 mod list;
 
-pub use ball::{Ball, CAUTION, FAR_CAUTION};
+pub use ball::{Ball, CAUTION, FAR_CAUTION, roundings};
 pub use bounding_box::BoundingBox;
 pub use disc::PackedDisc;
 pub use kind::{Approach, Corner, Packing, Primitive, SurfacePoint};
-pub use list::{KINDS, Kind, Prepared, Primitives, Visit, WithPrepared, WithPrimitive};
+pub use list::{KINDS, Kind, Packed, Prepared, Primitives, Visit, WithPrepared, WithPrimitive};
 pub use plane::PackedPlane;
 pub use projector::{Extent, Projector, Rectangle};
 pub use ray::Ray;

@@ -5,7 +5,7 @@ use super::bounding_box::BoundingBox;
 use super::kind::{Approach, Packing, Primitive, SurfacePoint};
 use super::projector::{Projector, Rectangle};
 use super::ray::Ray;
-use crate::scene::{Methods, Plane};
+use crate::scene::{Methods, Plane, unit};
 use crate::simd::{Real, SimdFloat, Vec3};
 
 /// An endless plane: the points p with normal · p = offset.
@@ -25,7 +25,7 @@ impl<R: Real> Primitive<R> for PackedPlane<R> {
     const IS_ENDLESS: bool = true;
 
     fn pack(description: &Plane, material: u32, packing: &Packing) -> Option<Self> {
-        let normal = description.normal.try_normalize()?;
+        let normal = unit(description.normal)?;
         Some(Self {
             normal: Vec3::from_dvec3(normal),
             offset: R::from_f64(normal.dot(description.point - packing.centre)),

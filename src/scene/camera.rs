@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use super::direction::unit;
 use super::notation;
 
 /// Where a picture is taken from, and how.
@@ -67,8 +68,8 @@ impl Camera {
     ///
     /// `None` if `look_at` or `up` has no direction or they are parallel.
     pub fn basis(&self) -> Option<DMat3> {
-        let w = -self.look_at.try_normalize()?;
-        let across = self.up.try_normalize()?.cross(w);
+        let w = -unit(self.look_at)?;
+        let across = unit(self.up)?.cross(w);
         if across.length() < MIN_SINE {
             return None;
         }

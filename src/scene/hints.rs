@@ -1,15 +1,14 @@
 //! What is probably not meant in a scene, though it is valid.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 use glam::DVec3;
 
 use super::camera::{Camera, Projection};
+use super::coincidence::{Coincidence, MOST_COMPARED, coincidences};
 use super::shape::Shape;
 use super::whole::Scene;
 
-/// Most objects that are held against each other, and against the lights.
-const MOST: usize = 2_000;
 /// How near to a surface a light counts as on it, as a share of the distance that matters.
 const ON: f64 = 1e-9;
 /// Height of the eye above a plane below which it is seen edge-on, as a share of the scene's extent; or, where
@@ -69,7 +68,7 @@ pub fn hints(scene: &Scene) -> Vec<Hint> {
             add(words, About::Object(index), false);
         }
     }
-    let is_small = scene.objects.len() <= MOST;
+    let is_small = scene.objects.len() <= MOST_COMPARED;
     for (index, light) in scene.lights.iter().enumerate().filter(|_| is_small) {
         let lit = || visible().filter(|_| light.visible && light.intensity > 0.0);
         for (_, object) in lit() {
@@ -90,9 +89,7 @@ pub fn hints(scene: &Scene) -> Vec<Hint> {
             add(words, About::Pack(index), false);
         }
     }
-    if scene.objects.len() <= MOST {
-        add_coincident(scene, &mut add);
-    }
+    add_coincident(scene, &mut add);
     hints
 }
 
@@ -104,33 +101,30 @@ fn worn(scene: &Scene) -> HashSet<&String> {
     objects.chain(markers).collect()
 }
 
-/// Two visible objects in one place: which of them is seen, rounding decides.
+/// Visible objects that fill the same surface.
 fn add_coincident(scene: &Scene, add: &mut impl FnMut(String, About, bool)) {
-    let mut known: HashMap<String, &str> = HashMap::new();
-    for (index, object) in scene.objects.iter().enumerate() {
-        if !object.visible || matches!(object.shape, Shape::Mesh(_)) {
-            continue;
+    let centre = scene
+        .objects_bounds()
+        .map_or(DVec3::ZERO, |(low, high)| low * 0.5 + high * 0.5);
+    let mut last = None;
+    for Coincidence { later, earlier, .. } in coincidences(&scene.objects, centre) {
+        if last.replace(later) == Some(later) {
+            continue; // Said already.
         }
-        let key = match &object.shape {
-            Shape::Plane(plane) => {
-                // The same plane through another point of it.
-                let normal = plane.normal.normalize_or_zero();
-                let normal = if normal.dot(DVec3::new(1.0, 1e-3, 1e-6)) < 0.0 {
-                    -normal
-                } else {
-                    normal
-                };
-                // Zero is written in one way.
-                let normal = normal + DVec3::ZERO;
-                format!("{normal} {:.9e}", normal.dot(plane.point) + 0.0)
-            }
-            shape => format!("{shape:?}"),
+        let (object, other) = (&scene.objects[later], &scene.objects[earlier]);
+        let is_twice = object.shape == other.shape || both_endless(&object.shape, &other.shape);
+        let (name, other) = (&object.name, &other.name);
+        let words = if is_twice {
+            format!("{name} is in the same place as {other}")
+        } else {
+            format!("{name} lies in {other}, which comes first and is seen there")
         };
-        if let Some(other) = known.insert(key, &object.name) {
-            let words = format!("{} is in the same place as {other}", object.name);
-            add(words, About::Object(index), true);
-        }
+        add(words, About::Object(later), is_twice);
     }
+}
+
+fn both_endless(one: &Shape, other: &Shape) -> bool {
+    one.bounds().is_none() && other.bounds().is_none()
 }
 
 fn is_inside(shape: &Shape, point: DVec3) -> bool {

@@ -6,6 +6,8 @@
 
 mod list;
 
+mod direction;
+
 mod methods;
 
 mod notation;
@@ -19,6 +21,8 @@ mod orientation;
 mod material;
 
 mod object;
+
+mod coincidence;
 
 mod render;
 
@@ -58,7 +62,9 @@ pub use animation::{
 pub use aspect::Aspect;
 pub use camera::{Bookmark, Camera, Framing, Projection};
 pub use check::{Problem, check, check_edit};
+pub use coincidence::{Coincidence, coincidences};
 pub use differences::differences;
+pub use direction::unit;
 pub use examples::{EXAMPLES, Example};
 pub use file::{DEMO_TEXT, Document, SceneError, read_text};
 pub use hints::{About, Hint, hints};
@@ -77,6 +83,8 @@ pub use orientation::Orientation;
 pub use recovery::{Leftover, Recovery};
 pub use render::{MAX_REFLECTIONS, MAX_SIDE, Render, Setting, VisitSetting};
 pub use shape::{
-    Describe, Disc, Field, FieldValue, Mesh, MeshSource, Plane, Shape, Sphere, Triangle,
+    Describe, Disc, Field, FieldValue, Mesh, MeshSource, Outline, Plane, PlanePiece, Shape, Sphere,
+    Triangle,
 };
+pub use target::Owners;
 pub use whole::{Scene, VERSION};

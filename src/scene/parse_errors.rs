@@ -41,9 +41,32 @@ pub fn sentence(error: &Error, max_depth: usize) -> String {
         Error::ExpectedArray => "expected a list: […]".to_owned(),
         Error::ExpectedMap => "expected a map: {\"name\": …}".to_owned(),
         Error::ExpectedComma => "expected a comma".to_owned(),
-        Error::ExpectedArrayEnd | Error::ExpectedStructLikeEnd => {
-            "expected a comma or the closing bracket".to_owned()
+        Error::ExpectedMapColon => "expected a colon".to_owned(),
+        Error::ExpectedArrayEnd
+        | Error::ExpectedStructLikeEnd
+        | Error::ExpectedMapEnd
+        | Error::ExpectedOptionEnd => "expected a comma or the closing bracket".to_owned(),
+        Error::ExpectedStructLike => "expected an opening bracket: (…)".to_owned(),
+        Error::ExpectedOption => "expected Some(…) or None".to_owned(),
+        Error::ExpectedIdentifier => "expected a name".to_owned(),
+        Error::ExpectedUnit => "expected ()".to_owned(),
+        Error::ExpectedChar | Error::ExpectedByteLiteral | Error::ExpectedByteString => {
+            "expected a number or a text in quotation marks".to_owned()
         }
+        Error::FloatUnderscore | Error::UnderscoreAtBeginning => {
+            "there is an underscore in the number where none may be".to_owned()
+        }
+        Error::InvalidIntegerDigit { digit, base } => {
+            format!("{digit:?} is no digit of a number in base {base}")
+        }
+        Error::UnexpectedChar(found) => format!("there may be no {found:?} here"),
+        Error::InvalidEscape(_) => "the backslash in the text stands for nothing known".to_owned(),
+        Error::NoSuchExtension(name) => format!("there is no extension of RON named `{name}`"),
+        Error::ExpectedAttribute | Error::ExpectedAttributeEnd => {
+            "expected an attribute such as #![enable(…)]".to_owned()
+        }
+        Error::Utf8Error(_) => "the file is no text in UTF-8".to_owned(),
+        Error::UnclosedLineComment => "the comment does not end".to_owned(),
         Error::IntegerOutOfBounds => {
             "the number is out of range; expected a whole number from 0 to 4294967295".to_owned()
         }

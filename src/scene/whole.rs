@@ -15,7 +15,7 @@ use super::material::{ColorPack, read_packs};
 use super::notation;
 use super::object::{Light, LightObj, Object, default_intensity, yes};
 use super::render::Render;
-use super::shape::{Mesh, Shape};
+use super::shape::{Mesh, MeshSource, Shape};
 
 /// The scene-file version that this program writes and the newest that it reads.
 pub const VERSION: u32 = 1;
@@ -166,32 +166,27 @@ impl Scene {
     /// The same scene for a file in another folder: meshes that lie elsewhere are taken in.
     #[must_use]
     pub fn taken_to(&self, folder: &Path) -> Self {
-        let mut scene = self.clone();
-        scene.change_meshes(|mesh| Mesh {
-            source: mesh.source.taken_to(folder),
-            ..mesh.clone()
-        });
-        scene
+        self.with_sources(|source| source.taken_to(folder))
     }
 
     /// The same scene with the triangles of all meshes: it needs no other files.
     #[must_use]
     pub fn taken_in(&self) -> Self {
-        let mut scene = self.clone();
-        scene.change_meshes(|mesh| Mesh {
-            source: mesh.source.taken_in(),
-            ..mesh.clone()
-        });
-        scene
+        self.with_sources(MeshSource::taken_in)
     }
 
     /// The same scene with a word in place of the triangles of each mesh, which is another word for other
     /// triangles: what tells scenes apart without writing them down.
     #[must_use]
     pub fn abridged(&self) -> Self {
+        self.with_sources(MeshSource::abridged)
+    }
+
+    /// The same scene whose meshes come from elsewhere.
+    fn with_sources(&self, change: impl Fn(&MeshSource) -> MeshSource) -> Self {
         let mut scene = self.clone();
         scene.change_meshes(|mesh| Mesh {
-            source: mesh.source.abridged(),
+            source: change(&mesh.source),
             ..mesh.clone()
         });
         scene

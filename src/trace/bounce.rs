@@ -1,13 +1,13 @@
 //! One depth of reflection: the packets of a tile, what they can meet, and what they see.
 
 use super::beam::{Bounds, beam_around};
-use super::bundle::{Shaft, roundings};
+use super::bundle::Shaft;
 use super::candidates::{Among, Candidates};
 use super::cull::{LightCandidates, Scratch};
 use super::footprint::RayCone;
 use super::intersect::Kernel;
 use super::packet::{EdgeInfo, Packet, ReflectionParent};
-use super::paths::{IgnoredPrimitive, Paths};
+use super::paths::{IgnoredPrimitive, Paths, real};
 use super::roots::Roots;
 use super::samples::{Edges, Samples, Traced};
 use super::shade::Shader;
@@ -16,7 +16,7 @@ use super::thin::widest_spread;
 use super::thresholds::{LARGEST_STRETCH, SLIPPING};
 use super::walk::Stack;
 use crate::plan::Plan;
-use crate::primitive::{CAUTION, Kind, Ray};
+use crate::primitive::{CAUTION, Kind, Ray, roundings};
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
 
 /// One bounce: its packets, and what they can meet.
@@ -41,17 +41,19 @@ pub struct Bounce<L: SimdFloat> {
 impl<L: SimdFloat> Bounce<L> {
     /// A bounce without packets.
     pub fn new(plan: &Plan<L::Real>) -> Self {
-        let casters = Candidates::all_casting(plan);
-        // Without culling nobody looks for the narrow ones among them.
-        let thin = match plan.screen {
-            Some(_) => Candidates::default(),
-            None => casters.clone(),
-        };
-        let light = LightCandidates {
-            casters,
-            roots: Roots::default(),
-            thin,
-            is_umbra: false,
+        let candidates_of = |light| {
+            let casters = Candidates::all_casting(plan, light);
+            // Without culling nobody looks for the narrow ones among them.
+            let thin = match plan.screen {
+                Some(_) => Candidates::default(),
+                None => casters.clone(),
+            };
+            LightCandidates {
+                casters,
+                roots: Roots::default(),
+                thin,
+                is_umbra: false,
+            }
         };
         Self {
             packets: Vec::new(),
@@ -61,7 +63,7 @@ impl<L: SimdFloat> Bounce<L> {
             seen: Candidates::default(),
             roots: Roots::default(),
             thin: Candidates::default(),
-            lights: vec![light; plan.lights.len()],
+            lights: plan.lights.iter().map(candidates_of).collect(),
             signatures: Vec::new(),
         }
     }
@@ -118,10 +120,17 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// What the rays of a packet start on.
     #[inline(always)]
-    fn ignored_by(&self, token: L::Token, packet: usize) -> IgnoredPrimitive<L> {
-        match self.parents.get(packet) {
-            None => IgnoredPrimitive::nothing(token),
-            Some(parent) => parent.ignored,
+    fn ignored_by<const TREE: bool>(
+        &self,
+        kernel: Kernel<L, TREE>,
+        packet: usize,
+    ) -> IgnoredPrimitive<L> {
+        match (self.parents.get(packet), kernel.plan.eye_on) {
+            (Some(parent), _) => parent.ignored,
+            (None, None) => IgnoredPrimitive::nothing(kernel.token),
+            (None, Some(number)) => {
+                IgnoredPrimitive::listed(number, L::splat(kernel.token, real(number)))
+            }
         }
     }
 
@@ -143,7 +152,7 @@ impl<L: SimdFloat> Bounce<L> {
         let mut bounds = Bounds::new(kernel.token);
         let mut farthest = kernel.splat(0.0);
         for index in 0..self.packets.len() {
-            let ignored = self.ignored_by(kernel.token, index);
+            let ignored = self.ignored_by(kernel, index);
             let packet = &mut self.packets[index];
             let rays = packet.rays;
             let paths = Paths { rays, ignored };
@@ -251,7 +260,7 @@ impl<L: SimdFloat> Bounce<L> {
     ) {
         let looks_beside = self.looks_beside();
         for index in 0..self.packets.len() {
-            let ignored = self.ignored_by(kernel.token, index);
+            let ignored = self.ignored_by(kernel, index);
             let shader = Shader {
                 kernel,
                 is_first: self.parents.is_empty(),

@@ -1,19 +1,11 @@
 //! The rays of a packet as one: boxes that no ray of it can meet are left out, sixteen at a time.
 
 use crate::plan::{GROUP, Node};
-use crate::primitive::{BoundingBox, Ray};
+use crate::primitive::{BoundingBox, Ray, roundings};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
-/// Roundings by which boxes are taken larger, in parts of the largest coordinate: what the test of a
-/// primitive may be off by aside of a ray.
-const ROUNDINGS: f64 = 16.0;
 /// The smallest component of a direction; one over it is still a number in single precision.
 const LEAST: f64 = 1e-30;
-
-/// What a box is taken larger by, in parts of the largest coordinate.
-pub fn roundings<R: Real>() -> R {
-    R::UNIT_ROUNDOFF * R::from_f64(ROUNDINGS)
-}
 
 /// Rays, and what all of them have in common along each axis.
 #[derive(Clone, Copy, Debug)]

@@ -62,17 +62,29 @@ impl Candidates {
         let mut all = Self::all(plan);
         all.lists[Kind::Triangle as usize]
             .retain(|&index| !is_set(&plan.camera_culled_faces, index));
+        all.leave_out(plan, &plan.edge_on);
         all
     }
 
-    /// Everything that casts shadows.
-    pub fn all_casting<R: Real>(plan: &Plan<R>) -> Self {
+    /// Everything that casts shadows from a light.
+    pub fn all_casting<R: Real>(plan: &Plan<R>, light: &PointLight<R>) -> Self {
         let mut all = Self::all(plan);
         all.lists[Kind::Sphere as usize].drain(..plan.markers);
         if !plan.planes_cast {
             all.lists[Kind::Plane as usize].clear();
         }
+        all.leave_out(plan, &light.holders);
         all
+    }
+
+    /// Leaves out the primitives of these numbers.
+    pub fn leave_out<R: Real>(&mut self, plan: &Plan<R>, numbers: &[usize]) {
+        if numbers.is_empty() {
+            return;
+        }
+        for (list, first) in self.lists.iter_mut().zip(plan.primitives.firsts()) {
+            list.retain(|&index| !numbers.contains(&(first + index as usize)));
+        }
     }
 
     /// Indices of one kind.

@@ -122,7 +122,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         roots.forget();
         let from = light.position.to_dvec3();
         let Some(beam) = Beam::to_ball(from, ball) else {
-            *casters = Candidates::all_casting(plan);
+            *casters = Candidates::all_casting(plan, light);
             thin.keep_slipping(casters, plan, footprint);
             *is_umbra = false;
             return;
@@ -136,6 +136,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             let planes = 0..plan.primitives.planes.len() as u32;
             casters.planes_mut().extend(planes);
         }
+        casters.leave_out(plan, &light.holders);
         thin.keep_slipping(casters, plan, footprint);
         let mut umbra = Umbra {
             casters,

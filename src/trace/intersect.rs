@@ -6,7 +6,7 @@ use super::paths::{NOTHING, Paths, real};
 use super::scan::{Test, Thicket, scan_lists};
 use super::walk::Stack;
 use crate::plan::{Geometry, Plan};
-use crate::primitive::Primitive;
+use crate::primitive::{Primitive, WithPrimitive};
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
@@ -101,11 +101,43 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             },
         };
         scan_lists(self.plan, among.candidates, paths, &mut test);
-        let best = test.best;
-        match self.thicket(among, active) {
-            Some(thicket) => self.nearest_in(&thicket, paths, best, stack),
-            None => best,
+        let mut best = test.best;
+        if let Some(thicket) = self.thicket(among, active) {
+            best = self.nearest_in(&thicket, paths, best, stack);
         }
+        if self.plan.ties.is_empty() {
+            best
+        } else {
+            self.settled(paths, best)
+        }
+    }
+
+    /// The same, but for what lies in the surface of the nearest and is seen there. Which of them is nearer,
+    /// rounding decides; which of them is met, their outlines.
+    #[inline(never)]
+    fn settled(self, paths: &Paths<L>, nearest: Nearest<L>) -> Nearest<L> {
+        L::vectorize(
+            self.token,
+            #[inline(always)]
+            || {
+                let mut settled = nearest;
+                for tie in &self.plan.ties {
+                    let mut open = nearest.number.same(self.splat(tie.number as f64));
+                    for &number in &tie.over {
+                        if !open.any() {
+                            break;
+                        }
+                        let methods = &self.plan.methods;
+                        let t = self.plan.primitives.with(number, Meet { paths, methods });
+                        let met = open & t.less(self.infinity());
+                        settled.t = L::select(met, t, settled.t);
+                        settled.number = L::select(met, self.splat(number as f64), settled.number);
+                        open = open & !met;
+                    }
+                }
+                settled
+            },
+        )
     }
 
     /// The nearest of `best` and what stands in the tree. A function of its own: it is long, and few
@@ -178,6 +210,21 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                 test.free
             },
         )
+    }
+}
+
+/// How far one primitive is.
+struct Meet<'a, L> {
+    paths: &'a Paths<L>,
+    methods: &'a Methods,
+}
+
+impl<L: SimdFloat> WithPrimitive<L::Real> for Meet<'_, L> {
+    type Output = L;
+
+    #[inline(always)]
+    fn run<P: Primitive<L::Real>>(self, primitive: &P) -> L {
+        primitive.meet(&self.paths.rays, self.methods)
     }
 }
 

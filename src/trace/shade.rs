@@ -15,7 +15,7 @@ use super::thin::Gaze;
 use super::thresholds::EDGE_CONTRAST;
 use super::walk::Stack;
 use crate::plan::{PointLight, RayOrigin, Show, Surface};
-use crate::primitive::Ray;
+use crate::primitive::{Ray, roundings};
 use crate::simd::{Mask as _, SimdFloat, Vec3};
 
 /// Lights that an edge tells apart: sums of so many powers of two are exact in any real type.
@@ -223,12 +223,19 @@ impl<'a, L: SimdFloat, const TREE: bool> Shader<'a, L, TREE> {
         let one = kernel.splat(1.0);
         let dark = Vec3::splat(zero);
 
-        // A light in the surface has no direction: NaN is not above zero, and it adds nothing.
+        // A light in the surface has no direction: NaN is not above zero, and it adds nothing. Nor does one
+        // that is no higher above the surface than rounding may have lifted it.
+        let part = L::splat(kernel.token, roundings());
         let to_light = hit.surface.point.like(light.position) - hit.surface.point;
         let distance = to_light.length();
-        let l = to_light * (one / distance);
+        let shrink = one / distance;
+        let l = to_light * shrink;
         let cosine = hit.surface.normal.dot(l);
-        let lit_side = point.here & zero.less(cosine);
+        let lowest = match light.rounding {
+            None => zero,
+            Some(rounding) => part + shrink * shrink.like(rounding),
+        };
+        let lit_side = point.here & lowest.less(cosine);
         let facing = if kernel.plan.shadows_behind {
             point.here
         } else {
@@ -245,7 +252,12 @@ impl<'a, L: SimdFloat, const TREE: bool> Shader<'a, L, TREE> {
         if !candidates.casters.is_empty() || !candidates.thin.is_empty() {
             let paths = kernel.spawn(hit, l);
             let reach = match kernel.plan.ray_origin {
-                RayOrigin::AtHit | RayOrigin::Roundings => distance,
+                RayOrigin::AtHit => match light.rounding {
+                    None => distance,
+                    // What the light is on, within rounding, does not stand before it.
+                    Some(rounding) => distance - distance * part - distance.like(rounding),
+                },
+                RayOrigin::Roundings => distance,
                 RayOrigin::Along(start) => distance - distance.like(start),
             };
             if let Some((edge, footprint)) = edge.as_mut().filter(|_| self.looks_beside) {

@@ -120,7 +120,13 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             ..
         } = hit.surface;
         let (origin, ignored) = match self.plan.ray_origin {
-            RayOrigin::AtHit => (point + normal * slack, hit.own),
+            RayOrigin::AtHit if self.plan.ties.is_empty() => (point + normal * slack, hit.own),
+            // Off what may lie in the same surface, whose own numbers are rounded too.
+            RayOrigin::AtHit => {
+                let reach = point.max_abs() + slack.like(self.plan.extent);
+                let off = reach * slack.like(L::Real::UNIT_ROUNDOFF * L::Real::from_f64(8.0));
+                (point + normal * slack.max(off), hit.own)
+            }
             RayOrigin::Along(distance) => (
                 point + direction * slack.like(distance),
                 IgnoredPrimitive::nothing(self.token),

@@ -27,6 +27,11 @@ impl Threads {
             .map_err(|source| PoolError { count, source })
     }
 
+    /// How many there are where nobody asks for a number.
+    pub fn available() -> usize {
+        std::thread::available_parallelism().map_or(1, usize::from)
+    }
+
     /// How many threads there are.
     pub fn count(&self) -> usize {
         self.0.current_num_threads()

@@ -15,8 +15,8 @@ use super::sampler::Sampler;
 use super::samples::Traced;
 use super::stats::{Rays, RenderControl};
 use super::tile::{Grid, Pass, Pixel, Tile, TileColors};
-use crate::plan::{Plan, Planner, Region, RenderRequest, Show, is_uncountable, needs_double};
-use crate::scene::{Aspect, Precision, Sampling, Scene};
+use crate::plan::{Plan, Planner, Region, RenderRequest, Show, is_double};
+use crate::scene::{Aspect, Sampling, Scene};
 use crate::simd::{Level, SimdFloat, SimdReal, WithSimd};
 
 /// Side of a tile in pixels where there is little to see. Large enough that the bookkeeping does not
@@ -73,12 +73,7 @@ impl Tracer {
 
     /// The same after other pictures: what they need as well is not made again.
     pub fn planned(scene: &Scene, request: &RenderRequest, planner: &mut Planner) -> Self {
-        let double = match request.precision {
-            Precision::Auto => is_uncountable(scene) || needs_double(scene),
-            Precision::Single => is_uncountable(scene),
-            Precision::Double => true,
-        };
-        let plan = if double {
+        let plan = if is_double(scene, request) {
             PlanOf::Double(Box::new(Plan::new(scene, request, &mut planner.double)))
         } else {
             PlanOf::Single(Box::new(Plan::new(scene, request, &mut planner.single)))

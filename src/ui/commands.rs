@@ -111,6 +111,8 @@ pub enum Command {
     Export,
     /// Choose a file and write a job for a render farm to it.
     ExportJob,
+    /// Choose a file and write the scene for POV-Ray to it.
+    ExportPovray,
     /// Choose the folder of an export.
     ExportFolder,
     /// Choose a file and take keys from it.
@@ -237,6 +239,7 @@ pub const KEYLESS: &[(Command, &str)] = &[
     (Command::OpenExample(0), "Open the demo"),
     (Command::ImportMesh, "Import a mesh"),
     (Command::ExportJob, "Export a job for a render farm"),
+    (Command::ExportPovray, "Export the scene for POV-Ray"),
     (Command::ImportPath, "Import the path of the camera"),
     (Command::ExportPath, "Export the path of the camera"),
     (

@@ -25,6 +25,8 @@ pub enum Ask {
     ExportPath,
     /// Where to write the job for a render farm.
     ExportJob,
+    /// Where to write the scene for POV-Ray.
+    ExportPovray,
     /// The folder for frames.
     ExportFolder,
 }
@@ -40,6 +42,7 @@ impl Ask {
             Self::ImportPath => "Import camera path",
             Self::ExportPath => "Export camera path",
             Self::ExportJob => "Export farm job",
+            Self::ExportPovray => "Export for POV-Ray",
             Self::ExportFolder => "Folder for the frames",
         }
     }
@@ -68,6 +71,7 @@ impl Ask {
             Self::SaveImage => &["png", "ppm", "exr"],
             Self::ImportPath | Self::ExportPath => &["csv", "ron"],
             Self::ExportJob => &["yaml"],
+            Self::ExportPovray => &["pov"],
             Self::ExportFolder => &[""],
         }
     }
@@ -93,6 +97,7 @@ impl Dialogs for Native {
                 Ask::ImportMesh => dialog.add_filter("Mesh", ask.endings()),
                 Ask::SaveImage => dialog.add_filter("Picture", ask.endings()),
                 Ask::ExportJob => dialog.add_filter("Open Job Description", ask.endings()),
+                Ask::ExportPovray => dialog.add_filter("POV-Ray scene", ask.endings()),
                 Ask::ExportFolder => dialog,
                 Ask::ImportPath | Ask::ExportPath => {
                     dialog.add_filter("Camera path", ask.endings())

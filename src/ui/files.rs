@@ -10,7 +10,7 @@ use egui::{Context, Ui};
 
 use super::dialogs::{Ask, Dialogs};
 use super::folders::Folders;
-use super::interchange::{export_job, export_path, import_path, imported};
+use super::interchange::{export_job, export_path, export_povray, import_path, imported};
 use super::outside::{Theirs, Watch};
 use super::prompts::{Answer, PathPrompt, ask_about_changes, ask_to_leave, ask_to_quit};
 use super::reading::{Read, Reading};
@@ -290,6 +290,7 @@ impl Files {
             Ask::ImportPath => import_path(editor, &path),
             Ask::ExportPath => export_path(editor, &path),
             Ask::ExportJob => export_job(editor, &path),
+            Ask::ExportPovray => export_povray(editor, &path),
             Ask::SaveScene if editor.would_lose(&path) => {
                 let theirs = Theirs::new(editor, Document::load_stamped(&path));
                 self.question = Some(Question::Outside(Box::new(theirs), Some(wish)));

@@ -47,7 +47,9 @@ impl Folders {
             }
             Ask::ExportPath => folder.join(format!("{stem} path.csv")),
             Ask::ExportJob => folder.join(format!("{stem} job.yaml")),
-            Ask::SaveScene | Ask::SaveImage => folder.join(format!("{stem}.{}", ask.endings()[0])),
+            Ask::SaveScene | Ask::SaveImage | Ask::ExportPovray => {
+                folder.join(format!("{stem}.{}", ask.endings()[0]))
+            }
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A sign that a widget of the toolkit writes and no installed font has.
+//! Signs that are written and no installed font has.
 
 use egui::epaint::text::{GlyphBitmap, GlyphRasterizer, RasterizedGlyph};
 use egui::{Color32, ColorImage, Context, vec2};
@@ -9,11 +9,33 @@ const COPY: &str = "📋";
 const SHEET: (f32, f32) = (0.55, 0.7);
 const APART: f32 = 0.18;
 
-/// Draws the sign wherever it is written.
+/// The minus of exponents.
+const RAISED_MINUS: &str = "⁻";
+/// Its width with the room around it, its height above the line and its thickness, in font sizes.
+const BAR: (f32, f32, f32) = (0.36, 0.56, 0.06);
+
+/// Draws the signs wherever they are written.
 pub fn install(ctx: &Context) {
+    ctx.add_glyph_rasterizer(GlyphRasterizer::new("glint raised minus", |request| {
+        (request.cluster == RAISED_MINUS).then(|| raised_minus(request.font_size_px))
+    }));
     ctx.add_glyph_rasterizer(GlyphRasterizer::new("glint copy", |request| {
         (request.cluster == COPY).then(|| two_sheets(request.font_size_px))
     }));
+}
+
+fn raised_minus(size: f32) -> RasterizedGlyph {
+    let (room, up, thickness) = BAR;
+    let pixels = |share: f32| (share * size).round().max(1.0);
+    let bar = [pixels(room * 0.8) as usize, pixels(thickness) as usize];
+    RasterizedGlyph {
+        advance_px: pixels(room),
+        bitmap: GlyphBitmap {
+            image: ColorImage::filled(bar, Color32::WHITE),
+            offset_px: vec2(pixels(room * 0.1), -pixels(up)),
+            is_color: false,
+        },
+    }
 }
 
 /// Two sheets of paper, one before the other.

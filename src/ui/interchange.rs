@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::dialogs::Ask;
 use crate::animate::{from_table, from_text, to_table, to_text};
 use crate::editor::{Action, Edit, Editor};
-use crate::export::{Pattern, Sequence, job_template, write_text};
+use crate::export::{Pattern, Sequence, job_template, povray_text, write_text};
 use crate::image::Format;
 use crate::mesh::Part;
 use crate::scene::{Animation, read_text};
@@ -60,6 +60,14 @@ pub fn export_path(editor: &mut Editor, path: &Path) {
     match text.and_then(|text| Ok(write_text(path, &text)?)) {
         Ok(()) => editor.notify(format!("Saved {}", path.display())),
         Err(error) => editor.report_error_in(Ask::ExportPath.title(), error.to_string()),
+    }
+}
+
+/// The scene as it is now, in POV-Ray's language.
+pub fn export_povray(editor: &mut Editor, path: &Path) {
+    match write_text(path, &povray_text(editor.scene())) {
+        Ok(()) => editor.notify(format!("Saved {}", path.display())),
+        Err(error) => editor.report_error_in(Ask::ExportPovray.title(), error.to_string()),
     }
 }
 

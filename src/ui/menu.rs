@@ -84,6 +84,7 @@ fn file_menu(ui: &mut Ui, (recent, examples): (&[PathBuf], &mut Examples), out: 
     entry(ui, "Save image…", Command::SaveImage, true, out);
     entry(ui, "Export animation…", Command::Export, true, out);
     entry(ui, "Export farm job…", Command::ExportJob, true, out);
+    entry(ui, "Export for POV-Ray…", Command::ExportPovray, true, out);
     ui.separator();
     entry(ui, "Quit", Command::Quit, true, out);
 }

@@ -11,11 +11,15 @@ use crate::image::Image;
 /// Frames that layouts take to settle.
 const FRAMES: usize = 4;
 
-/// Draws what `show` puts into a window of `width × height` points, each of them `scale` pixels
-/// wide, in the dark theme.
-pub fn draw(width: u32, height: u32, scale: f32, mut show: impl FnMut(&mut Ui)) -> Image {
+/// Draws what `show` puts into a window of `width × height` points, each of them `scale` pixels wide.
+pub fn draw(
+    (width, height): (u32, u32),
+    scale: f32,
+    theme: Theme,
+    mut show: impl FnMut(&mut Ui),
+) -> Image {
     let ctx = Context::default();
-    install(&ctx, Theme::Dark);
+    install(&ctx, theme);
     let size = vec2(width as f32, height as f32);
     let mut textures = HashMap::new();
     let mut primitives = Vec::new();

@@ -49,6 +49,7 @@ impl App {
                 None
             }
             Command::ExportJob => self.ask(ctx, Ask::ExportJob),
+            Command::ExportPovray => self.ask(ctx, Ask::ExportPovray),
             Command::ExportFolder => self.ask(ctx, Ask::ExportFolder),
             Command::Live | Command::LowRes | Command::HighRes if self.lab.leave() => {
                 return self.run(ctx, command);

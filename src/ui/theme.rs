@@ -66,6 +66,9 @@ pub struct Palette {
     pub selected: Color32,
     /// Errors, and nothing else.
     pub error: Color32,
+    /// The families of dots on a chart: told apart without colour sight too (after Okabe and Ito, "Color
+    /// universal design", 2008), and by their shapes.
+    pub families: [Color32; 5],
     /// The x, y and z axes.
     pub axes: [Color32; 3],
     /// The letters of the axes, in fields.
@@ -97,6 +100,13 @@ const DARK: Palette = Palette {
     curve: Color32::from_rgb(0x5C, 0xC8, 0xC2),
     selected: Color32::from_rgb(0x4A, 0x3D, 0x22),
     error: Color32::from_rgb(0xFF, 0x6B, 0x6B),
+    families: [
+        Color32::from_rgb(0xF2, 0xB1, 0x34),
+        Color32::from_rgb(0x5B, 0xB8, 0xF0),
+        Color32::from_rgb(0xD9, 0x8A, 0xC4),
+        Color32::from_rgb(0x3F, 0xC3, 0x92),
+        Color32::from_rgb(0xF4, 0xF5, 0xF8),
+    ],
     axes: AXES,
     axis_letters: AXES,
     on_picture: ON_PICTURE,
@@ -116,6 +126,13 @@ const LIGHT: Palette = Palette {
     curve: Color32::from_rgb(0x00, 0x86, 0x80),
     selected: Color32::from_rgb(0xF6, 0xE2, 0xB8),
     error: Color32::from_rgb(0xC6, 0x28, 0x28),
+    families: [
+        Color32::from_rgb(0xB0, 0x6A, 0x00),
+        Color32::from_rgb(0x00, 0x6F, 0xB0),
+        Color32::from_rgb(0xA8, 0x4B, 0x85),
+        Color32::from_rgb(0x00, 0x80, 0x5B),
+        Color32::from_rgb(0x22, 0x26, 0x2E),
+    ],
     axes: AXES,
     axis_letters: [
         Color32::from_rgb(0xA6, 0x3A, 0x0C),

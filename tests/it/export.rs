@@ -151,6 +151,89 @@ fn only_what_is_not_there_as_it_should_be_is_made() {
     assert!(said.contains("12 frames written"), "{said}");
 }
 
+/// Both find the same frames missing, and write them beside each other under the same names.
+#[test]
+fn two_exports_into_one_folder_do_not_hurt_each_other() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let whole = folder.path().join("whole");
+    done(&mut export(&whole, &["--frames", "1-6"]));
+    let expected = files(&whole);
+    for pair in 0..50 {
+        let both = folder.path().join(format!("both {pair}"));
+        let start = || {
+            let mut command = export(&both, &["--frames", "1-6"]);
+            command.stdout(Stdio::null()).stderr(Stdio::piped());
+            command.spawn().expect("it runs")
+        };
+        for child in [start(), start()] {
+            let output = child.wait_with_output().expect("it ends");
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "pair {pair}: {said}");
+        }
+        assert!(files(&both) == expected, "pair {pair}");
+    }
+}
+
+#[test]
+fn what_dead_programs_left_is_removed_and_what_others_write_is_not() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let left = folder.path().join(".glint-AbCdEf-rayTrace1.ppm");
+    let written = folder.path().join(".glint-GhIjKl-rayTrace2.ppm");
+    fs::write(&left, "half a frame").expect("written");
+    let other = fs::File::create(&written).expect("made");
+    other.lock().expect("locked");
+    done(&mut export(folder.path(), &["--frames", "1-2"]));
+    let names: Vec<_> = files(folder.path()).into_keys().collect();
+    let kept = ".glint-GhIjKl-rayTrace2.ppm";
+    assert_eq!(names, [kept, "rayTrace1.ppm", "rayTrace2.ppm"]);
+}
+
+#[test]
+fn a_note_that_was_cut_off_costs_its_own_frame_only() {
+    let folder = tempfile::tempdir().expect("a folder");
+    done(&mut export(folder.path(), &["--frames", "1-3"]));
+    let notes = folder.path().join("glint-frames.txt");
+    let text = fs::read_to_string(&notes).expect("readable");
+    fs::write(&notes, &text[..text.len() - 9]).expect("written");
+    let said = done(&mut export(folder.path(), &["--frames", "1-4"]));
+    assert!(said.contains("2 frames written, 2 there already"), "{said}");
+    let said = done(&mut export(folder.path(), &["--frames", "1-4"]));
+    assert!(said.contains("0 frames written, 4 there already"), "{said}");
+}
+
+#[test]
+fn asking_what_is_missing_makes_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let frames = folder.path().join("frames");
+    let said = done(&mut export(&frames, &["--frames", "1-3", "--dry-run"]));
+    assert!(said.contains("3 frames of 3 to make"), "{said}");
+    assert!(!frames.exists());
+}
+
+#[test]
+fn a_video_that_cannot_be_is_told_before_the_first_frame() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, video) = (
+        folder.path().join("frames"),
+        folder.path().join("gone/x.gif"),
+    );
+    let video = video.to_str().expect("a plain name");
+    let output = run(&mut export(&frames, &["--frames", "1-3", "--video", video]));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        !output.status.success() && said.contains("gone does not exist"),
+        "{said}"
+    );
+    assert!(files(&frames).is_empty());
+    let inside = frames.join("x.gif");
+    let inside = inside.to_str().expect("a plain name");
+    done(&mut export(
+        &frames,
+        &["--frames", "1-3", "--video", inside],
+    ));
+    assert!(files(&frames).contains_key("x.gif"));
+}
+
 #[test]
 fn after_an_edit_only_the_frames_that_change_are_made_again() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -209,7 +292,7 @@ fn what_cannot_be_written_is_told_and_leaves_no_parts() {
     fs::remove_dir(&obstacle).expect("removed");
     let made = files(&frames);
     assert!(
-        made.keys().all(|name| !name.contains("part")),
+        made.keys().all(|name| !name.starts_with(".glint-")),
         "{:?}",
         made.keys()
     );
@@ -222,21 +305,21 @@ fn what_cannot_be_written_is_told_and_leaves_no_parts() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("cannot write"));
 }
 
-/// A real full device: what is written beside a frame goes there.
+/// The system lets a program write so much and no more, as a full disk does: half a frame.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_full_disk_is_told_and_gone_on_from() {
     let folder = tempfile::tempdir().expect("a folder");
     let frames = folder.path().join("frames");
-    fs::create_dir(&frames).expect("made");
-    std::os::unix::fs::symlink("/dev/full", frames.join(".rayTrace5.ppm.part")).expect("linked");
-    let output = run(&mut export(&frames, &["--frames", "1-9"]));
+    done(&mut export(&frames, &["--frames", "1-4"]));
+    let whole = export(&frames, &["--frames", "1-9"]);
+    let mut limited = Command::new("sh");
+    limited.args(["-c", "trap '' XFSZ; ulimit -f 3; exec \"$0\" \"$@\""]);
+    limited.arg(whole.get_program()).args(whole.get_args());
+    let output = run(&mut limited);
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(
-        said.contains("rayTrace5.ppm: No space left on device"),
-        "{said}"
-    );
+    assert!(said.contains("rayTrace5.ppm: File too large"), "{said}");
     assert!(
         !frames.join("rayTrace5.ppm").exists(),
         "nothing half under the name"
@@ -622,6 +705,23 @@ fn the_window_writes_a_farm_job_and_its_scene() {
         .expect("a scene")
         .scene;
     assert_eq!(&scene, harness.scene());
+}
+
+#[test]
+fn the_window_and_the_command_line_write_the_same_scene_for_povray() {
+    let answer = |folder: &Path| vec![(Ask::ExportPovray, Some(folder.join("demo.pov")))];
+    let mut harness = EditorHarness::with(answer, None);
+    harness.choose("File", "Export for POV-Ray…");
+    harness.window.get_by_label_contains("Saved ");
+    let by_window = fs::read_to_string(harness.folder.path().join("demo.pov")).expect("written");
+    assert_eq!(by_window.matches("\ntriangle {").count(), 6);
+    let folder = tempfile::tempdir().expect("a folder");
+    let to = folder.path().join("demo.pov");
+    let to = to.to_str().expect("a plain name");
+    let demo = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/demo.ron");
+    let said = done(&mut glint(&["convert", demo, "-o", to]));
+    assert!(said.contains("povray +I"), "{said}");
+    assert_eq!(fs::read_to_string(to).expect("written"), by_window);
 }
 
 #[test]

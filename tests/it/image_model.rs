@@ -14,7 +14,8 @@ use glint::trace::{Grid, Pass, Rays, RenderControl, Threads, Tracer};
 
 use crate::random;
 
-fn picture(scene: &Scene, picture: &RenderRequest) -> (Image, Rays) {
+/// A picture, and the rays that it took.
+pub fn picture(scene: &Scene, picture: &RenderRequest) -> (Image, Rays) {
     let (image, cost) = render(scene, picture, &RenderControl::default()).expect("not stopped");
     (image, cost.rays)
 }
@@ -133,22 +134,27 @@ fn single_and_double_precision_differ_on_edges_only() {
         };
         let single = picture(&scene, &at(Precision::Single)).0;
         let double = picture(&scene, &at(Precision::Double)).0;
-        let mut differ = 0;
-        for (index, (a, b)) in single.pixels.iter().zip(&double.pixels).enumerate() {
-            if (0..3).any(|c| a[c].abs_diff(b[c]) > 1) {
-                differ += 1;
-                let (x, y) = (index % 256, index / 256);
-                assert!(
-                    is_on_edge(*a, x, y, &double),
-                    "scene {number}: {a:?} instead of {b:?} at {x}, {y}"
-                );
-            }
-        }
-        assert!(
-            differ * 2000 <= single.pixels.len(),
-            "scene {number}: {differ} pixels differ"
-        );
+        assert_same_but_for_edges(&single, &double, &format!("scene {number}"));
     }
+}
+
+/// Pixels differ by more than 1 of 255 on edges only, and at most one of 2000 does.
+pub fn assert_same_but_for_edges(one: &Image, other: &Image, what: &str) {
+    let mut differ = 0;
+    for (index, (a, b)) in one.pixels.iter().zip(&other.pixels).enumerate() {
+        if (0..3).any(|c| a[c].abs_diff(b[c]) > 1) {
+            differ += 1;
+            let (x, y) = (index % one.width, index / one.width);
+            assert!(
+                is_on_edge(*a, x, y, other),
+                "{what}: {a:?} instead of {b:?} at {x}, {y}"
+            );
+        }
+    }
+    assert!(
+        differ * 2000 <= one.pixels.len(),
+        "{what}: {differ} pixels differ"
+    );
 }
 
 #[test]

@@ -7,6 +7,7 @@ mod architecture;
 mod aspects;
 mod bytes;
 mod cli;
+mod contacts;
 mod export;
 mod harness;
 mod image_model;

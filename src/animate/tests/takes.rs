@@ -31,6 +31,30 @@ fn take() -> Take {
     take
 }
 
+/// The same flight with a head that sample n turns by so much more.
+fn turned(calm: &Take, by: impl Fn(usize) -> f64) -> Take {
+    let mut take = Take::default();
+    for (n, sample) in calm.samples.iter().enumerate() {
+        let angles = Orientation {
+            yaw: sample.2 + by(n),
+            pitch: sample.3,
+            roll: sample.4,
+        };
+        let camera = angles.apply(&calm.camera(n).expect("a sample"));
+        take.push(sample.0, &camera, angles);
+    }
+    take
+}
+
+/// To and fro from sample to sample.
+fn tremor(sample: usize, size: f64) -> f64 {
+    if sample.is_multiple_of(2) {
+        size
+    } else {
+        -size
+    }
+}
+
 /// What every sample sees: a grid of points 60 ahead.
 fn seen(take: &Take) -> Vec<Vec<Seen>> {
     let of = |sample: usize| {
@@ -77,18 +101,7 @@ fn a_take_becomes_few_keys_within_its_tolerance() {
 
 #[test]
 fn a_trembling_hand_costs_few_keys_where_the_tolerance_allows_it() {
-    let calm = take();
-    let mut shaken = Take::default();
-    for (n, sample) in calm.samples.iter().enumerate() {
-        let tremor = if n % 2 == 0 { 0.002 } else { -0.002 };
-        let angles = Orientation {
-            yaw: sample.2 + tremor,
-            pitch: sample.3,
-            roll: sample.4,
-        };
-        let camera = angles.apply(&calm.camera(n).expect("a sample"));
-        shaken.push(sample.0, &camera, angles);
-    }
+    let shaken = turned(&take(), |n| tremor(n, 0.002));
     let seen = seen(&shaken);
     let keys = |pixels: f64| simplify(&shaken, &seen, pixels / 1024.0).keys.len();
     assert!(keys(1.0) > 100, "the tremor is more than a pixel");
@@ -99,18 +112,10 @@ fn a_trembling_hand_costs_few_keys_where_the_tolerance_allows_it() {
 #[test]
 fn a_hand_that_jumps_costs_a_few_keys_and_no_accuracy() {
     let calm = take();
-    let mut jumpy = Take::default();
-    for (n, sample) in calm.samples.iter().enumerate() {
-        let tremor = if n % 2 == 0 { 0.001 } else { -0.001 };
-        let leaps = [60, 61, 130, 190].iter().filter(|leap| n >= **leap).count();
-        let angles = Orientation {
-            yaw: sample.2 + tremor + 0.4 * leaps as f64,
-            pitch: sample.3,
-            roll: sample.4,
-        };
-        let camera = angles.apply(&calm.camera(n).expect("a sample"));
-        jumpy.push(sample.0, &camera, angles);
-    }
+    let jumpy = turned(&calm, |n| {
+        let leaps = [60, 61, 130, 190].iter().filter(|leap| n >= **leap);
+        tremor(n, 0.001) + 0.4 * leaps.count() as f64
+    });
     let seen = seen(&jumpy);
     let found = simplify(&jumpy, &seen, 6.0 / 1024.0);
     assert_eq!(found.jumps, 4);

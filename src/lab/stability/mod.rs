@@ -5,6 +5,8 @@ mod subject;
 
 mod map;
 
+mod words;
+
 mod sphere;
 
 mod triangle;
@@ -25,6 +27,7 @@ mod keys;
 
 pub use map::{Axis, GOLDEN, Map, Tries, mixed, share};
 pub use subject::Subject;
+pub use words::number;
 
 use std::fmt::Write as _;
 

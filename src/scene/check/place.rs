@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::scene::direction::unit;
 use crate::scene::locate::PathStep;
 use crate::scene::notation::format_number;
 
@@ -173,7 +174,7 @@ impl<'a> At<'a> {
     /// A direction of any length but zero.
     pub fn direction(&self, value: DVec3) -> Check {
         self.point(value)?;
-        match value.try_normalize() {
+        match unit(value) {
             Some(_) => Ok(()),
             None => self.refuse(format!(
                 "{} must have a direction, found (0, 0, 0)",

@@ -4,6 +4,8 @@ use std::fmt::Debug;
 
 use glam::{DQuat, DVec3};
 
+use super::plane_piece::PlanePiece;
+
 /// What every kind of primitive tells about itself.
 pub trait Describe: Clone + Debug + PartialEq + Sized {
     /// The name of the kind, as the file writes it.
@@ -44,8 +46,8 @@ pub trait Describe: Clone + Debug + PartialEq + Sized {
         f64::INFINITY
     }
 
-    /// The point and the normal of the plane that it fills, if it is an endless one.
-    fn endless_plane(&self) -> Option<(DVec3, DVec3)> {
+    /// The piece of a plane that it is; `None` for what is not flat.
+    fn plane_piece(&self) -> Option<PlanePiece> {
         None
     }
 }

@@ -4,6 +4,8 @@ use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::describe::{Describe, Field, FieldValue, turned};
+use super::plane_piece::{Outline, PlanePiece};
+use crate::scene::direction::unit;
 use crate::scene::notation;
 
 /// A flat disc.
@@ -52,7 +54,7 @@ impl Describe for Disc {
 
     /// Along an axis it reaches as far as the sine of the angle between axis and normal lets it.
     fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        let normal = self.normal.try_normalize().unwrap_or(DVec3::ZERO);
+        let normal = unit(self.normal).unwrap_or(DVec3::ZERO);
         let sines = (DVec3::ONE - normal * normal).max(DVec3::ZERO);
         let reach = DVec3::new(sines.x.sqrt(), sines.y.sqrt(), sines.z.sqrt()) * self.radius;
         Some((self.center - reach, self.center + reach))
@@ -79,6 +81,14 @@ impl Describe for Disc {
 
     fn feature(&self) -> Option<(DVec3, f64)> {
         Some((self.center, self.radius))
+    }
+
+    fn plane_piece(&self) -> Option<PlanePiece> {
+        Some(PlanePiece {
+            point: self.center,
+            normal: unit(self.normal)?,
+            outline: Outline::Disc(self.radius),
+        })
     }
 }
 

@@ -12,6 +12,7 @@ use super::describe::{Describe, Field};
 use super::disc::Disc;
 use super::mesh::Mesh;
 use super::plane::Plane;
+use super::plane_piece::{Outline, PlanePiece};
 use super::sphere::Sphere;
 use super::triangle::Triangle;
 
@@ -127,9 +128,15 @@ macro_rules! shapes {
                 match self { $(Self::$kind(shape) => shape.height_per_radius(point)),* }
             }
 
-            /// See [`Describe::endless_plane`].
+            /// The piece of a plane that it is, see [`Describe::flat`].
+            pub fn plane_piece(&self) -> Option<PlanePiece> {
+                match self { $(Self::$kind(shape) => shape.plane_piece()),* }
+            }
+
+            /// The point and the normal of the plane that it fills, if it is an endless one.
             pub fn endless_plane(&self) -> Option<(DVec3, DVec3)> {
-                match self { $(Self::$kind(shape) => shape.endless_plane()),* }
+                let flat = self.plane_piece().filter(|flat| flat.outline == Outline::Endless)?;
+                Some((flat.point, flat.normal))
             }
         }
     };

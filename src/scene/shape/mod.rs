@@ -3,6 +3,8 @@
 //! A new one is a file here that implements [`Describe`] and a line in the list in `kinds.rs`; a file
 //! and a line in [`crate::primitive`], which has the kernels; and a symbol in the window's `icons.rs`.
 
+mod plane_piece;
+
 mod describe;
 
 mod disc;
@@ -25,5 +27,6 @@ pub use kinds::Shape;
 pub use mesh::Mesh;
 pub use mesh_source::MeshSource;
 pub use plane::Plane;
+pub use plane_piece::{Outline, PlanePiece};
 pub use sphere::Sphere;
 pub use triangle::Triangle;

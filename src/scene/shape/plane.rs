@@ -4,6 +4,8 @@ use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::describe::{Describe, Field, FieldValue, turned};
+use super::plane_piece::{Outline, PlanePiece};
+use crate::scene::direction::unit;
 use crate::scene::notation;
 
 /// An endless plane.
@@ -67,7 +69,11 @@ impl Describe for Plane {
         None
     }
 
-    fn endless_plane(&self) -> Option<(DVec3, DVec3)> {
-        Some((self.point, self.normal))
+    fn plane_piece(&self) -> Option<PlanePiece> {
+        Some(PlanePiece {
+            point: self.point,
+            normal: unit(self.normal)?,
+            outline: Outline::Endless,
+        })
     }
 }

@@ -4,6 +4,8 @@ use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::describe::{Describe, Field, FieldValue, turned};
+use super::plane_piece::{Outline, PlanePiece};
+use crate::scene::direction::unit;
 use crate::scene::notation;
 
 /// Smallest ratio of a triangle's height to its longest side; below it rounding decides what is hit.
@@ -99,5 +101,13 @@ impl Describe for Triangle {
 
     fn feature(&self) -> Option<(DVec3, f64)> {
         Some((self.a, self.thickness()))
+    }
+
+    fn plane_piece(&self) -> Option<PlanePiece> {
+        Some(PlanePiece {
+            point: self.a,
+            normal: unit((self.b - self.a).cross(self.c - self.a))?,
+            outline: Outline::Triangle(self.corners()),
+        })
     }
 }

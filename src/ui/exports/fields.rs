@@ -7,7 +7,7 @@ use egui::{Align2, ComboBox, DragValue, TextEdit, Ui};
 use serde::{Deserialize, Serialize};
 
 use crate::editor::Editor;
-use crate::export::{Frames, FramesError, NoSuchFrame, Pattern, PatternError, Sequence, Video};
+use crate::export::{Frames, FramesError, Pattern, PatternError, Sequence, SequenceError, Video};
 use crate::image::Format;
 use crate::scene::{MAX_SIDE, Method as _, Problem, Sampling, Scene};
 use crate::ui::commands::Command;
@@ -64,7 +64,10 @@ impl Settings {
         let folder = folder.strip_prefix(&here).unwrap_or(folder);
         let title = editor.title();
         let stem = title.strip_suffix(".ron").unwrap_or(&title);
-        let frames = Frames::up_to(scene.animation.frame_count()).to_string();
+        let frames = match scene.animation.frame_count() {
+            1 => "1".to_owned(),
+            count => format!("1-{count}"),
+        };
         Self {
             folder: folder.join(format!("{stem} frames")).display().to_string(),
             own: Own {
@@ -152,7 +155,7 @@ pub enum SettingsError {
     Pattern(#[from] PatternError),
     /// The animation is shorter.
     #[error(transparent)]
-    NoSuchFrame(#[from] NoSuchFrame),
+    Sequence(#[from] SequenceError),
     /// There is nowhere to write to.
     #[error("choose a folder for the frames")]
     NoFolder,

@@ -402,7 +402,7 @@ impl Exports {
             match order.sequence() {
                 Ok(sequence) => self.begin(order, sequence, editor, pictures),
                 Err(error) => {
-                    editor.report_error(format!("{}: {error}", order.name));
+                    editor.report_error_in(EXPORT, format!("{}: {error}", order.name));
                     self.interrupted.insert(index, order);
                 }
             }

@@ -1,38 +1,50 @@
-//! The chart itself: dots on logarithmic axes, the front through the best of them.
+//! The chart itself: dots on logarithmic axes, the front below the best of them.
 
 use std::ops::RangeInclusive;
 
-use egui::{Pos2, Ui, Vec2b};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, TextStyle, Ui, pos2};
 use egui_plot::{
-    GridInput, GridMark, HLine, HoverPosition, Line, LineStyle, MarkerShape, Plot, PlotPoint,
-    PlotPoints, Points, Text,
+    AxisHints, GridInput, GridMark, HPlacement, HoverPosition, Plot, PlotPoint, PlotPoints,
+    PlotTransform, Points,
 };
 
-use super::super::raster::draw;
 use super::super::theme::{GRID, palette};
-use crate::image::Image;
-use crate::lab::front;
+use super::labels::place;
+use super::marks;
+use crate::lab::{Family, front};
 
-/// Size of a picture of a chart, in points.
-const PICTURE: (u32, u32) = (800, 480);
 /// How near to a dot the pointer must be, in points.
 const REACH: f32 = 14.0;
-/// Names are written beside this many dots at most: the front's.
-const MOST_NAMES: usize = 12;
+/// A name farther away than this from its dot is tied to it by a line, in points.
+const TIED: f32 = 14.0;
+/// Room around the dots, in decades.
+const AROUND: (f64, f64) = (0.12, 0.2);
 
 /// What is drawn.
 #[derive(Clone, Debug, Default)]
 pub struct Chart {
+    /// What it says, in a sentence.
+    pub title: String,
     /// What the axis to the right measures.
-    pub cost: &'static str,
+    pub cost: String,
     /// What the axis upwards measures.
     pub error: &'static str,
+    /// Whether errors are also told in decibels.
+    pub has_decibels: bool,
     /// The dots.
     pub spots: Vec<ChartDot>,
+    /// Places of dots that differ in a number, in its order.
+    pub series: Vec<Vec<usize>>,
     /// Lines across: name and height.
     pub levels: Vec<(&'static str, f64)>,
+    /// Errors below this are shaded: nobody sees them.
+    pub invisible: Option<f64>,
+    /// The dot of the settings in use.
+    pub in_use: Option<usize>,
     /// The dot that is looked at.
     pub chosen: Option<usize>,
+    /// What the axes show at least: cost and error, from and to.
+    pub bounds: Option<[(f64, f64); 2]>,
 }
 
 /// One dot.
@@ -40,9 +52,13 @@ pub struct Chart {
 pub struct ChartDot {
     /// Its name.
     pub name: String,
-    /// To the right; NaN if it is not measured.
+    /// What it differs in.
+    pub family: Family,
+    /// To the right.
     pub cost: f64,
-    /// Upwards; NaN if it is not measured.
+    /// What a quarter of the costs are below, and above.
+    pub quartiles: (f64, f64),
+    /// Upwards.
     pub error: f64,
     /// Said when the pointer is on it.
     pub words: String,
@@ -51,73 +67,52 @@ pub struct ChartDot {
 }
 
 impl Chart {
-    /// The places of the dots that nothing beats.
+    /// The places of the dots that nothing beats. Doubtful ones carry no front.
     fn front(&self) -> Vec<usize> {
-        let dots: Vec<(f64, f64)> = self
+        let certain = |spot: &ChartDot| {
+            if spot.is_doubtful {
+                f64::NAN
+            } else {
+                spot.cost
+            }
+        };
+        let dots: Vec<_> = self
             .spots
             .iter()
-            .map(|spot| (spot.cost, spot.error))
+            .map(|spot| (certain(spot), spot.error))
             .collect();
         front(&dots)
     }
 
+    /// From where to where its dots are, with room around them.
+    pub fn extent(&self) -> Option<[(f64, f64); 2]> {
+        let costs = self.spots.iter().map(|spot| spot.cost);
+        let levels = self.levels.iter().map(|(_, level)| *level);
+        let errors = self.spots.iter().map(|spot| spot.error).chain(levels);
+        Some([range(costs)?, range(errors)?])
+    }
+
     /// Draws it into all the room that there is. The dot that was clicked, if one was.
     pub fn show(&self, ui: &mut Ui) -> Option<usize> {
-        let colors = palette(ui.ctx());
-        let front = self.front();
-        if self.spots.iter().all(|spot| spot.error.is_nan()) {
+        let Some(extent) = self.bounds.or_else(|| self.extent()) else {
             ui.centered_and_justified(|ui| ui.weak("No dots yet"));
             return None;
-        }
-        let response = Plot::new("lab chart")
-            .x_axis_label(self.cost)
-            .y_axis_label(self.error)
-            .x_axis_formatter(power_of_ten)
-            .y_axis_formatter(power_of_ten)
-            .x_grid_spacer(|input| decades(&input))
-            .y_grid_spacer(|input| decades(&input))
-            .y_axis_min_width(48.0)
-            .set_margin_fraction(egui::vec2(0.08, 0.12))
-            .auto_bounds(Vec2b::TRUE)
-            .label_formatter(|hover| self.label(hover))
-            .show(ui, |plot| {
-                for &(name, level) in &self.levels {
-                    let line = HLine::new(name, level.log10());
-                    plot.hline(line.color(colors.muted).style(LineStyle::dashed_loose()));
-                }
-                if let Some(left) = self.left() {
-                    for &(name, level) in &self.levels {
-                        let name = egui::RichText::new(name).small();
-                        let text = Text::new("level", PlotPoint::new(left, level.log10()), name);
-                        plot.text(text.anchor(egui::Align2::LEFT_TOP).color(colors.muted));
-                    }
-                }
-                let steps: Vec<[f64; 2]> = front.iter().map(|&index| self.at(index)).collect();
-                plot.line(Line::new("front", steps).color(colors.accent).width(1.5));
-                for (index, spot) in self.spots.iter().enumerate() {
-                    if !(spot.cost.is_finite() && spot.error.is_finite()) {
-                        continue;
-                    }
-                    let is_best = front.contains(&index);
-                    let dot =
-                        Points::new(spot.name.clone(), PlotPoints::from(vec![self.at(index)]))
-                            .radius(if self.chosen == Some(index) { 7.0 } else { 4.0 })
-                            .shape(if spot.is_doubtful {
-                                MarkerShape::Diamond
-                            } else {
-                                MarkerShape::Circle
-                            })
-                            .filled(!spot.is_doubtful)
-                            .color(if is_best { colors.accent } else { colors.muted });
-                    plot.points(dot);
-                }
-                for &index in front.iter().take(MOST_NAMES) {
-                    let [x, y] = self.at(index);
-                    let name = egui::RichText::new(format!("  {}", self.spots[index].name));
-                    let text = Text::new("name", PlotPoint::new(x, y), name.small());
-                    plot.text(text.anchor(egui::Align2::LEFT_BOTTOM).color(colors.text));
-                }
-            });
+        };
+        ui.horizontal_wrapped(|ui| {
+            ui.label(egui::RichText::new(&self.title).strong());
+            ui.add_space(GRID);
+            let families: Vec<Family> = self.spots.iter().map(|spot| spot.family).collect();
+            marks::legend(ui, &families);
+        });
+        let response = self.plot(extent).show(ui, |plot| {
+            // What the pointer can find; it is drawn below.
+            for (index, spot) in self.spots.iter().enumerate() {
+                let at = PlotPoints::from(vec![self.at(index)]);
+                let unseen = Points::new(spot.name.clone(), at).color(Color32::TRANSPARENT);
+                plot.points(unseen.radius(0.5));
+            }
+        });
+        self.draw(ui, &response.transform);
         let click = response.response.clicked();
         let pointer = response.response.interact_pointer_pos().filter(|_| click)?;
         self.nearest(pointer, |point| {
@@ -125,10 +120,139 @@ impl Chart {
         })
     }
 
-    /// The cheapest dot's place on the axis to the right.
-    fn left(&self) -> Option<f64> {
-        let costs = self.spots.iter().map(|spot| spot.cost.log10());
-        costs.filter(|cost| cost.is_finite()).min_by(f64::total_cmp)
+    fn plot(&self, [costs, errors]: [(f64, f64); 2]) -> Plot<'_> {
+        let padded =
+            |(low, high): (f64, f64), around: f64| (low.log10() - around, high.log10() + around);
+        let (left, right) = padded(costs, AROUND.0);
+        let (bottom, top) = padded(errors, AROUND.1);
+        let mut up = vec![AxisHints::new_y().label(self.error).formatter(power_of_ten)];
+        if self.has_decibels {
+            let decibels = AxisHints::new_y().label("dB").formatter(decibels);
+            up.push(decibels.placement(HPlacement::Right));
+        }
+        Plot::new("lab chart")
+            .custom_x_axes(vec![AxisHints::new_x().label(&self.cost).formatter(plain)])
+            .custom_y_axes(up)
+            .x_grid_spacer(|input| decades(&input))
+            .y_grid_spacer(|input| powers(&input))
+            .show_grid(false)
+            .show_background(false)
+            .y_axis_min_width(40.0)
+            .default_x_bounds(left, right)
+            .default_y_bounds(bottom, top)
+            .label_formatter(|hover| self.label(hover))
+    }
+
+    /// Draws over the empty plot: what lies below first.
+    fn draw(&self, ui: &Ui, transform: &PlotTransform) {
+        let colors = palette(ui.ctx());
+        let frame = *transform.frame();
+        let painter = ui.painter().with_clip_rect(frame);
+        let on_screen = |[x, y]: [f64; 2]| transform.position_from_point(&PlotPoint::new(x, y));
+        let height = |error: f64| on_screen([0.0, error.log10()]).y;
+        if let Some(error) = self.invisible {
+            let below = Rect::from_min_max(pos2(frame.left(), height(error)), frame.max);
+            painter.rect_filled(below, 0, colors.raised.gamma_multiply(0.6));
+        }
+        draw_decades(&painter, transform, Stroke::new(0.5, colors.line));
+        let small = TextStyle::Small.resolve(ui.style());
+        let mut taken = Vec::new();
+        for &(name, level) in &self.levels {
+            let y = height(level);
+            let dashes = [pos2(frame.left(), y), pos2(frame.right(), y)];
+            let line = Stroke::new(1.0, colors.muted);
+            painter.extend(egui::Shape::dashed_line(&dashes, line, 6.0, 5.0));
+            taken.push(Rect::from_two_pos(dashes[0], dashes[1]));
+            let at = pos2(frame.right() - GRID, y + 2.0);
+            taken.push(painter.text(at, Align2::RIGHT_TOP, name, small.clone(), colors.muted));
+        }
+        let dots: Vec<Pos2> = (0..self.spots.len())
+            .map(|index| on_screen(self.at(index)))
+            .collect();
+        for series in &self.series {
+            let line: Vec<Pos2> = series.iter().map(|&index| dots[index]).collect();
+            let family = series.first().map(|&index| self.spots[index].family);
+            let color = marks::color(ui, family.unwrap_or(Family::Sampling));
+            painter.line(line, Stroke::new(0.75, color.gamma_multiply(0.6)));
+        }
+        let front = self.front();
+        let stairs = stairs(frame, front.iter().map(|&index| dots[index]));
+        taken.extend(
+            stairs
+                .windows(2)
+                .map(|step| Rect::from_two_pos(step[0], step[1])),
+        );
+        painter.line(stairs, Stroke::new(1.5, colors.accent));
+        for (index, (spot, at)) in self.spots.iter().zip(&dots).enumerate() {
+            let color = marks::color(ui, spot.family);
+            let x = |cost: f64| on_screen([cost.log10(), 0.0]).x;
+            let (low, high) = (x(spot.quartiles.0), x(spot.quartiles.1));
+            painter.hline(low..=high, at.y, Stroke::new(1.0, color));
+            marks::draw(&painter, *at, spot.family, color, spot.is_doubtful);
+            if self.in_use == Some(index) {
+                painter.circle_stroke(*at, marks::RADIUS + 4.0, Stroke::new(1.5, colors.text));
+            }
+            if self.chosen == Some(index) {
+                painter.circle_stroke(*at, marks::RADIUS + 7.0, Stroke::new(2.0, colors.accent));
+            }
+        }
+        self.write_names(
+            &painter,
+            (&dots, &front),
+            (&taken, small),
+            colors.text,
+            colors.muted,
+        );
+    }
+
+    /// Names stand beside the dots: first those of the front, then as many as there is room for.
+    fn write_names(
+        &self,
+        painter: &Painter,
+        (dots, front): (&[Pos2], &[usize]),
+        (taken, font): (&[Rect], FontId),
+        strong: Color32,
+        weak: Color32,
+    ) {
+        let frame = painter.clip_rect();
+        let rank = |index: &usize| {
+            let is_first = self.in_use == Some(*index) || self.chosen == Some(*index);
+            (!is_first, !front.contains(index))
+        };
+        let mut order: Vec<usize> = (0..dots.len())
+            .filter(|&index| frame.contains(dots[index]))
+            .collect();
+        order.sort_by_key(rank);
+        let color = |index: usize| {
+            if rank(&index).0 && rank(&index).1 {
+                weak
+            } else {
+                strong
+            }
+        };
+        let texts: Vec<_> = order
+            .iter()
+            .map(|&index| {
+                let name = self.spots[index].name.clone();
+                painter.layout_no_wrap(name, font.clone(), color(index))
+            })
+            .collect();
+        let names: Vec<_> = order
+            .iter()
+            .zip(&texts)
+            .map(|(&index, text)| (dots[index], text.size()))
+            .collect();
+        let frame = frame.shrink(GRID / 2.0);
+        let places = place(&names, (dots, marks::RADIUS + 2.0), (frame, taken));
+        for ((index, text), place) in order.into_iter().zip(texts).zip(places) {
+            let Some(place) = place else { continue };
+            let near = place.clamp(dots[index]);
+            if near.distance(dots[index]) > TIED {
+                let line = Stroke::new(0.5, weak);
+                painter.line_segment([dots[index], near], line);
+            }
+            painter.galley(place.min, text, color(index));
+        }
     }
 
     /// Where a dot is on axes of powers of ten.
@@ -158,43 +282,151 @@ impl Chart {
     }
 }
 
-/// A picture of a chart that is drawn into all of it.
-pub fn picture(mut show: impl FnMut(&mut Ui)) -> Image {
-    draw(PICTURE.0, PICTURE.1, 2.0, |ui| {
-        let frame = egui::Frame::new().inner_margin(2.0 * GRID);
-        frame.show(ui, &mut show);
+/// From the least to the greatest; `None` for nothing.
+fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    let values = values.filter(|value| value.is_finite() && *value > 0.0);
+    values.fold(None, |range: Option<(f64, f64)>, value| {
+        let (low, high) = range.unwrap_or((value, value));
+        Some((low.min(value), high.max(value)))
     })
 }
 
-/// Marks at 1, 2, … 9 times every power of ten that is in sight.
-pub fn decades(input: &GridInput) -> Vec<GridMark> {
+/// The line above which something is both faster and closer: down at each dot, then to the right.
+fn stairs(frame: Rect, dots: impl Iterator<Item = Pos2>) -> Vec<Pos2> {
+    let mut stairs = Vec::new();
+    for dot in dots {
+        let above = stairs.last().map_or(frame.top(), |last: &Pos2| last.y);
+        stairs.push(pos2(dot.x, above));
+        stairs.push(dot);
+    }
+    if let Some(last) = stairs.last().copied() {
+        stairs.push(pos2(frame.right(), last.y));
+    }
+    stairs
+}
+
+/// Faint lines at the powers of ten.
+fn draw_decades(painter: &Painter, transform: &PlotTransform, line: Stroke) {
+    let (frame, bounds) = (*transform.frame(), transform.bounds());
+    let on_screen = |x: f64, y: f64| transform.position_from_point(&PlotPoint::new(x, y));
+    let within = |low: f64, high: f64| (low.ceil() as i32)..=(high.floor() as i32);
+    if bounds.width().max(bounds.height()) > MOST_DECADES {
+        return;
+    }
+    for power in within(bounds.min()[0], bounds.max()[0]) {
+        painter.vline(on_screen(f64::from(power), 0.0).x, frame.y_range(), line);
+    }
+    for power in within(bounds.min()[1], bounds.max()[1]) {
+        painter.hline(frame.x_range(), on_screen(0.0, f64::from(power)).y, line);
+    }
+    painter.rect_stroke(frame, 0, line, egui::StrokeKind::Inside);
+}
+
+/// Zoomed out farther, marks would be closer than pixels.
+const MOST_DECADES: f64 = 40.0;
+
+fn marks_at(input: &GridInput, digits: &[u32]) -> Vec<GridMark> {
     let (low, high) = (input.bounds.0.floor() as i32, input.bounds.1.ceil() as i32);
-    // Zoomed far out, more marks than pixels would be of no use.
-    if high - low > 40 {
+    if f64::from(high - low) > MOST_DECADES {
         return Vec::new();
     }
     let decade = |exponent: i32| {
-        (1..10).map(move |digit| GridMark {
+        digits.iter().map(move |&digit| GridMark {
             value: f64::from(exponent) + f64::from(digit).log10(),
-            step_size: if digit == 1 { 1.0 } else { 0.1 },
+            step_size: 1.0,
         })
     };
     let in_sight = |mark: &GridMark| (input.bounds.0..=input.bounds.1).contains(&mark.value);
     (low..=high).flat_map(decade).filter(in_sight).collect()
 }
 
-/// What stands at a mark: the powers of ten alone.
-pub fn power_of_ten(mark: GridMark, _: &RangeInclusive<f64>) -> String {
-    if mark.step_size < 1.0 {
-        return String::new();
-    }
+/// Marks at the powers of ten; between them where there are few.
+pub fn decades(input: &GridInput) -> Vec<GridMark> {
+    let is_narrow = input.bounds.1 - input.bounds.0 < 1.5;
+    marks_at(input, if is_narrow { &[1, 2, 5] } else { &[1] })
+}
+
+/// Marks at the powers of ten.
+pub fn powers(input: &GridInput) -> Vec<GridMark> {
+    marks_at(input, &[1])
+}
+
+/// The number at a mark.
+pub fn plain(mark: GridMark, _: &RangeInclusive<f64>) -> String {
     let value = 10.0_f64.powf(mark.value);
-    if (1e-3..1e5).contains(&value) {
-        format!("{value:.3}")
-            .trim_end_matches('0')
-            .trim_end_matches('.')
-            .to_owned()
+    if (1e-3..1e6).contains(&value) {
+        let text = format!("{value:.3}");
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
-        format!("{value:.0e}")
+        superscript(mark.value.round() as i32)
+    }
+}
+
+/// The power of ten at a mark.
+pub fn power_of_ten(mark: GridMark, _: &RangeInclusive<f64>) -> String {
+    superscript(mark.value.round() as i32)
+}
+
+fn decibels(mark: GridMark, _: &RangeInclusive<f64>) -> String {
+    format!("{:.0}", (-20.0 * mark.value).round() + 0.0)
+}
+
+fn superscript(exponent: i32) -> String {
+    let digits = exponent.to_string();
+    let raised = digits.chars().map(|digit| match digit {
+        '-' => '⁻',
+        digit => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹']
+            [digit.to_digit(10).unwrap_or(0) as usize],
+    });
+    std::iter::once("10".to_owned())
+        .chain(raised.map(String::from))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_are_written_alike() {
+        let mark = |value: f64| GridMark {
+            value,
+            step_size: 1.0,
+        };
+        let all = 0.0..=1.0;
+        assert_eq!(power_of_ten(mark(-3.0), &all), "10⁻³");
+        assert_eq!(power_of_ten(mark(12.0), &all), "10¹²");
+        assert_eq!(plain(mark(-1.0), &all), "0.1");
+        assert_eq!(plain(mark(2.0), &all), "100");
+        assert_eq!(
+            (decibels(mark(-3.0), &all), decibels(mark(0.0), &all)),
+            ("60".to_owned(), "0".to_owned())
+        );
+    }
+
+    #[test]
+    fn the_front_is_a_staircase_that_doubtful_dots_do_not_carry() {
+        let frame = Rect::from_min_max(pos2(0.0, 0.0), pos2(10.0, 10.0));
+        let steps = stairs(frame, [pos2(1.0, 3.0), pos2(4.0, 8.0)].into_iter());
+        let expected = [[1.0, 0.0], [1.0, 3.0], [4.0, 3.0], [4.0, 8.0], [10.0, 8.0]];
+        assert_eq!(steps, expected.map(|[x, y]| pos2(x, y)));
+        let dot = |cost: f64, error: f64, is_doubtful: bool| ChartDot {
+            name: String::new(),
+            family: Family::Sampling,
+            cost,
+            quartiles: (cost, cost),
+            error,
+            words: String::new(),
+            is_doubtful,
+        };
+        let chart = Chart {
+            spots: vec![
+                dot(1.0, 0.1, false),
+                dot(2.0, 0.01, true),
+                dot(3.0, 0.02, false),
+            ],
+            ..Chart::default()
+        };
+        assert_eq!(chart.front(), [0, 2]);
     }
 }

@@ -1,8 +1,8 @@
 //! The dots of a study on the chart.
 
-use super::chart::{Chart, ChartDot, picture};
-use crate::image::Image;
-use crate::lab::{DOUBTFUL, EIGHT_BIT_FLOOR, Measurement, Study};
+use super::chart::{Chart, ChartDot};
+use crate::lab::{EIGHT_BIT_FLOOR, Family, Measurement, Study, clusters, finding};
+use crate::scene::Sampling;
 
 /// What the axis to the right measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,71 +24,130 @@ pub enum ErrorAxis {
     Visible,
 }
 
-/// A picture of the chart of time and RMSE, as the window would draw it.
-pub fn chart_picture(study: &Study) -> Image {
-    let chart = chart(Some(study), (CostAxis::Time, ErrorAxis::Rmse), None);
-    picture(|ui| {
-        chart.show(ui);
-    })
+/// What is looked at in a study, and how.
+#[derive(Clone, Debug)]
+pub struct ChartView<'a> {
+    /// The name of the scene.
+    pub name: &'a str,
+    /// What was measured on.
+    pub machine: &'a str,
+    /// What the axes measure.
+    pub axes: (CostAxis, ErrorAxis),
+    /// The measurement that is looked at.
+    pub chosen: Option<usize>,
 }
 
-/// The dots of a study, as far as they are measured.
-pub fn chart(study: Option<&Study>, axes: (CostAxis, ErrorAxis), chosen: Option<usize>) -> Chart {
-    let measurements = study.map_or(&[][..], |study| &study.measurements);
+/// The chart of a study, and the measurements that each of its dots stands for.
+pub fn chart(study: &Study, view: &ChartView) -> (Chart, Vec<Vec<usize>>) {
+    let clusters = clusters(study);
     let error = |dot: &Measurement| {
-        dot.metrics.map_or(f64::NAN, |metrics| match axes.1 {
+        dot.metrics.map_or(f64::NAN, |metrics| match view.axes.1 {
             ErrorAxis::Rmse => metrics.rmse,
             ErrorAxis::Max => metrics.max,
             ErrorAxis::Visible => metrics.visible,
         })
     };
-    let cost = |dot: &Measurement| match axes.0 {
-        CostAxis::Time => dot.timing().map_or(f64::NAN, |timing| timing.median),
-        CostAxis::Rays => dot.rays_per_pixel,
-    };
-    let spots = measurements.iter().map(|dot| ChartDot {
-        name: dot.candidate.name.clone(),
-        cost: cost(dot),
-        // A logarithm has no zero.
-        error: Some(error(dot))
-            .filter(|error| *error != 0.0)
-            .unwrap_or(f64::NAN),
-        words: format!("{}\n{}", dot.candidate.words(), figures(dot)),
-        is_doubtful: axes.0 == CostAxis::Time
-            && dot.timing().is_some_and(|timing| timing.spread > DOUBTFUL),
+    let spots = clusters.iter().map(|members| {
+        let dot = &study.measurements[members[0]];
+        let (cost, quartiles) = match (view.axes.0, dot.timing()) {
+            (CostAxis::Time, Some(timing)) => (timing.median, timing.quartiles),
+            _ => (dot.rays_per_pixel, (dot.rays_per_pixel, dot.rays_per_pixel)),
+        };
+        ChartDot {
+            name: name_of(dot, members.len() - 1),
+            family: dot.candidate.family,
+            cost,
+            quartiles,
+            error: error(dot),
+            words: format!("{}\n{}", dot.candidate.words(), figures(dot)),
+            is_doubtful: view.axes.0 == CostAxis::Time && dot.is_doubtful(),
+        }
     });
-    let truth = study.and_then(|study| study.reference.as_ref());
-    let levels = match (axes.1, truth) {
-        (ErrorAxis::Rmse, Some(truth)) => vec![
-            ("8 bits show no less", EIGHT_BIT_FLOOR),
-            ("the reference's own error", truth.rmse),
-        ],
-        _ => Vec::new(),
+    // A logarithm has no zero.
+    let spots: Vec<ChartDot> = spots.collect();
+    let (spots, clusters): (Vec<_>, Vec<_>) = spots
+        .into_iter()
+        .zip(clusters)
+        .filter(|(spot, _)| spot.error > 0.0)
+        .unzip();
+    let spot_of = |place: usize| clusters.iter().position(|members| members.contains(&place));
+    let (width, height) = study.size();
+    let is_rmse = view.axes.1 == ErrorAxis::Rmse;
+    let truth = study.reference.as_ref().filter(|_| is_rmse);
+    let chart = Chart {
+        title: match view.axes {
+            (CostAxis::Time, ErrorAxis::Rmse) => finding(study, view.name),
+            _ => view.name.to_owned(),
+        },
+        cost: match view.axes.0 {
+            CostAxis::Time => format!("ms per {width}×{height} picture, {}", view.machine),
+            CostAxis::Rays => "rays per pixel".to_owned(),
+        },
+        error: match view.axes.1 {
+            ErrorAxis::Rmse => "RMSE against 64×64 samples (0–1)",
+            ErrorAxis::Max => "worst channel (0–1)",
+            ErrorAxis::Visible => "share of pixels > 4/255 off",
+        },
+        has_decibels: is_rmse,
+        series: series(study, spot_of),
+        levels: truth
+            .map(|truth| ("the reference's own error", truth.rmse))
+            .into_iter()
+            .chain(is_rmse.then_some(("below 8-bit rounding", EIGHT_BIT_FLOOR)))
+            .collect(),
+        invisible: is_rmse.then_some(EIGHT_BIT_FLOOR),
+        in_use: in_use(study).and_then(spot_of),
+        chosen: view.chosen.and_then(spot_of),
+        bounds: None,
+        spots,
     };
-    Chart {
-        cost: match axes.0 {
-            CostAxis::Time => "ms per picture",
-            CostAxis::Rays => "rays per pixel",
-        },
-        error: match axes.1 {
-            ErrorAxis::Rmse => "RMSE",
-            ErrorAxis::Max => "worst",
-            ErrorAxis::Visible => "share > 4/255",
-        },
-        spots: spots.collect(),
-        levels,
-        chosen,
+    (chart, clusters)
+}
+
+fn name_of(dot: &Measurement, equals: usize) -> String {
+    let name = &dot.candidate.name;
+    match equals {
+        0 => name.clone(),
+        1 => format!("{name}, and 1 equal way"),
+        _ => format!("{name}, and {equals} equal ways"),
     }
+}
+
+/// The measurement of the scene's own settings: beside the plan's there is one only where they differ.
+fn in_use(study: &Study) -> Option<usize> {
+    let names = study.measurements.iter().map(|dot| &dot.candidate.name);
+    let own = names.clone().position(|name| name == "this scene");
+    own.or_else(|| (!study.measurements.is_empty()).then_some(0))
+}
+
+/// The ladders of samplings: grids by their number, and adaptive ones by their time.
+fn series(study: &Study, spot_of: impl Fn(usize) -> Option<usize>) -> Vec<Vec<usize>> {
+    let ladder = |is_in: fn(Sampling) -> bool| {
+        let measurements = study.measurements.iter().enumerate();
+        let mut steps: Vec<(f64, usize)> = measurements
+            .filter(|(_, dot)| {
+                dot.candidate.family == Family::Sampling
+                    && dot.candidate.render.reflection_limit
+                        == study.scene().render.reflection_limit
+                    && is_in(dot.candidate.render.antialias)
+            })
+            .filter_map(|(place, dot)| Some((dot.rays_per_pixel, spot_of(place)?)))
+            .collect();
+        steps.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut spots: Vec<usize> = steps.into_iter().map(|(_, spot)| spot).collect();
+        spots.dedup();
+        spots
+    };
+    vec![
+        ladder(|sampling| !matches!(sampling, Sampling::Adaptive { .. })),
+        ladder(|sampling| matches!(sampling, Sampling::Adaptive { .. })),
+    ]
 }
 
 /// The numbers of a dot, one in each line.
 pub fn figures(dot: &Measurement) -> String {
     let time = dot.timing().map_or("not timed yet".to_owned(), |timing| {
-        let doubt = if timing.spread > DOUBTFUL {
-            " (doubtful)"
-        } else {
-            ""
-        };
+        let doubt = if dot.is_doubtful() { " (doubtful)" } else { "" };
         let spread = timing.spread * 100.0;
         format!(
             "{:.3} ms ± {spread:.0} %{doubt}, {} runs",

@@ -4,13 +4,14 @@ use egui::Ui;
 use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoints, Points};
 
 use super::super::theme::{GRID, palette};
-use super::chart::{decades, picture, power_of_ten};
+use super::chart::{decades, plain};
+use super::pictures::ChartLook;
 use crate::image::Image;
 use crate::lab::{Cost, Crowd, Growth};
 
 /// A picture of what was measured.
-pub fn growth_picture(growth: &Growth) -> Image {
-    picture(|ui| {
+pub fn growth_picture(growth: &Growth, look: ChartLook) -> Image {
+    look.picture(|ui| {
         ui.label(egui::RichText::new(finding(growth)).heading());
         ui.add_space(GRID);
         show(ui, growth);
@@ -49,8 +50,8 @@ fn show(ui: &mut Ui, growth: &Growth) {
         .legend(Legend::default().position(Corner::LeftTop))
         .x_axis_label("primitives")
         .y_axis_label(format!("ms per {side}×{side} picture"))
-        .x_axis_formatter(power_of_ten)
-        .y_axis_formatter(power_of_ten)
+        .x_axis_formatter(plain)
+        .y_axis_formatter(plain)
         .x_grid_spacer(|input| decades(&input))
         .y_grid_spacer(|input| decades(&input))
         .y_axis_min_width(48.0)

@@ -1,12 +1,11 @@
 //! A failure map as coloured squares.
 
-use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+use egui::{Align2, FontId, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
 use super::super::theme::{GRID, palette};
-use crate::lab::stability::{Axis, Map, Tries};
+use super::ramp;
+use crate::lab::stability::{Axis, Map, number};
 
-/// Rates from this on have a colour of their own; below, one step of colour for each decade.
-const LOWEST: f64 = 1e-4;
 /// Room for the numbers on the left and below.
 const MARGIN: (f32, f32) = (40.0, 30.0);
 /// Size of the numbers.
@@ -33,10 +32,8 @@ pub fn show(ui: &mut Ui, map: &Map, size: egui::Vec2, marker: Option<(f64, f64)>
         );
         Rect::from_min_size(corner, cell)
     };
+    paint_squares(ui, map, squares);
     let painter = ui.painter();
-    for (index, tries) in map.cells.iter().enumerate() {
-        painter.rect_filled(square(index).shrink(0.5), 1, shade(*tries, ui));
-    }
     let font = FontId::proportional(SMALL);
     let write = |at: Pos2, anchor: Align2, text: String| {
         painter.text(at, anchor, text, font.clone(), colors.muted);
@@ -108,18 +105,28 @@ fn nearest(axis: &Axis, value: f64) -> usize {
     nearest.map_or(0, |(index, _)| index)
 }
 
-/// Nothing failed, and one colour from yellow to red for each decade of the rate.
-fn shade(tries: Tries, ui: &Ui) -> Color32 {
+/// Draws the squares of a map alone.
+pub fn paint_squares(ui: &Ui, map: &Map, area: Rect) {
+    let (columns, rows) = (map.across.values.len(), map.up.values.len());
+    let cell = vec2(area.width() / columns as f32, area.height() / rows as f32);
     let colors = palette(ui.ctx());
-    if tries.tries == 0 {
-        return colors.window;
+    for (index, tries) in map.cells.iter().enumerate() {
+        let (column, row) = (index % columns, index / columns);
+        let corner = pos2(
+            area.left() + column as f32 * cell.x,
+            area.bottom() - (row + 1) as f32 * cell.y,
+        );
+        let square = Rect::from_min_size(corner, cell).shrink(0.5);
+        if tries.tries == 0 {
+            ramp::hatch(ui.painter(), square, Stroke::new(0.5, colors.muted));
+            continue;
+        }
+        let color = match tries.failures {
+            0 => colors.raised,
+            _ => ramp::color(tries.rate()),
+        };
+        ui.painter().rect_filled(square, 1, color);
     }
-    if tries.failures == 0 {
-        return colors.raised;
-    }
-    let decades = -LOWEST.log10();
-    let heat = (1.0 + tries.rate().max(LOWEST).log10() / decades).clamp(0.0, 1.0) as f32;
-    colors.accent.lerp_to_gamma(colors.error, heat)
 }
 
 fn describe(map: &Map, index: usize) -> String {
@@ -148,18 +155,10 @@ fn describe(map: &Map, index: usize) -> String {
     )
 }
 
-fn number(value: f64) -> String {
-    if value == 0.0 || (1e-2..1e3).contains(&value) {
-        format!("{value}")
-    } else {
-        format!("{value:e}")
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::stability::Subject;
+    use crate::lab::stability::{Subject, Tries};
 
     #[test]
     fn a_scene_stands_at_the_nearest_mark() {

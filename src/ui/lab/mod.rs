@@ -1,15 +1,27 @@
 //! The lab: time against error of every way of tracing the open scene, each a dot that can be looked
 //! at and adopted.
 
+mod labels;
+
+mod marks;
+
 mod chart;
 
 mod dots;
+
+mod pictures;
 
 mod comparison;
 
 mod growth;
 
+mod ramp;
+
 mod heat;
+
+mod rates;
+
+mod atlas;
 
 mod stability;
 
@@ -17,22 +29,24 @@ use std::sync::Arc;
 
 use egui::{Button, DragValue, Key, Response, RichText, Ui};
 
-pub use self::dots::chart_picture;
+pub use self::atlas::stability_picture;
 pub use self::growth::growth_picture;
-pub use self::stability::stability_picture;
+pub use self::pictures::{ChartLook, chart_picture};
 
 use self::chart::Chart;
 use self::comparison::{Comparison, FACES, Face};
-use self::dots::{CostAxis, ErrorAxis, chart, figures};
+use self::dots::{ChartView, CostAxis, ErrorAxis, chart, figures};
 use self::stability::Stability;
 use super::commands::Command;
 use super::requests::UiRequests;
-use super::theme::{GRID, palette};
+use super::theme::{GRID, ROW, palette};
 use super::viewport::Place;
 use crate::editor::{Edit, Editor};
-use crate::lab::{EIGHT_BIT_FLOOR, Study, cheapest_within};
+use crate::files::processor;
+use crate::lab::{EIGHT_BIT_FLOOR, Study, cheapest_within, clusters};
 use crate::plan::Model;
 use crate::scene::{Render, Scene};
+use crate::trace::Threads;
 use crate::ui::hint::Hint as _;
 
 /// Longer side of the pictures that are measured, in pixels: a study then takes seconds.
@@ -64,6 +78,8 @@ pub struct Lab {
     look: Comparison,
     /// The bounds for the cheapest dot: RMSE and milliseconds.
     bounds: (f64, f64),
+    /// What is measured on.
+    machine: String,
     /// Whether the maps are shown in place of the chart.
     shows_maps: bool,
     stability: Stability,
@@ -82,6 +98,7 @@ impl Default for Lab {
             face: Face::Picture,
             look: Comparison::default(),
             bounds: (EIGHT_BIT_FLOOR, 100.0),
+            machine: { format!("{} threads, {}", Threads::available(), processor()) },
             shows_maps: false,
             stability: Stability::default(),
         }
@@ -134,7 +151,7 @@ impl Lab {
         out: &mut UiRequests,
     ) -> Option<LabRequest> {
         ui.add_space(GRID / 2.0);
-        let wish = ui.horizontal(|ui| self.show_head(ui, editor, out)).inner;
+        let mut wish = ui.horizontal(|ui| self.show_head(ui, editor, out)).inner;
         if self.shows_maps {
             self.stability.show(ui, editor.shown());
             return wish;
@@ -143,8 +160,14 @@ impl Lab {
             let width = (ui.available_width() - DETAILS - GRID).max(120.0);
             let size = egui::vec2(width, ui.available_height());
             ui.allocate_ui(size, |ui| {
-                if let Some(chosen) = self.chart().show(ui) {
-                    self.chosen = Some(chosen);
+                let Some((chart, members)) = self.chart(editor) else {
+                    wish = self.show_invitation(ui, editor);
+                    return;
+                };
+                if let Some(chosen) = chart.show(ui) {
+                    self.chosen = members
+                        .get(chosen)
+                        .and_then(|members| members.first().copied());
                 }
             });
             ui.vertical(|ui| self.show_details(ui, editor, out));
@@ -198,12 +221,7 @@ impl Lab {
             .hint("Trace the scene in every way there is, and compare: a few seconds")
             .clicked()
         {
-            let study = Box::new(Study::of_side(Arc::clone(editor.shown()), SIDE));
-            self.study = Some(study.clone());
-            self.chosen = None;
-            self.number += 1;
-            self.is_running = true;
-            wish = Some(LabRequest::Measure(study));
+            wish = Some(self.measure(editor));
         }
         ui.separator();
         for (cost, name, hint) in [
@@ -250,6 +268,32 @@ impl Lab {
         wish
     }
 
+    fn measure(&mut self, editor: &Editor) -> LabRequest {
+        let study = Box::new(Study::of_side(Arc::clone(editor.shown()), SIDE));
+        self.study = Some(study.clone());
+        self.chosen = None;
+        self.number += 1;
+        self.is_running = true;
+        LabRequest::Measure(study)
+    }
+
+    /// What stands in place of the chart before anything is measured.
+    fn show_invitation(&mut self, ui: &mut Ui, editor: &Editor) -> Option<LabRequest> {
+        let mut wish = None;
+        ui.vertical_centered(|ui| {
+            ui.add_space((ui.available_height() / 2.0 - 2.0 * ROW).max(0.0));
+            ui.weak("Every way of tracing this scene, each a dot: how long it takes, and how far it is off.");
+            ui.add_space(GRID);
+            let colors = palette(ui.ctx());
+            let text = RichText::new("Measure (about 30 s)").color(colors.on_accent);
+            let start = ui.add(Button::new(text).fill(colors.accent));
+            if start.clicked() {
+                wish = Some(self.measure(editor));
+            }
+        });
+        wish
+    }
+
     fn show_bounds(&mut self, ui: &mut Ui) {
         let pick = ui.add_enabled(self.study.is_some(), Button::new("Cheapest within"));
         let hint = "Choose the fastest dot whose RMSE and time are within these";
@@ -274,15 +318,27 @@ impl Lab {
             .and_then(|place| self.study.as_ref()?.measurements.get(place));
         let Some(dot) = chosen else {
             ui.weak(match &self.study {
-                None => "Measure the scene to see what each way of tracing it costs, and how far it is off.",
+                None => "",
                 Some(_) => "Click a dot to look at its picture.",
             });
             return;
         };
+        let equals = self.equals_of_chosen();
         ui.label(RichText::new(&dot.candidate.name).strong());
         ui.weak(dot.candidate.words());
         ui.add_space(GRID / 2.0);
         ui.label(RichText::new(figures(dot)).monospace());
+        if equals.len() > 1 {
+            ui.weak("One dot with");
+            ui.horizontal_wrapped(|ui| {
+                let chosen = self.chosen;
+                for (place, name) in equals.iter().filter(|(place, _)| Some(*place) != chosen) {
+                    if ui.link(name).clicked() {
+                        self.chosen = Some(*place);
+                    }
+                }
+            });
+        }
         ui.add_space(GRID / 2.0);
         ui.horizontal(|ui| {
             for (face, name, hint) in FACES {
@@ -346,8 +402,26 @@ impl Lab {
         })
     }
 
-    fn chart(&self) -> Chart {
-        let axes = (self.cost, self.error);
-        chart(self.study.as_deref(), axes, self.chosen)
+    /// The measurements that share the dot of the chosen one, with their names.
+    fn equals_of_chosen(&self) -> Vec<(usize, String)> {
+        let (Some(chosen), Some(study)) = (self.chosen, &self.study) else {
+            return Vec::new();
+        };
+        let cluster = clusters(study)
+            .into_iter()
+            .find(|cluster| cluster.contains(&chosen));
+        let name = |place: usize| (place, study.measurements[place].candidate.name.clone());
+        cluster.into_iter().flatten().map(name).collect()
+    }
+
+    fn chart(&self, editor: &Editor) -> Option<(Chart, Vec<Vec<usize>>)> {
+        let title = editor.title();
+        let view = ChartView {
+            name: title.strip_suffix(".ron").unwrap_or(&title),
+            machine: &self.machine,
+            axes: (self.cost, self.error),
+            chosen: self.chosen,
+        };
+        Some(chart(self.study.as_deref()?, &view))
     }
 }

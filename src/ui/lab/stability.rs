@@ -4,10 +4,8 @@ use std::sync::mpsc::{Receiver, TryRecvError};
 
 use egui::{RichText, ScrollArea, Ui, vec2};
 
-use super::super::raster::draw;
 use super::super::theme::{GRID, palette};
 use super::heat;
-use crate::image::Image;
 use crate::lab::stability::{Map, maps};
 use crate::scene::Scene;
 use crate::ui::hint::Hint as _;
@@ -15,10 +13,6 @@ use crate::worker::run_in_background;
 
 /// How many times more tries than for a first look: a second of computing.
 const EFFORT: u32 = 4;
-/// Size of one map in a picture of all, in points.
-const TILE: (f32, f32) = (300.0, 230.0);
-/// Maps beside each other in a picture of all.
-const COLUMNS: usize = 4;
 /// Width of the list of methods.
 const LIST: f32 = 330.0;
 
@@ -46,6 +40,7 @@ impl Stability {
                 let map = &self.maps[self.chosen];
                 let stand = map.subject.standing(scene);
                 ui.label(headline(map));
+                ui.weak(map.sentence());
                 let warning = stand.filter(|&stand| heat::is_near_failing(map, stand));
                 match (warning, is_used(scene, map)) {
                     (Some(_), true) => {
@@ -93,33 +88,6 @@ impl Stability {
             }
         }
     }
-}
-
-/// A picture of all maps.
-pub fn stability_picture(maps: &[Map]) -> Image {
-    let rows = maps.len().div_ceil(COLUMNS);
-    let (width, height) = TILE;
-    let size = (COLUMNS as f32 * width, rows as f32 * height);
-    draw(size.0 as u32, size.1 as u32, 2.0, |ui| {
-        ui.spacing_mut().item_spacing = vec2(0.0, 0.0);
-        for row in maps.chunks(COLUMNS) {
-            ui.horizontal(|ui| {
-                for map in row {
-                    ui.allocate_ui(vec2(width, height), |ui| {
-                        ui.vertical(|ui| {
-                            ui.set_width(width);
-                            ui.set_min_height(height);
-                            ui.add_space(GRID);
-                            let star = if map.is_default { " *" } else { "" };
-                            ui.label(format!("   {} {}{star}", map.subject.name(), map.method));
-                            let room = vec2(width - 2.0 * GRID, height - 5.0 * GRID);
-                            heat::show(ui, map, room, None);
-                        });
-                    });
-                }
-            });
-        }
-    })
 }
 
 fn headline(map: &Map) -> String {

@@ -1,0 +1,97 @@
+//! `glint referee`: whether an independent engine draws the same picture.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::error::{CliError, say};
+use super::scene::read_scene;
+use crate::export::{by_povray, save_image};
+use crate::image::{Film, Format, Image, render};
+use crate::plan::RenderRequest;
+use crate::scene::Sampling;
+use crate::trace::{RenderControl, Threads};
+
+/// How many times brighter differences are in their picture.
+const ENLARGED: u16 = 64;
+
+#[derive(Debug, Args)]
+pub struct RefereeArgs {
+    /// The scene file (RON)
+    scene: PathBuf,
+    /// Width in pixels [default: the scene's own]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=16384))]
+    width: Option<u32>,
+    /// Height in pixels [default: the scene's own]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=16384))]
+    height: Option<u32>,
+    /// Write the differences, 64 times enlarged, to this picture (PNG or PPM)
+    #[arg(short, long, value_name = "IMAGE")]
+    output: Option<PathBuf>,
+    /// Tracing threads, of both [default: one per core]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    threads: Option<u16>,
+}
+
+/// Draws the scene twice, one ray through the middle of each pixel, and says how far the pictures differ.
+///
+/// # Errors
+/// [`CliError`]: a scene that is none, no POV-Ray, or a picture that cannot be written.
+pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
+    args.output.as_deref().map(Format::of_path).transpose()?;
+    let mut scene = read_scene(&args.scene)?;
+    let size = &mut scene.render;
+    size.width = args.width.unwrap_or(size.width);
+    size.height = args.height.unwrap_or(size.height);
+    size.antialias = Sampling::Centres;
+    let threads = Threads::new(args.threads.map(usize::from))?;
+    let folder = tempfile::tempdir().map_err(CliError::failed)?;
+    let theirs = by_povray(&scene, folder.path(), threads.count()).map_err(CliError::failed)?;
+    let request = RenderRequest::still(&scene);
+    let ours = threads.run(|| render(&scene, &request, &RenderControl::default()));
+    let (ours, cost) = ours.ok_or_else(|| CliError::failed("the trace ended without a picture"))?;
+    let offs = ours.pixels.iter().zip(&theirs.picture.pixels);
+    let offs: Vec<[u8; 3]> = offs
+        .map(|(a, b)| std::array::from_fn(|channel| a[channel].abs_diff(b[channel])))
+        .collect();
+    let worst = offs.iter().flatten().max().copied().unwrap_or(0);
+    let same = offs
+        .iter()
+        .filter(|off| off.iter().all(|off| *off <= 1))
+        .count();
+    let share = same as f64 * 100.0 / offs.len().max(1) as f64;
+    say(&format!(
+        "{share:.3} % of {}×{} pixels are within 1/255 of POV-Ray's, {} are not; the worst is off by {worst}",
+        ours.width,
+        ours.height,
+        offs.len() - same,
+    ));
+    say(&format!(
+        "Glint {:.1} ms, POV-Ray {:.0} ms with reading the scene, {} threads each",
+        cost.time.as_secs_f64() * 1e3,
+        theirs.time.as_secs_f64() * 1e3,
+        threads.count()
+    ));
+    let packs = scene.color_packs.iter();
+    let is_grey = |v: glam::DVec3| v.max_element() - v.min_element() < 0.5;
+    let colored = packs.filter(|(_, pack)| !is_grey(pack.specular));
+    let colored: Vec<&str> = colored.map(|(name, _)| name.as_str()).collect();
+    if !colored.is_empty() {
+        say(&format!(
+            "POV-Ray's highlights have no colour of their own: those of {} differ",
+            colored.join(", ")
+        ));
+    }
+    if let Some(path) = &args.output {
+        let bright = |off: u8| (u16::from(off) * ENLARGED).min(255) as u8;
+        let pixels = offs
+            .iter()
+            .map(|&[r, g, b]| [bright(r), bright(g), bright(b), 255]);
+        let image = Image {
+            pixels: pixels.collect(),
+            ..ours
+        };
+        save_image(&Film::Levels(image), path)?;
+    }
+    Ok(())
+}

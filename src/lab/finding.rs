@@ -1,0 +1,41 @@
+//! What a study has found, in a sentence.
+
+use super::measure::EIGHT_BIT_FLOOR;
+use super::pareto_front::{cheapest_within, front};
+use super::study::Study;
+
+/// How much longer the chosen way must take than another one that is as close to be called beaten.
+const BEATEN: f64 = 1.1;
+
+/// What a study of a scene of this name has found about the plan's choice.
+pub fn finding(study: &Study, name: &str) -> String {
+    let costs = study.certain_costs();
+    let (Some(&(ms, error)), true) = (costs.first(), study.progress() >= 1.0) else {
+        return format!("{name}: time against error");
+    };
+    let within = |error: f64| cheapest_within(&costs, error, f64::INFINITY);
+    let better = within(error * 1.01).filter(|&place| costs[place].0 * BEATEN < ms);
+    if let Some(place) = better {
+        let way = &study.measurements[place].candidate.name;
+        let cost = costs[place].0;
+        return format!(
+            "{name}: {way} is as close as the default, in {cost:.1} ms and not {ms:.1}"
+        );
+    }
+    if error <= EIGHT_BIT_FLOOR {
+        return format!("{name}: the default is below what 8 bits show at {ms:.1} ms");
+    }
+    let decibels = -20.0 * error.log10();
+    match within(EIGHT_BIT_FLOOR) {
+        Some(place) => {
+            let (way, cost) = (&study.measurements[place].candidate.name, costs[place].0);
+            format!(
+                "{name}: {way} is below what 8 bits show at {cost:.1} ms; the default has {decibels:.0} dB at {ms:.1}"
+            )
+        }
+        None => format!(
+            "{name}: the default has {decibels:.0} dB at {ms:.1} ms, and {} ways are worth their time",
+            front(&costs).len()
+        ),
+    }
+}

@@ -1,0 +1,139 @@
+//! What a map says, in a sentence.
+
+use super::map::{Axis, Map, Tries};
+
+/// Axes that are named before their numbers.
+const NAMES: [&str; 3] = ["scale", "exponent", "longest to shortest segment"];
+
+impl Map {
+    /// Where it fails, and how often there.
+    pub fn sentence(&self) -> String {
+        let total = self.total();
+        if total.failures == 0 {
+            let (tries, bound) = (grouped(total.tries), percent(total.bound()));
+            return format!("none of {tries} (< {bound})");
+        }
+        let columns = self.along(|column, _| column, self.across.values.len());
+        let rows = self.along(|_, row| row, self.up.values.len());
+        let place = part(&self.across, &columns).or_else(|| part(&self.up, &rows));
+        match place {
+            Some((words, tries)) => format!("{} {words}", percent(tries.rate())),
+            None => format!("{} wherever it was tried", percent(total.rate())),
+        }
+    }
+
+    /// The tries at each mark of one axis, all marks of the other together.
+    fn along(&self, mark: impl Fn(usize, usize) -> usize, count: usize) -> Vec<Tries> {
+        let width = self.across.values.len();
+        let mut sums = vec![Tries::default(); count];
+        for (index, cell) in self.cells.iter().enumerate() {
+            let sum = &mut sums[mark(index % width, index / width)];
+            sum.tries += cell.tries;
+            sum.failures += cell.failures;
+        }
+        sums
+    }
+}
+
+/// The end of an axis where everything fails that does, in words, with the tries there; `None` if that is all
+/// of the axis.
+fn part(axis: &Axis, sums: &[Tries]) -> Option<(String, Tries)> {
+    let fails = |at: &usize| sums[*at].failures > 0;
+    let first = (0..sums.len()).find(fails)?;
+    let last = (0..sums.len()).rev().find(fails)?;
+    let at = |mark: usize| {
+        let (name, value) = (axis.name, number(axis.values[mark]));
+        // Numbers have names, and measures have numbers.
+        if NAMES.contains(&name) {
+            format!("{name} {value}")
+        } else {
+            format!("{value} {name}")
+        }
+    };
+    let words = match (first == 0, last + 1 == sums.len()) {
+        (true, true) => return None,
+        (false, true) => format!("from {} on", at(first)),
+        (true, false) => format!("up to {}", at(last)),
+        (false, false) if first == last => format!("at {}", at(first)),
+        (false, false) => format!("from {} to {}", at(first), at(last)),
+    };
+    let there = sums[first..=last].iter();
+    let tries = there.fold(Tries::default(), |sum, tries| Tries {
+        tries: sum.tries + tries.tries,
+        failures: sum.failures + tries.failures,
+    });
+    Some((words, tries))
+}
+
+/// A number as on an axis.
+pub fn number(value: f64) -> String {
+    if value == 0.0 || (1e-2..1e3).contains(&value) {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
+    }
+}
+
+fn percent(rate: f64) -> String {
+    let percent = rate * 100.0;
+    match percent {
+        _ if percent >= 99.95 => "100 %".to_owned(),
+        _ if percent >= 10.0 => format!("{percent:.0} %"),
+        _ if percent >= 1.0 => format!("{percent:.1} %"),
+        _ => {
+            let digits = (1.0 - percent.log10().floor()).clamp(1.0, 9.0) as usize;
+            format!("{percent:.digits$} %")
+        }
+    }
+}
+
+/// Thousands apart.
+fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::stability::Subject;
+
+    fn map(failures: [u64; 4]) -> Map {
+        Map {
+            subject: Subject::Sphere,
+            method: String::new(),
+            is_default: false,
+            failure: "",
+            across: Axis {
+                name: "radii",
+                values: vec![10.0, 1e4],
+            },
+            up: Axis {
+                name: "scale",
+                values: vec![0.1, 1.0],
+            },
+            cells: failures
+                .map(|failures| Tries {
+                    tries: 1000,
+                    failures,
+                })
+                .to_vec(),
+        }
+    }
+
+    #[test]
+    fn a_map_says_where_it_fails_and_how_often_there() {
+        assert_eq!(map([0; 4]).sentence(), "none of 4,000 (< 0.075 %)");
+        assert_eq!(map([0, 500, 0, 460]).sentence(), "48 % from 1e4 radii on");
+        assert_eq!(map([30, 0, 12, 0]).sentence(), "2.1 % up to 10 radii");
+        assert_eq!(map([1, 2, 0, 0]).sentence(), "0.15 % up to scale 0.1");
+        assert_eq!(map([1000; 4]).sentence(), "100 % wherever it was tried");
+    }
+}

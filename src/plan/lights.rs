@@ -1,0 +1,59 @@
+//! The lights that shine on what the eye can reach.
+
+use glam::DVec3;
+
+use super::plane_occluders::PlaneOccluder;
+use super::request::Model;
+use crate::primitive::roundings;
+use crate::scene::Scene;
+use crate::simd::{Real, Vec3};
+
+/// A point light.
+#[derive(Clone, Debug)]
+pub struct PointLight<R> {
+    /// Where it shines from.
+    pub position: Vec3<R>,
+    /// > 0.
+    pub intensity: R,
+    /// For each triangle, whether another one casts all of its shadow; empty where none is known.
+    pub shadow_culled_faces: Vec<bool>,
+    /// For each mesh of the geometry, whether its faces that are turned to the light cast no shadow that
+    /// the others do not: rays that leave the mesh there have entered it elsewhere.
+    pub lit_faces_are_idle: Vec<bool>,
+    /// Numbers of primitives whose planes hold the light: they cast no shadow from it.
+    pub holders: Vec<usize>,
+    /// What rounding may have moved its position by, where it may be on a surface: what is no farther from it
+    /// does not stand before it, and what it is no higher above is not lit.
+    pub rounding: Option<R>,
+}
+
+/// Lights that shine on what the eye can reach. `touches` tells whether one may be on a surface, `holders` gives
+/// the numbers of what is flat and holds it.
+pub fn pack_lights<R: Real>(
+    scene: &Scene,
+    centre: DVec3,
+    (occluders, model): (&[PlaneOccluder], Model),
+    (touches, holders): (impl Fn(usize) -> bool, impl Fn(usize) -> Vec<usize>),
+) -> Vec<PointLight<R>> {
+    let all = model == Model::Everything;
+    let lights = scene.lights.iter().enumerate();
+    let shining = lights.filter(|(_, light)| light.visible && (all || light.intensity > 0.0));
+    shining
+        .filter(|(_, light)| {
+            occluders
+                .iter()
+                .all(|plane| plane.side(light.position) >= 0.0)
+        })
+        .map(|(index, light)| {
+            let position: Vec3<R> = Vec3::from_dvec3(light.position - centre);
+            PointLight {
+                position,
+                intensity: R::from_f64(light.intensity),
+                shadow_culled_faces: Vec::new(),
+                lit_faces_are_idle: Vec::new(),
+                holders: holders(index),
+                rounding: touches(index).then(|| position.max_abs() * roundings()),
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,111 @@
+//! Objects that fill the same surface: which of them is seen there, rounding would decide.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use super::list::List;
+use super::object::Object;
+use super::shape::{Outline, PlanePiece, Shape};
+
+/// Most objects that are held against each other.
+pub const MOST_COMPARED: usize = 2_000;
+
+/// Two visible objects, by their places in the list, that fill the same surface, in part or wholly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Coincidence {
+    /// The later one, which is not seen where the earlier one is.
+    pub later: usize,
+    /// The earlier one.
+    pub earlier: usize,
+    /// Whether nothing of the later one is left to be seen.
+    pub is_whole: bool,
+}
+
+/// All of them, sorted; coordinates count from `centre`. Meshes are not looked into, nor are more than
+/// [`MOST_COMPARED`] objects.
+pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
+    if objects.len() > MOST_COMPARED {
+        return Vec::new();
+    }
+    let visible = objects.iter().enumerate();
+    let visible = visible.filter(|(_, object)| object.visible);
+    let mut found = Vec::new();
+    let mut balls: HashMap<[u64; 4], usize> = HashMap::new();
+    let (mut endless, mut pieces) = (Vec::new(), Vec::new());
+    for (index, object) in visible {
+        if let Shape::Sphere(ball) = &object.shape {
+            let [x, y, z] = ball.center.to_array();
+            let same = balls.entry([x, y, z, ball.radius].map(f64::to_bits));
+            let earlier = *same.or_insert(index);
+            if earlier != index {
+                found.push(Coincidence {
+                    later: index,
+                    earlier,
+                    is_whole: true,
+                });
+            }
+        }
+        if let Some(flat) = object.shape.plane_piece() {
+            match object.shape.bounds() {
+                Some(bounds) => pieces.push(Piece {
+                    index,
+                    flat,
+                    bounds,
+                }),
+                None => endless.push((index, flat)),
+            }
+        }
+    }
+    let mut add = |one: (usize, &PlanePiece), other: (usize, &PlanePiece)| {
+        if one.1.coincides(other.1, centre) {
+            let (earlier, later) = if one.0 < other.0 {
+                (one, other)
+            } else {
+                (other, one)
+            };
+            found.push(Coincidence {
+                later: later.0,
+                earlier: earlier.0,
+                is_whole: earlier.1.outline == Outline::Endless,
+            });
+        }
+    };
+    for (place, (index, flat)) in endless.iter().enumerate() {
+        for (other, other_flat) in &endless[..place] {
+            add((*index, flat), (*other, other_flat));
+        }
+        for piece in &pieces {
+            add((*index, flat), (piece.index, &piece.flat));
+        }
+    }
+    pieces.sort_by(|a, b| a.bounds.0.x.total_cmp(&b.bounds.0.x));
+    for (place, one) in pieces.iter().enumerate() {
+        let others = pieces[place + 1..].iter();
+        for other in others.take_while(|other| other.bounds.0.x <= one.bounds.1.x) {
+            if one.meets(other) {
+                add((one.index, &one.flat), (other.index, &other.flat));
+            }
+        }
+    }
+    found.sort_unstable();
+    found
+}
+
+/// A flat object that ends.
+struct Piece {
+    index: usize,
+    flat: PlanePiece,
+    /// The box around it.
+    bounds: (DVec3, DVec3),
+}
+
+impl Piece {
+    /// Whether the boxes meet, or would if they were a little wider: flat ones have no height.
+    fn meets(&self, other: &Self) -> bool {
+        let size = |piece: &Self| (piece.bounds.1 - piece.bounds.0).max_element();
+        let little = DVec3::splat(1e-6 * size(self).max(size(other)));
+        self.bounds.0.cmple(other.bounds.1 + little).all()
+            && other.bounds.0.cmple(self.bounds.1 + little).all()
+    }
+}

@@ -1,0 +1,199 @@
+//! Pieces of planes: what lies in them, and which of them lie in each other.
+
+use glam::DVec3;
+
+/// A piece of a plane, in world units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlanePiece {
+    /// A point of the plane.
+    pub point: DVec3,
+    /// The unit vector across it.
+    pub normal: DVec3,
+    /// How far it reaches.
+    pub outline: Outline,
+}
+
+/// How far a piece of a plane reaches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outline {
+    /// All of the plane.
+    Endless,
+    /// What is between these corners.
+    Triangle([DVec3; 3]),
+    /// So far from [`PlanePiece::point`].
+    Disc(f64),
+}
+
+/// Share of the coordinates within which a point counts as on a plane: what their own rounding may have
+/// moved it by.
+const ON_PLANE: f64 = 1e-12;
+
+/// Share of the coordinates within which two surfaces count as one: what single precision cannot tell apart.
+const IN_PLANE: f64 = 4.0 / (1 << 24) as f64;
+
+/// Share of its size by which a piece must reach over the border of another one to lie in it: neighbours
+/// share their borders.
+const OVER_BORDER: f64 = 1e-6;
+
+impl PlanePiece {
+    /// Above zero on the side that the normal points to, below it on the other, zero on the plane, all within
+    /// rounding; in world units.
+    pub fn height(&self, point: DVec3) -> f64 {
+        let height = self.normal.dot(point - self.point);
+        let rounding = ON_PLANE * (point.abs().max_element() + self.point.abs().max_element());
+        if height.abs() <= rounding {
+            0.0
+        } else {
+            height
+        }
+    }
+
+    /// Whether both fill some area of the same plane; coordinates count from `centre`.
+    pub fn coincides(&self, other: &Self, centre: DVec3) -> bool {
+        // The normal of the larger one is the more certain.
+        let (small, large) = if self.size() < other.size() {
+            (self, other)
+        } else {
+            (other, self)
+        };
+        let normal = large.normal;
+        let reach = |point: &DVec3| (*point - centre).abs().max_element();
+        let points = small.points();
+        let farthest = points.iter().map(reach).fold(reach(&large.point), f64::max);
+        let is_in = |point: &DVec3| normal.dot(*point - large.point).abs() <= IN_PLANE * farthest;
+        points.iter().all(is_in) && self.overlaps(other, normal)
+    }
+
+    /// Infinity for what is endless.
+    fn size(&self) -> f64 {
+        match self.outline {
+            Outline::Endless => f64::INFINITY,
+            Outline::Triangle([a, b, c]) => (b - a).length().max((c - a).length()),
+            Outline::Disc(radius) => radius,
+        }
+    }
+
+    /// Three points that are not in a line; those of an endless one are one unit apart.
+    fn points(&self) -> [DVec3; 3] {
+        let radius = match self.outline {
+            Outline::Triangle(corners) => return corners,
+            Outline::Endless => 1.0,
+            Outline::Disc(radius) => radius,
+        };
+        let (across, along) = self.normal.any_orthonormal_pair();
+        [DVec3::ZERO, across, along].map(|way| self.point + way * radius)
+    }
+
+    /// Whether two pieces of the same plane have an area in common: no line in it separates them. Such a line
+    /// lies along an edge, or across the way from a disc to the nearest point of the other.
+    fn overlaps(&self, other: &Self, normal: DVec3) -> bool {
+        let border = OVER_BORDER * self.size().min(other.size());
+        let ways = self.ways(other, normal).chain(other.ways(self, normal));
+        let mut ways = ways.filter_map(DVec3::try_normalize);
+        ways.all(|way| {
+            let (own, theirs) = (self.interval(way), other.interval(way));
+            own.0 + border < theirs.1 && theirs.0 + border < own.1
+        })
+    }
+
+    /// Across lines that may separate it from another piece.
+    fn ways(&self, other: &Self, normal: DVec3) -> impl Iterator<Item = DVec3> {
+        let ways = match (self.outline, other.outline) {
+            (Outline::Endless, _) => [DVec3::ZERO; 3],
+            (Outline::Triangle([a, b, c]), _) => {
+                [b - a, c - b, a - c].map(|side| side.cross(normal))
+            }
+            (Outline::Disc(_), Outline::Triangle(corners)) => {
+                corners.map(|corner| corner - self.point)
+            }
+            (Outline::Disc(_), _) => [other.point - self.point; 3],
+        };
+        ways.into_iter()
+    }
+
+    /// From where to where it reaches along a unit direction in its plane.
+    fn interval(&self, way: DVec3) -> (f64, f64) {
+        match self.outline {
+            Outline::Endless => (f64::NEG_INFINITY, f64::INFINITY),
+            Outline::Triangle(corners) => {
+                let [a, b, c] = corners.map(|corner| way.dot(corner));
+                (a.min(b).min(c), a.max(b).max(c))
+            }
+            Outline::Disc(radius) => {
+                let middle = way.dot(self.point);
+                (middle - radius, middle + radius)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn triangle(corners: [[f64; 2]; 3]) -> PlanePiece {
+        let [a, b, c] = corners.map(|[x, z]| DVec3::new(x, 0.0, z));
+        PlanePiece {
+            point: a,
+            normal: (b - a).cross(c - a).normalize(),
+            outline: Outline::Triangle([a, b, c]),
+        }
+    }
+
+    fn disc(x: f64, z: f64, radius: f64) -> PlanePiece {
+        PlanePiece {
+            point: DVec3::new(x, 0.0, z),
+            normal: DVec3::Y,
+            outline: Outline::Disc(radius),
+        }
+    }
+
+    fn coincide(one: PlanePiece, other: PlanePiece) -> bool {
+        let there = one.coincides(&other, DVec3::ZERO);
+        assert_eq!(there, other.coincides(&one, DVec3::ZERO));
+        there
+    }
+
+    #[test]
+    fn neighbours_share_a_border_and_no_area() {
+        let half = triangle([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
+        assert!(coincide(half, half));
+        let other_half = triangle([[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+        assert!(!coincide(half, other_half));
+        assert!(coincide(
+            half,
+            triangle([[0.9, 0.0], [1.0, 1.0], [0.0, 0.9]])
+        ));
+        assert!(!coincide(disc(-1.0, 0.5, 1.0), half), "it touches a side");
+        assert!(coincide(disc(-1.0, 0.5, 1.001), half));
+        assert!(!coincide(disc(1.0, 1.0, 0.7), half), "before the long side");
+        assert!(coincide(disc(1.0, 1.0, 0.72), half));
+        assert!(!coincide(disc(-0.72, -0.72, 1.0), half), "before a corner");
+        assert!(!coincide(disc(0.0, 0.0, 1.0), disc(2.0, 0.0, 1.0)));
+        assert!(coincide(disc(0.0, 0.0, 1.0), disc(1.9, 0.0, 1.0)));
+    }
+
+    #[test]
+    fn what_is_higher_or_leans_lies_in_no_floor() {
+        let floor = PlanePiece {
+            outline: Outline::Endless,
+            ..disc(7.0, 7.0, 1.0)
+        };
+        let rug = disc(0.0, 0.0, 1.0);
+        assert!(coincide(rug, floor) && coincide(floor, floor));
+        let moved = |height: f64| PlanePiece {
+            point: rug.point + DVec3::Y * height,
+            ..rug
+        };
+        assert!(!coincide(moved(1e-5), floor));
+        assert!(
+            coincide(moved(1e-8), floor),
+            "single precision sees no difference"
+        );
+        let leaning = PlanePiece {
+            normal: DVec3::new(1e-4, 1.0, 0.0).normalize(),
+            ..rug
+        };
+        assert!(!coincide(leaning, floor));
+    }
+}

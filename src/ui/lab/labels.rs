@@ -1,0 +1,106 @@
+//! Where names stand beside their dots: nowhere over another name or a dot.
+
+use egui::{Pos2, Rect, Vec2, vec2};
+
+/// Directions from a dot, the best first.
+const WAYS: [Vec2; 8] = [
+    vec2(1.0, -0.6),
+    vec2(1.0, 0.6),
+    vec2(-1.0, -0.6),
+    vec2(-1.0, 0.6),
+    vec2(0.0, -1.0),
+    vec2(0.0, 1.0),
+    vec2(1.0, 0.0),
+    vec2(-1.0, 0.0),
+];
+/// How far from the dot, the nearest first, in points.
+const STEPS: [f32; 6] = [8.0, 16.0, 28.0, 44.0, 64.0, 90.0];
+/// Free room around a name, in points.
+const GAP: f32 = 2.0;
+
+/// A place for each name of this size beside its dot, in their order; `None` where none is free within
+/// `frame`. None lies over another, over a dot (of `radius`) or over what is `taken`.
+pub fn place(
+    names: &[(Pos2, Vec2)],
+    (dots, radius): (&[Pos2], f32),
+    (frame, taken): (Rect, &[Rect]),
+) -> Vec<Option<Rect>> {
+    let mut blocked: Vec<Rect> = dots
+        .iter()
+        .map(|dot| Rect::from_center_size(*dot, Vec2::splat(2.0 * radius)))
+        .collect();
+    blocked.extend_from_slice(taken);
+    let mut places: Vec<Option<Rect>> = Vec::with_capacity(names.len());
+    for &(dot, size) in names {
+        let tries = STEPS
+            .iter()
+            .flat_map(|&step| WAYS.map(|way| beside(dot, size, way, radius + step)));
+        let is_free = |at: &Rect| {
+            let mut others = blocked.iter();
+            frame.contains_rect(*at)
+                && !others.any(|other| at.expand(GAP).intersects(*other))
+                && !places.iter().flatten().any(|name| crosses(dot, *at, *name))
+        };
+        let found = tries.into_iter().find(is_free);
+        if let Some(at) = found {
+            blocked.push(at);
+            blocked.extend(tie(dot, at).map(|point| Rect::from_center_size(point, Vec2::ZERO)));
+        }
+        places.push(found);
+    }
+    places
+}
+
+/// Whether the line from a dot to its name crosses another name.
+fn crosses(dot: Pos2, at: Rect, name: Rect) -> bool {
+    tie(dot, at).any(|point| name.contains(point))
+}
+
+/// Points of the line from a dot to its name.
+fn tie(dot: Pos2, at: Rect) -> impl Iterator<Item = Pos2> {
+    let near = at.clamp(dot);
+    (1..16_u8).map(move |step| dot + (near - dot) * (f32::from(step) / 16.0))
+}
+
+/// A rectangle that begins so far from a dot in some direction.
+fn beside(dot: Pos2, size: Vec2, way: Vec2, step: f32) -> Rect {
+    let to_middle = vec2(
+        way.x.signum() * if way.x == 0.0 { 0.0 } else { size.x / 2.0 },
+        way.y.signum() * if way.y == 0.0 { 0.0 } else { size.y / 2.0 },
+    );
+    Rect::from_center_size(dot + way.normalized() * step + to_middle, size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::pos2;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn no_name_lies_over_another_or_over_a_dot(dots in prop::collection::vec((0.0..600.0_f32, 0.0..300.0_f32, 20.0..140.0_f32), 1..40)) {
+            let frame = Rect::from_min_size(Pos2::ZERO, vec2(600.0, 300.0));
+            let names: Vec<_> = dots.iter().map(|&(x, y, width)| (pos2(x, y), vec2(width, 12.0))).collect();
+            let at: Vec<Pos2> = names.iter().map(|(dot, _)| *dot).collect();
+            let taken = [Rect::from_min_size(pos2(250.0, 100.0), vec2(80.0, 20.0))];
+            let places = place(&names, (&at, 5.0), (frame, &taken));
+            prop_assert_eq!(places.len(), names.len());
+            let found: Vec<Rect> = places.into_iter().flatten().collect();
+            for (index, one) in found.iter().enumerate() {
+                prop_assert!(frame.contains_rect(*one));
+                prop_assert!(found[..index].iter().chain(&taken).all(|other| !one.intersects(*other)));
+                prop_assert!(at.iter().all(|dot| !one.contains(*dot)));
+            }
+        }
+    }
+
+    #[test]
+    fn a_lonely_dot_has_its_name_close_by() {
+        let frame = Rect::from_min_size(Pos2::ZERO, vec2(600.0, 300.0));
+        let dot = pos2(300.0, 150.0);
+        let place = place(&[(dot, vec2(60.0, 12.0))], (&[dot], 5.0), (frame, &[]));
+        let place = place[0].expect("room enough");
+        assert!(place.distance_to_pos(dot) < 16.0);
+    }
+}

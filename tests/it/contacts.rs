@@ -1,0 +1,246 @@
+//! What touches: surfaces in each other, lights and eyes on surfaces. The picture shows no speckle, and the
+//! same in single and in double precision, with a list and with a tree.
+
+use glam::DVec3;
+use glint::plan::RenderRequest;
+use glint::scene::{
+    Accelerator, Camera, ColorPack, Disc, Light, Object, Plane, Precision, Scene, Shape, Sphere,
+    Triangle,
+};
+
+use crate::image_model::{assert_same_but_for_edges, picture};
+
+const SIDE: u32 = 160;
+
+fn pack(color: [f64; 3]) -> ColorPack {
+    ColorPack {
+        ambient: color.into(),
+        diffuse: color.into(),
+        specular: DVec3::splat(200.0),
+        ..ColorPack::default()
+    }
+}
+
+/// Objects in red and blue by turns, seen from above.
+fn scene(shapes: impl IntoIterator<Item = Shape>) -> Scene {
+    let mut scene = Scene::empty();
+    scene.packs_mut().clear();
+    scene
+        .packs_mut()
+        .insert("red".to_owned(), pack([255.0, 0.0, 0.0]));
+    scene
+        .packs_mut()
+        .insert("blue".to_owned(), pack([0.0, 0.0, 255.0]));
+    scene.light_visualization = false;
+    scene.camera = Camera {
+        position: DVec3::new(1.0, 4.0, 7.0),
+        look_at: DVec3::new(-0.1, -0.5, -1.0),
+        up: DVec3::Y,
+        projection_distance: 1.0,
+        ..Camera::default()
+    };
+    let shapes = shapes.into_iter().enumerate();
+    let objects = shapes.map(|(number, shape)| Object {
+        name: format!("object {number}"),
+        color_pack: ["red", "blue"][number % 2].to_owned(),
+        shape,
+        ..Scene::demo().objects[0].clone()
+    });
+    scene.objects = objects.collect();
+    scene.lights = [lamp(3.0, 6.0, 4.0)].into_iter().collect();
+    scene
+}
+
+fn lamp(x: f64, y: f64, z: f64) -> Light {
+    Light {
+        position: DVec3::new(x, y, z),
+        intensity: 0.7,
+        marker: None,
+        ..Scene::demo().lights[0].clone()
+    }
+}
+
+fn floor() -> Shape {
+    let (point, normal) = (DVec3::ZERO, DVec3::Y);
+    Plane { point, normal }.into()
+}
+
+fn ball() -> Shape {
+    let (center, radius) = (DVec3::Y, 1.0);
+    Sphere { center, radius }.into()
+}
+
+fn triangle(corners: [[f64; 3]; 3]) -> Shape {
+    let [a, b, c] = corners.map(DVec3::from);
+    Triangle { a, b, c }.into()
+}
+
+fn rug() -> Shape {
+    triangle([[-3.0, 0.0, -3.0], [3.0, 0.0, -3.0], [0.0, 0.0, 3.0]])
+}
+
+fn ceiling() -> Shape {
+    triangle([[-3.0, 5.0, -3.0], [3.0, 5.0, -3.0], [0.0, 5.0, 3.0]])
+}
+
+/// The picture, after all ways to it have given the same.
+fn steady(scene: &Scene, what: &str) -> glint::image::Image {
+    let of = |precision, accelerator| {
+        let wanted = RenderRequest {
+            precision,
+            accelerator,
+            ..RenderRequest::sized(SIDE, SIDE)
+        };
+        picture(scene, &wanted).0
+    };
+    let double = of(Precision::Double, Accelerator::List);
+    for precision in [Precision::Single, Precision::Double] {
+        let list = of(precision, Accelerator::List);
+        assert_same_but_for_edges(&list, &double, &format!("{what}, {precision:?}"));
+        assert!(list == of(precision, Accelerator::Bvh), "{what}, in a tree");
+    }
+    double
+}
+
+/// How many pixels are more blue than red, and the other way round.
+fn blue_and_red(image: &glint::image::Image) -> (usize, usize) {
+    let count = |is: fn(&[u8; 4]) -> bool| image.pixels.iter().filter(|pixel| is(pixel)).count();
+    (count(|[r, _, b, _]| b > r), count(|[r, _, b, _]| r > b))
+}
+
+#[test]
+fn of_surfaces_in_each_other_the_first_is_seen() {
+    let all = (SIDE * SIDE) as usize;
+    let seen = |shapes: [Shape; 2], what| blue_and_red(&steady(&scene(shapes), what));
+    let (blue, red) = seen([floor(), rug()], "a rug under the floor");
+    assert!(blue == 0 && red > all / 2, "{blue} {red}");
+    let (blue, red) = seen([rug(), floor()], "a rug on the floor");
+    assert!(red > all / 20 && blue > all / 2, "{blue} {red}");
+    assert_eq!(seen([ball(), ball()], "two balls in one place").0, 0);
+
+    // A slanting plane, of which rounding makes two.
+    let (point, normal) = (DVec3::new(0.3, 0.1, 0.7), DVec3::new(0.1, 1.0, 0.2));
+    let disc = || {
+        let (center, radius) = (point, 2.0);
+        Disc {
+            center,
+            normal,
+            radius,
+        }
+        .into()
+    };
+    let plane = || Plane { point, normal }.into();
+    assert_eq!(seen([plane(), disc()], "a disc under a plane").0, 0);
+    let (_, red) = seen([disc(), plane()], "a disc on a plane");
+    assert!(red > all / 20, "{red}");
+    let (blue, red) = seen([rug(), disc_of(0.0)], "a triangle on a disc");
+    assert!(red > all / 20 && blue > all / 100, "{blue} {red}");
+}
+
+fn disc_of(height: f64) -> Shape {
+    let (center, normal, radius) = (DVec3::Y * height, DVec3::Y, 3.0);
+    Disc {
+        center,
+        normal,
+        radius,
+    }
+    .into()
+}
+
+#[test]
+fn neighbours_that_share_a_border_are_not_held_against_each_other() {
+    let half = triangle([[-3.0, 0.0, -3.0], [3.0, 0.0, -3.0], [-3.0, 0.0, 3.0]]);
+    let other = triangle([[3.0, 0.0, -3.0], [3.0, 0.0, 3.0], [-3.0, 0.0, 3.0]]);
+    let words = glint::scene::hints(&scene([half, other]));
+    assert!(
+        words.iter().all(|hint| !hint.words.contains("lies in")),
+        "{words:?}"
+    );
+    let words = glint::scene::hints(&scene([floor(), rug()]));
+    assert!(
+        words
+            .iter()
+            .any(|hint| hint.words
+                == "object 1 lies in object 0, which comes first and is seen there"),
+        "{words:?}"
+    );
+}
+
+#[test]
+fn a_light_on_a_surface_is_not_behind_it() {
+    let lit_share = |scene: &Scene, what| {
+        let image = steady(scene, what);
+        let [r, _, _, _] = image.pixels[(SIDE * SIDE * 3 / 4 + SIDE / 2) as usize];
+        r
+    };
+    let mut hung = scene([floor(), ceiling()]);
+    hung.lights = [lamp(0.0, 5.0, -1.0)].into_iter().collect();
+    let below = lit_share(&hung, "a lamp in the ceiling");
+    hung.lights = [lamp(0.0, 5.0 - 1e-3, -1.0)].into_iter().collect();
+    assert!(below.abs_diff(lit_share(&hung, "a lamp just below")) <= 1);
+    hung.lights = [lamp(0.0, 5.0 + 1e-3, -1.0)].into_iter().collect();
+    assert!(lit_share(&hung, "a lamp just above") + 20 < below);
+
+    let mut lit = scene([floor(), ball()]);
+    lit.lights = [lamp(0.6, 1.8, 0.0)].into_iter().collect();
+    let of = |precision| {
+        let wanted = RenderRequest {
+            precision,
+            ..RenderRequest::sized(SIDE, SIDE)
+        };
+        picture(&lit, &wanted).0
+    };
+    let automatic = of(Precision::Auto);
+    assert_same_but_for_edges(&automatic, &of(Precision::Double), "a lamp on a ball");
+    let (_, red) = blue_and_red(&automatic);
+    assert!(red > 0);
+    lit.lights = [lamp(0.5, 0.0, 2.5)].into_iter().collect();
+    steady(&lit, "a lamp on the floor");
+}
+
+#[test]
+fn an_eye_on_a_surface_sees_what_it_looks_at() {
+    let mut outside = scene([floor(), ball()]);
+    outside.camera.position = DVec3::new(0.6, 1.8, 0.0);
+    outside.camera.look_at = DVec3::new(0.6, 0.2, -0.3);
+    steady(&outside, "out of a ball");
+    outside.camera.look_at = DVec3::new(-0.6, -0.2, -0.3);
+    let (blue, _) = blue_and_red(&steady(&outside, "into a ball"));
+    assert!(
+        blue > (SIDE * SIDE / 2) as usize,
+        "the far side fills the picture: {blue}"
+    );
+
+    let tilted = triangle([[-3.0, 4.0, -3.0], [3.0, 4.25, -3.0], [0.0, 3.75, 3.0]]);
+    let mut above = scene([floor(), tilted]);
+    above.camera.position = DVec3::new(0.0, 4.125, -3.0);
+    let (blue, red) = blue_and_red(&steady(&above, "in a triangle"));
+    assert!(blue == 0 && red > 0, "{blue} {red}");
+}
+
+#[test]
+fn parallel_rays_from_far_away_need_digits() {
+    for away in [1e3, 1e5, 1e7] {
+        let wall = Plane {
+            point: DVec3::ZERO,
+            normal: DVec3::new(1.0, 0.2, 0.0),
+        };
+        let mut far = scene([floor(), wall.into()]);
+        far.camera = Camera {
+            position: DVec3::new(0.0, 0.3 * away, away),
+            look_at: DVec3::new(0.0, -0.3, -1.0),
+            projection: glint::scene::Projection::Orthographic,
+            orthographic_height: 4.0,
+            ..far.camera
+        };
+        let of = |precision| {
+            let wanted = RenderRequest {
+                precision,
+                ..RenderRequest::sized(SIDE, SIDE)
+            };
+            picture(&far, &wanted).0
+        };
+        let double = of(Precision::Double);
+        assert_same_but_for_edges(&of(Precision::Auto), &double, &format!("from {away}"));
+    }
+}
