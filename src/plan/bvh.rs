@@ -59,6 +59,18 @@ impl<R: Real> Node<R> {
         (1 << self.count) - 1
     }
 
+    /// The box at `place`.
+    #[inline(always)]
+    pub fn bounds(&self, place: usize) -> BoundingBox<R> {
+        let corner = |planes: &[[R; GROUP]; 3]| {
+            Vec3::new(planes[0][place], planes[1][place], planes[2][place])
+        };
+        BoundingBox {
+            low: corner(&self.planes[0]),
+            high: corner(&self.planes[1]),
+        }
+    }
+
     /// What the box at `place` holds.
     pub fn child(&self, place: usize) -> Child {
         self.children[place]

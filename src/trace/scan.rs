@@ -36,6 +36,22 @@ pub trait Test<L: SimdFloat> {
     /// What is tested from now on is no face of that mesh.
     fn leave_mesh(&mut self) {}
 
+    /// Tests what is in a box for the rays that see it as one thing, see [`Seek::settle`].
+    fn settle(
+        &mut self,
+        _ball: (Vec3<L::Real>, L::Real),
+        _thickness: L::Real,
+        _paths: &Paths<L>,
+        _active: L::Mask,
+    ) -> u64 {
+        0
+    }
+
+    /// What is tested from now on counts for all rays but these, bit by bit; those that counted no more before.
+    fn leave_out(&mut self, _settled: u64) -> u64 {
+        0
+    }
+
     /// Tests the primitive of this number.
     fn test<P: Primitive<L::Real>>(
         &mut self,
@@ -116,7 +132,7 @@ impl<L: SimdFloat> Thicket<'_, L> {
             test,
         };
         if T::LOOKS_BESIDE {
-            walk_beside(bvh, &bundle, &self.beside, stack, &mut objects);
+            walk_beside(bvh, &bundle, &self.beside, (stack, 0), &mut objects);
         } else if let Some(start) = self.roots.of_objects(self.geometry) {
             walk((bvh, start), &bundle, stack, &mut objects);
         }
@@ -152,6 +168,17 @@ impl<L: SimdFloat, T: Test<L>> Seek<L> for Objects<'_, L, T> {
             test: self.test,
         };
         primitives.with_prepared(index, &self.prepared, &mut tested);
+    }
+
+    #[inline(always)]
+    fn settle(&mut self, ball: (Vec3<L::Real>, L::Real), thickness: L::Real) -> u64 {
+        let active = self.thicket.active;
+        self.test.settle(ball, thickness, self.paths, active)
+    }
+
+    #[inline(always)]
+    fn leave_out(&mut self, settled: u64) {
+        self.test.leave_out(settled);
     }
 }
 
@@ -192,7 +219,9 @@ impl<L: SimdFloat, T: Test<L>> Objects<'_, L, T> {
             test: self.test,
         };
         if T::LOOKS_BESIDE {
-            walk_beside(bvh, &bundle, beside, stack, &mut faces);
+            let settled = faces.test.leave_out(0);
+            walk_beside(bvh, &bundle, beside, (stack, settled), &mut faces);
+            faces.test.leave_out(settled);
         } else if let Some(start) = roots.of_mesh(geometry, mesh) {
             walk((bvh, start), &bundle, stack, &mut faces);
         }
@@ -228,6 +257,16 @@ impl<L: SimdFloat, T: Test<L>> Seek<L> for Faces<'_, L, T> {
             return;
         }
         self.test.test(triangle, prepared, self.paths, number);
+    }
+
+    #[inline(always)]
+    fn settle(&mut self, ball: (Vec3<L::Real>, L::Real), thickness: L::Real) -> u64 {
+        self.test.settle(ball, thickness, self.paths, self.active)
+    }
+
+    #[inline(always)]
+    fn leave_out(&mut self, settled: u64) {
+        self.test.leave_out(settled);
     }
 }
 

@@ -9,11 +9,11 @@ use super::intersect::Kernel;
 use super::paths::Paths;
 use super::roots::Roots;
 use super::scan::{Test, Thicket, scan_lists};
-use super::thresholds::{CROWDED, LARGEST_SPREAD, NEAR, SLIPPING, SMALL};
+use super::thresholds::{CROWDED, LARGEST_SPREAD, NEAR, ONE_THING, SLIPPING, SMALL};
 use super::walk::Stack;
 use crate::plan::{PackedMesh, Plan};
 use crate::primitive::{Approach, Primitive};
-use crate::simd::{Mask as _, Real, SimdFloat};
+use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// How fast a pixel may widen along rays that look for what is thin, scene units per scene unit.
 pub fn widest_spread<R: Real>(plan: &Plan<R>) -> R {
@@ -56,6 +56,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             gaze,
             best: self.infinity(),
             counted,
+            settled: 0,
+            open: counted,
         };
         scan_lists(self.plan, among, gaze.paths, &mut test);
         let best = test.best;
@@ -103,6 +105,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     gaze,
                     best,
                     counted: active | !active,
+                    settled: 0,
+                    open: active | !active,
                 };
                 thicket.scan(gaze.paths, stack, &mut test);
                 test.best
@@ -116,8 +120,48 @@ struct ThinTest<'a, L: SimdFloat> {
     gaze: &'a Gaze<'a, L>,
     /// How many pixels away it is.
     best: L,
-    /// For which rays what is tested counts.
+    /// For which rays what is tested counts, if it is of a mesh.
     counted: L::Mask,
+    /// The rays that have seen a box around what is tested as one thing, bit by bit, and for which it counts.
+    settled: u64,
+    open: L::Mask,
+}
+
+/// How rays pass a ball.
+struct Passed<L> {
+    /// Where along the rays its middle is.
+    along: L,
+    /// How far from the rays that is.
+    off: L,
+    /// Its radius.
+    radius: L,
+    /// How wide a pixel is there.
+    width: L,
+}
+
+impl<L: SimdFloat> ThinTest<'_, L> {
+    #[inline(always)]
+    fn passed(&self, center: Vec3<L::Real>, radius: L::Real, paths: &Paths<L>) -> Passed<L> {
+        let x = paths.rays.origin - paths.rays.origin.like(center);
+        let along = -paths.rays.direction.dot(x);
+        let off = (x + paths.rays.direction * along).length();
+        Passed {
+            along,
+            off,
+            radius: off.like(radius),
+            width: self.gaze.cone.width_at(along.max(off.like(L::Real::ZERO))),
+        }
+    }
+
+    /// Notes a ball that is so far beside the rays, where it counts.
+    #[inline(always)]
+    fn note(&mut self, ball: &Passed<L>, counts: L::Mask, beside: L) {
+        let width = ball.width;
+        // Whether a ray meets what is inside, nobody asks: it passes closely enough.
+        let beside = beside.max(width * width.like_f64(NEAR / 2.0));
+        let near = pixels(counts, beside, width);
+        self.best = self.best.min(near);
+    }
 }
 
 impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
@@ -134,24 +178,53 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         // With so many faces in a pixel, they are too many to look at one by one.
         let faces = L::Real::from_f64(mesh.triangles.len() as f64 / CROWDED);
         let small = faces.sqrt().max(L::Real::from_f64(SMALL));
-        let x = paths.rays.origin - paths.rays.origin.like(center);
-        let along = -paths.rays.direction.dot(x);
-        let off = (x + paths.rays.direction * along).length();
-        let (radius, zero) = (off.like(radius), off.like(L::Real::ZERO));
-        let width = self.gaze.cone.width_at(along.max(zero));
-        let is_small = (radius + radius).less(width * width.like(small));
-        let is_before = (along - radius).less(self.gaze.reach + width);
-        let is_ahead = zero.less(along + radius);
-        // Whether a ray meets what is inside, nobody asks: it passes closely enough.
-        let beside = (off - radius).max(width * width.like_f64(NEAR / 2.0));
-        let near = pixels(is_small & is_before & is_ahead, beside, width);
-        self.best = self.best.min(near);
+        let ball = self.passed(center, radius, paths);
+        let is_small = (ball.radius + ball.radius).less(ball.width * ball.width.like(small));
+        // The box reaches farther than the mesh: rays in its corners pass by.
+        let beside = ball.off - ball.off.like(mesh.reach);
+        let is_before = (ball.along - ball.radius).less(self.gaze.reach + ball.width);
+        let is_ahead = ball
+            .width
+            .like(L::Real::ZERO)
+            .less(ball.along + ball.radius);
+        self.note(&ball, is_small & is_before & is_ahead & self.open, beside);
         let others = active & !is_small;
         if !others.any() {
             return None;
         }
         self.counted = !is_small;
         Some(others)
+    }
+
+    #[inline(always)]
+    fn settle(
+        &mut self,
+        (center, radius): (Vec3<L::Real>, L::Real),
+        thickness: L::Real,
+        paths: &Paths<L>,
+        active: L::Mask,
+    ) -> u64 {
+        let ball = self.passed(center, radius, paths);
+        let (width, zero) = (ball.width, ball.width.like(L::Real::ZERO));
+        let is_one = (ball.radius + ball.radius).less(width * width.like_f64(ONE_THING));
+        let is_thin = width.like(thickness).less(width * width.like_f64(SLIPPING));
+        let is_there = zero.less(ball.along) & ball.along.less(self.gaze.reach + width);
+        let counts = is_one & is_thin & is_there & self.counted & self.open;
+        self.note(&ball, counts, ball.off - ball.radius);
+        (is_one | !active).bits()
+    }
+
+    #[inline(always)]
+    fn leave_out(&mut self, settled: u64) -> u64 {
+        let before = self.settled;
+        if settled != before {
+            let is_out = |lane: usize| f64::from(u8::from(settled >> lane & 1 == 1));
+            let token = self.best.token();
+            let out = L::from_fn(token, |lane| L::Real::from_f64(is_out(lane)));
+            self.open = out.less(out.like(L::Real::ONE));
+            self.settled = settled;
+        }
+        before
     }
 
     #[inline(always)]
@@ -187,6 +260,8 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         if P::IS_CURVED {
             thin = thin & !paths.ignored.is(number);
         }
-        self.best = self.best.min(pixels(thin & self.counted, distance, width));
+        self.best = self
+            .best
+            .min(pixels(thin & self.counted & self.open, distance, width));
     }
 }

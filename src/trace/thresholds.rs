@@ -4,6 +4,10 @@ use crate::scene::MAX_HALVINGS;
 
 /// Widest thing, in pixels, that may slip between samples.
 pub const SLIPPING: f64 = 2.0;
+/// What is in a box that is less than so many pixels large is looked at as one thing. The ball around it then ends
+/// within the pixel beside the rays in which boxes are looked for at all: what a ray finds does not depend on how
+/// far the others of its packet look.
+pub const ONE_THING: f64 = 0.5;
 /// A mesh that is less than so many pixels large may slip between samples as a whole.
 pub const SMALL: f64 = 8.0;
 /// So does a larger one that has more faces than this for each pixel of the square around it.

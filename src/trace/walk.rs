@@ -1,8 +1,9 @@
 //! The way of a packet through a tree of boxes, the nearest first.
 
 use super::bundle::{Beside, Bundle};
+use super::thresholds::ONE_THING;
 use crate::plan::{Bvh, Child, GROUP, Node};
-use crate::simd::{Mask as _, Real, SimdFloat};
+use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// A box that waits to be looked into.
 #[derive(Clone, Copy, Debug)]
@@ -12,6 +13,8 @@ pub struct Waiting<R> {
     place: u32,
     /// What it holds.
     inner: u32,
+    /// The rays that have seen a box around it as one thing, bit by bit.
+    settled: u64,
     /// Where the first ray may enter it.
     near: R,
 }
@@ -25,6 +28,13 @@ pub trait Seek<L: SimdFloat> {
     fn reach(&self) -> L;
     /// Looks at a member.
     fn meet(&mut self, member: u32, stack: &mut Stack<L::Real>);
+    /// Looks at a box, of which the ball around it and the thickness of what is in it are given, for the rays that
+    /// see it as one thing: those, and all that are not active, bit by bit.
+    fn settle(&mut self, _ball: (Vec3<L::Real>, L::Real), _thickness: L::Real) -> u64 {
+        0
+    }
+    /// What is met from now on counts for all rays but these.
+    fn leave_out(&mut self, _settled: u64) {}
 }
 
 /// The number of the node that a walk starts in, which need not be the root of the tree.
@@ -58,6 +68,7 @@ pub fn walk<L: SimdFloat>(
                         node: index,
                         place,
                         inner,
+                        settled: 0,
                         near,
                     };
                     // Sorted as it grows: there are few.
@@ -94,15 +105,18 @@ pub fn walk<L: SimdFloat>(
     }
 }
 
-/// Shows `seek` the thin members that the rays may come close to.
+/// Shows `seek` the thin members that the rays may come close to, but for those (bit by bit) that count no more
+/// from the start. Each ray sees the same, whichever others are beside it.
 #[inline(always)]
 pub fn walk_beside<L: SimdFloat>(
     bvh: &Bvh<L::Real>,
     bundle: &Bundle<L>,
     beside: &Beside<L::Real>,
-    stack: &mut Stack<L::Real>,
+    (stack, settled): (&mut Stack<L::Real>, u64),
     seek: &mut impl Seek<L>,
 ) {
+    let all = (1_u64 << L::WIDTH) - 1;
+    let mut settled = settled;
     let bottom = stack.len();
     let reach = seek.reach();
     let (token, farthest, shaft) = (reach.token(), reach.greatest(), bundle.shaft());
@@ -110,6 +124,7 @@ pub fn walk_beside<L: SimdFloat>(
     while let Some(node) = bvh.nodes.get(index as usize) {
         let mut widths = [L::Real::ZERO; GROUP];
         let mut bits = shaft.grazes::<L>(token, node, farthest, beside, &mut widths);
+        seek.leave_out(settled);
         while bits != 0 {
             let place = bits.trailing_zeros();
             bits &= bits - 1;
@@ -120,18 +135,28 @@ pub fn walk_beside<L: SimdFloat>(
             }
             match node.child(place as usize) {
                 Child::Member(member) => seek.meet(member, stack),
-                Child::Node(inner) => stack.push(Waiting {
-                    node: index,
-                    place,
-                    inner,
-                    near: L::Real::ZERO,
-                }),
+                Child::Node(inner) => {
+                    let mut settled = settled;
+                    let ball = node.bounds(place as usize).ball();
+                    if ball.1 + ball.1 < width * L::Real::from_f64(ONE_THING) {
+                        settled |= seek.settle(ball, node.thickness[place as usize]);
+                    }
+                    if settled & all != all {
+                        stack.push(Waiting {
+                            node: index,
+                            place,
+                            inner,
+                            settled,
+                            near: L::Real::ZERO,
+                        });
+                    }
+                }
             }
         }
         if stack.len() == bottom {
             return;
         }
         let Some(next) = stack.pop() else { return };
-        index = next.inner;
+        (index, settled) = (next.inner, next.settled);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, TextStyle, Ui, pos2};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, TextStyle, Ui, Vec2b, pos2};
 use egui_plot::{
     AxisHints, GridInput, GridMark, HPlacement, HoverPosition, Plot, PlotPoint, PlotPoints,
     PlotTransform, Points,
@@ -17,6 +17,8 @@ use crate::lab::{Family, front};
 const REACH: f32 = 14.0;
 /// A name farther away than this from its dot is tied to it by a line, in points.
 const TIED: f32 = 14.0;
+/// Below this height, in points, axes have short names.
+const LOW: f32 = 220.0;
 /// Room around the dots, in decades.
 const AROUND: (f64, f64) = (0.12, 0.2);
 
@@ -104,12 +106,15 @@ impl Chart {
             let families: Vec<Family> = self.spots.iter().map(|spot| spot.family).collect();
             marks::legend(ui, &families);
         });
-        let response = self.plot(extent).show(ui, |plot| {
-            // What the pointer can find; it is drawn below.
+        let is_low = ui.available_height() < LOW;
+        let response = self.plot(is_low).show(ui, |plot| {
+            // What the axes show, and what the pointer can find; it is drawn below.
+            let corners = PlotPoints::from(corners(extent).to_vec());
+            let unseen = Color32::TRANSPARENT;
+            plot.points(Points::new("", corners).color(unseen).allow_hover(false));
             for (index, spot) in self.spots.iter().enumerate() {
                 let at = PlotPoints::from(vec![self.at(index)]);
-                let unseen = Points::new(spot.name.clone(), at).color(Color32::TRANSPARENT);
-                plot.points(unseen.radius(0.5));
+                plot.points(Points::new(spot.name.clone(), at).color(unseen).radius(0.5));
             }
         });
         self.draw(ui, &response.transform);
@@ -120,12 +125,14 @@ impl Chart {
         })
     }
 
-    fn plot(&self, [costs, errors]: [(f64, f64); 2]) -> Plot<'_> {
-        let padded =
-            |(low, high): (f64, f64), around: f64| (low.log10() - around, high.log10() + around);
-        let (left, right) = padded(costs, AROUND.0);
-        let (bottom, top) = padded(errors, AROUND.1);
-        let mut up = vec![AxisHints::new_y().label(self.error).formatter(power_of_ten)];
+    fn plot(&self, is_low: bool) -> Plot<'_> {
+        let whole = self.error;
+        let error = if is_low {
+            whole.split(' ').next().unwrap_or(whole)
+        } else {
+            whole
+        };
+        let mut up = vec![AxisHints::new_y().label(error).formatter(power_of_ten)];
         if self.has_decibels {
             let decibels = AxisHints::new_y().label("dB").formatter(decibels);
             up.push(decibels.placement(HPlacement::Right));
@@ -138,8 +145,8 @@ impl Chart {
             .show_grid(false)
             .show_background(false)
             .y_axis_min_width(40.0)
-            .default_x_bounds(left, right)
-            .default_y_bounds(bottom, top)
+            .set_margin_fraction(egui::Vec2::ZERO)
+            .auto_bounds(Vec2b::TRUE)
             .label_formatter(|hover| self.label(hover))
     }
 
@@ -280,6 +287,15 @@ impl Chart {
         let spot = self.spots.iter().find(|spot| spot.name == *plot_name);
         spot.map(|spot| format!("{}\n{}", spot.name, spot.words))
     }
+}
+
+/// Where the axes begin and end, as powers of ten.
+fn corners([costs, errors]: [(f64, f64); 2]) -> [[f64; 2]; 2] {
+    let (across, up) = AROUND;
+    [
+        [costs.0.log10() - across, errors.0.log10() - up],
+        [costs.1.log10() + across, errors.1.log10() + up],
+    ]
 }
 
 /// From the least to the greatest; `None` for nothing.

@@ -27,7 +27,7 @@ mod stability;
 
 use std::sync::Arc;
 
-use egui::{Button, DragValue, Key, Response, RichText, Ui};
+use egui::{Align, Button, DragValue, Key, Layout, Response, RichText, Ui};
 
 pub use self::atlas::stability_picture;
 pub use self::growth::growth_picture;
@@ -151,19 +151,18 @@ impl Lab {
         out: &mut UiRequests,
     ) -> Option<LabRequest> {
         ui.add_space(GRID / 2.0);
-        let mut wish = ui.horizontal(|ui| self.show_head(ui, editor, out)).inner;
+        let wish = ui.horizontal(|ui| self.show_head(ui, editor, out)).inner;
         if self.shows_maps {
             self.stability.show(ui, editor.shown());
             return wish;
         }
+        let Some((chart, members)) = self.chart(editor) else {
+            return self.show_invitation(ui, editor).or(wish);
+        };
         ui.horizontal_top(|ui| {
             let width = (ui.available_width() - DETAILS - GRID).max(120.0);
             let size = egui::vec2(width, ui.available_height());
-            ui.allocate_ui(size, |ui| {
-                let Some((chart, members)) = self.chart(editor) else {
-                    wish = self.show_invitation(ui, editor);
-                    return;
-                };
+            ui.allocate_ui_with_layout(size, Layout::top_down(Align::Min), |ui| {
                 if let Some(chosen) = chart.show(ui) {
                     self.chosen = members
                         .get(chosen)
@@ -317,10 +316,7 @@ impl Lab {
             .chosen
             .and_then(|place| self.study.as_ref()?.measurements.get(place));
         let Some(dot) = chosen else {
-            ui.weak(match &self.study {
-                None => "",
-                Some(_) => "Click a dot to look at its picture.",
-            });
+            ui.weak("Click a dot to look at its picture.");
             return;
         };
         let equals = self.equals_of_chosen();
