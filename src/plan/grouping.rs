@@ -1,7 +1,8 @@
 //! Which boxes go with which in a tree: two by two first, then up to sixteen.
 
-use std::collections::VecDeque;
+use std::collections::{HashSet, VecDeque};
 
+use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
@@ -13,6 +14,11 @@ pub const GROUP: usize = 16;
 pub const DEEPEST: usize = 24;
 /// Share of the boxes that are put elsewhere after the first pass, where that makes the tree better.
 const REINSERTED: f32 = 0.02;
+
+/// So many boxes are looked at to see whether many are in one place.
+const SAMPLED: usize = 512;
+/// What such are made larger by, at least, in parts of the largest coordinate.
+const LITTLE: f32 = 1e-3;
 
 /// What a box of a node holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +66,10 @@ pub fn grouped(boxes: Vec<Aabb>) -> Vec<Held> {
 
 /// Boxes two by two: Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume
 /// Hierarchy Construction", TVCG 24(3), 2018, with some boxes put elsewhere afterwards.
-fn build_pairs(boxes: Vec<Aabb>) -> Bvh2 {
+fn build_pairs(mut boxes: Vec<Aabb>) -> Bvh2 {
+    if are_many_alike(&boxes) {
+        tell_apart(&mut boxes);
+    }
     let mut pairs = PlocBuilder::with_capacity(boxes.len()).build(
         PlocSearchDistance::Low,
         &boxes,
@@ -71,6 +80,35 @@ fn build_pairs(boxes: Vec<Aabb>) -> Bvh2 {
     drop(boxes);
     ReinsertionOptimizer::default().run(&mut pairs, REINSERTED, None);
     pairs
+}
+
+/// Whether many boxes are where others are, by a sample of them.
+fn are_many_alike(boxes: &[Aabb]) -> bool {
+    let step = boxes.len().div_ceil(SAMPLED).max(1);
+    let bits = |one: &Aabb| {
+        (
+            one.min.to_array().map(f32::to_bits),
+            one.max.to_array().map(f32::to_bits),
+        )
+    };
+    let sampled: Vec<_> = boxes.iter().step_by(step).map(bits).collect();
+    let different: HashSet<_> = sampled.iter().collect();
+    different.len() * 2 < sampled.len()
+}
+
+/// Makes boxes a little larger, each by another part. Those in one place would go together one by one, since each
+/// takes the same neighbour for the nearest: 40,000 balls took half a minute. Only who goes with whom is taken
+/// from these boxes.
+fn tell_apart(boxes: &mut [Aabb]) {
+    let reach = |one: &Aabb| one.min.abs().max(one.max.abs()).max_element();
+    let size = boxes.iter().map(reach).fold(f32::MIN_POSITIVE, f32::max);
+    let mut state = 1_u32;
+    for one in boxes {
+        // A linear congruential generator: Knuth, "The art of computer programming" 2, §3.3.4.
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        let part = (state >> 8) as f32 / 16_777_216.0;
+        one.max += Vec3A::splat(size * LITTLE * (1.0 + part));
+    }
 }
 
 /// What becomes of a pair where its box may take up 1, 2, … [`GROUP`] places of a node: 0 if it is one box,
@@ -238,6 +276,19 @@ mod tests {
             }
         }
         (found, deepest)
+    }
+
+    #[test]
+    fn boxes_in_one_place_go_together_two_by_two_and_not_one_by_one() {
+        let alike = vec![Aabb::new(Vec3A::ZERO, Vec3A::ONE); 3_000];
+        assert!(are_many_alike(&alike));
+        let groups = widened(&build_pairs(alike)).expect("a tree that is not deep");
+        let (found, deepest) = found(&groups, 3_000);
+        assert!(found.iter().all(|&times| times == 1));
+        assert!(deepest <= 12, "{deepest}");
+        let apart = (0..3_000_u16).map(|x| Vec3A::X * f32::from(x));
+        let apart: Vec<_> = apart.map(|at| Aabb::new(at, at + Vec3A::ONE)).collect();
+        assert!(!are_many_alike(&apart));
     }
 
     #[test]

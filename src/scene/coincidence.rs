@@ -23,7 +23,7 @@ pub struct Coincidence {
 }
 
 /// All of them, sorted; coordinates count from `centre`. Meshes are not looked into, nor are more than
-/// [`MOST_COMPARED`] objects.
+/// 2,000 objects.
 pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     if objects.len() > MOST_COMPARED {
         return Vec::new();

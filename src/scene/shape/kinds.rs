@@ -128,7 +128,7 @@ macro_rules! shapes {
                 match self { $(Self::$kind(shape) => shape.height_per_radius(point)),* }
             }
 
-            /// The piece of a plane that it is, see [`Describe::flat`].
+            /// The piece of a plane that it is, see [`Describe::plane_piece`].
             pub fn plane_piece(&self) -> Option<PlanePiece> {
                 match self { $(Self::$kind(shape) => shape.plane_piece()),* }
             }
