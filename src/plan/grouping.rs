@@ -17,7 +17,7 @@ const REINSERTED: f32 = 0.02;
 
 /// So many boxes are looked at to see whether many are in one place.
 const SAMPLED: usize = 512;
-/// What such are made larger by, at least, in parts of the largest coordinate.
+/// How far such are moved, at most, in parts of the largest coordinate.
 const LITTLE: f32 = 1e-3;
 
 /// What a box of a node holds.
@@ -96,18 +96,21 @@ fn are_many_alike(boxes: &[Aabb]) -> bool {
     different.len() * 2 < sampled.len()
 }
 
-/// Makes boxes a little larger, each by another part. Those in one place would go together one by one, since each
-/// takes the same neighbour for the nearest: 40,000 balls took half a minute. Only who goes with whom is taken
-/// from these boxes.
+/// Moves boxes a little, each by another way. Those in one place would go together one by one, since each takes the
+/// same neighbour for the nearest: 40,000 balls took half a minute. Only who goes with whom is taken from them.
 fn tell_apart(boxes: &mut [Aabb]) {
     let reach = |one: &Aabb| one.min.abs().max(one.max.abs()).max_element();
     let size = boxes.iter().map(reach).fold(f32::MIN_POSITIVE, f32::max);
     let mut state = 1_u32;
-    for one in boxes {
+    let mut part = || {
         // A linear congruential generator: Knuth, "The art of computer programming" 2, §3.3.4.
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        let part = (state >> 8) as f32 / 16_777_216.0;
-        one.max += Vec3A::splat(size * LITTLE * (1.0 + part));
+        (state >> 8) as f32 / 16_777_216.0
+    };
+    for one in boxes {
+        let by = Vec3A::new(part(), part(), part()) * (size * LITTLE);
+        one.min += by;
+        one.max += by;
     }
 }
 

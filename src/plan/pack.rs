@@ -195,9 +195,12 @@ impl<R: Real> Plan<R> {
         contacts: &Contacts,
         projector: Option<&Projector>,
     ) -> HashMap<usize, usize> {
-        let corner_users = match self.geometry {
-            Some(_) => HashMap::new(),
-            None => count_corner_users(scene),
+        // Beside a tree there are triangles only where they touch something.
+        let has_triangles = self.geometry.is_none() || !contacts.apart().is_empty();
+        let corner_users = if has_triangles {
+            count_corner_users(scene)
+        } else {
+            HashMap::new()
         };
         let packing = Packing {
             centre: self.centre,
