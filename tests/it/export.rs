@@ -59,6 +59,7 @@ fn done(command: &mut Command) -> String {
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let entries = fs::read_dir(folder).expect("a folder");
     let entries = entries.map(|entry| entry.expect("an entry").path());
+    let entries = entries.filter(|path| path.is_file());
     let files = entries.filter(|path| {
         path.file_name()
             .is_some_and(|name| name != "glint-frames.txt")
@@ -485,22 +486,21 @@ fn ffmpeg_makes_videos_of_all_frames() {
         let said = done(probe.args(["-of", "csv=p=0", path]));
         assert_eq!(said.trim(), "14/1,28", "{name}");
     }
-    // What it says when it fails is passed on.
-    let nowhere = folder.path().join("none/a.mp4");
-    let output = run(&mut export(
-        &frames,
-        &[
-            "--frames",
-            "1-28",
-            "--video",
-            nowhere.to_str().expect("plain"),
-        ],
-    ));
+    // What it says when it fails is passed on, and no half video is left.
+    let failing = folder.path().join("ffmpeg");
+    fs::write(&failing, "#!/bin/sh\necho no such codec >&2\nexit 3\n").expect("written");
+    done(Command::new("chmod").arg("+x").arg(&failing));
+    let video = folder.path().join("d.mp4");
+    let path = video.to_str().expect("plain");
+    let mut command = export(&frames, &["--frames", "1-28", "--video", path]);
+    let output = run(command.env("PATH", folder.path()));
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1));
+    assert!(said.contains("ffmpeg failed:\nno such codec"), "{said}");
     assert!(
-        said.contains("ffmpeg failed") && said.contains("No such file"),
-        "{said}"
+        files(folder.path())
+            .keys()
+            .all(|name| !name.contains("d.mp4"))
     );
 }
 
