@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use glint::cli::{CliAction, CliError, PictureLook, picture_instead_of_window};
+use glint::cli::{CliAction, CliError, picture_instead_of_window};
 use glint::export::save_image;
 use glint::image::{Film, Image};
-use glint::ui::{ChartLook, NoWindow};
+use glint::ui::NoWindow;
 use glint::{cli, ui};
 
 fn main() -> ExitCode {
@@ -17,13 +17,8 @@ fn main() -> ExitCode {
             machine,
             look,
             path,
-        } => save(
-            ui::chart_picture(&studies, &machine, chart_look(look)),
-            &path,
-        ),
-        CliAction::Growth { growth, look, path } => {
-            save(ui::growth_picture(&growth, chart_look(look)), &path)
-        }
+        } => save(ui::chart_picture(&studies, &machine, look), &path),
+        CliAction::Growth { growth, look, path } => save(ui::growth_picture(&growth, look), &path),
         CliAction::Stability { maps, path } => save(ui::stability_picture(&maps), &path),
         CliAction::Editor {
             scene,
@@ -37,11 +32,6 @@ fn main() -> ExitCode {
 
 fn save(image: Image, path: &Path) -> Result<(), CliError> {
     save_image(&Film::Levels(image), path).map_err(CliError::from)
-}
-
-fn chart_look(look: PictureLook) -> ChartLook {
-    let PictureLook { is_light, size } = look;
-    ChartLook { is_light, size }
 }
 
 /// Opens the window, or explains why there is none and traces a picture instead.

@@ -4,16 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use crate::lab::stability::Map;
-use crate::lab::{Growth, Study};
-
-/// How a picture that is drawn looks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PictureLook {
-    /// Whether it is light.
-    pub is_light: bool,
-    /// Width and height in pixels.
-    pub size: (u32, u32),
-}
+use crate::lab::{Growth, PictureLook, Study};
 
 /// What the command line asked for.
 #[derive(Debug)]

@@ -7,13 +7,13 @@ use std::sync::Arc;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::action::{CliAction, PictureLook};
+use super::action::CliAction;
 use super::error::{CliError, say};
 use super::scene::read_scene;
 use crate::export::write_text;
 use crate::files::processor;
 use crate::image::Format;
-use crate::lab::{Growth, Study, cheapest_within, csv, table};
+use crate::lab::{Growth, PictureLook, Study, capitalised, cheapest_within, csv, table};
 use crate::trace::{RenderControl, Threads};
 
 /// Primitives of the largest scene that growth is measured in.
@@ -114,12 +114,6 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
         look,
         path,
     }))
-}
-
-fn capitalised(word: &str) -> String {
-    let mut letters = word.chars();
-    let first = letters.next().map(|first| first.to_uppercase().to_string());
-    first.unwrap_or_default() + letters.as_str()
 }
 
 /// A size such as `1600x960`.

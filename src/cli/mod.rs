@@ -33,7 +33,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
 
-pub use action::{CliAction, PictureLook};
+pub use action::CliAction;
 pub use error::CliError;
 use error::WRONG;
 pub use fallback::picture_instead_of_window;

@@ -32,3 +32,10 @@ pub enum ExportError {
         source: io::Error,
     },
 }
+
+/// The end of what another program said, which tells why it failed.
+pub fn last_lines(said: &[u8]) -> String {
+    let said = String::from_utf8_lossy(said);
+    let lines: Vec<&str> = said.lines().collect();
+    lines[lines.len().saturating_sub(12)..].join("\n")
+}

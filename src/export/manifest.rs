@@ -95,11 +95,8 @@ pub fn add_note(
     fingerprint: &Hash,
     time: Duration,
 ) -> io::Result<()> {
-    let options = OpenOptions::new()
-        .create(true)
-        .append(true)
-        .read(true)
-        .clone();
+    let mut options = OpenOptions::new();
+    options.create(true).append(true).read(true);
     let mut manifest = options.open(folder.join(MANIFEST))?;
     let mut line = String::new();
     match last_byte(&mut manifest)? {

@@ -9,10 +9,12 @@ use std::time::Duration;
 
 use glam::DVec3;
 
+use super::error::last_lines;
 use crate::image::Image;
 use crate::plan::PackedMesh;
 use crate::scene::{
-    Camera, ColorPack, Disc, Light, Mesh, Plane, Projection, Render, Scene, Shape, Sphere, Triangle,
+    Camera, ColorPack, Disc, Light, Mesh, Plane, Projection, Render, Scene, Shape, Sphere,
+    Triangle, unit,
 };
 
 /// The least of a colour that light is multiplied with: what is added to it has to be divided by it first.
@@ -122,7 +124,7 @@ fn write_shape(pov: &mut String, shape: &Shape, texture: &str) {
             )
         }
         Shape::Plane(Plane { point, normal }) => {
-            let normal = crate::scene::unit(*normal).unwrap_or(DVec3::Y);
+            let normal = unit(*normal).unwrap_or(DVec3::Y);
             let (across, offset) = (vector(normal), normal.dot(*point));
             writeln!(pov, "plane {{ {across}, {offset:?} {texture} }}")
         }
@@ -222,10 +224,7 @@ pub fn by_povray(scene: &Scene, folder: &Path, threads: usize) -> Result<ByPovra
         },
     })?;
     if !output.status.success() {
-        let said = String::from_utf8_lossy(&output.stderr);
-        let lines: Vec<&str> = said.lines().collect();
-        let said = lines[lines.len().saturating_sub(12)..].join("\n");
-        return Err(PovrayError::Failed(said));
+        return Err(PovrayError::Failed(last_lines(&output.stderr)));
     }
     let picture = image::open(folder.join("scene.png"))?.to_rgba8();
     Ok(ByPovray {

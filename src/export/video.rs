@@ -9,6 +9,7 @@ use std::process::{Command, Stdio};
 use image::codecs::gif::{GifEncoder, Repeat};
 use image::{Delay, Frame, RgbaImage};
 
+use super::error::last_lines;
 use super::sequence::Sequence;
 use crate::files::{NewFile, remove_leftovers};
 use crate::image::{Format, Image, LinearImage};
@@ -210,9 +211,7 @@ impl Video {
         if output.status.success() {
             return Ok(());
         }
-        let said = String::from_utf8_lossy(&output.stderr);
-        let lines: Vec<&str> = said.lines().collect();
-        let mut said = lines[lines.len().saturating_sub(12)..].join("\n");
+        let mut said = last_lines(&output.stderr);
         if output.status.code().is_none() {
             said = format!("it was killed ({})\n{said}", output.status);
         }

@@ -17,6 +17,8 @@ mod finding;
 
 mod table;
 
+mod look;
+
 mod growth;
 
 mod explain;
@@ -28,6 +30,7 @@ pub use clusters::clusters;
 pub use explain::{Lit, Share, Sight, explain};
 pub use finding::finding;
 pub use growth::{Cost, Crowd, Growth};
+pub use look::{PictureLook, capitalised};
 pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, difference, trace_light};
 pub use pareto_front::{cheapest_within, front};
 pub use study::{Measurement, Reference, Study, Timing};

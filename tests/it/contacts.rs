@@ -2,6 +2,7 @@
 //! same in single and in double precision, with a list and with a tree.
 
 use glam::DVec3;
+use glint::image::Image;
 use glint::plan::RenderRequest;
 use glint::scene::{
     Accelerator, Camera, ColorPack, Disc, Light, Object, Plane, Precision, Scene, Shape, Sphere,
@@ -83,8 +84,17 @@ fn ceiling() -> Shape {
     triangle([[-3.0, 5.0, -3.0], [3.0, 5.0, -3.0], [0.0, 5.0, 3.0]])
 }
 
+/// The picture in a precision, found as the plan likes.
+fn at(scene: &Scene, precision: Precision) -> Image {
+    let wanted = RenderRequest {
+        precision,
+        ..RenderRequest::sized(SIDE, SIDE)
+    };
+    picture(scene, &wanted).0
+}
+
 /// The picture, after all ways to it have given the same.
-fn steady(scene: &Scene, what: &str) -> glint::image::Image {
+fn steady(scene: &Scene, what: &str) -> Image {
     let of = |precision, accelerator| {
         let wanted = RenderRequest {
             precision,
@@ -103,7 +113,7 @@ fn steady(scene: &Scene, what: &str) -> glint::image::Image {
 }
 
 /// How many pixels are more blue than red, and the other way round.
-fn blue_and_red(image: &glint::image::Image) -> (usize, usize) {
+fn blue_and_red(image: &Image) -> (usize, usize) {
     let count = |is: fn(&[u8; 4]) -> bool| image.pixels.iter().filter(|pixel| is(pixel)).count();
     (count(|[r, _, b, _]| b > r), count(|[r, _, b, _]| r > b))
 }
@@ -183,15 +193,9 @@ fn a_light_on_a_surface_is_not_behind_it() {
 
     let mut lit = scene([floor(), ball()]);
     lit.lights = [lamp(0.6, 1.8, 0.0)].into_iter().collect();
-    let of = |precision| {
-        let wanted = RenderRequest {
-            precision,
-            ..RenderRequest::sized(SIDE, SIDE)
-        };
-        picture(&lit, &wanted).0
-    };
-    let automatic = of(Precision::Auto);
-    assert_same_but_for_edges(&automatic, &of(Precision::Double), "a lamp on a ball");
+    let automatic = at(&lit, Precision::Auto);
+    let double = at(&lit, Precision::Double);
+    assert_same_but_for_edges(&automatic, &double, "a lamp on a ball");
     let (_, red) = blue_and_red(&automatic);
     assert!(red > 0);
     lit.lights = [lamp(0.5, 0.0, 2.5)].into_iter().collect();
@@ -233,14 +237,7 @@ fn parallel_rays_from_far_away_need_digits() {
             orthographic_height: 4.0,
             ..far.camera
         };
-        let of = |precision| {
-            let wanted = RenderRequest {
-                precision,
-                ..RenderRequest::sized(SIDE, SIDE)
-            };
-            picture(&far, &wanted).0
-        };
-        let double = of(Precision::Double);
-        assert_same_but_for_edges(&of(Precision::Auto), &double, &format!("from {away}"));
+        let (automatic, double) = (at(&far, Precision::Auto), at(&far, Precision::Double));
+        assert_same_but_for_edges(&automatic, &double, &format!("from {away}"));
     }
 }

@@ -8,6 +8,7 @@ use super::heat;
 use super::ramp;
 use super::rates;
 use crate::image::Image;
+use crate::lab::capitalised;
 use crate::lab::stability::{Map, number};
 
 /// Width of the figure, in points, and pixels per point.
@@ -206,10 +207,4 @@ fn label_axes(
     }
     let above = pos2(squares.left() - BESIDE, squares.top() - 2.0);
     write(above, Align2::LEFT_BOTTOM, map.up.name.to_owned());
-}
-
-fn capitalised(word: &str) -> String {
-    let mut letters = word.chars();
-    let first = letters.next().map(|first| first.to_uppercase().to_string());
-    first.unwrap_or_default() + letters.as_str()
 }

@@ -5,13 +5,13 @@ use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoints, Points};
 
 use super::super::theme::{GRID, palette};
 use super::chart::{decades, plain};
-use super::pictures::ChartLook;
+use super::pictures::picture;
 use crate::image::Image;
-use crate::lab::{Cost, Crowd, Growth};
+use crate::lab::{Cost, Crowd, Growth, PictureLook};
 
 /// A picture of what was measured.
-pub fn growth_picture(growth: &Growth, look: ChartLook) -> Image {
-    look.picture(|ui| {
+pub fn growth_picture(growth: &Growth, look: PictureLook) -> Image {
+    picture(look, |ui| {
         ui.label(egui::RichText::new(finding(growth)).heading());
         ui.add_space(GRID);
         show(ui, growth);

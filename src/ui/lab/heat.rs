@@ -24,14 +24,7 @@ pub fn show(ui: &mut Ui, map: &Map, size: egui::Vec2, marker: Option<(f64, f64)>
         squares.width() / columns as f32,
         squares.height() / rows as f32,
     );
-    let square = |index: usize| {
-        let (column, row) = (index % columns, index / columns);
-        let corner = pos2(
-            squares.left() + column as f32 * cell.x,
-            squares.bottom() - (row + 1) as f32 * cell.y,
-        );
-        Rect::from_min_size(corner, cell)
-    };
+    let square = |index: usize| square_of(map, squares, index);
     paint_squares(ui, map, squares);
     let painter = ui.painter();
     let font = FontId::proportional(SMALL);
@@ -105,18 +98,23 @@ fn nearest(axis: &Axis, value: f64) -> usize {
     nearest.map_or(0, |(index, _)| index)
 }
 
-/// Draws the squares of a map alone.
-pub fn paint_squares(ui: &Ui, map: &Map, area: Rect) {
+/// Where a cell of a map is in the place of all.
+fn square_of(map: &Map, area: Rect, index: usize) -> Rect {
     let (columns, rows) = (map.across.values.len(), map.up.values.len());
     let cell = vec2(area.width() / columns as f32, area.height() / rows as f32);
+    let (column, row) = (index % columns, index / columns);
+    let corner = pos2(
+        area.left() + column as f32 * cell.x,
+        area.bottom() - (row + 1) as f32 * cell.y,
+    );
+    Rect::from_min_size(corner, cell)
+}
+
+/// Draws the squares of a map alone.
+pub fn paint_squares(ui: &Ui, map: &Map, area: Rect) {
     let colors = palette(ui.ctx());
     for (index, tries) in map.cells.iter().enumerate() {
-        let (column, row) = (index % columns, index / columns);
-        let corner = pos2(
-            area.left() + column as f32 * cell.x,
-            area.bottom() - (row + 1) as f32 * cell.y,
-        );
-        let square = Rect::from_min_size(corner, cell).shrink(0.5);
+        let square = square_of(map, area, index).shrink(0.5);
         if tries.tries == 0 {
             ramp::hatch(ui.painter(), square, Stroke::new(0.5, colors.muted));
             continue;

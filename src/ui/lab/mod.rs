@@ -31,7 +31,7 @@ use egui::{Align, Button, DragValue, Key, Layout, Response, RichText, Ui};
 
 pub use self::atlas::stability_picture;
 pub use self::growth::growth_picture;
-pub use self::pictures::{ChartLook, chart_picture};
+pub use self::pictures::chart_picture;
 
 use self::chart::Chart;
 use self::comparison::{Comparison, FACES, Face};
@@ -43,7 +43,7 @@ use super::theme::{GRID, ROW, palette};
 use super::viewport::Place;
 use crate::editor::{Edit, Editor};
 use crate::files::processor;
-use crate::lab::{EIGHT_BIT_FLOOR, Study, cheapest_within, clusters};
+use crate::lab::{EIGHT_BIT_FLOOR, Study, cheapest_within};
 use crate::plan::Model;
 use crate::scene::{Render, Scene};
 use crate::trace::Threads;
@@ -169,7 +169,7 @@ impl Lab {
                         .and_then(|members| members.first().copied());
                 }
             });
-            ui.vertical(|ui| self.show_details(ui, editor, out));
+            ui.vertical(|ui| self.show_details(ui, editor, &members, out));
         });
         wish
     }
@@ -310,7 +310,13 @@ impl Lab {
         }
     }
 
-    fn show_details(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+    fn show_details(
+        &mut self,
+        ui: &mut Ui,
+        editor: &Editor,
+        dots: &[Vec<usize>],
+        out: &mut UiRequests,
+    ) {
         ui.set_width(DETAILS - GRID);
         let chosen = self
             .chosen
@@ -319,7 +325,7 @@ impl Lab {
             ui.weak("Click a dot to look at its picture.");
             return;
         };
-        let equals = self.equals_of_chosen();
+        let equals = self.equals_of_chosen(dots);
         ui.label(RichText::new(&dot.candidate.name).strong());
         ui.weak(dot.candidate.words());
         ui.add_space(GRID / 2.0);
@@ -399,15 +405,13 @@ impl Lab {
     }
 
     /// The measurements that share the dot of the chosen one, with their names.
-    fn equals_of_chosen(&self) -> Vec<(usize, String)> {
+    fn equals_of_chosen(&self, dots: &[Vec<usize>]) -> Vec<(usize, String)> {
         let (Some(chosen), Some(study)) = (self.chosen, &self.study) else {
             return Vec::new();
         };
-        let cluster = clusters(study)
-            .into_iter()
-            .find(|cluster| cluster.contains(&chosen));
-        let name = |place: usize| (place, study.measurements[place].candidate.name.clone());
-        cluster.into_iter().flatten().map(name).collect()
+        let dot = dots.iter().find(|dot| dot.contains(&chosen));
+        let name = |&place: &usize| (place, study.measurements[place].candidate.name.clone());
+        dot.into_iter().flatten().map(name).collect()
     }
 
     fn chart(&self, editor: &Editor) -> Option<(Chart, Vec<Vec<usize>>)> {

@@ -7,48 +7,28 @@ use super::super::theme::GRID;
 use super::chart::Chart;
 use super::dots::{ChartView, CostAxis, ErrorAxis, chart};
 use crate::image::Image;
-use crate::lab::Study;
+use crate::lab::{PictureLook, Study};
 
 /// Pixels of a picture per point of its layout.
 const SCALE: u32 = 2;
 
-/// How a picture of charts looks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ChartLook {
-    /// Whether it is light.
-    pub is_light: bool,
-    /// Width and height in pixels.
-    pub size: (u32, u32),
-}
-
-impl Default for ChartLook {
-    fn default() -> Self {
-        Self {
-            is_light: false,
-            size: (1600, 960),
-        }
-    }
-}
-
-impl ChartLook {
-    /// A picture that is drawn into all of it.
-    pub fn picture(self, mut show: impl FnMut(&mut Ui)) -> Image {
-        let theme = if self.is_light {
-            Theme::Light
-        } else {
-            Theme::Dark
-        };
-        let (width, height) = (self.size.0 / SCALE, self.size.1 / SCALE);
-        draw((width, height), SCALE as f32, theme, |ui| {
-            let frame = egui::Frame::new().inner_margin(2.0 * GRID);
-            frame.show(ui, &mut show);
-        })
-    }
+/// A picture of a chart that is drawn into all of it.
+pub fn picture(look: PictureLook, mut show: impl FnMut(&mut Ui)) -> Image {
+    let theme = if look.is_light {
+        Theme::Light
+    } else {
+        Theme::Dark
+    };
+    let (width, height) = (look.size.0 / SCALE, look.size.1 / SCALE);
+    draw((width, height), SCALE as f32, theme, |ui| {
+        let frame = egui::Frame::new().inner_margin(2.0 * GRID);
+        frame.show(ui, &mut show);
+    })
 }
 
 /// The charts of time and RMSE of these studies, each with the name of its scene, as the window would draw
 /// them: one, or several beside each other with the same axes.
-pub fn chart_picture(studies: &[(String, Study)], machine: &str, look: ChartLook) -> Image {
+pub fn chart_picture(studies: &[(String, Study)], machine: &str, look: PictureLook) -> Image {
     let charts = studies.iter().map(|(name, study)| {
         let view = ChartView {
             name,
@@ -69,7 +49,7 @@ pub fn chart_picture(studies: &[(String, Study)], machine: &str, look: ChartLook
     }
     let columns = (charts.len() as f64).sqrt().ceil().max(1.0) as usize;
     let rows = charts.len().div_ceil(columns).max(1);
-    look.picture(|ui| {
+    picture(look, |ui| {
         let room = ui.available_size();
         let tile = vec2(room.x / columns as f32 - GRID, room.y / rows as f32 - GRID);
         for row in charts.chunks(columns) {
