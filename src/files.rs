@@ -128,6 +128,24 @@ pub fn make_folder(path: &Path) -> io::Result<()> {
     fs::create_dir_all(path)
 }
 
+/// What a text file holds; `None` if it cannot be read.
+pub fn read_text(path: &Path) -> Option<String> {
+    fs::read_to_string(path).ok()
+}
+
+/// Removes files from a folder, those that were written first, until no more than `most` are left.
+pub fn remove_oldest(folder: &Path, most: usize) {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut files: Vec<(SystemTime, PathBuf)> = entries
+        .filter_map(|entry| Some((time_of(&entry.path())?, entry.path())))
+        .collect();
+    files.sort();
+    let surplus = files.len().saturating_sub(most);
+    for (_, path) in &files[..surplus] {
+        let _ = fs::remove_file(path);
+    }
+}
+
 /// When a file was written last, where the system tells.
 pub fn time_of(path: &Path) -> Option<SystemTime> {
     fs::metadata(path).ok()?.modified().ok()

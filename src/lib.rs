@@ -7,7 +7,7 @@
 //!       │ submit(revision, scene, request)                  │
 //!     worker (the render thread; newest wins) ◄ · · · · · · ┘
 //!       │
-//!  scene ─► animate ─► plan ─► trace ─► image ─► export      lab (methods ► time, error, failures)
+//!  scene ─► animate ─► plan ─► trace ─► image ─► export ─► lab (methods ► time, error, failures)
 //!    ▲                  ▲        ▲
 //!  files, mesh  primitive, simd ─┘
 //! ```
@@ -47,9 +47,9 @@ pub mod trace;
 
 pub mod image;
 
-pub mod lab;
-
 pub mod export;
+
+pub mod lab;
 
 pub mod worker;
 

@@ -43,22 +43,18 @@ pub fn to_table<'c>(cameras: impl IntoIterator<Item = (f64, &'c Camera)>) -> Str
 /// [`TableError`], with the line.
 pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableError> {
     let fail = |line: usize, what: String| TableError { line, what };
-    let mut lines = text
-        .lines()
-        .enumerate()
-        .map(|(place, line)| (place + 1, line));
-    let lines = lines.by_ref();
-    let (_, head) = lines
-        .next()
-        .ok_or_else(|| fail(1, format!("the file is empty; expected {HEAD}")))?;
-    let names: Vec<&str> = head
-        .trim_start_matches('\u{feff}')
-        .split(',')
-        .map(str::trim)
-        .collect();
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .flexible(true)
+        .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
+    let names = reader.headers().cloned().unwrap_or_default();
+    if names.is_empty() {
+        return Err(fail(1, format!("the file is empty; expected {HEAD}")));
+    }
+    let column = |name: &str| names.iter().position(|other| other == name);
     if let Some(missing) = ["time", "x", "y", "z"]
         .iter()
-        .find(|name| !names.contains(*name))
+        .find(|name| column(name).is_none())
     {
         return Err(fail(
             1,
@@ -66,12 +62,10 @@ pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableEr
         ));
     }
     let mut keys = Vec::new();
-    for (line, text) in lines.filter(|(_, text)| !text.trim().is_empty()) {
-        let cells: Vec<&str> = text.split(',').map(str::trim).collect();
-        let cell = |name: &str| {
-            let column = names.iter().position(|other| *other == name)?;
-            cells.get(column).copied().filter(|cell| !cell.is_empty())
-        };
+    for record in reader.records() {
+        let record = record.map_err(|error| fail(1, error.to_string()))?;
+        let line = record.position().map_or(1, |place| place.line() as usize);
+        let cell = |name: &str| record.get(column(name)?).filter(|cell| !cell.is_empty());
         let number = |name: &'static str, default: f64| match cell(name) {
             None if ["time", "x", "y", "z"].contains(&name) => {
                 Err(fail(line, format!("{name} is missing")))

@@ -3,17 +3,21 @@
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::action::CliAction;
 use super::error::{CliError, say};
+use super::goal::{error, time};
 use super::scene::read_scene;
 use crate::export::write_text;
 use crate::files::processor;
 use crate::image::Format;
-use crate::lab::{Growth, PictureLook, Study, capitalised, cheapest_within, csv, table};
+use crate::lab::{
+    Growth, PictureLook, Study, capitalised, cheapest_within, closest_within, csv, table,
+};
 use crate::trace::{RenderControl, Threads};
 
 /// Primitives of the largest scene that growth is measured in.
@@ -46,12 +50,15 @@ pub struct ChartArgs {
     /// Size of the picture in pixels
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1600x960", value_parser = picture_size)]
     size: (u32, u32),
-    /// Name the cheapest way whose RMSE (linear, 0–1) is at most this
-    #[arg(long, value_name = "RMSE")]
+    /// Name the cheapest way whose error is at most this: 55dB, or an RMSE (linear, 0–1)
+    #[arg(long, value_name = "ERROR", value_parser = error)]
     within: Option<f64>,
-    /// Name the best way that takes at most so many milliseconds
-    #[arg(long, value_name = "MS")]
-    budget: Option<f64>,
+    /// Name the closest way that takes at most so long: 16ms, 2s, or a number of milliseconds
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    budget: Option<Duration>,
+    /// Put POV-Ray, an independent engine, among the ways, where it is installed
+    #[arg(long, conflicts_with = "growth")]
+    povray: bool,
     /// Tracing threads [default: one per core]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: Option<u16>,
@@ -91,7 +98,13 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
     for (path, scene) in scenes {
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let mut study = Study::of_side(Arc::new(scene), args.side);
+        if args.povray {
+            study = study.with_povray();
+        }
         measure(&mut study, &threads);
+        if let Some(obstacle) = &study.obstacle {
+            say(obstacle);
+        }
         if args.scenes.len() > 1 {
             say(&format!("{stem}:"));
         }
@@ -170,15 +183,12 @@ fn measure(study: &mut Study, threads: &Threads) {
 }
 
 /// Which way of tracing to take.
-fn advice(study: &Study, within: Option<f64>, budget: Option<f64>) -> String {
+fn advice(study: &Study, within: Option<f64>, budget: Option<Duration>) -> String {
     let costs = study.costs();
-    let budget = budget.unwrap_or(f64::INFINITY);
-    let best = if let Some(error) = within {
-        cheapest_within(&costs, error, budget)
-    } else {
-        // The best within a time is the cheapest within an error on the chart turned over.
-        let turned: Vec<(f64, f64)> = costs.iter().map(|&(ms, error)| (error, ms)).collect();
-        cheapest_within(&turned, budget, f64::INFINITY)
+    let budget = budget.unwrap_or(Duration::MAX);
+    let best = match within {
+        Some(error) => cheapest_within(&costs, error, budget.as_secs_f64() * 1e3),
+        None => closest_within(&costs, budget.as_secs_f64() * 1e3),
     };
     best.map_or_else(
         || "nothing measured is within that".to_owned(),

@@ -7,6 +7,8 @@ mod scene;
 
 mod action;
 
+mod goal;
+
 mod settings;
 
 mod check;
@@ -24,6 +26,8 @@ mod chart;
 mod stability;
 
 mod referee;
+
+mod desktop;
 
 mod fallback;
 
@@ -57,6 +61,9 @@ struct CliArgs {
     /// Open the window of exports first
     #[arg(long, requires = "screenshot")]
     exports: bool,
+    /// Put Glint into the menu of the desktop, with its icon, manual and shell completions, for this user
+    #[arg(long, exclusive = true)]
+    install_desktop: bool,
     /// Select the object or light of this name first; may be given more than once
     #[arg(long, value_name = "NAME", requires = "screenshot")]
     select: Vec<String>,
@@ -119,6 +126,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> CliAction {
         Some(CliCommand::Chart(args)) => chart::run(args),
         Some(CliCommand::Stability(args)) => stability::run(args),
         Some(CliCommand::Referee(args)) => referee::run(args).map(|()| None),
+        None if words.install_desktop => desktop::install(CliArgs::command()).map(|()| None),
         None => words.editor().map(Some),
     };
     match result {

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::error::{CliError, say};
 use super::scene::read_scene;
-use crate::export::{by_povray, save_image};
+use crate::export::{by_povray, povray_differences, save_image};
 use crate::image::{Film, Format, Image, render};
 use crate::plan::RenderRequest;
 use crate::scene::Sampling;
@@ -45,8 +45,8 @@ pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
     size.height = args.height.unwrap_or(size.height);
     size.antialias = Sampling::Centres;
     let threads = Threads::new(args.threads.map(usize::from))?;
-    let folder = tempfile::tempdir().map_err(CliError::failed)?;
-    let theirs = by_povray(&scene, folder.path(), threads.count()).map_err(CliError::failed)?;
+    let theirs =
+        by_povray(&scene, threads.count(), &RenderControl::default()).map_err(CliError::failed)?;
     let request = RenderRequest::still(&scene);
     let ours = threads.run(|| render(&scene, &request, &RenderControl::default()));
     let (ours, cost) = ours.ok_or_else(|| CliError::failed("the trace ended without a picture"))?;
@@ -67,20 +67,15 @@ pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
         offs.len() - same,
     ));
     say(&format!(
-        "Glint {:.1} ms, POV-Ray {:.0} ms with reading the scene, {} threads each",
+        "Glint {:.1} ms, POV-Ray {:.0} ms without reading the scene, {} threads each",
         cost.time.as_secs_f64() * 1e3,
         theirs.time.as_secs_f64() * 1e3,
         threads.count()
     ));
-    let packs = scene.color_packs.iter();
-    let is_grey = |v: glam::DVec3| v.max_element() - v.min_element() < 0.5;
-    let colored = packs.filter(|(_, pack)| !is_grey(pack.specular));
-    let colored: Vec<&str> = colored.map(|(name, _)| name.as_str()).collect();
-    if !colored.is_empty() {
-        say(&format!(
-            "POV-Ray's highlights have no colour of their own: those of {} differ",
-            colored.join(", ")
-        ));
+    if share < 100.0 {
+        for difference in povray_differences(&scene) {
+            say(&format!("known to differ: {difference}"));
+        }
     }
     if let Some(path) = &args.output {
         let bright = |off: u8| (u16::from(off) * ENLARGED).min(255) as u8;

@@ -12,13 +12,15 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use super::error::{CliError, say};
+use super::goal::{error, time};
 use super::scene::read_scene;
 use super::settings::SettingArgs;
 use crate::animate::{CameraPath, shot};
 use crate::export::{NoSuchFrame, save_image};
 use crate::image::{Film, Format, RenderCost};
+use crate::lab::{Choice, Goal, choose};
 use crate::plan::{Planner, RenderRequest};
-use crate::scene::{Aspect, MAX_SIDE, Projection, Scene};
+use crate::scene::{Aspect, MAX_SIDE, Method as _, Projection, Scene};
 use crate::simd::Level;
 use crate::trace::{RenderControl, Threads};
 use crate::worker::run_in_background;
@@ -44,6 +46,12 @@ pub struct RenderArgs {
     camera: Option<CameraArg>,
     #[command(flatten)]
     settings: SettingArgs,
+    /// Measure samplings on this picture, and take the cheapest whose error is at most this: 55dB, or an RMSE (linear, 0–1)
+    #[arg(long, value_name = "ERROR", value_parser = error, conflicts_with_all = ["antialias", "budget"])]
+    within: Option<f64>,
+    /// Measure samplings on this picture, and take the closest that takes at most so long: 16ms, 2s
+    #[arg(long, value_name = "TIME", value_parser = time, conflicts_with = "antialias")]
+    budget: Option<Duration>,
     /// Instruction set of the tracer; all give the same picture [default: the widest of this processor]
     #[arg(long, value_name = "LEVEL", value_parser = lanes)]
     lanes: Option<Level>,
@@ -75,6 +83,9 @@ struct Stats {
     trace_ms_min: f64,
     rays: RayCounts,
     lanes: String,
+    /// What was chosen, where that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    antialias: Option<String>,
     threads: usize,
     width: usize,
     height: usize,
@@ -112,7 +123,9 @@ pub fn run(args: &RenderArgs) -> Result<(), CliError> {
     }
     args.settings.apply(&mut scene.render);
     scene = args.show.unwrap_or_default().of(&scene);
-    let request = args.request(&scene);
+    let mut request = args.request(&scene);
+    let choice = args.choose(&scene, &request, &threads)?;
+    request.sampling = choice.map_or(request.sampling, |choice| choice.sampling);
     let count = threads.count();
     let film = Film::new(format.unwrap_or(Format::Ppm));
     let traced = trace(scene, (request, film), threads, args.repeat.get());
@@ -121,11 +134,14 @@ pub fn run(args: &RenderArgs) -> Result<(), CliError> {
     if let Some(path) = &args.output {
         save_image(&film, path)?;
     }
-    let stats = stats(film.size(), &costs, count);
+    let stats = stats((&film, choice), &costs, count);
     match (&args.output, args.stats) {
         (_, true) => say(&serde_json::to_string(&stats)?),
         (Some(path), false) => say(&summary(path, &stats)),
         (None, false) => {}
+    }
+    if let Some(choice) = choice.filter(|_| !args.stats) {
+        say(&choice.words());
     }
     Ok(())
 }
@@ -162,6 +178,23 @@ fn at_frame(scene: Scene, frame: u64) -> Result<Scene, NoSuchFrame> {
 }
 
 impl RenderArgs {
+    /// The sampling that keeps to what was asked for, if anything was.
+    fn choose(
+        &self,
+        scene: &Scene,
+        request: &RenderRequest,
+        threads: &Threads,
+    ) -> Result<Option<Choice>, CliError> {
+        let goal = self.within.map(Goal::Within);
+        let Some(goal) = goal.or(self.budget.map(Goal::Budget)) else {
+            return Ok(None);
+        };
+        let (mut planner, control) = (Planner::default(), RenderControl::default());
+        let chosen = threads.run(|| choose(scene, request, goal, &mut planner, &control));
+        let stopped = || CliError::failed("the measuring ended without a choice");
+        chosen.ok_or_else(stopped).map(Some)
+    }
+
     fn request(&self, scene: &Scene) -> RenderRequest {
         let own = (scene.render.width, scene.render.height);
         let (width, height) = sized(own, (self.width, self.height));
@@ -236,7 +269,8 @@ fn trace(
     }
 }
 
-fn stats((width, height): (usize, usize), costs: &[RenderCost], threads: usize) -> Stats {
+fn stats((film, choice): (&Film, Option<Choice>), costs: &[RenderCost], threads: usize) -> Stats {
+    let (width, height) = film.size();
     let mut millis: Vec<f64> = costs
         .iter()
         .map(|cost| cost.time.as_secs_f64() * 1e3)
@@ -258,6 +292,7 @@ fn stats((width, height): (usize, usize), costs: &[RenderCost], threads: usize) 
             reflected: rays.reflected,
         },
         lanes,
+        antialias: choice.map(|choice| choice.sampling.id()),
         threads,
         width,
         height,

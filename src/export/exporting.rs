@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use super::error::ExportError;
 use super::manifest::{Hash, Manifest};
-use super::sequence::Sequence;
+use super::sequence::{Sequence, fingerprint};
 use crate::image::{Film, Image};
 use crate::plan::Planner;
 use crate::trace::RenderControl;
@@ -140,7 +140,7 @@ impl Exporting {
             return ExportStep::Done;
         };
         let shown = self.sequence.shown(frame);
-        let fingerprint = match self.sequence.fingerprint(&shown) {
+        let fingerprint = match fingerprint(&shown, self.sequence.format) {
             Ok(fingerprint) => fingerprint,
             Err(error) => return ExportStep::Failed(error),
         };

@@ -2,9 +2,11 @@
 //! them.
 
 use std::fmt::Write as _;
+use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use glam::DVec3;
@@ -13,12 +15,16 @@ use super::error::last_lines;
 use crate::image::Image;
 use crate::plan::PackedMesh;
 use crate::scene::{
-    Camera, ColorPack, Disc, Light, Mesh, Plane, Projection, Render, Scene, Shape, Sphere,
+    Camera, ColorPack, Disc, Light, Mesh, Object, Plane, Projection, Render, Scene, Shape, Sphere,
     Triangle, unit,
 };
+use crate::trace::RenderControl;
 
 /// The least of a colour that light is multiplied with: what is added to it has to be divided by it first.
 const LEAST: f64 = 1e-6;
+
+/// Time between two looks at whether it is done.
+const LOOK: Duration = Duration::from_millis(3);
 
 /// Why POV-Ray has drawn no picture.
 #[derive(Debug, thiserror::Error)]
@@ -29,6 +35,9 @@ pub enum PovrayError {
         "POV-Ray is not installed, or not on the PATH: `apt install povray` on Debian and Ubuntu, `brew install povray` on macOS"
     )]
     Missing,
+    /// It was told to stop.
+    #[error("POV-Ray was stopped")]
+    Stopped,
     /// It ended with an error.
     #[error("POV-Ray failed:\n{0}")]
     Failed(String),
@@ -45,12 +54,11 @@ pub enum PovrayError {
     Picture(#[from] image::ImageError),
 }
 
-/// The scene in POV-Ray's language. Highlights are grey there: of one in a colour the mean is taken. Colours above
-/// white are cut off at the end there, and here at each mirror as well.
+/// The scene in POV-Ray's language. A highlight has the light's colour there: what has highlights in another colour
+/// is lit by lights of its own, in that colour. Colours above white are cut off at the end there, and here at each
+/// mirror as well.
 pub fn povray_text(scene: &Scene) -> String {
     let mut pov = String::new();
-    let lights = || scene.lights.iter().filter(|light| light.visible);
-    let total: f64 = lights().map(|light| light.intensity).sum();
     let level = scene.render.reflection_limit + 1;
     let Render { width, height, .. } = scene.render;
     let _ = writeln!(
@@ -64,15 +72,60 @@ pub fn povray_text(scene: &Scene) -> String {
         &scene.camera,
         f64::from(width) / f64::from(height),
     );
-    for light in lights() {
-        write_light(&mut pov, scene, light);
+    for light in visible_lights(scene) {
+        write_light(&mut pov, light, DVec3::ONE);
+        write_marker(&mut pov, scene, light);
     }
-    for object in scene.objects.iter().filter(|object| object.visible) {
-        let pack = scene.color_packs.get(&object.color_pack);
-        let texture = pack.map_or(String::new(), |pack| texture(pack, total));
-        write_shape(&mut pov, &object.shape, &texture);
+    let total: f64 = visible_lights(scene).map(|light| light.intensity).sum();
+    for (name, pack) in scene.color_packs.iter() {
+        let texture = texture(pack, total);
+        let objects = scene.objects.iter().filter(|object| object.visible);
+        let wearers = objects.filter(|object| object.color_pack == *name);
+        let mut shapes = String::new();
+        for object in wearers {
+            write_shape(&mut shapes, &object.shape, &texture);
+        }
+        if shapes.is_empty() {
+            continue;
+        }
+        let highlight = Highlight::of(pack);
+        if highlight.is_white() {
+            pov.push_str(&shapes);
+        } else {
+            pov.push_str("light_group {\n");
+            for light in visible_lights(scene) {
+                write_light(&mut pov, light, highlight.color);
+            }
+            let _ = writeln!(pov, "{shapes}global_lights off }}");
+        }
     }
     pov
+}
+
+fn visible_lights(scene: &Scene) -> impl Iterator<Item = &Light> {
+    scene.lights.iter().filter(|light| light.visible)
+}
+
+/// How much of the light a highlight shows, and in which colour.
+struct Highlight {
+    share: f64,
+    color: DVec3,
+}
+
+impl Highlight {
+    fn of(pack: &ColorPack) -> Self {
+        let share = pack.specular.max_element() / 255.0;
+        let color = if share > 0.0 {
+            (pack.specular / (share * 255.0)).max(DVec3::splat(LEAST))
+        } else {
+            DVec3::ONE
+        };
+        Self { share, color }
+    }
+
+    fn is_white(&self) -> bool {
+        self.color == DVec3::ONE
+    }
 }
 
 fn vector(v: DVec3) -> String {
@@ -99,14 +152,17 @@ fn write_camera(pov: &mut String, camera: &Camera, aspect: f64) {
     );
 }
 
-fn write_light(pov: &mut String, scene: &Scene, light: &Light) {
-    let (at, intensity) = (vector(light.position), light.intensity);
-    let _ = writeln!(pov, "light_source {{ {at} rgb {intensity:?} }}");
+fn write_light(pov: &mut String, light: &Light, color: DVec3) {
+    let (at, color) = (vector(light.position), vector(color * light.intensity));
+    let _ = writeln!(pov, "light_source {{ {at} rgb {color} }}");
+}
+
+fn write_marker(pov: &mut String, scene: &Scene, light: &Light) {
     let marker = light.marker.as_ref().filter(|_| scene.light_visualization);
     if let Some(marker) = marker
         && let Some(pack) = scene.color_packs.get(&marker.color_pack)
     {
-        let (radius, color) = (marker.radius, color(pack.ambient));
+        let (at, radius, color) = (vector(light.position), marker.radius, color(pack.ambient));
         let _ = writeln!(
             pov,
             "sphere {{ {at}, {radius:?} pigment {{ {color} }} finish {{ ambient 0 diffuse 0 emission 1 }} no_shadow }}"
@@ -141,9 +197,13 @@ fn write_shape(pov: &mut String, shape: &Shape, texture: &str) {
             writeln!(pov, "triangle {{ {a}, {b}, {c} {texture} }}")
         }
         Shape::Mesh(mesh) => {
-            let _ = writeln!(pov, "mesh {{");
-            write_faces(pov, mesh);
-            writeln!(pov, "{texture} }}")
+            let mut faces = String::new();
+            write_faces(&mut faces, mesh);
+            // It knows no mesh without faces.
+            if faces.is_empty() {
+                return;
+            }
+            writeln!(pov, "mesh {{\n{faces}{texture} }}")
         }
     };
 }
@@ -167,10 +227,12 @@ fn write_faces(pov: &mut String, mesh: &Mesh) {
 }
 
 fn texture(pack: &ColorPack, total_intensity: f64) -> String {
-    // What a surface shows by itself is multiplied with its colour there.
-    let pigment = pack.diffuse.max(DVec3::splat(LEAST * 255.0));
+    let highlight = Highlight::of(pack);
+    // The light has the highlight's colour, and only the highlight is to have it. What a surface shows by itself
+    // is multiplied with its colour there.
+    let pigment = pack.diffuse.max(DVec3::splat(LEAST * 255.0)) / highlight.color;
     let share = pack.ambient / pigment;
-    let specular = pack.specular.element_sum() / (3.0 * 255.0);
+    let specular = highlight.share;
     let mirror = if pack.reflective {
         pack.specular * (total_intensity / 255.0)
     } else {
@@ -186,25 +248,72 @@ fn texture(pack: &ColorPack, total_intensity: f64) -> String {
     )
 }
 
-/// What POV-Ray has drawn, and how long it took for all of it, reading the scene included.
+/// In what the pictures of a scene differ, beyond rounding, for people: what the model means by it, and POV-Ray does
+/// not.
+pub fn povray_differences(scene: &Scene) -> Vec<&'static str> {
+    let visible = || scene.objects.iter().filter(|object| object.visible);
+    let is_mirror = |object: &Object| {
+        let pack = scene.color_packs.get(&object.color_pack);
+        pack.is_some_and(|pack| pack.reflective)
+    };
+    let is_smooth =
+        |object: &Object| matches!(&object.shape, Shape::Mesh(mesh) if mesh.smooth > 0.0);
+    let clipped = visible().any(is_mirror).then_some(
+        "what is brighter than white is white in mirrors here, and brighter than white there",
+    );
+    let lifted = visible().any(is_smooth).then_some(
+        "light ends on the curved surface of smooth meshes here, and on their flat faces there",
+    );
+    clipped.into_iter().chain(lifted).collect()
+}
+
+/// What POV-Ray has drawn.
 #[derive(Debug)]
 pub struct ByPovray {
     /// The picture, one ray through the middle of each pixel.
     pub picture: Image,
-    /// From its start to its end.
+    /// How long it traced, by its own clock: without its start, and without reading the scene.
     pub time: Duration,
+    /// How many rays of all kinds it took.
+    pub rays: u64,
 }
 
-/// Lets POV-Ray draw a scene, in a folder for its files.
+/// What POV-Ray tells of a picture when it is done: how long it traced, and how many rays that were.
+fn statistics(said: &str) -> Option<(Duration, u64)> {
+    let after = |word: &str| said.split_once(word).map(|(_, rest)| rest.trim_start());
+    let number = |word: &str| {
+        let digits = after(word)?.split(|c: char| !c.is_ascii_digit()).next()?;
+        digits.parse::<u64>().ok()
+    };
+    let seconds = after("Trace Time:")?.split_once('(')?.1;
+    let seconds = seconds.split_once(" seconds)")?.0.parse().ok()?;
+    let time = Duration::try_from_secs_f64(seconds).ok()?;
+    // Without lights there are no tests of shadows.
+    let shadows = number("Shadow Ray Tests:").unwrap_or(0);
+    Some((time, number("Rays:")? + shadows))
+}
+
+/// Lets POV-Ray draw a scene, in a folder of its own that is gone afterwards, unless it is told to stop.
 ///
 /// # Errors
 /// [`PovrayError`].
-pub fn by_povray(scene: &Scene, folder: &Path, threads: usize) -> Result<ByPovray, PovrayError> {
+pub fn by_povray(
+    scene: &Scene,
+    threads: usize,
+    control: &RenderControl,
+) -> Result<ByPovray, PovrayError> {
+    let disk = |path: &Path| {
+        let path = path.to_owned();
+        move |source| PovrayError::Disk { path, source }
+    };
+    let folder = tempfile::tempdir().map_err(disk(&std::env::temp_dir()))?;
+    let folder = folder.path();
     let path = folder.join("scene.pov");
-    std::fs::write(&path, povray_text(scene))
-        .map_err(|source| PovrayError::Disk { path, source })?;
+    std::fs::write(&path, povray_text(scene)).map_err(disk(&path))?;
+    // In a file, which no pipe fills up.
+    let path = folder.join("said.txt");
+    let said = File::create(&path).map_err(disk(&path))?;
     let Render { width, height, .. } = scene.render;
-    let start = std::time::Instant::now();
     let run = Command::new("povray")
         .args(["+Iscene.pov", "+Oscene.png", "-D", "+FN8", "-A"])
         .args(["Dither=off", "File_Gamma=1.0"])
@@ -214,18 +323,22 @@ pub fn by_povray(scene: &Scene, folder: &Path, threads: usize) -> Result<ByPovra
             format!("+WT{threads}"),
         ])
         .current_dir(folder)
-        .output();
-    let time = start.elapsed();
-    let output = run.map_err(|source| match source.kind() {
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(said)
+        .spawn();
+    let child = run.map_err(|source| match source.kind() {
         io::ErrorKind::NotFound => PovrayError::Missing,
-        _ => PovrayError::Disk {
-            path: PathBuf::from("povray"),
-            source,
-        },
+        _ => disk(Path::new("povray"))(source),
     })?;
-    if !output.status.success() {
-        return Err(PovrayError::Failed(last_lines(&output.stderr)));
+    let status = end_of(child, control).map_err(disk(Path::new("povray")))?;
+    let status = status.ok_or(PovrayError::Stopped)?;
+    let said = std::fs::read(&path).map_err(disk(&path))?;
+    let failed = || PovrayError::Failed(last_lines(&said));
+    if !status.success() {
+        return Err(failed());
     }
+    let (time, rays) = statistics(&String::from_utf8_lossy(&said)).ok_or_else(failed)?;
     let picture = image::open(folder.join("scene.png"))?.to_rgba8();
     Ok(ByPovray {
         picture: Image {
@@ -234,5 +347,53 @@ pub fn by_povray(scene: &Scene, folder: &Path, threads: usize) -> Result<ByPovra
             pixels: picture.pixels().map(|pixel| pixel.0).collect(),
         },
         time,
+        rays,
     })
+}
+
+/// Waits for a program, and ends it when it is told to stop: `None`.
+fn end_of(mut child: Child, control: &RenderControl) -> io::Result<Option<ExitStatus>> {
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(Some(status));
+        }
+        if control.stop.load(Ordering::Relaxed) {
+            child.kill()?;
+            child.wait()?;
+            return Ok(None);
+        }
+        std::thread::sleep(LOOK);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_povray_tells_is_understood() {
+        let said = "Parse Time:   0 minutes (1.500 seconds)\nRays:    382467   Saved: 0\n\
+            Shadow Ray Tests:   309295   Succeeded: 104923\n\
+            Trace Time:   0 hours  0 minutes  0 seconds (0.079 seconds)\n using 2 thread(s)";
+        let expected = (Duration::from_millis(79), 691_762);
+        assert_eq!(statistics(said), Some(expected));
+        assert_eq!(statistics("POV-Ray finished"), None);
+    }
+
+    #[test]
+    fn what_has_highlights_in_a_colour_has_lights_of_its_own() {
+        let mut scene = Scene::demo();
+        for pack in scene.packs_mut().values_mut() {
+            pack.specular = DVec3::splat(90.0);
+        }
+        assert!(!povray_text(&scene).contains("light_group"));
+        let pack = scene.objects[0].color_pack.clone();
+        if let Some(pack) = scene.packs_mut().get_mut(&pack) {
+            pack.specular = DVec3::new(200.0, 100.0, 0.0);
+        }
+        let text = povray_text(&scene);
+        assert_eq!(text.matches("light_group").count(), 1);
+        let visible = visible_lights(&scene).count();
+        assert_eq!(text.matches("light_source").count(), 2 * visible);
+    }
 }

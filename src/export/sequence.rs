@@ -120,31 +120,6 @@ impl Sequence {
         self.folder.join(self.file(frame))
     }
 
-    /// A hash of everything that decides the frame's bytes: what is in it, how it is traced, the
-    /// format and the version of the program.
-    ///
-    /// # Errors
-    /// [`ExportError::Unwritable`], for a scene that has no text.
-    pub fn fingerprint(&self, shown: &Scene) -> Result<Hash, ExportError> {
-        let mut still = Scene {
-            animation: Arc::default(),
-            // Neither these nor groups are seen.
-            bookmarks: Vec::new(),
-            ..shown.abridged()
-        };
-        for index in 0..still.objects.len() {
-            if !still.objects[index].group.is_empty() {
-                still.objects[index].group.clear();
-            }
-        }
-        let text = ron::to_string(&still)?;
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
-        hasher.update(self.format.ending().as_bytes());
-        hasher.update(text.as_bytes());
-        Ok(hasher.finalize())
-    }
-
     /// The frames that are not there as they should be, of those that are asked for.
     ///
     /// # Errors
@@ -183,7 +158,7 @@ impl Sequence {
     /// # Errors
     /// [`ExportError::Unwritable`], for a scene that has no text.
     pub fn is_valid(&self, manifest: &Manifest, frame: u64) -> Result<bool, ExportError> {
-        let fingerprint = self.fingerprint(&self.shown(frame))?;
+        let fingerprint = fingerprint(&self.shown(frame), self.format)?;
         Ok(manifest.is_valid(&self.file(frame), &fingerprint))
     }
 
@@ -222,6 +197,31 @@ fn disk(path: &Path, source: io::Error) -> ExportError {
         path: path.to_owned(),
         source,
     }
+}
+
+/// A hash of everything that decides a frame's bytes: what is in it, how it is traced, the format and the version of
+/// the program.
+///
+/// # Errors
+/// [`ExportError::Unwritable`], for a scene that has no text.
+pub fn fingerprint(shown: &Scene, format: Format) -> Result<Hash, ExportError> {
+    let mut still = Scene {
+        animation: Arc::default(),
+        // Neither these nor groups are seen.
+        bookmarks: Vec::new(),
+        ..shown.abridged()
+    };
+    for index in 0..still.objects.len() {
+        if !still.objects[index].group.is_empty() {
+            still.objects[index].group.clear();
+        }
+    }
+    let text = ron::to_string(&still)?;
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
+    hasher.update(format.ending().as_bytes());
+    hasher.update(text.as_bytes());
+    Ok(hasher.finalize())
 }
 
 #[cfg(test)]

@@ -19,16 +19,19 @@ pub enum Family {
     Resolution,
     /// Everything, as in the program that this one grew from.
     Original,
+    /// Everything, since it is another engine that draws.
+    Referee,
 }
 
 impl Family {
     /// All of them, with their names.
-    pub const ALL: [(Self, &'static str); 5] = [
+    pub const ALL: [(Self, &'static str); 6] = [
         (Self::Sampling, "sampling"),
         (Self::Formulas, "formulas"),
         (Self::Precision, "precision"),
         (Self::Resolution, "resolution"),
         (Self::Original, "the original program"),
+        (Self::Referee, "another engine"),
     ];
 }
 
@@ -47,10 +50,31 @@ pub struct Candidate {
     pub upscale: u32,
 }
 
+/// What the scene's own settings are called.
+pub const OWN: &str = "this scene";
+/// What the other engine is called.
+pub const POVRAY: &str = "POV-Ray";
+
+/// What the plan is called where every primitive is tested for every ray. A formula that hits spheres where they
+/// are not is to show that, and is compared with this.
+pub const UNCULLED: &str = "no culling";
+
 /// Sides of the plain grids.
 const GRIDS: [u32; 7] = [2, 3, 4, 6, 8, 12, 16];
 /// Contrasts and depths of the adaptive samplings beside the usual one.
 const ADAPTIVE: [(f64, u32); 5] = [(0.3, 1), (0.1, 1), (0.3, 3), (0.1, 2), (0.03, 3)];
+
+/// The plain samplings, then the adaptive ones beside the usual one.
+fn ladder() -> impl Iterator<Item = Sampling> {
+    std::iter::once(Sampling::Centres)
+        .chain(GRIDS.map(Sampling::Grid))
+        .chain(ADAPTIVE.map(|(contrast, depth)| Sampling::Adaptive { contrast, depth }))
+}
+
+/// All samplings that are compared: grids by their size, the usual one last.
+pub fn samplings() -> impl Iterator<Item = Sampling> {
+    ladder().chain([Sampling::ADAPTIVE])
+}
 
 /// The ways of tracing `scene`, in `width × height` pixels: the plan's choice first, the scene's own
 /// settings if they differ, the way of the original program, what differs from the plan
@@ -76,7 +100,7 @@ pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
     };
     if own != plan.render {
         all.push(Candidate {
-            name: "this scene".to_owned(),
+            name: OWN.to_owned(),
             render: own,
             ..plan.clone()
         });
@@ -122,10 +146,7 @@ pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
             render.reflection_limit = limit + 1;
         });
     }
-    let ladder = std::iter::once(Sampling::Centres)
-        .chain(GRIDS.map(Sampling::Grid))
-        .chain(ADAPTIVE.map(|(contrast, depth)| Sampling::Adaptive { contrast, depth }));
-    for sampling in ladder {
+    for sampling in ladder() {
         change(sampling.id(), Family::Sampling, &|render| {
             render.antialias = sampling;
         });
@@ -133,6 +154,12 @@ pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
     change("none, f64".to_owned(), Family::Precision, &|render| {
         render.antialias = Sampling::Centres;
         render.precision = Precision::Double;
+    });
+    all.push(Candidate {
+        name: UNCULLED.to_owned(),
+        family: Family::Formulas,
+        model: Model::Unculled,
+        ..plan.clone()
     });
     for upscale in [2, 4] {
         all.push(Candidate {
@@ -143,6 +170,23 @@ pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
         });
     }
     all
+}
+
+/// An independent engine, beside all these.
+pub fn povray(scene: &Scene, width: u32, height: u32) -> Candidate {
+    Candidate {
+        name: POVRAY.to_owned(),
+        family: Family::Referee,
+        render: Render {
+            width,
+            height,
+            antialias: Sampling::Centres,
+            precision: Precision::Double,
+            ..scene.render.clone()
+        },
+        model: Model::Needed,
+        upscale: 1,
+    }
 }
 
 fn bounces(limit: u32) -> String {
@@ -224,12 +268,17 @@ impl Candidate {
 
     /// Its settings in the words of the command line.
     pub fn words(&self) -> String {
+        if self.family == Family::Referee {
+            return "one ray per pixel, double precision; the time it takes to start and to read the scene is left out".to_owned();
+        }
         let mut ids = Ids(Vec::new());
         self.render.clone().visit_settings(&mut ids);
         let mut words = ids.0;
         words.push(bounces(self.render.reflection_limit));
-        if self.model == Model::Everything {
-            words.push("nothing left out".to_owned());
+        match self.model {
+            Model::Everything => words.push("nothing left out".to_owned()),
+            Model::Unculled => words.push("every primitive tested for every ray".to_owned()),
+            Model::Needed | Model::Unrebased => {}
         }
         if self.upscale > 1 {
             words.push(format!("1/{} size, scaled up", self.upscale));
@@ -241,7 +290,37 @@ impl Candidate {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lab::trace_light;
     use crate::scene::{Accelerator, check};
+    use crate::trace::{RenderControl, Tracer};
+
+    /// Rays of all kinds in one picture.
+    fn rays(scene: &Scene, candidate: &Candidate) -> u64 {
+        let tracer = Tracer::new(&candidate.scene(scene), &candidate.request(scene));
+        let traced = trace_light(&tracer, &RenderControl::default());
+        traced.expect("not stopped").1.total()
+    }
+
+    #[test]
+    fn where_only_a_formula_differs_the_rays_are_as_many() {
+        let scene = Scene::demo();
+        let all = candidates(&scene, 96, 96);
+        let named = |name: &str| all.iter().find(|candidate| candidate.name == name);
+        let rays = |name: &str| rays(&scene, named(name).expect("a way")) as f64;
+        let pairs = [
+            ("sphere classic", UNCULLED),
+            ("edges", "the plan"),
+            ("moller-trumbore", "the plan"),
+            ("edge-planes", "the plan"),
+            ("highlight pow", "the plan"),
+            ("highlight log1p", "the plan"),
+            (UNCULLED, "the plan"),
+        ];
+        for (one, other) in pairs {
+            let ratio = rays(one) / rays(other);
+            assert!((ratio - 1.0).abs() < 2e-3, "{one} against {other}: {ratio}");
+        }
+    }
 
     #[test]
     fn every_way_of_every_list_is_compared_once() {
@@ -256,7 +335,7 @@ mod tests {
             - 6;
         assert_eq!(
             all.len(),
-            2 + methods + 2 + 1 + GRIDS.len() + ADAPTIVE.len() + 1 + 2
+            2 + methods + 1 + 2 + 1 + GRIDS.len() + ADAPTIVE.len() + 1 + 2
         );
         let mut names: Vec<&str> = all.iter().map(|c| c.name.as_str()).collect();
         names.sort_unstable();

@@ -1,6 +1,7 @@
 //! Ways of tracing that are one dot on the chart: nothing measured tells them apart.
 
 use super::measure::ErrorMetrics;
+use super::pareto_front::front;
 use super::study::{Measurement, Study, Timing};
 
 /// Errors that differ by less are equal.
@@ -26,10 +27,59 @@ pub fn clusters(study: &Study) -> Vec<Vec<usize>> {
     clusters.into_iter().map(|(_, cluster)| cluster).collect()
 }
 
+/// The places of the ways that nothing beats: those that nothing measured tells from another one are beaten by the
+/// first of them, and doubtful ones beat nobody.
+pub fn front_of(study: &Study) -> Vec<usize> {
+    let mut costs = vec![(f64::NAN, f64::NAN); study.measurements.len()];
+    let certain = study.certain_costs();
+    for cluster in clusters(study) {
+        costs[cluster[0]] = certain[cluster[0]];
+    }
+    front(&costs)
+}
+
 fn is_same((a, c): (Timing, ErrorMetrics), (b, d): (Timing, ErrorMetrics)) -> bool {
     // Half of the distance of the quartiles is what a median may well be off by.
     let apart = (a.median / b.median).ln().abs();
     let spread = f64::midpoint(a.spread, b.spread).max(SAME_TIME);
     let off = (c.rmse - d.rmse).abs();
     apart <= spread && off <= SAME_ERROR * c.rmse.max(d.rmse)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::scene::Scene;
+
+    /// A study in which only these were measured: milliseconds of three runs, and the error.
+    fn study(figures: &[([f64; 3], f64)]) -> Study {
+        let mut study = Study::new(Arc::new(Scene::demo()), 8, 8);
+        study.measurements.truncate(figures.len());
+        for (dot, (times, rmse)) in study.measurements.iter_mut().zip(figures) {
+            dot.times = times.to_vec();
+            dot.metrics = Some(ErrorMetrics {
+                rmse: *rmse,
+                ..ErrorMetrics::default()
+            });
+        }
+        study
+    }
+
+    #[test]
+    fn what_cannot_be_told_apart_is_one_and_stands_on_the_front_once() {
+        let study = study(&[
+            ([10.0, 10.1, 10.2], 1e-3),
+            // As the first, within what the runs differ by, and slightly faster and closer.
+            ([9.9, 10.0, 10.1], 0.985e-3),
+            // Closer, and doubtful: its runs differ by more than a fifth.
+            ([2.0, 3.0, 4.0], 1e-4),
+            ([20.0, 20.1, 20.2], 5e-4),
+            // Slower and farther off.
+            ([30.0, 30.1, 30.2], 2e-3),
+        ]);
+        assert_eq!(clusters(&study), [vec![0, 1], vec![2], vec![3], vec![4]]);
+        assert_eq!(front_of(&study), [0, 3]);
+    }
 }

@@ -1,7 +1,8 @@
 //! What a study has found, in a sentence.
 
+use super::clusters::front_of;
 use super::measure::EIGHT_BIT_FLOOR;
-use super::pareto_front::{cheapest_within, front};
+use super::pareto_front::cheapest_within;
 use super::study::Study;
 
 /// How much longer the chosen way must take than another one that is as close to be called beaten.
@@ -17,8 +18,9 @@ pub fn finding(study: &Study, name: &str) -> String {
     let within = |error: f64| cheapest_within(&costs, error, f64::INFINITY);
     let quartiles = |place: usize| study.measurements[place].timing().map(|t| t.quartiles);
     // Its slower runs against the faster ones of the default: a busy machine beats nobody.
+    let is_doubtful = study.measurements[0].is_doubtful();
     let is_certain = |place: usize| match (quartiles(place), quartiles(0)) {
-        (Some((_, slow)), Some((fast, _))) => slow * BEATEN < fast,
+        (Some((_, slow)), Some((fast, _))) => !is_doubtful && slow * BEATEN < fast,
         _ => false,
     };
     let better = within(error * 1.01).filter(|&place| is_certain(place));
@@ -42,7 +44,7 @@ pub fn finding(study: &Study, name: &str) -> String {
         }
         None => format!(
             "{name}: the default has {decibels:.0} dB at {ms:.1} ms, and {} ways are worth their time",
-            front(&costs).len()
+            front_of(study).len()
         ),
     }
 }

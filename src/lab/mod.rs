@@ -3,6 +3,8 @@
 //! A new way is a line in a list of [`crate::scene::Method`] or in `candidates.rs`; measuring, chart
 //! and tests pick it up.
 
+mod look;
+
 mod candidates;
 
 mod measure;
@@ -11,13 +13,17 @@ mod pareto_front;
 
 mod study;
 
+mod quality;
+
 mod clusters;
 
 mod finding;
 
 mod table;
 
-mod look;
+mod account;
+
+mod kept;
 
 mod growth;
 
@@ -25,13 +31,16 @@ mod explain;
 
 pub mod stability;
 
+pub use account::account;
 pub use candidates::{Candidate, Family, candidates};
 pub use clusters::clusters;
 pub use explain::{Lit, Share, Sight, explain};
 pub use finding::finding;
 pub use growth::{Cost, Crowd, Growth};
+pub use kept::{keep, kept};
 pub use look::{PictureLook, capitalised};
 pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, difference, trace_light};
-pub use pareto_front::{cheapest_within, front};
+pub use pareto_front::{cheapest_within, closest_within, front};
+pub use quality::{Choice, Goal, choose};
 pub use study::{Measurement, Reference, Study, Timing};
 pub use table::{csv, table};

@@ -32,6 +32,13 @@ pub fn cheapest_within(measurements: &[(f64, f64)], error: f64, cost: f64) -> Op
     fitting.min_by(|&a, &b| measurements[a].0.total_cmp(&measurements[b].0))
 }
 
+/// The closest dot (cost, error) of at most this cost, if there is one: the cheapest within an error on the chart
+/// turned over.
+pub fn closest_within(measurements: &[(f64, f64)], cost: f64) -> Option<usize> {
+    let turned: Vec<(f64, f64)> = measurements.iter().map(|&(c, e)| (e, c)).collect();
+    cheapest_within(&turned, cost, f64::INFINITY)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,6 +59,8 @@ mod tests {
         assert_eq!(cheapest_within(&measurements, 4.0, 10.0), Some(3));
         assert_eq!(cheapest_within(&measurements, 4.0, 1.5), None);
         assert_eq!(cheapest_within(&measurements, 0.5, 10.0), None);
+        assert_eq!(closest_within(&measurements, 2.5), Some(3));
+        assert_eq!(closest_within(&measurements, 0.9), None);
     }
 
     proptest! {

@@ -3,12 +3,13 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::candidates::{Candidate, candidates};
+use super::candidates::{Candidate, Family, candidates, povray};
 use super::measure::{ErrorMetrics, difference, eight_bits, scaled, trace_light};
+use crate::export::{PovrayError, by_povray};
 use crate::image::{Image, LinearRgb, render_into};
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::{Precision, Sampling, Scene};
-use crate::trace::{RenderControl, Tracer};
+use crate::trace::{RenderControl, Threads, Tracer};
 
 /// Samples along each side of a pixel of the reference, and of a second one with samples in other
 /// places, which tells how far the first is off.
@@ -78,6 +79,8 @@ pub struct Study {
     pub reference: Option<Reference>,
     /// One for each candidate.
     pub measurements: Vec<Measurement>,
+    /// Why another engine is not among them, though it was to be.
+    pub obstacle: Option<String>,
     planner: Planner,
     spent: Duration,
     timed: usize,
@@ -94,18 +97,10 @@ impl Study {
 
     /// Nothing measured yet; pictures will be `width × height`.
     pub fn new(scene: Arc<Scene>, width: u32, height: u32) -> Self {
-        let measurements = candidates(&scene, width, height)
-            .into_iter()
-            .map(|candidate| Measurement {
-                candidate,
-                metrics: None,
-                rays_per_pixel: 0.0,
-                times: Vec::new(),
-                picture: None,
-                lanes: String::new(),
-            });
+        let measurements = candidates(&scene, width, height).into_iter();
         Self {
-            measurements: measurements.collect(),
+            measurements: measurements.map(Measurement::new).collect(),
+            obstacle: None,
             scene,
             size: (width, height),
             references: Default::default(),
@@ -114,6 +109,13 @@ impl Study {
             spent: Duration::ZERO,
             timed: 0,
         }
+    }
+
+    /// The same, and POV-Ray beside all ways, if it is there.
+    pub fn with_povray(mut self) -> Self {
+        let referee = povray(&self.scene, self.size.0, self.size.1);
+        self.measurements.push(Measurement::new(referee));
+        self
     }
 
     /// The scene that is measured.
@@ -156,11 +158,10 @@ impl Study {
             .filter(|dot| dot.metrics.is_some())
             .count();
         let pixels = (self.size.0 * self.size.1) as usize;
-        let traced: usize = self
-            .references
-            .iter()
-            .map(|reference| reference.len())
-            .sum();
+        let traced = match self.reference {
+            Some(_) => 2 * pixels,
+            None => self.references.iter().map(|light| light.len()).sum(),
+        };
         // References take as long as a good part of the rest.
         let reference = REFERENCE_WORTH * traced as f64 / (2 * pixels) as f64;
         let wanted: usize = self.measurements.iter().map(Measurement::rounds).sum();
@@ -206,6 +207,16 @@ impl Study {
 
     fn look_at(&mut self, index: usize, control: &RenderControl) {
         let candidate = &self.measurements[index].candidate;
+        if candidate.family == Family::Referee {
+            match self.ask_povray(index, control) {
+                Ok(()) | Err(PovrayError::Stopped) => {}
+                Err(error) => {
+                    self.obstacle = Some(error.to_string());
+                    self.measurements.remove(index);
+                }
+            }
+            return;
+        }
         let request = candidate.request(&self.scene);
         let tracer = Tracer::planned(&candidate.scene(&self.scene), &request, &mut self.planner);
         let Some((light, rays)) = trace_light(&tracer, control) else {
@@ -220,6 +231,20 @@ impl Study {
         dot.lanes = tracer.lanes();
     }
 
+    /// The picture of the other engine, and one of its times.
+    fn ask_povray(&mut self, index: usize, control: &RenderControl) -> Result<(), PovrayError> {
+        let scene = self.measurements[index].candidate.scene(&self.scene);
+        let drawn = by_povray(&scene, Threads::current(), control)?;
+        let light: Vec<LinearRgb> = drawn.picture.pixels.iter().copied().map(light_of).collect();
+        let dot = &mut self.measurements[index];
+        dot.metrics = Some(difference(&light, &self.references[0]));
+        dot.rays_per_pixel = drawn.rays as f64 / light.len().max(1) as f64;
+        dot.picture = Some(Arc::new(drawn.picture));
+        dot.times.push(drawn.time.as_secs_f64() * 1e3);
+        "f64".clone_into(&mut dot.lanes);
+        Ok(())
+    }
+
     /// One run of the candidate that has had the fewest, in turn, so that what disturbs the machine
     /// for a while disturbs all of them.
     fn time_next(&mut self, control: &RenderControl) -> bool {
@@ -232,6 +257,17 @@ impl Study {
         else {
             return false;
         };
+        if dot.candidate.family == Family::Referee {
+            let scene = dot.candidate.scene(&self.scene);
+            let first = dot.times.first().copied().unwrap_or_default();
+            match by_povray(&scene, Threads::current(), control) {
+                Ok(drawn) => dot.times.push(drawn.time.as_secs_f64() * 1e3),
+                Err(PovrayError::Stopped) => {}
+                // It has drawn this before: what it took then has to do.
+                Err(_) => dot.times.push(first),
+            }
+            return true;
+        }
         // The first run of all finds cold caches and sleeping threads.
         let runs = if self.timed == 0 { 2 } else { 1 };
         for _ in 0..runs {
@@ -268,7 +304,24 @@ fn draw(
     Some(eight_bits(light, (size.0, size.1)))
 }
 
+/// A pixel of 8 bits as light.
+fn light_of(pixel: [u8; 4]) -> LinearRgb {
+    [0, 1, 2].map(|channel| f32::from(pixel[channel]) / 255.0)
+}
+
 impl Measurement {
+    /// Nothing measured yet.
+    fn new(candidate: Candidate) -> Self {
+        Self {
+            candidate,
+            metrics: None,
+            rays_per_pixel: 0.0,
+            times: Vec::new(),
+            picture: None,
+            lanes: String::new(),
+        }
+    }
+
     /// How often it is to be timed.
     fn rounds(&self) -> usize {
         let slow = SLOW.as_secs_f64() * 1e3;

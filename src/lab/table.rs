@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::pareto_front::front;
+use super::clusters::front_of;
 use super::study::{Measurement, Study};
 
 impl Study {
@@ -33,7 +33,7 @@ impl Study {
 /// The dots by time, for people; those on the front are marked.
 pub fn table(study: &Study) -> String {
     let costs = study.costs();
-    let front = front(&study.certain_costs());
+    let front = front_of(study);
     let mut order: Vec<usize> = (0..study.measurements.len()).collect();
     order.sort_by(|&a, &b| costs[a].0.total_cmp(&costs[b].0));
     let mut text = format!(
@@ -118,7 +118,7 @@ fn write_figures(
     study: &Study,
     (machine, threads): (&str, usize),
 ) -> Result<(), csv::Error> {
-    let front = front(&study.certain_costs());
+    let front = front_of(study);
     let reference = study.reference.as_ref();
     let reference_rmse = reference.map_or(f64::NAN, |truth| truth.rmse);
     let (width, height) = study.size();

@@ -93,11 +93,16 @@ impl<R: Real> Plan<R> {
     /// Packs what `request` of `scene` can show. The scene must pass [`crate::scene::check`].
     pub fn new(scene: &Scene, request: &RenderRequest, kept: &mut Kept<R>) -> Self {
         let bounds = scene.objects_bounds();
-        let centre = bounds.map_or(scene.camera.position, |(low, high)| low * 0.5 + high * 0.5);
+        let centre = match bounds {
+            _ if request.model == Model::Unrebased => DVec3::ZERO,
+            Some((low, high)) => low * 0.5 + high * 0.5,
+            None => scene.camera.position,
+        };
         let half = bounds.map_or(0.0, |(low, high)| (high * 0.5 - low * 0.5).max_element());
         let (occluders, model) = (classify_planes(scene, request), request.model);
         // The classic formula hits spheres where they are not: that must show.
-        let may_cull = request.methods.sphere == SphereMethod::Stable && model == Model::Needed;
+        let is_whole = matches!(model, Model::Unculled | Model::Everything);
+        let may_cull = request.methods.sphere == SphereMethod::Stable && !is_whole;
         let mut plan = Self {
             centre,
             view: View::new(&scene.camera, request, centre),

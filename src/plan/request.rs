@@ -102,6 +102,9 @@ pub enum Model {
     /// What the scene needs.
     #[default]
     Needed,
+    /// What the scene needs, in the scene's own coordinates and not in those around its middle: what rebasing is
+    /// measured against.
+    Unrebased,
     /// What the scene needs, with every primitive tested for every ray: what culling is measured against.
     Unculled,
     /// Everything, needed or not, and unculled: what the rules of the plan are measured against.

@@ -3,6 +3,10 @@
 //! A new field gets a line here (with its default), a check in `check` and, if a person edits it,
 //! a row in the inspector. Colours are 0–255, lengths are world units, angles appear nowhere: the
 //! camera stores direction vectors, as in the original program.
+//!
+//! # The file
+//!
+#![doc = include_str!("../../assets/scene_format.md")]
 
 mod list;
 

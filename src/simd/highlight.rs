@@ -47,10 +47,13 @@ impl Exponent {
 
     /// |n - h| at which the highlight has fallen to e^-½, for one that may be smaller than a pixel.
     pub fn size(self) -> Option<f64> {
-        match self {
-            Self::Whole(_) | Self::Mixed(..) => None,
-            Self::Large(p) => Some(1.0 / p.sqrt()),
-        }
+        let p = match self {
+            Self::Whole(p) => f64::from(p),
+            Self::Mixed(whole, fraction) => f64::from(whole) + fraction,
+            Self::Large(p) => p,
+        };
+        // However it is computed: a formula must not decide where samples are.
+        (p > LARGEST_SQUARED).then(|| 1.0 / p.sqrt())
     }
 
     /// max(0, n·h)^p, where h is the unit vector along `half`. A `half` of no direction counts as 0.

@@ -32,6 +32,11 @@ impl Threads {
         std::thread::available_parallelism().map_or(1, usize::from)
     }
 
+    /// How many threads work that is not said to run elsewhere has.
+    pub fn current() -> usize {
+        rayon::current_num_threads()
+    }
+
     /// How many threads there are.
     pub fn count(&self) -> usize {
         self.0.current_num_threads()

@@ -11,6 +11,7 @@ use super::files::{FileOutcome, Files, Next};
 use super::finder::Finder;
 use super::flying::Flying;
 use super::histogram::Levels;
+use super::inspector::Quality;
 use super::lab::Lab;
 use super::layout::Layout;
 use super::outliner::Outliner;
@@ -49,6 +50,7 @@ pub struct App {
     pub(super) files: Files,
     pub(super) outliner: Outliner,
     pub(super) lab: Lab,
+    pub(super) quality: Quality,
     pub(super) timeline: TimelinePanel,
     pub(super) exports: Exports,
     pub(super) overlay: Overlay,
@@ -111,7 +113,8 @@ impl App {
             pictures: Pictures::new(&cc.egui_ctx)?,
             files: Files::new(setup.dialogs, recent.unwrap_or_default(), folders),
             outliner: Outliner::default(),
-            lab: Lab::default(),
+            lab: Lab::new(setup.data_folder.as_ref().map(|folder| folder.join("lab"))),
+            quality: Quality::default(),
             timeline: TimelinePanel::default(),
             exports: Exports::default(),
             overlay: Overlay::default(),
@@ -262,6 +265,11 @@ impl eframe::App for App {
                     let selected = self.tools.take(revision, map, &without);
                     if let Some(selected) = selected {
                         self.editor.apply(Action::SelectItems(selected));
+                    }
+                }
+                Answer::Quality(choice) => {
+                    if let Some(edit) = self.quality.take(choice, &self.editor) {
+                        self.editor.apply(Action::Edit(edit));
                     }
                 }
             }

@@ -115,6 +115,7 @@ pub const MOUSE: &[(&str, &str)] = &[
     ("Wheel, while flying", "Fly faster, or slower"),
     ("Timeline: Ctrl, wheel", "Show less or more of it"),
     ("Timeline: middle button", "Move it; Home shows all"),
+    ("Lab: B, held", "What a picture should be"),
 ];
 
 impl FlightKey {

@@ -75,7 +75,7 @@ impl App {
                 .default_size(INSPECTOR)
                 .size_range(INSPECTOR..=480.0)
                 .show(ui, |ui| {
-                    inspector::show(ui, &self.editor, out);
+                    inspector::show(ui, &self.editor, &mut self.quality, out);
                 });
         }
         picture

@@ -68,7 +68,7 @@ pub struct Palette {
     pub error: Color32,
     /// The families of dots on a chart: told apart without colour sight too (after Okabe and Ito, "Color
     /// universal design", 2008), and by their shapes.
-    pub families: [Color32; 5],
+    pub families: [Color32; 6],
     /// The x, y and z axes.
     pub axes: [Color32; 3],
     /// The letters of the axes, in fields.
@@ -106,6 +106,7 @@ const DARK: Palette = Palette {
         Color32::from_rgb(0xD9, 0x8A, 0xC4),
         Color32::from_rgb(0x3F, 0xC3, 0x92),
         Color32::from_rgb(0xF4, 0xF5, 0xF8),
+        Color32::from_rgb(0xE8, 0x7A, 0x3E),
     ],
     axes: AXES,
     axis_letters: AXES,
@@ -132,6 +133,7 @@ const LIGHT: Palette = Palette {
         Color32::from_rgb(0xA8, 0x4B, 0x85),
         Color32::from_rgb(0x00, 0x80, 0x5B),
         Color32::from_rgb(0x22, 0x26, 0x2E),
+        Color32::from_rgb(0xB4, 0x46, 0x0E),
     ],
     axes: AXES,
     axis_letters: [

@@ -9,6 +9,7 @@ use glam::DVec3;
 use crate::animate::Seen;
 use crate::export::Exported;
 use crate::image::{Image, ObjectMap, RenderCost, Thing};
+use crate::lab::{Choice, Goal};
 use crate::plan::{Region, RenderRequest};
 use crate::scene::{Camera, Sampling, Scene, Take};
 
@@ -77,6 +78,8 @@ pub enum Question {
     /// Which object is seen at each pixel of a picture, as if these were not there; the number is the
     /// asker's.
     Objects(u64, Box<RenderRequest>, Vec<Thing>),
+    /// Which sampling the still picture needs.
+    Quality(Goal),
 }
 
 /// The answer to a [`Question`].
@@ -88,6 +91,8 @@ pub enum Answer {
     Visible(u64, Vec<(DVec3, bool)>),
     /// For the question of this number: what is seen at each pixel without these.
     Objects(u64, ObjectMap, Vec<Thing>),
+    /// What was measured and chosen.
+    Quality(Choice),
 }
 
 /// A small picture for the side: traced when no live view waits, never stopped, one sample per pixel.

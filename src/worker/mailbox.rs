@@ -47,6 +47,7 @@ impl Job {
                 (Question::Survey(..), Question::Survey(..))
                     | (Question::Visible(..), Question::Visible(..))
                     | (Question::Objects(..), Question::Objects(..))
+                    | (Question::Quality(..), Question::Quality(..))
             ),
             (Self::Thumbnail(old), Self::Thumbnail(new)) => old.name == new.name,
             // A still picture to look at is of the past once the scene has changed.

@@ -13,7 +13,7 @@ use super::shared::Shared;
 use super::task::panic_text;
 use crate::export::{ExportStep, Exporting, save_image};
 use crate::image::{Film, Format, Image, ObjectMapper, render_into};
-use crate::lab::Study;
+use crate::lab::{Study, choose};
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::Sampling;
 use crate::trace::{RenderControl, Threads, Tracer, survey, visible};
@@ -189,6 +189,11 @@ fn answer(
         Question::Objects(name, request, without) => mapper
             .map(&job.scene, request, without, (planner, control))
             .map(|map| Answer::Objects(*name, map, std::mem::take(without))),
+        Question::Quality(goal) => {
+            let (scene, mut planner) = (&job.scene, planner.clone());
+            let request = RenderRequest::still(scene);
+            choose(scene, &request, *goal, &mut planner, control).map(Answer::Quality)
+        }
     };
     match answer {
         Some(answer) => {

@@ -263,6 +263,15 @@ fn paths_survive_their_texts() {
         "line 3: y must be a number, found \"oops\""
     );
     assert!(from_table("time,x,y\n", &Camera::default()).is_err());
+    assert!(from_table("", &Camera::default()).is_err());
+    let quoted = "\u{feff}\"time\",\"x\",y,\"z\"\r\n\r\n\"0\",\"1\", 2,3\r\n";
+    let quoted = from_table(quoted, &Camera::default()).expect("a table");
+    assert_eq!(quoted[0].value.position, DVec3::new(1.0, 2.0, 3.0));
+    let error = from_table(
+        "time,x,y,z\n\n0,1,2,\"3\n\"\n1,1,no,3\n",
+        &Camera::default(),
+    );
+    assert_eq!(error.map_err(|error| error.line).err(), Some(5));
     assert_eq!(from_text("[\nKey(time: 0)]").expect_err("bad").line, 2);
 }
 

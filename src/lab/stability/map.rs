@@ -139,7 +139,7 @@ pub fn scales() -> Axis {
 
 pub fn places() -> Axis {
     Axis {
-        name: "sizes from the origin",
+        name: "sizes away",
         values: PLACES.to_vec(),
     }
 }

@@ -3,7 +3,7 @@
 
 use super::map::{Map, Tries, places, scales};
 use super::subject::Subject;
-use crate::plan::RenderRequest;
+use crate::plan::{Model, RenderRequest};
 use crate::scene::{
     Camera, ColorPack, Light, List, Method as _, Methods, Object, Plane, Precision, RayOffset,
     Sampling, Scene, Shape, Sphere, Triangle,
@@ -39,38 +39,72 @@ pub fn maps() -> Vec<Map> {
 
 fn maps_of(ball: BallKind, [acne, leak]: [Subject; 2]) -> Vec<Map> {
     let at_home = scene(ball, 0.0, 1.0);
-    let truth = lit(&at_home, RayOffset::Robust, Precision::Double);
-    let facing = lit(&at_home, RayOffset::Fixed(BEYOND), Precision::Double);
+    let double = |offset| lit(&at_home, (offset, Precision::Double), Model::Needed);
+    let (truth, facing) = (double(RayOffset::Robust), double(RayOffset::Fixed(BEYOND)));
     let inner = |index: &usize| is_inner(&truth, *index) && is_inner(&facing, *index);
     let inner: Vec<usize> = (0..truth.len()).filter(inner).collect();
     let (bright, shadowed): (Vec<usize>, Vec<usize>) = inner
         .into_iter()
         .filter(|&index| facing[index])
         .partition(|&index| truth[index]);
-    let map = |subject, failure, offset: RayOffset, word: &str, tried: &[usize]| {
+    let map = |(subject, failure), way: &Way, tried: &[usize]| {
         Map::measure(
             (subject, failure),
-            (word.to_owned(), offset == RayOffset::default()),
+            (way.name.clone(), way.is_default()),
             (places(), scales()),
             |away, scale| {
-                let got = lit(&scene(ball, away, scale), offset, Precision::Single);
+                let got = lit(
+                    &scene(ball, away, scale),
+                    (way.offset, Precision::Single),
+                    way.model,
+                );
                 Tries::count(tried.iter().map(|&index| got[index] != truth[index]))
             },
         )
     };
-    let acne = RayOffset::ALL.iter().map(|method| {
-        let failure = "lit point that is dark";
-        map(acne, failure, method.value, method.id, &bright)
-    });
-    let leak = RayOffset::ALL.iter().map(|method| {
-        let failure = "point in shadow that is lit";
-        map(leak, failure, method.value, method.id, &shadowed)
-    });
+    let ways = ways();
+    let acne = ways
+        .iter()
+        .map(|way| map((acne, "lit point that is dark"), way, &bright));
+    let leak = ways
+        .iter()
+        .map(|way| map((leak, "point in shadow that is lit"), way, &shadowed));
     acne.chain(leak).collect()
 }
 
+/// How rays leave a surface, in which coordinates.
+struct Way {
+    name: String,
+    offset: RayOffset,
+    model: Model,
+}
+
+impl Way {
+    fn is_default(&self) -> bool {
+        self.offset == RayOffset::default() && self.model == Model::Needed
+    }
+}
+
+/// Every method, and those that depend on the place without the rebasing that spares them that.
+fn ways() -> Vec<Way> {
+    let way = |offset: RayOffset, model| Way {
+        name: match model {
+            Model::Unrebased => format!("{} (not rebased)", offset.id()),
+            _ => offset.id(),
+        },
+        offset,
+        model,
+    };
+    let all = RayOffset::ALL.iter().map(|method| method.value);
+    let is_scaled = |offset: &RayOffset| !matches!(offset, RayOffset::Fixed(_));
+    let unrebased = all.clone().filter(is_scaled);
+    all.map(|offset| way(offset, Model::Needed))
+        .chain(unrebased.map(|offset| way(offset, Model::Unrebased)))
+        .collect()
+}
+
 /// Which pixels are lit.
-fn lit(scene: &Scene, offset: RayOffset, precision: Precision) -> Vec<bool> {
+fn lit(scene: &Scene, (offset, precision): (RayOffset, Precision), model: Model) -> Vec<bool> {
     let request = RenderRequest {
         methods: Methods {
             offset,
@@ -78,6 +112,7 @@ fn lit(scene: &Scene, offset: RayOffset, precision: Precision) -> Vec<bool> {
         },
         precision,
         sampling: Sampling::Centres,
+        model,
         ..RenderRequest::sized(SIDE, SIDE)
     };
     let mut pixels = vec![[0.0_f32; 3]; (SIDE * SIDE) as usize];

@@ -20,8 +20,12 @@ pub enum Subject {
     MeshAcne,
     /// Points in the shadow of meshes.
     MeshLeak,
+    /// Surfaces in one place.
+    Coincident,
     /// Where light ends on meshes that are shaded as if they were curved.
     Terminator,
+    /// Things that are thinner than a pixel.
+    Thin,
     /// Phong highlights.
     Highlight,
     /// Rays that graze planes.
@@ -36,6 +40,8 @@ pub enum Subject {
     Path,
     /// Turns between keys.
     Turn,
+    /// What tells the frames of an export apart.
+    Fingerprint,
 }
 
 impl Subject {
@@ -48,7 +54,9 @@ impl Subject {
             Self::ShadowLeak => "shadow leak",
             Self::MeshAcne => "mesh acne",
             Self::MeshLeak => "mesh leak",
+            Self::Coincident => "surfaces in one place",
             Self::Terminator => "smooth terminator",
+            Self::Thin => "thin things",
             Self::Highlight => "highlight",
             Self::Plane => "plane",
             Self::Disc => "disc",
@@ -56,6 +64,7 @@ impl Subject {
             Self::CameraTurns => "camera after turns",
             Self::Path => "path between keys",
             Self::Turn => "turn between keys",
+            Self::Fingerprint => "export fingerprint",
         }
     }
 
@@ -65,6 +74,7 @@ impl Subject {
             Self::Sphere => Some(render.sphere.id()),
             Self::Triangle => Some(render.triangle.id()),
             Self::Highlight => Some(render.specular.id()),
+            Self::Thin => Some(render.antialias.id()),
             Self::ShadowAcne | Self::ShadowLeak | Self::MeshAcne | Self::MeshLeak => {
                 Some(render.offset.id())
             }
@@ -80,7 +90,12 @@ impl Subject {
                 let packs = scene.color_packs.values().map(|pack| pack.phong_exponent);
                 packs.max_by(f64::total_cmp).map(|sharpest| (sharpest, 1.0))
             }
-            Self::Terminator | Self::Plane | Self::CameraTurns => None,
+            Self::Terminator
+            | Self::Coincident
+            | Self::Thin
+            | Self::Plane
+            | Self::CameraTurns
+            | Self::Fingerprint => None,
             Self::CameraPole => {
                 let pitch = Orientation::of(&scene.camera).pitch.to_degrees();
                 Some((90.0 - pitch.abs(), 1.0))

@@ -10,11 +10,14 @@ mod many;
 
 mod keys;
 
+mod quality;
+
 mod needs;
 
 mod world;
 
 pub use keys::target;
+pub use quality::Quality;
 pub use title::name_field;
 use title::title_field;
 
@@ -27,7 +30,7 @@ use crate::editor::{Editor, Item, Kind, Selection};
 use crate::scene::{Shape, Target};
 
 /// Shows the selection and pushes its changes.
-pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+pub fn show(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiRequests) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(GRID / 2.0);
         let scene = editor.shown();
@@ -41,7 +44,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
                 world::show(ui, scene, out);
                 keys::of_values(ui, editor, &[("ambient", Target::AmbientIntensity)], out);
             }
-            Selection::Render => world::show_picture(ui, scene, out),
+            Selection::Render => world::show_picture(ui, editor, quality, out),
             Selection::Item(Item {
                 kind: Kind::Light,
                 index,
@@ -82,7 +85,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
             }
         }
         ui.add_space(GRID);
-        needs::show(ui, editor);
+        needs::show(ui, editor, quality.in_use(scene));
         ui.add_space(GRID);
     });
 }

@@ -5,12 +5,13 @@ use std::sync::Arc;
 use egui::{CollapsingHeader, Id, RichText, Ui};
 
 use crate::editor::Editor;
+use crate::lab::Choice;
 use crate::plan::{Need, RenderRequest, needs};
 use crate::ui::hint::Hint as _;
 use crate::ui::theme::GRID;
 
 /// The lines of the plan, made when the section is opened and on every edit while it is.
-pub fn show(ui: &mut Ui, editor: &Editor) {
+pub fn show(ui: &mut Ui, editor: &Editor, choice: Option<&Choice>) {
     let header = CollapsingHeader::new("Needs").id_salt("needs");
     let response = header.show(ui, |ui| {
         for need in lines(ui, editor).iter() {
@@ -21,6 +22,11 @@ pub fn show(ui: &mut Ui, editor: &Editor) {
                     .small()
                     .weak(),
             );
+        }
+        if let Some(choice) = choice {
+            ui.add_space(GRID / 2.0);
+            ui.label("a sampling chosen by measuring");
+            ui.label(RichText::new(choice.words()).small().weak());
         }
     });
     response

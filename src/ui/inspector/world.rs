@@ -4,8 +4,9 @@ use egui::Ui;
 
 use glam::DVec3;
 
+use super::quality::Quality;
 use super::title::title;
-use crate::editor::Edit;
+use crate::editor::{Edit, Editor};
 use crate::scene::{MAX_REFLECTIONS, MAX_SIDE, Method, Render, Scene, Setting, VisitSetting};
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
@@ -49,7 +50,8 @@ pub fn show(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
 }
 
 /// Size and depth of the still picture.
-pub fn show_picture(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
+pub fn show_picture(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiRequests) {
+    let scene = editor.shown();
     title(ui, icons::IMAGE, "Picture");
     let mut render = scene.render.clone();
     let defaults = Render::default();
@@ -90,6 +92,7 @@ pub fn show_picture(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
     };
     whole(&mut rows, &reflections, &mut render.reflection_limit);
     rows.heading("Traced with");
+    quality.show(&mut rows, editor, out);
     render.visit_settings(&mut MethodRows(&mut rows));
     let changed = rows.changed();
     if let Some(field) = changed.filter(|_| render != scene.render) {

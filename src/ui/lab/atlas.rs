@@ -14,7 +14,7 @@ use crate::lab::stability::{Map, number};
 /// Width of the figure, in points, and pixels per point.
 const WIDTH: f32 = 800.0;
 const SCALE: f32 = 2.0;
-/// Methods beside each other.
+/// Methods beside each other; more go below.
 const COLUMNS: usize = 4;
 /// Room for the numbers beside and below a map.
 const BESIDE: f32 = 34.0;
@@ -23,6 +23,8 @@ const BELOW: f32 = 34.0;
 const MAP: f32 = 92.0;
 const LINES: f32 = 120.0;
 const LINE: f32 = 15.0;
+/// Height of a map with what stands above and below it.
+const MAP_WITH_WORDS: f32 = 3.0 * LINE + MAP + BELOW;
 
 /// A picture of all maps.
 pub fn stability_picture(maps: &[Map]) -> Image {
@@ -62,7 +64,7 @@ fn height_of(row: &[Map]) -> f32 {
     if is_flat(&row[0]) {
         return head + LINES + BELOW + GRID;
     }
-    head + 3.0 * LINE + MAP + BELOW
+    head + row.len().div_ceil(COLUMNS) as f32 * MAP_WITH_WORDS
 }
 
 /// What the colours mean; how high that is.
@@ -127,7 +129,12 @@ fn show_row(ui: &Ui, area: Rect, row: &[Map]) {
     }
     let width = area.width() / COLUMNS as f32;
     let mut beside = BESIDE;
-    for (column, map) in row.iter().enumerate() {
+    for (index, map) in row.iter().enumerate() {
+        let (line, column) = (index / COLUMNS, index % COLUMNS);
+        let top = top + line as f32 * MAP_WITH_WORDS;
+        if column == 0 {
+            beside = BESIDE;
+        }
         let left = area.left() + column as f32 * width;
         let at = pos2(left, top);
         let method = painter.text(

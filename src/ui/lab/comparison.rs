@@ -21,13 +21,13 @@ pub enum Face {
 
 /// The faces that can be chosen.
 pub const FACES: [(Face, &str, &str); 7] = [
-    (Face::Picture, "A", "The picture of the dot"),
+    (Face::Picture, "This", "The picture of the dot"),
     (
         Face::Reference,
-        "B",
-        "The reference; hold B to see it for a moment",
+        "Reference",
+        "What the picture should be; hold B to see it for a moment",
     ),
-    (Face::Off(1), "|A-B|", "How far each channel is off"),
+    (Face::Off(1), "Difference ×1", "How far each channel is off"),
     (
         Face::Off(8),
         "×8",
@@ -40,12 +40,12 @@ pub const FACES: [(Face, &str, &str); 7] = [
     ),
     (
         Face::Signed(8),
-        "±8",
+        "Signed ×8",
         "Too bright is above grey, too dark below; eight times enlarged",
     ),
     (
         Face::Signed(64),
-        "±64",
+        "Signed ×64",
         "Too bright is above grey, too dark below; 64 times enlarged",
     ),
 ];
@@ -139,7 +139,7 @@ fn pixel(picture: &Image, reference: &Image, at: egui::Vec2) -> String {
     let [a, b] = [picture, reference].map(|image| image.pixels[y * image.width + x]);
     let off = [0, 1, 2].map(|c| i32::from(a[c]) - i32::from(b[c]));
     format!(
-        "pixel {x}, {y}\nA {} {} {}\nB {} {} {}\nA-B {:+} {:+} {:+}",
+        "pixel {x}, {y}\nthis {} {} {}\nreference {} {} {}\ndifference {:+} {:+} {:+}",
         a[0], a[1], a[2], b[0], b[1], b[2], off[0], off[1], off[2]
     )
 }
@@ -162,6 +162,6 @@ mod tests {
         assert_eq!(shown(Face::Off(1)), [2, 100, 0, 255]);
         assert_eq!(shown(Face::Off(8)), [16, 255, 0, 255]);
         assert_eq!(shown(Face::Signed(8)), [120, 255, 128, 255]);
-        assert!(pixel(&a, &b, egui::vec2(0.9, 0.9)).ends_with("A-B -2 +100 +0"));
+        assert!(pixel(&a, &b, egui::vec2(0.9, 0.9)).ends_with("difference -2 +100 +0"));
     }
 }

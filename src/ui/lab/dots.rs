@@ -1,8 +1,12 @@
 //! The dots of a study on the chart.
 
 use super::chart::{Chart, ChartDot};
-use crate::lab::{EIGHT_BIT_FLOOR, Family, Measurement, Study, clusters, finding};
-use crate::scene::Sampling;
+use crate::lab::{EIGHT_BIT_FLOOR, Family, Measurement, Study, account, clusters, finding};
+use crate::plan::Model;
+use crate::scene::{Render, Sampling};
+
+/// Letters of a line beside a dot.
+const LINE: usize = 60;
 
 /// What the axis to the right measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +63,7 @@ pub fn chart(study: &Study, view: &ChartView) -> (Chart, Vec<Vec<usize>>) {
             cost,
             quartiles,
             error: error(dot),
-            words: format!("{}\n{}", dot.candidate.words(), figures(dot)),
+            words: format!("{}\n{}", wrapped(&account(study, members[0])), figures(dot)),
             is_doubtful: view.axes.0 == CostAxis::Time && dot.is_doubtful(),
         }
     });
@@ -113,11 +117,20 @@ fn name_of(dot: &Measurement, equals: usize) -> String {
     }
 }
 
-/// The measurement of the scene's own settings: beside the plan's there is one only where they differ.
+/// The measurement of the scene's own settings, if they were measured.
 fn in_use(study: &Study) -> Option<usize> {
-    let names = study.measurements.iter().map(|dot| &dot.candidate.name);
-    let own = names.clone().position(|name| name == "this scene");
-    own.or_else(|| (!study.measurements.is_empty()).then_some(0))
+    let ((width, height), render) = (study.size(), study.scene().render.clone());
+    let own = Render {
+        width,
+        height,
+        ..render
+    };
+    let is_own = |dot: &Measurement| {
+        let candidate = &dot.candidate;
+        let is_possible = candidate.upscale == 1 && candidate.model == Model::Needed;
+        is_possible && candidate.family != Family::Referee && candidate.render == own
+    };
+    study.measurements.iter().position(is_own)
 }
 
 /// The ladders of samplings: grids by their number, and adaptive ones by their time.
@@ -142,6 +155,25 @@ fn series(study: &Study, spot_of: impl Fn(usize) -> Option<usize>) -> Vec<Vec<us
         ladder(|sampling| !matches!(sampling, Sampling::Adaptive { .. })),
         ladder(|sampling| matches!(sampling, Sampling::Adaptive { .. })),
     ]
+}
+
+/// A text in lines that can be read beside a dot.
+fn wrapped(text: &str) -> String {
+    let mut lines = String::new();
+    let mut length = 0;
+    for word in text.split(' ') {
+        let count = word.chars().count();
+        if length > 0 && length + 1 + count > LINE {
+            lines.push('\n');
+            length = 0;
+        } else if length > 0 {
+            lines.push(' ');
+            length += 1;
+        }
+        lines.push_str(word);
+        length += count;
+    }
+    lines
 }
 
 /// The numbers of a dot, one in each line.

@@ -49,6 +49,10 @@ pub fn draw(painter: &Painter, at: Pos2, family: Family, color: Color32, is_doub
             let r = r * 1.2;
             polygon(vec![vec2(0.0, -r), vec2(r, r * 0.8), vec2(-r, r * 0.8)])
         }
+        Family::Referee => {
+            let r = r * 1.2;
+            polygon(vec![vec2(0.0, r), vec2(-r, -r * 0.8), vec2(r, -r * 0.8)])
+        }
         Family::Original => {
             let bold = Stroke::new(2.5, color);
             painter.line_segment([at + vec2(-r, -r), at + vec2(r, r)], bold);

@@ -14,7 +14,7 @@ use crate::worker::run_in_background;
 /// How many times more tries than for a first look: a second of computing.
 const EFFORT: u32 = 4;
 /// Width of the list of methods.
-const LIST: f32 = 330.0;
+const LIST: f32 = 440.0;
 
 /// The tab's state.
 #[derive(Default)]
@@ -77,7 +77,7 @@ impl Stability {
         for (place, map) in self.maps.iter().enumerate() {
             let used = if is_used(scene, map) { "●" } else { " " };
             let text = format!(
-                "{used} {:<19}{:<22}{:>8.3}%",
+                "{used} {:<22}{:<29}{:>8.3}%",
                 map.subject.name(),
                 map.method,
                 map.total().rate() * 100.0

@@ -1,0 +1,49 @@
+//! Errors and times that a picture is to keep to, in words.
+
+use std::time::Duration;
+
+/// An error such as `55dB`, or `0.0018` as a root mean square of linear colours from 0 to 1.
+pub fn error(word: &str) -> Result<f64, String> {
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|n| n.is_finite());
+    let rmse = match word.strip_suffix("dB").or(word.strip_suffix("db")) {
+        Some(decibels) => number(decibels).map(|decibels| 10.0_f64.powf(decibels / -20.0)),
+        None => number(word),
+    };
+    rmse.filter(|rmse| *rmse > 0.0).ok_or_else(|| {
+        "expected decibels such as 55dB, or an RMSE above 0 such as 0.002".to_owned()
+    })
+}
+
+/// A time such as `16ms` or `2s`; a number alone means milliseconds.
+pub fn time(word: &str) -> Result<Duration, String> {
+    let (number, millis) = if let Some(millis) = word.strip_suffix("ms") {
+        (millis, 1.0)
+    } else if let Some(seconds) = word.strip_suffix('s') {
+        (seconds, 1e3)
+    } else {
+        (word, 1.0)
+    };
+    let millis = number.trim().parse::<f64>().ok().map(|n| n * millis);
+    let time = millis.and_then(|millis| Duration::try_from_secs_f64(millis / 1e3).ok());
+    time.ok_or_else(|| "expected a time such as 16ms or 2s".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_and_times_have_their_units() {
+        assert!((error("60dB").expect("decibels") - 1e-3).abs() < 1e-12);
+        assert_eq!(error("0.002"), Ok(0.002));
+        assert_eq!(time("16ms"), Ok(Duration::from_millis(16)));
+        assert_eq!(time("2 s"), Ok(Duration::from_secs(2)));
+        assert_eq!(time("4"), Ok(Duration::from_millis(4)));
+        for wrong in ["", "dB", "nan", "-1", "0", "infdB"] {
+            assert!(error(wrong).is_err(), "{wrong}");
+        }
+        for wrong in ["", "ms", "-1ms", "nan", "1e30s", "16min"] {
+            assert!(time(wrong).is_err(), "{wrong}");
+        }
+    }
+}

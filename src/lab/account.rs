@@ -1,0 +1,193 @@
+//! What a way of tracing does, where it comes from, and what that costs and gives here: two sentences.
+
+use super::candidates::{Candidate, Family, UNCULLED};
+use super::look::capitalised;
+use super::study::{Measurement, Study};
+use crate::scene::{Method, Render, Setting, SphereMethod, VisitSetting};
+
+/// Ratios closer to one than this are none.
+const ALIKE: f64 = 0.05;
+
+/// What a measured way does, and how it compares with the first, which is the default.
+pub fn account(study: &Study, place: usize) -> String {
+    let (Some(own), Some(default)) = (study.measurements.get(place), study.measurements.first())
+    else {
+        return String::new();
+    };
+    let what = what(&own.candidate, &default.candidate);
+    if place == 0 {
+        return what;
+    }
+    compared(own, default).map_or(what.clone(), |figures| format!("{what} {figures}"))
+}
+
+/// What it does in another way than the default, and who came up with that.
+fn what(candidate: &Candidate, default: &Candidate) -> String {
+    match candidate.family {
+        Family::Original => {
+            return "Every step as in the original program, and nothing left out that the scene does not need."
+                .to_owned();
+        }
+        Family::Referee => {
+            return "Another engine, which shares no code with this one (povray.org), draws the picture."
+                .to_owned();
+        }
+        Family::Resolution => {
+            let share = candidate.upscale * candidate.upscale;
+            return format!(
+                "The default in one pixel of {share}, scaled up evenly: sharp edges become soft."
+            );
+        }
+        _ => {}
+    }
+    if candidate.name == UNCULLED {
+        return "Every primitive is tested for every ray, as if nobody knew where they are."
+            .to_owned();
+    }
+    let (own, usual) = (methods(&candidate.render), methods(&default.render));
+    let differing = own
+        .into_iter()
+        .zip(usual)
+        .filter(|(own, usual)| own.id != usual.id);
+    let mut parts: Vec<String> = differing.map(|(own, _)| own.words()).collect();
+    let (bounces, usual) = (
+        candidate.render.reflection_limit,
+        default.render.reflection_limit,
+    );
+    if bounces != usual {
+        parts.push(format!(
+            "light is mirrored {bounces} times at most, not {usual}"
+        ));
+    }
+    if candidate.render.sphere != SphereMethod::Stable {
+        parts.push(format!(
+            "what it hits wrongly shows, since as in \"{UNCULLED}\" every primitive is tested"
+        ));
+    }
+    if parts.is_empty() {
+        return "The default: of every step the way that holds everywhere.".to_owned();
+    }
+    format!("{}.", capitalised(&parts.join("; ")))
+}
+
+/// How long it takes and how far it is off, in times of the default; why is told by the rays.
+fn compared(own: &Measurement, default: &Measurement) -> Option<String> {
+    let (time, usual) = (own.timing()?.median, default.timing()?.median);
+    let error = own.metrics?.rmse / default.metrics?.rmse;
+    let rays = own.rays_per_pixel / default.rays_per_pixel;
+    let speed = match time / usual {
+        ratio if ratio < 1.0 - ALIKE => format!("{} as fast as the default", times(1.0 / ratio)),
+        ratio if ratio > 1.0 + ALIKE => format!("{} slower than the default", times(ratio)),
+        _ => "as fast as the default".to_owned(),
+    };
+    let rays = match rays {
+        ratio if (ratio - 1.0).abs() <= ALIKE => "as many rays".to_owned(),
+        ratio if ratio < 1.0 => format!("{ratio:.2} of its rays"),
+        ratio => format!("{} its rays", times(ratio)),
+    };
+    let closeness = match error {
+        ratio if ratio < 1.0 - ALIKE => format!("{} closer", times(1.0 / ratio)),
+        ratio if ratio > 1.0 + ALIKE => format!("{} farther off", times(ratio)),
+        _ => "as close".to_owned(),
+    };
+    Some(format!("Here it is {speed}, with {rays}, and {closeness}."))
+}
+
+fn times(ratio: f64) -> String {
+    if ratio < 10.0 {
+        format!("{ratio:.1}×")
+    } else {
+        format!("{ratio:.0}×")
+    }
+}
+
+/// A method that a setting stands at.
+struct Chosen {
+    label: &'static str,
+    id: String,
+    what: &'static str,
+    source: &'static str,
+}
+
+impl Chosen {
+    fn words(&self) -> String {
+        let Self {
+            label,
+            id,
+            what,
+            source,
+        } = self;
+        format!("{label} {id}: {what} ({source})")
+    }
+}
+
+fn methods(render: &Render) -> Vec<Chosen> {
+    let mut list = ChosenList(Vec::new());
+    render.clone().visit_settings(&mut list);
+    list.0
+}
+
+struct ChosenList(Vec<Chosen>);
+
+impl VisitSetting for ChosenList {
+    fn visit<M: Method>(&mut self, setting: Setting, value: &mut M) {
+        let id = value.id();
+        // Numbers differ, and the method is the same: `grid:4` and `grid:8`.
+        let name = |id: &str| id.split(':').next().map(str::to_owned);
+        let mut methods = M::ALL.iter();
+        let method = methods.find(|method| name(method.id) == name(&id));
+        self.0.push(Chosen {
+            label: setting.label,
+            what: method.map_or("", |method| method.what),
+            source: method.map_or("", |method| method.source),
+            id,
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::lab::candidates;
+    use crate::scene::Scene;
+    use crate::trace::RenderControl;
+
+    #[test]
+    fn every_way_is_told_apart_from_the_default_with_its_source() {
+        let scene = Scene::demo();
+        let all = candidates(&scene, 64, 64);
+        for candidate in &all[1..] {
+            let words = what(candidate, &all[0]);
+            assert_ne!(words, what(&all[0], &all[0]), "{}", candidate.name);
+            assert!(words.ends_with('.') && words.len() > 20, "{words}");
+        }
+        let named = |name: &str| all.iter().find(|candidate| candidate.name == name);
+        let grid = what(named("grid:8").expect("a grid"), &all[0]);
+        assert!(
+            grid.contains("grid:8: so many times so many rays"),
+            "{grid}"
+        );
+        assert!(grid.contains("(common practice)"), "{grid}");
+    }
+
+    #[test]
+    fn what_it_gives_is_what_was_measured() {
+        let mut study = Study::new(Arc::new(Scene::demo()), 24, 18);
+        while study.step(&RenderControl::default()) {}
+        let place = |name: &str| {
+            let names = study.measurements.iter().map(|dot| &dot.candidate.name);
+            names
+                .clone()
+                .position(|other| other == name)
+                .expect("it is measured")
+        };
+        let one = account(&study, place("none"));
+        assert!(
+            one.contains("of its rays") && one.contains("farther off"),
+            "{one}"
+        );
+        assert!(!account(&study, 0).contains("Here it is"));
+    }
+}

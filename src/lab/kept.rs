@@ -1,0 +1,181 @@
+//! Studies kept on disk: what was measured of a scene is there when it is opened again.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::candidates::{OWN, POVRAY};
+use super::measure::ErrorMetrics;
+use super::study::{Measurement, Reference, Study};
+use crate::export::{fingerprint, save_image, write_text};
+use crate::files::{make_folder, read_text, remove_oldest};
+use crate::image::{Film, Format, Image};
+use crate::scene::{Render, Scene};
+
+/// So many studies are kept, each in two files; older ones are removed.
+const MOST: usize = 24;
+
+/// What is written of a study, beside its pictures.
+#[derive(Serialize, Deserialize)]
+struct Kept {
+    /// What was measured on: elsewhere, times are others.
+    machine: String,
+    width: u32,
+    height: u32,
+    reference_rmse: f64,
+    dots: Vec<KeptDot>,
+}
+
+/// What is written of a dot.
+#[derive(Serialize, Deserialize)]
+struct KeptDot {
+    name: String,
+    rmse: f64,
+    max: f64,
+    visible: f64,
+    rays_per_pixel: f64,
+    times: Vec<f64>,
+    lanes: String,
+}
+
+/// The files of a scene's study. Settings do not count: they are what is compared.
+fn place(folder: &Path, scene: &Scene) -> Option<(PathBuf, PathBuf)> {
+    let bare = Scene {
+        render: Render {
+            reflection_limit: scene.render.reflection_limit,
+            width: scene.render.width,
+            height: scene.render.height,
+            ..Render::default()
+        },
+        ..scene.clone()
+    };
+    let name = fingerprint(&bare, Format::Png).ok()?.to_hex();
+    let file = |ending| folder.join(format!("{}.{ending}", &name[..32]));
+    Some((file("ron"), file("png")))
+}
+
+/// Whether a dot means the same later: the scene's own settings may then be others.
+fn is_lasting(dot: &Measurement) -> bool {
+    dot.candidate.name != OWN
+}
+
+/// Writes a study that is done, its pictures below each other. One that cannot be kept is measured again.
+pub fn keep(study: &Study, machine: &str, folder: &Path) {
+    // Nobody waits for it, and nothing is lost without.
+    let _ = try_keep(study, machine, folder);
+}
+
+fn try_keep(study: &Study, machine: &str, folder: &Path) -> Option<()> {
+    let (figures, pictures) = place(folder, study.scene())?;
+    let reference = study.reference.as_ref()?;
+    let mut all = Image::clone(&reference.picture);
+    let mut dots = Vec::new();
+    for dot in study.measurements.iter().filter(|dot| is_lasting(dot)) {
+        let (metrics, picture) = (dot.metrics?, dot.picture.as_ref()?);
+        all.pixels.extend(&picture.pixels);
+        dots.push(KeptDot {
+            name: dot.candidate.name.clone(),
+            rmse: metrics.rmse,
+            max: metrics.max,
+            visible: metrics.visible,
+            rays_per_pixel: dot.rays_per_pixel,
+            times: dot.times.clone(),
+            lanes: dot.lanes.clone(),
+        });
+    }
+    all.height *= 1 + dots.len();
+    let (width, height) = study.size();
+    let kept = Kept {
+        machine: machine.to_owned(),
+        width,
+        height,
+        reference_rmse: reference.rmse,
+        dots,
+    };
+    make_folder(folder).ok()?;
+    save_image(&Film::Levels(all), &pictures).ok()?;
+    write_text(&figures, &ron::to_string(&kept).ok()?).ok()?;
+    remove_oldest(folder, 2 * MOST);
+    Some(())
+}
+
+/// What was measured of this scene before, on this machine; `None` if nothing was, or not in the same ways.
+pub fn kept(scene: &Arc<Scene>, side: u32, machine: &str, folder: &Path) -> Option<Study> {
+    let (figures, pictures) = place(folder, scene)?;
+    let kept: Kept = ron::from_str(&read_text(&figures)?).ok()?;
+    let mut study = Study::of_side(Arc::clone(scene), side);
+    if kept.dots.last().is_some_and(|dot| dot.name == POVRAY) {
+        study = study.with_povray();
+    }
+    study.measurements.retain(is_lasting);
+    let names = kept.dots.iter().map(|dot| &dot.name);
+    let is_same = names.eq(study.measurements.iter().map(|dot| &dot.candidate.name))
+        && kept.machine == machine
+        && (kept.width, kept.height) == study.size();
+    if !is_same {
+        return None;
+    }
+    let all = image::open(&pictures).ok()?.to_rgba8();
+    let (width, height) = (kept.width as usize, kept.height as usize);
+    let pixels: Vec<[u8; 4]> = all.pixels().map(|pixel| pixel.0).collect();
+    let mut images = pixels.chunks_exact(width * height).map(|pixels| {
+        Arc::new(Image {
+            width,
+            height,
+            pixels: pixels.to_vec(),
+        })
+    });
+    study.reference = Some(Reference {
+        rmse: kept.reference_rmse,
+        picture: images.next()?,
+    });
+    for (dot, kept) in study.measurements.iter_mut().zip(kept.dots) {
+        dot.metrics = Some(ErrorMetrics {
+            rmse: kept.rmse,
+            max: kept.max,
+            visible: kept.visible,
+        });
+        dot.rays_per_pixel = kept.rays_per_pixel;
+        dot.times = kept.times;
+        dot.lanes = kept.lanes;
+        dot.picture = Some(images.next()?);
+    }
+    Some(study)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::RenderControl;
+
+    #[test]
+    fn a_study_is_there_again_for_its_scene_and_machine_alone() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let folder = folder.path().join("lab");
+        let scene = Arc::new(Scene::demo());
+        let mut study = Study::of_side(Arc::clone(&scene), 16);
+        while study.step(&RenderControl::default()) {}
+        keep(&study, "here", &folder);
+        let again = kept(&scene, 16, "here", &folder).expect("it was kept");
+        assert_eq!(again.progress(), 1.0);
+        assert_eq!(again.costs(), study.costs());
+        let pictures = |study: &Study| {
+            let dots = study.measurements.iter();
+            let pictures: Vec<_> = dots.map(|dot| dot.picture.clone()).collect();
+            (
+                pictures,
+                study.reference.as_ref().map(|r| r.picture.clone()),
+            )
+        };
+        assert_eq!(pictures(&again), pictures(&study));
+        assert!(kept(&scene, 16, "there", &folder).is_none());
+        assert!(kept(&scene, 24, "here", &folder).is_none());
+        let mut other = Scene::demo();
+        other.ambient_intensity += 0.01;
+        assert!(kept(&Arc::new(other), 16, "here", &folder).is_none());
+        let (_, pictures) = place(&folder, &scene).expect("files");
+        std::fs::write(pictures, "no picture").expect("written");
+        assert!(kept(&scene, 16, "here", &folder).is_none());
+    }
+}

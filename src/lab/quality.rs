@@ -1,0 +1,242 @@
+//! Which sampling a picture needs: the cheapest within an error, or the closest within a time, as measured on
+//! strips of the picture itself.
+
+use std::time::{Duration, Instant};
+
+use super::candidates::samplings;
+use super::measure::difference;
+use super::pareto_front::{cheapest_within, closest_within};
+use crate::image::LinearRgb;
+use crate::plan::{Planner, RenderRequest};
+use crate::scene::{Method as _, Sampling, Scene};
+use crate::trace::{RenderControl, Tracer};
+
+/// Samples along each side of a pixel of what errors are measured against.
+const REFERENCE_GRID: u32 = 24;
+/// Rows of a strip.
+const STRIP: usize = 8;
+/// About as many pixels are measured: few enough to take a second or so, many enough to meet what there is to see.
+const PIXELS: usize = 1 << 17;
+/// So many strips there are at least.
+const FEWEST: usize = 4;
+/// Runs of each sampling; the fastest counts, since nothing makes a run faster than it is.
+const RUNS: usize = 2;
+
+/// What a picture is to keep to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// The cheapest whose error, a root mean square of linear colours from 0 to 1, is at most this.
+    Within(f64),
+    /// The closest that takes at most so long.
+    Budget(Duration),
+}
+
+/// A sampling that was chosen for a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Choice {
+    /// What was asked for.
+    pub goal: Goal,
+    /// What was chosen.
+    pub sampling: Sampling,
+    /// Its error, root mean square, 0–1.
+    pub rmse: f64,
+    /// How long the whole picture will take with it.
+    pub time: Duration,
+    /// How many samplings were measured.
+    pub tried: usize,
+    /// Whether it keeps to what was asked for; else it comes closest to that.
+    pub is_met: bool,
+}
+
+impl Choice {
+    /// What was chosen, and why.
+    pub fn words(&self) -> String {
+        let decibels = |rmse: f64| format!("{:.1} dB", -20.0 * rmse.log10());
+        let millis = |time: Duration| format!("{:.1} ms", time.as_secs_f64() * 1e3);
+        let goal = match (self.goal, self.is_met) {
+            (Goal::Within(error), true) => format!("the cheapest within {}", decibels(error)),
+            (Goal::Within(error), false) => {
+                format!("the closest; none is within {}", decibels(error))
+            }
+            (Goal::Budget(time), true) => format!("the closest within {}", millis(time)),
+            (Goal::Budget(time), false) => {
+                format!("the cheapest; none is within {}", millis(time))
+            }
+        };
+        format!(
+            "antialias {}: {goal}, of {} measured here ({} in about {})",
+            self.sampling.id(),
+            self.tried,
+            decibels(self.rmse),
+            millis(self.time),
+        )
+    }
+}
+
+/// Measures samplings on strips of a picture, on the current rayon pool, and chooses one. `None` if `control` said
+/// stop.
+pub fn choose(
+    scene: &Scene,
+    request: &RenderRequest,
+    goal: Goal,
+    planner: &mut Planner,
+    control: &RenderControl,
+) -> Option<Choice> {
+    let mut strips = Strips::new(scene, request, planner, control);
+    let (reference, _) = strips.trace(Sampling::Grid(REFERENCE_GRID))?;
+    let mut measured: Vec<(Sampling, (f64, f64))> = Vec::new();
+    for sampling in samplings() {
+        // Grids come by their size: beyond one that is close enough, or takes too long, each takes longer.
+        let is_enough = measured.iter().any(|(other, (time, error))| {
+            matches!(other, Sampling::Grid(_))
+                && match goal {
+                    Goal::Within(bound) => *error <= bound,
+                    Goal::Budget(bound) => *time > bound.as_secs_f64(),
+                }
+        });
+        if matches!(sampling, Sampling::Grid(_)) && is_enough {
+            continue;
+        }
+        let mut best = Duration::MAX;
+        let mut error = 0.0;
+        for _ in 0..RUNS {
+            let (light, time) = strips.trace(sampling)?;
+            best = best.min(time);
+            error = difference(&light, &reference).rmse;
+        }
+        let whole = best.as_secs_f64() * strips.share_of_all();
+        measured.push((sampling, (whole, error)));
+    }
+    let costs: Vec<(f64, f64)> = measured.iter().map(|(_, figures)| *figures).collect();
+    let all = f64::INFINITY;
+    let (met, nearest) = match goal {
+        Goal::Within(error) => (
+            cheapest_within(&costs, error, all),
+            closest_within(&costs, all),
+        ),
+        Goal::Budget(time) => (
+            closest_within(&costs, time.as_secs_f64()),
+            cheapest_within(&costs, all, all),
+        ),
+    };
+    let (sampling, (time, rmse)) = measured[met.or(nearest)?];
+    Some(Choice {
+        goal,
+        sampling,
+        rmse,
+        time: Duration::from_secs_f64(time),
+        tried: measured.len(),
+        is_met: met.is_some(),
+    })
+}
+
+/// Strips of a picture, from its top to its bottom.
+struct Strips<'a> {
+    scene: &'a Scene,
+    request: &'a RenderRequest,
+    planner: &'a mut Planner,
+    control: &'a RenderControl,
+    /// First rows.
+    firsts: Vec<usize>,
+    rows: usize,
+}
+
+impl<'a> Strips<'a> {
+    fn new(
+        scene: &'a Scene,
+        request: &'a RenderRequest,
+        planner: &'a mut Planner,
+        control: &'a RenderControl,
+    ) -> Self {
+        let (width, height) = (request.width as usize, request.height as usize);
+        let count = (PIXELS / (STRIP * width)).max(FEWEST);
+        let (firsts, rows) = if count * STRIP >= height {
+            (vec![0], height)
+        } else {
+            let first = |strip: usize| (2 * strip + 1) * (height - STRIP) / (2 * count);
+            ((0..count).map(first).collect(), STRIP)
+        };
+        Self {
+            scene,
+            request,
+            planner,
+            control,
+            firsts,
+            rows,
+        }
+    }
+
+    /// How many times more rows the whole picture has.
+    fn share_of_all(&self) -> f64 {
+        f64::from(self.request.height) / (self.rows * self.firsts.len()) as f64
+    }
+
+    fn trace(&mut self, sampling: Sampling) -> Option<(Vec<LinearRgb>, Duration)> {
+        let start = Instant::now();
+        let request = RenderRequest {
+            sampling,
+            ..*self.request
+        };
+        let tracer = Tracer::planned(self.scene, &request, self.planner);
+        let strip = self.rows * self.request.width as usize;
+        let mut light = vec![[0.0; 3]; strip * self.firsts.len()];
+        for (strip, first) in light.chunks_exact_mut(strip).zip(&self.firsts) {
+            tracer.rows(strip, *first, self.control)?;
+        }
+        Some((light, start.elapsed()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chosen(goal: Goal) -> Choice {
+        let scene = Scene::demo();
+        let request = RenderRequest::of(&scene, 96, 72);
+        let control = RenderControl::default();
+        choose(&scene, &request, goal, &mut Planner::default(), &control).expect("not stopped")
+    }
+
+    #[test]
+    fn a_choice_keeps_to_what_was_asked_for_and_is_no_better_than_that() {
+        let rough = chosen(Goal::Within(0.05));
+        assert!(rough.is_met && rough.rmse <= 0.05, "{rough:?}");
+        let fine = chosen(Goal::Within(0.003));
+        assert!(fine.is_met && fine.rmse <= 0.003, "{fine:?}");
+        assert!(fine.rmse < rough.rmse, "{rough:?} {fine:?}");
+        let exact = chosen(Goal::Within(1e-9));
+        assert!(!exact.is_met && exact.rmse < 0.003, "{exact:?}");
+        assert!(
+            exact.words().contains("none is within 180.0 dB"),
+            "{}",
+            exact.words()
+        );
+    }
+
+    #[test]
+    fn a_time_buys_what_it_can() {
+        let hasty = chosen(Goal::Budget(Duration::ZERO));
+        assert!(!hasty.is_met, "{hasty:?}");
+        let patient = chosen(Goal::Budget(Duration::from_hours(1)));
+        assert!(
+            patient.is_met && patient.rmse < hasty.rmse,
+            "{hasty:?} {patient:?}"
+        );
+    }
+
+    #[test]
+    fn a_picture_that_nobody_wants_any_more_is_not_measured() {
+        let scene = Scene::demo();
+        let stopped = RenderControl::default();
+        stopped
+            .stop
+            .store(true, std::sync::atomic::Ordering::Relaxed);
+        let request = RenderRequest::of(&scene, 96, 72);
+        let planner = &mut Planner::default();
+        assert_eq!(
+            choose(&scene, &request, Goal::Within(0.1), planner, &stopped),
+            None
+        );
+    }
+}

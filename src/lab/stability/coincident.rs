@@ -1,0 +1,97 @@
+//! Surfaces in one place: a triangle that lies in a slanting plane, and two balls that are one. The earlier in the
+//! list is seen, everywhere.
+
+use glam::DVec3;
+
+use super::map::{Map, Tries, places, scales};
+use super::subject::Subject;
+use crate::plan::RenderRequest;
+use crate::scene::{
+    Camera, ColorPack, List, Object, Plane, Precision, Sampling, Scene, Shape, Sphere, Triangle,
+};
+use crate::trace::{Pass, RenderControl, Tracer};
+
+/// Side of the pictures in pixels.
+const SIDE: u32 = 48;
+
+/// The one rule, for pictures of every scale and place.
+pub fn map() -> Map {
+    let seen = |away, scale, later| levels(&scene(away, scale, later));
+    Map::measure(
+        (Subject::Coincident, "pixel that shows the later surface"),
+        ("earlier first".to_owned(), true),
+        (places(), scales()),
+        |away, scale| {
+            let (alone, both) = (seen(away, scale, false), seen(away, scale, true));
+            // Green is the later one; where nothing is there is nothing to be tried.
+            let hits = alone.iter().zip(&both).filter(|(alone, _)| alone[0] > 0.5);
+            Tries::count(hits.map(|(_, both)| both[1] > 0.0))
+        },
+    )
+}
+
+fn levels(scene: &Scene) -> Vec<[f32; 3]> {
+    let request = RenderRequest {
+        precision: Precision::Single,
+        sampling: Sampling::Centres,
+        ..RenderRequest::sized(SIDE, SIDE)
+    };
+    let mut pixels = vec![[0.0_f32; 3]; (SIDE * SIDE) as usize];
+    // Nobody stops it.
+    let _ = Tracer::new(scene, &request).pass(&mut pixels, Pass::Whole, &RenderControl::default());
+    pixels
+}
+
+/// Red surfaces, and green ones in the same places if they are wanted; so large, so many sizes away.
+fn scene(away: f64, scale: f64, with_later: bool) -> Scene {
+    let place = |v: DVec3| (v + DVec3::new(0.6, -0.64, 0.48) * away) * scale;
+    let mut scene = Scene::empty();
+    (scene.background, scene.ambient_intensity) = (DVec3::ZERO, 1.0);
+    scene.lights = List::default();
+    for (name, color) in [("red", DVec3::X), ("green", DVec3::Y)] {
+        let pack = ColorPack {
+            ambient: color * 255.0,
+            ..ColorPack::default()
+        };
+        scene.packs_mut().insert(name.to_owned(), pack);
+    }
+    let normal = DVec3::new(0.13, 1.0, 0.29).normalize();
+    let in_plane = |x: f64, z: f64| {
+        let y = -(normal.x * x + normal.z * z) / normal.y;
+        place(DVec3::new(x, y, z))
+    };
+    let ball = Shape::Sphere(Sphere {
+        center: place(DVec3::new(0.3, 0.6, 0.1)),
+        radius: 0.4 * scale,
+    });
+    let plane = Shape::Plane(Plane {
+        point: place(DVec3::ZERO),
+        normal,
+    });
+    let triangle = Shape::Triangle(Triangle {
+        a: in_plane(-1.0, -1.0),
+        b: in_plane(-0.9, 0.8),
+        c: in_plane(0.9, 0.7),
+    });
+    let object = |name: &str, color: &str, shape: &Shape| Object {
+        name: name.to_owned(),
+        color_pack: color.to_owned(),
+        shape: shape.clone(),
+        visible: true,
+        group: String::new(),
+    };
+    let earlier = [object("Plane", "red", &plane), object("Ball", "red", &ball)];
+    let later = [
+        object("Triangle", "green", &triangle),
+        object("Same ball", "green", &ball),
+    ];
+    let later = later.into_iter().filter(|_| with_later);
+    scene.objects = List::from(earlier.into_iter().chain(later).collect::<Vec<_>>());
+    scene.camera = Camera {
+        position: place(DVec3::new(0.4, 1.3, 2.6)),
+        look_at: DVec3::new(0.0, -0.4, -1.0),
+        projection_distance: 1.0,
+        ..Camera::default()
+    };
+    scene
+}

@@ -1,0 +1,97 @@
+//! Frames of an export that are taken for unchanged: a key of the camera moves by ever less, and a frame whose picture
+//! changes must have another fingerprint.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::map::{Axis, Map, Tries, scattered};
+use super::subject::Subject;
+use crate::animate::{CameraPath, shot};
+use crate::export::fingerprint;
+use crate::image::{Format, Image, render};
+use crate::plan::RenderRequest;
+use crate::scene::{Animation, Camera, Easing, Interpolation, Key, Scene};
+use crate::trace::RenderControl;
+
+/// How far the key moves, in units of a scene that is some hundred of them large.
+const MOVES: [f64; 7] = [1e-12, 1e-9, 1e-6, 1e-3, 0.1, 1.0, 10.0];
+/// Keys that are moved in each cell for a first look.
+const TRIES: u64 = 3;
+/// Frames that are looked at for each.
+const FRAMES: [u64; 4] = [1, 4, 8, 11];
+/// Size of their pictures.
+const SIZE: (u32, u32) = (32, 24);
+
+/// The one rule.
+pub fn map(effort: u32) -> Map {
+    let across = Axis {
+        name: "units moved",
+        values: MOVES.to_vec(),
+    };
+    let up = Axis {
+        name: "",
+        values: vec![1.0],
+    };
+    Map::measure(
+        (Subject::Fingerprint, "changed frame that is not made again"),
+        ("all that decides it".to_owned(), true),
+        (across, up),
+        |by, _| {
+            let moved = (0..TRIES * u64::from(effort)).flat_map(|number| changed(number, by));
+            Tries::count(moved)
+        },
+    )
+}
+
+/// For each frame whose picture has changed, whether its fingerprint has not.
+fn changed(number: u64, by: f64) -> Vec<bool> {
+    let random = |stream| scattered(number, stream) - 0.5;
+    let step = DVec3::new(random(0), random(1), random(2)).normalize_or(DVec3::X) * by;
+    let (before, after) = (flight(DVec3::ZERO), flight(step));
+    let frames = FRAMES.iter().filter_map(|frame| {
+        let (one, other) = (frame_of(&before, *frame), frame_of(&after, *frame));
+        let is_changed = picture(&one) != picture(&other);
+        let print = |scene| fingerprint(scene, Format::Png).ok();
+        is_changed.then(|| print(&one) == print(&other))
+    });
+    frames.collect()
+}
+
+/// The demo with a flight of three keys; the one in the middle is aside by `step`.
+fn flight(step: DVec3) -> Arc<Scene> {
+    let scene = Scene::demo();
+    let at = |time: f64, aside: DVec3| Key {
+        time,
+        value: Camera {
+            position: scene.camera.position + aside,
+            ..scene.camera.clone()
+        },
+        interpolation: Interpolation::default(),
+        easing: Easing::default(),
+    };
+    let keys = vec![
+        at(0.0, DVec3::ZERO),
+        at(0.5, DVec3::new(30.0, 20.0, -10.0) + step),
+        at(1.0, DVec3::new(60.0, 0.0, -40.0)),
+    ];
+    Arc::new(Scene {
+        animation: Arc::new(Animation {
+            frames_per_second: 12.0,
+            keys,
+            ..Animation::default()
+        }),
+        ..scene
+    })
+}
+
+fn frame_of(scene: &Arc<Scene>, frame: u64) -> Arc<Scene> {
+    let path = CameraPath::new(&scene.animation.keys);
+    shot(scene, &path, scene.animation.time_of(frame))
+}
+
+fn picture(scene: &Scene) -> Option<Image> {
+    let request = RenderRequest::of(scene, SIZE.0, SIZE.1);
+    let traced = render(scene, &request, &RenderControl::default());
+    traced.map(|(image, _)| image)
+}

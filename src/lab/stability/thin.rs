@@ -1,0 +1,137 @@
+//! Things that are thinner than a pixel: bright ribbons across a dark picture, and which pixels show nothing of them.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::map::{Axis, Map, Tries, scattered};
+use super::subject::Subject;
+use crate::plan::RenderRequest;
+use crate::scene::{
+    Camera, ColorPack, List, Method as _, Object, Sampling, Scene, Shape, Triangle,
+};
+use crate::trace::{Pass, RenderControl, Tracer};
+
+/// Side of the pictures in pixels.
+const SIDE: u32 = 24;
+/// Widths of the ribbons, in pixels.
+const WIDTHS: [f64; 6] = [0.04, 0.1, 0.25, 0.5, 1.0, 2.0];
+/// How far away they are.
+const DISTANCES: [f64; 5] = [1.0, 10.0, 100.0, 1e3, 1e4];
+/// What is held against the usual sampling.
+const SAMPLINGS: [Sampling; 4] = [
+    Sampling::ADAPTIVE,
+    Sampling::Adaptive {
+        contrast: 0.3,
+        depth: 1,
+    },
+    Sampling::Grid(4),
+    Sampling::Centres,
+];
+/// Samples along each side of a pixel that tell what it should show.
+const TRUTH: Sampling = Sampling::Grid(48);
+/// What a pixel must show to be tried: this much can be seen.
+const SEEN: f32 = 8.0 / 255.0;
+/// A pixel below this shows nothing.
+const NOTHING: f32 = 0.5 / 255.0;
+/// Ribbons in each cell for a first look.
+const TRIES: u64 = 2;
+
+/// One map for each sampling.
+pub fn maps(effort: u32) -> Vec<Map> {
+    let mut maps: Vec<Map> = SAMPLINGS
+        .iter()
+        .map(|sampling| Map {
+            subject: Subject::Thin,
+            method: sampling.id(),
+            is_default: *sampling == Sampling::default(),
+            failure: "pixel that shows nothing of it",
+            across: Axis {
+                name: "pixels wide",
+                values: WIDTHS.to_vec(),
+            },
+            up: Axis {
+                name: "away",
+                values: DISTANCES.to_vec(),
+            },
+            cells: Vec::new(),
+        })
+        .collect();
+    for distance in DISTANCES {
+        for width in WIDTHS {
+            let cell = missed(effort, width, distance);
+            for (map, tries) in maps.iter_mut().zip(cell) {
+                map.cells.push(tries);
+            }
+        }
+    }
+    maps
+}
+
+/// For each sampling, the pixels that should show something, and those of them that show nothing.
+fn missed(effort: u32, width: f64, distance: f64) -> [Tries; SAMPLINGS.len()] {
+    let mut sums = [Tries::default(); SAMPLINGS.len()];
+    for number in 0..TRIES * u64::from(effort) {
+        let scene = ribbon(number, width, distance);
+        let truth = brightness(&scene, TRUTH);
+        for (sum, sampling) in sums.iter_mut().zip(SAMPLINGS) {
+            let shown = brightness(&scene, sampling);
+            let tried = truth.iter().zip(shown).filter(|(truth, _)| **truth >= SEEN);
+            let tries = Tries::count(tried.map(|(_, shown)| shown < NOTHING));
+            sum.tries += tries.tries;
+            sum.failures += tries.failures;
+        }
+    }
+    sums
+}
+
+fn brightness(scene: &Scene, sampling: Sampling) -> Vec<f32> {
+    let request = RenderRequest {
+        sampling,
+        ..RenderRequest::sized(SIDE, SIDE)
+    };
+    let mut pixels = vec![[0.0_f32; 3]; (SIDE * SIDE) as usize];
+    // Nobody stops it.
+    let _ = Tracer::new(scene, &request).pass(&mut pixels, Pass::Whole, &RenderControl::default());
+    pixels.iter().map(|pixel| pixel[0]).collect()
+}
+
+/// A ribbon that ends inside the picture, somewhere, in some direction: two triangles.
+fn ribbon(number: u64, width: f64, distance: f64) -> Scene {
+    let random = |stream| scattered(number, stream);
+    let pixel = distance / f64::from(SIDE);
+    let (sine, cosine) = (random(0) * PI).sin_cos();
+    let along = DVec3::new(cosine, sine, 0.0) * (distance * 0.4);
+    let aside = DVec3::new(-sine, cosine, 0.0) * (width * pixel / 2.0);
+    let middle = DVec3::new(random(1) - 0.5, random(2) - 0.5, 0.0) * (distance * 0.2);
+    let middle = middle - DVec3::Z * distance;
+    let [a, b, c, d] = [
+        middle - along - aside,
+        middle - along + aside,
+        middle + along - aside,
+        middle + along + aside,
+    ];
+    let mut scene = Scene::empty();
+    (scene.background, scene.ambient_intensity) = (DVec3::ZERO, 1.0);
+    scene.lights = List::default();
+    let white = ColorPack {
+        ambient: DVec3::splat(255.0),
+        ..ColorPack::default()
+    };
+    scene.packs_mut().insert("white".to_owned(), white);
+    let half = |name: &str, [a, b, c]: [DVec3; 3]| Object {
+        name: name.to_owned(),
+        color_pack: "white".to_owned(),
+        shape: Shape::Triangle(Triangle { a, b, c }),
+        visible: true,
+        group: String::new(),
+    };
+    scene.objects = List::from(vec![half("One", [a, b, c]), half("Other", [b, d, c])]);
+    scene.camera = Camera {
+        position: DVec3::ZERO,
+        look_at: -DVec3::Z,
+        projection_distance: 1.0,
+        ..Camera::default()
+    };
+    scene
+}

@@ -1,0 +1,146 @@
+//! What is measured and shown, and which dot is asked for, in a line above the chart.
+
+use egui::{Button, DragValue, Ui};
+
+use super::super::commands::Command;
+use super::super::requests::UiRequests;
+use super::super::theme::palette;
+use super::dots::{CostAxis, ErrorAxis};
+use super::panel::{Lab, LabRequest, Tab};
+use crate::editor::Editor;
+use crate::lab::{cheapest_within, closest_within};
+use crate::ui::hint::Hint as _;
+
+impl Lab {
+    /// The line; what it asks of the render thread.
+    pub(super) fn show_head(
+        &mut self,
+        ui: &mut Ui,
+        editor: &Editor,
+        out: &mut UiRequests,
+    ) -> Option<LabRequest> {
+        let timeline = ui.selectable_label(false, "Timeline");
+        if timeline.hint("Keys and playing (Ctrl+T)").clicked() {
+            out.commands.push(Command::Timeline);
+        }
+        for (tab, name, hint) in [
+            (
+                Tab::Chart,
+                "Chart",
+                "Time against error of every way of tracing the scene",
+            ),
+            (
+                Tab::Stability,
+                "Stability",
+                "Where formulas break, and where the scene stands",
+            ),
+        ] {
+            ui.selectable_value(&mut self.tab, tab, name).hint(hint);
+        }
+        ui.separator();
+        if self.tab == Tab::Stability {
+            return None;
+        }
+        let mut wish = None;
+        if self.is_running {
+            let done = self.study.as_ref().map_or(0.0, |study| study.progress());
+            if ui.button("Cancel measuring").clicked() {
+                self.is_running = false;
+                wish = Some(LabRequest::Stop);
+            }
+            let left = self.study.as_ref().and_then(|study| study.remaining());
+            let left = left.map_or(String::new(), |left| {
+                format!(", {:.0} s left", left.as_secs_f64().ceil())
+            });
+            ui.label(format!("{:.0} %{left}", (done * 100.0).floor()));
+        } else {
+            let hint = "Trace the scene in every way there is, and compare: about half a minute";
+            if ui.button("Measure").hint(hint).clicked() {
+                wish = Some(self.measure(editor));
+            }
+            let hint = "Put POV-Ray, an independent engine, among the ways, where it is installed";
+            ui.checkbox(&mut self.asks_povray, "POV-Ray").hint(hint);
+        }
+        ui.separator();
+        for (cost, name, hint) in [
+            (
+                CostAxis::Time,
+                "time",
+                "Milliseconds per picture: the median of interleaved runs",
+            ),
+            (
+                CostAxis::Rays,
+                "rays",
+                "Rays per pixel: the same on every machine",
+            ),
+        ] {
+            ui.selectable_value(&mut self.cost, cost, name).hint(hint);
+        }
+        ui.separator();
+        for (error, name, hint) in [
+            (
+                ErrorAxis::Rmse,
+                "RMSE",
+                "Root of the mean square of the error, linear, 0–1",
+            ),
+            (
+                ErrorAxis::Max,
+                "worst",
+                "The worst channel of all pixels, 0–1",
+            ),
+            (
+                ErrorAxis::Visible,
+                "visible",
+                "Share of the pixels that are off by more than 4/255",
+            ),
+        ] {
+            ui.selectable_value(&mut self.error, error, name).hint(hint);
+        }
+        ui.separator();
+        self.show_bounds(ui);
+        ui.weak(self.notice);
+        let obstacle = self
+            .study
+            .as_ref()
+            .and_then(|study| study.obstacle.as_ref());
+        if let Some(obstacle) = obstacle {
+            ui.weak("no POV-Ray").hint(obstacle);
+        }
+        if self.is_stale(editor) {
+            let hint = "The scene has changed since; measure again";
+            ui.colored_label(palette(ui.ctx()).accent, "stale")
+                .hint(hint);
+        }
+        wish
+    }
+
+    fn show_bounds(&mut self, ui: &mut Ui) {
+        let costs = self.study.as_ref().map(|study| study.costs());
+        let button = |ui: &mut Ui, words: &str, hint: &str| {
+            let button = ui.add_enabled(costs.is_some(), Button::new(words));
+            button.hint(hint).clicked()
+        };
+        let hint = "Choose the fastest dot that is no farther off than this";
+        let by_error = button(ui, "Cheapest way below", hint);
+        let rmse = DragValue::new(&mut self.bounds.0)
+            .speed(1e-5)
+            .range(1e-6..=1.0);
+        ui.add(rmse.max_decimals(5)).accessible_name("RMSE at most");
+        let hint = "Choose the closest dot that takes no longer than this";
+        let by_time = button(ui, "Best way within", hint);
+        let time = DragValue::new(&mut self.bounds.1)
+            .speed(0.1)
+            .range(0.01..=1e5);
+        ui.add(time.suffix(" ms")).accessible_name("time at most");
+        let Some(costs) = costs else { return };
+        let found = if by_error {
+            cheapest_within(&costs, self.bounds.0, f64::INFINITY)
+        } else if by_time {
+            closest_within(&costs, self.bounds.1)
+        } else {
+            return;
+        };
+        self.notice = if found.is_none() { "no dot is" } else { "" };
+        self.chosen = found;
+    }
+}

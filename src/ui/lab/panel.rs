@@ -1,0 +1,303 @@
+//! The lab's state, and its panel.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, TryRecvError};
+use std::time::Duration;
+
+use egui::{Align, Button, Key, Layout, Response, RichText, Ui};
+
+use super::super::requests::UiRequests;
+use super::super::theme::{GRID, ROW, palette};
+use super::super::viewport::Place;
+use super::chart::Chart;
+use super::comparison::{Comparison, Face};
+use super::dots::{ChartView, CostAxis, ErrorAxis, chart};
+use super::stability::Stability;
+use crate::editor::Editor;
+use crate::files::processor;
+use crate::lab::{EIGHT_BIT_FLOOR, Study, keep, kept};
+use crate::scene::{Render, Scene};
+use crate::trace::Threads;
+use crate::worker::run_in_background;
+
+/// Time between two looks at whether a kept study is read.
+const LOOK: Duration = Duration::from_millis(50);
+/// Longer side of the pictures that are measured, in pixels: a study then takes seconds.
+const SIDE: u32 = 256;
+/// Width of the column that tells of a dot.
+pub(super) const DETAILS: f32 = 300.0;
+
+/// What the lab asks of the render thread.
+pub enum LabRequest {
+    /// Measure this.
+    Measure(Box<Study>),
+    /// Give the measuring up.
+    Stop,
+}
+
+/// What the panel shows.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Tab {
+    /// Time against error.
+    Chart,
+    /// The maps of where formulas break.
+    Stability,
+}
+
+/// The lab's state.
+pub struct Lab {
+    /// Whether it is shown.
+    pub is_open: bool,
+    pub(super) study: Option<Box<Study>>,
+    /// Whether the render thread is at it.
+    pub(super) is_running: bool,
+    /// Counts the studies.
+    number: u64,
+    pub(super) cost: CostAxis,
+    pub(super) error: ErrorAxis,
+    pub(super) chosen: Option<usize>,
+    pub(super) face: Face,
+    look: Comparison,
+    /// The bounds for the cheapest dot: RMSE and milliseconds.
+    pub(super) bounds: (f64, f64),
+    /// What is measured on.
+    machine: String,
+    /// What is shown.
+    pub(super) tab: Tab,
+    stability: Stability,
+    /// Whether POV-Ray is to be measured too.
+    pub(super) asks_povray: bool,
+    /// What is said of the bounds that were asked for.
+    pub(super) notice: &'static str,
+    /// Where studies are kept; `None` keeps none.
+    folder: Option<PathBuf>,
+    /// The document whose kept study was looked for, and what is found.
+    looked_for: Option<u64>,
+    found: Option<Receiver<Option<Study>>>,
+}
+
+impl Default for Lab {
+    fn default() -> Self {
+        Self {
+            is_open: false,
+            study: None,
+            is_running: false,
+            number: 0,
+            cost: CostAxis::Time,
+            error: ErrorAxis::Rmse,
+            chosen: None,
+            face: Face::Picture,
+            look: Comparison::default(),
+            bounds: (EIGHT_BIT_FLOOR, 100.0),
+            machine: { format!("{} threads, {}", Threads::available(), processor()) },
+            tab: Tab::Chart,
+            stability: Stability::default(),
+            asks_povray: false,
+            notice: "",
+            folder: None,
+            looked_for: None,
+            found: None,
+        }
+    }
+}
+
+impl Lab {
+    /// A lab that keeps its studies in a folder, if there is one.
+    pub fn new(folder: Option<PathBuf>) -> Self {
+        Self {
+            folder,
+            ..Self::default()
+        }
+    }
+
+    /// Takes up what the render thread has measured, and whether it was still at it just before.
+    pub fn update(&mut self, is_measuring: bool, news: Option<Study>) {
+        if self.is_running {
+            self.study = news.map(Box::new).or(self.study.take());
+            self.is_running = is_measuring;
+            self.keep_what_is_done();
+        }
+    }
+
+    /// Puts a study that is done on disk.
+    fn keep_what_is_done(&self) {
+        let done = self
+            .study
+            .as_deref()
+            .filter(|study| study.progress() >= 1.0);
+        let folder = self.folder.as_ref().filter(|_| !self.is_running);
+        if let (Some(study), Some(folder)) = (done, folder) {
+            let (study, machine, folder) = (study.clone(), self.machine.clone(), folder.clone());
+            // Nobody waits for it.
+            drop(run_in_background("glint-lab", move || {
+                keep(&study, &machine, &folder);
+            }));
+        }
+    }
+
+    /// Looks for what was measured of a document that was opened, and takes it up when it is found.
+    fn look_for_kept(&mut self, ui: &Ui, editor: &Editor) {
+        let document = editor.documents();
+        if let Some(folder) = self.folder.clone()
+            && self.looked_for != Some(document)
+        {
+            self.looked_for = Some(document);
+            let (scene, machine) = (Arc::clone(editor.scene()), self.machine.clone());
+            self.found = Some(run_in_background("glint-lab", move || {
+                kept(&scene, SIDE, &machine, &folder)
+            }));
+        }
+        let Some(found) = &self.found else { return };
+        let study = match found.try_recv() {
+            Ok(study) => study,
+            Err(TryRecvError::Disconnected) => None,
+            Err(TryRecvError::Empty) => return ui.request_repaint_after(LOOK),
+        };
+        self.found = None;
+        if let Some(study) = study.filter(|_| !self.is_running) {
+            self.study = Some(Box::new(study));
+            self.chosen = None;
+            self.number += 1;
+        }
+    }
+
+    /// Whether a dot is looked at in place of the live view.
+    pub fn is_looking(&self) -> bool {
+        self.is_open && self.chosen.is_some()
+    }
+
+    /// What the status line says about the dot that is looked at, if one is.
+    pub fn describe(&self) -> Option<String> {
+        let place = self.chosen.filter(|_| self.is_open)?;
+        let dot = self.study.as_ref()?.measurements.get(place)?;
+        let image = dot.picture.as_ref()?;
+        let (name, words) = (&dot.candidate.name, dot.candidate.words());
+        Some(format!(
+            "lab: {name} · {}×{} · {words}",
+            image.width, image.height
+        ))
+    }
+
+    /// What is looked at in place of the live view.
+    pub fn name(&self) -> String {
+        let measured = self.study.as_ref().map(|study| &study.measurements);
+        let dot = self.chosen.and_then(|place| measured?.get(place));
+        dot.map_or(String::new(), |dot| format!("Lab: {}", dot.candidate.name))
+    }
+
+    /// Leaves the dot that is looked at; whether there was one.
+    pub fn leave(&mut self) -> bool {
+        self.is_open && self.chosen.take().is_some()
+    }
+
+    /// Shows the panel.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        editor: &Editor,
+        out: &mut UiRequests,
+    ) -> Option<LabRequest> {
+        self.look_for_kept(ui, editor);
+        ui.add_space(GRID / 2.0);
+        let wish = ui.horizontal(|ui| self.show_head(ui, editor, out)).inner;
+        if self.tab == Tab::Stability {
+            self.stability.show(ui, editor.shown());
+            return wish;
+        }
+        let Some((chart, members)) = self.chart(editor) else {
+            return self.show_invitation(ui, editor).or(wish);
+        };
+        ui.horizontal_top(|ui| {
+            let width = (ui.available_width() - DETAILS - GRID).max(120.0);
+            let size = egui::vec2(width, ui.available_height());
+            ui.allocate_ui_with_layout(size, Layout::top_down(Align::Min), |ui| {
+                if let Some(chosen) = chart.show(ui) {
+                    self.chosen = members
+                        .get(chosen)
+                        .and_then(|members| members.first().copied());
+                }
+            });
+            ui.vertical(|ui| self.show_details(ui, editor, &members, out));
+        });
+        wish
+    }
+
+    /// Begins to measure the scene that is shown.
+    pub(super) fn measure(&mut self, editor: &Editor) -> LabRequest {
+        let mut study = Study::of_side(Arc::clone(editor.shown()), SIDE);
+        if self.asks_povray {
+            study = study.with_povray();
+        }
+        let study = Box::new(study);
+        self.found = None;
+        self.notice = "";
+        self.study = Some(study.clone());
+        self.chosen = None;
+        self.number += 1;
+        self.is_running = true;
+        LabRequest::Measure(study)
+    }
+
+    /// What stands in place of the chart before anything is measured.
+    fn show_invitation(&mut self, ui: &mut Ui, editor: &Editor) -> Option<LabRequest> {
+        let mut wish = None;
+        ui.vertical_centered(|ui| {
+            ui.take_available_height();
+            ui.add_space((ui.available_height() / 2.0 - 2.0 * ROW).max(0.0));
+            ui.weak("Every way of tracing this scene, each a dot: how long it takes, and how far it is off.");
+            ui.add_space(GRID);
+            let colors = palette(ui.ctx());
+            let text = RichText::new("Measure (about 30 s)").color(colors.on_accent);
+            let start = ui.add(Button::new(text).fill(colors.accent));
+            if start.clicked() {
+                wish = Some(self.measure(editor));
+            }
+        });
+        wish
+    }
+
+    /// Draws what is looked at into the place of the live view; `None` if nothing is.
+    pub fn show_picture(&mut self, ui: &mut Ui, place: Place) -> Option<Response> {
+        let place_of_dot = self.chosen.filter(|_| self.is_open)?;
+        let study = self.study.as_ref()?;
+        let picture = study.measurements.get(place_of_dot)?.picture.as_ref()?;
+        let reference = &study.reference.as_ref()?.picture;
+        let is_flipped = !ui.text_edit_focused() && ui.input(|input| input.key_down(Key::B));
+        let face = if is_flipped {
+            Face::Reference
+        } else {
+            self.face
+        };
+        let key = (place_of_dot, face, self.number);
+        Some(self.look.show(ui, place, key, (picture, reference)))
+    }
+
+    /// Whether the scene is not any more what was measured. Settings do not count: they are what is
+    /// compared.
+    pub(super) fn is_stale(&self, editor: &Editor) -> bool {
+        let bare = |scene: &Scene| Scene {
+            render: Render {
+                reflection_limit: scene.render.reflection_limit,
+                ..Render::default()
+            },
+            animation: Arc::default(),
+            ..scene.clone()
+        };
+        self.study.as_ref().is_some_and(|study| {
+            !Arc::ptr_eq(study.scene(), editor.shown())
+                && bare(study.scene()) != bare(editor.shown())
+        })
+    }
+
+    fn chart(&self, editor: &Editor) -> Option<(Chart, Vec<Vec<usize>>)> {
+        let title = editor.title();
+        let view = ChartView {
+            name: title.strip_suffix(".ron").unwrap_or(&title),
+            machine: &self.machine,
+            axes: (self.cost, self.error),
+            chosen: self.chosen,
+        };
+        Some(chart(self.study.as_deref()?, &view))
+    }
+}
