@@ -27,6 +27,7 @@ const HOMES: &[(&[&str], &[&str])] = &[
         &[
             "worker",
             "export/exporting",
+            "export/povray",
             "plan/thickness",
             "trace/tracer",
             "trace/threads",

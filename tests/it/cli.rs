@@ -81,6 +81,41 @@ fn render_writes_the_picture_and_one_json_object() {
 }
 
 #[test]
+fn a_sampling_is_chosen_by_what_was_asked_of_the_picture() {
+    let folder = folder();
+    let chosen = |goal: [&str; 2]| {
+        let words = [&["render", DEMO, "--width", "96", "--stats"][..], &goal].concat();
+        let run = glint(folder.path(), &words);
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        let stats: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        stats["antialias"].as_str().expect("a sampling").to_owned()
+    };
+    assert_eq!(chosen(["--within", "1dB"]), "none");
+    assert_ne!(chosen(["--within", "50dB"]), "none");
+    assert_eq!(chosen(["--budget", "0ms"]), "none");
+    assert_ne!(chosen(["--budget", "1000s"]), "none");
+    let words = [
+        "render", DEMO, "-o", "a.ppm", "--width", "96", "--within", "55dB",
+    ];
+    let run = glint(folder.path(), &words);
+    let said = text(&run.stdout);
+    assert!(said.contains("the cheapest within 55.0 dB"), "{said}");
+    for wrong in [
+        &["--within", "55dB", "--antialias", "none"][..],
+        &["--within", "55dB", "--budget", "1ms"],
+        &["--within", "loud"],
+        &["--budget", "16min"],
+    ] {
+        let words = [&["render", DEMO, "-o", "a.ppm"][..], wrong].concat();
+        assert_eq!(
+            glint(folder.path(), &words).status.code(),
+            Some(2),
+            "{wrong:?}"
+        );
+    }
+}
+
+#[test]
 fn formats_threads_and_repeats_give_the_same_pixels() {
     let folder = folder();
     for (name, extra) in [
@@ -372,4 +407,31 @@ fn stability_tells_the_robust_from_the_rest() {
     let columns = csv.lines().next().expect("a head").split(',').count();
     assert!(csv.lines().count() > 800);
     assert!(csv.lines().all(|line| line.split(',').count() == columns));
+}
+
+#[test]
+fn desktops_and_shells_are_told_of_the_program() {
+    let folder = folder();
+    let run = Command::new(env!("CARGO_BIN_EXE_glint"))
+        .arg("--install-desktop")
+        .env("XDG_DATA_HOME", folder.path())
+        .output()
+        .expect("it runs");
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    for path in text(&run.stdout).lines() {
+        assert!(Path::new(path).starts_with(folder.path()) && Path::new(path).is_file());
+    }
+    let read = |file: &str| std::fs::read_to_string(folder.path().join(file)).expect(file);
+    assert!(read("applications/glint.desktop").contains(env!("CARGO_BIN_EXE_glint")));
+    let icon = image::open(folder.path().join("icons/hicolor/256x256/apps/glint.png"));
+    assert_eq!(icon.expect("an icon").width(), 256);
+    assert!(read("man/man1/glint.1").contains("Trace a scene into a picture"));
+    assert!(read("man/man1/glint-render.1").contains("antialias"));
+    for completed in [
+        "bash-completion/completions/glint",
+        "zsh/site-functions/_glint",
+        "fish/vendor_completions.d/glint.fish",
+    ] {
+        assert!(read(completed).contains("antialias"), "{completed}");
+    }
 }

@@ -1,9 +1,9 @@
 //! The referee: POV-Ray, an engine with which Glint shares no code, draws the same pictures.
 
-use glint::export::by_povray;
+use glint::export::{by_povray, povray_differences};
 use glint::image::{Image, render};
 use glint::plan::RenderRequest;
-use glint::scene::{EXAMPLES, Methods, Projection, RayOffset, Scene};
+use glint::scene::{EXAMPLES, Methods, Projection, RayOffset, Scene, Shape};
 use glint::trace::RenderControl;
 
 use crate::random;
@@ -24,27 +24,31 @@ fn different_ppm(a: &Image, b: &Image) -> usize {
     a.pixels.iter().zip(&b.pixels).filter(differ).count() * 1_000_000 / a.pixels.len()
 }
 
+/// Takes from a scene what POV-Ray means something else by: colours above white, and smooth meshes.
+fn dim_and_flatten(scene: &mut Scene) {
+    scene.ambient_intensity *= 0.5;
+    for index in 0..scene.lights.len() {
+        scene.lights[index].intensity *= 0.5;
+    }
+    for index in 0..scene.objects.len() {
+        if let Shape::Mesh(mesh) = &mut scene.objects[index].shape {
+            mesh.smooth = 0.0;
+        }
+    }
+}
+
 #[test]
 #[ignore = "needs POV-Ray (Debian package povray)"]
 fn povray_draws_the_same_pictures() {
-    let folder = tempfile::tempdir().expect("a folder");
     let [front, mut side] = random::published();
     let mut scenes = vec![("demo".to_owned(), front)];
     scenes.push(("demo, second camera".to_owned(), side.clone()));
     side.camera.projection = Projection::Orthographic;
     scenes.push(("demo, orthographic".to_owned(), side));
     scenes.extend((0..50).map(|seed| (format!("random {seed}"), random::scene(seed))));
-    // Highlights in a colour are what it does not know.
-    let is_grey = |scene: &Scene| {
-        let mut packs = scene.color_packs.values();
-        packs.all(|pack| pack.specular.max_element() - pack.specular.min_element() < 0.5)
-    };
-    let examples = EXAMPLES
-        .iter()
-        .map(|example| (example.name.to_owned(), example.document().scene));
-    let grey: Vec<_> = examples.filter(|(_, scene)| is_grey(scene)).collect();
-    assert!(grey.len() >= 3, "{} examples", grey.len());
-    scenes.extend(grey);
+    for example in EXAMPLES {
+        scenes.push((example.name.to_owned(), example.document().scene));
+    }
     scenes.extend((0..4).map(|seed| {
         (
             format!("random {seed} with discs"),
@@ -54,7 +58,16 @@ fn povray_draws_the_same_pictures() {
     for (name, mut scene) in scenes {
         scene.render.width = scene.render.width.min(512);
         scene.render.height = scene.render.height.min(512);
-        let theirs = by_povray(&scene, folder.path(), 2).expect("POV-Ray (Debian package povray)");
+        // Where the model means something else, the pictures are close as they are, and the same without that.
+        if !povray_differences(&scene).is_empty() {
+            let theirs = by_povray(&scene, 2, &RenderControl::default()).expect("POV-Ray");
+            let ppm = different_ppm(&by_glint(&scene, Methods::default()), &theirs.picture);
+            println!("{name}, as it is: {ppm} ppm");
+            assert!(ppm <= 10_000, "{name}: {ppm} ppm");
+            dim_and_flatten(&mut scene);
+        }
+        let theirs = by_povray(&scene, 2, &RenderControl::default())
+            .expect("POV-Ray (Debian package povray)");
         let ppm = different_ppm(&by_glint(&scene, Methods::default()), &theirs.picture);
         println!("{name}: {ppm} ppm of the pixels differ by more than 1/255");
         assert!(ppm <= 1000, "{name}: {ppm} ppm");
@@ -65,7 +78,7 @@ fn povray_draws_the_same_pictures() {
         offset: RayOffset::Fixed(20.0),
         ..Methods::default()
     };
-    let theirs = by_povray(&demo, folder.path(), 2).expect("POV-Ray");
+    let theirs = by_povray(&demo, 2, &RenderControl::default()).expect("POV-Ray");
     let ppm = different_ppm(&by_glint(&demo, wrong), &theirs.picture);
     assert!(ppm > 1000, "only {ppm} ppm");
 }

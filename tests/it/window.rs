@@ -304,3 +304,56 @@ fn the_window_takes_its_own_picture() {
     assert_eq!(bad.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&bad.stderr).contains("the folder none does not exist"));
 }
+
+/// A Wayland compositor without a screen, which ends with the test.
+struct Compositor {
+    server: Child,
+    /// Where its socket is.
+    folder: tempfile::TempDir,
+}
+
+impl Compositor {
+    const SOCKET: &str = "wayland-of-a-test";
+
+    fn new() -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let server = Command::new("weston")
+            .args(["--backend=headless-backend.so", "--idle-time=0"])
+            .args(["--width=1280", "--height=800"])
+            .arg(format!("--socket={}", Self::SOCKET))
+            .env("XDG_RUNTIME_DIR", folder.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("weston is installed (Debian package weston)");
+        let compositor = Self { server, folder };
+        let socket = compositor.folder.path().join(Self::SOCKET);
+        wait_for("the compositor", || socket.exists());
+        compositor
+    }
+}
+
+impl Drop for Compositor {
+    fn drop(&mut self) {
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+    }
+}
+
+#[test]
+#[ignore = "needs a compositor (Debian packages weston, libgl1-mesa-dri)"]
+fn the_window_is_the_same_under_wayland() {
+    let compositor = Compositor::new();
+    let folder = tempfile::tempdir().expect("a folder");
+    let status = Command::new(env!("CARGO_BIN_EXE_glint"))
+        .args(["--screenshot", "window.png"])
+        .current_dir(folder.path())
+        .env_remove("DISPLAY")
+        .env("XDG_RUNTIME_DIR", compositor.folder.path())
+        .env("WAYLAND_DISPLAY", Compositor::SOCKET)
+        .env("XDG_DATA_HOME", folder.path())
+        .status();
+    assert!(status.expect("the program starts").success());
+    let picture = image::open(folder.path().join("window.png")).expect("a picture");
+    assert!(is_violet(middle(&picture.to_rgba8())));
+}

@@ -1,11 +1,13 @@
 //! The inspector: every number, colour and name.
 
+use std::time::{Duration, Instant};
+
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use glint::scene::{Scene, Shape, Sphere};
+use glint::scene::{Document, Sampling, Scene, Shape, Sphere};
 
-use crate::harness::{EditorHarness, radius};
+use crate::harness::{CTRL, EditorHarness, radius};
 
 #[test]
 fn a_drag_changes_the_radius_and_one_undo_brings_it_back() {
@@ -149,6 +151,46 @@ fn the_inspector_says_what_the_scene_needs() {
     harness
         .window
         .get_by_label("because everything the camera can reach is on its side of every plane");
+}
+
+#[test]
+fn a_quality_is_chosen_by_measuring_and_needs_tells_why() {
+    let mut small = Scene::demo();
+    (small.render.width, small.render.height) = (128, 96);
+    let text = Document {
+        header: String::new(),
+        scene: small.clone(),
+    };
+    let text = text.to_text().expect("a text");
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    harness.click("Picture");
+    harness
+        .window
+        .get_by_role_and_label(Role::ComboBox, "quality")
+        .click();
+    harness.settle();
+    harness.click("automatic: 50 dB, hardly visible");
+    let start = Instant::now();
+    while harness
+        .window
+        .query_by_label("measuring this scene")
+        .is_some()
+    {
+        assert!(start.elapsed() < Duration::from_mins(1), "never measured");
+        std::thread::sleep(Duration::from_millis(20));
+        harness.window.step();
+    }
+    harness.settle();
+    // Whichever is cheapest today, the default is closer than that by far.
+    assert_ne!(harness.scene().render.antialias, Sampling::default());
+    assert_eq!(harness.editor().undo_label(), Some("Render: quality"));
+    harness.window.get_by_label("Needs").click();
+    harness.settle();
+    harness
+        .window
+        .get_by_label_contains("the cheapest within 50.0 dB");
+    harness.press(CTRL, Key::Z);
+    assert_eq!(harness.scene(), &small);
 }
 
 #[test]

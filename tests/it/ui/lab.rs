@@ -33,7 +33,7 @@ fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
         harness.window.query_by_label("Use this").is_none(),
         "no dot is chosen"
     );
-    harness.click("Cheapest within");
+    harness.click("Cheapest way below");
     harness.window.get_by_label("Lab picture");
     assert!(harness.window.query_by_label("stale").is_none());
     harness.click("×64");
@@ -49,7 +49,7 @@ fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
         harness.window.query_by_label("Lab picture").is_none(),
         "what is edited is looked at"
     );
-    harness.click("Cheapest within");
+    harness.click("Cheapest way below");
     harness.window.get_by_label("Lab picture");
     harness.window.get_by_label_contains("Leave Lab: ");
     assert!(

@@ -1,0 +1,212 @@
+//! The ends of what a scene can hold: a right picture, by the other engine or by itself in milder circumstances, or a
+//! sentence.
+
+use std::collections::HashSet;
+
+use glam::DVec3;
+use glint::image::{Image, render};
+use glint::plan::RenderRequest;
+use glint::scene::{
+    Accelerator, Camera, ColorPack, Light, List, MAX_REFLECTIONS, MAX_SIDE, Object, Plane,
+    Sampling, Scene, Shape, Sphere, Triangle, check,
+};
+use glint::trace::{RenderControl, Threads};
+
+use crate::random::Dice;
+use crate::scalar::assert_agreed;
+
+fn drawn(scene: &Scene, request: &RenderRequest) -> Image {
+    let traced = render(scene, request, &RenderControl::default());
+    traced.expect("not stopped").0
+}
+
+/// The demo so many times as large, and elsewhere.
+fn demo(scale: f64, by: DVec3) -> Scene {
+    let at = |v: DVec3| v * scale + by;
+    let mut scene = Scene::demo();
+    for index in 0..scene.objects.len() {
+        match &mut scene.objects[index].shape {
+            Shape::Sphere(Sphere { center, radius }) => {
+                (*center, *radius) = (at(*center), *radius * scale);
+            }
+            Shape::Plane(Plane { point, .. }) => *point = at(*point),
+            Shape::Triangle(Triangle { a, b, c }) => (*a, *b, *c) = (at(*a), at(*b), at(*c)),
+            Shape::Disc(_) | Shape::Mesh(_) => unreachable!("the demo has none"),
+        }
+    }
+    for index in 0..scene.lights.len() {
+        let light = &mut scene.lights[index];
+        light.position = at(light.position);
+        if let Some(marker) = &mut light.marker {
+            marker.radius *= scale;
+        }
+    }
+    scene.camera.position = at(scene.camera.position);
+    scene
+}
+
+#[test]
+fn a_scene_of_any_size_anywhere_shows_the_same() {
+    let request = RenderRequest::sized(200, 150);
+    let known = drawn(&demo(1.0, DVec3::ZERO), &request);
+    let far = DVec3::new(0.8, -0.5, 0.3);
+    for (scale, away) in [
+        (1e-9, 0.0),
+        (1e-3, 0.0),
+        (1e3, 0.0),
+        (1e9, 0.0),
+        (1.0, 1e6),
+        (1.0, 1e9),
+        (1e-6, 1e3),
+        (1e9, 5e11),
+    ] {
+        let scene = demo(scale, far * away);
+        assert_eq!(check(&scene), Ok(()));
+        let other = drawn(&scene, &request);
+        let pairs = known.pixels.iter().zip(&other.pixels);
+        let differ = pairs.filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 1));
+        let differ = differ.count();
+        assert!(
+            differ * 500 <= known.pixels.len(),
+            "{scale:e} times as large, {away:e} away: {differ} pixels"
+        );
+    }
+}
+
+#[test]
+fn nothing_at_all_is_a_picture_of_the_background() {
+    let mut scene = Scene::demo();
+    scene.objects = List::default();
+    scene.lights = List::default();
+    scene.background = DVec3::new(10.0, 20.0, 30.0);
+    for sampling in [Sampling::Centres, Sampling::ADAPTIVE, Sampling::Grid(3)] {
+        let request = RenderRequest {
+            sampling,
+            ..RenderRequest::sized(70, 50)
+        };
+        let pixels: HashSet<[u8; 4]> = drawn(&scene, &request).pixels.into_iter().collect();
+        assert_eq!(pixels, HashSet::from([[10, 20, 30, 255]]));
+    }
+    scene = Scene::demo();
+    scene.lights = List::default();
+    assert_agreed("no lights", scene);
+}
+
+#[test]
+fn hundreds_of_lights_and_any_sharpness_are_shaded_as_by_the_other_engine() {
+    let mut scene = Scene::demo();
+    let dice = &mut Dice(5);
+    let light = |number: usize, dice: &mut Dice| Light {
+        name: format!("Light {number}"),
+        position: DVec3::new(
+            dice.real(0.0, 300.0),
+            dice.real(150.0, 300.0),
+            dice.real(-200.0, 100.0),
+        ),
+        intensity: 1.0 / 300.0,
+        visible: true,
+        marker: None,
+    };
+    scene.lights = (0..300).map(|number| light(number, dice)).collect();
+    assert_agreed("300 lights", scene);
+    for exponent in [0.0, 1e-3, 1.0, 1e4, 1e7] {
+        let mut scene = Scene::demo();
+        for pack in scene.packs_mut().values_mut() {
+            pack.phong_exponent = exponent;
+        }
+        assert_eq!(check(&scene), Ok(()));
+        assert_agreed(&format!("exponent {exponent:e}"), scene);
+    }
+}
+
+/// Two mirrors that face each other, and a ball between them.
+fn hall(limit: u32) -> Scene {
+    let mut scene = Scene::demo();
+    scene.render.reflection_limit = limit;
+    let mirror = ColorPack {
+        ambient: DVec3::splat(20.0),
+        diffuse: DVec3::splat(60.0),
+        specular: DVec3::splat(200.0),
+        reflective: true,
+        ..ColorPack::default()
+    };
+    scene.packs_mut().insert("mirror".to_owned(), mirror);
+    let wall = |name: &str, x: f64| Object {
+        name: name.to_owned(),
+        color_pack: "mirror".to_owned(),
+        shape: Shape::Plane(Plane {
+            point: DVec3::new(x, 0.0, 0.0),
+            normal: DVec3::X,
+        }),
+        visible: true,
+        group: String::new(),
+    };
+    scene.objects.push(wall("Left", 0.0));
+    scene.objects.push(wall("Right", 320.0));
+    scene.camera = Camera {
+        position: DVec3::new(160.0, 100.0, 150.0),
+        look_at: DVec3::new(0.9, -0.1, -0.4),
+        ..scene.camera
+    };
+    scene
+}
+
+#[test]
+fn mirrors_in_mirrors_end_where_they_are_to() {
+    for limit in [0, 1, 5, MAX_REFLECTIONS] {
+        assert_agreed(&format!("{limit} bounces"), hall(limit));
+    }
+    let problem = check(&hall(MAX_REFLECTIONS + 1)).expect_err("too many");
+    let said = format!("{problem:?}");
+    assert!(said.contains("reflection_limit"), "{said}");
+}
+
+#[test]
+fn pictures_of_any_shape_are_whole() {
+    let scene = Scene::demo();
+    for (width, height) in [(1, 1), (MAX_SIDE, 1), (1, MAX_SIDE), (3, 2000)] {
+        for sampling in [Sampling::Centres, Sampling::ADAPTIVE] {
+            let request = RenderRequest {
+                sampling,
+                ..RenderRequest::sized(width, height)
+            };
+            let pictures = [1, 64].map(|count| {
+                let threads = Threads::new(Some(count)).expect("threads");
+                threads.run(|| drawn(&scene, &request))
+            });
+            assert!(pictures[0] == pictures[1], "{width}×{height}");
+            assert_eq!(pictures[0].pixels.len(), (width * height) as usize);
+        }
+    }
+}
+
+#[test]
+fn very_many_things_are_seen_as_one_by_one() {
+    let mut scene = Scene::demo();
+    let dice = &mut Dice(9);
+    let ball = |number: usize, dice: &mut Dice| Object {
+        name: format!("Ball {number}"),
+        color_pack: "sphere 1".to_owned(),
+        shape: Shape::Sphere(Sphere {
+            center: DVec3::new(
+                dice.real(0.0, 300.0),
+                dice.real(20.0, 120.0),
+                dice.real(-250.0, -50.0),
+            ),
+            radius: dice.real(0.1, 0.8),
+        }),
+        visible: true,
+        group: String::new(),
+    };
+    for number in 0..100_000 {
+        scene.objects.push(ball(number, dice));
+    }
+    let with = |accelerator| {
+        let request = RenderRequest {
+            accelerator,
+            ..RenderRequest::sized(40, 30)
+        };
+        drawn(&scene, &request).pixels
+    };
+    assert!(with(Accelerator::Bvh) == with(Accelerator::List));
+}
