@@ -23,8 +23,16 @@ const FEW: u64 = 2000;
 /// Scenes with longer texts are left out: most damage to them is damage to numbers.
 const LONGEST: usize = 6000;
 
+/// How many of [`WORDS`] are numbers.
+const NUMBERS: usize = 18;
 /// What breaks more than random bytes do.
-const WORDS: [&str; 34] = [
+const WORDS: [&str; 40] = [
+    "1",
+    "2.5",
+    "-7",
+    "100",
+    "255",
+    "3e4",
     "nan",
     "inf",
     "-inf",
@@ -73,14 +81,15 @@ fn pick(dice: &mut Dice, count: usize) -> usize {
     (dice.real(0.0, count as f64) as usize).min(count - 1)
 }
 
-/// A text with one to six pieces of damage.
+/// A text with one piece of damage, or up to six.
 fn damaged(seed: &str, other: &str, dice: &mut Dice) -> String {
     let mut bytes = seed.as_bytes().to_vec();
-    for _ in 0..=pick(dice, 6) {
+    // Half of them have one piece: what has many is seldom let in.
+    for _ in 0..=pick(dice, 2) * pick(dice, 6) {
         let at = pick(dice, bytes.len() + 1);
         let end = (at + pick(dice, 40)).min(bytes.len());
         let word = WORDS[pick(dice, WORDS.len())].as_bytes();
-        match pick(dice, 7) {
+        match pick(dice, 9) {
             0 => bytes
                 .splice(at..end.min(at + 1), [dice.real(0.0, 256.0) as u8])
                 .for_each(drop),
@@ -88,7 +97,7 @@ fn damaged(seed: &str, other: &str, dice: &mut Dice) -> String {
             2 => bytes.splice(at..end, word.iter().copied()).for_each(drop),
             3 => bytes.drain(at..end).for_each(drop),
             4 => bytes.extend_from_within(at..end),
-            5 => number(&mut bytes, at, word),
+            5..8 => number(&mut bytes, at, WORDS[pick(dice, NUMBERS)].as_bytes()),
             _ => {
                 let from = pick(dice, other.len());
                 let part = other.as_bytes()[from..].iter().take(80);
