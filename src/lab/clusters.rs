@@ -7,7 +7,7 @@ use super::study::{Measurement, Study, Timing};
 /// Errors that differ by less are equal.
 const SAME_ERROR: f64 = 0.02;
 /// Times that differ by less are equal, however little the runs differ.
-const SAME_TIME: f64 = 0.03;
+const SAME_TIME: f64 = 0.08;
 
 /// Groups of measurements, by their places, that differ neither in time nor in error by more than the runs of
 /// each do; the first of a group is the first of the list. What is not fully measured is in no group.

@@ -1,14 +1,14 @@
 //! The chart itself: dots on logarithmic axes, the front below the best of them.
 
-use std::ops::RangeInclusive;
-
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, TextStyle, Ui, Vec2b, pos2};
+use egui::{
+    Align2, Color32, FontId, Painter, Pos2, Rangef, Rect, Stroke, TextStyle, Ui, Vec2b, pos2, vec2,
+};
 use egui_plot::{
-    AxisHints, GridInput, GridMark, HPlacement, HoverPosition, Plot, PlotPoint, PlotPoints,
-    PlotTransform, Points,
+    AxisHints, HPlacement, HoverPosition, Plot, PlotPoint, PlotPoints, PlotTransform, Points,
 };
 
 use super::super::theme::{GRID, palette};
+use super::axes::{MOST_DECADES, decades, decibels, plain, power_of_ten, powers};
 use super::labels::place;
 use super::marks;
 use crate::lab::{Family, front};
@@ -47,6 +47,8 @@ pub struct Chart {
     pub chosen: Option<usize>,
     /// What the axes show at least: cost and error, from and to.
     pub bounds: Option<[(f64, f64); 2]>,
+    /// Whether it is one of several: what they have in common is told once for all.
+    pub is_one_of_several: bool,
 }
 
 /// One dot.
@@ -100,12 +102,7 @@ impl Chart {
             ui.centered_and_justified(|ui| ui.weak("No dots yet"));
             return None;
         };
-        ui.horizontal_wrapped(|ui| {
-            ui.label(egui::RichText::new(&self.title).strong());
-            ui.add_space(GRID);
-            let families: Vec<Family> = self.spots.iter().map(|spot| spot.family).collect();
-            marks::legend(ui, &families);
-        });
+        self.show_title(ui);
         let is_low = ui.available_height() < LOW;
         let response = self.plot(is_low).show(ui, |plot| {
             // What the axes show, and what the pointer can find; it is drawn below.
@@ -125,20 +122,51 @@ impl Chart {
         })
     }
 
+    fn show_title(&self, ui: &mut Ui) {
+        let title = egui::RichText::new(&self.title);
+        if self.is_one_of_several {
+            // Two lines for each, so that charts beside each other begin at one height.
+            let size = vec2(
+                ui.available_width(),
+                2.0 * ui.text_style_height(&TextStyle::Small),
+            );
+            ui.allocate_ui(size, |ui| {
+                ui.set_min_size(size);
+                ui.label(title.small());
+            });
+            return;
+        }
+        ui.horizontal_wrapped(|ui| {
+            ui.label(title.strong());
+            ui.add_space(GRID);
+            marks::legend(ui, &self.families());
+        });
+    }
+
+    /// What its dots differ in.
+    pub fn families(&self) -> Vec<Family> {
+        self.spots.iter().map(|spot| spot.family).collect()
+    }
+
     fn plot(&self, is_low: bool) -> Plot<'_> {
         let whole = self.error;
-        let error = if is_low {
+        let error = if is_low || self.is_one_of_several {
             whole.split(' ').next().unwrap_or(whole)
         } else {
             whole
         };
         let mut up = vec![AxisHints::new_y().label(error).formatter(power_of_ten)];
-        if self.has_decibels {
+        if self.has_decibels && !self.is_one_of_several {
             let decibels = AxisHints::new_y().label("dB").formatter(decibels);
             up.push(decibels.placement(HPlacement::Right));
         }
+        let mut across = AxisHints::new_x().label(&self.cost).formatter(plain);
+        if self.is_one_of_several {
+            let unit = self.cost.split(' ').next().unwrap_or(&self.cost);
+            across = across.label(unit).label_spacing(Rangef::new(12.0, 18.0));
+        }
         Plot::new("lab chart")
-            .custom_x_axes(vec![AxisHints::new_x().label(&self.cost).formatter(plain)])
+            .custom_x_axes(vec![across])
             .custom_y_axes(up)
             .x_grid_spacer(|input| decades(&input))
             .y_grid_spacer(|input| powers(&input))
@@ -226,8 +254,9 @@ impl Chart {
             let is_first = self.in_use == Some(*index) || self.chosen == Some(*index);
             (!is_first, !front.contains(index))
         };
+        let is_named = |index: &usize| !self.is_one_of_several || rank(index) != (true, true);
         let mut order: Vec<usize> = (0..dots.len())
-            .filter(|&index| frame.contains(dots[index]))
+            .filter(|index| frame.contains(dots[*index]) && is_named(index))
             .collect();
         order.sort_by_key(rank);
         let color = |index: usize| {
@@ -338,87 +367,9 @@ fn draw_decades(painter: &Painter, transform: &PlotTransform, line: Stroke) {
     painter.rect_stroke(frame, 0, line, egui::StrokeKind::Inside);
 }
 
-/// Zoomed out farther, marks would be closer than pixels.
-const MOST_DECADES: f64 = 40.0;
-
-fn marks_at(input: &GridInput, digits: &[u32]) -> Vec<GridMark> {
-    let (low, high) = (input.bounds.0.floor() as i32, input.bounds.1.ceil() as i32);
-    if f64::from(high - low) > MOST_DECADES {
-        return Vec::new();
-    }
-    let decade = |exponent: i32| {
-        digits.iter().map(move |&digit| GridMark {
-            value: f64::from(exponent) + f64::from(digit).log10(),
-            step_size: 1.0,
-        })
-    };
-    let in_sight = |mark: &GridMark| (input.bounds.0..=input.bounds.1).contains(&mark.value);
-    (low..=high).flat_map(decade).filter(in_sight).collect()
-}
-
-/// Marks at the powers of ten; between them where there are few.
-pub fn decades(input: &GridInput) -> Vec<GridMark> {
-    let is_narrow = input.bounds.1 - input.bounds.0 < 1.5;
-    marks_at(input, if is_narrow { &[1, 2, 5] } else { &[1] })
-}
-
-/// Marks at the powers of ten.
-pub fn powers(input: &GridInput) -> Vec<GridMark> {
-    marks_at(input, &[1])
-}
-
-/// The number at a mark.
-pub fn plain(mark: GridMark, _: &RangeInclusive<f64>) -> String {
-    let value = 10.0_f64.powf(mark.value);
-    if (1e-3..1e6).contains(&value) {
-        let text = format!("{value:.3}");
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        superscript(mark.value.round() as i32)
-    }
-}
-
-/// The power of ten at a mark.
-pub fn power_of_ten(mark: GridMark, _: &RangeInclusive<f64>) -> String {
-    superscript(mark.value.round() as i32)
-}
-
-fn decibels(mark: GridMark, _: &RangeInclusive<f64>) -> String {
-    format!("{:.0}", (-20.0 * mark.value).round() + 0.0)
-}
-
-fn superscript(exponent: i32) -> String {
-    let digits = exponent.to_string();
-    let raised = digits.chars().map(|digit| match digit {
-        '-' => '⁻',
-        digit => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹']
-            [digit.to_digit(10).unwrap_or(0) as usize],
-    });
-    std::iter::once("10".to_owned())
-        .chain(raised.map(String::from))
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn powers_are_written_alike() {
-        let mark = |value: f64| GridMark {
-            value,
-            step_size: 1.0,
-        };
-        let all = 0.0..=1.0;
-        assert_eq!(power_of_ten(mark(-3.0), &all), "10⁻³");
-        assert_eq!(power_of_ten(mark(12.0), &all), "10¹²");
-        assert_eq!(plain(mark(-1.0), &all), "0.1");
-        assert_eq!(plain(mark(2.0), &all), "100");
-        assert_eq!(
-            (decibels(mark(-3.0), &all), decibels(mark(0.0), &all)),
-            ("60".to_owned(), "0".to_owned())
-        );
-    }
 
     #[test]
     fn the_front_is_a_staircase_that_doubtful_dots_do_not_carry() {

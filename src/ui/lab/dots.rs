@@ -103,6 +103,7 @@ pub fn chart(study: &Study, view: &ChartView) -> (Chart, Vec<Vec<usize>>) {
         in_use: in_use(study).and_then(spot_of),
         chosen: view.chosen.and_then(spot_of),
         bounds: None,
+        is_one_of_several: false,
         spots,
     };
     (chart, clusters)

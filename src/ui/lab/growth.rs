@@ -4,7 +4,7 @@ use egui::Ui;
 use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoints, Points};
 
 use super::super::theme::{GRID, palette};
-use super::chart::{decades, plain};
+use super::axes::{decades, plain};
 use super::pictures::picture;
 use crate::image::Image;
 use crate::lab::{Cost, Crowd, Growth, PictureLook};

@@ -1,6 +1,8 @@
 //! The lab: time against error of every way of tracing the open scene, each a dot that can be looked
 //! at and adopted.
 
+mod axes;
+
 mod labels;
 
 mod marks;

@@ -6,6 +6,7 @@ use super::super::raster::draw;
 use super::super::theme::GRID;
 use super::chart::Chart;
 use super::dots::{ChartView, CostAxis, ErrorAxis, chart};
+use super::marks;
 use crate::image::Image;
 use crate::lab::{PictureLook, Study};
 
@@ -46,10 +47,14 @@ pub fn chart_picture(studies: &[(String, Study)], machine: &str, look: PictureLo
     });
     for chart in &mut charts {
         chart.bounds = bounds;
+        chart.is_one_of_several = studies.len() > 1;
     }
     let columns = (charts.len() as f64).sqrt().ceil().max(1.0) as usize;
     let rows = charts.len().div_ceil(columns).max(1);
     picture(look, |ui| {
+        if studies.len() > 1 {
+            show_common(ui, &charts);
+        }
         let room = ui.available_size();
         let tile = vec2(room.x / columns as f32 - GRID, room.y / rows as f32 - GRID);
         for row in charts.chunks(columns) {
@@ -65,4 +70,17 @@ pub fn chart_picture(studies: &[(String, Study)], machine: &str, look: PictureLo
             });
         }
     })
+}
+
+/// What the axes and marks of several charts mean.
+fn show_common(ui: &mut Ui, charts: &[Chart]) {
+    ui.horizontal_wrapped(|ui| {
+        let families: Vec<_> = charts.iter().flat_map(Chart::families).collect();
+        marks::legend(ui, &families);
+    });
+    if let Some(chart) = charts.first() {
+        let error = chart.error;
+        ui.weak(format!("To the right {}, upwards {error}", chart.cost));
+    }
+    ui.add_space(GRID);
 }

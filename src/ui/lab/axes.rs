@@ -1,0 +1,89 @@
+//! Marks on axes of powers of ten, and the numbers at them.
+
+use std::ops::RangeInclusive;
+
+use egui_plot::{GridInput, GridMark};
+
+/// Zoomed out farther, marks would be closer than pixels.
+pub const MOST_DECADES: f64 = 40.0;
+
+fn marks_at(input: &GridInput, digits: &[u32]) -> Vec<GridMark> {
+    let (low, high) = (input.bounds.0.floor() as i32, input.bounds.1.ceil() as i32);
+    if f64::from(high - low) > MOST_DECADES {
+        return Vec::new();
+    }
+    let decade = |exponent: i32| {
+        digits.iter().map(move |&digit| GridMark {
+            value: f64::from(exponent) + f64::from(digit).log10(),
+            step_size: 1.0,
+        })
+    };
+    let in_sight = |mark: &GridMark| (input.bounds.0..=input.bounds.1).contains(&mark.value);
+    (low..=high).flat_map(decade).filter(in_sight).collect()
+}
+
+/// Marks at the powers of ten; between them where there are few.
+pub fn decades(input: &GridInput) -> Vec<GridMark> {
+    let is_narrow = input.bounds.1 - input.bounds.0 < 1.5;
+    marks_at(input, if is_narrow { &[1, 2, 5] } else { &[1] })
+}
+
+/// Marks at the powers of ten.
+pub fn powers(input: &GridInput) -> Vec<GridMark> {
+    marks_at(input, &[1])
+}
+
+/// The number at a mark.
+pub fn plain(mark: GridMark, _: &RangeInclusive<f64>) -> String {
+    let value = 10.0_f64.powf(mark.value);
+    if (1e-3..1e6).contains(&value) {
+        let text = format!("{value:.3}");
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        superscript(mark.value.round() as i32)
+    }
+}
+
+/// The power of ten at a mark.
+pub fn power_of_ten(mark: GridMark, _: &RangeInclusive<f64>) -> String {
+    superscript(mark.value.round() as i32)
+}
+
+/// The decibels at a mark.
+pub fn decibels(mark: GridMark, _: &RangeInclusive<f64>) -> String {
+    format!("{:.0}", (-20.0 * mark.value).round() + 0.0)
+}
+
+fn superscript(exponent: i32) -> String {
+    let digits = exponent.to_string();
+    let raised = digits.chars().map(|digit| match digit {
+        '-' => '⁻',
+        digit => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹']
+            [digit.to_digit(10).unwrap_or(0) as usize],
+    });
+    std::iter::once("10".to_owned())
+        .chain(raised.map(String::from))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_are_written_alike() {
+        let mark = |value: f64| GridMark {
+            value,
+            step_size: 1.0,
+        };
+        let all = 0.0..=1.0;
+        assert_eq!(power_of_ten(mark(-3.0), &all), "10⁻³");
+        assert_eq!(power_of_ten(mark(12.0), &all), "10¹²");
+        assert_eq!(plain(mark(-1.0), &all), "0.1");
+        assert_eq!(plain(mark(2.0), &all), "100");
+        assert_eq!(
+            (decibels(mark(-3.0), &all), decibels(mark(0.0), &all)),
+            ("60".to_owned(), "0".to_owned())
+        );
+    }
+}
