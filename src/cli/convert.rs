@@ -43,9 +43,10 @@ fn write_povray(args: &ConvertArgs) -> Result<(), CliError> {
     let scene = read_scene(&args.input)?;
     write_text(&args.output, &povray_text(&scene))?;
     let (width, height) = (scene.render.width, scene.render.height);
-    let path = args.output.display();
+    let path = args.output.display().to_string();
+    let quoted = shlex::try_quote(&path).unwrap_or_default();
     say(&format!(
-        "{path}: draw it with povray +I{path} +W{width} +H{height} -A File_Gamma=1.0 Dither=off"
+        "{path}: draw it with povray +I{quoted} +W{width} +H{height} -A File_Gamma=1.0 Dither=off"
     ));
     Ok(())
 }

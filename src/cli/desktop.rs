@@ -33,8 +33,9 @@ pub fn install(mut command: Command) -> Result<(), CliError> {
     write(&folder, "applications/glint.desktop", entry.as_bytes())?;
     write(&folder, "icons/hicolor/256x256/apps/glint.png", ICON)?;
     let manual = folder.join("man/man1");
-    make_folder(&manual).map_err(CliError::failed)?;
-    clap_mangen::generate_to(command.clone(), &manual).map_err(CliError::failed)?;
+    let failed = |error| CliError::failed(format!("{}: {error}", manual.display()));
+    make_folder(&manual).map_err(failed)?;
+    clap_mangen::generate_to(command.clone(), &manual).map_err(failed)?;
     say(&manual.join("glint.1").display().to_string());
     for (shell, file) in SHELLS {
         let mut text = Vec::new();
@@ -48,7 +49,8 @@ pub fn install(mut command: Command) -> Result<(), CliError> {
 fn data_folder() -> Option<PathBuf> {
     let set = |name| env::var_os(name).map(PathBuf::from);
     let own = set("XDG_DATA_HOME").filter(|folder| folder.is_absolute());
-    own.or_else(|| set("HOME").map(|home| home.join(".local/share")))
+    let home = set("HOME").filter(|folder| folder.is_absolute());
+    own.or_else(|| home.map(|home| home.join(".local/share")))
 }
 
 /// An entry by the Desktop Entry Specification.

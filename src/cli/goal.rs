@@ -5,23 +5,25 @@ use std::time::Duration;
 /// An error such as `55dB`, or `0.0018` as a root mean square of linear colours from 0 to 1.
 pub fn error(word: &str) -> Result<f64, String> {
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|n| n.is_finite());
-    let rmse = match word.strip_suffix("dB").or(word.strip_suffix("db")) {
+    let rmse = match word.to_ascii_lowercase().strip_suffix("db") {
         Some(decibels) => number(decibels).map(|decibels| 10.0_f64.powf(decibels / -20.0)),
         None => number(word),
     };
-    rmse.filter(|rmse| *rmse > 0.0).ok_or_else(|| {
-        "expected decibels such as 55dB, or an RMSE above 0 such as 0.002".to_owned()
-    })
+    rmse.filter(|rmse| *rmse > 0.0 && *rmse < 1.0)
+        .ok_or_else(|| {
+            "expected decibels such as 55dB, or an RMSE between 0 and 1 such as 0.002".to_owned()
+        })
 }
 
 /// A time such as `16ms` or `2s`; a number alone means milliseconds.
 pub fn time(word: &str) -> Result<Duration, String> {
+    let word = word.to_ascii_lowercase();
     let (number, millis) = if let Some(millis) = word.strip_suffix("ms") {
         (millis, 1.0)
     } else if let Some(seconds) = word.strip_suffix('s') {
         (seconds, 1e3)
     } else {
-        (word, 1.0)
+        (&*word, 1.0)
     };
     let millis = number.trim().parse::<f64>().ok().map(|n| n * millis);
     let time = millis.and_then(|millis| Duration::try_from_secs_f64(millis / 1e3).ok());
@@ -39,7 +41,8 @@ mod tests {
         assert_eq!(time("16ms"), Ok(Duration::from_millis(16)));
         assert_eq!(time("2 s"), Ok(Duration::from_secs(2)));
         assert_eq!(time("4"), Ok(Duration::from_millis(4)));
-        for wrong in ["", "dB", "nan", "-1", "0", "infdB"] {
+        assert_eq!(time("16MS"), Ok(Duration::from_millis(16)));
+        for wrong in ["", "dB", "nan", "-1", "0", "infdB", "55", "0dB", "-5dB"] {
             assert!(error(wrong).is_err(), "{wrong}");
         }
         for wrong in ["", "ms", "-1ms", "nan", "1e30s", "16min"] {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::error::{CliError, say};
+use super::render::sized;
 use super::scene::read_scene;
 use crate::export::{by_povray, povray_differences, save_image};
 use crate::image::{Film, Format, Image, render};
@@ -19,10 +20,10 @@ const ENLARGED: u16 = 64;
 pub struct RefereeArgs {
     /// The scene file (RON)
     scene: PathBuf,
-    /// Width in pixels [default: the scene's own]
+    /// Width in pixels; alone, it keeps the scene's aspect
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=16384))]
     width: Option<u32>,
-    /// Height in pixels [default: the scene's own]
+    /// Height in pixels; alone, it keeps the scene's aspect
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=16384))]
     height: Option<u32>,
     /// Write the differences, 64 times enlarged, to this picture (PNG or PPM)
@@ -41,8 +42,8 @@ pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
     args.output.as_deref().map(Format::of_path).transpose()?;
     let mut scene = read_scene(&args.scene)?;
     let size = &mut scene.render;
-    size.width = args.width.unwrap_or(size.width);
-    size.height = args.height.unwrap_or(size.height);
+    let own = (size.width, size.height);
+    (size.width, size.height) = sized(own, (args.width, args.height));
     size.antialias = Sampling::Centres;
     let threads = Threads::new(args.threads.map(usize::from))?;
     let theirs =
@@ -61,7 +62,7 @@ pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
         .count();
     let share = same as f64 * 100.0 / offs.len().max(1) as f64;
     say(&format!(
-        "{share:.3} % of {}×{} pixels are within 1/255 of POV-Ray's, {} are not; the worst is off by {worst}",
+        "{share:.3} % of {}×{} pixels are within 1/255 of POV-Ray's, all but {}; the worst is off by {worst}",
         ours.width,
         ours.height,
         offs.len() - same,

@@ -47,9 +47,9 @@ pub struct RenderArgs {
     #[command(flatten)]
     settings: SettingArgs,
     /// Measure samplings on this picture, and take the cheapest whose error is at most this: 55dB, or an RMSE (linear, 0–1)
-    #[arg(long, value_name = "ERROR", value_parser = error, conflicts_with_all = ["antialias", "budget"])]
+    #[arg(long, value_name = "ERROR", value_parser = error, conflicts_with_all = ["antialias", "budget", "show"])]
     within: Option<f64>,
-    /// Measure samplings on this picture, and take the closest that takes at most so long: 16ms, 2s
+    /// Measure samplings on this picture, and take the closest that takes at most so long: 16ms, 2s, or a number of milliseconds; the measuring takes time of its own
     #[arg(long, value_name = "TIME", value_parser = time, conflicts_with = "antialias")]
     budget: Option<Duration>,
     /// Instruction set of the tracer; all give the same picture [default: the widest of this processor]
@@ -85,10 +85,19 @@ struct Stats {
     lanes: String,
     /// What was chosen, where that was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
-    antialias: Option<String>,
+    chosen: Option<Chosen>,
     threads: usize,
     width: usize,
     height: usize,
+}
+
+#[derive(Serialize)]
+struct Chosen {
+    antialias: String,
+    /// As measured on strips of the picture.
+    rmse: f64,
+    /// Whether it keeps to what was asked for.
+    is_met: bool,
 }
 
 #[derive(Serialize)]
@@ -292,7 +301,11 @@ fn stats((film, choice): (&Film, Option<Choice>), costs: &[RenderCost], threads:
             reflected: rays.reflected,
         },
         lanes,
-        antialias: choice.map(|choice| choice.sampling.id()),
+        chosen: choice.map(|choice| Chosen {
+            antialias: choice.sampling.id(),
+            rmse: choice.rmse,
+            is_met: choice.is_met,
+        }),
         threads,
         width,
         height,

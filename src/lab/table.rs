@@ -69,7 +69,7 @@ pub fn table(study: &Study) -> String {
             super::EIGHT_BIT_FLOOR
         );
     }
-    text.push_str("* nothing is both faster and closer   ? the runs differ by more than a fifth\n");
+    text.push_str("* nothing that can be told apart from it is both faster and closer   ? the runs differ by more than a fifth\n");
     text
 }
 

@@ -88,12 +88,15 @@ fn a_sampling_is_chosen_by_what_was_asked_of_the_picture() {
         let run = glint(folder.path(), &words);
         assert!(run.status.success(), "{}", text(&run.stderr));
         let stats: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
-        stats["antialias"].as_str().expect("a sampling").to_owned()
+        let chosen = &stats["chosen"];
+        let antialias = chosen["antialias"].as_str().expect("a sampling");
+        (antialias == "none", chosen["is_met"] == true)
     };
-    assert_eq!(chosen(["--within", "1dB"]), "none");
-    assert_ne!(chosen(["--within", "50dB"]), "none");
-    assert_eq!(chosen(["--budget", "0ms"]), "none");
-    assert_ne!(chosen(["--budget", "1000s"]), "none");
+    assert_eq!(chosen(["--within", "1dB"]), (true, true));
+    assert_eq!(chosen(["--within", "50dB"]), (false, true));
+    assert_eq!(chosen(["--within", "300dB"]), (false, false));
+    assert!(!chosen(["--budget", "0ms"]).1);
+    assert_eq!(chosen(["--budget", "1000s"]), (false, true));
     let words = [
         "render", DEMO, "-o", "a.ppm", "--width", "96", "--within", "55dB",
     ];
@@ -104,6 +107,7 @@ fn a_sampling_is_chosen_by_what_was_asked_of_the_picture() {
         &["--within", "55dB", "--antialias", "none"][..],
         &["--within", "55dB", "--budget", "1ms"],
         &["--within", "loud"],
+        &["--within", "55"],
         &["--budget", "16min"],
     ] {
         let words = [&["render", DEMO, "-o", "a.ppm"][..], wrong].concat();

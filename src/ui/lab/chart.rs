@@ -198,8 +198,14 @@ impl Chart {
             let line = Stroke::new(1.0, colors.muted);
             painter.extend(egui::Shape::dashed_line(&dashes, line, 6.0, 5.0));
             taken.push(Rect::from_two_pos(dashes[0], dashes[1]));
-            let at = pos2(frame.right() - GRID, y + 2.0);
-            taken.push(painter.text(at, Align2::RIGHT_TOP, name, small.clone(), colors.muted));
+            // Below its line, or above where there is no room for that.
+            let (down, anchor) = if y + 2.0 * GRID < frame.bottom() {
+                (2.0, Align2::RIGHT_TOP)
+            } else {
+                (-2.0, Align2::RIGHT_BOTTOM)
+            };
+            let at = pos2(frame.right() - GRID, y + down);
+            taken.push(painter.text(at, anchor, name, small.clone(), colors.muted));
         }
         let dots: Vec<Pos2> = (0..self.spots.len())
             .map(|index| on_screen(self.at(index)))
