@@ -71,7 +71,8 @@ pub fn maps(effort: u32) -> Vec<Map> {
 /// For each sampling, the pixels that should show something, and those of them that show nothing.
 fn missed(effort: u32, width: f64, distance: f64) -> [Tries; SAMPLINGS.len()] {
     let mut sums = [Tries::default(); SAMPLINGS.len()];
-    for number in 0..TRIES * u64::from(effort) {
+    // Each takes a picture of a million rays.
+    for number in 0..TRIES * u64::from(effort.isqrt()) {
         let scene = ribbon(number, width, distance);
         let truth = brightness(&scene, TRUTH);
         for (sum, sampling) in sums.iter_mut().zip(SAMPLINGS) {
