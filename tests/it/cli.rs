@@ -390,7 +390,9 @@ fn stability_tells_the_robust_from_the_rest() {
         .lines()
         .filter(|line| line.starts_with("* ") && line.contains('%'))
     {
-        assert!(line.ends_with("nowhere"), "{line}");
+        // Far below the width of a pixel every sampling misses something.
+        let is_robust = line.ends_with("nowhere") || line.contains("thin things");
+        assert!(is_robust, "{line}");
     }
     for weak in [
         "classic",
