@@ -75,22 +75,28 @@ fn compared(own: &Measurement, default: &Measurement) -> Option<String> {
     let (time, usual) = (own.timing()?.median, default.timing()?.median);
     let error = own.metrics?.rmse / default.metrics?.rmse;
     let rays = own.rays_per_pixel / default.rays_per_pixel;
-    let speed = match time / usual {
-        ratio if ratio < 1.0 - ALIKE => format!("{} as fast as the default", times(1.0 / ratio)),
-        ratio if ratio > 1.0 + ALIKE => format!("{} slower than the default", times(ratio)),
-        _ => "as fast as the default".to_owned(),
-    };
+    let speed = told(
+        time / usual,
+        " as fast as the default",
+        " slower than the default",
+    );
+    let speed = speed.unwrap_or("as fast as the default".to_owned());
+    let closeness = told(error, " closer", " farther off").unwrap_or("as close".to_owned());
     let rays = match rays {
         ratio if (ratio - 1.0).abs() <= ALIKE => "as many rays".to_owned(),
         ratio if ratio < 1.0 => format!("{ratio:.2} of its rays"),
         ratio => format!("{} its rays", times(ratio)),
     };
-    let closeness = match error {
-        ratio if ratio < 1.0 - ALIKE => format!("{} closer", times(1.0 / ratio)),
-        ratio if ratio > 1.0 + ALIKE => format!("{} farther off", times(ratio)),
-        _ => "as close".to_owned(),
-    };
     Some(format!("Here it is {speed}, with {rays}, and {closeness}."))
+}
+
+/// How many times less or more of a cost or an error there is; `None` for about as much.
+fn told(ratio: f64, less: &str, more: &str) -> Option<String> {
+    match ratio {
+        ratio if ratio < 1.0 - ALIKE => Some(times(1.0 / ratio) + less),
+        ratio if ratio > 1.0 + ALIKE => Some(times(ratio) + more),
+        _ => None,
+    }
 }
 
 fn times(ratio: f64) -> String {

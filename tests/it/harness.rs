@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
@@ -11,7 +12,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use glint::editor::{Action, Editor, Time};
 use glint::image::Image;
-use glint::scene::{Scene, Shape, Sphere};
+use glint::scene::{Document, Scene, Shape, Sphere};
 use glint::trace::{RenderControl, survey};
 use glint::ui::{App, Ask, Dialogs, Setup};
 
@@ -29,6 +30,20 @@ impl Dialogs for Scripted {
             .send(answer.flatten())
             .expect("the receiver is there");
         receiver
+    }
+}
+
+/// A file that is dropped onto the window.
+#[derive(Debug)]
+struct OnDisk(PathBuf);
+
+impl egui::DroppedFile for OnDisk {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
     }
 }
 
@@ -54,6 +69,13 @@ impl EditorHarness {
         scene: Option<&str>,
     ) -> Self {
         Self::asked(|folder| Box::new(Scripted(answers(folder).into())), scene)
+    }
+
+    /// A window on a scene, without answers.
+    pub fn on(scene: Scene) -> Self {
+        let header = String::new();
+        let text = Document { header, scene }.to_text();
+        Self::with(|_| Vec::new(), Some(&text.expect("a text")))
     }
 
     /// A window with these dialogs on a scene text (or the demo).
@@ -142,6 +164,13 @@ impl EditorHarness {
             .shown_picture()
             .expect("a picture")
             .clone()
+    }
+
+    /// Drops a file onto the window.
+    pub fn drop_file(&mut self, path: PathBuf) {
+        let dropped = &mut self.window.input_mut().dropped_files;
+        dropped.push(Arc::new(OnDisk(path)));
+        self.settle();
     }
 
     pub fn click(&mut self, name: &str) {

@@ -29,7 +29,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
         Map::measure(
             (Subject::CameraPole, "leans by more than a thousandth"),
             (name.to_owned(), is_default),
-            (across(), one()),
+            (across(), Axis::one("camera")),
             |degrees, _| {
                 let tries = 0..TRIES * u64::from(effort);
                 Tries::count(tries.map(|n| leans(n, degrees, right)))
@@ -44,7 +44,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
         Map::measure(
             (Subject::CameraTurns, "is no orthonormal basis any more"),
             (name.to_owned(), is_default),
-            (frames(), one()),
+            (frames(), Axis::one("camera")),
             |frames, _| Tries::count([is_crooked(&turned(frames as u64))]),
         )
     };
@@ -54,13 +54,6 @@ pub fn maps(effort: u32) -> Vec<Map> {
         drift("yaw and pitch", true, rebuilt),
         drift("matrix-steps f32", false, stepped),
     ]
-}
-
-fn one() -> Axis {
-    Axis {
-        name: "camera",
-        values: vec![1.0],
-    }
 }
 
 /// Whether the right of the picture is not at right angles to the yaw.

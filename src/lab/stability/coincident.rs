@@ -4,12 +4,10 @@
 use glam::DVec3;
 
 use super::map::{Map, Tries, places, scales};
+use super::stage::{light, object};
 use super::subject::Subject;
 use crate::plan::RenderRequest;
-use crate::scene::{
-    Camera, ColorPack, List, Object, Plane, Precision, Sampling, Scene, Shape, Sphere, Triangle,
-};
-use crate::trace::{Pass, RenderControl, Tracer};
+use crate::scene::{Camera, ColorPack, List, Plane, Precision, Sampling, Scene, Sphere, Triangle};
 
 /// Side of the pictures in pixels.
 const SIDE: u32 = 48;
@@ -36,10 +34,7 @@ fn levels(scene: &Scene) -> Vec<[f32; 3]> {
         sampling: Sampling::Centres,
         ..RenderRequest::sized(SIDE, SIDE)
     };
-    let mut pixels = vec![[0.0_f32; 3]; (SIDE * SIDE) as usize];
-    // Nobody stops it.
-    let _ = Tracer::new(scene, &request).pass(&mut pixels, Pass::Whole, &RenderControl::default());
-    pixels
+    light(scene, &request)
 }
 
 /// Red surfaces, and green ones in the same places if they are wanted; so large, so many sizes away.
@@ -60,30 +55,23 @@ fn scene(away: f64, scale: f64, with_later: bool) -> Scene {
         let y = -(normal.x * x + normal.z * z) / normal.y;
         place(DVec3::new(x, y, z))
     };
-    let ball = Shape::Sphere(Sphere {
+    let ball = Sphere {
         center: place(DVec3::new(0.3, 0.6, 0.1)),
         radius: 0.4 * scale,
-    });
-    let plane = Shape::Plane(Plane {
+    };
+    let plane = Plane {
         point: place(DVec3::ZERO),
         normal,
-    });
-    let triangle = Shape::Triangle(Triangle {
+    };
+    let triangle = Triangle {
         a: in_plane(-1.0, -1.0),
         b: in_plane(-0.9, 0.8),
         c: in_plane(0.9, 0.7),
-    });
-    let object = |name: &str, color: &str, shape: &Shape| Object {
-        name: name.to_owned(),
-        color_pack: color.to_owned(),
-        shape: shape.clone(),
-        visible: true,
-        group: String::new(),
     };
-    let earlier = [object("Plane", "red", &plane), object("Ball", "red", &ball)];
+    let earlier = [object("Plane", "red", plane), object("Ball", "red", ball)];
     let later = [
-        object("Triangle", "green", &triangle),
-        object("Same ball", "green", &ball),
+        object("Triangle", "green", triangle),
+        object("Same ball", "green", ball),
     ];
     let later = later.into_iter().filter(|_| with_later);
     scene.objects = List::from(earlier.into_iter().chain(later).collect::<Vec<_>>());

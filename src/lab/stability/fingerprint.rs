@@ -29,14 +29,10 @@ pub fn map(effort: u32) -> Map {
         name: "units moved",
         values: MOVES.to_vec(),
     };
-    let up = Axis {
-        name: "",
-        values: vec![1.0],
-    };
     Map::measure(
         (Subject::Fingerprint, "changed frame that is not made again"),
         ("all that decides it".to_owned(), true),
-        (across, up),
+        (across, Axis::one("")),
         |by, _| {
             // Each takes eight pictures.
             let tries = TRIES * u64::from(effort.isqrt());

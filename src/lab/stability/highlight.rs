@@ -22,17 +22,13 @@ pub fn maps(effort: u32) -> Vec<Map> {
                 name: "exponent",
                 values: EXPONENTS.to_vec(),
             };
-            let up = Axis {
-                name: "highlight",
-                values: vec![1.0],
-            };
             Map::measure(
                 (Subject::Highlight, "off by more than half a level of 255"),
                 (
                     method.id.to_owned(),
                     method.value == HighlightMethod::default(),
                 ),
-                (across, up),
+                (across, Axis::one("highlight")),
                 |p, _| {
                     let tries =
                         (0..TRIES * u64::from(effort)).filter_map(|n| fails(method.value, n, p));

@@ -32,15 +32,11 @@ pub fn maps(effort: u32) -> Vec<Map> {
         name: "degrees between keys",
         values: ANGLES.to_vec(),
     };
-    let one = || Axis {
-        name: "flight",
-        values: vec![1.0],
-    };
     let method = |name: &'static str, is_default, leaves: fn(&[f64; 4]) -> bool| {
         Map::measure(
             (Subject::Path, "overshoots a key"),
             (name.to_owned(), is_default),
-            (ratios.clone(), one()),
+            (ratios.clone(), Axis::one("flight")),
             |ratio, _| Tries::count(tries().map(|n| leaves(&stops(n, ratio)))),
         )
     };
@@ -48,7 +44,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
         Map::measure(
             (Subject::Turn, "no direction or a step of twice the mean"),
             (name.to_owned(), is_default),
-            (angles.clone(), one()),
+            (angles.clone(), Axis::one("flight")),
             |degrees, _| {
                 let yaw = |n| (scattered(n, 0) * 2.0 - 1.0) * std::f64::consts::PI;
                 Tries::count(tries().map(|n| fails(yaw(n), degrees.to_radians())))

@@ -18,6 +18,14 @@ pub struct Axis {
     pub values: Vec<f64>,
 }
 
+impl Axis {
+    /// That of maps over one axis: there is one of it.
+    pub fn one(name: &'static str) -> Self {
+        let values = vec![1.0];
+        Self { name, values }
+    }
+}
+
 /// So many tries, and how many of them failed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tries {

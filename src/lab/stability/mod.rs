@@ -7,6 +7,8 @@ mod map;
 
 mod words;
 
+mod stage;
+
 mod sphere;
 
 mod triangle;

@@ -2,13 +2,13 @@
 //! a ball and a card on a floor, at every scale and place; the ball a sphere, or a mesh.
 
 use super::map::{Map, Tries, places, scales};
+use super::stage::{light, object};
 use super::subject::Subject;
 use crate::plan::{Model, RenderRequest};
 use crate::scene::{
-    Camera, ColorPack, Light, List, Method as _, Methods, Object, Plane, Precision, RayOffset,
-    Sampling, Scene, Shape, Sphere, Triangle,
+    Camera, ColorPack, Light, List, Method as _, Methods, Plane, Precision, RayOffset, Sampling,
+    Scene, Shape, Sphere, Triangle,
 };
-use crate::trace::{Pass, RenderControl, Tracer};
 use glam::DVec3;
 
 /// Side of the pictures in pixels.
@@ -115,10 +115,8 @@ fn lit(scene: &Scene, (offset, precision): (RayOffset, Precision), model: Model)
         model,
         ..RenderRequest::sized(SIDE, SIDE)
     };
-    let mut pixels = vec![[0.0_f32; 3]; (SIDE * SIDE) as usize];
-    // Nobody stops it.
-    let _ = Tracer::new(scene, &request).pass(&mut pixels, Pass::Whole, &RenderControl::default());
-    pixels.iter().map(|pixel| pixel[0] > GRAZING).collect()
+    let light = light(scene, &request);
+    light.iter().map(|pixel| pixel[0] > GRAZING).collect()
 }
 
 /// Whether the pixels around are as lit as this one.
@@ -150,22 +148,16 @@ fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
     };
     scene.packs_mut().insert("chalk".to_owned(), chalk);
     scene.background = black;
-    let object = |name: &str, shape| Object {
-        name: name.to_owned(),
-        color_pack: "chalk".to_owned(),
-        shape,
-        visible: true,
-        group: String::new(),
-    };
+    let chalk = |name: &str, shape: Shape| object(name, "chalk", shape);
     scene.objects = List::from(vec![
-        object(
+        chalk(
             "Floor",
             Shape::Plane(Plane {
                 point: index(0.0, 0.0, 0.0),
                 normal: DVec3::new(0.0, 1.0, 0.0),
             }),
         ),
-        object(
+        chalk(
             "Card",
             Shape::Triangle(Triangle {
                 a: index(0.7, 0.0, 0.1),
@@ -175,7 +167,7 @@ fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
         ),
     ]);
     match ball {
-        BallKind::Sphere => scene.objects.push(object(
+        BallKind::Sphere => scene.objects.push(chalk(
             "Ball",
             Shape::Sphere(Sphere {
                 center: index(0.0, 0.5, 0.0),
@@ -186,10 +178,8 @@ fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
             for (n, face) in super::triangle::ball().into_iter().enumerate() {
                 let corner = |v: DVec3| index(v.x * 0.5, v.y * 0.5 + 0.5, v.z * 0.5);
                 let [a, b, c] = face.map(corner);
-                let name = format!("Face {n}");
-                scene
-                    .objects
-                    .push(object(&name, Shape::Triangle(Triangle { a, b, c })));
+                let face = Shape::Triangle(Triangle { a, b, c });
+                scene.objects.push(chalk(&format!("Face {n}"), face));
             }
         }
     }

@@ -5,12 +5,10 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scattered};
+use super::stage::{light, object};
 use super::subject::Subject;
 use crate::plan::RenderRequest;
-use crate::scene::{
-    Camera, ColorPack, List, Method as _, Object, Sampling, Scene, Shape, Triangle,
-};
-use crate::trace::{Pass, RenderControl, Tracer};
+use crate::scene::{Camera, ColorPack, List, Method as _, Sampling, Scene, Triangle};
 
 /// Side of the pictures in pixels.
 const SIDE: u32 = 24;
@@ -93,10 +91,10 @@ fn brightness(scene: &Scene, sampling: Sampling) -> Vec<f32> {
         sampling,
         ..RenderRequest::sized(SIDE, SIDE)
     };
-    let mut pixels = vec![[0.0_f32; 3]; (SIDE * SIDE) as usize];
-    // Nobody stops it.
-    let _ = Tracer::new(scene, &request).pass(&mut pixels, Pass::Whole, &RenderControl::default());
-    pixels.iter().map(|pixel| pixel[0]).collect()
+    light(scene, &request)
+        .iter()
+        .map(|pixel| pixel[0])
+        .collect()
 }
 
 /// A ribbon that ends inside the picture, somewhere, in some direction: two triangles.
@@ -122,13 +120,7 @@ fn ribbon(number: u64, width: f64, distance: f64) -> Scene {
         ..ColorPack::default()
     };
     scene.packs_mut().insert("white".to_owned(), white);
-    let half = |name: &str, [a, b, c]: [DVec3; 3]| Object {
-        name: name.to_owned(),
-        color_pack: "white".to_owned(),
-        shape: Shape::Triangle(Triangle { a, b, c }),
-        visible: true,
-        group: String::new(),
-    };
+    let half = |name: &str, [a, b, c]: [DVec3; 3]| object(name, "white", Triangle { a, b, c });
     scene.objects = List::from(vec![half("One", [a, b, c]), half("Other", [b, d, c])]);
     scene.camera = Camera {
         position: DVec3::ZERO,

@@ -57,26 +57,21 @@ impl Lab {
                 ui.selectable_value(&mut self.face, face, name).hint(hint);
             }
         });
-        let obstacle = match &dot.candidate {
-            candidate if candidate.family == Family::Referee => {
-                Some("It is another program, and only looked at here")
-            }
-            candidate if candidate.model == Model::Unculled => {
-                Some("It is the default, with nothing spared")
-            }
-            candidate if candidate.upscale > 1 => {
-                Some("A scene is never traced smaller than it is")
-            }
-            candidate if candidate.model == Model::Everything => Some(
-                "A scene cannot ask for what it does not need; its formulas are used without that",
-            ),
-            _ => None,
+        let candidate = &dot.candidate;
+        let (is_possible, hint) = if candidate.family == Family::Referee {
+            (false, "It is another program, and only looked at here")
+        } else if candidate.model == Model::Unculled {
+            (false, "It is the default, with nothing spared")
+        } else if candidate.upscale > 1 {
+            (false, "A scene is never traced smaller than it is")
+        } else if candidate.model == Model::Everything {
+            let words =
+                "A scene cannot ask for what it does not need; its formulas are used without that";
+            (true, words)
+        } else {
+            (true, "Trace the scene with these settings (one undo step)")
         };
-        let is_possible = dot.candidate.upscale == 1
-            && dot.candidate.model != Model::Unculled
-            && dot.candidate.family != Family::Referee;
         let adopt = ui.add_enabled(is_possible, Button::new("Use this"));
-        let hint = obstacle.unwrap_or("Trace the scene with these settings (one undo step)");
         let adopt = adopt.hint(hint).on_disabled_hover_text(hint);
         if adopt.clicked() {
             let own = &editor.shown().render;

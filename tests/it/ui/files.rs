@@ -118,16 +118,6 @@ fn a_refused_file_is_shown_with_its_place_and_the_document_stays() {
 
 #[test]
 fn dropped_files_open() {
-    #[derive(Debug)]
-    struct OnDisk(PathBuf);
-    impl egui::DroppedFile for OnDisk {
-        fn path(&self) -> &std::path::Path {
-            &self.0
-        }
-        fn bytes(&self) -> Result<Vec<u8>, String> {
-            std::fs::read(&self.0).map_err(|error| error.to_string())
-        }
-    }
     let mut harness = EditorHarness::new();
     let path = harness.folder.path().join("dropped.ron");
     let document = Document {
@@ -135,12 +125,7 @@ fn dropped_files_open() {
         scene: Scene::empty(),
     };
     document.save(&path).expect("saved");
-    harness
-        .window
-        .input_mut()
-        .dropped_files
-        .push(std::sync::Arc::new(OnDisk(path)));
-    harness.settle();
+    harness.drop_file(path);
     assert_eq!(harness.scene(), &Scene::empty());
     assert_eq!(harness.editor().title(), "dropped.ron");
 }

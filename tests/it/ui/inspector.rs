@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use glint::scene::{Document, Sampling, Scene, Shape, Sphere};
+use glint::scene::{Sampling, Scene, Shape, Sphere};
 
 use crate::harness::{CTRL, EditorHarness, radius};
 
@@ -157,12 +157,7 @@ fn the_inspector_says_what_the_scene_needs() {
 fn a_quality_is_chosen_by_measuring_and_needs_tells_why() {
     let mut small = Scene::demo();
     (small.render.width, small.render.height) = (128, 96);
-    let text = Document {
-        header: String::new(),
-        scene: small.clone(),
-    };
-    let text = text.to_text().expect("a text");
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let mut harness = EditorHarness::on(small.clone());
     harness.click("Picture");
     harness
         .window

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use glint::scene::Method as _;
-use glint::scene::{Document, Sampling, Scene};
+use glint::scene::{Sampling, Scene};
 
 use crate::harness::{CTRL, EditorHarness};
 
@@ -14,12 +14,7 @@ fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
     // Jagged: what is cheapest within 8 bits is another setting, whichever that is today.
     let mut jagged = Scene::demo();
     jagged.render.antialias = Sampling::Centres;
-    let text = Document {
-        header: String::new(),
-        scene: jagged,
-    };
-    let text = text.to_text().expect("a text");
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let mut harness = EditorHarness::on(jagged);
     let before = harness.scene().clone();
     harness.press(CTRL, Key::L);
     harness.click("Measure");

@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
-use glint::scene::{Document, Scene, Shape, Sphere};
+use glint::scene::{Scene, Shape, Sphere};
 
 use crate::harness::EditorHarness;
 
@@ -71,13 +71,7 @@ fn a_scene_of_thousands_shows_only_the_rows_in_sight() {
         });
     }
     scene.render.width = 40;
-    let text = Document {
-        header: String::new(),
-        scene,
-    }
-    .to_text()
-    .expect("text");
-    let harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let harness = EditorHarness::on(scene);
     let rows = harness.window.query_all_by_label_contains("Ball").count();
     assert!((10..200).contains(&rows), "{rows}");
     let picture = harness.window.get_by_label("Live view").rect();
