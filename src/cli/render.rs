@@ -244,7 +244,7 @@ fn trace(
     repeat: usize,
 ) -> Option<(Film, Vec<RenderCost>)> {
     let control = Arc::new(RenderControl::default());
-    let total = u64::from(request.width) * u64::from(request.height) * repeat as u64;
+    let total = request.pixels() * repeat as u64;
     let result = run_in_background("glint-render", {
         let control = Arc::clone(&control);
         move || {

@@ -11,17 +11,25 @@ use super::grouping::{Held, grouped};
 use crate::primitive::BoundingBox;
 use crate::simd::{Real, Vec3};
 
-/// A node: up to [`GROUP`] boxes, component by component.
+/// A node: up to [`GROUP`] boxes, component by component, each of which is one line of the processor's cache in
+/// single precision.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 pub struct Node<R> {
     /// The lowest x of each box, y, z; then the highest.
     pub planes: [[[R; GROUP]; 3]; 2],
+    /// What the boxes hold: the numbers of members, and of nodes with this bit: [`IS_NODE`].
+    children: [u32; GROUP],
     /// The smallest thickness of what is in each box, see [`crate::primitive::Primitive::thickness`].
     pub thickness: [R; GROUP],
-    children: [Child; GROUP],
     /// How many boxes there are.
     pub count: usize,
 }
+
+/// How many times as large as when it was built the surfaces of a tree may become before it is built anew.
+const WORN: f64 = 1.2;
+/// Tells nodes from members.
+const IS_NODE: u32 = 1 << 31;
 
 /// What is to be found in a tree.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +49,8 @@ pub struct Bvh<R> {
     pub bounds: BoundingBox<R>,
     /// The smallest thickness of any member.
     pub thinnest: R,
+    /// The surfaces of all boxes when the tree was built, added up.
+    built: f64,
 }
 
 impl<R: Real> Node<R> {
@@ -48,8 +58,8 @@ impl<R: Real> Node<R> {
     pub fn empty() -> Self {
         Self {
             planes: [[[R::INFINITY; GROUP]; 3], [[-R::INFINITY; GROUP]; 3]],
+            children: [0; GROUP],
             thickness: [R::INFINITY; GROUP],
-            children: [Child::Member(0); GROUP],
             count: 0,
         }
     }
@@ -72,8 +82,14 @@ impl<R: Real> Node<R> {
     }
 
     /// What the box at `place` holds.
+    #[inline(always)]
     pub fn child(&self, place: usize) -> Child {
-        self.children[place]
+        let held = self.children[place];
+        if held & IS_NODE == 0 {
+            Child::Member(held)
+        } else {
+            Child::Node(held & !IS_NODE)
+        }
     }
 
     /// Takes over a box of another node, behind its own, of which there are fewer than [`GROUP`].
@@ -154,8 +170,12 @@ impl<R: Real> Bvh<R> {
         let point = |v: Vec3<R>| Vec3A::from(v.to_dvec3().as_vec3());
         let bounds = (0..count).map(|number| member(number).bounds);
         let boxes = bounds.map(|bounds| Aabb::new(point(bounds.low), point(bounds.high)));
+        let bits = |child| match child {
+            Child::Member(member) => member,
+            Child::Node(node) => node | IS_NODE,
+        };
         let node = |Held { children, count }| Node {
-            children,
+            children: children.map(bits),
             count,
             ..Node::empty()
         };
@@ -164,9 +184,43 @@ impl<R: Real> Bvh<R> {
             nodes,
             bounds: BoundingBox::nothing(),
             thinnest: R::INFINITY,
+            built: 0.0,
         };
         bvh.refit(member);
+        bvh.built = bvh.surface();
         bvh
+    }
+
+    /// The same tree around members that have moved; `None` if its boxes have become so large that a new one is
+    /// better.
+    pub fn refitted(&self, member: impl Fn(usize) -> Member<R>) -> Option<Self> {
+        let mut bvh = self.clone();
+        bvh.refit(member);
+        (bvh.surface() <= self.built * WORN).then_some(bvh)
+    }
+
+    /// Half of the surfaces of all boxes, added up: what a ray meets at random.
+    fn surface(&self) -> f64 {
+        let half_surface = |bounds: BoundingBox<R>| {
+            let size = (bounds.high - bounds.low).to_dvec3();
+            size.x * size.y + size.y * size.z + size.z * size.x
+        };
+        let nodes = self.nodes.iter();
+        let boxes = nodes.flat_map(|node| (0..node.count).map(|place| node.bounds(place)));
+        boxes.map(half_surface).sum()
+    }
+
+    /// Numbers the members anew, so that those of a node follow each other. The old numbers, in the new order.
+    pub fn renumber(&mut self) -> Vec<u32> {
+        let mut old = Vec::new();
+        for node in &mut self.nodes {
+            for held in &mut node.children[..node.count] {
+                if *held & IS_NODE == 0 {
+                    old.push(std::mem::replace(held, old.len() as u32));
+                }
+            }
+        }
+        old
     }
 
     /// Fits the boxes to the members, which have moved.
@@ -261,6 +315,20 @@ mod tests {
             bvh.refit(|n| members[n]);
             prop_assert!(is_whole(&bvh, &members));
         }
+    }
+
+    #[test]
+    fn a_tree_is_kept_while_little_moves() {
+        let place = |at: usize| DVec3::new((at % 32) as f64, (at / 32) as f64, 0.0) * 10.0;
+        let mut members: Vec<_> = (0..1000).map(|at| member((place(at), 1.0))).collect();
+        let bvh = tree(&members);
+        members[17] = member((place(40), 1.0));
+        let moved = bvh.refitted(|n| members[n]).expect("hardly larger");
+        assert!(is_whole(&moved, &members));
+        let scattered: Vec<_> = (0..1000)
+            .map(|at| member((place(at * 367 % 1000), 1.0)))
+            .collect();
+        assert!(moved.refitted(|n| scattered[n]).is_none());
     }
 
     #[test]

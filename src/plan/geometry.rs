@@ -6,20 +6,37 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::bvh::{Bvh, Member};
+use super::idle::KeptIdle;
 use super::packed_mesh::{MeshInstance, PackedMesh, measure, member};
+use super::request::RenderRequest;
 use crate::primitive::{
-    BoundingBox, Kind, Packing, Primitive, Primitives, Visit, count_corner_users, number_corners,
+    BoundingBox, KINDS, Kind, Packing, Primitive, Primitives, Visit, count_corner_users,
+    number_corners,
 };
-use crate::scene::{Accelerator, Coincidence, List, Object, Scene, Shape, coincidences};
+use crate::scene::{Accelerator, Coincidence, List, Object, Sampling, Scene, Shape, coincidences};
 use crate::simd::{Real, Vec3};
 
-/// Above so many, walking a tree costs less than testing every object that a tile can see.
+/// Up to so many objects, testing those that a tile can see costs less than walking a tree.
+pub const SMALLEST_TREE: usize = 32;
+/// Above so many it costs more, whatever they look like.
 pub const LARGEST_LIST: usize = 384;
 /// The same for triangles, which seldom come alone.
 pub const MOST_LISTED_TRIANGLES: usize = 128;
+/// Between these, a tree pays where objects fill a space that is so many times as deep, wide and high as they are:
+/// what a tile sees is then scattered, and most of them may stand before its lights. With 60 to 384 balls in such a
+/// cloud a list takes 1.2 to 5 times as long.
+const DEEPEST_FIELD: f64 = 4.0;
+/// In a field that is not so deep, it pays with fewer pixels than this for each object: by a third with half as many,
+/// as much is lost with ten times as many.
+const PIXELS_IN_TREES: u64 = 2000;
+/// The same where rays look beside themselves, which costs more in a tree.
+const PIXELS_IN_SMOOTH_TREES: u64 = 500;
 
 /// Most meshes whose parts surround the geometry one by one.
 const FINE_OUTLINE: usize = 4;
+
+/// How many primitives of each kind there are, and meshes.
+type Counts = ([usize; KINDS], usize);
 
 /// The visible objects that end, ready to be traced: what does not depend on the camera, on lights or on
 /// what colours mean.
@@ -33,6 +50,8 @@ pub struct Geometry<R> {
     pub bvh: Bvh<R>,
     /// How far above what is hit rays that go on from there may start.
     pub lift: R,
+    /// Whether the tree was built around other places of its members.
+    is_refitted: bool,
 }
 
 /// What a picture was planned from that the next one may need as well.
@@ -42,6 +61,7 @@ pub struct Kept<R> {
     coincidences: Option<(List<Object>, Arc<[Coincidence]>)>,
     /// Meshes of other pictures.
     others: Vec<Arc<PackedMesh<R>>>,
+    idle: KeptIdle<R>,
 }
 
 /// What the picture before was planned from, which the next one may need as well.
@@ -97,6 +117,11 @@ impl<R: Real> Kept<R> {
         self.others = meshes.collect();
     }
 
+    /// The faces that cast no shadows of their own.
+    pub fn idle(&mut self) -> &mut KeptIdle<R> {
+        &mut self.idle
+    }
+
     /// The objects of a scene that fill the same surface; the last ones, if none has changed.
     pub fn coincidences(&mut self, objects: &List<Object>, centre: DVec3) -> Arc<[Coincidence]> {
         if let Some((of, found)) = &self.coincidences
@@ -109,59 +134,82 @@ impl<R: Real> Kept<R> {
         found
     }
 
-    /// The geometry of a scene, relative to `centre`, without what stands apart: the last one, if nothing of
-    /// it has changed.
+    /// The geometry of a scene, relative to `centre`, without what stands apart, to be sampled in this way: the last
+    /// one, if nothing of it has changed.
     pub fn geometry(
         &mut self,
         scene: &Scene,
-        centre: DVec3,
-        apart: &BTreeSet<usize>,
+        (centre, apart): (DVec3, &BTreeSet<usize>),
+        sampling: Sampling,
     ) -> Arc<Geometry<R>> {
+        // What is looked at as one thing depends on the boxes: where that is asked for, the tree is as it would be
+        // without a picture before.
+        let may_refit = !matches!(sampling, Sampling::Adaptive { .. });
         if let Some((source, geometry)) = &self.last
             && source.is_of(scene, centre, apart)
+            && (may_refit || !geometry.is_refitted)
         {
             return Arc::clone(geometry);
         }
-        // The old one is not needed while the new one is made, but for meshes that have not changed.
+        let last = self.last.take().map(|(_, last)| last);
         let mut meshes = std::mem::take(&mut self.others);
-        meshes.extend(
-            self.last
-                .take()
-                .iter()
-                .flat_map(|(_, last)| last.packed_meshes()),
-        );
-        let geometry = Geometry::new(scene, (centre, apart), meshes);
+        meshes.extend(last.iter().flat_map(|last| last.packed_meshes()));
+        let before = last.as_deref().filter(|_| may_refit);
+        let before = before.map(|last| (last.counts(), &last.bvh));
+        let geometry = Geometry::new(scene, (centre, apart), meshes, before);
         let geometry = Arc::new(geometry);
         self.last = Some((Source::of(scene, centre, apart), Arc::clone(&geometry)));
         geometry
     }
 }
 
-/// Whether the objects of a scene that end are kept in a tree: many of them, and any mesh.
-pub fn is_tree(scene: &Scene, accelerator: Accelerator, may_cull: bool) -> bool {
+/// Whether the objects of a scene that end are kept in a tree: many of them, fewer where they fill a space or share few
+/// pixels, and any mesh.
+pub fn is_tree(scene: &Scene, request: &RenderRequest, may_cull: bool) -> bool {
     let visible = || scene.objects.iter().filter(|object| object.visible);
-    let is_wanted = match accelerator {
+    let is_wanted = match request.accelerator {
         Accelerator::List => false,
         Accelerator::Bvh => true,
         Accelerator::Auto => {
-            let ended = visible().filter(|object| object.shape.bounds().is_some());
             let is_triangle = |object: &&Object| matches!(object.shape, Shape::Triangle(_));
             let triangles = visible().filter(is_triangle);
-            ended.take(LARGEST_LIST + 1).count() > LARGEST_LIST
+            let ended = visible().filter_map(|object| object.shape.bounds());
+            let ended: Vec<_> = ended.take(LARGEST_LIST + 1).collect();
+            let pixels_each = match request.sampling {
+                Sampling::Adaptive { .. } => PIXELS_IN_SMOOTH_TREES,
+                Sampling::Centres | Sampling::Grid(_) => PIXELS_IN_TREES,
+            };
+            let are_small = request.pixels() < ended.len() as u64 * pixels_each;
+            ended.len() > LARGEST_LIST
                 || triangles.take(MOST_LISTED_TRIANGLES + 1).count() > MOST_LISTED_TRIANGLES
+                || (ended.len() > SMALLEST_TREE && (are_small || is_space(&ended)))
         }
     };
     let is_mesh = |object: &Object| matches!(object.shape, Shape::Mesh(_));
     (is_wanted && may_cull) || visible().any(is_mesh)
 }
 
+/// Whether things between these corners fill a space, and no field.
+fn is_space(bounds: &[(DVec3, DVec3)]) -> bool {
+    let low = bounds
+        .iter()
+        .fold(DVec3::INFINITY, |low, one| low.min(one.0));
+    let high = bounds
+        .iter()
+        .fold(DVec3::NEG_INFINITY, |high, one| high.max(one.1));
+    let sizes = bounds.iter().map(|(low, high)| (high - low).max_element());
+    let mean = sizes.sum::<f64>() / bounds.len() as f64;
+    (high - low).min_element() > DEEPEST_FIELD * mean
+}
+
 impl<R: Real> Geometry<R> {
     /// Packs the objects that are to stand in it, relative to `centre`, with those of the meshes that are packed
-    /// already.
+    /// already, and with the tree around so many others as there were before.
     fn new(
         scene: &Scene,
         (centre, apart): (DVec3, &BTreeSet<usize>),
         mut packed: Vec<Arc<PackedMesh<R>>>,
+        before: Option<(Counts, &Bvh<R>)>,
     ) -> Self {
         let (mut primitives, mut meshes) = (Primitives::default(), Vec::new());
         let packing = Packing {
@@ -207,12 +255,23 @@ impl<R: Real> Geometry<R> {
         primitives.visit(&mut members);
         members.0.extend(meshes.iter().map(MeshInstance::member));
         let lifts = meshes.iter().map(|instance| instance.mesh.lift);
+        let member = |number: usize| members.0[number];
+        // Where nothing was added or removed, something has moved: mostly little.
+        let counts = (primitives.counts(), meshes.len());
+        let refitted = before
+            .filter(|(before, _)| *before == counts)
+            .and_then(|(_, bvh)| bvh.refitted(member));
         Self {
-            bvh: Bvh::new(members.0.len(), |number| members.0[number]),
+            is_refitted: refitted.is_some(),
+            bvh: refitted.unwrap_or_else(|| Bvh::new(members.0.len(), member)),
             lift: lifts.fold(R::ZERO, R::max),
             primitives,
             meshes,
         }
+    }
+
+    fn counts(&self) -> Counts {
+        (self.primitives.counts(), self.meshes.len())
     }
 
     /// Boxes that together surround it: those of the root, or of the roots of meshes in them.
@@ -240,6 +299,11 @@ impl<R: Real> Geometry<R> {
         last.map_or(self.primitives.len(), |last| {
             last.first + last.mesh.triangles.len()
         })
+    }
+
+    /// How many things there are, with each mesh as one.
+    pub fn members(&self) -> usize {
+        self.primitives.len() + self.meshes.len()
     }
 
     /// Whether there are none.

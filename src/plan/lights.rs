@@ -1,7 +1,10 @@
 //! The lights that shine on what the eye can reach.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
+use super::idle::IdleFaces;
 use super::plane_occluders::PlaneOccluder;
 use super::request::Model;
 use crate::primitive::roundings;
@@ -17,9 +20,8 @@ pub struct PointLight<R> {
     pub intensity: R,
     /// For each triangle, whether another one casts all of its shadow; empty where none is known.
     pub shadow_culled_faces: Vec<bool>,
-    /// For each mesh of the geometry, whether its faces that are turned to the light cast no shadow that
-    /// the others do not: rays that leave the mesh there have entered it elsewhere.
-    pub lit_faces_are_idle: Vec<bool>,
+    /// For each mesh of the geometry, the faces that cast no shadow which others do not, if some are known.
+    pub idle_faces: Vec<Option<Arc<IdleFaces>>>,
     /// Numbers of primitives whose planes hold the light: they cast no shadow from it.
     pub holders: Vec<usize>,
     /// What rounding may have moved its position by, where it may be on a surface: what is no farther from it
@@ -50,7 +52,7 @@ pub fn pack_lights<R: Real>(
                 position,
                 intensity: R::from_f64(light.intensity),
                 shadow_culled_faces: Vec::new(),
-                lit_faces_are_idle: Vec::new(),
+                idle_faces: Vec::new(),
                 holders: holders(index),
                 rounding: touches(index).then(|| position.max_abs() * roundings()),
             }

@@ -30,6 +30,13 @@ pub struct Surface<R> {
     pub mirror: Option<Vec3<R>>,
 }
 
+impl<R: Real> Surface<R> {
+    /// The sum of the channels of the matte colour.
+    pub fn brightness(&self) -> R {
+        self.diffuse.x + self.diffuse.y + self.diffuse.z
+    }
+}
+
 /// One material per pack, then one per pack as a marker wears it.
 pub fn pack_materials<R: Real>(scene: &Scene, request: &RenderRequest) -> Vec<Material<R>> {
     let lights = scene.lights.iter().filter(|light| light.visible);

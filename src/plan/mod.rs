@@ -14,9 +14,11 @@ mod smooth;
 
 mod packed_mesh;
 
-mod geometry;
+mod idle;
 
 mod request;
+
+mod geometry;
 
 mod precision;
 
@@ -36,13 +38,19 @@ mod view;
 
 mod show;
 
+mod hit_order;
+
 mod pack;
+
+mod faces;
 
 mod needs;
 
 pub use balls::Balls;
 pub use bvh::{Bvh, Child, GROUP, Node};
 pub use geometry::{Geometry, Kept, Planner};
+pub use hit_order::HitOrder;
+pub use idle::IdleFaces;
 pub use lights::PointLight;
 pub use materials::{Material, Surface};
 pub use needs::{Need, needs};

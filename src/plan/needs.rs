@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::geometry::{Kept, LARGEST_LIST, MOST_LISTED_TRIANGLES};
+use super::geometry::{Kept, LARGEST_LIST, MOST_LISTED_TRIANGLES, SMALLEST_TREE};
 use super::materials::Material;
 use super::pack::Plan;
 use super::precision::needs_double;
@@ -249,7 +249,7 @@ fn accelerator(plan: &Plan<f64>, faces: usize) -> Need {
             rule,
             format!("{what} in a tree of boxes"),
             format!(
-                "meshes, more than {LARGEST_LIST} objects or {MOST_LISTED_TRIANGLES} triangles are too much to be listed for every tile"
+                "meshes, more than {LARGEST_LIST} objects or {MOST_LISTED_TRIANGLES} triangles, or fewer that fill a space or share few pixels, are too much to be listed for every tile"
             ),
             "time that grows with what a ray comes near, not with the scene",
         )
@@ -258,7 +258,7 @@ fn accelerator(plan: &Plan<f64>, faces: usize) -> Need {
             rule,
             format!("{what} in a flat list, cut down for every tile"),
             format!(
-                "up to {LARGEST_LIST}, of them {MOST_LISTED_TRIANGLES} triangles, are tested faster than a tree is walked"
+                "up to {SMALLEST_TREE}, or {LARGEST_LIST} side by side with many pixels each, are tested faster than a tree is walked"
             ),
             "building a tree on every edit",
         )

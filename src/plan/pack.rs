@@ -8,21 +8,20 @@ use glam::DVec3;
 use super::balls::{Balls, balls_of};
 use super::contacts::{Contacts, Tie};
 use super::geometry::{Geometry, Kept, is_planted, is_tree, material_number, measure_loose};
+use super::hit_order::HitOrder;
 use super::lights::{PointLight, pack_lights};
 use super::materials::{Material, linear, pack_materials};
 use super::plane_occluders::classify_planes;
 use super::ray_origin::{RayOrigin, ray_origin};
 use super::request::{Model, RenderRequest};
 use super::show::Show;
-use super::solids::Solids;
 use super::view::View;
 use crate::primitive::{
     BoundingBox, CAUTION, KINDS, Packed, Packing, Primitives, Projector, Rectangle,
     count_corner_users,
 };
 use crate::scene::{
-    Accelerator, Camera, LightObj, Methods, Object, Projection, Sampling, Scene, Shape, Sphere,
-    SphereMethod,
+    Accelerator, Camera, LightObj, Methods, Object, Sampling, Scene, Shape, Sphere, SphereMethod,
 };
 use crate::simd::{Real, Vec3};
 
@@ -41,6 +40,8 @@ pub struct Plan<R> {
     pub markers: usize,
     /// What stands in a tree. Its numbers follow those of `primitives`.
     pub geometry: Option<Arc<Geometry<R>>>,
+    /// How hits are put into packets.
+    pub hit_order: HitOrder,
     /// Whether only what is in the boxes is tested that a ray meets.
     pub is_boxed: bool,
     /// Where balls are in the picture that together surround the geometry; none if that is unknown.
@@ -109,6 +110,7 @@ impl<R: Real> Plan<R> {
             primitives: Primitives::default(),
             markers: 0,
             geometry: None,
+            hit_order: HitOrder::OfSamples,
             is_boxed: may_cull && request.accelerator != Accelerator::List,
             outline: Vec::new(),
             lights: Vec::new(),
@@ -136,8 +138,9 @@ impl<R: Real> Plan<R> {
         } else {
             None
         };
-        if is_tree(scene, request.accelerator, may_cull) {
-            let geometry = kept.geometry(scene, centre, contacts.apart());
+        if is_tree(scene, request, may_cull) {
+            let geometry = kept.geometry(scene, (centre, contacts.apart()), request.sampling);
+            plan.hit_order = HitOrder::of(geometry.members(), request);
             plan.take_geometry(geometry, projector.as_ref(), centre);
         }
         let numbers = plan.pack(scene, &contacts, projector.as_ref());
@@ -163,9 +166,10 @@ impl<R: Real> Plan<R> {
             // What leaks through a face must not find that those behind it were left out.
             if request.methods.is_tight() {
                 plan.drop_far_faces(scene, request, centre);
-                plan.drop_lit_faces(scene, request);
+                plan.drop_lit_faces(scene, request, kept.idle());
             }
         }
+        kept.idle().end();
         plan
     }
 
@@ -269,44 +273,6 @@ impl<R: Real> Plan<R> {
         Some(packed)
     }
 
-    /// Finds the faces of solids that camera rays, and shadow rays to each light, can do without.
-    fn drop_far_faces(&mut self, scene: &Scene, request: &RenderRequest, centre: DVec3) {
-        let triangles = self.primitives.triangles.iter();
-        let solids = Solids::among(triangles.map(|t| t.corners.map(Vec3::to_dvec3)).collect());
-        let projection = request.projection_of(&scene.camera);
-        if projection == Projection::Perspective {
-            self.camera_culled_faces = solids.turned_away(scene.camera.position - centre);
-        }
-        for light in &mut self.lights {
-            light.shadow_culled_faces = solids.turned_away(light.position.to_dvec3());
-        }
-    }
-
-    /// Finds the meshes whose faces towards a light need no shadow test: those with an inside where neither
-    /// the eye nor the light is, so that no ray that counts sets out there either.
-    fn drop_lit_faces(&mut self, scene: &Scene, request: &RenderRequest) {
-        let projection = request.projection_of(&scene.camera);
-        let Some(geometry) = &self.geometry else {
-            return;
-        };
-        if projection != Projection::Perspective {
-            return;
-        }
-        let eye = Vec3::from_dvec3(scene.camera.position - self.centre);
-        // Where a face is shaded as if it were curved, light comes from beneath it too.
-        let seen: Vec<bool> = geometry
-            .meshes
-            .iter()
-            .map(|mesh| mesh.mesh.smooth.is_empty() && mesh.is_seen_from_outside(eye))
-            .collect();
-        for light in &mut self.lights {
-            let meshes = geometry.meshes.iter().zip(&seen);
-            let idle =
-                meshes.map(|(mesh, seen)| *seen && mesh.is_seen_from_outside(light.position));
-            light.lit_faces_are_idle = idle.collect();
-        }
-    }
-
     fn bound(&mut self) {
         let balls = balls_of(&self.primitives);
         self.balls = Balls::new(balls.iter().map(|(_, ball)| ball));
@@ -342,6 +308,7 @@ fn projector(scene: &Scene, request: &RenderRequest) -> Option<Projector> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Projection;
 
     fn plan(scene: &Scene) -> Plan<f32> {
         let request = RenderRequest::sized(64, 64);

@@ -69,6 +69,9 @@ impl<R: Real> PackedMesh<R> {
             bounds: BoundingBox::around(&corners(faces[number]).map(Vec3::from_dvec3)),
             thickness: R::INFINITY,
         });
+        // What is met together stands together.
+        let order = bvh.renumber().into_iter();
+        let faces: Vec<_> = order.map(|number| faces[number as usize]).collect();
         let mut triangles: Vec<_> = faces.iter().filter_map(packed).collect();
         drop(points);
         let is_closed = measure(&mut triangles, &faces, &mut bvh);

@@ -33,6 +33,11 @@ pub struct RenderRequest {
 }
 
 impl RenderRequest {
+    /// How many pixels the picture has.
+    pub fn pixels(&self) -> u64 {
+        u64::from(self.width) * u64::from(self.height)
+    }
+
     /// How the picture is projected.
     pub fn projection_of(&self, camera: &Camera) -> Projection {
         self.projection.unwrap_or(camera.projection)

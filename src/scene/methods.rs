@@ -281,7 +281,7 @@ impl Method for Accelerator {
         method(
             Self::Auto,
             "auto",
-            "a list up to 128 shapes that end, a tree above and for meshes",
+            "a tree for meshes, and for many shapes that fill a space or share few pixels; else a list",
             "Glint's plan",
         ),
         method(

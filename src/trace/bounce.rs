@@ -6,7 +6,10 @@ use super::candidates::{Among, Candidates};
 use super::cull::{LightCandidates, Scratch};
 use super::footprint::RayCone;
 use super::intersect::Kernel;
+use super::order::Order;
+use super::outcome::{clamped, signatures_of, store_colors, store_edges};
 use super::packet::{EdgeInfo, Packet, ReflectionParent};
+use super::parts::Parts;
 use super::paths::{IgnoredPrimitive, Paths, real};
 use super::roots::Roots;
 use super::samples::{Edges, Samples, Traced};
@@ -15,7 +18,7 @@ use super::stats::Rays;
 use super::thin::widest_spread;
 use super::thresholds::{LARGEST_STRETCH, SLIPPING};
 use super::walk::Stack;
-use crate::plan::Plan;
+use crate::plan::{HitOrder, Plan};
 use crate::primitive::{CAUTION, Kind, Ray, roundings};
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
 
@@ -36,6 +39,8 @@ pub struct Bounce<L: SimdFloat> {
     thin: Candidates,
     lights: Vec<LightCandidates<L::Real>>,
     signatures: Vec<[u32; MAX_LANES]>,
+    /// Which of the samples the rays are, if they were put in another order.
+    order: Order<L::Real>,
 }
 
 impl<L: SimdFloat> Bounce<L> {
@@ -65,6 +70,7 @@ impl<L: SimdFloat> Bounce<L> {
             thin: Candidates::default(),
             lights: plan.lights.iter().map(candidates_of).collect(),
             signatures: Vec::new(),
+            order: Order::default(),
         }
     }
 
@@ -91,6 +97,10 @@ impl<L: SimdFloat> Bounce<L> {
     ) {
         let (token, view) = (kernel.token, &kernel.plan.view);
         self.clear();
+        self.order.clear();
+        if TREE && kernel.plan.hit_order == HitOrder::OfPlaces {
+            self.order.start(samples);
+        }
         self.seen.clone_from(seen);
         let lane_number = L::from_fn(token, |lane| L::Real::from_f64(lane as f64));
         for first in (0..samples.x.len()).step_by(L::WIDTH) {
@@ -171,6 +181,9 @@ impl<L: SimdFloat> Bounce<L> {
         let Some(mut ball) = bounds.ball() else {
             return !self.thin.is_empty();
         };
+        if TREE && self.parents.is_empty() && plan.hit_order == HitOrder::OfPlaces {
+            self.order.arrange(kernel, &mut self.packets, &bounds);
+        }
         let mut lift = L::Real::ZERO;
         if let Some((geometry, _)) = kernel.geometry() {
             // Rays go on from the curved surfaces that flat faces stand for.
@@ -259,6 +272,7 @@ impl<L: SimdFloat> Bounce<L> {
         (stack, rays): (&mut Stack<L::Real>, &mut Rays),
     ) {
         let looks_beside = self.looks_beside();
+        let mut parts = Parts::new();
         for index in 0..self.packets.len() {
             let ignored = self.ignored_by(kernel, index);
             let shader = Shader {
@@ -271,7 +285,8 @@ impl<L: SimdFloat> Bounce<L> {
             };
             let edge = self.edges.get_mut(index);
             let packet = &mut self.packets[index];
-            let Some(mirrored) = shader.shade(packet, ignored, edge, (stack, rays)) else {
+            let Some(mirrored) = shader.shade(packet, (ignored, edge), &mut parts, (stack, rays))
+            else {
                 continue;
             };
             rays.reflected += u64::from(mirrored.active.bits().count_ones());
@@ -378,53 +393,15 @@ impl<L: SimdFloat> Bounce<L> {
     pub fn sign(&mut self, plan: &Plan<L::Real>) {
         self.signatures.clear();
         for (packet, edge) in self.packets.iter().zip(&self.edges) {
-            let mut numbers = [L::Real::ZERO; MAX_LANES];
-            let mut lit = numbers;
-            packet.near.number.store(&mut numbers);
-            edge.lit.store(&mut lit);
-            let mut signature = [0; MAX_LANES];
-            for lane in 0..L::WIDTH {
-                // Odd multipliers spread the small numbers over all bits.
-                let number = object_of(plan, (numbers[lane] + L::Real::ONE).nearest());
-                let lit = lit[lane].nearest();
-                signature[lane] = number.wrapping_mul(0x9E37_79B1) ^ lit.wrapping_mul(0x85EB_CA6B);
-            }
-            self.signatures.push(signature);
+            self.signatures.push(signatures_of(plan, packet, edge));
         }
     }
 
     /// Writes what was seen, sample by sample.
     #[inline(always)]
-    pub fn store(&self, traced: &mut Traced<L::Real>) {
-        for (index, packet) in self.packets.iter().enumerate() {
-            let first = index * L::WIDTH;
-            let color = clamped(packet.color);
-            color.x.store(&mut traced.red[first..]);
-            color.y.store(&mut traced.green[first..]);
-            color.z.store(&mut traced.blue[first..]);
-        }
-        for (index, edge) in self.edges.iter().enumerate() {
-            let first = index * L::WIDTH;
-            edge.near.store(&mut traced.near[first..]);
-            traced.signature[first..first + L::WIDTH]
-                .copy_from_slice(&self.signatures[index][..L::WIDTH]);
-        }
+    pub fn store<const TREE: bool>(&self, traced: &mut Traced<L::Real>) {
+        let order = Some(&self.order).filter(|order| TREE && !order.samples.is_empty());
+        store_colors(&self.packets, order, traced);
+        store_edges(&self.edges, &self.signatures, order, traced);
     }
-}
-
-/// What tells objects apart, from 1 plus the number of a primitive: the faces of a mesh are one thing.
-#[inline(always)]
-fn object_of<R: Real>(plan: &Plan<R>, number: u32) -> u32 {
-    let Some((geometry, first)) = plan.numbered_geometry() else {
-        return number;
-    };
-    let index = (number as usize).checked_sub(first + 1);
-    let mesh = index.and_then(|index| geometry.mesh_of(index));
-    mesh.map_or(number, |mesh| (first + mesh.first + 1) as u32)
-}
-
-/// A colour within 0–1.
-#[inline(always)]
-pub fn clamped<L: SimdFloat>(color: Vec3<L>) -> Vec3<L> {
-    color.clamp(color.x.like(L::Real::ZERO), color.x.like(L::Real::ONE))
 }

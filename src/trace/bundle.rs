@@ -6,6 +6,8 @@ use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// The smallest component of a direction; one over it is still a number in single precision.
 const LEAST: f64 = 1e-30;
+/// How many times as far as a start a ray may be rounded that sets out to a point.
+const ROUNDED_TWICE: f64 = 2.0;
 
 /// Rays, and what all of them have in common along each axis.
 #[derive(Clone, Copy, Debug)]
@@ -65,14 +67,36 @@ impl<L: SimdFloat> Bundle<L> {
     #[inline(always)]
     pub fn new(rays: &Ray<L>, active: L::Mask, reach: L::Real) -> Self {
         let like = rays.origin.x;
-        let roundings = like.like(roundings());
-        let slack = Vec3::splat((rays.origin.max_abs() + like.like(reach)) * roundings);
+        let size = rays.origin.max_abs() + like.like(reach);
+        let slack = size * like.like(roundings());
+        Self::between(rays.origin, slack, rays.direction, active)
+    }
+
+    /// The ways from a point to where the rays start, all of length 1; the rays must go there. What they have in
+    /// common is a pyramid, and not what two boxes span.
+    #[inline(always)]
+    pub fn from_point(
+        point: Vec3<L::Real>,
+        rays: &Ray<L>,
+        active: L::Mask,
+        reach: L::Real,
+    ) -> Self {
+        let origin = rays.origin.like(point);
+        let size = rays.origin.max_abs() + origin.x.like(reach + point.max_abs());
+        // A ray passes the point as far off as its start and its direction are rounded.
+        let slack = size * size.like_f64(ROUNDED_TWICE) * size.like(roundings());
+        Self::between(origin, slack, rays.origin - origin, active)
+    }
+
+    #[inline(always)]
+    fn between(origin: Vec3<L>, slack: L, direction: Vec3<L>, active: L::Mask) -> Self {
+        let slack = Vec3::splat(slack);
         let inverse = Vec3::new(
-            inverse(rays.direction.x),
-            inverse(rays.direction.y),
-            inverse(rays.direction.z),
+            inverse(direction.x),
+            inverse(direction.y),
+            inverse(direction.z),
         );
-        let origins = [rays.origin - slack, rays.origin + slack];
+        let origins = [origin - slack, origin + slack];
         Self {
             active,
             origins,

@@ -169,13 +169,15 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         }
         let caution = L::Real::from_f64(FAR_CAUTION);
         let reach = geometry.bvh.bounds.max_abs().max(light.position.max_abs());
-        let starts = hits.widened((hits.max_abs() + reach) * caution);
-        // From the hits to the light in one step.
+        let slack = (hits.max_abs() + reach) * caution;
+        let starts = hits.widened(slack);
+        // From the light to the hits in one step.
+        let light = BoundingBox::around(&[light.position]);
         let ways = BoundingBox {
-            low: light.position - starts.high,
-            high: light.position - starts.low,
+            low: starts.low - light.low,
+            high: starts.high - light.low,
         };
-        let shaft = Shaft::of(&starts, &ways);
+        let shaft = Shaft::of(&light.widened(slack), &ways);
         let end = L::Real::ONE + caution;
         between.casters.has_geometry = between.roots.narrow::<L>(self.token, geometry, &shaft, end);
     }

@@ -1,10 +1,11 @@
 //! The rays of a tile, bounce by bounce: what all of them meet first; then, knowing where that is, the
 //! light that falls on it; then the rays that mirrors send on, as the next bounce.
 
-use super::bounce::{Bounce, clamped};
+use super::bounce::Bounce;
 use super::candidates::Candidates;
 use super::cull::Scratch;
 use super::intersect::Kernel;
+use super::outcome::clamped;
 use super::samples::{Edges, Samples, Traced};
 use super::stats::Rays;
 use crate::simd::SimdFloat;
@@ -95,7 +96,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
             bounces[depth - 1].take_colors(&deeper[0]);
             bounces[depth - 1].take_edges(&deeper[0]);
         }
-        self.bounces[0].store(traced);
+        self.bounces[0].store::<TREE>(traced);
     }
 
     fn grow(&mut self, depth: usize) {

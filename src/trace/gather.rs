@@ -1,14 +1,15 @@
-//! Small things that look alike, put together so that rays which have met different ones are shaded as one
+//! Small things that look alike, put together so that rays which have met different ones are lit as one
 //! packet.
 
 use super::columns::{Columns, CurvedColumns};
+use super::parts::Parts;
 use crate::plan::{Geometry, MeshInstance};
 use crate::primitive::{
     CornerNormals, Flat, PackedSphere, PackedTriangle, Ray, Round, SurfacePoint,
 };
-use crate::simd::{MAX_LANES, Real, SimdFloat};
+use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
 
-/// A primitive in a tree, and what it must have in common with others to be shaded with them.
+/// A primitive in a tree, and what it must have in common with others to be lit with them.
 pub struct Piece<'a, R> {
     form: Form<'a, R>,
     /// Index into [`crate::plan::Plan::materials`].
@@ -56,7 +57,7 @@ impl<'a, R: Real> Piece<'a, R> {
         })
     }
 
-    /// Whether it is shaded in the same way.
+    /// Whether it is lit in the same way.
     #[inline(always)]
     pub fn is_like(&self, other: &Self) -> bool {
         let is_same_form = matches!(
@@ -70,7 +71,7 @@ impl<'a, R: Real> Piece<'a, R> {
             (Some(this), Some(other)) => std::ptr::eq(this, other),
             _ => false,
         };
-        is_same_form && is_same_mesh && self.material == other.material
+        is_same_form && is_same_mesh
     }
 }
 
@@ -83,8 +84,8 @@ pub struct Gathered<R> {
     measures: [[R; MAX_LANES]; 2],
     /// What is needed of faces that are shaded as if they were curved, if they are.
     curved: Option<CurvedColumns<R>>,
-    /// 1 where there is something, else 0.
-    is_there: [R; MAX_LANES],
+    /// 1 more than the index of the material where there is something, else 0.
+    materials: [R; MAX_LANES],
 }
 
 impl<R: Real> Gathered<R> {
@@ -101,14 +102,14 @@ impl<R: Real> Gathered<R> {
             normal: Columns::new(),
             measures: [zeros; 2],
             curved,
-            is_there: zeros,
+            materials: zeros,
         }
     }
 
     /// Puts a piece into a lane.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, piece: &Piece<R>) {
-        self.is_there[lane] = R::ONE;
+        self.materials[lane] = R::from_f64(f64::from(piece.material) + 1.0);
         match piece.form {
             Form::Flat(triangle) => self.set_flat(lane, triangle),
             Form::Curved(triangle, normals) => {
@@ -135,7 +136,21 @@ impl<R: Real> Gathered<R> {
     /// Where there is something.
     #[inline(always)]
     pub fn mask<L: SimdFloat<Real = R>>(&self, token: L::Token) -> L::Mask {
-        L::splat(token, R::ZERO).less(L::load(token, &self.is_there))
+        L::splat(token, R::ZERO).less(L::load(token, &self.materials))
+    }
+
+    /// `parts` become the materials.
+    #[inline(always)]
+    pub fn part<L: SimdFloat<Real = R>>(&self, token: L::Token, parts: &mut Parts<L>) {
+        parts.clear();
+        let materials = L::load(token, &self.materials);
+        let mut left = self.mask::<L>(token).bits();
+        while left != 0 {
+            let material = self.materials[left.trailing_zeros() as usize];
+            let here = materials.same(materials.like(material));
+            left &= !here.bits();
+            parts.add(here, (material - R::ONE).to_f64() as u32);
+        }
     }
 
     /// The hits at `t` on pieces that are like `piece`.

@@ -5,8 +5,8 @@ use super::candidates::Among;
 use super::paths::{NOTHING, Paths, real};
 use super::scan::{Test, Thicket, scan_lists};
 use super::walk::Stack;
-use crate::plan::{Geometry, Plan};
-use crate::primitive::{Primitive, WithPrimitive};
+use crate::plan::{Geometry, Plan, RayOrigin};
+use crate::primitive::{FAR_CAUTION, Primitive, WithPrimitive};
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
@@ -64,6 +64,10 @@ impl<'a, L: SimdFloat, const TREE: bool> Kernel<'a, L, TREE> {
             first,
             roots: among.roots,
             light: among.light,
+            back_from: match self.plan.ray_origin {
+                RayOrigin::AtHit => among.light.map(|light| light.position),
+                _ => None,
+            },
             active,
             beside: Beside::default(),
             is_boxed: self.plan.is_boxed,
@@ -176,6 +180,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         let mut test = BlockedTest::<L, true> {
             methods: &self.plan.methods,
             distance,
+            reach: distance,
             free: wanted,
         };
         scan_lists(self.plan, among.candidates, paths, &mut test);
@@ -201,9 +206,14 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             self.token,
             #[inline(always)]
             || {
+                let all = L::Real::from_f64(1.0 + FAR_CAUTION);
                 let mut test = BlockedTest::<L, false> {
                     methods: &self.plan.methods,
                     distance,
+                    reach: match thicket.back_from {
+                        None => distance,
+                        Some(_) => distance.like(all),
+                    },
                     free: thicket.active,
                 };
                 thicket.scan(paths, stack, &mut test);
@@ -264,6 +274,8 @@ impl<L: SimdFloat, const LISTED: bool> Test<L> for NearestTest<'_, L, LISTED> {
 struct BlockedTest<'a, L: SimdFloat, const LISTED: bool> {
     methods: &'a Methods,
     distance: L,
+    /// How far boxes are looked for.
+    reach: L,
     /// Where nothing was met yet.
     free: L::Mask,
 }
@@ -271,7 +283,7 @@ struct BlockedTest<'a, L: SimdFloat, const LISTED: bool> {
 impl<L: SimdFloat, const LISTED: bool> Test<L> for BlockedTest<'_, L, LISTED> {
     #[inline(always)]
     fn reach(&self) -> L {
-        L::select(self.free, self.distance, self.distance.like_f64(-1.0))
+        L::select(self.free, self.reach, self.reach.like_f64(-1.0))
     }
 
     #[inline(always)]

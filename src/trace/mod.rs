@@ -30,17 +30,23 @@ mod intersect;
 
 mod columns;
 
+mod footprint;
+
+mod parts;
+
 mod gather;
 
 mod surface;
-
-mod footprint;
 
 mod thin;
 
 mod packet;
 
 mod beam;
+
+mod order;
+
+mod outcome;
 
 mod cull;
 

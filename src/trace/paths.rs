@@ -56,6 +56,17 @@ impl<L: SimdFloat> IgnoredPrimitive<L> {
         Self::listed(UNLISTED, numbers)
     }
 
+    /// This, or none. Field by field: the whole of it would be copied with what is between its fields, for which
+    /// the processor waits.
+    #[inline(always)]
+    pub fn only_if(self, is_so: bool) -> Self {
+        let none = Self::nothing(self.numbers.token());
+        Self {
+            numbers: if is_so { self.numbers } else { none.numbers },
+            listed: if is_so { self.listed } else { none.listed },
+        }
+    }
+
     /// This where the mask is set, `other` elsewhere.
     #[inline(always)]
     pub fn over(self, mask: L::Mask, other: Self) -> Self {

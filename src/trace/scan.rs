@@ -5,9 +5,9 @@ use super::candidates::Candidates;
 use super::paths::Paths;
 use super::roots::Roots;
 use super::walk::{Seek, Stack, walk, walk_beside};
-use crate::plan::{Geometry, MeshInstance, PackedMesh, Plan, PointLight};
-use crate::primitive::{FAR_CAUTION, Kind, Prepared, Primitive, Ray, Visit, WithPrepared};
-use crate::simd::{Real, SimdFloat, Vec3};
+use crate::plan::{Child, Geometry, IdleFaces, PackedMesh, Plan, PointLight};
+use crate::primitive::{Kind, Prepared, Primitive, Ray, Visit, WithPrepared};
+use crate::simd::{SimdFloat, Vec3};
 
 /// What is to be found out about each primitive.
 pub trait Test<L: SimdFloat> {
@@ -107,6 +107,8 @@ pub struct Thicket<'a, L: SimdFloat> {
     pub roots: &'a Roots<L::Real>,
     /// The light that the rays go to, if they do.
     pub light: Option<&'a PointLight<L::Real>>,
+    /// The point that boxes are held against the ways from, see [`Bundle::from_point`].
+    pub back_from: Option<Vec3<L::Real>>,
     /// Where there is a ray.
     pub active: L::Mask,
     /// How far beside the rays thin things are looked for, by a test that does.
@@ -120,7 +122,11 @@ impl<L: SimdFloat> Thicket<'_, L> {
     #[inline(always)]
     pub fn scan<T: Test<L>>(&self, paths: &Paths<L>, stack: &mut Stack<L::Real>, test: &mut T) {
         let bvh = &self.geometry.bvh;
-        let mut bundle = Bundle::new(&paths.rays, self.active, bvh.bounds.max_abs());
+        let (rays, reach) = (&paths.rays, bvh.bounds.max_abs());
+        let mut bundle = match self.back_from {
+            None => Bundle::new(rays, self.active, reach),
+            Some(point) => Bundle::from_point(point, rays, self.active, reach),
+        };
         if !self.is_boxed {
             bundle.meet_all();
         }
@@ -211,7 +217,7 @@ impl<L: SimdFloat, T: Test<L>> Objects<'_, L, T> {
         let bundle = self.bundle.seen_from(instance.centre);
         let mut faces = Faces {
             mesh: &instance.mesh,
-            idle: idle_towards(*light, mesh, instance),
+            idle: light.and_then(|light| light.idle_faces.get(mesh)?.as_deref()),
             first: first + instance.first,
             active,
             paths: &paths,
@@ -232,8 +238,8 @@ impl<L: SimdFloat, T: Test<L>> Objects<'_, L, T> {
 /// The members of the tree of a mesh.
 struct Faces<'a, L: SimdFloat, T> {
     mesh: &'a PackedMesh<L::Real>,
-    /// Faces that are turned to this point, by more than a margin, are left out.
-    idle: Option<(Vec3<L::Real>, L::Real)>,
+    /// What is left out.
+    idle: Option<&'a IdleFaces>,
     first: usize,
     active: L::Mask,
     paths: &'a Paths<L>,
@@ -248,14 +254,17 @@ impl<L: SimdFloat, T: Test<L>> Seek<L> for Faces<'_, L, T> {
     }
 
     #[inline(always)]
+    fn is_idle(&self, child: Child) -> bool {
+        match self.idle {
+            None => false,
+            Some(idle) => idle.holds(child),
+        }
+    }
+
+    #[inline(always)]
     fn meet(&mut self, member: u32, _stack: &mut Stack<L::Real>) {
         let (index, prepared) = (member as usize, &self.prepared.triangles);
         let (triangle, number) = (&self.mesh.triangles[index], self.first + index);
-        if let Some((light, margin)) = self.idle
-            && margin < triangle.normal.dot(light - triangle.corners[0])
-        {
-            return;
-        }
         self.test.test(triangle, prepared, self.paths, number);
     }
 
@@ -268,25 +277,6 @@ impl<L: SimdFloat, T: Test<L>> Seek<L> for Faces<'_, L, T> {
     fn leave_out(&mut self, settled: u64) {
         self.test.leave_out(settled);
     }
-}
-
-/// Where a light is that faces turned to it cast no shadow from, and by how much they must be.
-#[inline(always)]
-fn idle_towards<R: Real>(
-    light: Option<&PointLight<R>>,
-    mesh: usize,
-    instance: &MeshInstance<R>,
-) -> Option<(Vec3<R>, R)> {
-    let light = light?;
-    let is_idle = light.lit_faces_are_idle.get(mesh) == Some(&true);
-    is_idle.then(
-        #[inline(always)]
-        || {
-            let place = light.position - instance.centre;
-            let size = place.max_abs() + instance.mesh.bvh.bounds.max_abs();
-            (place, size * R::from_f64(FAR_CAUTION))
-        },
-    )
 }
 
 #[inline(always)]

@@ -1,13 +1,14 @@
 //! The colours that come back along rays: ambient, diffuse, specular, shadows and mirrors.
 //!
-//! Rays that travel in step may hit different things: each thing that was hit is shaded for its own
-//! rays, and the results are put together.
+//! Rays that travel in step may hit different things: each kind of thing that was hit is lit for its own
+//! rays, each material colours its own part, and the results are put together.
 
 use super::candidates::{Among, Candidates};
 use super::cull::LightCandidates;
 use super::footprint::{Footprint, RayCone};
 use super::intersect::Kernel;
 use super::packet::{EdgeInfo, Packet};
+use super::parts::{Arriving, Parts};
 use super::paths::{IgnoredPrimitive, NOTHING, Paths};
 use super::stats::Rays;
 use super::surface::Hit;
@@ -49,16 +50,21 @@ pub struct Mirrored<L: SimdFloat> {
     pub cone: Option<RayCone<L>>,
 }
 
-/// The hits of one packet on one primitive.
+/// The hits of one packet on one primitive, or on several of a kind.
 struct ShadingPoint<'a, L: SimdFloat> {
     hit: Hit<L>,
-    surface: &'a Surface<L::Real>,
-    /// The rays that made them.
-    here: L::Mask,
-    /// Where those were going.
+    coat: Coat<'a, L>,
+    /// Where the rays were going.
     view: Vec3<L>,
     /// How large a pixel is here, where edges are noted.
     footprint: Option<Footprint<L>>,
+}
+
+/// What hits are made of.
+enum Coat<'a, L: SimdFloat> {
+    One(&'a Surface<L::Real>),
+    /// Seldom, and never without a tree.
+    Several(&'a Parts<L>),
 }
 
 /// One of the plan's lights.
@@ -68,15 +74,15 @@ struct LightSource<'a, R> {
     candidates: &'a LightCandidates<R>,
 }
 
-impl<'a, L: SimdFloat, const TREE: bool> Shader<'a, L, TREE> {
+impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
     /// Colours what the packet has met, and notes its edges if they are wanted. Gives the rays that
     /// mirrors send on.
     #[inline(always)]
     pub fn shade(
         &self,
         packet: &mut Packet<L>,
-        ignored: IgnoredPrimitive<L>,
-        mut edge: Option<&mut EdgeInfo<L>>,
+        (ignored, mut edge): (IgnoredPrimitive<L>, Option<&mut EdgeInfo<L>>),
+        parts: &mut Parts<L>,
         (stack, rays): (&mut Stack<L::Real>, &mut Rays),
     ) -> Option<Mirrored<L>> {
         let kernel = self.kernel;
@@ -96,35 +102,46 @@ impl<'a, L: SimdFloat, const TREE: bool> Shader<'a, L, TREE> {
             edge.near = kernel.thin_distance(self.thin, &gaze, stack);
         }
 
-        // Each primitive that was hit, for all rays that have hit it.
+        // Each primitive that was hit, for all rays that have hit it or others of its kind.
         let nothing = kernel.splat(NOTHING);
         let mut left = (nothing.less(packet.near.number) & packet.active).bits();
         while left != 0 {
-            let hit = kernel.refine(&packet.rays, &packet.near, left);
-            let here = hit.here & packet.active;
-            left &= !here.bits();
-            let material = &kernel.plan.materials[hit.material as usize];
+            let mut hit = kernel.refine(&packet.rays, &packet.near, left, parts);
+            left &= !hit.here.bits();
             let instead = self.instead(packet, &hit);
-            let mut color = instead.unwrap_or(Vec3::broadcast(kernel.token, material.base));
-            if let Some(surface) = &material.surface {
-                let point = self.shading_point(packet, hit, surface, here, edge.as_deref());
-                let lights = match instead {
-                    None => &kernel.plan.lights[..],
-                    Some(_) => &[],
+            let Some(coat) = self.coat(packet, &mut hit, instead, parts) else {
+                continue;
+            };
+            let point = self.shading_point(packet, hit, coat, edge.as_deref());
+            if instead.is_none() {
+                let mut arriving = Arriving {
+                    matte: kernel.splat(0.0),
+                    highlight: kernel.splat(0.0),
                 };
-                for (index, light) in lights.iter().enumerate() {
+                for (index, light) in kernel.plan.lights.iter().enumerate() {
                     let light = LightSource {
                         index,
                         light,
                         candidates: &self.lights[index],
                     };
-                    color = color + self.light(edge.as_deref_mut(), &point, &light, (stack, rays));
+                    let edge = edge.as_deref_mut();
+                    self.add_light(edge, &point, &light, &mut arriving, (stack, rays));
                 }
-                if let Some(filter) = surface.mirror.filter(|_| self.may_mirror) {
-                    mirrored = Some(join(mirrored, self.mirror(&point, filter)));
+                match point.coat {
+                    Coat::One(surface) => {
+                        let color = packet.color + arriving.color(surface, kernel.plan.show);
+                        packet.color = Vec3::select(point.hit.here, color, packet.color);
+                    }
+                    Coat::Several(parts) => {
+                        parts.color(kernel.plan, &arriving, &mut packet.color);
+                    }
                 }
             }
-            packet.color = Vec3::select(here, color, packet.color);
+            if self.may_mirror
+                && let Some(mirrors) = self.mirrors(&point)
+            {
+                mirrored = Some(join(mirrored, self.mirror(&point, mirrors)));
+            }
         }
         if kernel.plan.show == Show::Mirrors && self.is_first {
             let dark = Vec3::splat(kernel.splat(0.0));
@@ -161,12 +178,11 @@ impl<'a, L: SimdFloat, const TREE: bool> Shader<'a, L, TREE> {
 
     /// The hits, with the pixel's footprint; both sides are lit: the normal is turned to the viewer.
     #[inline(always)]
-    fn shading_point(
+    fn shading_point<'a>(
         &self,
         packet: &Packet<L>,
         mut hit: Hit<L>,
-        surface: &'a Surface<L::Real>,
-        here: L::Mask,
+        coat: Coat<'a, L>,
         edge: Option<&EdgeInfo<L>>,
     ) -> ShadingPoint<'a, L> {
         let view = packet.rays.direction;
@@ -183,45 +199,78 @@ impl<'a, L: SimdFloat, const TREE: bool> Shader<'a, L, TREE> {
         };
         ShadingPoint {
             hit,
-            surface,
-            here,
+            coat,
             view,
             footprint,
+        }
+    }
+
+    /// What hits are made of, if light falls on some, which then alone are there; the packet gets the colours that
+    /// they have without light, or those in their place.
+    #[inline(always)]
+    fn coat<'a>(
+        &'a self,
+        packet: &mut Packet<L>,
+        hit: &mut Hit<L>,
+        instead: Option<Vec3<L>>,
+        parts: &'a mut Parts<L>,
+    ) -> Option<Coat<'a, L>> {
+        let materials = &self.kernel.plan.materials[..];
+        if TREE && hit.is_mixed {
+            hit.here = parts.set_base(materials, instead, &mut packet.color)?;
+            return Some(Coat::Several(parts));
+        }
+        let material = &materials[hit.material as usize];
+        let color = instead.unwrap_or(Vec3::broadcast(self.kernel.token, material.base));
+        hit.here = hit.here & packet.active;
+        packet.color = Vec3::select(hit.here, color, packet.color);
+        material.surface.as_ref().map(Coat::One)
+    }
+
+    /// Where there are mirrors, and what their images are multiplied by.
+    #[inline(always)]
+    fn mirrors(&self, point: &ShadingPoint<L>) -> Option<(L::Mask, Vec3<L>)> {
+        match point.coat {
+            Coat::One(surface) => {
+                let filter = Vec3::broadcast(self.kernel.token, surface.mirror?);
+                Some((point.hit.here, filter))
+            }
+            Coat::Several(parts) => parts.mirror(self.kernel.plan, self.kernel.splat(0.0)),
         }
     }
 
     /// r = d - 2(d·n)n, the direction of perfect reflection; Whitted, "An improved illumination model
     /// for shaded display", CACM 23(6), 1980.
     #[inline(always)]
-    fn mirror(&self, point: &ShadingPoint<L>, filter: Vec3<L::Real>) -> Mirrored<L> {
+    fn mirror(&self, point: &ShadingPoint<L>, (active, filter): (L::Mask, Vec3<L>)) -> Mirrored<L> {
         let normal = point.hit.surface.normal;
         let along = point.view.dot(normal);
         let direction = point.view - normal * (along + along);
         Mirrored {
-            active: point.here,
-            filter: normal.like(filter),
+            active,
+            filter,
             paths: self.kernel.spawn(&point.hit, direction),
             cone: point.footprint.as_ref().map(Footprint::mirrored),
         }
     }
 
-    /// What one light adds: intensity · (n·l · diffuse + (n·h)^p · specular), if nothing is between.
+    /// Adds what one light sends: intensity · n·l and intensity · (n·h)^p, if nothing is between.
     ///
     /// Blinn, "Models of light reflection for computer synthesized pictures", SIGGRAPH 1977, with h
     /// halfway between the directions to the light and to the viewer.
     #[inline(always)]
-    fn light(
+    fn add_light(
         &self,
         edge: Option<&mut EdgeInfo<L>>,
         point: &ShadingPoint<L>,
         source: &LightSource<L::Real>,
+        arriving: &mut Arriving<L>,
         (stack, rays): (&mut Stack<L::Real>, &mut Rays),
-    ) -> Vec3<L> {
+    ) {
         let (kernel, hit) = (self.kernel, &point.hit);
         let (light, candidates) = (source.light, source.candidates);
         let zero = kernel.splat(0.0);
         let one = kernel.splat(1.0);
-        let dark = Vec3::splat(zero);
 
         // A light in the surface has no direction: NaN is not above zero, and it adds nothing. Nor does one
         // that is no higher above the surface than rounding may have lifted it.
@@ -235,14 +284,14 @@ impl<'a, L: SimdFloat, const TREE: bool> Shader<'a, L, TREE> {
             None => zero,
             Some(rounding) => part + shrink * shrink.like(rounding),
         };
-        let lit_side = point.here & lowest.less(cosine);
+        let lit_side = hit.here & lowest.less(cosine);
         let facing = if kernel.plan.shadows_behind {
-            point.here
+            hit.here
         } else {
             lit_side
         };
         if !facing.any() {
-            return dark;
+            return;
         }
 
         // Shadows: whatever stands before the light, and whatever thin thing nearly does.
@@ -270,15 +319,16 @@ impl<'a, L: SimdFloat, const TREE: bool> Shader<'a, L, TREE> {
                 };
                 let near = kernel.thin_distance(&candidates.thin, &gaze, stack);
                 // The shadow of a light that nobody sees is not seen either.
-                let diffuse = point.surface.diffuse;
-                let brightest = (diffuse.x + diffuse.y + diffuse.z) * light.intensity;
-                let visible = kernel
-                    .splat(EDGE_CONTRAST)
-                    .less(cosine * cosine.like(brightest));
+                let brightness = match point.coat {
+                    Coat::One(surface) => zero.like(surface.brightness()),
+                    Coat::Several(parts) => parts.brightness(kernel.plan, zero),
+                };
+                let brightest = brightness * zero.like(light.intensity);
+                let visible = kernel.splat(EDGE_CONTRAST).less(cosine * brightest);
                 edge.near = L::select(facing & visible, near.min(edge.near), edge.near);
             }
             if candidates.is_umbra {
-                return dark;
+                return;
             }
             let among = Among {
                 candidates: &candidates.casters,
@@ -287,30 +337,45 @@ impl<'a, L: SimdFloat, const TREE: bool> Shader<'a, L, TREE> {
             };
             lit = lit & !kernel.blocked(among, &paths, (reach, facing), stack);
             if !lit.any() {
-                return dark;
+                return;
             }
         }
 
         if let Show::Shadows(share) = kernel.plan.show {
-            return Vec3::select(lit, Vec3::splat(distance.like(share)), dark);
+            let lighter = arriving.matte + distance.like(share);
+            arriving.matte = L::select(lit, lighter, arriving.matte);
+            return;
         }
 
-        // The colour of the light that arrives.
-        let matte = l.like(point.surface.diffuse) * cosine;
-        let exponent = point.surface.exponent;
-        let half = l - point.view;
-        let highlight = exponent.highlight(hit.surface.normal, half);
-        let color = matte + l.like(point.surface.specular) * highlight;
+        let intensity = distance.like(light.intensity);
+        let matte = arriving.matte + cosine * intensity;
+        arriving.matte = L::select(lit, matte, arriving.matte);
+        let (normal, half) = (hit.surface.normal, l - point.view);
+        let highlight = match point.coat {
+            Coat::One(surface) => surface.exponent.highlight(normal, half),
+            Coat::Several(parts) => parts.highlight(normal, half),
+        };
+        let highlight = highlight * intensity;
+        arriving.highlight = L::select(lit, arriving.highlight + highlight, arriving.highlight);
         if let Some((edge, footprint)) = edge {
             let bit = kernel.splat(f64::from(1_u32 << (source.index % LIGHT_BITS)));
             edge.lit = L::select(lit, edge.lit + bit, edge.lit);
-            if let Some(size) = exponent.size() {
-                let off = (hit.surface.normal - half * (one / half.length())).length();
-                let near = footprint.highlight_distance(size, off, distance);
+            let is_sharp = match point.coat {
+                Coat::One(surface) => surface.exponent.size().is_some(),
+                Coat::Several(parts) => parts.is_any_sharp(),
+            };
+            if is_sharp {
+                let off = (normal - half * (one / half.length())).length();
+                let near = match point.coat {
+                    Coat::One(surface) => {
+                        let size = surface.exponent.size().unwrap_or_default();
+                        footprint.highlight_distance(size, off, distance)
+                    }
+                    Coat::Several(parts) => parts.highlight_distance(footprint, off, distance),
+                };
                 edge.near = L::select(lit, near.min(edge.near), edge.near);
             }
         }
-        Vec3::select(lit, color * distance.like(light.intensity), dark)
     }
 }
 

@@ -2,20 +2,23 @@
 
 use super::gather::{Gathered, Piece};
 use super::intersect::{Kernel, Nearest};
+use super::parts::Parts;
 use super::paths::{IgnoredPrimitive, Paths};
 use crate::plan::RayOrigin;
 use crate::primitive::{Primitive, Ray, SurfacePoint, WithPrimitive};
 use crate::simd::{Real, SimdFloat, Vec3};
 
-/// Hits on one primitive, or on several that look alike.
+/// Hits on one primitive, or on several of a kind.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<L: SimdFloat> {
     /// Where they are.
     pub here: L::Mask,
     /// Point, normal and curvature of the surface.
     pub surface: SurfacePoint<L>,
-    /// Index into [`crate::plan::Plan::materials`].
+    /// Index into [`crate::plan::Plan::materials`] of what the first of them is made of.
     pub material: u32,
+    /// Whether others are made of something else.
+    pub is_mixed: bool,
     /// What was hit.
     own: IgnoredPrimitive<L>,
 }
@@ -36,15 +39,23 @@ impl<L: SimdFloat> WithPrimitive<L::Real> for Refine<'_, L> {
             here: self.here,
             surface: primitive.refine(self.rays, self.nearest.t),
             material: primitive.material(),
+            is_mixed: false,
             own: IgnoredPrimitive::listed(self.number, self.nearest.number),
         }
     }
 }
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
-    /// The hits on what the first of the rays in `left` (bit by bit) has met, which has met something.
+    /// The hits on what the first of the rays in `left` (bit by bit) has met, which has met something; `parts`
+    /// become the materials there, if it is not one.
     #[inline(always)]
-    pub fn refine(self, rays: &Ray<L>, nearest: &Nearest<L>, left: u64) -> Hit<L> {
+    pub fn refine(
+        self,
+        rays: &Ray<L>,
+        nearest: &Nearest<L>,
+        left: u64,
+        parts: &mut Parts<L>,
+    ) -> Hit<L> {
         let number = nearest.number.lane(left.trailing_zeros() as usize);
         let refine = Refine {
             rays,
@@ -56,7 +67,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             Some((geometry, first)) if refine.number >= first => {
                 let index = refine.number - first;
                 match Piece::of(geometry, index) {
-                    Some(piece) => self.refine_alike(&piece, rays, nearest, left),
+                    Some(piece) => self.refine_alike(&piece, (rays, nearest, left), parts),
                     None => geometry.primitives.with(index, refine),
                 }
             }
@@ -64,19 +75,18 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         }
     }
 
-    /// The hits on everything that is like one piece: each ray has met its own, and they are shaded as one.
+    /// The hits on everything that is like one piece: each ray has met its own, and they are lit as one.
     #[inline(never)]
     fn refine_alike(
         self,
         piece: &Piece<L::Real>,
-        rays: &Ray<L>,
-        nearest: &Nearest<L>,
-        left: u64,
+        (rays, nearest, left): (&Ray<L>, &Nearest<L>, u64),
+        parts: &mut Parts<L>,
     ) -> Hit<L> {
         L::vectorize(
             self.token,
             #[inline(always)]
-            || self.refine_alike_vectorized(piece, rays, nearest, left),
+            || self.refine_alike_vectorized(piece, (rays, nearest, left), parts),
         )
     }
 
@@ -84,9 +94,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     fn refine_alike_vectorized(
         self,
         piece: &Piece<L::Real>,
-        rays: &Ray<L>,
-        nearest: &Nearest<L>,
-        left: u64,
+        (rays, nearest, left): (&Ray<L>, &Nearest<L>, u64),
+        parts: &mut Parts<L>,
     ) -> Hit<L> {
         let mut gathered = Gathered::like(piece);
         let mut left = left;
@@ -102,10 +111,12 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                 gathered.set(lane, &other);
             }
         }
+        gathered.part::<L>(self.token, parts);
         Hit {
             here: gathered.mask::<L>(self.token),
             surface: gathered.refine(piece, rays, nearest.t),
             material: piece.material,
+            is_mixed: parts.are_several(),
             own: IgnoredPrimitive::in_tree(nearest.number),
         }
     }
@@ -119,23 +130,19 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             slack,
             ..
         } = hit.surface;
-        let (origin, ignored) = match self.plan.ray_origin {
-            RayOrigin::AtHit if self.plan.ties.is_empty() => (point + normal * slack, hit.own),
+        let origin = match self.plan.ray_origin {
+            RayOrigin::AtHit if self.plan.ties.is_empty() => point + normal * slack,
             // Off what may lie in the same surface, whose own numbers are rounded too.
             RayOrigin::AtHit => {
                 let reach = point.max_abs() + slack.like(self.plan.extent);
                 let off = reach * slack.like(L::Real::UNIT_ROUNDOFF * L::Real::from_f64(8.0));
-                (point + normal * slack.max(off), hit.own)
+                point + normal * slack.max(off)
             }
-            RayOrigin::Along(distance) => (
-                point + direction * slack.like(distance),
-                IgnoredPrimitive::nothing(self.token),
-            ),
-            RayOrigin::Roundings => (
-                point + roundings_along(point, normal),
-                IgnoredPrimitive::nothing(self.token),
-            ),
+            RayOrigin::Along(distance) => point + direction * slack.like(distance),
+            RayOrigin::Roundings => point + roundings_along(point, normal),
         };
+        let is_at_hit = matches!(self.plan.ray_origin, RayOrigin::AtHit);
+        let ignored = hit.own.only_if(is_at_hit);
         let rays = Ray { origin, direction };
         Paths { rays, ignored }
     }

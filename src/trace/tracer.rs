@@ -78,7 +78,7 @@ impl Tracer {
         } else {
             PlanOf::Single(Box::new(Plan::new(scene, request, &mut planner.single)))
         };
-        let pixels = u64::from(request.width) * u64::from(request.height);
+        let pixels = request.pixels();
         let is_sparse = plan.bounded() * PIXELS_PER_PRIMITIVE <= pixels;
         Self {
             width: request.width as usize,

@@ -26,6 +26,10 @@ pub type Stack<R> = Vec<Waiting<R>>;
 pub trait Seek<L: SimdFloat> {
     /// How far each ray still looks; below 0 where it does not.
     fn reach(&self) -> L;
+    /// Whether nothing is to be found there.
+    fn is_idle(&self, _child: Child) -> bool {
+        false
+    }
     /// Looks at a member.
     fn meet(&mut self, member: u32, stack: &mut Stack<L::Real>);
     /// Looks at a box, of which the ball around it and the thickness of what is in it are given, for the rays that
@@ -60,7 +64,11 @@ pub fn walk<L: SimdFloat>(
         while bits != 0 {
             let place = bits.trailing_zeros();
             bits &= bits - 1;
-            match node.child(place as usize) {
+            let child = node.child(place as usize);
+            if seek.is_idle(child) {
+                continue;
+            }
+            match child {
                 Child::Member(member) => seek.meet(member, stack),
                 Child::Node(inner) => {
                     let near = nears[place as usize];

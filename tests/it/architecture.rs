@@ -28,6 +28,7 @@ const HOMES: &[(&[&str], &[&str])] = &[
             "worker",
             "export/exporting",
             "export/povray",
+            "plan/idle",
             "plan/thickness",
             "trace/tracer",
             "trace/threads",

@@ -14,6 +14,7 @@ mod extremes;
 mod fuzz;
 mod harness;
 mod image_model;
+mod kept;
 mod meshes;
 mod needs;
 mod numerics;

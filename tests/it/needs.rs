@@ -154,7 +154,7 @@ fn without_mirrors_nothing_is_reflected_and_one_brings_it_back() {
 
 #[test]
 fn the_tree_begins_where_a_list_is_too_long() {
-    let crowd = |balls: usize, triangles: usize| {
+    let crowd = |balls: usize, triangles: usize, sampling: Sampling, side: u32| {
         let mut scene = Scene::empty();
         let pack = scene.color_packs.keys().next().expect("a pack").clone();
         for n in 0..balls + triangles {
@@ -180,12 +180,44 @@ fn the_tree_begins_where_a_list_is_too_long() {
             });
         }
         scene.light_visualization = false;
-        let request = RenderRequest::sized(64, 64);
+        let request = RenderRequest {
+            sampling,
+            ..RenderRequest::sized(side, side)
+        };
         let plan = Plan::<f32>::new(&scene, &request, &mut Kept::default());
         plan.geometry.is_some()
     };
-    assert!(!crowd(384, 0) && !crowd(256, 128));
-    assert!(crowd(385, 0) && crowd(0, 129));
+    let (plain, smooth) = (Sampling::Centres, Sampling::ADAPTIVE);
+    // However large the picture is, and however small.
+    for sampling in [plain, smooth] {
+        assert!(!crowd(384, 0, sampling, 2000) && crowd(385, 0, sampling, 2000));
+        assert!(!crowd(0, 128, sampling, 2000) && crowd(0, 129, sampling, 2000));
+        assert!(!crowd(32, 0, sampling, 64) && crowd(33, 0, sampling, 64));
+    }
+    // 200 objects in between: 2,000 pixels each, or 500 with clean edges.
+    assert!(crowd(200, 0, plain, 632) && !crowd(200, 0, plain, 633));
+    assert!(crowd(200, 0, smooth, 316) && !crowd(200, 0, smooth, 317));
+    // Side by side they are a row; a thinner crowd is one that fills a space.
+    let space = |side: f64| {
+        let mut scene = Scene::empty();
+        for n in 0..64 {
+            let place = DVec3::new(f64::from(n % 4), f64::from(n / 4 % 4), f64::from(n / 16));
+            scene.objects.push(Object {
+                name: format!("Ball {n}"),
+                color_pack: "pack 1".to_owned(),
+                shape: Shape::Sphere(Sphere {
+                    center: place * side,
+                    radius: 1.0,
+                }),
+                visible: true,
+                group: String::new(),
+            });
+        }
+        let request = RenderRequest::sized(2000, 2000);
+        let plan = Plan::<f32>::new(&scene, &request, &mut Kept::default());
+        plan.geometry.is_some()
+    };
+    assert!(!space(1.9) && space(2.1));
 }
 
 #[test]

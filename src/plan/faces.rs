@@ -1,0 +1,57 @@
+//! Faces that camera rays, or shadow rays to a light, can do without.
+
+use glam::DVec3;
+
+use super::idle::KeptIdle;
+use super::pack::Plan;
+use super::request::RenderRequest;
+use super::solids::Solids;
+use crate::scene::{Projection, Scene};
+use crate::simd::{Real, Vec3};
+
+impl<R: Real> Plan<R> {
+    /// Finds the faces of solids that camera rays, and shadow rays to each light, can do without.
+    pub fn drop_far_faces(&mut self, scene: &Scene, request: &RenderRequest, centre: DVec3) {
+        let triangles = self.primitives.triangles.iter();
+        let solids = Solids::among(triangles.map(|t| t.corners.map(Vec3::to_dvec3)).collect());
+        let projection = request.projection_of(&scene.camera);
+        if projection == Projection::Perspective {
+            self.camera_culled_faces = solids.turned_away(scene.camera.position - centre);
+        }
+        for light in &mut self.lights {
+            light.shadow_culled_faces = solids.turned_away(light.position.to_dvec3());
+        }
+    }
+
+    /// Finds the meshes whose faces towards a light need no shadow test: those with an inside where neither
+    /// the eye nor the light is, so that no ray that counts sets out there either.
+    pub fn drop_lit_faces(
+        &mut self,
+        scene: &Scene,
+        request: &RenderRequest,
+        kept: &mut KeptIdle<R>,
+    ) {
+        let projection = request.projection_of(&scene.camera);
+        let Some(geometry) = &self.geometry else {
+            return;
+        };
+        if projection != Projection::Perspective {
+            return;
+        }
+        let eye = Vec3::from_dvec3(scene.camera.position - self.centre);
+        // Where a face is shaded as if it were curved, light comes from beneath it too.
+        let seen: Vec<bool> = geometry
+            .meshes
+            .iter()
+            .map(|mesh| mesh.mesh.smooth.is_empty() && mesh.is_seen_from_outside(eye))
+            .collect();
+        for light in &mut self.lights {
+            let meshes = geometry.meshes.iter().zip(&seen);
+            let idle = meshes.map(|(mesh, seen)| {
+                let are_idle = *seen && mesh.is_seen_from_outside(light.position);
+                are_idle.then(|| kept.towards(light.position, mesh))
+            });
+            light.idle_faces = idle.collect();
+        }
+    }
+}

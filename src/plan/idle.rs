@@ -1,0 +1,121 @@
+//! Faces of meshes that cast no shadow of their own.
+
+use std::sync::Arc;
+
+use rayon::iter::ParallelIterator as _;
+use rayon::slice::ParallelSlice as _;
+
+use super::bvh::{Bvh, Child};
+use super::packed_mesh::{MeshInstance, PackedMesh};
+use crate::primitive::{FAR_CAUTION, PackedTriangle};
+use crate::simd::{Real, Vec3};
+
+/// Bits of a word.
+const BITS: usize = 64;
+
+/// The faces of a mesh that are turned to a light, and the nodes that hold no others: rays to the light which leave
+/// a closed mesh there have entered it elsewhere.
+#[derive(Clone, Debug)]
+pub struct IdleFaces {
+    faces: Vec<u64>,
+    nodes: Vec<u64>,
+}
+
+impl IdleFaces {
+    /// Those of a mesh for a light in a place, from the middle of the mesh.
+    fn towards<R: Real>(mesh: &PackedMesh<R>, place: Vec3<R>) -> Self {
+        let size = place.max_abs() + mesh.bvh.bounds.max_abs();
+        let margin = size * R::from_f64(FAR_CAUTION);
+        let is_idle = |face: &PackedTriangle<R>| margin < face.normal.dot(place - face.corners[0]);
+        let word = |faces: &[PackedTriangle<R>]| {
+            let bits = faces.iter().enumerate();
+            bits.fold(0, |word, (bit, face)| {
+                word | u64::from(is_idle(face)) << bit
+            })
+        };
+        let mut idle = Self {
+            faces: mesh.triangles.par_chunks(BITS).map(word).collect(),
+            nodes: vec![0; mesh.bvh.nodes.len().div_ceil(BITS)],
+        };
+        idle.find_nodes(&mesh.bvh);
+        idle
+    }
+
+    fn find_nodes<R: Real>(&mut self, bvh: &Bvh<R>) {
+        // A node stands before those in its boxes.
+        for (index, node) in bvh.nodes.iter().enumerate().rev() {
+            let all = (0..node.count).all(|place| self.holds(node.child(place)));
+            self.nodes[index / BITS] |= u64::from(all) << (index % BITS);
+        }
+    }
+
+    /// Whether it is such a face, or a node that holds no others.
+    #[inline(always)]
+    pub fn holds(&self, child: Child) -> bool {
+        let (words, index) = match child {
+            Child::Member(face) => (&self.faces, face as usize),
+            Child::Node(node) => (&self.nodes, node as usize),
+        };
+        words[index / BITS] >> (index % BITS) & 1 == 1
+    }
+}
+
+/// What was found for the picture before, which the next one may need as well.
+#[derive(Clone, Debug, Default)]
+pub struct KeptIdle<R> {
+    known: Vec<Known<R>>,
+    used: Vec<Known<R>>,
+}
+
+#[derive(Clone, Debug)]
+struct Known<R> {
+    mesh: Arc<PackedMesh<R>>,
+    place: Vec3<R>,
+    idle: Arc<IdleFaces>,
+}
+
+impl<R: Real> KeptIdle<R> {
+    /// The idle faces of a mesh for a light.
+    pub fn towards(&mut self, light: Vec3<R>, mesh: &MeshInstance<R>) -> Arc<IdleFaces> {
+        let place = light - mesh.centre;
+        let is_it =
+            |known: &&Known<R>| Arc::ptr_eq(&known.mesh, &mesh.mesh) && known.place == place;
+        let known = self.known.iter().chain(&self.used).find(is_it).cloned();
+        let found = known.unwrap_or_else(|| Known {
+            mesh: Arc::clone(&mesh.mesh),
+            place,
+            idle: Arc::new(IdleFaces::towards(&mesh.mesh, place)),
+        });
+        let idle = Arc::clone(&found.idle);
+        self.used.push(found);
+        idle
+    }
+
+    /// Forgets what the last picture did not need.
+    pub fn end(&mut self) {
+        self.known = std::mem::take(&mut self.used);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::icosphere;
+    use crate::scene::Mesh;
+
+    #[test]
+    fn half_of_a_ball_is_idle_with_its_nodes() {
+        let mesh = PackedMesh::<f32>::new(&Mesh::of(icosphere(1.0)));
+        let idle = IdleFaces::towards(&mesh, Vec3::new(0.0, 1e4, 0.0));
+        let faces = 0..mesh.triangles.len() as u32;
+        for face in faces.clone() {
+            let is_up = mesh.triangles[face as usize].normal.y > 1e-3;
+            assert_eq!(idle.holds(Child::Member(face)), is_up, "{face}");
+        }
+        for (index, node) in mesh.bvh.nodes.iter().enumerate() {
+            let all = (0..node.count).all(|place| idle.holds(node.child(place)));
+            assert_eq!(idle.holds(Child::Node(index as u32)), all, "{index}");
+        }
+        assert!(!idle.holds(Child::Node(0)));
+    }
+}

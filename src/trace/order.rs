@@ -1,0 +1,270 @@
+//! Hits put in order, so that those in one packet are close to each other: neighbours in the picture may be far apart
+//! in the scene, and their rays to a light then have little in common.
+
+use super::beam::Bounds;
+use super::intersect::{Kernel, Nearest};
+use super::packet::Packet;
+use super::paths::NOTHING;
+use super::samples::Samples;
+use crate::primitive::{BoundingBox, Ray};
+use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
+
+/// Cells along each axis of the box around all hits.
+const CELLS: f64 = 16.0;
+/// Bits of a key: four for each axis, and what was hit.
+const BITS: u32 = 14;
+/// Keys that a pass of sorting tells apart.
+const BUCKETS: usize = 1 << (BITS / 2);
+
+/// For each number of a cell along an axis its bits, three apart.
+const SPREAD: [u16; CELLS as usize] = {
+    let mut spread = [0; CELLS as usize];
+    let mut cell = 0;
+    while cell < spread.len() {
+        let bits = cell as u16;
+        spread[cell] = bits & 1 | (bits & 2) << 2 | (bits & 4) << 4 | (bits & 8) << 6;
+        cell += 1;
+    }
+    spread
+};
+
+/// Hits are scattered where those of a packet differ in distance by more than this share of what all of a tile do;
+/// on a surface it is a quarter.
+const SCATTERED: f64 = 0.4;
+
+/// What was hit, and where, sample by sample; memory that is used again.
+#[derive(Debug, Default)]
+pub struct Order<R> {
+    /// Places of the samples in the picture.
+    x: Vec<R>,
+    y: Vec<R>,
+    /// How far the hits are.
+    t: Vec<R>,
+    /// The numbers of what was hit.
+    number: Vec<R>,
+    /// Where the hits are, in cells.
+    cells: [Vec<R>; 3],
+    keys: Vec<u16>,
+    /// For each lane of the packets in their order, the sample that it is; empty where that is the order of the
+    /// samples.
+    pub samples: Vec<u32>,
+    other: Vec<u32>,
+    /// How many samples there are; the others fill the last packet up.
+    count: usize,
+}
+
+impl<R: Real> Order<R> {
+    /// Forgets the samples before.
+    pub fn clear(&mut self) {
+        self.samples.clear();
+        self.t.clear();
+        self.number.clear();
+        self.cells.iter_mut().for_each(Vec::clear);
+    }
+
+    /// Begins with samples in their order.
+    pub fn start(&mut self, samples: &Samples<R>) {
+        self.x.clone_from(&samples.x);
+        self.y.clone_from(&samples.y);
+        self.count = samples.count;
+    }
+
+    /// Puts the hits of camera rays into packets of those that are close to each other, if they are not.
+    #[inline(always)]
+    pub fn arrange<L: SimdFloat<Real = R>, const TREE: bool>(
+        &mut self,
+        kernel: Kernel<L, TREE>,
+        packets: &mut [Packet<L>],
+        bounds: &Bounds<L>,
+    ) {
+        let Some((_, first)) = kernel.geometry() else {
+            return;
+        };
+        if !is_scattered(kernel, packets) {
+            return;
+        }
+        let around = bounds.around();
+        for Packet { rays, near, .. } in &*packets {
+            self.add((near.t, near.number), rays.at(near.t), &around);
+        }
+        self.find(first);
+        let count = kernel.splat(self.count as f64);
+        for (index, packet) in packets.iter_mut().enumerate() {
+            let first = index * L::WIDTH;
+            let x = self.gather(kernel.token, &self.x, first);
+            let y = self.gather(kernel.token, &self.y, first);
+            let (origin, direction) = kernel.plan.view.rays(x, y);
+            packet.rays = Ray { origin, direction };
+            packet.near = Nearest {
+                t: self.gather(kernel.token, &self.t, first),
+                number: self.gather(kernel.token, &self.number, first),
+            };
+            packet.active = self.numbers::<L>(kernel.token, first).less(count);
+        }
+    }
+
+    /// Adds the hits of a packet, of which all are in the box.
+    #[inline(always)]
+    fn add<L: SimdFloat<Real = R>>(
+        &mut self,
+        (t, number): (L, L),
+        point: Vec3<L>,
+        around: &BoundingBox<R>,
+    ) {
+        let size = around.high - around.low;
+        let longest = size.x.max(size.y).max(size.z);
+        let zero = t.like(R::ZERO);
+        let last = t.like_f64(CELLS - 1.0);
+        let per_cell = if R::ZERO < longest {
+            R::from_f64(CELLS) / longest
+        } else {
+            R::ZERO
+        };
+        let off = point - point.like(around.low);
+        for (cells, off) in self.cells.iter_mut().zip([off.x, off.y, off.z]) {
+            push(cells, (off * t.like(per_cell)).max(zero).min(last));
+        }
+        push(&mut self.t, t);
+        push(&mut self.number, number);
+    }
+
+    /// Finds the order: what is in lists first, since all that is alike in a packet is lit as one; then the tree,
+    /// whose first number is given, cell by cell along a curve that fills space (Morton, "A computer oriented
+    /// geodetic data base and a new technique in file sequencing", IBM, 1966); then what has met nothing.
+    fn find(&mut self, first: usize) {
+        self.keys.clear();
+        let first = R::from_f64(first as f64);
+        for sample in 0..self.number.len() {
+            let [x, y, z] = &self.cells;
+            let bits = |cells: &[R]| SPREAD[cells[sample].nearest() as usize % SPREAD.len()];
+            let (x, y, z) = (bits(x), bits(y), bits(z));
+            let number = self.number[sample];
+            let group = match number {
+                _ if sample >= self.count || number == R::from_f64(NOTHING) => 2,
+                number if number < first => 0,
+                _ => 1,
+            };
+            self.keys.push(group << 12 | z << 2 | y << 1 | x);
+        }
+        let all = 0..self.keys.len() as u32;
+        self.samples.clear();
+        self.samples.extend(all);
+        for pass in 0..2 {
+            self.sort_by_half(pass * (BITS / 2));
+        }
+    }
+
+    /// Sorts the samples by half of the bits of their keys; those that are equal in them stay in their order.
+    fn sort_by_half(&mut self, shift: u32) {
+        let bucket = |key: u16| (key >> shift) as usize & (BUCKETS - 1);
+        let mut starts = [0_u32; BUCKETS + 1];
+        for &key in &self.keys {
+            starts[bucket(key) + 1] += 1;
+        }
+        for index in 0..BUCKETS {
+            starts[index + 1] += starts[index];
+        }
+        self.other.clear();
+        self.other.resize(self.samples.len(), 0);
+        for &sample in &self.samples {
+            let start = &mut starts[bucket(self.keys[sample as usize])];
+            self.other[*start as usize] = sample;
+            *start += 1;
+        }
+        std::mem::swap(&mut self.samples, &mut self.other);
+    }
+
+    /// The samples that the lanes of a packet are, of which the first is given.
+    #[inline(always)]
+    fn numbers<L: SimdFloat<Real = R>>(&self, token: L::Token, first: usize) -> L {
+        let mut lanes = [R::ZERO; MAX_LANES];
+        for (lane, &sample) in lanes.iter_mut().zip(&self.samples[first..first + L::WIDTH]) {
+            *lane = R::from_f64(f64::from(sample));
+        }
+        L::load(token, &lanes)
+    }
+
+    /// Writes the lanes of a packet, of which the first is given, to where their samples are in a column.
+    #[inline(always)]
+    pub fn scatter<L: SimdFloat<Real = R>>(&self, lanes: L, first: usize, column: &mut [R]) {
+        let mut numbers = [R::ZERO; MAX_LANES];
+        lanes.store(&mut numbers);
+        for (&number, &sample) in numbers.iter().zip(&self.samples[first..first + L::WIDTH]) {
+            column[sample as usize] = number;
+        }
+    }
+
+    /// The numbers of a column that belong to the lanes of a packet, of which the first is given.
+    #[inline(always)]
+    fn gather<L: SimdFloat<Real = R>>(&self, token: L::Token, column: &[R], first: usize) -> L {
+        let mut lanes = [R::ZERO; MAX_LANES];
+        for (lane, &sample) in lanes.iter_mut().zip(&self.samples[first..first + L::WIDTH]) {
+            *lane = column[sample as usize];
+        }
+        L::load(token, &lanes)
+    }
+}
+
+/// Whether the hits of packets are at nearly as different distances as those of all.
+#[inline(always)]
+fn is_scattered<L: SimdFloat, const TREE: bool>(
+    kernel: Kernel<L, TREE>,
+    packets: &[Packet<L>],
+) -> bool {
+    let (infinity, zero) = (kernel.infinity(), kernel.splat(0.0));
+    let (mut nearest, mut farthest) = (infinity, zero);
+    let (mut sum, mut count) = (L::Real::ZERO, L::Real::ZERO);
+    for Packet { near, active, .. } in packets {
+        let hit = near.t.less(infinity) & *active;
+        if hit.any() {
+            let near_end = L::select(hit, near.t, infinity);
+            let far_end = L::select(hit, near.t, zero);
+            sum = sum + (far_end.greatest() - near_end.least());
+            count = count + L::Real::ONE;
+            nearest = nearest.min(near_end);
+            farthest = farthest.max(far_end);
+        }
+    }
+    let range = farthest.greatest() - nearest.least();
+    range * count * L::Real::from_f64(SCATTERED) < sum
+}
+
+#[inline(always)]
+fn push<L: SimdFloat>(column: &mut Vec<L::Real>, numbers: L) {
+    let first = column.len();
+    column.resize(first + L::WIDTH, L::Real::ZERO);
+    numbers.store(&mut column[first..]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hits_are_sorted_by_what_they_are_and_where() {
+        let mut order = Order::<f64>::default();
+        let around = BoundingBox {
+            low: Vec3::splat(0.0),
+            high: Vec3::new(16.0, 16.0, 4.0),
+        };
+        // A miss, two corners of the tree in turn, and the list.
+        let hits = [
+            (-1.0, 3.0),
+            (7.0, 15.5),
+            (8.0, 0.5),
+            (7.0, 15.0),
+            (9.0, 0.0),
+            (2.0, 9.0),
+        ];
+        for (number, x) in hits {
+            order.add((1.0, number), Vec3::new(x, 1.0, 1.0), &around);
+        }
+        order.count = hits.len();
+        order.find(5);
+        assert_eq!(order.samples, [5, 2, 4, 1, 3, 0]);
+        // What fills the last packet up is no hit.
+        order.count = 4;
+        order.find(5);
+        assert_eq!(order.samples, [2, 1, 3, 4, 0, 5]);
+    }
+}
