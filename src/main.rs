@@ -27,7 +27,7 @@ fn main() -> ExitCode {
             select,
         } => open_editor(scene.as_deref(), screenshot, (exports, select)),
     };
-    result.map_or_else(|error| error.report(), |()| ExitCode::SUCCESS)
+    cli::finish(result.map_or_else(|error| error.report(), |()| ExitCode::SUCCESS))
 }
 
 fn save(image: Image, path: &Path) -> Result<(), CliError> {

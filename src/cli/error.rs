@@ -1,8 +1,9 @@
 //! How a command ends, and what it says.
 
 use std::error::Error;
-use std::io::Write as _;
+use std::io::{ErrorKind, Write as _};
 use std::process::ExitCode;
+use std::sync::OnceLock;
 
 use crate::export::ExportError;
 use crate::image::FormatError;
@@ -85,9 +86,32 @@ impl From<serde_json::Error> for CliError {
     }
 }
 
-/// One result line on stdout. A reader that went away is no fault of ours.
+/// Why a result could not be written.
+static LOST: OnceLock<String> = OnceLock::new();
+
+/// One result line on stdout. A reader that went away is no fault of ours; [`finish`] tells of what else went wrong.
 pub fn say(line: &str) {
-    let _ = writeln!(std::io::stdout(), "{line}");
+    if let Err(error) = writeln!(std::io::stdout(), "{line}")
+        && error.kind() != ErrorKind::BrokenPipe
+    {
+        let _ = LOST.set(error.to_string());
+    }
+}
+
+/// The exit code of a command that would end with this one: another, if a result was lost.
+pub fn finish(code: ExitCode) -> ExitCode {
+    match LOST.get() {
+        None => code,
+        Some(why) => {
+            report_error(&format!("results could not be written to stdout: {why}"));
+            FAILED.into()
+        }
+    }
+}
+
+/// One line on stderr about what is not as it was asked for, though the command goes on.
+pub fn report_warning(warning: &str) {
+    let _ = writeln!(std::io::stderr(), "warning: {warning}");
 }
 
 /// One line about what went wrong on stderr.

@@ -38,8 +38,8 @@ use std::process::ExitCode;
 use clap::{CommandFactory as _, Parser, Subcommand};
 
 pub use action::CliAction;
-pub use error::CliError;
 use error::WRONG;
+pub use error::{CliError, finish};
 pub use fallback::picture_instead_of_window;
 
 use crate::image::Format;
@@ -95,7 +95,13 @@ enum CliCommand {
 
 /// Reads the command line and runs its command, if it has one.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> CliAction {
-    let words: Vec<OsString> = words.into_iter().collect();
+    match run_words(words.into_iter().collect()) {
+        CliAction::Done(code) => CliAction::Done(finish(code)),
+        more => more,
+    }
+}
+
+fn run_words(words: Vec<OsString>) -> CliAction {
     let done = |result: Result<(), CliError>| {
         CliAction::Done(result.map_or_else(|error| error.report(), |()| ExitCode::SUCCESS))
     };

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::error::{CliError, report_error};
+use super::error::{CliError, report_warning};
 use crate::scene::{Document, Scene};
 
 /// Reads a scene. What is missing in it is said on stderr, once, and the rest is there.
@@ -12,7 +12,7 @@ use crate::scene::{Document, Scene};
 pub fn read_scene(path: &Path) -> Result<Scene, CliError> {
     let scene = Document::load(path)?.scene;
     for problem in missing_meshes(path, &scene) {
-        report_error(&problem);
+        report_warning(&problem);
     }
     Ok(scene)
 }

@@ -442,3 +442,20 @@ fn desktops_and_shells_are_told_of_the_program() {
         assert!(read(completed).contains("antialias"), "{completed}");
     }
 }
+
+#[test]
+fn results_that_cannot_be_written_are_a_failure() {
+    let Ok(full) = std::fs::File::options().write(true).open("/dev/full") else {
+        return; // Not every system has a device that is always full.
+    };
+    for words in [["plan", DEMO], ["check", DEMO]] {
+        let output = Command::new(env!("CARGO_BIN_EXE_glint"))
+            .args(words)
+            .stdout(full.try_clone().expect("a second one"))
+            .output()
+            .expect("the program starts");
+        assert_eq!(output.status.code(), Some(1), "{words:?}");
+        let said = text(&output.stderr);
+        assert!(said.contains("could not be written to stdout"), "{said}");
+    }
+}

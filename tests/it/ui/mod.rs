@@ -7,5 +7,6 @@ mod monkey;
 mod outliner;
 mod shortcuts;
 mod sides;
+mod soak;
 mod tools;
 mod viewport;

@@ -18,7 +18,7 @@ const AT_ONCE: usize = 8;
 
 /// Dialogs that nobody answers: no file is written where it could do harm.
 #[derive(Default)]
-struct Unanswered(Vec<Sender<Option<PathBuf>>>);
+pub struct Unanswered(Vec<Sender<Option<PathBuf>>>);
 
 impl Dialogs for Unanswered {
     fn ask(&mut self, _: &Context, _: &Ask, _: PathBuf) -> Receiver<Option<PathBuf>> {
@@ -29,15 +29,15 @@ impl Dialogs for Unanswered {
 }
 
 /// The multiplicative generator of Steele and Vigna, "Computationally easy, spectrally good multipliers", 2021.
-struct Random(u64);
+pub struct Random(pub u64);
 
 impl Random {
-    fn below(&mut self, count: usize) -> usize {
+    pub fn below(&mut self, count: usize) -> usize {
         self.0 = self.0.wrapping_mul(0xD134_2543_DE82_EF95).wrapping_add(1);
         (self.0 >> 33) as usize % count
     }
 
-    fn of<T: Copy>(&mut self, all: &[T]) -> T {
+    pub fn of<T: Copy>(&mut self, all: &[T]) -> T {
         all[self.below(all.len())]
     }
 }
@@ -82,14 +82,40 @@ const KEYS: [Key; 36] = [
 ];
 
 /// A monkey's hands.
-struct Monkey {
-    random: Random,
+pub struct Monkey {
+    pub random: Random,
     at: Pos2,
     down: Option<(PointerButton, Modifiers)>,
     keys: Vec<(Key, Modifiers)>,
 }
 
 impl Monkey {
+    /// One that begins in the middle of the picture.
+    pub fn new(seed: u64) -> Self {
+        Self {
+            random: Random(seed),
+            at: pos2(600.0, 400.0),
+            down: None,
+            keys: Vec::new(),
+        }
+    }
+
+    /// Does this many things, and lets everything go.
+    pub fn play(&mut self, harness: &mut EditorHarness, things: usize) {
+        for thing in 0..things {
+            for event in self.events() {
+                harness.window.event(event);
+            }
+            if thing % AT_ONCE == 0 {
+                harness.window.step();
+            }
+        }
+        for event in self.rest() {
+            harness.window.event(event);
+        }
+        leave_everything(harness);
+    }
+
     /// What it does next.
     fn events(&mut self) -> Vec<Event> {
         let random = &mut self.random;
@@ -198,43 +224,10 @@ fn a_monkey_breaks_nothing_that_undo_does_not_mend() {
     let text = std::fs::read_to_string("scenes/demo.ron").expect("the demo");
     let mut harness = EditorHarness::asked(|_| Box::new(Unanswered::default()), Some(&text));
     let first = harness.editor().to_text().expect("a text");
-    let mut monkey = Monkey {
-        random: Random(20_261_122),
-        at: pos2(600.0, 400.0),
-        down: None,
-        keys: Vec::new(),
-    };
+    let mut monkey = Monkey::new(20_261_122);
     let mut steps = 0;
     for round in 0..ROUNDS {
-        for event in 0..ROUND {
-            for event in monkey.events() {
-                harness.window.event(event);
-            }
-            if event % AT_ONCE == 0 {
-                harness.window.step();
-            }
-        }
-        for event in monkey.rest() {
-            harness.window.event(event);
-        }
-        // Out of menus, questions and fields.
-        for _ in 0..8 {
-            tap(&mut harness, Key::Escape, Modifiers::NONE);
-            if harness
-                .window
-                .state()
-                .editor()
-                .timeline()
-                .recorded()
-                .is_none()
-                && !harness.window.state().is_asking()
-            {
-                break;
-            }
-        }
-        while harness.editor().is_making_keys() {
-            harness.window.step();
-        }
+        monkey.play(&mut harness, ROUND);
         for _ in 0..=ROUND {
             if harness.editor().undo_label().is_none() {
                 break;
@@ -251,7 +244,22 @@ fn a_monkey_breaks_nothing_that_undo_does_not_mend() {
     assert!(steps > 500, "{steps} steps: the monkey slept");
 }
 
-fn tap(harness: &mut EditorHarness, key: Key, modifiers: Modifiers) {
+/// Goes out of menus, questions, fields and recordings.
+fn leave_everything(harness: &mut EditorHarness) {
+    for _ in 0..8 {
+        tap(harness, Key::Escape, Modifiers::NONE);
+        let is_recording = harness.editor().timeline().recorded().is_some();
+        if !is_recording && !harness.window.state().is_asking() {
+            break;
+        }
+    }
+    while harness.editor().is_making_keys() {
+        harness.window.step();
+    }
+}
+
+/// Presses a key and lets it go.
+pub fn tap(harness: &mut EditorHarness, key: Key, modifiers: Modifiers) {
     harness.window.event(Event::ModifiersChanged(modifiers));
     harness.window.event(key_event(key, modifiers, true));
     harness.window.step();

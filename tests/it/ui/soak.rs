@@ -1,0 +1,194 @@
+//! A long day of a monkey that also opens, flies, records, plays, imports, saves and exports: nothing hangs, memory
+//! does not grow, and what it leaves behind can be read. `GLINT_SOAK=200000` asks for so many events.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use glint::scene::Document;
+
+use super::monkey::{Monkey, Unanswered, tap};
+use crate::harness::{CTRL, EditorHarness};
+use crate::scenes::files_in;
+
+/// Events where nobody asks for more.
+const FEW: usize = 8_000;
+/// Events between two looks at everything.
+const ROUND: usize = 400;
+/// Rounds in the beginning whose memory is not yet what the rest is held against.
+const WARM: usize = 8;
+/// Bytes of the largest scene that is opened.
+const LARGEST: usize = 6_000;
+/// How long the window may be at anything.
+const PATIENCE: Duration = Duration::from_mins(2);
+
+/// The resident memory of this process in MiB; nothing where the system does not tell.
+fn memory() -> Option<f64> {
+    let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
+    let resident: f64 = pages.split(' ').nth(1)?.parse().ok()?;
+    Some(resident * 4096.0 / f64::from(1 << 20))
+}
+
+/// Steps until something is so.
+fn wait(harness: &mut EditorHarness, what: &str, is_so: impl Fn(&EditorHarness) -> bool) {
+    let start = Instant::now();
+    while !is_so(harness) {
+        assert!(start.elapsed() < PATIENCE, "{what}");
+        std::thread::sleep(Duration::from_millis(2));
+        harness.window.step();
+    }
+}
+
+/// Presses a button, if it is there.
+fn press(harness: &mut EditorHarness, name: &str) -> bool {
+    let is_there = match harness.window.query_all_by_label(name).next() {
+        None => false,
+        Some(button) => {
+            button.click();
+            true
+        }
+    };
+    harness.window.step();
+    harness.window.step();
+    is_there
+}
+
+/// Drops a file onto the window, and the changes before.
+fn drop_file(harness: &mut EditorHarness, path: &Path) {
+    harness.drop_file(path.to_owned());
+    press(harness, "Don't save");
+    harness.settle();
+}
+
+/// Flies a while, and turns.
+fn fly(harness: &mut EditorHarness) {
+    for key in [Key::W, Key::ArrowRight] {
+        harness.window.key_down(key);
+        (0..15).for_each(|_| harness.window.step());
+    }
+    for key in [Key::W, Key::ArrowRight] {
+        harness.window.key_up(key);
+    }
+    (0..5).for_each(|_| harness.window.step());
+    harness.settle();
+}
+
+/// Records a flight and makes keys of it. Whether there are some.
+fn record(harness: &mut EditorHarness) -> bool {
+    tap(harness, Key::R, Modifiers::NONE);
+    fly(harness);
+    tap(harness, Key::T, Modifiers::NONE);
+    wait(harness, "keys", |harness| {
+        !harness.editor().is_making_keys()
+    });
+    harness.settle();
+    !harness.scene().animation.keys.is_empty()
+}
+
+/// Plays a second.
+fn play(harness: &mut EditorHarness) {
+    tap(harness, Key::G, Modifiers::NONE);
+    (0..60).for_each(|_| harness.window.step());
+    tap(harness, Key::G, Modifiers::NONE);
+    harness.settle();
+}
+
+/// Exports three small frames. Whether they are there.
+fn export(harness: &mut EditorHarness, folder: &Path) -> bool {
+    harness.press(CTRL.plus(Modifiers::SHIFT), Key::E);
+    harness.type_name("folder", folder.to_str().expect("plain"));
+    harness.type_name("frames", "1-3");
+    harness.type_into("export width", "24");
+    harness.type_into("export height", "24");
+    harness.settle();
+    press(harness, "Start export");
+    wait(harness, "frames", |harness| {
+        !harness.window.state().is_exporting()
+    });
+    press(harness, "Remove");
+    tap(harness, Key::Escape, Modifiers::NONE);
+    let count = std::fs::read_dir(folder).map_or(0, Iterator::count);
+    std::fs::remove_dir_all(folder).is_ok() && count > 3
+}
+
+/// Files to open: small ones of the examples, in the folder.
+fn pool(folder: &Path) -> Vec<PathBuf> {
+    let copied = files_in("scenes").into_iter().filter_map(|path| {
+        let text = std::fs::read(&path).expect("readable");
+        let copy = folder.join(path.file_name()?);
+        (text.len() < LARGEST).then(|| {
+            std::fs::write(&copy, text).expect("written");
+            copy
+        })
+    });
+    copied.collect()
+}
+
+/// Writes the document to a file. What is read there, as text.
+fn keep(harness: &EditorHarness, path: &Path) -> String {
+    std::fs::write(path, harness.editor().to_text().expect("a text")).expect("written");
+    let read = Document::load(path).expect("what was written");
+    read.to_text().expect("a text")
+}
+
+#[test]
+#[ignore = "long, and asks how much memory the process takes"]
+fn a_long_day_of_a_monkey_leaves_everything_in_order() {
+    let events = std::env::var("GLINT_SOAK").ok();
+    let events = events.map_or(FEW, |events| events.parse().expect("a number of events"));
+    let mut harness = EditorHarness::asked(|_| Box::new(Unanswered::default()), None);
+    let folder = harness.folder.path().to_owned();
+    let pool = pool(&folder);
+    let mesh = folder.join("ball.obj");
+    std::fs::write(
+        &mesh,
+        "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 2 3\nf 1 3 4\n",
+    )
+    .expect("written");
+    let mut monkey = Monkey::new(events as u64);
+    let (mut recorded, mut exported, mut taken) = (0, 0, Vec::new());
+    let rounds = events.div_ceil(ROUND).max(2 * WARM);
+    for round in 0..rounds {
+        // What the monkey did: the window lives, and what it holds can be written and read.
+        monkey.play(&mut harness, ROUND);
+        press(&mut harness, "Cancel");
+        wait(&mut harness, "the exports end", |harness| {
+            !harness.window.state().is_exporting()
+        });
+        harness.settle();
+        let text = keep(&harness, &folder.join("left.ron"));
+        assert!(
+            text == harness.editor().to_text().expect("a text"),
+            "round {round}: {text}"
+        );
+
+        // What somebody else does, on a scene that is as it was.
+        let next = monkey.random.below(pool.len());
+        drop_file(&mut harness, &pool[next]);
+        taken.extend(memory());
+        fly(&mut harness);
+        play(&mut harness);
+        recorded += usize::from(record(&mut harness));
+        drop_file(&mut harness, &mesh);
+        exported += usize::from(export(&mut harness, &folder.join("frames")));
+        let path = folder.join("kept.ron");
+        keep(&harness, &path);
+        drop_file(&mut harness, &path);
+        assert_eq!(harness.editor().path(), Some(&*path), "round {round}");
+    }
+    assert!(recorded * 2 > rounds, "{recorded} of {rounds} recordings");
+    assert!(exported * 2 > rounds, "{exported} of {rounds} exports");
+    let largest = |taken: &[f64]| taken.iter().copied().fold(0.0, f64::max);
+    if !taken.is_empty() {
+        let (warm, later) = taken.split_at(WARM);
+        let (first, last) = (largest(warm), largest(later));
+        println!(
+            "{rounds} rounds, {recorded} recorded, {exported} exported, {first:.0} to {last:.0} MiB"
+        );
+        assert!(
+            last < first * 1.25 + 32.0,
+            "{first:.0} to {last:.0} MiB: {taken:.0?}"
+        );
+    }
+}
