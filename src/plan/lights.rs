@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::geometry::Geometry;
 use super::idle::IdleFaces;
 use super::plane_occluders::PlaneOccluder;
 use super::request::Model;
@@ -27,6 +28,18 @@ pub struct PointLight<R> {
     /// What rounding may have moved its position by, where it may be on a surface: what is no farther from it
     /// does not stand before it, and what it is no higher above is not lit.
     pub rounding: Option<R>,
+}
+
+/// A light that is farther away than so many times what stands in a tree is rounded by more than its boxes differ.
+const FARTHEST_APEX: f64 = 16.0;
+
+impl<R: Real> PointLight<R> {
+    /// Where the rays that go to it come together, if that is near enough to be told from there where they start.
+    #[inline(always)]
+    pub fn apex(&self, geometry: &Geometry<R>) -> Option<Vec3<R>> {
+        let farthest = geometry.bvh.bounds.max_abs() * R::from_f64(FARTHEST_APEX);
+        (self.position.max_abs() <= farthest).then_some(self.position)
+    }
 }
 
 /// Lights that shine on what the eye can reach. `touches` tells whether one may be on a surface, `holders` gives

@@ -168,16 +168,24 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             return;
         }
         let caution = L::Real::from_f64(FAR_CAUTION);
-        let reach = geometry.bvh.bounds.max_abs().max(light.position.max_abs());
-        let slack = (hits.max_abs() + reach) * caution;
-        let starts = hits.widened(slack);
-        // From the light to the hits in one step.
-        let light = BoundingBox::around(&[light.position]);
-        let ways = BoundingBox {
-            low: starts.low - light.low,
-            high: starts.high - light.low,
+        let reach = geometry.bvh.bounds.max_abs();
+        // In one step, from the light to the hits, or from there to a light that is far.
+        let shaft = if let Some(apex) = light.apex(geometry) {
+            let slack = (hits.max_abs() + reach.max(apex.max_abs())) * caution;
+            let ends = hits.widened(slack);
+            let ways = BoundingBox {
+                low: ends.low - apex,
+                high: ends.high - apex,
+            };
+            Shaft::of(&BoundingBox::around(&[apex]).widened(slack), &ways)
+        } else {
+            let starts = hits.widened((hits.max_abs() + reach) * caution);
+            let ways = BoundingBox {
+                low: light.position - starts.high,
+                high: light.position - starts.low,
+            };
+            Shaft::of(&starts, &ways)
         };
-        let shaft = Shaft::of(&light.widened(slack), &ways);
         let end = L::Real::ONE + caution;
         between.casters.has_geometry = between.roots.narrow::<L>(self.token, geometry, &shaft, end);
     }

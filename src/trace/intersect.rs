@@ -65,7 +65,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Kernel<'a, L, TREE> {
             roots: among.roots,
             light: among.light,
             back_from: match self.plan.ray_origin {
-                RayOrigin::AtHit => among.light.map(|light| light.position),
+                RayOrigin::AtHit => among.light.and_then(|light| light.apex(geometry)),
                 _ => None,
             },
             active,
