@@ -177,8 +177,9 @@ fn a_long_day_of_a_monkey_leaves_everything_in_order() {
         drop_file(&mut harness, &path);
         assert_eq!(harness.editor().path(), Some(&*path), "round {round}");
     }
-    assert!(recorded * 2 > rounds, "{recorded} of {rounds} recordings");
-    assert!(exported * 2 > rounds, "{exported} of {rounds} exports");
+    // Not every one: what the monkey has typed into the orders of exports stays there.
+    assert!(recorded * 8 > rounds, "{recorded} of {rounds} recordings");
+    assert!(exported * 8 > rounds, "{exported} of {rounds} exports");
     let largest = |taken: &[f64]| taken.iter().copied().fold(0.0, f64::max);
     if !taken.is_empty() {
         let (warm, later) = taken.split_at(WARM);
