@@ -12,12 +12,13 @@ const UNFINISHED: &str = ".glint-";
 
 /// Writes `bytes` to `path` so that a reader finds either the old file or the new one, whole: they
 /// go to a new file beside it, to the disk, and then under the name. Links are followed and the
-/// permissions of an existing file kept.
+/// permissions of an existing file kept. What killed programs have left beside it goes.
 ///
 /// # Errors
 /// Whatever the system answers; the file at `path` is then untouched.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let beside = NewFile::beside(path)?;
+    remove_leftovers(&beside.folder);
     beside.as_file().write_all(bytes)?;
     beside.place_durably()
 }

@@ -13,7 +13,7 @@ use divan::{Bencher, black_box};
 use glam::DVec3;
 use glint::image::{Image, render, render_into};
 use glint::plan::{Planner, RenderRequest};
-use glint::scene::{Object, Precision, Sampling, Scene, Shape, Sphere};
+use glint::scene::{Object, Precision, Sampling, Scene, Sphere};
 use glint::simd::Level;
 use glint::trace::{RenderControl, Threads};
 
@@ -112,16 +112,14 @@ fn spheres_512(bencher: Bencher, count: u32) {
         let (column, row) = (f64::from(n) % side, (f64::from(n) / side).floor());
         let place = |at: f64| 400.0 * (at + 0.5) / side;
         let center = DVec3::new(place(column) - 25.0, 80.0 / side, 50.0 - place(row));
-        scene.objects.push(Object {
-            name: format!("Ball {n}"),
-            color_pack: "sphere 1".to_owned(),
-            shape: Shape::Sphere(Sphere {
+        scene.objects.push(Object::new(
+            format!("Ball {n}"),
+            "sphere 1",
+            Sphere {
                 center,
                 radius: 80.0 / side,
-            }),
-            visible: true,
-            group: String::new(),
-        });
+            },
+        ));
     }
     trace(bencher, &scene, RenderRequest::sized(512, 512), 2);
 }

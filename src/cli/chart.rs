@@ -57,7 +57,7 @@ pub struct ChartArgs {
     #[arg(long, value_name = "TIME", value_parser = time)]
     budget: Option<Duration>,
     /// Put POV-Ray, an independent engine, among the ways, where it is installed
-    #[arg(long, conflicts_with = "growth")]
+    #[arg(long)]
     povray: bool,
     /// Tracing threads [default: one per core]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
@@ -141,18 +141,25 @@ fn picture_size(text: &str) -> Result<(u32, u32), String> {
 /// The same for scenes of more and more primitives.
 fn grow(args: &ChartArgs, threads: &Threads) -> Result<Option<CliAction>, CliError> {
     let mut growth = Growth::new(args.side, MOST_PRIMITIVES);
+    if args.povray {
+        growth = growth.with_povray();
+    }
     let bar = progress_bar();
     while threads.run(|| growth.step()) {
         bar.set_position((growth.progress() * BAR as f64) as u64);
     }
     bar.finish_and_clear();
+    if let Some(obstacle) = &growth.obstacle {
+        say(obstacle);
+    }
     for cost in &growth.costs {
+        let planned = cost.plan_ms.map(|ms| format!(", planned in {ms:.1} ms"));
         say(&format!(
-            "{:<20} {:>9} primitives {:>9.2} ms, planned in {:.1} ms",
+            "{:<20} {:>9} primitives {:>9.2} ms{}",
             cost.name(),
             cost.primitives,
             cost.ms,
-            cost.plan_ms
+            planned.unwrap_or_default()
         ));
     }
     if let Some(path) = &args.csv {

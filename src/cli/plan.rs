@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::error::{CliError, say};
 use super::scene::read_scene;
-use crate::plan::{RenderRequest, needs};
+use crate::plan::{ACCELERATOR, RenderRequest, needs, tests_spared};
 
 #[derive(Debug, Args)]
 pub struct PlanArgs {
@@ -23,7 +23,13 @@ pub struct PlanArgs {
 /// [`CliError::Usage`] for a scene that is none.
 pub fn run(args: &PlanArgs) -> Result<(), CliError> {
     let scene = read_scene(&args.scene)?;
-    let needs = needs(&scene, &RenderRequest::still(&scene));
+    let request = RenderRequest::still(&scene);
+    let mut needs = needs(&scene, &request);
+    if let Some(spared) = tests_spared(&scene, &request)
+        && let Some(tree) = needs.iter_mut().find(|need| need.rule == ACCELERATOR)
+    {
+        tree.saves = spared;
+    }
     if args.json {
         say(&serde_json::to_string_pretty(&needs)?);
         return Ok(());

@@ -237,13 +237,7 @@ fn some_pack(scene: &mut Scene, preferred: &str) -> String {
 fn add_object(scene: &mut Scene, name: &str, shape: Shape) -> Item {
     let name = free_object_name(scene, &format!("{name} 1"));
     let color_pack = some_pack(scene, "");
-    scene.objects.push(Object {
-        name,
-        color_pack,
-        shape,
-        visible: true,
-        group: String::new(),
-    });
+    scene.objects.push(Object::new(name, color_pack, shape));
     Item::object(scene.objects.len() - 1)
 }
 

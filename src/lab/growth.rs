@@ -9,12 +9,11 @@ use serde::Serialize;
 
 use super::measure::trace_light;
 use super::table::written;
+use crate::export::by_povray;
 use crate::mesh::Triangles;
 use crate::plan::{Planner, RenderRequest};
-use crate::scene::{
-    Camera, ColorPack, Light, List, Mesh, Object, Plane, Sampling, Scene, Shape, Sphere,
-};
-use crate::trace::{RenderControl, Tracer};
+use crate::scene::{Camera, ColorPack, Light, List, Mesh, Object, Plane, Sampling, Scene, Sphere};
+use crate::trace::{RenderControl, Threads, Tracer};
 
 /// How many primitives there are, at most a million.
 const COUNTS: [u32; 5] = [100, 1_000, 10_000, 100_000, 1_000_000];
@@ -34,19 +33,31 @@ pub enum Crowd {
     Balls,
 }
 
+/// How a picture is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Way {
+    /// One sample in each pixel.
+    Plain,
+    /// With clean edges.
+    Clean,
+    /// By POV-Ray, one sample in each pixel.
+    Povray,
+}
+
 /// A picture that was measured.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Cost {
     /// What filled its scene.
     pub crowd: Crowd,
-    /// Whether edges were smoothed.
-    pub is_clean: bool,
+    /// How it was made.
+    pub way: Way,
     /// How many primitives there were.
     pub primitives: u32,
     /// Milliseconds, planning not counted: the fastest of a few.
     pub ms: f64,
-    /// Milliseconds of planning, once.
-    pub plan_ms: f64,
+    /// Milliseconds of planning, once; nothing where it is not known.
+    pub plan_ms: Option<f64>,
 }
 
 /// Measures every crowd, one picture after the other, on the current rayon pool.
@@ -54,15 +65,29 @@ pub struct Cost {
 pub struct Growth {
     side: u32,
     most: u32,
+    ways: Vec<Way>,
     /// What is measured so far.
     pub costs: Vec<Cost>,
+    /// Why some of it could not be measured.
+    pub obstacle: Option<String>,
 }
 
 impl Growth {
     /// Pictures of so many by so many pixels, of scenes of at most `most` primitives.
     pub fn new(side: u32, most: u32) -> Self {
-        let costs = Vec::new();
-        Self { side, most, costs }
+        Self {
+            side,
+            most,
+            ways: vec![Way::Plain, Way::Clean],
+            costs: Vec::new(),
+            obstacle: None,
+        }
+    }
+
+    /// The same, and POV-Ray beside it.
+    pub fn with_povray(mut self) -> Self {
+        self.ways.push(Way::Povray);
+        self
     }
 
     /// Side of the pictures in pixels.
@@ -70,61 +95,44 @@ impl Growth {
         self.side
     }
 
-    fn cases(&self) -> Vec<(Crowd, bool, u32)> {
-        let mut cases = Vec::new();
-        for crowd in [Crowd::Mesh, Crowd::Balls] {
-            // Balls are objects, each with a name: more of them say more of that than of tracing.
-            let most = if crowd == Crowd::Mesh {
-                1_000_000
-            } else {
-                100_000
-            };
-            for count in COUNTS
-                .into_iter()
-                .filter(|&count| count <= most.min(self.most))
-            {
-                cases.extend([(crowd, false, count), (crowd, true, count)]);
-            }
-        }
-        cases
+    /// Every picture, POV-Ray's last: they can be left out when it turns out not to be there.
+    fn cases(&self) -> impl Iterator<Item = (Way, Crowd, u32)> {
+        let crowds = |&way| [(way, Crowd::Mesh), (way, Crowd::Balls)];
+        self.ways.iter().flat_map(crowds).flat_map(|(way, crowd)| {
+            let most = crowd.most().min(self.most);
+            let counts = COUNTS.into_iter().filter(move |&count| count <= most);
+            counts.map(move |count| (way, crowd, count))
+        })
     }
 
     /// Measures the next picture. Whether there was one.
     pub fn step(&mut self) -> bool {
-        let Some(&(crowd, is_clean, primitives)) = self.cases().get(self.costs.len()) else {
+        let Some((way, crowd, count)) = self.cases().nth(self.costs.len()) else {
             return false;
         };
-        let scene = match crowd {
-            Crowd::Mesh => mesh(primitives),
-            Crowd::Balls => balls(primitives),
-        };
-        let request = RenderRequest {
-            sampling: if is_clean {
-                Sampling::ADAPTIVE
-            } else {
-                Sampling::Centres
+        let mut scene = crowd.scene(count);
+        (scene.render.width, scene.render.height) = (self.side, self.side);
+        let taken = match way {
+            Way::Plain => own(&scene, Sampling::Centres),
+            Way::Clean => own(&scene, Sampling::ADAPTIVE),
+            Way::Povray => match by_povray(&scene, Threads::current(), &RenderControl::default()) {
+                Ok(drawn) => (drawn.time.as_secs_f64() * 1e3, None),
+                Err(error) => {
+                    self.obstacle = Some(error.to_string());
+                    self.ways.retain(|way| *way != Way::Povray);
+                    return false;
+                }
             },
-            ..RenderRequest::sized(self.side, self.side)
         };
-        let mut planner = Planner::default();
-        let since = Instant::now();
-        let _ = Tracer::planned(&scene, &request, &mut planner);
-        let plan_ms = since.elapsed().as_secs_f64() * 1e3;
-        let tracer = Tracer::planned(&scene, &request, &mut planner);
-        let time = |_| {
-            let since = Instant::now();
-            // Nobody stops it.
-            let _ = trace_light(&tracer, &RenderControl::default());
-            since.elapsed().as_secs_f64() * 1e3
-        };
+        let (ms, plan_ms) = taken;
         self.costs.push(Cost {
             crowd,
-            is_clean,
+            way,
             primitives: match crowd {
                 Crowd::Mesh => scene.faces() as u32,
-                Crowd::Balls => primitives,
+                Crowd::Balls => count,
             },
-            ms: (0..ROUNDS).map(time).fold(f64::INFINITY, f64::min),
+            ms,
             plan_ms,
         });
         true
@@ -132,7 +140,7 @@ impl Growth {
 
     /// Share of the pictures that are measured, 0–1.
     pub fn progress(&self) -> f64 {
-        self.costs.len() as f64 / self.cases().len().max(1) as f64
+        self.costs.len() as f64 / self.cases().count().max(1) as f64
     }
 
     /// All costs as comma-separated values.
@@ -150,14 +158,56 @@ impl Growth {
 
 impl Cost {
     /// What it is a cost of.
-    pub fn name(&self) -> &'static str {
-        match (self.crowd, self.is_clean) {
-            (Crowd::Mesh, false) => "a mesh, one sample",
-            (Crowd::Mesh, true) => "a mesh, clean edges",
-            (Crowd::Balls, false) => "balls, one sample",
-            (Crowd::Balls, true) => "balls, clean edges",
+    pub fn name(&self) -> String {
+        let crowd = match self.crowd {
+            Crowd::Mesh => "a mesh",
+            Crowd::Balls => "balls",
+        };
+        let way = match self.way {
+            Way::Plain => "one sample",
+            Way::Clean => "clean edges",
+            Way::Povray => "POV-Ray",
+        };
+        format!("{crowd}, {way}")
+    }
+}
+
+impl Crowd {
+    /// The most that are measured.
+    fn most(self) -> u32 {
+        match self {
+            Self::Mesh => 1_000_000,
+            // Objects, each with a name: more of them say more of that than of tracing.
+            Self::Balls => 100_000,
         }
     }
+
+    fn scene(self, count: u32) -> Scene {
+        match self {
+            Self::Mesh => mesh(count),
+            Self::Balls => balls(count),
+        }
+    }
+}
+
+/// Milliseconds of a picture, the fastest of a few, and of its planning.
+fn own(scene: &Scene, sampling: Sampling) -> (f64, Option<f64>) {
+    let request = RenderRequest {
+        sampling,
+        ..RenderRequest::still(scene)
+    };
+    let mut planner = Planner::default();
+    let since = Instant::now();
+    let tracer = Tracer::planned(scene, &request, &mut planner);
+    let plan_ms = since.elapsed().as_secs_f64() * 1e3;
+    let time = |_| {
+        let since = Instant::now();
+        // Nobody stops it.
+        let _ = trace_light(&tracer, &RenderControl::default());
+        since.elapsed().as_secs_f64() * 1e3
+    };
+    let ms = (0..ROUNDS).map(time).fold(f64::INFINITY, f64::min);
+    (ms, Some(plan_ms))
 }
 
 /// A floor, two lights and a camera.
@@ -176,7 +226,7 @@ fn stage() -> Scene {
         point: DVec3::ZERO,
         normal: DVec3::Y,
     };
-    scene.objects = List::from(vec![object("Floor", "floor", floor.into())]);
+    scene.objects = List::from(vec![Object::new("Floor", "floor", floor)]);
     let light = |name: &str, x: f64| Light {
         name: name.to_owned(),
         position: DVec3::new(x, 220.0, 160.0),
@@ -192,16 +242,6 @@ fn stage() -> Scene {
         ..Camera::default()
     };
     scene
-}
-
-fn object(name: &str, pack: &str, shape: Shape) -> Object {
-    Object {
-        name: name.to_owned(),
-        color_pack: pack.to_owned(),
-        shape,
-        visible: true,
-        group: String::new(),
-    }
 }
 
 /// A ball with bumps, of about so many faces.
@@ -241,7 +281,7 @@ fn mesh(faces: u32) -> Scene {
         position: DVec3::new(0.0, 50.0, 0.0),
         ..Mesh::of(Triangles::new(points, all).unwrap_or_default())
     };
-    scene.objects.push(object("Ball", "thing", mesh.into()));
+    scene.objects.push(Object::new("Ball", "thing", mesh));
     scene
 }
 
@@ -260,7 +300,7 @@ fn balls(count: u32) -> Scene {
         let ball = Sphere { center, radius };
         scene
             .objects
-            .push(object(&format!("Ball {number}"), "thing", ball.into()));
+            .push(Object::new(format!("Ball {number}"), "thing", ball));
     }
     scene
 }
@@ -293,11 +333,11 @@ mod tests {
             growth
                 .costs
                 .iter()
-                .all(|cost| cost.ms > 0.0 && cost.plan_ms > 0.0)
+                .all(|cost| cost.ms > 0.0 && cost.plan_ms.is_some_and(|ms| ms > 0.0))
         );
         let text = growth.csv().expect("written");
         assert!(
-            text.starts_with("crowd,is_clean,primitives,ms,plan_ms\nmesh,false,80,"),
+            text.starts_with("crowd,way,primitives,ms,plan_ms\nmesh,plain,80,"),
             "{text}"
         );
     }

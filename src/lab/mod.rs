@@ -36,7 +36,7 @@ pub use candidates::{Candidate, Family, candidates};
 pub use clusters::clusters;
 pub use explain::{Lit, Share, Sight, explain};
 pub use finding::finding;
-pub use growth::{Cost, Crowd, Growth};
+pub use growth::{Cost, Crowd, Growth, Way};
 pub use kept::{keep, kept};
 pub use look::{PictureLook, capitalised};
 pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, difference, trace_light};

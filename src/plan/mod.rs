@@ -44,16 +44,19 @@ mod pack;
 
 mod faces;
 
+mod crossed;
+
 mod needs;
 
 pub use balls::Balls;
 pub use bvh::{Bvh, Child, GROUP, Node};
+pub use crossed::tests_spared;
 pub use geometry::{Geometry, Kept, Planner};
 pub use hit_order::HitOrder;
 pub use idle::IdleFaces;
 pub use lights::PointLight;
 pub use materials::{Material, Surface};
-pub use needs::{Need, needs};
+pub use needs::{ACCELERATOR, Need, needs};
 pub use pack::Plan;
 pub use packed_mesh::{MeshInstance, PackedMesh};
 pub use precision::is_double;

@@ -10,6 +10,9 @@ use super::request::RenderRequest;
 use crate::scene::{Object, Precision, Sampling, Scene, Shape};
 use crate::simd::Exponent;
 
+/// The rule for how primitives are found.
+pub const ACCELERATOR: &str = "accelerator";
+
 /// One decision of the plan.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Need {
@@ -238,7 +241,7 @@ fn faces(plan: &Plan<f64>) -> Need {
 }
 
 fn accelerator(plan: &Plan<f64>, faces: usize) -> Need {
-    let rule = "accelerator";
+    let rule = ACCELERATOR;
     let bounded = plan.bounded() + faces;
     if plan.screen.is_none() {
         return need(rule, "every primitive for every ray", FAILING, "nothing");

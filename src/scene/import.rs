@@ -62,13 +62,11 @@ impl Scene {
             let Part {
                 name, triangles, ..
             } = part;
-            self.objects.push(Object {
-                name: names.take(&name),
+            self.objects.push(Object::new(
+                names.take(&name),
                 color_pack,
-                shape: Mesh::of(triangles).centred().into(),
-                visible: true,
-                group: String::new(),
-            });
+                Mesh::of(triangles).centred(),
+            ));
         }
         first
     }

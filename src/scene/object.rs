@@ -24,6 +24,23 @@ pub struct Object {
     pub group: String,
 }
 
+impl Object {
+    /// A visible object in no group.
+    pub fn new(
+        name: impl Into<String>,
+        color_pack: impl Into<String>,
+        shape: impl Into<Shape>,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            color_pack: color_pack.into(),
+            shape: shape.into(),
+            visible: true,
+            group: String::new(),
+        }
+    }
+}
+
 /// A point light that does not fall off with distance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

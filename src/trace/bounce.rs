@@ -7,7 +7,7 @@ use super::cull::{LightCandidates, Scratch};
 use super::footprint::RayCone;
 use super::intersect::Kernel;
 use super::order::Order;
-use super::outcome::{clamped, signatures_of, store_colors, store_edges};
+use super::outcome::{clamped, signatures_of, store};
 use super::packet::{EdgeInfo, Packet, ReflectionParent};
 use super::parts::Parts;
 use super::paths::{IgnoredPrimitive, Paths, real};
@@ -41,6 +41,8 @@ pub struct Bounce<L: SimdFloat> {
     signatures: Vec<[u32; MAX_LANES]>,
     /// Which of the samples the rays are, if they were put in another order.
     order: Order<L::Real>,
+    /// Memory for the materials of a packet.
+    parts: Parts<L>,
 }
 
 impl<L: SimdFloat> Bounce<L> {
@@ -71,6 +73,7 @@ impl<L: SimdFloat> Bounce<L> {
             lights: plan.lights.iter().map(candidates_of).collect(),
             signatures: Vec::new(),
             order: Order::default(),
+            parts: Parts::new(),
         }
     }
 
@@ -98,9 +101,6 @@ impl<L: SimdFloat> Bounce<L> {
         let (token, view) = (kernel.token, &kernel.plan.view);
         self.clear();
         self.order.clear();
-        if TREE && kernel.plan.hit_order == HitOrder::OfPlaces {
-            self.order.start(samples);
-        }
         self.seen.clone_from(seen);
         let lane_number = L::from_fn(token, |lane| L::Real::from_f64(lane as f64));
         for first in (0..samples.x.len()).step_by(L::WIDTH) {
@@ -181,9 +181,6 @@ impl<L: SimdFloat> Bounce<L> {
         let Some(mut ball) = bounds.ball() else {
             return !self.thin.is_empty();
         };
-        if TREE && self.parents.is_empty() && plan.hit_order == HitOrder::OfPlaces {
-            self.order.arrange(kernel, &mut self.packets, &bounds);
-        }
         let mut lift = L::Real::ZERO;
         if let Some((geometry, _)) = kernel.geometry() {
             // Rays go on from the curved surfaces that flat faces stand for.
@@ -272,7 +269,6 @@ impl<L: SimdFloat> Bounce<L> {
         (stack, rays): (&mut Stack<L::Real>, &mut Rays),
     ) {
         let looks_beside = self.looks_beside();
-        let mut parts = Parts::new();
         for index in 0..self.packets.len() {
             let ignored = self.ignored_by(kernel, index);
             let shader = Shader {
@@ -285,7 +281,8 @@ impl<L: SimdFloat> Bounce<L> {
             };
             let edge = self.edges.get_mut(index);
             let packet = &mut self.packets[index];
-            let Some(mirrored) = shader.shade(packet, (ignored, edge), &mut parts, (stack, rays))
+            let Some(mirrored) =
+                shader.shade(packet, (ignored, edge), &mut self.parts, (stack, rays))
             else {
                 continue;
             };
@@ -397,11 +394,32 @@ impl<L: SimdFloat> Bounce<L> {
         }
     }
 
-    /// Writes what was seen, sample by sample.
+    /// Makes packets of hits that are close to each other, where the plan asks for it.
     #[inline(always)]
-    pub fn store<const TREE: bool>(&self, traced: &mut Traced<L::Real>) {
-        let order = Some(&self.order).filter(|order| TREE && !order.samples.is_empty());
-        store_colors(&self.packets, order, traced);
-        store_edges(&self.edges, &self.signatures, order, traced);
+    pub fn arrange<const TREE: bool>(
+        &mut self,
+        kernel: Kernel<L, TREE>,
+        samples: &Samples<L::Real>,
+    ) {
+        if TREE && kernel.plan.hit_order == HitOrder::OfPlaces {
+            self.order.arrange(kernel, &mut self.packets, samples);
+        }
+    }
+
+    /// Writes what was seen, sample by sample; `unsorted` is memory for what is in another order.
+    #[inline(always)]
+    pub fn store(
+        &self,
+        edges: Edges,
+        traced: &mut Traced<L::Real>,
+        unsorted: &mut Traced<L::Real>,
+    ) {
+        let (packets, signatures) = (&self.packets, &self.signatures);
+        if self.order.samples.is_empty() {
+            return store(packets, &self.edges, signatures, traced);
+        }
+        unsorted.resize(traced.count, traced.red.len(), edges);
+        store(packets, &self.edges, signatures, unsorted);
+        traced.take_sorted(unsorted, &self.order.samples);
     }
 }

@@ -1,6 +1,8 @@
 //! The rays of a tile, bounce by bounce: what all of them meet first; then, knowing where that is, the
 //! light that falls on it; then the rays that mirrors send on, as the next bounce.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::bounce::Bounce;
 use super::candidates::Candidates;
 use super::cull::Scratch;
@@ -8,29 +10,40 @@ use super::intersect::Kernel;
 use super::outcome::clamped;
 use super::samples::{Edges, Samples, Traced};
 use super::stats::Rays;
-use crate::simd::SimdFloat;
+use crate::simd::{SimdFloat, Vec3};
 
 /// What traces the samples of a tile.
 pub struct Engine<'a, L: SimdFloat, const TREE: bool> {
     kernel: Kernel<'a, L, TREE>,
     bounces: Vec<Bounce<L>>,
     scratch: Scratch<L::Real>,
+    /// What was seen by rays that were put in another order than the samples.
+    unsorted: Traced<L::Real>,
+    /// Whether nobody wants the picture any more: the rays of one tile can take minutes.
+    stop: &'a AtomicBool,
     /// Rays traced so far.
     pub rays: Rays,
 }
 
 impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
-    /// An engine for a plan.
-    pub fn new(kernel: Kernel<'a, L, TREE>) -> Self {
+    /// An engine for a plan, which does nothing more once `stop` is set.
+    pub fn new(kernel: Kernel<'a, L, TREE>, stop: &'a AtomicBool) -> Self {
         Self {
             kernel,
             bounces: Vec::new(),
             scratch: Scratch::default(),
+            unsorted: Traced::default(),
+            stop,
             rays: Rays::default(),
         }
     }
 
-    /// Traces the samples, which can meet what is in `seen`.
+    /// Whether what is traced is for nothing.
+    pub fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Traces the samples, which can meet what is in `seen`; once the engine is stopped, what is seen is arbitrary.
     pub fn trace(
         &mut self,
         samples: &Samples<L::Real>,
@@ -56,6 +69,9 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
     ) {
         let kernel = self.kernel;
         let (count, length) = (samples.count, samples.x.len());
+        if self.is_stopped() {
+            return traced.fill(count, length, edges, Vec3::default());
+        }
         self.rays.camera += count as u64;
         if seen.is_empty() {
             return traced.fill(count, length, edges, clamped(kernel.plan.background));
@@ -75,10 +91,13 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
             next.edges_are = bounce.edges_are;
             let may_mirror = (depth as u32) < kernel.plan.reflection_limit;
             if bounce.find(kernel, &mut self.scratch) {
+                if depth == 0 {
+                    bounce.arrange(kernel, samples);
+                }
                 let counted = (&mut self.scratch.stack, &mut self.rays);
                 bounce.shade(kernel, may_mirror, next, counted);
             }
-            if next.is_empty() {
+            if next.is_empty() || self.stop.load(Ordering::Relaxed) {
                 break;
             }
             next.aim(kernel, &mut self.scratch);
@@ -96,7 +115,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
             bounces[depth - 1].take_colors(&deeper[0]);
             bounces[depth - 1].take_edges(&deeper[0]);
         }
-        self.bounces[0].store::<TREE>(traced);
+        self.bounces[0].store(edges, traced, &mut self.unsorted);
     }
 
     fn grow(&mut self, depth: usize) {

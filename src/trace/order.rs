@@ -35,9 +35,6 @@ const SCATTERED: f64 = 0.4;
 /// What was hit, and where, sample by sample; memory that is used again.
 #[derive(Debug, Default)]
 pub struct Order<R> {
-    /// Places of the samples in the picture.
-    x: Vec<R>,
-    y: Vec<R>,
     /// How far the hits are.
     t: Vec<R>,
     /// The numbers of what was hit.
@@ -49,8 +46,6 @@ pub struct Order<R> {
     /// samples.
     pub samples: Vec<u32>,
     other: Vec<u32>,
-    /// How many samples there are; the others fill the last packet up.
-    count: usize,
 }
 
 impl<R: Real> Order<R> {
@@ -62,20 +57,14 @@ impl<R: Real> Order<R> {
         self.cells.iter_mut().for_each(Vec::clear);
     }
 
-    /// Begins with samples in their order.
-    pub fn start(&mut self, samples: &Samples<R>) {
-        self.x.clone_from(&samples.x);
-        self.y.clone_from(&samples.y);
-        self.count = samples.count;
-    }
-
-    /// Puts the hits of camera rays into packets of those that are close to each other, if they are not.
+    /// Puts the hits of the camera's rays through samples into packets of those that are close to each other, if
+    /// they are not.
     #[inline(always)]
     pub fn arrange<L: SimdFloat<Real = R>, const TREE: bool>(
         &mut self,
         kernel: Kernel<L, TREE>,
         packets: &mut [Packet<L>],
-        bounds: &Bounds<L>,
+        samples: &Samples<R>,
     ) {
         let Some((_, first)) = kernel.geometry() else {
             return;
@@ -83,16 +72,16 @@ impl<R: Real> Order<R> {
         if !is_scattered(kernel, packets) {
             return;
         }
-        let around = bounds.around();
+        let around = bounds_of(kernel, packets).around();
         for Packet { rays, near, .. } in &*packets {
             self.add((near.t, near.number), rays.at(near.t), &around);
         }
-        self.find(first);
-        let count = kernel.splat(self.count as f64);
+        self.find(samples.count, first);
+        let count = kernel.splat(samples.count as f64);
         for (index, packet) in packets.iter_mut().enumerate() {
             let first = index * L::WIDTH;
-            let x = self.gather(kernel.token, &self.x, first);
-            let y = self.gather(kernel.token, &self.y, first);
+            let x = self.gather(kernel.token, &samples.x, first);
+            let y = self.gather(kernel.token, &samples.y, first);
             let (origin, direction) = kernel.plan.view.rays(x, y);
             packet.rays = Ray { origin, direction };
             packet.near = Nearest {
@@ -131,7 +120,7 @@ impl<R: Real> Order<R> {
     /// Finds the order: what is in lists first, since all that is alike in a packet is lit as one; then the tree,
     /// whose first number is given, cell by cell along a curve that fills space (Morton, "A computer oriented
     /// geodetic data base and a new technique in file sequencing", IBM, 1966); then what has met nothing.
-    fn find(&mut self, first: usize) {
+    fn find(&mut self, count: usize, first: usize) {
         self.keys.clear();
         let first = R::from_f64(first as f64);
         for sample in 0..self.number.len() {
@@ -140,7 +129,7 @@ impl<R: Real> Order<R> {
             let (x, y, z) = (bits(x), bits(y), bits(z));
             let number = self.number[sample];
             let group = match number {
-                _ if sample >= self.count || number == R::from_f64(NOTHING) => 2,
+                _ if sample >= count || number == R::from_f64(NOTHING) => 2,
                 number if number < first => 0,
                 _ => 1,
             };
@@ -184,16 +173,6 @@ impl<R: Real> Order<R> {
         L::load(token, &lanes)
     }
 
-    /// Writes the lanes of a packet, of which the first is given, to where their samples are in a column.
-    #[inline(always)]
-    pub fn scatter<L: SimdFloat<Real = R>>(&self, lanes: L, first: usize, column: &mut [R]) {
-        let mut numbers = [R::ZERO; MAX_LANES];
-        lanes.store(&mut numbers);
-        for (&number, &sample) in numbers.iter().zip(&self.samples[first..first + L::WIDTH]) {
-            column[sample as usize] = number;
-        }
-    }
-
     /// The numbers of a column that belong to the lanes of a packet, of which the first is given.
     #[inline(always)]
     fn gather<L: SimdFloat<Real = R>>(&self, token: L::Token, column: &[R], first: usize) -> L {
@@ -203,6 +182,23 @@ impl<R: Real> Order<R> {
         }
         L::load(token, &lanes)
     }
+}
+
+/// The box around all hits.
+#[inline(always)]
+fn bounds_of<L: SimdFloat, const TREE: bool>(
+    kernel: Kernel<L, TREE>,
+    packets: &[Packet<L>],
+) -> Bounds<L> {
+    let mut bounds = Bounds::new(kernel.token);
+    for Packet {
+        rays, near, active, ..
+    } in packets
+    {
+        let hit = near.t.less(kernel.infinity()) & *active;
+        bounds.add(hit, rays.at(near.t));
+    }
+    bounds
 }
 
 /// Whether the hits of packets are at nearly as different distances as those of all.
@@ -259,12 +255,10 @@ mod tests {
         for (number, x) in hits {
             order.add((1.0, number), Vec3::new(x, 1.0, 1.0), &around);
         }
-        order.count = hits.len();
-        order.find(5);
+        order.find(hits.len(), 5);
         assert_eq!(order.samples, [5, 2, 4, 1, 3, 0]);
         // What fills the last packet up is no hit.
-        order.count = 4;
-        order.find(5);
+        order.find(4, 5);
         assert_eq!(order.samples, [2, 1, 3, 4, 0, 5]);
     }
 }

@@ -1,6 +1,5 @@
 //! What packets have found out, sample by sample.
 
-use super::order::Order;
 use super::packet::{EdgeInfo, Packet};
 use super::samples::Traced;
 use crate::plan::Plan;
@@ -38,51 +37,25 @@ fn object_of<R: Real>(plan: &Plan<R>, number: u32) -> u32 {
     mesh.map_or(number, |mesh| (first + mesh.first + 1) as u32)
 }
 
-/// Writes the colours of the samples, of which the packets may be in another order.
+/// Writes the colours and edges of all rays, packet by packet.
 #[inline(always)]
-pub fn store_colors<L: SimdFloat>(
+pub fn store<L: SimdFloat>(
     packets: &[Packet<L>],
-    order: Option<&Order<L::Real>>,
+    edges: &[EdgeInfo<L>],
+    signatures: &[[u32; MAX_LANES]],
     traced: &mut Traced<L::Real>,
 ) {
     for (index, packet) in packets.iter().enumerate() {
         let first = index * L::WIDTH;
         let color = clamped(packet.color);
-        store(color.x, first, order, &mut traced.red);
-        store(color.y, first, order, &mut traced.green);
-        store(color.z, first, order, &mut traced.blue);
+        color.x.store(&mut traced.red[first..]);
+        color.y.store(&mut traced.green[first..]);
+        color.z.store(&mut traced.blue[first..]);
     }
-}
-
-/// Writes what the samples know of their edges.
-#[inline(always)]
-pub fn store_edges<L: SimdFloat>(
-    edges: &[EdgeInfo<L>],
-    signatures: &[[u32; MAX_LANES]],
-    order: Option<&Order<L::Real>>,
-    traced: &mut Traced<L::Real>,
-) {
     for (index, (edge, signatures)) in edges.iter().zip(signatures).enumerate() {
         let first = index * L::WIDTH;
-        store(edge.near, first, order, &mut traced.near);
-        for (lane, &signature) in signatures[..L::WIDTH].iter().enumerate() {
-            let place = order.map_or(first + lane, |order| order.samples[first + lane] as usize);
-            traced.signature[place] = signature;
-        }
-    }
-}
-
-/// Writes the lanes of a packet, of which the first is given.
-#[inline(always)]
-fn store<L: SimdFloat>(
-    lanes: L,
-    first: usize,
-    order: Option<&Order<L::Real>>,
-    column: &mut [L::Real],
-) {
-    match order {
-        None => lanes.store(&mut column[first..]),
-        Some(order) => order.scatter(lanes, first, column),
+        edge.near.store(&mut traced.near[first..]);
+        traced.signature[first..first + L::WIDTH].copy_from_slice(&signatures[..L::WIDTH]);
     }
 }
 

@@ -12,7 +12,6 @@ use super::heat::heat;
 use super::intersect::Kernel;
 use super::lattice::Limits;
 use super::sampler::Sampler;
-use super::samples::Traced;
 use super::stats::{Rays, RenderControl};
 use super::tile::{Grid, Pass, Pixel, Tile, TileColors};
 use crate::plan::{Plan, Planner, Region, RenderRequest, Show, is_double};
@@ -223,7 +222,7 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
     #[inline(always)]
     fn trace<L: SimdFloat<Real = R>, const TREE: bool>(mut self, token: L::Token) -> Option<Rays> {
         let plan = self.plan;
-        let mut engine = Engine::<L, TREE>::new(Kernel { token, plan });
+        let mut engine = Engine::<L, TREE>::new(Kernel { token, plan }, &self.control.stop);
         let mut sampler = Sampler::new(self.in_squares);
         let mut colors = TileColors::default();
         let (mut in_band, mut in_tile) = (Candidates::default(), Candidates::default());
@@ -236,9 +235,6 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
         }
         in_band.keep_seen(self.seen, plan, &self.rows, Span::Rows);
         for left in (0..self.width).step_by(self.tile) {
-            if self.control.stop.load(Ordering::Relaxed) {
-                return None;
-            }
             let tile = Tile {
                 columns: left..(left + self.tile).min(self.width),
                 rows: self.rows.clone(),
@@ -251,24 +247,32 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
             if plan.screen.is_some() {
                 in_tile.drop_unseen_planes(self.plan, &tile);
             }
-            match self.sampling {
+            let (stride, channels) = match self.sampling {
                 Sampling::Centres if self.grid == Grid::ALL => {
                     let traced = sampler.all(&mut engine, &in_tile, &tile, (0.5, 0.5));
-                    self.fill(&tile, tile.columns.len(), traced.channels());
+                    (tile.width(), traced.channels())
                 }
                 Sampling::Centres => {
                     let traced = sampler.centres(&mut engine, &in_tile, self.grid.pixels(&tile));
-                    self.scatter(&tile, traced);
+                    (1, traced.channels())
                 }
                 Sampling::Grid(side) => {
                     sampler.grid(&mut engine, &in_tile, &tile, side, &mut colors);
-                    self.fill(&tile, colors.stride, colors.channels());
+                    (colors.stride, colors.channels())
                 }
                 Sampling::Adaptive { contrast, depth } => {
                     let limits = Limits::new(contrast, depth);
                     sampler.adaptive(&mut engine, &in_tile, &tile, limits, &mut colors);
-                    self.fill(&tile, colors.stride, colors.channels());
+                    (colors.stride, colors.channels())
                 }
+            };
+            if engine.is_stopped() {
+                return None;
+            }
+            if self.grid == Grid::ALL {
+                self.fill(&tile, stride, channels);
+            } else {
+                self.scatter(&tile, channels);
             }
             if plan.show == Show::Cost {
                 self.fill_with_heat(&tile, engine.rays.total() - before);
@@ -309,14 +313,14 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
 
     /// Writes the colours of those pixels of a tile that the pass takes.
     #[inline(always)]
-    fn scatter(&mut self, tile: &Tile, traced: &Traced<R>) {
+    fn scatter(&mut self, tile: &Tile, [red, green, blue]: [&[R]; 3]) {
+        let mut count = 0;
         for (index, (column, row)) in self.grid.pixels(tile).enumerate() {
-            let pixel = P::of(traced.red[index], traced.green[index], traced.blue[index]);
+            let pixel = P::of(red[index], green[index], blue[index]);
             self.pixels[(row - self.rows.start) * self.width + column] = pixel;
+            count += 1;
         }
-        self.control
-            .pixels
-            .fetch_add(traced.count as u64, Ordering::Relaxed);
+        self.control.pixels.fetch_add(count, Ordering::Relaxed);
     }
 }
 
@@ -427,7 +431,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stopped_pass_ends_with_the_tiles_that_are_being_traced() {
+    fn a_stopped_pass_writes_no_tile_that_was_being_traced() {
         let (scene, side) = (Scene::demo(), 2048);
         let tracer = Tracer::new(&scene, &RenderRequest::sized(side, side));
         let mut pixels = vec![Stopping; (side * side) as usize];
@@ -435,8 +439,8 @@ mod tests {
         let rays = threads.run(|| tracer.pass(&mut pixels, Pass::Whole, &FIRST));
         assert_eq!(rays, None);
         let traced = FIRST.pixels.load(Ordering::Relaxed);
-        // One tile is written before the stop is seen, and each thread may have begun another.
-        let most = (2 * 3 * tracer.tile * tracer.tile) as u64;
+        // The tile that told to stop, and those that the other threads were writing meanwhile.
+        let most = (3 * tracer.tile * tracer.tile) as u64;
         assert!(
             traced <= most,
             "{traced} pixels after the stop, {most} at most"

@@ -120,12 +120,13 @@ impl App {
             let frame = self.pictures.shown(&self.editor);
             let live = frame.map_or(String::new(), |frame| describe(frame, self.editor.shown()));
             let text = self.lab.describe().unwrap_or(live);
+            let picture = (&*text, frame.map(|frame| frame.revision));
             let kept = self.autosave.kept_since();
             let reading = self.files.reading().map(Reading::describe);
             let note = reading.or_else(|| self.exports.describe(&self.pictures));
             let note = note.or_else(|| kept.map(status::autosaved));
             let check = (&self.check, &**self.editor.scene());
-            status::show(ui, &text, &self.pictures.activity(), note, check, out);
+            status::show(ui, picture, &self.pictures.activity(), note, check, out);
         });
         if self.lab.is_open {
             let panel = Panel::bottom("lab").frame(side(ui)).resizable(true);

@@ -17,13 +17,16 @@ const PATIENCE: Duration = Duration::from_millis(100);
 /// Time after which the remaining time is shown.
 const FORECAST: Duration = Duration::from_secs(1);
 
+/// Time after which a picture of which nothing is to be seen must have a scene that takes long to make ready.
+const READY: Duration = Duration::from_millis(500);
+
 /// Height of what stands in the line: lower than the line, which must not jump.
 const BAR: f32 = 16.0;
 
-/// Shows the line.
+/// Shows the line; the picture on screen is given in words and by its revision.
 pub fn show(
     ui: &mut Ui,
-    picture: &str,
+    (picture, shown): (&str, Option<u64>),
     activity: &Activity,
     note: Option<String>,
     (check, scene): (&SceneCheck, &Scene),
@@ -40,6 +43,15 @@ pub fn show(
                 elapsed,
             } if *elapsed >= PATIENCE => {
                 progress(ui, *done, *total, *elapsed, out);
+            }
+            Activity::Live { revision, elapsed }
+                if *elapsed >= READY && shown != Some(*revision) =>
+            {
+                ui.weak(format!(
+                    "making the scene ready for tracing, {:.1} s",
+                    elapsed.as_secs_f64()
+                ));
+                ui.request_repaint_after(Duration::from_millis(100));
             }
             Activity::Idle => {
                 if let Some(note) = note {

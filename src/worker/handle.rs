@@ -8,7 +8,7 @@ use std::time::Duration;
 use super::jobs::{
     Activity, Answer, Event, Frame, JobKind, LiveJob, QueryJob, StillJob, ThumbnailJob,
 };
-use super::mailbox::{Job, Running};
+use super::mailbox::Job;
 use super::render_thread;
 use super::shared::{Outbox, Shared};
 use super::task::spawn;
@@ -170,9 +170,10 @@ impl Worker {
         let mailbox = self.shared.mailbox();
         let running = mailbox.running.as_ref();
         match running.map(|running| (running.kind, running)) {
-            Some((JobKind::Live, Running { revision, .. })) => {
+            Some((JobKind::Live, running)) => {
                 return Activity::Live {
-                    revision: *revision,
+                    revision: running.revision,
+                    elapsed: running.started.elapsed(),
                 };
             }
             Some((JobKind::Still | JobKind::Save, running)) => {
@@ -190,6 +191,7 @@ impl Worker {
         match (mailbox.waiting(JobKind::Live), still) {
             (Some(Job::Live(live)), _) => Activity::Live {
                 revision: live.revision,
+                elapsed: Duration::ZERO,
             },
             (_, Some(Job::Still(still))) => Activity::Still {
                 done: 0,

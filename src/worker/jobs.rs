@@ -166,6 +166,8 @@ pub enum Activity {
     Live {
         /// The revision.
         revision: u64,
+        /// Time since it was started.
+        elapsed: Duration,
     },
     /// Tracing a still picture.
     Still {

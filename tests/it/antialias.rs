@@ -84,13 +84,7 @@ fn the_demo_has_clean_edges_for_few_rays() {
 fn poles() -> Scene {
     let mut scene = Scene::demo();
     let mut add = |name: String, shape| {
-        scene.objects.push(Object {
-            name,
-            color_pack: "sphere 1".to_owned(),
-            shape,
-            visible: true,
-            group: String::new(),
-        });
+        scene.objects.push(Object::new(name, "sphere 1", shape));
     };
     for n in 0..24 {
         let (x, z) = (
@@ -154,18 +148,15 @@ fn coins() -> Scene {
             _ => DVec3::new(0.2, 0.4, 1.0),
         };
         let radius = if n % 4 == 0 { 0.3 } else { 6.0 };
-        scene.objects.push(Object {
-            name: format!("Coin {n}"),
-            color_pack: "sphere 2".to_owned(),
-            shape: Disc {
+        scene.objects.push(Object::new(
+            format!("Coin {n}"),
+            "sphere 2",
+            Disc {
                 center,
                 normal,
                 radius,
-            }
-            .into(),
-            visible: true,
-            group: String::new(),
-        });
+            },
+        ));
     }
     scene
 }

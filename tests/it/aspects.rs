@@ -3,7 +3,7 @@
 use glam::DVec3;
 use glint::image::{Image, LinearImage, render, render_light_into};
 use glint::plan::{Planner, Region, RenderRequest};
-use glint::scene::{Aspect, Light, Object, Precision, Sampling, Scene, Shape, Sphere};
+use glint::scene::{Aspect, Light, Object, Precision, Sampling, Scene, Sphere};
 use glint::trace::RenderControl;
 
 fn light_of(scene: &Scene, request: &RenderRequest) -> LinearImage {
@@ -20,16 +20,14 @@ fn ball() -> Scene {
     scene.camera.position = DVec3::new(0.0, 0.0, 50.0);
     scene.camera.look_at = DVec3::NEG_Z;
     scene.camera.up = DVec3::Y;
-    scene.objects.push(Object {
-        name: "Ball".to_owned(),
-        color_pack: "pack 1".to_owned(),
-        shape: Shape::Sphere(Sphere {
+    scene.objects.push(Object::new(
+        "Ball",
+        "pack 1",
+        Sphere {
             center: DVec3::ZERO,
             radius: 10.0,
-        }),
-        visible: true,
-        group: String::new(),
-    });
+        },
+    ));
     let light = |x: f64| Light {
         name: format!("Light at {x}"),
         position: DVec3::new(x, 0.0, 0.0),

@@ -816,3 +816,15 @@ fn a_farm_makes_the_same_bytes() {
     );
     assert!(made == files(&alone));
 }
+
+/// The README's lines, run by a Slurm of one node and by GNU parallel.
+#[test]
+#[ignore = "needs Slurm and GNU parallel (Debian packages slurmctld, slurmd, slurm-client, munge, parallel)"]
+fn clusters_make_the_same_bytes_by_the_lines_of_the_readme() {
+    let of_project = |path: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+    let mut script = Command::new("bash");
+    script.arg(of_project("tests/it/farm.sh"));
+    script.arg(env!("CARGO_BIN_EXE_glint")).arg(FLIGHT);
+    let said = done(script.arg(of_project("README.md")));
+    assert_eq!(said.matches("202 frames").count(), 2, "{said}");
+}

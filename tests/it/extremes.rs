@@ -131,15 +131,15 @@ fn hall(limit: u32) -> Scene {
         ..ColorPack::default()
     };
     scene.packs_mut().insert("mirror".to_owned(), mirror);
-    let wall = |name: &str, x: f64| Object {
-        name: name.to_owned(),
-        color_pack: "mirror".to_owned(),
-        shape: Shape::Plane(Plane {
-            point: DVec3::new(x, 0.0, 0.0),
-            normal: DVec3::X,
-        }),
-        visible: true,
-        group: String::new(),
+    let wall = |name: &str, x: f64| {
+        Object::new(
+            name,
+            "mirror",
+            Plane {
+                point: DVec3::new(x, 0.0, 0.0),
+                normal: DVec3::X,
+            },
+        )
     };
     scene.objects.push(wall("Left", 0.0));
     scene.objects.push(wall("Right", 320.0));
@@ -184,19 +184,19 @@ fn pictures_of_any_shape_are_whole() {
 fn very_many_things_are_seen_as_one_by_one() {
     let mut scene = Scene::demo();
     let dice = &mut Dice(9);
-    let ball = |number: usize, dice: &mut Dice| Object {
-        name: format!("Ball {number}"),
-        color_pack: "sphere 1".to_owned(),
-        shape: Shape::Sphere(Sphere {
-            center: DVec3::new(
-                dice.real(0.0, 300.0),
-                dice.real(20.0, 120.0),
-                dice.real(-250.0, -50.0),
-            ),
-            radius: dice.real(0.1, 0.8),
-        }),
-        visible: true,
-        group: String::new(),
+    let ball = |number: usize, dice: &mut Dice| {
+        Object::new(
+            format!("Ball {number}"),
+            "sphere 1",
+            Sphere {
+                center: DVec3::new(
+                    dice.real(0.0, 300.0),
+                    dice.real(20.0, 120.0),
+                    dice.real(-250.0, -50.0),
+                ),
+                radius: dice.real(0.1, 0.8),
+            },
+        )
     };
     for number in 0..100_000 {
         scene.objects.push(ball(number, dice));

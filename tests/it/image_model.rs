@@ -353,16 +353,14 @@ fn ball() -> Scene {
     pack.ambient = DVec3::new(40.0, 80.0, 120.0);
     pack.diffuse = DVec3::new(100.0, 50.0, 0.0);
     pack.specular = DVec3::new(0.0, 0.0, 60.0);
-    scene.objects.push(glint::scene::Object {
-        name: "Ball".to_owned(),
-        color_pack: "pack 1".to_owned(),
-        shape: Shape::Sphere(Sphere {
+    scene.objects.push(glint::scene::Object::new(
+        "Ball",
+        "pack 1",
+        Sphere {
             center: DVec3::new(0.0, 0.0, 0.0),
             radius: 1.0,
-        }),
-        visible: true,
-        group: String::new(),
-    });
+        },
+    ));
     scene
 }
 

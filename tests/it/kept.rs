@@ -41,13 +41,7 @@ fn crowd(dice: &mut Dice) -> Scene {
         scene.packs_mut().insert(name.to_owned(), pack);
     }
     let mut add = |name: String, pack: &str, shape: Shape| {
-        scene.objects.push(Object {
-            name,
-            color_pack: pack.to_owned(),
-            shape,
-            visible: true,
-            group: String::new(),
-        });
+        scene.objects.push(Object::new(name, pack, shape));
     };
     let (_, solid) = SOLIDS[2];
     add("Solid".to_owned(), "a", Shape::Mesh(Mesh::of(solid(30.0))));

@@ -11,6 +11,7 @@ mod contacts;
 mod dependencies;
 mod export;
 mod extremes;
+mod faults;
 mod fuzz;
 mod harness;
 mod image_model;

@@ -19,16 +19,6 @@ fn picture(scene: &Scene, wanted: &RenderRequest) -> (Image, Rays) {
     (image, cost.rays)
 }
 
-fn object(name: &str, color_pack: &str, shape: impl Into<Shape>) -> Object {
-    Object {
-        name: name.to_owned(),
-        color_pack: color_pack.to_owned(),
-        shape: shape.into(),
-        visible: true,
-        group: String::new(),
-    }
-}
-
 /// A ball with bumps around the origin, closed, of about so many triangles.
 fn bumpy(triangles: f64) -> Triangles {
     let rings = (triangles / 4.0).sqrt() as u32;
@@ -76,7 +66,7 @@ fn exhibition() -> Scene {
     let mut scene = Scene::demo();
     let ball = Mesh::of(bumpy(700.0));
     let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
-    scene.objects.push(object(
+    scene.objects.push(Object::new(
         "Bumps 1",
         "sphere 2",
         Mesh {
@@ -84,7 +74,7 @@ fn exhibition() -> Scene {
             ..ball.clone()
         },
     ));
-    scene.objects.push(object(
+    scene.objects.push(Object::new(
         "Bumps 2",
         "plane",
         Mesh {
@@ -94,7 +84,7 @@ fn exhibition() -> Scene {
             ..ball
         },
     ));
-    scene.objects.push(object(
+    scene.objects.push(Object::new(
         "Ball",
         "tetrahedron",
         Mesh {
@@ -122,8 +112,8 @@ fn a_tree_changes_no_bit_and_no_ray() {
         let place = |speed: f64| (f64::from(n) * speed).sin() * 70.0;
         let center = DVec3::new(place(1.7), place(2.3), place(3.1));
         let radius = 2.5;
-        crowd.objects.push(object(
-            &format!("Speck {n}"),
+        crowd.objects.push(Object::new(
+            format!("Speck {n}"),
             "pack 0",
             Sphere { center, radius },
         ));
@@ -227,7 +217,7 @@ fn nobody_looks_out_of_a_closed_mesh() {
             scene.background = sky;
             scene.light_visualization = false;
             let centre = DVec3::new(0.6, -0.64, 0.48) * (scale * away * 20.0);
-            scene.objects.push(object(
+            scene.objects.push(Object::new(
                 "Room",
                 "pack 1",
                 Mesh {
@@ -268,7 +258,7 @@ fn a_closed_mesh_in_the_light_has_no_dark_specks() {
     scene.background = DVec3::splat(255.0);
     scene
         .objects
-        .push(object("Bumps", "pack 1", Mesh::of(bumpy(20_000.0))));
+        .push(Object::new("Bumps", "pack 1", Mesh::of(bumpy(20_000.0))));
     let eye = DVec3::new(30.0, 20.0, 60.0);
     for light in scene.lights.iter_mut() {
         light.position = eye;
@@ -319,7 +309,7 @@ fn what_is_thin_in_a_mesh_is_found_and_what_is_thick_is_left_alone() {
     let at = DVec3::new(170.0, 40.0, -80.0);
     let rays = |shape: Mesh| {
         let mut scene = scene.clone();
-        scene.objects.push(object(
+        scene.objects.push(Object::new(
             "it",
             "sphere 1",
             Mesh {
@@ -334,7 +324,7 @@ fn what_is_thin_in_a_mesh_is_found_and_what_is_thick_is_left_alone() {
         picture(&scene, &wanted).1.camera
     };
     let (thin, ball) = (rays(rod(0.15)), rays(Mesh::of(bumpy(20_000.0))));
-    scene.objects.push(object(
+    scene.objects.push(Object::new(
         "one",
         "sphere 1",
         Triangle {
@@ -355,7 +345,7 @@ fn lit_ball(shape: impl Into<Shape>, is_mirror: bool) -> Scene {
         .retain(|object| matches!(object.shape, Shape::Plane(_)));
     scene.light_visualization = false;
     scene.packs_mut()["sphere 1"].reflective = is_mirror;
-    scene.objects.push(object("Ball", "sphere 1", shape));
+    scene.objects.push(Object::new("Ball", "sphere 1", shape));
     scene.camera.position = DVec3::new(0.0, 45.0, 120.0);
     scene.camera.look_at = DVec3::new(0.0, -0.1, -1.0);
     scene.lights[0].position = DVec3::new(120.0, 60.0, 10.0);

@@ -202,16 +202,14 @@ fn the_tree_begins_where_a_list_is_too_long() {
         let mut scene = Scene::empty();
         for n in 0..64 {
             let place = DVec3::new(f64::from(n % 4), f64::from(n / 4 % 4), f64::from(n / 16));
-            scene.objects.push(Object {
-                name: format!("Ball {n}"),
-                color_pack: "pack 1".to_owned(),
-                shape: Shape::Sphere(Sphere {
+            scene.objects.push(Object::new(
+                format!("Ball {n}"),
+                "pack 1",
+                Sphere {
                     center: place * side,
                     radius: 1.0,
-                }),
-                visible: true,
-                group: String::new(),
-            });
+                },
+            ));
         }
         let request = RenderRequest::sized(2000, 2000);
         let plan = Plan::<f32>::new(&scene, &request, &mut Kept::default());

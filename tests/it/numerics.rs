@@ -224,13 +224,7 @@ fn ball<R: Real>() -> PackedSphere<R> {
 }
 
 fn object(name: &str, center: DVec3, radius: f64) -> Object {
-    Object {
-        name: name.to_owned(),
-        color_pack: "pack 1".to_owned(),
-        shape: Shape::Sphere(Sphere { center, radius }),
-        visible: true,
-        group: String::new(),
-    }
+    Object::new(name, "pack 1", Sphere { center, radius })
 }
 
 /// A picture of one sample per pixel.

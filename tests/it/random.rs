@@ -83,13 +83,11 @@ pub fn with_discs(seed: u64) -> Scene {
             normal: if number < 3 { DVec3::Y } else { lean },
             radius: dice.real(6.0, 30.0),
         };
-        scene.objects.push(Object {
-            name: format!("Disc {number}"),
-            color_pack: format!("pack {}", number - 1),
-            shape: disc.into(),
-            visible: true,
-            group: String::new(),
-        });
+        scene.objects.push(Object::new(
+            format!("Disc {number}"),
+            format!("pack {}", number - 1),
+            disc,
+        ));
     }
     assert_eq!(check(&scene), Ok(()));
     scene
@@ -111,13 +109,7 @@ fn add_objects(scene: &mut Scene, dice: &mut Dice) {
     let mut add = |shape: Shape, dice: &mut Dice| {
         let color_pack = format!("pack {}", (dice.real(0.0, 6.0)) as usize);
         let name = format!("Object {}", scene.objects.len() + 1);
-        scene.objects.push(Object {
-            name,
-            color_pack,
-            shape,
-            visible: true,
-            group: String::new(),
-        });
+        scene.objects.push(Object::new(name, color_pack, shape));
     };
     for _ in 0..8 {
         let center = dice.vector(-60.0, 60.0);

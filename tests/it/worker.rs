@@ -7,7 +7,7 @@ use glam::DVec3;
 use glint::image::render;
 use glint::lab::Study;
 use glint::plan::RenderRequest;
-use glint::scene::{Object, Scene, Shape, Sphere};
+use glint::scene::{MAX_GRID, Object, Sampling, Scene, Sphere};
 use glint::trace::RenderControl;
 use glint::worker::{Activity, BUDGET, Event, Frame, LiveJob, Pace, StillJob, Worker};
 
@@ -67,16 +67,14 @@ fn slow_scene() -> Arc<Scene> {
     let mut scene = Scene::demo();
     for n in 0..2000_u32 {
         let center = DVec3::new(f64::from(n % 50) * 8.0, 3.0, f64::from(n / 50) * -8.0);
-        scene.objects.push(Object {
-            name: format!("Ball {n}"),
-            color_pack: "sphere 1".to_owned(),
-            shape: Shape::Sphere(Sphere {
+        scene.objects.push(Object::new(
+            format!("Ball {n}"),
+            "sphere 1",
+            Sphere {
                 center,
                 radius: 3.0,
-            }),
-            visible: true,
-            group: String::new(),
-        });
+            },
+        ));
     }
     Arc::new(scene)
 }
@@ -163,6 +161,21 @@ fn an_edit_during_a_still_picture_is_picked_up_at_once() {
         worker.take_frame().is_none_or(|frame| !frame.is_still),
         "the old still picture is given up"
     );
+}
+
+#[test]
+fn a_picture_whose_every_tile_takes_minutes_gives_way_at_once() {
+    let worker = Worker::new(None, || {}).expect("a render thread");
+    let mut endless = still(1, &slow_scene(), 512);
+    endless.request.sampling = Sampling::Grid(MAX_GRID);
+    worker.request_still(endless);
+    wait_until("a running still picture", || {
+        matches!(worker.activity(), Activity::Still { .. })
+    });
+    // Long enough for the first tiles to be begun.
+    std::thread::sleep(Duration::from_millis(200));
+    worker.submit(live(2, &Arc::new(Scene::demo()), 64));
+    wait_for(&worker, |frame| !frame.is_still && frame.revision == 2);
 }
 
 #[test]

@@ -4,10 +4,12 @@
 use glam::DVec3;
 
 use super::map::{Map, Tries, places, scales};
-use super::stage::{light, object};
+use super::stage::light;
 use super::subject::Subject;
 use crate::plan::RenderRequest;
-use crate::scene::{Camera, ColorPack, List, Plane, Precision, Sampling, Scene, Sphere, Triangle};
+use crate::scene::{
+    Camera, ColorPack, List, Object, Plane, Precision, Sampling, Scene, Sphere, Triangle,
+};
 
 /// Side of the pictures in pixels.
 const SIDE: u32 = 48;
@@ -68,10 +70,13 @@ fn scene(away: f64, scale: f64, with_later: bool) -> Scene {
         b: in_plane(-0.9, 0.8),
         c: in_plane(0.9, 0.7),
     };
-    let earlier = [object("Plane", "red", plane), object("Ball", "red", ball)];
+    let earlier = [
+        Object::new("Plane", "red", plane),
+        Object::new("Ball", "red", ball),
+    ];
     let later = [
-        object("Triangle", "green", triangle),
-        object("Same ball", "green", ball),
+        Object::new("Triangle", "green", triangle),
+        Object::new("Same ball", "green", ball),
     ];
     let later = later.into_iter().filter(|_| with_later);
     scene.objects = List::from(earlier.into_iter().chain(later).collect::<Vec<_>>());

@@ -2,12 +2,12 @@
 //! a ball and a card on a floor, at every scale and place; the ball a sphere, or a mesh.
 
 use super::map::{Map, Tries, places, scales};
-use super::stage::{light, object};
+use super::stage::light;
 use super::subject::Subject;
 use crate::plan::{Model, RenderRequest};
 use crate::scene::{
-    Camera, ColorPack, Light, List, Method as _, Methods, Plane, Precision, RayOffset, Sampling,
-    Scene, Shape, Sphere, Triangle,
+    Camera, ColorPack, Light, List, Method as _, Methods, Object, Plane, Precision, RayOffset,
+    Sampling, Scene, Shape, Sphere, Triangle,
 };
 use glam::DVec3;
 
@@ -148,7 +148,7 @@ fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
     };
     scene.packs_mut().insert("chalk".to_owned(), chalk);
     scene.background = black;
-    let chalk = |name: &str, shape: Shape| object(name, "chalk", shape);
+    let chalk = |name: &str, shape: Shape| Object::new(name, "chalk", shape);
     scene.objects = List::from(vec![
         chalk(
             "Floor",

@@ -1,21 +1,10 @@
-//! What maps are tried on: small scenes, and the light of small pictures of them.
+//! The light of small pictures that maps are tried on.
 
 use super::super::measure::trace_light;
 use crate::image::LinearRgb;
 use crate::plan::RenderRequest;
-use crate::scene::{Object, Scene, Shape};
+use crate::scene::Scene;
 use crate::trace::{RenderControl, Tracer};
-
-/// Something that is seen.
-pub fn object(name: &str, color_pack: &str, shape: impl Into<Shape>) -> Object {
-    Object {
-        name: name.to_owned(),
-        color_pack: color_pack.to_owned(),
-        shape: shape.into(),
-        visible: true,
-        group: String::new(),
-    }
-}
 
 /// The light of a picture, row by row from the top.
 pub fn light(scene: &Scene, request: &RenderRequest) -> Vec<LinearRgb> {

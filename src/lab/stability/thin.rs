@@ -5,10 +5,10 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scattered};
-use super::stage::{light, object};
+use super::stage::light;
 use super::subject::Subject;
 use crate::plan::RenderRequest;
-use crate::scene::{Camera, ColorPack, List, Method as _, Sampling, Scene, Triangle};
+use crate::scene::{Camera, ColorPack, List, Method as _, Object, Sampling, Scene, Triangle};
 
 /// Side of the pictures in pixels.
 const SIDE: u32 = 24;
@@ -120,7 +120,7 @@ fn ribbon(number: u64, width: f64, distance: f64) -> Scene {
         ..ColorPack::default()
     };
     scene.packs_mut().insert("white".to_owned(), white);
-    let half = |name: &str, [a, b, c]: [DVec3; 3]| object(name, "white", Triangle { a, b, c });
+    let half = |name: &str, [a, b, c]: [DVec3; 3]| Object::new(name, "white", Triangle { a, b, c });
     scene.objects = List::from(vec![half("One", [a, b, c]), half("Other", [b, d, c])]);
     scene.camera = Camera {
         position: DVec3::ZERO,

@@ -7,7 +7,7 @@ use super::super::theme::{GRID, palette};
 use super::axes::{decades, plain};
 use super::pictures::picture;
 use crate::image::Image;
-use crate::lab::{Cost, Crowd, Growth, PictureLook};
+use crate::lab::{Cost, Crowd, Growth, PictureLook, Way};
 
 /// A picture of what was measured.
 pub fn growth_picture(growth: &Growth, look: PictureLook) -> Image {
@@ -21,7 +21,7 @@ pub fn growth_picture(growth: &Growth, look: PictureLook) -> Image {
 /// What the chart says, in a sentence.
 fn finding(growth: &Growth) -> String {
     let mut plain: Vec<&Cost> = growth.costs.iter().collect();
-    plain.retain(|cost| cost.crowd == Crowd::Mesh && !cost.is_clean);
+    plain.retain(|cost| cost.crowd == Crowd::Mesh && cost.way == Way::Plain);
     match (plain.first(), plain.last()) {
         (Some(first), Some(last)) if first.primitives < last.primitives => format!(
             "{:.0} times the faces cost {:.1} times the time",
@@ -63,12 +63,12 @@ fn show(ui: &mut Ui, growth: &Growth) {
                     Crowd::Mesh => colors.accent,
                     Crowd::Balls => colors.text,
                 };
-                let style = if cost.is_clean {
-                    LineStyle::dashed_loose()
-                } else {
-                    LineStyle::Solid
+                let style = match cost.way {
+                    Way::Plain => LineStyle::Solid,
+                    Way::Clean => LineStyle::dashed_loose(),
+                    Way::Povray => LineStyle::dotted_dense(),
                 };
-                let dots = Points::new(name, PlotPoints::from(points.clone()));
+                let dots = Points::new(name.clone(), PlotPoints::from(points.clone()));
                 plot.points(dots.radius(4.0).color(color));
                 plot.line(Line::new(name, points).color(color).style(style).width(1.5));
             }

@@ -1,0 +1,303 @@
+//! What is not the program's fault: it is killed, put to sleep, the disk is full, the folder is somebody else's.
+//! Nothing that was there is lost, and what could not be done is told.
+#![cfg(unix)]
+
+use std::fmt::Write as _;
+use std::fs;
+use std::os::unix::fs::PermissionsExt as _;
+use std::os::unix::process::CommandExt as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use crate::random::Dice;
+
+const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
+/// Programs that are killed while they save.
+const KILLS: usize = 300;
+
+fn glint(folder: &Path, words: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_glint"));
+    command.args(words).current_dir(folder);
+    command
+}
+
+fn run(command: &mut Command) -> Output {
+    command.output().expect("it runs")
+}
+
+fn succeed(command: &mut Command) {
+    let output = run(command);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+}
+
+/// What a program says that fails.
+fn fail(command: &mut Command) -> String {
+    let output = run(command);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    said
+}
+
+/// A mesh file of two parts with so many faces, which become a scene file that holds them.
+fn write_mesh(path: &Path, faces: usize) {
+    let mut text = String::new();
+    for face in 0..faces {
+        let _ = writeln!(
+            text,
+            "{}v {face} 0 0\nv {face} 1 0\nv {face} 0 {face}.5\nf -3 -2 -1",
+            if face % (faces / 2) == 0 {
+                format!("g part{face}\n")
+            } else {
+                String::new()
+            }
+        );
+    }
+    fs::write(path, text).expect("written");
+}
+
+/// The names of what is in a folder, hidden files too.
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> = entries
+        .map(|entry| {
+            entry
+                .expect("an entry")
+                .file_name()
+                .to_string_lossy()
+                .into_owned()
+        })
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn whoever_is_killed_while_saving_leaves_the_old_file_or_the_new_one() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let saved = folder.join("scene.ron");
+    let save = |mesh: &str| glint(folder, &["convert", mesh, "-o", "scene.ron"]);
+    let mut whole = Vec::new();
+    let mut longest = Duration::ZERO;
+    for (mesh, faces) in [("one.obj", 2000), ("other.obj", 3000)] {
+        write_mesh(&folder.join(mesh), faces);
+        let start = Instant::now();
+        succeed(&mut save(mesh));
+        longest = longest.max(start.elapsed());
+        whole.push(fs::read(&saved).expect("saved"));
+    }
+    let mut dice = Dice(11);
+    let (mut kills, mut left) = (0, 0);
+    for mesh in ["one.obj", "other.obj"].into_iter().cycle() {
+        if kills == KILLS {
+            break;
+        }
+        let mut child = save(mesh).stdout(Stdio::null()).spawn().expect("it runs");
+        sleep(longest.mul_f64(dice.real(0.1, 1.0)));
+        if child.try_wait().expect("a child").is_none() {
+            child.kill().expect("killed");
+            kills += 1;
+        }
+        child.wait().expect("ended");
+        left = left.max(names(folder).len());
+        let bytes = fs::read(&saved).expect("there is always one");
+        assert!(
+            whole.contains(&bytes),
+            "after {kills} kills: {} bytes",
+            bytes.len()
+        );
+    }
+    assert!(left > 3, "no program was killed while it wrote");
+    succeed(&mut save("one.obj"));
+    assert_eq!(
+        names(folder),
+        ["one.obj", "other.obj", "scene.ron"],
+        "what dead programs left is gone"
+    );
+}
+
+#[test]
+fn a_program_that_sleeps_goes_on_where_it_was() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let words = |to| {
+        [
+            "export", FLIGHT, "-o", to, "--frames", "1-60", "--width", "96",
+        ]
+    };
+    succeed(&mut glint(folder.path(), &words("whole")));
+    let mut child = glint(folder.path(), &words("slept"))
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("it runs");
+    let signal = |name: &str| {
+        let status = Command::new("kill")
+            .args([name, &child.id().to_string()])
+            .status();
+        assert!(status.expect("the system has kill").success());
+    };
+    sleep(Duration::from_millis(20));
+    signal("-STOP");
+    sleep(Duration::from_millis(300));
+    signal("-CONT");
+    assert!(child.wait().expect("it ends").success());
+    for frame in 1..=60 {
+        let [whole, slept] = ["whole", "slept"]
+            .map(|to| folder.path().join(to).join(format!("rayTrace{frame}.ppm")));
+        assert!(
+            fs::read(whole).expect("made") == fs::read(slept).expect("made"),
+            "frame {frame}"
+        );
+    }
+}
+
+/// Whether the system lets this user write into a folder that nobody may write into, as it does the administrator.
+fn is_administrator(folder: &Path) -> bool {
+    fs::write(folder.join("try"), "").is_ok_and(|()| fs::remove_file(folder.join("try")).is_ok())
+}
+
+#[test]
+fn a_folder_that_must_not_be_written_to_is_named_and_left_as_it_was() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let shut = folder.path().join("shut");
+    fs::create_dir(&shut).expect("made");
+    write_mesh(&folder.path().join("mesh.obj"), 4);
+    fs::write(shut.join("scene.ron"), "what was there").expect("written");
+    for (path, mode) in [(folder.path(), 0o755), (&shut, 0o555)] {
+        fs::set_permissions(path, fs::Permissions::from_mode(mode)).expect("set");
+    }
+    let nobody = is_administrator(&shut).then_some(65534);
+    // The program itself may lie where only its owner may look.
+    let program = folder.path().join("glint");
+    fs::copy(env!("CARGO_BIN_EXE_glint"), &program).expect("copied");
+    for words in [
+        ["convert", "mesh.obj", "-o", "shut/scene.ron"],
+        ["render", FLIGHT, "-o", "shut/picture.png"],
+        ["export", FLIGHT, "-o", "shut/frames"],
+    ] {
+        let scene = folder.path().join("flight.ron");
+        fs::copy(FLIGHT, &scene).expect("copied");
+        let mut command = Command::new(&program);
+        command.args(words.map(|word| if word == FLIGHT { "flight.ron" } else { word }));
+        command.current_dir(folder.path());
+        if let Some(nobody) = nobody {
+            command.uid(nobody).gid(nobody);
+        }
+        let said = fail(&mut command);
+        assert!(
+            said.contains("shut") && said.contains("Permission denied"),
+            "{words:?}: {said}"
+        );
+    }
+    assert_eq!(names(&shut), ["scene.ron"]);
+    assert_eq!(
+        fs::read(shut.join("scene.ron")).expect("there"),
+        b"what was there"
+    );
+    fs::set_permissions(&shut, fs::Permissions::from_mode(0o755)).expect("set");
+}
+
+/// A disk of so many bytes.
+struct Disk(PathBuf);
+
+impl Disk {
+    fn new(folder: &Path, bytes: usize) -> Self {
+        let place = folder.join("disk");
+        fs::create_dir(&place).expect("made");
+        let size = format!("size={bytes}");
+        let status = Command::new("mount")
+            .args(["-t", "tmpfs", "-o", &size, "tmpfs"])
+            .arg(&place)
+            .status();
+        assert!(
+            status.expect("mount").success(),
+            "only the administrator may"
+        );
+        Self(place)
+    }
+}
+
+impl Drop for Disk {
+    fn drop(&mut self) {
+        let _ = Command::new("umount").arg(&self.0).status();
+    }
+}
+
+#[test]
+#[ignore = "mounts a small disk, which only the administrator may"]
+fn a_full_disk_loses_nothing_that_was_on_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (mesh, faces) in [("small.obj", 40), ("large.obj", 4000)] {
+        write_mesh(&folder.path().join(mesh), faces);
+    }
+    let disk = Disk::new(folder.path(), 256 << 10);
+    let place = |words: &[&str]| glint(folder.path(), words);
+    succeed(&mut place(&[
+        "convert",
+        "small.obj",
+        "-o",
+        "disk/scene.ron",
+    ]));
+    succeed(&mut place(&[
+        "render",
+        FLIGHT,
+        "-o",
+        "disk/picture.png",
+        "--width",
+        "32",
+    ]));
+    let before = names(&disk.0)
+        .into_iter()
+        .map(|name| fs::read(disk.0.join(name)).expect("there"));
+    let before: Vec<_> = before.collect();
+    let full = ["No space left on device", "disk"];
+    for words in [
+        &["convert", "large.obj", "-o", "disk/scene.ron"][..],
+        &["render", FLIGHT, "-o", "disk/picture.ppm"],
+        &[
+            "render",
+            FLIGHT,
+            "-o",
+            "disk/picture.png",
+            "--width",
+            "2000",
+        ],
+    ] {
+        let said = fail(&mut place(words));
+        assert!(
+            full.iter().all(|word| said.contains(word)),
+            "{words:?}: {said}"
+        );
+    }
+    assert_eq!(names(&disk.0), ["picture.png", "scene.ron"]);
+    let after = names(&disk.0)
+        .into_iter()
+        .map(|name| fs::read(disk.0.join(name)).expect("there"));
+    assert!(
+        before.iter().eq(&after.collect::<Vec<_>>()),
+        "nothing has changed"
+    );
+
+    // Frames stop with a sentence and go on when there is room.
+    let export = [
+        "export",
+        FLIGHT,
+        "-o",
+        "disk/frames",
+        "--frames",
+        "1-30",
+        "--width",
+        "64",
+    ];
+    let said = fail(&mut place(&export));
+    assert!(full.iter().all(|word| said.contains(word)), "{said}");
+    let status = Command::new("mount")
+        .args(["-o", "remount,size=2m"])
+        .arg(&disk.0)
+        .status();
+    assert!(status.expect("mount").success());
+    succeed(&mut place(&export));
+    assert_eq!(names(&disk.0.join("frames")).len(), 31);
+}
