@@ -19,6 +19,11 @@ fn main() -> ExitCode {
             path,
         } => save(ui::chart_picture(&studies, &machine, look), &path),
         CliAction::Growth { growth, look, path } => save(ui::growth_picture(&growth, look), &path),
+        CliAction::Scaling {
+            pictures,
+            look,
+            path,
+        } => save(ui::scaling_picture(&pictures, look), &path),
         CliAction::Stability { maps, path } => save(ui::stability_picture(&maps), &path),
         CliAction::Editor {
             scene,

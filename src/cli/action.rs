@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use crate::lab::stability::Map;
-use crate::lab::{Growth, PictureLook, Study};
+use crate::lab::{Growth, PictureLook, SharedPicture, Study};
 
 /// What the command line asked for.
 #[derive(Debug)]
@@ -35,6 +35,15 @@ pub enum CliAction {
     Growth {
         /// What was measured.
         growth: Growth,
+        /// How the picture looks.
+        look: PictureLook,
+        /// The picture file; its ending is known to be good.
+        path: PathBuf,
+    },
+    /// Draw how pictures would be shared between cores into this file.
+    Scaling {
+        /// What was simulated.
+        pictures: Vec<SharedPicture>,
         /// How the picture looks.
         look: PictureLook,
         /// The picture file; its ending is known to be good.

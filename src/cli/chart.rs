@@ -16,8 +16,11 @@ use crate::export::write_text;
 use crate::files::processor;
 use crate::image::Format;
 use crate::lab::{
-    Growth, PictureLook, Study, capitalised, cheapest_within, closest_within, csv, table,
+    Growth, PictureLook, Study, capitalised, cheapest_within, closest_within, csv, scaling,
+    scaling_csv, table,
 };
+use crate::plan::RenderRequest;
+use crate::scene::Scene;
 use crate::trace::{RenderControl, Threads};
 
 /// Primitives of the largest scene that growth is measured in.
@@ -35,6 +38,10 @@ pub struct ChartArgs {
     /// Measure how time grows with the number of primitives, in scenes made for that, instead
     #[arg(long, conflicts_with_all = ["scenes", "within", "budget"])]
     growth: bool,
+    /// Simulate how much sooner pictures of the scenes would come with up to 128 cores, from the times of their
+    /// pieces, instead
+    #[arg(long, requires = "scenes", conflicts_with_all = ["growth", "within", "budget", "povray"])]
+    cores: bool,
     /// Longer side of the pictures that are compared, in pixels
     #[arg(long, default_value = "256", value_parser = clap::value_parser!(u32).range(8..=2048))]
     side: u32,
@@ -94,6 +101,9 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
     // One that cannot be read is known before the first ray too.
     let scenes = args.scenes.iter().map(|path| Ok((path, read_scene(path)?)));
     let scenes = scenes.collect::<Result<Vec<_>, CliError>>()?;
+    if args.cores {
+        return share(args, &scenes);
+    }
     let mut studies = Vec::new();
     for (path, scene) in scenes {
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -168,6 +178,36 @@ fn grow(args: &ChartArgs, threads: &Threads) -> Result<Option<CliAction>, CliErr
     let look = args.look();
     let path = args.png.clone();
     Ok(path.map(|path| CliAction::Growth { growth, look, path }))
+}
+
+/// What more cores would do for the scenes.
+fn share(args: &ChartArgs, scenes: &[(&PathBuf, Scene)]) -> Result<Option<CliAction>, CliError> {
+    let request = RenderRequest::sized(args.side, args.side);
+    let mut pictures = Vec::new();
+    for (path, scene) in scenes {
+        let name = capitalised(&path.file_stem().unwrap_or_default().to_string_lossy());
+        pictures.extend(scaling(&name, scene, &request));
+    }
+    for picture in &pictures {
+        say(&format!(
+            "{:<20} {:>4} cores, {:>4} pieces {:>9.3} ms, {:>3.0} % of their time used",
+            picture.scene,
+            picture.workers,
+            picture.pieces,
+            picture.ms,
+            picture.efficiency * 100.0
+        ));
+    }
+    if let Some(path) = &args.csv {
+        write_text(path, &scaling_csv(&pictures)?)?;
+    }
+    let look = args.look();
+    let path = args.png.clone();
+    Ok(path.map(|path| CliAction::Scaling {
+        pictures,
+        look,
+        path,
+    }))
 }
 
 /// Draws to stderr, and only where that is a terminal.

@@ -27,6 +27,8 @@ mod kept;
 
 mod growth;
 
+mod scaling;
+
 mod explain;
 
 pub mod stability;
@@ -42,5 +44,6 @@ pub use look::{PictureLook, capitalised};
 pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, difference, trace_light};
 pub use pareto_front::{cheapest_within, closest_within, front};
 pub use quality::{Choice, Goal, choose};
+pub use scaling::{SharedPicture, scaling, scaling_csv};
 pub use study::{Measurement, Reference, Study, Timing};
 pub use table::{csv, table};

@@ -62,9 +62,11 @@ mod sampler;
 
 mod heat;
 
-mod tracer;
-
 mod threads;
+
+mod band;
+
+mod tracer;
 
 mod query;
 

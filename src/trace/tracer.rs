@@ -1,22 +1,18 @@
 //! The tile loop: which pixels are traced, by which thread, and when to stop.
 
-use std::ops::Range;
-use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
 
-use rayon::iter::{IndexedParallelIterator as _, ParallelIterator as _};
+use rayon::iter::{IndexedParallelIterator as _, IntoParallelIterator as _, ParallelIterator as _};
 use rayon::slice::ParallelSliceMut as _;
 
-use super::candidates::{Candidates, Span};
-use super::engine::Engine;
-use super::heat::heat;
-use super::intersect::Kernel;
-use super::lattice::Limits;
-use super::sampler::Sampler;
+use super::band::Band;
+use super::candidates::Candidates;
 use super::stats::{Rays, RenderControl};
-use super::tile::{Grid, Pass, Pixel, Tile, TileColors};
-use crate::plan::{Plan, Planner, Region, RenderRequest, Show, is_double};
+use super::threads::Threads;
+use super::tile::{Grid, Pass, Pixel};
+use crate::plan::{Plan, Planner, Region, RenderRequest, is_double};
 use crate::scene::{Aspect, Sampling, Scene};
-use crate::simd::{Level, SimdFloat, SimdReal, WithSimd};
+use crate::simd::{Level, SimdReal};
 
 /// Side of a tile in pixels where there is little to see. Large enough that the bookkeeping does not
 /// show, small enough that the rays of a tile stay in the cache and that threads end together.
@@ -31,6 +27,9 @@ const PIXELS_PER_PRIMITIVE: u64 = 16_384;
 /// With fewer pixels than this for each, packets look at squares: what is seen in a row of sixteen pixels is
 /// more than in a square of them, but to put them in order costs time too.
 const PIXELS_IN_SQUARES: u64 = 128;
+
+/// Pieces of a picture for each thread, at least, where there are so many tiles.
+const PIECES_PER_THREAD: usize = 8;
 
 /// A picture of a scene, planned for the real type it needs.
 #[derive(Debug)]
@@ -150,6 +149,74 @@ impl Tracer {
         }
     }
 
+    /// How many columns the pieces have in which so many threads trace so many rows: whole rows of tiles, where those
+    /// are enough for all threads to end at nearly the same time.
+    fn columns_of_pieces(&self, rows: usize, threads: usize) -> usize {
+        let bands = rows.div_ceil(self.tile).max(1);
+        let pieces = (threads * PIECES_PER_THREAD).div_ceil(bands);
+        self.width.div_ceil(self.tile).div_ceil(pieces).max(1) * self.tile
+    }
+
+    /// The pieces of the picture that threads take, if there are so many.
+    fn pieces(&self, threads: usize) -> impl Iterator<Item = Region> {
+        let piece = self.columns_of_pieces(self.height, threads);
+        (0..self.height).step_by(self.tile).flat_map(move |top| {
+            let starts = (0..self.width).step_by(piece);
+            starts.map(move |left| Region {
+                columns: (left, (left + piece).min(self.width)),
+                rows: (top, (top + self.tile).min(self.height)),
+            })
+        })
+    }
+
+    /// How long each piece takes that so many threads would share, traced by this thread, one after the other.
+    pub fn time_pieces(&self, threads: usize) -> Vec<Duration> {
+        match &self.plan {
+            PlanOf::Single(plan) => self.time_pieces_of(plan, threads),
+            PlanOf::Double(plan) => self.time_pieces_of(plan, threads),
+        }
+    }
+
+    fn time_pieces_of<R: SimdReal>(&self, plan: &Plan<R>, threads: usize) -> Vec<Duration> {
+        let seen = Candidates::all_seen(plan);
+        let samples = (Grid::ALL, self.sampling);
+        let mut pixels = vec![[0.0_f32; 3]; self.width * self.tile];
+        let time = |place: Region| {
+            let width = place.columns.1 - place.columns.0;
+            let height = place.rows.1 - place.rows.0;
+            let rows = pixels.chunks_mut(width).take(height).collect();
+            let since = Instant::now();
+            // Nobody stops it.
+            let control = RenderControl::default();
+            let _ = self.piece((plan, &seen), (place, rows), samples, &control);
+            since.elapsed()
+        };
+        self.pieces(threads).map(time).collect()
+    }
+
+    /// Traces what one thread takes.
+    fn piece<R: SimdReal, P: Pixel>(
+        &self,
+        (plan, seen): (&Plan<R>, &Candidates),
+        (place, pixels): (Region, Vec<&mut [P]>),
+        (grid, sampling): (Grid, Sampling),
+        control: &RenderControl,
+    ) -> Option<Rays> {
+        self.level.run(Band {
+            plan,
+            seen,
+            tile: self.tile,
+            in_squares: self.in_squares,
+            region: self.region,
+            columns: place.columns.0..place.columns.1,
+            rows: place.rows.0..place.rows.1,
+            pixels,
+            grid,
+            sampling,
+            control,
+        })
+    }
+
     fn pass_of<R: SimdReal, P: Pixel>(
         &self,
         plan: &Plan<R>,
@@ -163,175 +230,49 @@ impl Tracer {
             Pass::Whole => (Grid::ALL, self.sampling),
             Pass::Centres(grid) => (grid, Sampling::Centres),
         };
+        let rows = pixels.len() / self.width.max(1);
+        let piece = self.columns_of_pieces(rows, Threads::current());
         let bands = pixels
             .par_chunks_mut(self.width * self.tile)
             .with_max_len(1)
             .enumerate();
+        let trace = |(index, pixels): (usize, &mut [P])| {
+            let top = first + index * self.tile;
+            let rows = (top, top + pixels.len() / self.width);
+            let pieces = in_pieces(pixels, (self.width, piece)).into_par_iter();
+            let pieces = pieces.enumerate().map(|(index, pixels)| {
+                let left = index * piece;
+                let columns = (left, (left + piece).min(self.width));
+                let place = Region { columns, rows };
+                self.piece((plan, &seen), (place, pixels), (grid, sampling), control)
+            });
+            pieces.try_reduce(Rays::default, |a, b| Some(a + b))
+        };
         bands
-            .map(|(index, pixels)| {
-                let top = first + index * self.tile;
-                let band = Band {
-                    plan,
-                    seen: &seen,
-                    width: self.width,
-                    tile: self.tile,
-                    in_squares: self.in_squares,
-                    region: self.region,
-                    rows: top..top + pixels.len() / self.width,
-                    pixels,
-                    grid,
-                    sampling,
-                    control,
-                };
-                self.level.run(band)
-            })
+            .map(trace)
             .try_reduce(Rays::default, |a, b| Some(a + b))
     }
 }
 
-/// A row of tiles.
-struct Band<'a, R, P> {
-    plan: &'a Plan<R>,
-    /// Everything that can be seen.
-    seen: &'a Candidates,
-    width: usize,
-    tile: usize,
-    in_squares: bool,
-    region: Option<Region>,
-    rows: Range<usize>,
-    pixels: &'a mut [P],
-    grid: Grid,
-    sampling: Sampling,
-    control: &'a RenderControl,
-}
-
-impl<R: SimdReal, P: Pixel> WithSimd<R> for Band<'_, R, P> {
-    type Output = Option<Rays>;
-
-    #[inline(always)]
-    fn run<L: SimdFloat<Real = R>>(self, token: L::Token) -> Option<Rays> {
-        if self.plan.geometry.is_some() {
-            self.trace::<L, true>(token)
-        } else {
-            self.trace::<L, false>(token)
+/// The rows of pixels, so many wide, of each piece of so many columns.
+fn in_pieces<P>(pixels: &mut [P], (width, piece): (usize, usize)) -> Vec<Vec<&mut [P]>> {
+    let mut pieces: Vec<Vec<&mut [P]>> = Vec::new();
+    pieces.resize_with(width.div_ceil(piece), Vec::new);
+    for row in pixels.chunks_mut(width) {
+        for (piece, part) in pieces.iter_mut().zip(row.chunks_mut(piece)) {
+            piece.push(part);
         }
     }
-}
-
-impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
-    #[inline(always)]
-    fn trace<L: SimdFloat<Real = R>, const TREE: bool>(mut self, token: L::Token) -> Option<Rays> {
-        let plan = self.plan;
-        let mut engine = Engine::<L, TREE>::new(Kernel { token, plan }, &self.control.stop);
-        let mut sampler = Sampler::new(self.in_squares);
-        let mut colors = TileColors::default();
-        let (mut in_band, mut in_tile) = (Candidates::default(), Candidates::default());
-        let band = Tile {
-            columns: 0..self.width,
-            rows: self.rows.clone(),
-        };
-        if !band.is_in(self.region) {
-            return Some(Rays::default());
-        }
-        in_band.keep_seen(self.seen, plan, &self.rows, Span::Rows);
-        for left in (0..self.width).step_by(self.tile) {
-            let tile = Tile {
-                columns: left..(left + self.tile).min(self.width),
-                rows: self.rows.clone(),
-            };
-            if !tile.is_in(self.region) {
-                continue;
-            }
-            let before = engine.rays.total();
-            in_tile.keep_seen(&in_band, plan, &tile.columns, Span::Columns);
-            if plan.screen.is_some() {
-                in_tile.drop_unseen_planes(self.plan, &tile);
-            }
-            let (stride, channels) = match self.sampling {
-                Sampling::Centres if self.grid == Grid::ALL => {
-                    let traced = sampler.all(&mut engine, &in_tile, &tile, (0.5, 0.5));
-                    (tile.width(), traced.channels())
-                }
-                Sampling::Centres => {
-                    let traced = sampler.centres(&mut engine, &in_tile, self.grid.pixels(&tile));
-                    (1, traced.channels())
-                }
-                Sampling::Grid(side) => {
-                    sampler.grid(&mut engine, &in_tile, &tile, side, &mut colors);
-                    (colors.stride, colors.channels())
-                }
-                Sampling::Adaptive { contrast, depth } => {
-                    let limits = Limits::new(contrast, depth);
-                    sampler.adaptive(&mut engine, &in_tile, &tile, limits, &mut colors);
-                    (colors.stride, colors.channels())
-                }
-            };
-            if engine.is_stopped() {
-                return None;
-            }
-            if self.grid == Grid::ALL {
-                self.fill(&tile, stride, channels);
-            } else {
-                self.scatter(&tile, channels);
-            }
-            if plan.show == Show::Cost {
-                self.fill_with_heat(&tile, engine.rays.total() - before);
-            }
-        }
-        Some(engine.rays)
-    }
-
-    /// Writes how many rays each pixel of a tile took.
-    fn fill_with_heat(&mut self, tile: &Tile, rays: u64) {
-        let count = self.grid.pixels(tile).count().max(1);
-        let [red, green, blue] = heat::<R>(rays as f64 / count as f64);
-        for (column, row) in self.grid.pixels(tile) {
-            self.pixels[(row - self.rows.start) * self.width + column] = P::of(red, green, blue);
-        }
-    }
-
-    /// Writes the colours of a whole tile, `stride` apart from row to row.
-    #[inline(always)]
-    fn fill(&mut self, tile: &Tile, stride: usize, [red, green, blue]: [&[R]; 3]) {
-        let width = tile.columns.len();
-        for row in 0..tile.rows.len() {
-            let from = row * self.width + tile.columns.start;
-            let pixels = &mut self.pixels[from..from + width];
-            let part = row * stride..row * stride + width;
-            let channels = red[part.clone()]
-                .iter()
-                .zip(&green[part.clone()])
-                .zip(&blue[part]);
-            for (pixel, ((&red, &green), &blue)) in pixels.iter_mut().zip(channels) {
-                *pixel = P::of(red, green, blue);
-            }
-        }
-        self.control
-            .pixels
-            .fetch_add((width * tile.rows.len()) as u64, Ordering::Relaxed);
-    }
-
-    /// Writes the colours of those pixels of a tile that the pass takes.
-    #[inline(always)]
-    fn scatter(&mut self, tile: &Tile, [red, green, blue]: [&[R]; 3]) {
-        let mut count = 0;
-        for (index, (column, row)) in self.grid.pixels(tile).enumerate() {
-            let pixel = P::of(red[index], green[index], blue[index]);
-            self.pixels[(row - self.rows.start) * self.width + column] = pixel;
-            count += 1;
-        }
-        self.control.pixels.fetch_add(count, Ordering::Relaxed);
-    }
+    pieces
 }
 
 #[cfg(test)]
 mod tests {
-    use std::sync::atomic::{AtomicBool, AtomicU64};
+    use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
     use super::*;
     use crate::scene::Accelerator;
     use crate::simd::Real;
-    use crate::trace::Threads;
 
     impl Pixel for [u64; 3] {
         fn of<R: Real>(red: R, green: R, blue: R) -> Self {
@@ -361,6 +302,33 @@ mod tests {
             for other in &pictures[1..] {
                 assert!(*other == pictures[0], "{sampling:?}");
             }
+        }
+    }
+
+    #[test]
+    fn many_threads_share_the_tiles_of_a_row() {
+        let scene = Scene::demo();
+        for sampling in [Sampling::Centres, Sampling::ADAPTIVE] {
+            let request = RenderRequest {
+                sampling,
+                ..RenderRequest::sized(171, 93)
+            };
+            let tracer = Tracer::new(&scene, &request);
+            let pictures = [1, 24].map(|threads| {
+                let threads = Threads::new(Some(threads)).expect("threads");
+                let mut pixels = vec![[0_u64; 3]; 171 * 93];
+                let control = RenderControl::default();
+                threads.run(|| tracer.pass(&mut pixels, Pass::Whole, &control));
+                pixels
+            });
+            assert!(pictures[0] == pictures[1], "{sampling:?}");
+            assert_eq!(tracer.pieces(1).count(), 3);
+            assert_eq!(tracer.pieces(24).count(), 18, "every tile");
+            assert_eq!(
+                tracer.pieces(24).map(Region::pixels).sum::<usize>(),
+                171 * 93
+            );
+            assert_eq!(tracer.time_pieces(24).len(), 18);
         }
     }
 

@@ -103,6 +103,6 @@ pub use app::App;
 pub use commands::{Command, SHORTCUTS};
 pub use dialogs::{Ask, Dialogs};
 pub use flight_keys::FLIGHT;
-pub use lab::{chart_picture, growth_picture, stability_picture};
+pub use lab::{chart_picture, growth_picture, scaling_picture, stability_picture};
 pub use setup::Setup;
 pub use window::{NoWindow, run};

@@ -286,6 +286,13 @@ fn plan_says_what_a_scene_needs() {
             .iter()
             .all(|key| need[key].is_string())
     }));
+    // What a tree spares is counted on the picture at hand.
+    let knot = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/knot.ron");
+    let said = text(&glint(folder().path(), &["plan", knot]).stdout);
+    assert!(
+        said.contains("primitives instead of 24004 for each"),
+        "{said}"
+    );
     let run = glint(folder().path(), &["plan", BAD]);
     assert_eq!(run.status.code(), Some(2));
 }
@@ -375,6 +382,23 @@ fn chart_prints_the_front_and_writes_every_figure() {
         &["chart", DEMO, "--side", "8", "--budget", "0.0000001"],
     );
     assert!(String::from_utf8_lossy(&run.stdout).contains("nothing measured is within that"));
+}
+
+#[test]
+fn chart_shares_a_picture_between_cores_that_do_not_exist() {
+    let folder = folder();
+    let words = [
+        "chart", "--cores", DEMO, "--side", "256", "--csv", "c.csv", "--png", "c.png",
+    ];
+    let run = glint(folder.path(), &words);
+    assert!(run.status.success(), "{run:?}");
+    assert!(
+        text(&run.stdout).contains("Demo                  128 cores,   64 pieces"),
+        "{run:?}"
+    );
+    let csv = std::fs::read_to_string(folder.path().join("c.csv")).expect("a file");
+    assert_eq!(csv.lines().count(), 9);
+    assert!(image::open(folder.path().join("c.png")).is_ok());
 }
 
 #[test]

@@ -17,6 +17,8 @@ mod comparison;
 
 mod growth;
 
+mod scaling;
+
 mod ramp;
 
 mod heat;
@@ -37,3 +39,4 @@ pub use atlas::stability_picture;
 pub use growth::growth_picture;
 pub use panel::{Lab, LabRequest};
 pub use pictures::chart_picture;
+pub use scaling::scaling_picture;

@@ -1,0 +1,164 @@
+//! The tiles that one thread traces, one after the other.
+
+use std::ops::Range;
+use std::sync::atomic::Ordering;
+
+use super::candidates::{Candidates, Span};
+use super::engine::Engine;
+use super::heat::heat;
+use super::intersect::Kernel;
+use super::lattice::Limits;
+use super::sampler::Sampler;
+use super::stats::{Rays, RenderControl};
+use super::tile::{Grid, Pixel, Tile, TileColors};
+use crate::plan::{Plan, Region, Show};
+use crate::scene::Sampling;
+use crate::simd::{SimdFloat, SimdReal, WithSimd};
+
+/// A row of tiles, or a piece of one.
+pub struct Band<'a, R, P> {
+    /// What is seen.
+    pub plan: &'a Plan<R>,
+    /// Everything that can be seen.
+    pub seen: &'a Candidates,
+    /// Side of a tile in pixels.
+    pub tile: usize,
+    /// Whether packets look at squares.
+    pub in_squares: bool,
+    /// The part of the picture that is traced, if not all of it is.
+    pub region: Option<Region>,
+    /// The columns of the picture.
+    pub columns: Range<usize>,
+    /// Its rows.
+    pub rows: Range<usize>,
+    /// The pixels there, row by row.
+    pub pixels: Vec<&'a mut [P]>,
+    /// Those that are traced.
+    pub grid: Grid,
+    /// How they are sampled.
+    pub sampling: Sampling,
+    /// Tells when to stop.
+    pub control: &'a RenderControl,
+}
+
+impl<R: SimdReal, P: Pixel> WithSimd<R> for Band<'_, R, P> {
+    type Output = Option<Rays>;
+
+    #[inline(always)]
+    fn run<L: SimdFloat<Real = R>>(self, token: L::Token) -> Option<Rays> {
+        if self.plan.geometry.is_some() {
+            self.trace::<L, true>(token)
+        } else {
+            self.trace::<L, false>(token)
+        }
+    }
+}
+
+impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
+    #[inline(always)]
+    fn trace<L: SimdFloat<Real = R>, const TREE: bool>(mut self, token: L::Token) -> Option<Rays> {
+        let plan = self.plan;
+        let mut engine = Engine::<L, TREE>::new(Kernel { token, plan }, &self.control.stop);
+        let mut sampler = Sampler::new(self.in_squares);
+        let mut colors = TileColors::default();
+        let (mut in_band, mut in_tile) = (Candidates::default(), Candidates::default());
+        let band = Tile {
+            columns: self.columns.clone(),
+            rows: self.rows.clone(),
+        };
+        if !band.is_in(self.region) {
+            return Some(Rays::default());
+        }
+        in_band.keep_seen(self.seen, plan, &self.rows, Span::Rows);
+        for left in self.columns.clone().step_by(self.tile) {
+            let tile = Tile {
+                columns: left..(left + self.tile).min(self.columns.end),
+                rows: self.rows.clone(),
+            };
+            if !tile.is_in(self.region) {
+                continue;
+            }
+            let before = engine.rays.total();
+            in_tile.keep_seen(&in_band, plan, &tile.columns, Span::Columns);
+            if plan.screen.is_some() {
+                in_tile.drop_unseen_planes(self.plan, &tile);
+            }
+            let (stride, channels) = match self.sampling {
+                Sampling::Centres if self.grid == Grid::ALL => {
+                    let traced = sampler.all(&mut engine, &in_tile, &tile, (0.5, 0.5));
+                    (tile.width(), traced.channels())
+                }
+                Sampling::Centres => {
+                    let traced = sampler.centres(&mut engine, &in_tile, self.grid.pixels(&tile));
+                    (1, traced.channels())
+                }
+                Sampling::Grid(side) => {
+                    sampler.grid(&mut engine, &in_tile, &tile, side, &mut colors);
+                    (colors.stride, colors.channels())
+                }
+                Sampling::Adaptive { contrast, depth } => {
+                    let limits = Limits::new(contrast, depth);
+                    sampler.adaptive(&mut engine, &in_tile, &tile, limits, &mut colors);
+                    (colors.stride, colors.channels())
+                }
+            };
+            if engine.is_stopped() {
+                return None;
+            }
+            if self.grid == Grid::ALL {
+                self.fill(&tile, stride, channels);
+            } else {
+                self.scatter(&tile, channels);
+            }
+            if plan.show == Show::Cost {
+                self.fill_with_heat(&tile, engine.rays.total() - before);
+            }
+        }
+        Some(engine.rays)
+    }
+
+    fn pixel(&mut self, column: usize, row: usize) -> &mut P {
+        &mut self.pixels[row - self.rows.start][column - self.columns.start]
+    }
+
+    /// Writes how many rays each pixel of a tile took.
+    fn fill_with_heat(&mut self, tile: &Tile, rays: u64) {
+        let count = self.grid.pixels(tile).count().max(1);
+        let [red, green, blue] = heat::<R>(rays as f64 / count as f64);
+        for (column, row) in self.grid.pixels(tile) {
+            *self.pixel(column, row) = P::of(red, green, blue);
+        }
+    }
+
+    /// Writes the colours of a whole tile, `stride` apart from row to row.
+    #[inline(always)]
+    fn fill(&mut self, tile: &Tile, stride: usize, [red, green, blue]: [&[R]; 3]) {
+        let width = tile.columns.len();
+        for row in 0..tile.rows.len() {
+            let from = tile.columns.start - self.columns.start;
+            let pixels = &mut self.pixels[row][from..from + width];
+            let part = row * stride..row * stride + width;
+            let channels = red[part.clone()]
+                .iter()
+                .zip(&green[part.clone()])
+                .zip(&blue[part]);
+            for (pixel, ((&red, &green), &blue)) in pixels.iter_mut().zip(channels) {
+                *pixel = P::of(red, green, blue);
+            }
+        }
+        self.control
+            .pixels
+            .fetch_add((width * tile.rows.len()) as u64, Ordering::Relaxed);
+    }
+
+    /// Writes the colours of those pixels of a tile that the pass takes.
+    #[inline(always)]
+    fn scatter(&mut self, tile: &Tile, [red, green, blue]: [&[R]; 3]) {
+        let mut count = 0;
+        for (index, (column, row)) in self.grid.pixels(tile).enumerate() {
+            *self.pixel(column, row) = P::of(red[index], green[index], blue[index]);
+            count += 1;
+        }
+        self.control.pixels.fetch_add(count, Ordering::Relaxed);
+    }
+}

@@ -1,0 +1,78 @@
+//! The picture of how a picture would be shared between more and more cores.
+
+use egui::Ui;
+use egui_plot::{Corner, GridMark, Legend, Line, Plot, PlotPoints, Points};
+
+use super::super::theme::{GRID, palette};
+use super::axes::plain;
+use super::pictures::picture;
+use crate::image::Image;
+use crate::lab::{PictureLook, SharedPicture};
+
+/// Workers that the heading tells of.
+const TOLD: usize = 64;
+
+/// A picture of what was simulated for one scene after the other.
+pub fn scaling_picture(pictures: &[SharedPicture], look: PictureLook) -> Image {
+    picture(look, |ui| {
+        ui.label(egui::RichText::new(finding(pictures)).heading());
+        ui.add_space(GRID);
+        show(ui, pictures);
+    })
+}
+
+/// What the chart says, in a sentence.
+fn finding(pictures: &[SharedPicture]) -> String {
+    let told = pictures.iter().filter(|picture| picture.workers == TOLD);
+    let told = told.map(|picture| {
+        let SharedPicture {
+            scene,
+            ms,
+            efficiency,
+            ..
+        } = picture;
+        format!(
+            "{scene} in {ms:.2} ms, {:.0} % of their time used",
+            efficiency * 100.0
+        )
+    });
+    format!("{TOLD} cores: {}", told.collect::<Vec<_>>().join("; "))
+}
+
+fn show(ui: &mut Ui, pictures: &[SharedPicture]) {
+    let colors = palette(ui.ctx()).families;
+    let at =
+        |picture: &SharedPicture| [(picture.workers as f64).log10(), picture.efficiency * 100.0];
+    // A mark for each number of workers.
+    let marks = |_| {
+        let places = pictures
+            .iter()
+            .map(|picture| (picture.workers as f64).log10());
+        places
+            .map(|value| GridMark {
+                value,
+                step_size: 1.0,
+            })
+            .collect()
+    };
+    Plot::new("cores chart")
+        .legend(Legend::default().position(Corner::LeftBottom))
+        .x_axis_label("cores, simulated")
+        .y_axis_label("% of their time used")
+        .x_axis_formatter(plain)
+        .x_grid_spacer(marks)
+        .y_axis_min_width(48.0)
+        .include_y(0.0)
+        .include_y(105.0)
+        .set_margin_fraction(egui::vec2(0.06, 0.0))
+        .show(ui, |plot| {
+            let scenes = pictures.chunk_by(|one, next| one.scene == next.scene);
+            for (scene, color) in scenes.zip(colors.into_iter().cycle()) {
+                let name = scene[0].scene.clone();
+                let points: Vec<[f64; 2]> = scene.iter().map(at).collect();
+                let dots = Points::new(name.clone(), PlotPoints::from(points.clone()));
+                plot.points(dots.radius(4.0).color(color));
+                plot.line(Line::new(name, points).color(color).width(1.5));
+            }
+        });
+}
