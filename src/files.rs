@@ -161,6 +161,14 @@ pub fn processor() -> String {
     name.replace("(R)", "").replace("(TM)", "")
 }
 
+/// How much memory this program has in use, where the system tells.
+pub fn resident_bytes() -> Option<u64> {
+    let told = fs::read_to_string("/proc/self/status").ok()?;
+    let line = told.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kib * 1024)
+}
+
 /// Whether two paths are those of one file, links followed.
 pub fn is_same_file(one: &Path, other: &Path) -> bool {
     let found = |path: &Path| fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());

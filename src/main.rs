@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Instant;
 
 use glint::cli::{CliAction, CliError, picture_instead_of_window};
 use glint::export::save_image;
@@ -10,6 +11,7 @@ use glint::ui::NoWindow;
 use glint::{cli, ui};
 
 fn main() -> ExitCode {
+    let since = Instant::now();
     let result = match cli::run(std::env::args_os()) {
         CliAction::Done(code) => return code,
         CliAction::Chart {
@@ -25,6 +27,7 @@ fn main() -> ExitCode {
             path,
         } => save(ui::scaling_picture(&pictures, look), &path),
         CliAction::Stability { maps, path } => save(ui::stability_picture(&maps), &path),
+        CliAction::TimeStart { scene } => time_start(scene, since),
         CliAction::Editor {
             scene,
             screenshot,
@@ -33,6 +36,15 @@ fn main() -> ExitCode {
         } => open_editor(scene.as_deref(), screenshot, (exports, select)),
     };
     cli::finish(result.map_or_else(|error| error.report(), |()| ExitCode::SUCCESS))
+}
+
+/// Opens the window for one picture, and says what that has cost.
+fn time_start(scene: Option<PathBuf>, since: Instant) -> Result<(), CliError> {
+    let stats = ui::time_start(scene, since).map_err(CliError::failed)?;
+    let stats =
+        stats.ok_or_else(|| CliError::failed("the window was closed before it had a picture"))?;
+    cli::say(&serde_json::to_string(&stats)?);
+    Ok(())
 }
 
 fn save(image: Image, path: &Path) -> Result<(), CliError> {

@@ -20,6 +20,11 @@ pub enum CliAction {
         /// The names of what is selected first.
         select: Vec<String>,
     },
+    /// Open the editor until its first traced picture is there, and say how long that took.
+    TimeStart {
+        /// The scene file; the demo if there is none.
+        scene: Option<PathBuf>,
+    },
     /// Draw the charts of studies into this file.
     Chart {
         /// The studies, each with the name of its scene.

@@ -39,7 +39,7 @@ use clap::{CommandFactory as _, Parser, Subcommand};
 
 pub use action::CliAction;
 use error::WRONG;
-pub use error::{CliError, finish};
+pub use error::{CliError, finish, say};
 pub use fallback::picture_instead_of_window;
 
 use crate::image::Format;
@@ -61,6 +61,9 @@ struct CliArgs {
     /// Open the window of exports first
     #[arg(long, requires = "screenshot")]
     exports: bool,
+    /// Open the editor until its first traced picture is on the screen, and print as JSON how long that took
+    #[arg(long, conflicts_with = "screenshot")]
+    stats_start: bool,
     /// Put Glint into the menu of the desktop, with its icon, manual and shell completions, for this user
     #[arg(long, exclusive = true)]
     install_desktop: bool,
@@ -144,6 +147,9 @@ fn run_words(words: Vec<OsString>) -> CliAction {
 
 impl CliArgs {
     fn editor(self) -> Result<CliAction, CliError> {
+        if self.stats_start {
+            return Ok(CliAction::TimeStart { scene: self.scene });
+        }
         // A name that cannot be written is known before the window opens.
         self.screenshot
             .as_deref()

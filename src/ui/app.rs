@@ -20,6 +20,7 @@ use super::requests::UiRequests;
 use super::scene_check::SceneCheck;
 use super::screenshot::Screenshot;
 use super::setup::Setup;
+use super::start::StartWatch;
 use super::still::Still;
 use super::timeline::{Overlay, Thumbs, TimelinePanel};
 use super::toasts::Toasts;
@@ -81,6 +82,7 @@ pub struct App {
     pub(super) theme: Theme,
     pub(super) autosave: Autosave,
     pub(super) screenshot: Option<Screenshot>,
+    pub(super) start: Option<StartWatch>,
 }
 
 impl App {
@@ -140,6 +142,7 @@ impl App {
             theme: cc.egui_ctx.theme(),
             autosave: Autosave::default(),
             screenshot: setup.screenshot,
+            start: setup.start,
         };
         let kept = cc
             .storage
@@ -382,6 +385,12 @@ impl eframe::App for App {
         let is_settled = self.is_settled();
         if let Some(screenshot) = &mut self.screenshot
             && screenshot.tick(&ctx, is_settled)
+        {
+            self.closing = Some(self.editor.revision());
+        }
+        let has_picture = self.pictures.shown(&self.editor).is_some();
+        if let Some(start) = &mut self.start
+            && start.tick(&ctx, has_picture)
         {
             self.closing = Some(self.editor.revision());
         }

@@ -17,6 +17,8 @@ mod requests;
 
 mod screenshot;
 
+mod start;
+
 mod setup;
 
 mod glyphs;
@@ -105,4 +107,5 @@ pub use dialogs::{Ask, Dialogs};
 pub use flight_keys::FLIGHT;
 pub use lab::{chart_picture, growth_picture, scaling_picture, stability_picture};
 pub use setup::Setup;
-pub use window::{NoWindow, run};
+pub use start::StartStats;
+pub use window::{NoWindow, run, time_start};

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::dialogs::{Dialogs, Native};
 use super::screenshot::Screenshot;
+use super::start::StartWatch;
 
 /// The name under which the system keeps the window's settings.
 pub const APP_ID: &str = "glint";
@@ -18,6 +19,8 @@ pub struct Setup {
     pub data_folder: Option<PathBuf>,
     /// A picture to be made of the window, which then closes.
     pub screenshot: Option<Screenshot>,
+    /// Watches how long the start takes; the window then closes.
+    pub start: Option<StartWatch>,
     /// Whether the window of exports is open at first.
     pub exports: bool,
     /// The names of objects and lights that are selected at first.
@@ -32,6 +35,7 @@ impl Setup {
             dialogs: Box::new(Native),
             data_folder: data_folder(),
             screenshot: None,
+            start: None,
             exports: false,
             select: Vec::new(),
         }
@@ -42,6 +46,15 @@ impl Setup {
         Self {
             data_folder: None,
             screenshot: Some(screenshot),
+            ..Self::native(scene)
+        }
+    }
+
+    /// A window that shows the scene once and closes.
+    pub fn for_start(scene: Option<PathBuf>, start: StartWatch) -> Self {
+        Self {
+            data_folder: None,
+            start: Some(start),
             ..Self::native(scene)
         }
     }

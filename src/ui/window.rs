@@ -4,6 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use eframe::NativeOptions;
 use egui::{IconData, ViewportBuilder};
@@ -11,6 +12,7 @@ use egui::{IconData, ViewportBuilder};
 use super::app::App;
 use super::screenshot::Screenshot;
 use super::setup::{APP_ID, Setup};
+use super::start::{StartStats, StartWatch};
 use crate::export::ExportError;
 use crate::worker::panic_text;
 
@@ -47,18 +49,37 @@ pub fn run(
 ) -> Result<(), NoWindow> {
     let (screenshot, outcome) = screenshot.map(Screenshot::new).unzip();
     let persist_window = screenshot.is_none();
+    let setup = match screenshot {
+        None => Setup::native(scene),
+        Some(screenshot) => Setup {
+            exports,
+            select,
+            ..Setup::for_screenshot(scene, screenshot)
+        },
+    };
+    open(setup, persist_window)?;
+    match outcome.map(|outcome| outcome.try_recv()) {
+        Some(Ok(Err(error))) => Err(NoWindow::Screenshot(error)),
+        _ => Ok(()),
+    }
+}
+
+/// Opens the window on a scene file (or the demo), and closes it when its first traced picture is there: what that
+/// has cost since the given time. `None` if it was closed before.
+///
+/// # Errors
+/// [`NoWindow::Unavailable`] as from [`run`].
+pub fn time_start(scene: Option<PathBuf>, since: Instant) -> Result<Option<StartStats>, NoWindow> {
+    let (start, stats) = StartWatch::new(since);
+    open(Setup::for_start(scene, start), false)?;
+    Ok(stats.try_recv().ok())
+}
+
+fn open(setup: Setup, persist_window: bool) -> Result<(), NoWindow> {
     let is_open = Arc::new(AtomicBool::new(false));
     let quiet = Quiet::until(Arc::clone(&is_open));
     let result = catch_unwind(AssertUnwindSafe(|| {
         let is_open = Arc::clone(&is_open);
-        let setup = match screenshot {
-            None => Setup::native(scene),
-            Some(screenshot) => Setup {
-                exports,
-                select,
-                ..Setup::for_screenshot(scene, screenshot)
-            },
-        };
         eframe::run_native(
             APP_ID,
             options(persist_window),
@@ -70,10 +91,7 @@ pub fn run(
     }));
     drop(quiet);
     match result {
-        Ok(Ok(())) => match outcome.map(|outcome| outcome.try_recv()) {
-            Some(Ok(Err(error))) => Err(NoWindow::Screenshot(error)),
-            _ => Ok(()),
-        },
+        Ok(Ok(())) => Ok(()),
         Ok(Err(error)) => Err(NoWindow::Unavailable(in_words(&error.to_string()))),
         Err(panic) if is_open.load(Ordering::Relaxed) => std::panic::resume_unwind(panic),
         Err(panic) => Err(NoWindow::Unavailable(in_words(panic_text(panic.as_ref())))),

@@ -115,6 +115,7 @@ impl EditorHarness {
                         dialogs,
                         data_folder,
                         screenshot: None,
+                        start: None,
                         exports: false,
                         select: Vec::new(),
                     },

@@ -286,6 +286,24 @@ fn a_missing_system_library_ends_in_a_picture() {
 
 #[test]
 #[ignore = "needs a display (Debian packages xvfb, xdotool, imagemagick, libgl1-mesa-dri)"]
+fn the_program_tells_how_long_it_takes_to_start() {
+    let display = Display::new();
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = command(&display, folder.path())
+        .arg("--stats-start")
+        .stdout(Stdio::piped())
+        .output()
+        .expect("it runs");
+    assert!(output.status.success(), "{output:?}");
+    let stats: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    println!("{stats}");
+    let number = |key: &str| stats[key].as_f64().expect("a number");
+    assert!(0.0 < number("window_ms") && number("window_ms") <= number("picture_ms"));
+    assert!(number("resident_mib") > 10.0);
+}
+
+#[test]
+#[ignore = "needs a display (Debian packages xvfb, xdotool, imagemagick, libgl1-mesa-dri)"]
 fn the_window_takes_its_own_picture() {
     let display = Display::new();
     let folder = tempfile::tempdir().expect("a folder");
