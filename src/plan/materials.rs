@@ -24,13 +24,18 @@ pub struct Surface<R> {
     pub diffuse: Vec3<R>,
     /// Highlight colour.
     pub specular: Vec3<R>,
-    /// Sharpness of the highlight.
-    pub exponent: Exponent,
+    /// Sharpness of the highlight; `None` where there is none.
+    pub exponent: Option<Exponent>,
     /// (Σ intensities) · specular, the filter of the mirror image; `None` where there is none.
     pub mirror: Option<Vec3<R>>,
 }
 
 impl<R: Real> Surface<R> {
+    /// How wide the highlight is, if it may be smaller than a pixel; see [`Exponent::size`].
+    pub fn size_of_highlight(&self) -> Option<f64> {
+        self.exponent.and_then(Exponent::size)
+    }
+
     /// The sum of the channels of the matte colour.
     pub fn brightness(&self) -> R {
         self.diffuse.x + self.diffuse.y + self.diffuse.z
@@ -63,11 +68,11 @@ fn pack_surface<R: Real>(
     (all || shines || pack.diffuse.abs().max_element() > 0.0).then(|| Surface {
         diffuse: linear(pack.diffuse),
         specular: linear(pack.specular),
-        exponent: match request.methods.highlight {
+        exponent: (all || shines).then(|| match request.methods.highlight {
             HighlightMethod::Auto => Exponent::new(pack.phong_exponent),
             HighlightMethod::Power => Exponent::power(pack.phong_exponent),
             HighlightMethod::Log1p => Exponent::Large(pack.phong_exponent),
-        },
+        }),
         mirror: mirrors.then(|| linear(pack.specular * total_intensity)),
     })
 }

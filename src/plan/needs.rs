@@ -296,8 +296,15 @@ fn highlights(plan: &Plan<f64>) -> Need {
         .materials
         .iter()
         .filter_map(|Material { surface, .. }| surface.as_ref());
-    let exponents: Vec<Exponent> = surfaces.map(|surface| surface.exponent).collect();
-    if exponents
+    let exponents: Vec<Exponent> = surfaces.filter_map(|surface| surface.exponent).collect();
+    if exponents.is_empty() {
+        need(
+            rule,
+            "no highlights",
+            "no color pack has a specular colour",
+            "their powers, for every light",
+        )
+    } else if exponents
         .iter()
         .any(|exponent| matches!(exponent, Exponent::Large(_)))
     {

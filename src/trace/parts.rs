@@ -80,10 +80,13 @@ impl<L: SimdFloat> Parts<L> {
                     *color = Vec3::select(here, base, *color);
                     let Some(surface) = surface else { continue };
                     lit = Some(lit.map_or(here, |lit| lit | here));
+                    let Some(exponent) = surface.exponent else {
+                        continue;
+                    };
                     let mut known = self.exponents.iter_mut();
-                    match known.find(|(_, exponent)| *exponent == surface.exponent) {
+                    match known.find(|(_, other)| *other == exponent) {
                         Some((others, _)) => *others = *others | here,
-                        None => self.exponents.push((here, surface.exponent)),
+                        None => self.exponents.push((here, exponent)),
                     }
                 }
                 lit

@@ -67,6 +67,27 @@ enum Coat<'a, L: SimdFloat> {
     Several(&'a Parts<L>),
 }
 
+impl<L: SimdFloat> Coat<'_, L> {
+    /// The highlights, see [`crate::simd::Exponent::highlight`]; `None` where nothing has any.
+    #[inline(always)]
+    fn highlight(&self, normal: Vec3<L>, half: Vec3<L>) -> Option<L> {
+        match self {
+            Self::One(surface) => surface
+                .exponent
+                .map(|exponent| exponent.highlight(normal, half)),
+            Self::Several(parts) => Some(parts.highlight(normal, half)),
+        }
+    }
+
+    /// Whether some highlight may be smaller than a pixel.
+    fn is_sharp(&self) -> bool {
+        match self {
+            Self::One(surface) => surface.size_of_highlight().is_some(),
+            Self::Several(parts) => parts.is_any_sharp(),
+        }
+    }
+}
+
 /// One of the plan's lights.
 struct LightSource<'a, R> {
     index: usize,
@@ -351,24 +372,18 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let matte = arriving.matte + cosine * intensity;
         arriving.matte = L::select(lit, matte, arriving.matte);
         let (normal, half) = (hit.surface.normal, l - point.view);
-        let highlight = match point.coat {
-            Coat::One(surface) => surface.exponent.highlight(normal, half),
-            Coat::Several(parts) => parts.highlight(normal, half),
-        };
-        let highlight = highlight * intensity;
-        arriving.highlight = L::select(lit, arriving.highlight + highlight, arriving.highlight);
+        if let Some(highlight) = point.coat.highlight(normal, half) {
+            let highlight = arriving.highlight + highlight * intensity;
+            arriving.highlight = L::select(lit, highlight, arriving.highlight);
+        }
         if let Some((edge, footprint)) = edge {
             let bit = kernel.splat(f64::from(1_u32 << (source.index % LIGHT_BITS)));
             edge.lit = L::select(lit, edge.lit + bit, edge.lit);
-            let is_sharp = match point.coat {
-                Coat::One(surface) => surface.exponent.size().is_some(),
-                Coat::Several(parts) => parts.is_any_sharp(),
-            };
-            if is_sharp {
+            if point.coat.is_sharp() {
                 let off = (normal - half * (one / half.length())).length();
                 let near = match point.coat {
                     Coat::One(surface) => {
-                        let size = surface.exponent.size().unwrap_or_default();
+                        let size = surface.size_of_highlight().unwrap_or_default();
                         footprint.highlight_distance(size, off, distance)
                     }
                     Coat::Several(parts) => parts.highlight_distance(footprint, off, distance),
