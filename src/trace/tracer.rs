@@ -322,13 +322,13 @@ mod tests {
                 pixels
             });
             assert!(pictures[0] == pictures[1], "{sampling:?}");
-            assert_eq!(tracer.pieces(1).count(), 3);
-            assert_eq!(tracer.pieces(24).count(), 18, "every tile");
+            assert_eq!(tracer.pieces(1).count(), 12);
+            assert_eq!(tracer.pieces(24).count(), 66, "every tile");
             assert_eq!(
                 tracer.pieces(24).map(Region::pixels).sum::<usize>(),
                 171 * 93
             );
-            assert_eq!(tracer.time_pieces(24).len(), 18);
+            assert_eq!(tracer.time_pieces(24).len(), 66);
         }
     }
 

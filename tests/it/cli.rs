@@ -393,7 +393,7 @@ fn chart_shares_a_picture_between_cores_that_do_not_exist() {
     let run = glint(folder.path(), &words);
     assert!(run.status.success(), "{run:?}");
     assert!(
-        text(&run.stdout).contains("Demo                  128 cores,   64 pieces"),
+        text(&run.stdout).contains("Demo                  128 cores,  256 pieces"),
         "{run:?}"
     );
     let csv = std::fs::read_to_string(folder.path().join("c.csv")).expect("a file");

@@ -135,7 +135,8 @@ impl EditorHarness {
         while !self.window.state().is_settled() {
             assert!(
                 start.elapsed() < Duration::from_mins(1),
-                "the picture never came"
+                "the picture never came of {:?}",
+                self.editor().to_text()
             );
             // Each step is a sixtieth of a second to the window: on a busy machine many of them would outlive
             // its messages.

@@ -1,6 +1,8 @@
 //! Twenty thousand events that nobody means: nothing panics, and undoing everything gives back the first scene.
 
+use std::cell::RefCell;
 use std::path::PathBuf;
+use std::rc::Rc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui::{
@@ -17,13 +19,23 @@ const ROUNDS: usize = 50;
 const AT_ONCE: usize = 8;
 
 /// Dialogs that nobody answers: no file is written where it could do harm.
-#[derive(Default)]
-pub struct Unanswered(Vec<Sender<Option<PathBuf>>>);
+#[derive(Clone, Default)]
+pub struct Unanswered(Rc<RefCell<Vec<Sender<Option<PathBuf>>>>>);
+
+impl Unanswered {
+    /// Closes those that are open.
+    pub fn close(&self, harness: &mut EditorHarness) {
+        self.0.borrow_mut().clear();
+        harness.window.step();
+        harness.window.step();
+        leave_everything(harness);
+    }
+}
 
 impl Dialogs for Unanswered {
     fn ask(&mut self, _: &Context, _: &Ask, _: PathBuf) -> Receiver<Option<PathBuf>> {
         let (sender, receiver) = channel();
-        self.0.push(sender);
+        self.0.borrow_mut().push(sender);
         receiver
     }
 }

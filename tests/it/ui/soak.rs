@@ -137,7 +137,8 @@ fn keep(harness: &EditorHarness, path: &Path) -> String {
 fn a_long_day_of_a_monkey_leaves_everything_in_order() {
     let events = std::env::var("GLINT_SOAK").ok();
     let events = events.map_or(FEW, |events| events.parse().expect("a number of events"));
-    let mut harness = EditorHarness::asked(|_| Box::new(Unanswered::default()), None);
+    let dialogs = Unanswered::default();
+    let mut harness = EditorHarness::asked(|_| Box::new(dialogs.clone()), None);
     let folder = harness.folder.path().to_owned();
     let pool = pool(&folder);
     let mesh = folder.join("ball.obj");
@@ -152,6 +153,8 @@ fn a_long_day_of_a_monkey_leaves_everything_in_order() {
     for round in 0..rounds {
         // What the monkey did: the window lives, and what it holds can be written and read.
         monkey.play(&mut harness, ROUND);
+        // While a dialog is open, nothing else is opened.
+        dialogs.close(&mut harness);
         press(&mut harness, "Cancel");
         wait(&mut harness, "the exports end", |harness| {
             !harness.window.state().is_exporting()
