@@ -6,18 +6,71 @@ use super::tile::{Tile, TileColors};
 use crate::scene::MAX_HALVINGS;
 use crate::simd::{Real, SimdFloat};
 
+/// Points of the finest grid in a pixel.
+const POINTS: usize = FINEST * FINEST;
+
+/// The place of each point of a pixel, row by row, among those of the pixel: what fewer halvings reach comes first, so
+/// that what is looked at together is together in the cache.
+const PLACES: [u8; POINTS] = {
+    let mut places = [0; POINTS];
+    let (mut next, mut step) = (0, FINEST);
+    while step > 0 {
+        let mut point = 0;
+        while point < POINTS {
+            let (x, y) = (point % FINEST, point / FINEST);
+            let is_reached = x % step == 0 && y % step == 0;
+            let was_reached = step < FINEST && x % (2 * step) == 0 && y % (2 * step) == 0;
+            if is_reached && !was_reached {
+                places[point] = next as u8;
+                next += 1;
+            }
+            point += 1;
+        }
+        step /= 2;
+    }
+    places
+};
+
+/// The point of each place.
+const AT_PLACES: [u8; POINTS] = {
+    let mut points = [0; POINTS];
+    let mut point = 0;
+    while point < POINTS {
+        points[PLACES[point] as usize] = point as u8;
+        point += 1;
+    }
+    points
+};
+
+/// What was seen at a point.
+#[derive(Clone, Copy, Debug)]
+struct Sample<R> {
+    color: [R; 3],
+    near: R,
+    signature: u32,
+}
+
+impl<R: Real> Sample<R> {
+    #[inline(always)]
+    fn of(traced: &Traced<R>, index: usize) -> Self {
+        Self {
+            color: [traced.red[index], traced.green[index], traced.blue[index]],
+            near: traced.near[index],
+            signature: traced.signature[index],
+        }
+    }
+}
+
 /// Samples on the finest grid of a tile that are shared by the cells around them.
 #[derive(Debug)]
 pub struct Lattice<R> {
-    /// Points from one row of the grid to the next.
+    /// Pixels from one row to the next, with one at the end of each that has corners alone.
     stride: usize,
-    /// 1 + the index of each point's sample, 0 where there is none.
+    /// 1 + the index of each point's sample, 0 where there is none; pixel by pixel.
     indices: Vec<u32>,
     /// The points that have a sample, in order of their samples.
     points: Vec<u32>,
-    colors: [Vec<R>; 3],
-    signature: Vec<u32>,
-    near: Vec<R>,
+    samples: Vec<Sample<R>>,
 }
 
 /// A square between samples: its upper left corner on the finest grid, and its side.
@@ -96,44 +149,51 @@ impl<R: Real> Lattice<R> {
             stride: 0,
             indices: Vec::new(),
             points: Vec::new(),
-            colors: [Vec::new(), Vec::new(), Vec::new()],
-            signature: Vec::new(),
-            near: Vec::new(),
+            samples: Vec::new(),
         }
     }
 
-    /// Forgets the tile before, and starts with the corners of the pixels.
-    pub fn start(&mut self, tile: &Tile, corners: &Traced<R>) {
+    /// Forgets the tile before, and starts with the corners of these pixels, among those of all.
+    #[inline(always)]
+    pub fn start(&mut self, tile: &Tile, corners: &Traced<R>, pixels: &[Cell]) {
         for &point in &self.points {
             self.indices[point as usize] = 0;
         }
         self.points.clear();
-        self.stride = tile.width() * FINEST + 1;
-        let points = self.stride * (tile.rows.len() * FINEST + 1);
+        self.stride = tile.width() + 1;
+        let points = self.stride * (tile.rows.len() + 1) * POINTS;
         if self.indices.len() < points {
             self.indices.resize(points, 0);
         }
-        for row in 0..=tile.rows.len() {
-            for column in 0..=tile.width() {
-                self.want(column * FINEST, row * FINEST);
+        self.samples.clear();
+        for &Cell { x, y, side } in pixels {
+            for (x, y) in [(x, y), (x + side, y), (x, y + side), (x + side, y + side)] {
+                let (x, y) = (x as usize, y as usize);
+                if self.want(x, y) {
+                    let corner = y / FINEST * self.stride + x / FINEST;
+                    self.samples.push(Sample::of(corners, corner));
+                }
             }
         }
-        for channel in &mut self.colors {
-            channel.clear();
-        }
-        self.signature.clear();
-        self.near.clear();
-        self.take_results(corners);
     }
 
-    /// Makes sure that there will be a sample at a point of the grid.
+    /// The number of a point of the grid.
     #[inline(always)]
-    fn want(&mut self, x: usize, y: usize) {
-        let point = y * self.stride + x;
-        if self.indices[point] == 0 {
+    fn point(&self, x: usize, y: usize) -> usize {
+        let pixel = y / FINEST * self.stride + x / FINEST;
+        pixel * POINTS + PLACES[y % FINEST * FINEST + x % FINEST] as usize
+    }
+
+    /// Makes sure that there will be a sample at a point of the grid. Whether there was none.
+    #[inline(always)]
+    fn want(&mut self, x: usize, y: usize) -> bool {
+        let point = self.point(x, y);
+        let is_new = self.indices[point] == 0;
+        if is_new {
             self.points.push(point as u32);
             self.indices[point] = self.points.len() as u32;
         }
+        is_new
     }
 
     /// `samples` become those that are wanted and not there yet.
@@ -141,8 +201,11 @@ impl<R: Real> Lattice<R> {
     pub fn wanted_samples<L: SimdFloat<Real = R>>(&self, tile: &Tile, samples: &mut Samples<R>) {
         samples.clear();
         let step = 1.0 / FINEST as f64;
-        for &point in &self.points[self.signature.len()..] {
-            let (x, y) = (point as usize % self.stride, point as usize / self.stride);
+        for &point in &self.points[self.samples.len()..] {
+            let (pixel, place) = (point as usize / POINTS, point as usize % POINTS);
+            let inside = AT_PLACES[place] as usize;
+            let x = pixel % self.stride * FINEST + inside % FINEST;
+            let y = pixel / self.stride * FINEST + inside / FINEST;
             samples.push(
                 R::from_f64(tile.columns.start as f64 + x as f64 * step),
                 R::from_f64(tile.rows.start as f64 + y as f64 * step),
@@ -152,20 +215,17 @@ impl<R: Real> Lattice<R> {
     }
 
     /// Adds what was seen at the points that were wanted last.
+    #[inline(always)]
     pub fn take_results(&mut self, traced: &Traced<R>) {
-        for (all, new) in self.colors.iter_mut().zip(traced.channels()) {
-            all.extend_from_slice(&new[..traced.count]);
-        }
-        self.signature
-            .extend_from_slice(&traced.signature[..traced.count]);
-        self.near.extend_from_slice(&traced.near[..traced.count]);
+        let new = (0..traced.count).map(|index| Sample::of(traced, index));
+        self.samples.extend(new);
     }
 
     /// The samples at the corners of a cell.
     #[inline(always)]
     pub fn corners(&self, cell: Cell) -> [usize; 4] {
         let Cell { x, y, side } = cell;
-        let at = |x: u16, y: u16| self.indices[y as usize * self.stride + x as usize] as usize - 1;
+        let at = |x: u16, y: u16| self.indices[self.point(x as usize, y as usize)] as usize - 1;
         [
             at(x, y),
             at(x + side, y),
@@ -174,19 +234,26 @@ impl<R: Real> Lattice<R> {
         ]
     }
 
+    /// Written out: mapping an array is a call there.
+    #[inline(always)]
+    fn samples_at(&self, [a, b, c, d]: [usize; 4]) -> [&Sample<R>; 4] {
+        let samples = &self.samples;
+        [&samples[a], &samples[b], &samples[c], &samples[d]]
+    }
+
     /// Whether the inside of a cell must be looked at.
     #[inline(always)]
     pub fn is_split(&self, cell: Cell, corners: [usize; 4], depth: u32, limits: Limits<R>) -> bool {
-        let first = self.signature[corners[0]];
-        let is_same = corners
-            .iter()
-            .all(|&corner| self.signature[corner] == first);
+        let [a, b, c, d] = self.samples_at(corners);
+        let differing =
+            (a.signature ^ b.signature) | (a.signature ^ c.signature) | (a.signature ^ d.signature);
+        let is_same = differing == 0;
         let reach = R::from_f64(NEAR / FINEST as f64 * f64::from(cell.side));
-        let is_near = corners.iter().any(|&corner| self.near[corner] < reach);
+        let is_near = a.near.min(b.near).min(c.near.min(d.near)) < reach;
         let mut contrast = R::ZERO;
-        for channel in &self.colors {
-            let [a, b, c, d] = corners.map(|corner| channel[corner]);
-            contrast = contrast + range(a, b, c, d);
+        for channel in 0..3 {
+            let (one, other) = (a.color[channel], b.color[channel]);
+            contrast = contrast + range(one, other, c.color[channel], d.color[channel]);
         }
         let side = R::from_f64(f64::from(cell.side) / FINEST as f64);
         depth < limits.finest_depth() && limits.at(side).want_more(contrast, is_same, is_near)
@@ -203,9 +270,11 @@ impl<R: Real> Lattice<R> {
     ) {
         let side = f64::from(cell.side) / FINEST as f64;
         let share = R::from_f64(side * side / 4.0);
-        for (sum, channel) in colors.channels.iter_mut().zip(&self.colors) {
-            let [a, b, c, d] = corners.map(|corner| channel[corner]);
-            sum[pixel] = sum[pixel] + ((a + b) + (c + d)) * share;
+        let [a, b, c, d] = self.samples_at(corners);
+        for (channel, sum) in colors.channels.iter_mut().enumerate() {
+            let upper = a.color[channel] + b.color[channel];
+            let lower = c.color[channel] + d.color[channel];
+            sum[pixel] = sum[pixel] + (upper + lower) * share;
         }
     }
 
@@ -220,13 +289,9 @@ impl<R: Real> Lattice<R> {
                 side,
             });
         }
-        for down in 0..3 {
-            for right in 0..3 {
-                self.want(
-                    (cell.x + right * side) as usize,
-                    (cell.y + down * side) as usize,
-                );
-            }
+        for (right, down) in [(1, 0), (0, 1), (1, 1), (2, 1), (1, 2)] {
+            let (x, y) = (cell.x + right * side, cell.y + down * side);
+            self.want(x as usize, y as usize);
         }
     }
 }

@@ -155,7 +155,7 @@ impl<L: SimdFloat> Sampler<L> {
         if self.split.is_empty() {
             return;
         }
-        self.lattice.start(tile, &self.traced);
+        self.lattice.start(tile, &self.traced, &self.split);
         for depth in 1..=limits.finest_depth() {
             self.cells.clear();
             for &cell in &self.split {
