@@ -188,6 +188,16 @@ impl Files {
         self.reading.front()
     }
 
+    /// What is being read, in words, for the status line.
+    pub fn describe_reading(&self) -> Option<String> {
+        let reading = self.reading()?;
+        Some(if self.is_free() {
+            reading.describe()
+        } else {
+            format!("{} waits for the open question", reading.name())
+        })
+    }
+
     /// Takes answers and files up as they come.
     pub fn poll(&mut self, ctx: &Context, editor: &mut Editor) -> Option<FileOutcome> {
         // What is dragged is not to be pulled from under the hand.

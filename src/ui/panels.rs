@@ -9,7 +9,6 @@ use egui::{
 use super::app::App;
 use super::commands::Command;
 use super::layout::Panels;
-use super::reading::Reading;
 use super::requests::UiRequests;
 use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, TIMELINE, palette};
 use super::timeline::clock;
@@ -122,7 +121,7 @@ impl App {
             let text = self.lab.describe().unwrap_or(live);
             let picture = (&*text, frame.map(|frame| frame.revision));
             let kept = self.autosave.kept_since();
-            let reading = self.files.reading().map(Reading::describe);
+            let reading = self.files.describe_reading();
             let note = reading.or_else(|| self.exports.describe(&self.pictures));
             let note = note.or_else(|| kept.map(status::autosaved));
             let check = (&self.check, &**self.editor.scene());

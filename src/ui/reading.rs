@@ -69,12 +69,15 @@ impl Reading {
         (editor.is_dirty() && is_other) || editor.is_making_keys()
     }
 
+    /// The name of the file.
+    pub fn name(&self) -> String {
+        let name = self.path.file_name().unwrap_or_default();
+        name.to_string_lossy().into_owned()
+    }
+
     /// In words, for the status line.
     pub fn describe(&self) -> String {
-        let name = self.path.file_name().unwrap_or_default().to_string_lossy();
-        format!(
-            "reading {name}, {:.0} s",
-            self.since.elapsed().as_secs_f64()
-        )
+        let seconds = self.since.elapsed().as_secs_f64();
+        format!("reading {}, {seconds:.0} s", self.name())
     }
 }

@@ -25,35 +25,25 @@ pub fn scaling_picture(pictures: &[SharedPicture], look: PictureLook) -> Image {
 fn finding(pictures: &[SharedPicture]) -> String {
     let told = pictures.iter().filter(|picture| picture.workers == TOLD);
     let told = told.map(|picture| {
-        let SharedPicture {
-            scene,
-            ms,
-            efficiency,
-            ..
-        } = picture;
-        format!(
-            "{scene} in {ms:.2} ms, {:.0} % of their time used",
-            efficiency * 100.0
-        )
+        let share = picture.efficiency * 100.0;
+        format!("{} {:.2} ms ({share:.0} %)", picture.scene, picture.ms)
     });
-    format!("{TOLD} cores: {}", told.collect::<Vec<_>>().join("; "))
+    format!("{TOLD} cores: {}", told.collect::<Vec<_>>().join(", "))
 }
 
 fn show(ui: &mut Ui, pictures: &[SharedPicture]) {
     let colors = palette(ui.ctx()).families;
     let at =
         |picture: &SharedPicture| [(picture.workers as f64).log10(), picture.efficiency * 100.0];
-    // A mark for each number of workers.
+    let first = pictures
+        .chunk_by(|one, next| one.scene == next.scene)
+        .next();
     let marks = |_| {
-        let places = pictures
-            .iter()
-            .map(|picture| (picture.workers as f64).log10());
-        places
-            .map(|value| GridMark {
-                value,
-                step_size: 1.0,
-            })
-            .collect()
+        let mark = |picture: &SharedPicture| GridMark {
+            value: (picture.workers as f64).log10(),
+            step_size: 1.0,
+        };
+        first.unwrap_or_default().iter().map(mark).collect()
     };
     Plot::new("cores chart")
         .legend(Legend::default().position(Corner::LeftBottom))
