@@ -73,7 +73,7 @@ pub struct Lattice<R> {
     samples: Vec<Sample<R>>,
 }
 
-/// A square between samples: its upper left corner on the finest grid, and its side.
+/// A square between samples: its upper left corner on the finest grid, its side, and its samples.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell {
     /// Columns of the finest grid from the left.
@@ -81,7 +81,21 @@ pub struct Cell {
     /// Rows of the finest grid from the top.
     pub y: u16,
     /// Steps of the finest grid.
-    pub side: u16,
+    side: u16,
+    /// The samples at its corners: upper left and right, lower left and right.
+    corners: [u32; 4],
+}
+
+impl Cell {
+    /// A pixel of a tile, whose samples [`Lattice::start`] finds.
+    pub fn pixel(column: usize, row: usize) -> Self {
+        Self {
+            x: (column * FINEST) as u16,
+            y: (row * FINEST) as u16,
+            side: FINEST as u16,
+            corners: [0; 4],
+        }
+    }
 }
 
 /// The largest difference of four numbers.
@@ -155,7 +169,7 @@ impl<R: Real> Lattice<R> {
 
     /// Forgets the tile before, and starts with the corners of these pixels, among those of all.
     #[inline(always)]
-    pub fn start(&mut self, tile: &Tile, corners: &Traced<R>, pixels: &[Cell]) {
+    pub fn start(&mut self, tile: &Tile, corners: &Traced<R>, pixels: &mut [Cell]) {
         for &point in &self.points {
             self.indices[point as usize] = 0;
         }
@@ -166,12 +180,15 @@ impl<R: Real> Lattice<R> {
             self.indices.resize(points, 0);
         }
         self.samples.clear();
-        for &Cell { x, y, side } in pixels {
-            for (x, y) in [(x, y), (x + side, y), (x, y + side), (x + side, y + side)] {
-                let (x, y) = (x as usize, y as usize);
-                if self.want(x, y) {
-                    let corner = y / FINEST * self.stride + x / FINEST;
-                    self.samples.push(Sample::of(corners, corner));
+        for pixel in pixels {
+            let (left, top) = (pixel.x as usize, pixel.y as usize);
+            let (right, bottom) = (left + FINEST, top + FINEST);
+            let places = [(left, top), (right, top), (left, bottom), (right, bottom)];
+            for (corner, (x, y)) in pixel.corners.iter_mut().zip(places) {
+                *corner = self.want(x, y);
+                if *corner as usize == self.samples.len() {
+                    let number = y / FINEST * self.stride + x / FINEST;
+                    self.samples.push(Sample::of(corners, number));
                 }
             }
         }
@@ -184,16 +201,16 @@ impl<R: Real> Lattice<R> {
         pixel * POINTS + PLACES[y % FINEST * FINEST + x % FINEST] as usize
     }
 
-    /// Makes sure that there will be a sample at a point of the grid. Whether there was none.
+    /// Makes sure that there will be a sample at a point of the grid: its index.
     #[inline(always)]
-    fn want(&mut self, x: usize, y: usize) -> bool {
+    fn want(&mut self, x: usize, y: usize) -> u32 {
         let point = self.point(x, y);
-        let is_new = self.indices[point] == 0;
-        if is_new {
+        let index = &mut self.indices[point];
+        if *index == 0 {
             self.points.push(point as u32);
-            self.indices[point] = self.points.len() as u32;
+            *index = self.points.len() as u32;
         }
-        is_new
+        *index - 1
     }
 
     /// `samples` become those that are wanted and not there yet.
@@ -221,30 +238,18 @@ impl<R: Real> Lattice<R> {
         self.samples.extend(new);
     }
 
-    /// The samples at the corners of a cell.
+    /// The samples at the corners of a cell. Written out: mapping an array is a call there.
     #[inline(always)]
-    pub fn corners(&self, cell: Cell) -> [usize; 4] {
-        let Cell { x, y, side } = cell;
-        let at = |x: u16, y: u16| self.indices[self.point(x as usize, y as usize)] as usize - 1;
-        [
-            at(x, y),
-            at(x + side, y),
-            at(x, y + side),
-            at(x + side, y + side),
-        ]
-    }
-
-    /// Written out: mapping an array is a call there.
-    #[inline(always)]
-    fn samples_at(&self, [a, b, c, d]: [usize; 4]) -> [&Sample<R>; 4] {
-        let samples = &self.samples;
-        [&samples[a], &samples[b], &samples[c], &samples[d]]
+    fn corners(&self, cell: &Cell) -> [&Sample<R>; 4] {
+        let [a, b, c, d] = cell.corners;
+        let at = |corner: u32| &self.samples[corner as usize];
+        [at(a), at(b), at(c), at(d)]
     }
 
     /// Whether the inside of a cell must be looked at.
     #[inline(always)]
-    pub fn is_split(&self, cell: Cell, corners: [usize; 4], depth: u32, limits: Limits<R>) -> bool {
-        let [a, b, c, d] = self.samples_at(corners);
+    pub fn is_split(&self, cell: &Cell, depth: u32, limits: Limits<R>) -> bool {
+        let [a, b, c, d] = self.corners(cell);
         let differing =
             (a.signature ^ b.signature) | (a.signature ^ c.signature) | (a.signature ^ d.signature);
         let is_same = differing == 0;
@@ -261,16 +266,10 @@ impl<R: Real> Lattice<R> {
 
     /// Adds the mean of a cell's corners to its pixel, by its area.
     #[inline(always)]
-    pub fn accumulate(
-        &self,
-        cell: Cell,
-        corners: [usize; 4],
-        pixel: usize,
-        colors: &mut TileColors<R>,
-    ) {
+    pub fn accumulate(&self, cell: &Cell, pixel: usize, colors: &mut TileColors<R>) {
         let side = f64::from(cell.side) / FINEST as f64;
         let share = R::from_f64(side * side / 4.0);
-        let [a, b, c, d] = self.samples_at(corners);
+        let [a, b, c, d] = self.corners(cell);
         for (channel, sum) in colors.channels.iter_mut().enumerate() {
             let upper = a.color[channel] + b.color[channel];
             let lower = c.color[channel] + d.color[channel];
@@ -280,18 +279,28 @@ impl<R: Real> Lattice<R> {
 
     /// Puts the four quarters of a cell into `cells`, and wants their corners.
     #[inline(always)]
-    pub fn subdivide(&mut self, cell: Cell, cells: &mut Vec<Cell>) {
-        let side = cell.side / 2;
-        for (right, down) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-            cells.push(Cell {
-                x: cell.x + right * side,
-                y: cell.y + down * side,
-                side,
-            });
-        }
-        for (right, down) in [(1, 0), (0, 1), (1, 1), (2, 1), (1, 2)] {
-            let (x, y) = (cell.x + right * side, cell.y + down * side);
-            self.want(x as usize, y as usize);
-        }
+    pub fn subdivide(&mut self, cell: &Cell, cells: &mut Vec<Cell>) {
+        let half = cell.side / 2;
+        let (left, top) = (cell.x as usize, cell.y as usize);
+        let (middle, centre) = (left + half as usize, top + half as usize);
+        let (right, bottom) = (middle + half as usize, centre + half as usize);
+        let [a, b, c, d] = cell.corners;
+        let above = self.want(middle, top);
+        let before = self.want(left, centre);
+        let inside = self.want(middle, centre);
+        let behind = self.want(right, centre);
+        let below = self.want(middle, bottom);
+        let quarter = |x: usize, y: usize, corners: [u32; 4]| Cell {
+            x: x as u16,
+            y: y as u16,
+            side: half,
+            corners,
+        };
+        cells.extend([
+            quarter(left, top, [a, above, before, inside]),
+            quarter(middle, top, [above, b, inside, behind]),
+            quarter(left, centre, [before, inside, c, below]),
+            quarter(middle, centre, [inside, behind, below, d]),
+        ]);
     }
 }

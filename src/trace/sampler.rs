@@ -155,10 +155,10 @@ impl<L: SimdFloat> Sampler<L> {
         if self.split.is_empty() {
             return;
         }
-        self.lattice.start(tile, &self.traced, &self.split);
+        self.lattice.start(tile, &self.traced, &mut self.split);
         for depth in 1..=limits.finest_depth() {
             self.cells.clear();
-            for &cell in &self.split {
+            for cell in &self.split {
                 self.lattice.subdivide(cell, &mut self.cells);
             }
             self.lattice.wanted_samples::<L>(tile, &mut self.samples);
@@ -170,13 +170,12 @@ impl<L: SimdFloat> Sampler<L> {
             engine.trace(&self.samples, seen, edges, &mut self.traced);
             self.lattice.take_results(&self.traced);
             self.split.clear();
-            for &cell in &self.cells {
-                let corners = self.lattice.corners(cell);
-                if self.lattice.is_split(cell, corners, depth, limits) {
-                    self.split.push(cell);
+            for cell in &self.cells {
+                if self.lattice.is_split(cell, depth, limits) {
+                    self.split.push(*cell);
                 } else {
                     let pixel = cell.y as usize / FINEST * colors.stride + cell.x as usize / FINEST;
-                    self.lattice.accumulate(cell, corners, pixel, colors);
+                    self.lattice.accumulate(cell, pixel, colors);
                 }
             }
             if self.split.is_empty() {
@@ -221,11 +220,7 @@ impl<L: SimdFloat> Sampler<L> {
         for row in 0..tile.rows.len() {
             for column in 0..tile.width() {
                 if self.wanting[row * stride + column] {
-                    self.split.push(Cell {
-                        x: (column * FINEST) as u16,
-                        y: (row * FINEST) as u16,
-                        side: FINEST as u16,
-                    });
+                    self.split.push(Cell::pixel(column, row));
                     for channel in &mut colors.channels {
                         channel[row * stride + column] = L::Real::ZERO;
                     }
