@@ -35,11 +35,11 @@ pub struct ChartArgs {
     /// The scene files (RON); several become one picture with the same axes
     #[arg(required_unless_present = "growth")]
     scenes: Vec<PathBuf>,
-    /// Measure how time grows with the number of primitives, in scenes made for that, instead
+    /// Instead of the chart: measure how time grows with the number of primitives, in scenes made for that
     #[arg(long, conflicts_with_all = ["scenes", "within", "budget"])]
     growth: bool,
-    /// Simulate how much sooner pictures of the scenes would come with up to 128 cores, from the times of their
-    /// pieces, instead
+    /// Instead of the chart: simulate how up to 128 cores would share pictures of the scenes, from the times of their
+    /// pieces
     #[arg(long, requires = "scenes", conflicts_with_all = ["growth", "within", "budget", "povray"])]
     cores: bool,
     /// Longer side of the pictures that are compared, in pixels
@@ -190,7 +190,7 @@ fn share(args: &ChartArgs, scenes: &[(&PathBuf, Scene)]) -> Result<Option<CliAct
     }
     for picture in &pictures {
         say(&format!(
-            "{:<20} {:>4} cores, {:>4} pieces {:>9.3} ms, {:>3.0} % of their time used",
+            "{:<20} {:>4} cores, {:>4} pieces {:>9.3} ms, {:>3.0} % busy",
             picture.scene,
             picture.workers,
             picture.pieces,

@@ -61,7 +61,8 @@ struct CliArgs {
     /// Open the window of exports first
     #[arg(long, requires = "screenshot")]
     exports: bool,
-    /// Open the editor until its first traced picture is on the screen, and print as JSON how long that took
+    /// Open the editor until its first traced picture is on the screen, print as JSON how long that took and how much
+    /// memory the program has, and quit
     #[arg(long, conflicts_with = "screenshot")]
     stats_start: bool,
     /// Put Glint into the menu of the desktop, with its icon, manual and shell completions, for this user

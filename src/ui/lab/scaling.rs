@@ -41,14 +41,15 @@ fn show(ui: &mut Ui, pictures: &[SharedPicture]) {
     let marks = |_| {
         let mark = |picture: &SharedPicture| GridMark {
             value: (picture.workers as f64).log10(),
-            step_size: 1.0,
+            // Faint: as if there were many.
+            step_size: 0.05,
         };
         first.unwrap_or_default().iter().map(mark).collect()
     };
     Plot::new("cores chart")
         .legend(Legend::default().position(Corner::LeftBottom))
         .x_axis_label("cores, simulated")
-        .y_axis_label("% of their time used")
+        .y_axis_label("cores busy, %")
         .x_axis_formatter(plain)
         .x_grid_spacer(marks)
         .y_axis_min_width(48.0)
