@@ -41,8 +41,7 @@ fn show(ui: &mut Ui, pictures: &[SharedPicture]) {
     let marks = |_| {
         let mark = |picture: &SharedPicture| GridMark {
             value: (picture.workers as f64).log10(),
-            // Faint: as if there were many.
-            step_size: 0.05,
+            step_size: std::f64::consts::LOG10_2,
         };
         first.unwrap_or_default().iter().map(mark).collect()
     };
