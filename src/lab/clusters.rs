@@ -30,12 +30,20 @@ pub fn clusters(study: &Study) -> Vec<Vec<usize>> {
 /// The places of the ways that nothing beats: those that nothing measured tells from another one are beaten by the
 /// first of them, and doubtful ones beat nobody.
 pub fn front_of(study: &Study) -> Vec<usize> {
-    let mut costs = vec![(f64::NAN, f64::NAN); study.measurements.len()];
-    let certain = study.certain_costs();
+    front(&of_firsts(study, &study.certain_costs()))
+}
+
+/// Milliseconds and RMSE of the first way of each dot; NaN for the others.
+pub fn costs_of_dots(study: &Study) -> Vec<(f64, f64)> {
+    of_firsts(study, &study.costs())
+}
+
+fn of_firsts(study: &Study, all: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut costs = vec![(f64::NAN, f64::NAN); all.len()];
     for cluster in clusters(study) {
-        costs[cluster[0]] = certain[cluster[0]];
+        costs[cluster[0]] = all[cluster[0]];
     }
-    front(&costs)
+    costs
 }
 
 fn is_same((a, c): (Timing, ErrorMetrics), (b, d): (Timing, ErrorMetrics)) -> bool {

@@ -35,7 +35,7 @@ pub mod stability;
 
 pub use account::account;
 pub use candidates::{Candidate, Family, candidates};
-pub use clusters::clusters;
+pub use clusters::{clusters, costs_of_dots};
 pub use explain::{Lit, Share, Sight, explain};
 pub use finding::finding;
 pub use growth::{Cost, Crowd, Growth, Way};

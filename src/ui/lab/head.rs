@@ -8,7 +8,7 @@ use super::super::theme::palette;
 use super::dots::{CostAxis, ErrorAxis};
 use super::panel::{Lab, LabRequest, Tab};
 use crate::editor::Editor;
-use crate::lab::{cheapest_within, closest_within};
+use crate::lab::{cheapest_within, closest_within, costs_of_dots};
 use crate::ui::hint::Hint as _;
 
 impl Lab {
@@ -115,7 +115,7 @@ impl Lab {
     }
 
     fn show_bounds(&mut self, ui: &mut Ui) {
-        let costs = self.study.as_ref().map(|study| study.costs());
+        let costs = self.study.as_deref().map(costs_of_dots);
         let button = |ui: &mut Ui, words: &str, hint: &str| {
             let button = ui.add_enabled(costs.is_some(), Button::new(words));
             button.hint(hint).clicked()

@@ -274,19 +274,19 @@ impl Lab {
     }
 
     /// Whether the scene is not any more what was measured. Settings do not count: they are what is
-    /// compared.
+    /// compared. So are the depths of reflections that were measured.
     pub(super) fn is_stale(&self, editor: &Editor) -> bool {
         let bare = |scene: &Scene| Scene {
-            render: Render {
-                reflection_limit: scene.render.reflection_limit,
-                ..Render::default()
-            },
+            render: Render::default(),
             animation: Arc::default(),
             ..scene.clone()
         };
+        let limit = editor.shown().render.reflection_limit;
         self.study.as_ref().is_some_and(|study| {
+            let mut ways = study.measurements.iter().map(|dot| &dot.candidate.render);
             !Arc::ptr_eq(study.scene(), editor.shown())
-                && bare(study.scene()) != bare(editor.shown())
+                && (ways.all(|way| way.reflection_limit != limit)
+                    || bare(study.scene()) != bare(editor.shown()))
         })
     }
 
