@@ -174,6 +174,54 @@ impl<L: SimdFloat> Bundle<L> {
     }
 }
 
+impl<L: SimdFloat> Bundle<L> {
+    /// Which boxes of a node some of these rays meet before their own `reach`, and from where on; bit by bit.
+    #[inline(always)]
+    pub fn few_meet(
+        &self,
+        mut lanes: u64,
+        node: &Node<L::Real>,
+        reach: L,
+        nears: &mut [L::Real; GROUP],
+    ) -> u64 {
+        if !self.is_boxed {
+            return node.filled();
+        }
+        let token = reach.token();
+        *nears = [L::Real::INFINITY; GROUP];
+        let mut bits = 0;
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros() as usize;
+            lanes &= lanes - 1;
+            let (ray, reach) = (self.ray(lane), L::splat(token, reach.lane(lane)));
+            for first in (0..node.count).step_by(L::WIDTH) {
+                let (near, is_met) = ray.slabs::<L>(node, first, reach, None);
+                let before = L::load(token, &nears[first..]);
+                L::select(is_met, near.min(before), before).store(&mut nears[first..]);
+                bits |= is_met.bits() << first;
+            }
+        }
+        bits & node.filled()
+    }
+
+    /// What one ray has in common with itself.
+    #[inline(always)]
+    fn ray(&self, lane: usize) -> Shaft<L::Real> {
+        let [below, above] = &self.origins;
+        let axis = |below: L, above: L, inverse: L| {
+            let inverse = inverse.lane(lane);
+            Axis::between([below.lane(lane), above.lane(lane)], [inverse, inverse])
+        };
+        Shaft {
+            axes: [
+                axis(below.x, above.x, self.inverse.x),
+                axis(below.y, above.y, self.inverse.y),
+                axis(below.z, above.z, self.inverse.z),
+            ],
+        }
+    }
+}
+
 impl<R: Real> Shaft<R> {
     /// From somewhere in a box, in directions within another one.
     pub fn of(origins: &BoundingBox<R>, directions: &BoundingBox<R>) -> Self {

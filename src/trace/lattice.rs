@@ -151,8 +151,9 @@ impl<R: Real> Limits<R> {
             self.edge_contrast
         };
         let differs = contrast > limit;
-        // Corners that see the same say nothing of what passes between them.
-        (is_near & is_same) | differs
+        // Corners say nothing of what passes between them, whether they see the same, others of the same kind, or
+        // neither.
+        is_near | differs
     }
 }
 

@@ -136,6 +136,50 @@ fn what_is_narrower_than_a_pixel_does_not_slip_through() {
     );
 }
 
+/// Thousands of balls of one kind, each a part of a pixel large in pictures of 48², seen through each other.
+fn cloud() -> Scene {
+    let mut scene = Scene::demo();
+    scene.camera.position = DVec3::ZERO;
+    scene.camera.look_at = DVec3::NEG_Z;
+    scene.objects = [].into_iter().collect();
+    let mut dice = random::Dice(7);
+    for n in 0..8000 {
+        let cell = DVec3::new(
+            f64::from(n % 20),
+            f64::from(n / 20 % 20),
+            f64::from(n / 400),
+        );
+        let off = [(); 3].map(|()| dice.real(0.2, 0.8));
+        let center = (cell + DVec3::from(off)) * 5.0 - DVec3::new(50.0, 50.0, 240.0);
+        let shape = Sphere {
+            center,
+            radius: 1.0,
+        };
+        scene
+            .objects
+            .push(Object::new(format!("Ball {n}"), "sphere 1", shape));
+    }
+    scene
+}
+
+#[test]
+fn many_small_things_of_one_kind_are_as_clean_as_a_grid_shows_them() {
+    let at = |sampling| {
+        quality(
+            &cloud(),
+            &RenderRequest {
+                sampling,
+                ..RenderRequest::sized(48, 48)
+            },
+        )
+    };
+    let (got, grid) = (at(Sampling::ADAPTIVE), at(Sampling::Grid(16)));
+    assert!(
+        got.visible == 0 && got.psnr >= grid.psnr - 2.0,
+        "{got:?} {grid:?}"
+    );
+}
+
 /// The demo with discs over its floor: some large, some narrower than a pixel, some all but edge-on.
 fn coins() -> Scene {
     let mut scene = Scene::demo();
