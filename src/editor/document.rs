@@ -195,7 +195,7 @@ impl Editor {
                 let selection = selected.selection();
                 self.select(selected, selection);
             }
-            Action::BeginGesture => self.history.end_gesture(),
+            Action::BeginGesture => self.end_gesture(),
             Action::CancelGesture => {
                 if let Some(before) = self.history.cancel_gesture() {
                     self.return_to(before);
@@ -212,9 +212,9 @@ impl Editor {
         }
     }
 
-    /// Ends the gesture: the next edit is a step of its own in the history.
+    /// Ends the gesture: the next edit is a step of its own in the history. What ends as it began is none.
     pub fn end_gesture(&mut self) {
-        self.history.end_gesture();
+        self.history.end_gesture(&self.scene);
     }
 
     /// Starts a document from an empty scene.

@@ -63,9 +63,17 @@ impl History {
         }
     }
 
-    /// The next edit is a step of its own.
-    pub fn end_gesture(&mut self) {
-        self.gesture = None;
+    /// The next edit is a step of its own. A gesture that ends `here`, where it began, was none.
+    pub fn end_gesture(&mut self, here: &Scene) {
+        let was_any = self.gesture.take().is_some();
+        if was_any
+            && self
+                .done
+                .back()
+                .is_some_and(|step| *step.there.scene == *here)
+        {
+            self.done.pop_back();
+        }
     }
 
     /// The state before the gesture that goes on, which is forgotten; `None` if nothing was done in it.
@@ -142,21 +150,21 @@ mod tests {
         let mut history = History::default();
         let mut scene = large();
         for step in 0..600 {
+            history.end_gesture(&scene);
             let before = snapshot(&scene);
             let shape = scene.objects[777].shape.moved(DVec3::X);
             scene.objects[777].shape = shape;
-            history.end_gesture();
             history.record(format!("Move {step}"), before, &scene);
         }
         assert_eq!(history.done.len(), MOST_STEPS);
         let bytes: usize = history.done.iter().map(|step| step.bytes).sum();
         assert!(bytes < 50 << 20, "{bytes} bytes for {MOST_STEPS} steps");
         for step in 0..12 {
+            history.end_gesture(&scene);
             let before = snapshot(&scene);
             for object in scene.objects.iter_mut() {
                 object.visible = !object.visible;
             }
-            history.end_gesture();
             history.record(format!("Hide {step}"), before, &scene);
         }
         let bytes: usize = history.done.iter().map(|step| step.bytes).sum();

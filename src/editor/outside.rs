@@ -38,9 +38,9 @@ impl Editor {
             self.is_dirty = false;
             return;
         }
-        self.history.end_gesture();
+        self.history.end_gesture(&self.scene);
         self.history.record("Reload".to_owned(), before, &theirs);
-        self.history.end_gesture();
+        self.history.end_gesture(&theirs);
         self.follow(&theirs);
         self.set_scene(theirs);
         self.notify(format!(

@@ -16,7 +16,7 @@ use crate::trace::Tracer;
 /// How many workers there are.
 const WORKERS: [usize; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
 /// Times that each piece is traced, of which the fastest counts.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 9;
 
 /// A picture by so many workers.
 #[derive(Clone, Debug, Serialize)]
@@ -41,7 +41,15 @@ pub fn scaling(name: &str, scene: &Scene, request: &RenderRequest) -> Vec<Shared
     let since = Instant::now();
     let tracer = Tracer::planned(scene, request, &mut planner);
     let planning = since.elapsed();
-    let measured = WORKERS.map(|workers| (workers, times(&tracer, workers)));
+    let mut measured = WORKERS.map(|workers| (workers, tracer.time_pieces(workers)));
+    // One after the other in each round: what disturbs a moment disturbs them alike.
+    for _ in 1..ROUNDS {
+        for (workers, times) in &mut measured {
+            for (time, again) in times.iter_mut().zip(tracer.time_pieces(*workers)) {
+                *time = again.min(*time);
+            }
+        }
+    }
     // In whatever pieces that is fastest: else what was measured twice would seem to be faster than it is.
     let sums = measured.iter().map(|(_, times)| times.iter().sum());
     let alone = milliseconds(planning + sums.min().unwrap_or(Duration::ZERO));
@@ -72,17 +80,6 @@ pub fn scaling_csv(pictures: &[SharedPicture]) -> Result<String, csv::Error> {
 
 fn milliseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1e3
-}
-
-/// How long each piece takes, the fastest of a few times.
-fn times(tracer: &Tracer, workers: usize) -> Vec<Duration> {
-    let mut times = tracer.time_pieces(workers);
-    for _ in 1..ROUNDS {
-        for (time, again) in times.iter_mut().zip(tracer.time_pieces(workers)) {
-            *time = again.min(*time);
-        }
-    }
-    times
 }
 
 /// When the last of these pieces is done, if workers halve what they have until it is one piece, keep the first

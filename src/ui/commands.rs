@@ -6,7 +6,9 @@ use std::path::PathBuf;
 use egui::{Event, Key, KeyboardShortcut, Modifiers, Ui};
 use glam::DVec3;
 
+use super::layout::Part;
 use crate::editor::{Editor, Item, Kind, Selection};
+use crate::scene::Aspect;
 
 /// Something the user asks of the window as a whole.
 #[derive(Clone, Debug, PartialEq)]
@@ -129,6 +131,10 @@ pub enum Command {
     ViewRight,
     /// Look down.
     ViewTop,
+    /// What of the light the live view shows.
+    Aspect(Aspect),
+    /// Show or hide this part of the window.
+    Part(Part),
     /// Show or hide the timeline.
     Timeline,
     /// Show or hide the lab.
@@ -236,7 +242,6 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
 pub const KEYLESS: &[(Command, &str)] = &[
     (Command::Live, "Live view"),
     (Command::ActualSize, "High-res picture at actual size"),
-    (Command::OpenExample(0), "Open the demo"),
     (Command::ImportMesh, "Import a mesh"),
     (Command::ExportJob, "Export a job for a render farm"),
     (Command::ExportPovray, "Export the scene for POV-Ray"),

@@ -6,10 +6,11 @@ use egui::{
 
 use super::commands::{Command, KEYLESS, SHORTCUTS, name_of, obstacle};
 use super::hint::Hint as _;
+use super::layout::Part;
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW};
 use crate::editor::{Editor, Item, Selection};
-use crate::scene::{Method, Setting, VisitSetting};
+use crate::scene::{Aspect, EXAMPLES, Method, Setting, VisitSetting};
 
 /// Width of the window in points.
 const WIDTH: f32 = 460.0;
@@ -146,15 +147,50 @@ fn commands<'a>(ui: &'a Ui, editor: &'a Editor) -> impl Iterator<Item = Find> + 
         .map(|(command, what)| (command.clone(), *what, String::new()));
     let all = keyed.chain(keyless);
     let all = all.filter(|(command, ..)| !matches!(command, Command::Find | Command::Escape));
-    all.map(|(command, what, keys)| {
+    let all = all.map(|(command, what, keys)| (command, what.to_owned(), keys));
+    all.chain(choices(editor)).map(|(command, name, keys)| {
         let obstacle = obstacle(&command, editor);
         Find {
-            name: what.to_owned(),
+            name,
             aside: obstacle.map_or(keys, str::to_owned),
             is_enabled: obstacle.is_none(),
             what: Target::Command(command),
         }
     })
+}
+
+/// What is chosen in menus below the menus.
+fn choices(editor: &Editor) -> impl Iterator<Item = (Command, String, String)> {
+    let shown = Aspect::EACH.map(|(aspect, name, _)| {
+        let name = format!("Show: {}", name.to_lowercase());
+        (Command::Aspect(aspect), name)
+    });
+    let parts = Part::PANELS.into_iter().chain(Part::OVER_PICTURE);
+    let parts = parts.map(|(part, name)| {
+        (
+            Command::Part(part),
+            format!("Show or hide: {}", name.to_lowercase()),
+        )
+    });
+    let examples = EXAMPLES.iter().enumerate().map(|(place, example)| {
+        (
+            Command::OpenExample(place),
+            format!("Open the example: {}", example.name),
+        )
+    });
+    let bookmarks = editor.scene().bookmarks.iter().enumerate();
+    let bookmarks = bookmarks.map(|(place, bookmark)| {
+        (
+            Command::GoToBookmark(place),
+            format!("Go to the bookmark: {}", bookmark.name),
+        )
+    });
+    let all = shown
+        .into_iter()
+        .chain(parts)
+        .chain(examples)
+        .chain(bookmarks);
+    all.map(|(command, name)| (command, name, String::new()))
 }
 
 /// What stands on top of the outliner, and the settings of the picture.

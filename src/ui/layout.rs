@@ -30,6 +30,46 @@ pub struct Layout {
     pub aspect: Aspect,
 }
 
+/// A part of the window that is shown or hidden without a key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The panel on the left.
+    Outliner,
+    /// The panel on the right.
+    Inspector,
+    /// How bright the picture is.
+    Histogram,
+    /// The flight of the camera in the view.
+    Flight,
+    /// The shot in a corner of the view.
+    Shot,
+}
+
+impl Part {
+    /// The panels, with their names.
+    pub const PANELS: [(Self, &'static str); 2] =
+        [(Self::Outliner, "Outliner"), (Self::Inspector, "Inspector")];
+    /// What is shown over the picture, with its names.
+    pub const OVER_PICTURE: [(Self, &'static str); 3] = [
+        (Self::Histogram, "Histogram"),
+        (Self::Flight, "Flight in the view"),
+        (Self::Shot, "Shot in a corner of the view"),
+    ];
+}
+
+impl Layout {
+    /// Whether a part of the window is shown.
+    pub fn part(&mut self, part: Part) -> &mut bool {
+        match part {
+            Part::Outliner => &mut self.outliner,
+            Part::Inspector => &mut self.inspector,
+            Part::Histogram => &mut self.histogram,
+            Part::Flight => &mut self.flight,
+            Part::Shot => &mut self.shot,
+        }
+    }
+}
+
 /// What is shown of the panels that commands show and hide.
 #[derive(Clone, Copy, Debug)]
 pub struct Panels {

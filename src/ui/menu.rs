@@ -11,7 +11,7 @@ use super::flying::{FASTEST, SLOWEST};
 use super::hint::Hint as _;
 use super::icons;
 use super::inspector::target;
-use super::layout::{Layout, Panels};
+use super::layout::{Layout, Panels, Part};
 use super::menu_entry::{ITEM_COMMANDS, entry, switch, ticked};
 use super::requests::UiRequests;
 use crate::animate::{Preset, Retime};
@@ -178,9 +178,9 @@ fn view_menu(
     });
     ui.menu_button("Panels", |ui| panel_entries(ui, (layout, panels), out));
     ui.separator();
-    switch(ui, &mut layout.histogram, "Histogram");
-    switch(ui, &mut layout.flight, "Flight in the view");
-    switch(ui, &mut layout.shot, "Shot in a corner of the view");
+    for (part, name) in Part::OVER_PICTURE {
+        switch(ui, layout.part(part), name);
+    }
     ui.horizontal(|ui| {
         ui.label("Flying speed");
         let speed = DragValue::new(&mut layout.fly_speed)
@@ -197,8 +197,9 @@ fn view_menu(
 }
 
 fn panel_entries(ui: &mut Ui, (layout, panels): (&mut Layout, Panels), out: &mut UiRequests) {
-    switch(ui, &mut layout.outliner, "Outliner");
-    switch(ui, &mut layout.inspector, "Inspector");
+    for (part, name) in Part::PANELS {
+        switch(ui, layout.part(part), name);
+    }
     for (is_on, name, command) in [
         (panels.timeline, "Timeline", Command::Timeline),
         (panels.lab, "Lab", Command::Lab),

@@ -5,6 +5,8 @@ mod autosave;
 
 mod flight_keys;
 
+mod layout;
+
 mod commands;
 
 mod dialogs;
@@ -58,8 +60,6 @@ mod number;
 mod rows;
 
 mod inspector;
-
-mod layout;
 
 mod menu;
 

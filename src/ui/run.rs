@@ -87,6 +87,15 @@ impl App {
                 self.is_alone = !self.is_alone;
                 None
             }
+            Command::Aspect(aspect) => {
+                self.layout.aspect = aspect;
+                None
+            }
+            Command::Part(part) => {
+                let is_shown = self.layout.part(part);
+                *is_shown = !*is_shown;
+                None
+            }
             Command::Why(origin, direction) => {
                 self.why.ask(self.editor.shown(), (origin, direction));
                 None

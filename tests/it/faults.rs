@@ -11,6 +11,9 @@ use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use glam::DVec3;
+use glint::scene::{Document, Object, Recovery, Sphere};
+
 use crate::random::Dice;
 
 const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
@@ -117,6 +120,78 @@ fn whoever_is_killed_while_saving_leaves_the_old_file_or_the_new_one() {
         ["one.obj", "other.obj", "scene.ron"],
         "what dead programs left is gone"
     );
+}
+
+/// Where [`keeps_unsaved_work_until_it_is_killed`] does so.
+const KEPT_IN: &str = "GLINT_TEST_KEPT_IN";
+
+#[test]
+#[ignore = "is what the test of kills while unsaved work is kept runs and kills"]
+fn keeps_unsaved_work_until_it_is_killed() {
+    let Some(folder) = std::env::var_os(KEPT_IN) else {
+        return;
+    };
+    let place = Recovery::new(Path::new(&folder)).expect("a place");
+    for step in 1.. {
+        let text = unsaved(step).to_text().expect("text");
+        place.keep(&text, None).expect("kept");
+    }
+}
+
+/// Work after so many steps: the file is the larger, the more there were of the last hundred.
+fn unsaved(step: usize) -> Document {
+    let mut document = Document::empty();
+    document.scene.ambient_intensity = 1.0 / step as f64;
+    for number in 0..200 + 10 * (step % 100) {
+        let center = DVec3::splat(number as f64);
+        let ball = Sphere {
+            center,
+            radius: 1.0,
+        };
+        document
+            .scene
+            .objects
+            .push(Object::new(format!("Ball {number}"), "pack 1", ball));
+    }
+    document
+}
+
+#[test]
+fn whoever_is_killed_while_work_is_kept_leaves_all_of_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut dice = Dice(12);
+    let mut found = 0;
+    for _ in 0..KILLS / 3 {
+        let program = std::env::current_exe().expect("this test");
+        let helper = "faults::keeps_unsaved_work_until_it_is_killed";
+        let mut child = Command::new(program)
+            .args(["--exact", "--ignored", helper])
+            .env(KEPT_IN, folder.path())
+            .stdout(Stdio::null())
+            .spawn()
+            .expect("it runs");
+        sleep(Duration::from_secs_f64(dice.real(0.02, 0.12)));
+        child.kill().expect("killed");
+        child.wait().expect("ended");
+        let next = Recovery::new(folder.path()).expect("a place");
+        while let Some(leftover) = next.take_leftover(None) {
+            let scene = leftover.document.scene;
+            let step = (1.0 / scene.ambient_intensity).round() as usize;
+            assert_eq!(
+                scene.objects.len(),
+                200 + 10 * (step % 100),
+                "after {step} steps"
+            );
+            found += 1;
+        }
+        let is_left = |name: &String| name.contains(".ron");
+        assert!(
+            !names(folder.path()).iter().any(is_left),
+            "{:?}",
+            names(folder.path())
+        );
+    }
+    assert!(found > KILLS / 6, "only {found} programs had kept anything");
 }
 
 #[test]

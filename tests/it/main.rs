@@ -21,6 +21,7 @@ mod needs;
 mod numerics;
 mod povray;
 mod random;
+mod readme;
 mod scalar;
 mod scene_format;
 mod scenes;

@@ -211,8 +211,10 @@ pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
 pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
     ui.weak("folder");
     ui.horizontal(|ui| {
+        let whole = std::path::absolute(settings.folder.trim());
         let field = TextEdit::singleline(&mut settings.folder).align(Align2::LEFT_CENTER);
         ui.add_sized([FIELDS - 90.0, ROW], field)
+            .hint(whole.map_or(String::new(), |path| path.display().to_string()))
             .accessible_name("folder");
         if ui.button("Browse…").clicked() {
             out.commands.push(Command::ExportFolder);

@@ -24,8 +24,9 @@ fn finding(growth: &Growth) -> String {
     plain.retain(|cost| cost.crowd == Crowd::Mesh && cost.way == Way::Plain);
     match (plain.first(), plain.last()) {
         (Some(first), Some(last)) if first.primitives < last.primitives => format!(
-            "{:.0} times the faces cost {:.1} times the time",
-            f64::from(last.primitives) / f64::from(first.primitives),
+            "From {} to {} faces, a picture takes {:.1} times as long",
+            first.primitives,
+            last.primitives,
             last.ms / first.ms
         ),
         _ => "Time against primitives".to_owned(),

@@ -42,7 +42,11 @@ impl Lab {
             return None;
         }
         let mut wish = None;
-        if self.is_running {
+        let hint = "Trace the scene in every way there is, and compare: about half a minute";
+        let measure = ui.add_enabled(!self.is_running, Button::new("Measure"));
+        if measure.hint(hint).clicked() {
+            wish = Some(self.measure(editor));
+        } else if self.is_running {
             let done = self.study.as_ref().map_or(0.0, |study| study.progress());
             if ui.button("Cancel measuring").clicked() {
                 self.is_running = false;
@@ -54,10 +58,6 @@ impl Lab {
             });
             ui.label(format!("{:.0} %{left}", (done * 100.0).floor()));
         } else {
-            let hint = "Trace the scene in every way there is, and compare: about half a minute";
-            if ui.button("Measure").hint(hint).clicked() {
-                wish = Some(self.measure(editor));
-            }
             let hint = "Put POV-Ray, an independent engine, among the ways, where it is installed";
             ui.checkbox(&mut self.asks_povray, "POV-Ray").hint(hint);
         }

@@ -21,6 +21,8 @@ const SQUARE: (f64, f64) = (0.3, 0.5);
 pub const RING: f64 = 1.2;
 /// How near to a handle the pointer must be, in points.
 const REACH: f32 = 7.0;
+/// Length of the head of an arrow, in points.
+const HEAD: f32 = 9.0;
 /// Shortest arrow that is shown, in points: a shorter one points at the eye.
 const SHORTEST: f32 = 14.0;
 /// Corners of a drawn ring.
@@ -71,6 +73,14 @@ impl Drawn {
             (Handle::Across(_), _) if is_inside(&self.line, at) => 0.0,
             // Dots come before the lines that end in them.
             (Handle::Free | Handle::Corner(_), Some(dot)) => ((*dot - at).length() - 2.0).max(0.0),
+            // So do the heads of arrows, which lie over what runs through them.
+            (Handle::Along(_), _) => {
+                let head = self
+                    .line
+                    .last()
+                    .map_or(f32::INFINITY, |tip| (*tip - at).length());
+                nearest.min(head - HEAD)
+            }
             _ => nearest,
         }
     }
@@ -300,7 +310,7 @@ fn draw(painter: &Painter, (handle, line, is_closed): (Handle, &[Pos2], bool), s
 fn arrow_head(painter: &Painter, from: Pos2, to: Pos2, color: Color32, halo: Color32) {
     let along = (to - from).normalized();
     let across = vec2(-along.y, along.x);
-    let tip = vec![to + along * 9.0, to + across * 5.0, to - across * 5.0];
+    let tip = vec![to + along * HEAD, to + across * 5.0, to - across * 5.0];
     painter.add(egui::Shape::convex_polygon(
         tip,
         color,

@@ -370,6 +370,38 @@ fn text_is_pasted_and_what_is_none_is_refused() {
 }
 
 #[test]
+fn the_head_of_an_arrow_comes_before_a_ring_through_it() {
+    let mut scene = Scene::demo();
+    let mut harness = EditorHarness::new();
+    let middle = center(&scene, 0);
+    let [at, above] = [middle, middle + DVec3::Y].map(|point| place(&harness, point));
+    let Shape::Sphere(ball) = &mut scene.objects[0].shape else {
+        panic!("a ball");
+    };
+    // As large as the arrow is long: the rim runs through its head.
+    ball.radius = 76.0 / f64::from(at.y - above.y);
+    let tip = place(&harness, middle + DVec3::Y * ball.radius);
+    harness = EditorHarness::on(scene.clone());
+    click(&mut harness, at, NONE);
+    let up = vec2(0.0, -20.0);
+    drag(&mut harness, tip, tip + up, PointerButton::Primary, NONE);
+    assert_eq!(radius(harness.scene(), 0), radius(&scene, 0));
+    assert!(center(harness.scene(), 0).y > middle.y);
+    harness.press(CTRL, Key::Z);
+    let step = harness.editor().undo_label().map(str::to_owned);
+    pull(&mut harness, tip, tip + up, PointerButton::Primary, NONE);
+    assert!(center(harness.scene(), 0).y > middle.y);
+    hover(&mut harness, tip);
+    drop_at(&mut harness, tip, PointerButton::Primary, NONE);
+    assert_eq!(harness.scene(), &scene);
+    assert_eq!(
+        harness.editor().undo_label(),
+        step.as_deref(),
+        "nothing was done"
+    );
+}
+
+#[test]
 fn everything_is_found_by_its_name() {
     let mut harness = EditorHarness::new();
     harness.press(CTRL, Key::K);
@@ -391,6 +423,11 @@ fn everything_is_found_by_its_name() {
             .query_by_label_contains("Enter does what")
             .is_none()
     );
+    harness.press(CTRL, Key::K);
+    harness.window.event(Event::Text("show clay".to_owned()));
+    harness.settle();
+    harness.press(NONE, Key::Enter);
+    harness.window.get_by_label("Leave Clay");
 }
 
 #[test]
