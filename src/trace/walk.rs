@@ -41,10 +41,16 @@ pub trait Seek<L: SimdFloat> {
     fn leave_out(&mut self, _settled: u64) {}
 }
 
-/// Where so few rays of a packet still look into a box, each is held against what is in it by itself: what they have
-/// in common with the others meets more. Of 1, 2, 3 and 5 the best for balls and meshes in their thousands: 0.75 to
-/// 0.8 of the time without.
-const FEW: u32 = 2;
+/// Where so few rays of a packet of so many still look into a box, each is held against what is in it by itself: what
+/// they have in common with the others meets more. One ray takes no longer than all together; of sixteen, two are the
+/// best of 1, 2, 3 and 5 for balls and meshes in their thousands: 0.75 to 0.8 of the time without.
+const fn few(lanes: usize) -> u32 {
+    match lanes {
+        1 => 0,
+        2..16 => 1,
+        _ => 2,
+    }
+}
 
 /// The number of the node that a walk starts in, which need not be the root of the tree.
 const START: u32 = u32::MAX;
@@ -64,7 +70,7 @@ pub fn walk<L: SimdFloat>(
     loop {
         let mut nears = [L::Real::ZERO; GROUP];
         let reach = seek.reach();
-        let mut bits = if lanes.count_ones() <= FEW {
+        let mut bits = if lanes.count_ones() <= few(L::WIDTH) {
             bundle.few_meet(lanes, node, reach, &mut nears)
         } else {
             let shaft = bundle.shaft();
