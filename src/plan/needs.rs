@@ -73,7 +73,7 @@ fn precision(scene: &Scene, request: &RenderRequest) -> Need {
         Precision::Auto => need(
             rule,
             "single precision",
-            "nothing is farther than 5,000 of its radii or smaller than 1/100,000 of the scene",
+            "nothing is farther than 5,000 of its radii or smaller than 1/10,000 of the scene",
             "time: a vector holds twice as many numbers",
         ),
     }

@@ -8,8 +8,11 @@ use crate::scene::{Light, List, Object, Outline, PlanePiece, Precision, Projecti
 /// Largest ratio of a sphere's distance to its radius in single precision: the perpendicular
 /// discriminant is then off by at most 3.2·u·ρ ≈ 1/1000 of the radius.
 const MAX_DISTANCE_PER_RADIUS: f64 = 5e3;
-/// Largest ratio of the scene's extent to its smallest feature in single precision.
-const MAX_EXTENT_PER_FEATURE: f64 = 1e5;
+/// Largest ratio of the scene's extent to its smallest feature in single precision: edges are then off by a thousandth
+/// of the feature, a tenth of a pixel where that is a hundred of them large.
+const MAX_EXTENT_PER_FEATURE: f64 = 1e4;
+/// Smallest extent of a scene in single precision, in which squares of much smaller numbers are nothing.
+const MIN_EXTENT: f64 = 1e-12;
 
 /// Smallest height of the eye or a light over a sphere, in radii, in single precision: below it, the
 /// distance to the ground right ahead has lost its digits.
@@ -18,6 +21,10 @@ const MIN_HEIGHT_PER_RADIUS: f64 = 1e-3;
 /// Smallest height of the eye over a plane, or of a light over anything flat, as a share of the scene's
 /// extent, in single precision: below it, rounding may put it on the other side.
 const MIN_HEIGHT_PER_EXTENT: f64 = 1e-5;
+/// The same of the eye over a disc or a triangle, which is narrow where it matters.
+const MIN_HEIGHT_OVER_PIECE: f64 = 1e-7;
+/// Cosine between the middle ray and a plane's normal from which on the plane is looked at, and not along.
+const FACING: f64 = 0.1;
 /// Most pairs of an object and a light that are looked at.
 const MOST_PAIRS: usize = 100_000;
 
@@ -54,28 +61,49 @@ pub fn needs_double(scene: &Scene, projection: Projection) -> bool {
     let centre = (low + high) * 0.5;
     let eye = scene.camera.position;
     let extent = (high - low).length().max((eye - centre).length());
-    if is_just_above(scene, extent) {
+    if extent < MIN_EXTENT || is_just_above(scene, extent) {
         return true;
     }
+    let wall = if scene.lights.is_empty() {
+        0.0
+    } else {
+        farthest_wall(scene)
+    };
     let visible = scene.objects.iter().filter(|object| object.visible);
     visible.map(|object| &object.shape).any(|shape| {
         shape.height_per_radius(eye) < MIN_HEIGHT_PER_RADIUS
             || match shape.feature() {
                 None => false,
                 Some((at, size)) => {
-                    (eye - at).length() > MAX_DISTANCE_PER_RADIUS * size
+                    (eye - at).length().max(wall) > MAX_DISTANCE_PER_RADIUS * size
                         || extent > MAX_EXTENT_PER_FEATURE * size
                 }
             }
     })
 }
 
+/// How far the farthest plane is that shadows are seen on.
+fn farthest_wall(scene: &Scene) -> f64 {
+    let (eye, direction) = (
+        scene.camera.position,
+        scene.camera.look_at.normalize_or_zero(),
+    );
+    let visible = scene.objects.iter().filter(|object| object.visible);
+    let planes = visible.filter_map(|object| match &object.shape {
+        shape @ Shape::Plane(_) => shape.plane_piece(),
+        _ => None,
+    });
+    let facing = planes.filter(|piece| direction.dot(piece.normal).abs() > FACING);
+    let distances = facing.map(|piece| -piece.height(eye) / direction.dot(piece.normal));
+    distances.fold(0.0, f64::max)
+}
+
 /// Whether the eye is all but on a plane, or a light on anything: on something round, its shadow ends where
 /// rays graze.
 fn is_just_above(scene: &Scene, extent: f64) -> bool {
-    let is_just_above = |piece: &PlanePiece, point: DVec3| {
+    let is_just_above = |piece: &PlanePiece, point: DVec3, least: f64| {
         let height = piece.height(point).abs();
-        height > 0.0 && height < MIN_HEIGHT_PER_EXTENT * extent
+        height > 0.0 && height < least * extent
     };
     let lights = match scene.objects.len() * scene.lights.len() {
         0..=MOST_PAIRS => &scene.lights,
@@ -93,11 +121,15 @@ fn is_just_above(scene: &Scene, extent: f64) -> bool {
                 .iter()
                 .any(|light| height(light) < MIN_HEIGHT_PER_RADIUS);
         };
-        let is_seen = piece.outline == Outline::Endless;
-        is_seen && is_just_above(&piece, scene.camera.position)
+        let least = if piece.outline == Outline::Endless {
+            MIN_HEIGHT_PER_EXTENT
+        } else {
+            MIN_HEIGHT_OVER_PIECE
+        };
+        is_just_above(&piece, scene.camera.position, least)
             || lights
                 .iter()
-                .any(|light| is_just_above(&piece, light.position))
+                .any(|light| is_just_above(&piece, light.position, MIN_HEIGHT_PER_EXTENT))
     })
 }
 
@@ -126,6 +158,7 @@ fn is_far_in_parallel(scene: &Scene) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Plane, Sphere, Triangle};
 
     #[test]
     fn what_all_but_touches_needs_double_precision_and_what_touches_does_not() {
@@ -148,6 +181,52 @@ mod tests {
                 "light at {height}"
             );
         }
+    }
+
+    #[test]
+    fn far_walls_narrow_sights_and_tiny_worlds_need_double_precision() {
+        let wants = |change: &dyn Fn(&mut Scene)| {
+            let mut scene = Scene::demo();
+            change(&mut scene);
+            needs_double(&scene, scene.camera.projection)
+        };
+        let wall = |away: f64| {
+            move |scene: &mut Scene| {
+                let point = scene.camera.position + scene.camera.look_at.normalize() * away;
+                let normal = -scene.camera.look_at;
+                scene
+                    .objects
+                    .push(Object::new("Wall", "plane", Plane { point, normal }));
+            }
+        };
+        assert!(!wants(&wall(1e4)) && wants(&wall(1e6)));
+        // Nothing is lit there.
+        assert!(!wants(&|scene| {
+            wall(1e6)(scene);
+            scene.lights.clear();
+        }));
+        let over = |height: f64| {
+            move |scene: &mut Scene| {
+                let at = scene.camera.position - DVec3::Y * height;
+                let [a, b, c] = [DVec3::X, DVec3::Z, -DVec3::ONE]
+                    .map(|off| at + off * 30.0 * (DVec3::X + DVec3::Z));
+                scene
+                    .objects
+                    .push(Object::new("Piece", "plane", Triangle { a, b, c }));
+            }
+        };
+        assert!(!wants(&over(1.0)) && !wants(&over(0.0)) && wants(&over(1e-6)));
+        let tiny = |scene: &mut Scene| {
+            scene.objects.retain(|object| object.name == "Sphere 1");
+            scene.lights.clear();
+            scene.camera.position *= 1e-16;
+            scene.objects[0].shape = Sphere {
+                center: DVec3::ZERO,
+                radius: 1e-14,
+            }
+            .into();
+        };
+        assert!(wants(&tiny));
     }
 
     #[test]

@@ -6,6 +6,10 @@ use crate::simd::{Real, Vec3};
 /// At corners where more faces than this meet, they stay flat: each is held against all others.
 const MOST_AROUND: usize = 256;
 
+/// By how much the cosine between faces must be above that of the angle, or they stay flat: several roundings of single
+/// precision, so that faces which meet at just that angle are the same in any precision.
+const JUST: f64 = 4e-6;
+
 /// Normals at the corners of each triangle: the mean of its own and of those that turn from it by less than
 /// `degrees`, by the angles that they have there.
 ///
@@ -15,7 +19,7 @@ pub fn corner_normals<R: Real>(
     triangles: &[PackedTriangle<R>],
     degrees: f64,
 ) -> Vec<CornerNormals<R>> {
-    let least_cosine = degrees.to_radians().cos();
+    let least_cosine = degrees.to_radians().cos() + JUST;
     let numbers = number_corners(triangles);
     let around = Around::of(&numbers);
     let faces = triangles.iter().zip(&numbers).enumerate();

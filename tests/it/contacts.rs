@@ -5,8 +5,8 @@ use glam::DVec3;
 use glint::image::Image;
 use glint::plan::RenderRequest;
 use glint::scene::{
-    Accelerator, Camera, ColorPack, Disc, Light, Object, Plane, Precision, Scene, Shape, Sphere,
-    Triangle,
+    Accelerator, Camera, ColorPack, Disc, Document, Light, Object, Plane, Precision, Scene, Shape,
+    Sphere, Triangle,
 };
 
 use crate::image_model::{assert_same_but_for_edges, picture};
@@ -155,6 +155,56 @@ fn disc_of(height: f64) -> Shape {
         radius,
     }
     .into()
+}
+
+#[test]
+fn surfaces_all_but_in_each_other_cast_no_shadow_on_each_other() {
+    for gap in [1e-9, 3e-7] {
+        let disc = |y: f64, radius| {
+            let (center, normal) = (DVec3::new(0.0, y, 0.0), DVec3::Y);
+            Shape::from(Disc {
+                center,
+                normal,
+                radius,
+            })
+        };
+        let both = steady(&scene([disc(0.0, 3.0), disc(gap, 2.0)]), "two discs");
+        let alone = steady(&scene([disc(0.0, 3.0)]), "a disc");
+        assert_same_but_for_edges(&both, &alone, &format!("{gap} apart"));
+    }
+}
+
+/// A mesh as a file has it, seen from above.
+fn faces_of(mesh: &str) -> Scene {
+    let text = format!(
+        r#"Scene(version: 1, light_visualization: false,
+            camera: Camera(position: (1, 3, 4), look_at: (0, -0.6, -0.8), up: (0, 1, 0)),
+            color_packs: {{"clay": ColorPack(ambient: (128, 60, 40), diffuse: (200, 120, 80))}},
+            lights: [Light(name: "lamp", position: (30, 80, 40), intensity: 0.7)],
+            objects: [Object(name: "mesh", color_pack: "clay", shape: Mesh({mesh}))])"#
+    );
+    Document::from_text(&text).expect("a scene").scene
+}
+
+#[test]
+fn which_faces_are_one_curved_surface_is_the_same_in_any_precision() {
+    let cube = "points: [(-1,-1,-1),(-1,-1,1),(-1,1,-1),(-1,1,1),(1,-1,-1),(1,-1,1),(1,1,-1),(1,1,1)], \
+        faces: [(0,1,3),(0,3,2),(4,6,7),(4,7,5),(0,4,5),(0,5,1),(2,3,7),(2,7,6),(0,2,6),(0,6,4),(1,5,7),(1,7,3)], \
+        rotation: (30, 20, 10)";
+    let right = |smooth: f64| faces_of(&format!("{cube}, smooth: {smooth}"));
+    // Faces that meet at just the angle stay flat, however they are turned.
+    let flat = steady(&right(0.0), "a cube");
+    assert!(flat == steady(&right(90.0), "a cube at its angle"));
+    assert!(flat != steady(&right(91.0), "a round cube"));
+    let seam = |off: &str| {
+        let points = format!("(0,0,0),(0,2,0),(-1,0,-0.4),({off},0,0),({off},2,0),(2,0,-0.6)");
+        faces_of(&format!(
+            "points: [{points}], faces: [(0,2,1),(3,4,5)], smooth: 60"
+        ))
+    };
+    let whole = steady(&seam("0"), "a seam");
+    let noisy = steady(&seam("1e-9"), "a seam with noise");
+    assert_same_but_for_edges(&noisy, &whole, "a seam");
 }
 
 #[test]

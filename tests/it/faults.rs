@@ -159,6 +159,7 @@ fn unsaved(step: usize) -> Document {
 #[test]
 fn whoever_is_killed_while_work_is_kept_leaves_all_of_it() {
     let folder = tempfile::tempdir().expect("a folder");
+    let is_kept = |name: &String| name.starts_with("unsaved") && name.contains(".ron");
     let mut dice = Dice(12);
     let mut found = 0;
     for _ in 0..KILLS / 3 {
@@ -170,7 +171,15 @@ fn whoever_is_killed_while_work_is_kept_leaves_all_of_it() {
             .stdout(Stdio::null())
             .spawn()
             .expect("it runs");
-        sleep(Duration::from_secs_f64(dice.real(0.02, 0.12)));
+        let start = Instant::now();
+        while !names(folder.path()).iter().any(is_kept) {
+            assert!(
+                start.elapsed() < Duration::from_mins(1),
+                "nothing is ever kept"
+            );
+            sleep(Duration::from_millis(2));
+        }
+        sleep(Duration::from_secs_f64(dice.real(0.0, 0.05)));
         child.kill().expect("killed");
         child.wait().expect("ended");
         let next = Recovery::new(folder.path()).expect("a place");
@@ -184,14 +193,20 @@ fn whoever_is_killed_while_work_is_kept_leaves_all_of_it() {
             );
             found += 1;
         }
-        let is_left = |name: &String| name.contains(".ron");
         assert!(
-            !names(folder.path()).iter().any(is_left),
-            "{:?}",
-            names(folder.path())
+            !names(folder.path()).iter().any(is_kept),
+            "it is taken once"
         );
     }
-    assert!(found > KILLS / 6, "only {found} programs had kept anything");
+    assert_eq!(found, KILLS / 3);
+    let next = Recovery::new(folder.path()).expect("a place");
+    let text = unsaved(1).to_text().expect("text");
+    next.keep(&text, None).expect("kept");
+    let unfinished = |name: &String| name.starts_with(".glint-");
+    assert!(
+        !names(folder.path()).iter().any(unfinished),
+        "what dead programs left is gone"
+    );
 }
 
 #[test]

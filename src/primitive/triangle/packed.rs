@@ -45,12 +45,18 @@ pub fn corner(point: DVec3) -> Corner {
     place_key(point)
 }
 
-/// Numbers for the corners of triangles: the same where they meet.
+/// Numbers for the corners of triangles: the same where they meet, which is where single precision could not tell
+/// the farthest of them apart. Double precision does not see seams that are noise in the last digits either.
 pub fn number_corners<R: Real>(triangles: &[PackedTriangle<R>]) -> Vec<[u32; 3]> {
+    let all = triangles.iter().flat_map(|triangle| triangle.corners);
+    let farthest = all.map(|corner| corner.to_dvec3().abs().max_element());
+    let step =
+        (farthest.fold(0.0, f64::max) * 2.0 * f64::from(f32::UNIT_ROUNDOFF)).max(f64::MIN_POSITIVE);
     let mut numbers = HashMap::new();
     let mut number = |place: Vec3<R>| {
         let next = numbers.len() as u32;
-        *numbers.entry(corner(place.to_dvec3())).or_insert(next)
+        let place = (place.to_dvec3() / step).round();
+        *numbers.entry(corner(place)).or_insert(next)
     };
     let corners = triangles.iter().map(|triangle| triangle.corners);
     corners.map(|corners| corners.map(&mut number)).collect()
