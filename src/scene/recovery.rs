@@ -12,6 +12,9 @@ use crate::files::write_atomic;
 /// First line of a recovery file: the path of the document follows.
 const MARK: &str = "// unsaved changes of: ";
 
+/// How the names of the files begin.
+const NAME: &str = "unsaved-";
+
 /// This program's place for unsaved work.
 #[derive(Debug)]
 pub struct Recovery {
@@ -39,7 +42,7 @@ impl Recovery {
         fs::create_dir_all(folder)?;
         let mut number = std::process::id();
         loop {
-            let path = folder.join(format!("unsaved-{number}.ron"));
+            let path = folder.join(format!("{NAME}{number}.ron"));
             let lock_path = path.with_extension("lock");
             let lock = File::create(&lock_path)?;
             match lock.try_lock() {
@@ -77,8 +80,15 @@ impl Recovery {
     pub fn take_leftover(&self, of: Option<&Path>) -> Option<Leftover> {
         let entries = fs::read_dir(self.path.parent()?).ok()?;
         let files = entries.filter_map(|entry| Some(entry.ok()?.path()));
+        // What was being written when a program was killed has another name: the file before it counts.
+        let is_whole = |path: &PathBuf| {
+            let name = path.file_name().map(|name| name.to_string_lossy());
+            name.is_some_and(|name| name.starts_with(NAME))
+        };
         let is_other = |path: &PathBuf| {
-            path.extension().is_some_and(|ending| ending == "ron") && *path != self.path
+            path.extension().is_some_and(|ending| ending == "ron")
+                && is_whole(path)
+                && *path != self.path
         };
         files.filter(is_other).find_map(|path| take(&path, of))
     }
