@@ -316,8 +316,11 @@ pub fn key_of(ui: &Ui, command: &Command) -> Option<String> {
 
 /// Whether the command is heard while a text is edited, which then ends.
 pub fn is_about_files(command: &Command) -> bool {
-    use Command::{New, Open, Quit, Save, SaveAs, SaveImage};
-    matches!(command, New | Open | Quit | Save | SaveAs | SaveImage)
+    use Command::{Export, New, Open, Quit, Save, SaveAs, SaveImage};
+    matches!(
+        command,
+        Export | New | Open | Quit | Save | SaveAs | SaveImage
+    )
 }
 
 /// A key as it is printed on it.

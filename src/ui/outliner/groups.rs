@@ -16,7 +16,8 @@ use crate::ui::theme::{GRID, ROW};
 pub struct GroupRows {
     /// The names of groups whose members are not listed.
     pub folded: Vec<String>,
-    renaming: Option<String>,
+    /// The one whose name is edited.
+    pub renaming: Option<String>,
 }
 
 impl GroupRows {

@@ -55,7 +55,10 @@ impl Outliner {
     pub fn show(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         ui.add_space(GRID / 2.0);
         if self.listed.0 != editor.documents() {
+            // What was looked for and named was in the other one.
             self.clear_filter();
+            self.renaming = None;
+            self.group_rows.renaming = None;
         }
         ui.horizontal(|ui| {
             let buttons = if self.filter.is_empty() { 1.0 } else { 2.0 };

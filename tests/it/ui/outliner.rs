@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 use glint::scene::{Scene, Shape, Sphere};
 
-use crate::harness::EditorHarness;
+use crate::harness::{CTRL, EditorHarness};
 
 #[test]
 fn the_outliner_filters_hides_renames_and_reorders() {
@@ -32,6 +32,31 @@ fn the_outliner_filters_hides_renames_and_reorders() {
     assert_eq!(harness.scene().objects.len(), 10);
     harness.press(Modifiers::NONE, Key::Delete);
     assert_eq!(harness.scene().objects.len(), 9);
+}
+
+#[test]
+fn a_name_that_was_edited_is_not_edited_in_the_next_scene() {
+    let mut harness = EditorHarness::new();
+    let field = |harness: &EditorHarness| harness.window.query_by_label("new name").is_some();
+    harness.click("Sphere 1");
+    harness.press(Modifiers::NONE, Key::F2);
+    assert!(field(&harness));
+    harness.drop_file("scenes/mirrors.ron".into());
+    assert!(harness.editor().path().is_some() && !field(&harness));
+
+    // While a name is edited, exports can be asked for as files can be saved: that ends it.
+    let name = harness.scene().objects[0].name.clone();
+    harness.click(&name);
+    harness.press(Modifiers::NONE, Key::F2);
+    assert!(field(&harness));
+    harness.press(CTRL.plus(Modifiers::SHIFT), Key::E);
+    assert!(
+        harness
+            .window
+            .query_all_by_label("Start export")
+            .next()
+            .is_some()
+    );
 }
 
 #[test]
