@@ -38,6 +38,11 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
         }
     }
 
+    /// The proof that the processor has the lanes.
+    pub fn token(&self) -> L::Token {
+        self.kernel.token
+    }
+
     /// Whether what is traced is for nothing.
     pub fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)

@@ -31,31 +31,20 @@ const PLACES: [u8; POINTS] = {
     places
 };
 
-/// The point of each place.
-const AT_PLACES: [u8; POINTS] = {
-    let mut points = [0; POINTS];
-    let mut point = 0;
-    while point < POINTS {
-        points[PLACES[point] as usize] = point as u8;
-        point += 1;
-    }
-    points
-};
-
 /// What was seen at a point.
 #[derive(Clone, Copy, Debug)]
 struct Sample<R> {
-    color: [R; 3],
-    near: R,
+    /// Red, green and blue, and what is near: one row, so that they are handled in step.
+    values: [R; 4],
     signature: u32,
 }
 
 impl<R: Real> Sample<R> {
     #[inline(always)]
     fn of(traced: &Traced<R>, index: usize) -> Self {
+        let [red, green, blue] = traced.channels();
         Self {
-            color: [traced.red[index], traced.green[index], traced.blue[index]],
-            near: traced.near[index],
+            values: [red[index], green[index], blue[index], traced.near[index]],
             signature: traced.signature[index],
         }
     }
@@ -68,8 +57,8 @@ pub struct Lattice<R> {
     stride: usize,
     /// 1 + the index of each point's sample, 0 where there is none; pixel by pixel.
     indices: Vec<u32>,
-    /// The points that have a sample, in order of their samples.
-    points: Vec<u32>,
+    /// Column and row of the points that have a sample, in order of their samples.
+    points: Vec<[u16; 2]>,
     samples: Vec<Sample<R>>,
 }
 
@@ -100,7 +89,7 @@ impl Cell {
 
 /// The largest difference of four numbers.
 #[inline(always)]
-pub fn range<R: Real>(a: R, b: R, c: R, d: R) -> R {
+pub fn range<L: SimdFloat>(a: L, b: L, c: L, d: L) -> L {
     a.max(b).max(c.max(d)) - a.min(b).min(c.min(d))
 }
 
@@ -141,19 +130,16 @@ impl<R: Real> Limits<R> {
         self.depth + 1
     }
 
-    /// Whether the inside of a cell must be looked at, by the contrast of its corners, whether they
-    /// see the same, and whether something thin is near.
+    /// The contrast of the corners of a cell above which its inside must be looked at, by whether they see
+    /// the same. It must be as well where something thin is near: corners say nothing of what passes between them,
+    /// whether they see the same, others of the same kind, or neither.
     #[inline(always)]
-    pub fn want_more(self, contrast: R, is_same: bool, is_near: bool) -> bool {
-        let limit = if is_same {
+    pub fn contrast(self, is_same: bool) -> R {
+        if is_same {
             self.contrast
         } else {
             self.edge_contrast
-        };
-        let differs = contrast > limit;
-        // Corners say nothing of what passes between them, whether they see the same, others of the same kind, or
-        // neither.
-        is_near | differs
+        }
     }
 }
 
@@ -171,8 +157,9 @@ impl<R: Real> Lattice<R> {
     /// Forgets the tile before, and starts with the corners of these pixels, among those of all.
     #[inline(always)]
     pub fn start(&mut self, tile: &Tile, corners: &Traced<R>, pixels: &mut [Cell]) {
-        for &point in &self.points {
-            self.indices[point as usize] = 0;
+        for &[x, y] in &self.points {
+            let point = self.point(x.into(), y.into());
+            self.indices[point] = 0;
         }
         self.points.clear();
         self.stride = tile.width() + 1;
@@ -208,7 +195,7 @@ impl<R: Real> Lattice<R> {
         let point = self.point(x, y);
         let index = &mut self.indices[point];
         if *index == 0 {
-            self.points.push(point as u32);
+            self.points.push([x as u16, y as u16]);
             *index = self.points.len() as u32;
         }
         *index - 1
@@ -219,14 +206,10 @@ impl<R: Real> Lattice<R> {
     pub fn wanted_samples<L: SimdFloat<Real = R>>(&self, tile: &Tile, samples: &mut Samples<R>) {
         samples.clear();
         let step = 1.0 / FINEST as f64;
-        for &point in &self.points[self.samples.len()..] {
-            let (pixel, place) = (point as usize / POINTS, point as usize % POINTS);
-            let inside = AT_PLACES[place] as usize;
-            let x = pixel % self.stride * FINEST + inside % FINEST;
-            let y = pixel / self.stride * FINEST + inside / FINEST;
+        for &[x, y] in &self.points[self.samples.len()..] {
             samples.push(
-                R::from_f64(tile.columns.start as f64 + x as f64 * step),
-                R::from_f64(tile.rows.start as f64 + y as f64 * step),
+                R::from_f64(tile.columns.start as f64 + f64::from(x) * step),
+                R::from_f64(tile.rows.start as f64 + f64::from(y) * step),
             );
         }
         samples.pad(L::WIDTH);
@@ -253,16 +236,18 @@ impl<R: Real> Lattice<R> {
         let [a, b, c, d] = self.corners(cell);
         let differing =
             (a.signature ^ b.signature) | (a.signature ^ c.signature) | (a.signature ^ d.signature);
-        let is_same = differing == 0;
-        let reach = R::from_f64(NEAR / FINEST as f64 * f64::from(cell.side));
-        let is_near = a.near.min(b.near).min(c.near.min(d.near)) < reach;
-        let mut contrast = R::ZERO;
-        for channel in 0..3 {
-            let (one, other) = (a.color[channel], b.color[channel]);
-            contrast = contrast + range(one, other, c.color[channel], d.color[channel]);
+        let (mut least, mut ranges) = ([R::ZERO; 4], [R::ZERO; 4]);
+        for index in 0..4 {
+            let (a, b) = (a.values[index], b.values[index]);
+            let (c, d) = (c.values[index], d.values[index]);
+            least[index] = a.min(b).min(c.min(d));
+            ranges[index] = range(a, b, c, d);
         }
-        let side = R::from_f64(f64::from(cell.side) / FINEST as f64);
-        depth < limits.finest_depth() && limits.at(side).want_more(contrast, is_same, is_near)
+        let contrast = ranges[0] + ranges[1] + ranges[2];
+        let side = f64::from(cell.side) / FINEST as f64;
+        let is_near = least[3] < R::from_f64(NEAR * side);
+        let limit = limits.at(R::from_f64(side)).contrast(differing == 0);
+        depth < limits.finest_depth() && (is_near || contrast > limit)
     }
 
     /// Adds the mean of a cell's corners to its pixel, by its area.
@@ -271,10 +256,14 @@ impl<R: Real> Lattice<R> {
         let side = f64::from(cell.side) / FINEST as f64;
         let share = R::from_f64(side * side / 4.0);
         let [a, b, c, d] = self.corners(cell);
-        for (channel, sum) in colors.channels.iter_mut().enumerate() {
-            let upper = a.color[channel] + b.color[channel];
-            let lower = c.color[channel] + d.color[channel];
-            sum[pixel] = sum[pixel] + (upper + lower) * share;
+        let mut part = [R::ZERO; 4];
+        for (index, part) in part.iter_mut().enumerate() {
+            let upper = a.values[index] + b.values[index];
+            let lower = c.values[index] + d.values[index];
+            *part = (upper + lower) * share;
+        }
+        for (sum, part) in colors.channels.iter_mut().zip(part) {
+            sum[pixel] = sum[pixel] + part;
         }
     }
 

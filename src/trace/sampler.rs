@@ -8,7 +8,7 @@ use super::lattice::{Cell, Lattice, Limits, range};
 use super::samples::{Edges, Samples, Traced};
 use super::thresholds::{FINEST, LOOKING, NEAR};
 use super::tile::{Tile, TileColors};
-use crate::simd::{Real, SimdFloat};
+use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
 
 /// Samples the pixels of tiles; its buffers are used again.
 pub struct Sampler<L: SimdFloat> {
@@ -23,9 +23,6 @@ pub struct Sampler<L: SimdFloat> {
     unsorted: Traced<L::Real>,
     samples: Samples<L::Real>,
     traced: Traced<L::Real>,
-    /// The largest difference of a pixel's corners, for each pixel of a tile.
-    contrast: Vec<L::Real>,
-    wanting: Vec<bool>,
     lattice: Lattice<L::Real>,
     cells: Vec<Cell>,
     split: Vec<Cell>,
@@ -42,8 +39,6 @@ impl<L: SimdFloat> Sampler<L> {
             unsorted: Traced::default(),
             samples: Samples::default(),
             traced: Traced::default(),
-            contrast: Vec::new(),
-            wanting: Vec::new(),
             lattice: Lattice::new(),
             cells: Vec::new(),
             split: Vec::new(),
@@ -151,7 +146,7 @@ impl<L: SimdFloat> Sampler<L> {
         let columns = tile.columns.start..tile.columns.end + 1;
         let rows = tile.rows.start..tile.rows.end + 1;
         self.trace(engine, seen, (columns, rows), ((0.0, 0.0), Edges::Near));
-        self.judge(tile, limits, colors);
+        self.judge(engine.token(), tile, limits, colors);
         if self.split.is_empty() {
             return;
         }
@@ -188,56 +183,65 @@ impl<L: SimdFloat> Sampler<L> {
     /// smooth nearly everywhere, so this is what their smoothing costs: one loop over the whole tile,
     /// with a pixel at the end of each row that is none.
     #[inline(always)]
-    fn judge(&mut self, tile: &Tile, limits: Limits<L::Real>, colors: &mut TileColors<L::Real>) {
-        let stride = tile.width() + 1;
+    fn judge(
+        &mut self,
+        token: L::Token,
+        tile: &Tile,
+        limits: Limits<L::Real>,
+        colors: &mut TileColors<L::Real>,
+    ) {
+        let (width, stride) = (tile.width(), tile.width() + 1);
         let length = stride * tile.rows.len() - 1;
-        colors.clear(stride, length);
-        self.contrast.clear();
-        self.contrast.resize(length, L::Real::ZERO);
-        let quarter = L::Real::from_f64(0.25);
-        for (means, traced) in colors.channels.iter_mut().zip(self.traced.channels()) {
-            let corners = corners_of(traced, stride, length);
-            for ((mean, contrast), ((&a, &b), (&c, &d))) in
-                means.iter_mut().zip(&mut self.contrast).zip(corners)
-            {
-                *mean = ((a + b) + (c + d)) * quarter;
-                *contrast = *contrast + range(a, b, c, d);
-            }
-        }
-        self.wanting.clear();
-        let signatures = corners_of(&self.traced.signature, stride, length);
-        for (((&a, &b), (&c, &d)), &contrast) in signatures.zip(&self.contrast) {
-            let is_same = ((a ^ b) | (a ^ c) | (a ^ d)) == 0;
-            self.wanting
-                .push(limits.want_more(contrast, is_same, false));
-        }
-        let reach = L::Real::from_f64(NEAR);
-        let nears = corners_of(&self.traced.near, stride, length);
-        for (((&a, &b), (&c, &d)), wanting) in nears.zip(&mut self.wanting) {
-            *wanting |= a.min(b).min(c.min(d)) < reach;
-        }
+        colors.resize(stride, length.next_multiple_of(L::WIDTH));
+        self.traced.lengthen(L::WIDTH);
         self.split.clear();
-        for row in 0..tile.rows.len() {
-            for column in 0..tile.width() {
-                if self.wanting[row * stride + column] {
-                    self.split.push(Cell::pixel(column, row));
-                    for channel in &mut colors.channels {
-                        channel[row * stride + column] = L::Real::ZERO;
-                    }
+        let quarter = L::splat(token, L::Real::from_f64(0.25));
+        let reach = quarter.like_f64(NEAR);
+        for first in (0..length).step_by(L::WIDTH) {
+            let mut contrast = quarter.like(L::Real::ZERO);
+            for (means, traced) in colors.channels.iter_mut().zip(self.traced.channels()) {
+                let [a, b, c, d] = corners_at::<L>(token, traced, first, stride);
+                (((a + b) + (c + d)) * quarter).store(&mut means[first..]);
+                contrast = contrast + range(a, b, c, d);
+            }
+            let mut limit = [L::Real::ZERO; MAX_LANES];
+            let signatures = &self.traced.signature[first..];
+            for (lane, limit) in limit[..L::WIDTH].iter_mut().enumerate() {
+                let own = signatures[lane];
+                let across = own ^ signatures[lane + 1];
+                let below =
+                    (own ^ signatures[lane + stride]) | (own ^ signatures[lane + stride + 1]);
+                *limit = limits.contrast(across | below == 0);
+            }
+            let [a, b, c, d] = corners_at::<L>(token, &self.traced.near, first, stride);
+            let is_near = a.min(b).min(c.min(d)).less(reach);
+            let wanting = is_near | L::load(token, &limit).less(contrast);
+            let mut left = wanting.bits();
+            while left != 0 {
+                let index = first + left.trailing_zeros() as usize;
+                left &= left - 1;
+                let (column, row) = (index % stride, index / stride);
+                if column == width || row >= tile.rows.len() {
+                    continue;
+                }
+                self.split.push(Cell::pixel(column, row));
+                for channel in &mut colors.channels {
+                    channel[index] = L::Real::ZERO;
                 }
             }
         }
     }
 }
 
-/// The corners of cells: upper left and right, lower left and right.
+/// What was seen at the corners of cells, from one on: upper left and right, lower left and right.
 #[inline(always)]
-fn corners_of<T>(
-    values: &[T],
+fn corners_at<L: SimdFloat>(
+    token: L::Token,
+    traced: &[L::Real],
+    first: usize,
     stride: usize,
-    cells: usize,
-) -> impl Iterator<Item = ((&T, &T), (&T, &T))> {
-    let at = |from: usize| &values[from..from + cells];
-    let upper = at(0).iter().zip(at(1));
-    upper.zip(at(stride).iter().zip(at(stride + 1)))
+) -> [L; 4] {
+    let at = |from: usize| L::load(token, &traced[from..]);
+    let below = first + stride;
+    [at(first), at(first + 1), at(below), at(below + 1)]
 }

@@ -170,4 +170,19 @@ impl<R: Real> Traced<R> {
         self.near.resize(noted, R::ZERO);
         self.signature.resize(noted, 0);
     }
+
+    /// Makes room for packets that begin at any sample; what is seen there means nothing.
+    #[inline(always)]
+    pub fn lengthen(&mut self, lanes: usize) {
+        let length = self.red.len() + lanes;
+        for column in [
+            &mut self.red,
+            &mut self.green,
+            &mut self.blue,
+            &mut self.near,
+        ] {
+            column.resize(length, R::ZERO);
+        }
+        self.signature.resize(length, 0);
+    }
 }

@@ -95,12 +95,19 @@ impl<R: Real> TileColors<R> {
         self.channels.each_ref().map(Vec::as_slice)
     }
 
-    /// Makes all pixels black.
-    pub fn clear(&mut self, stride: usize, length: usize) {
+    /// Makes room, and leaves there what it was.
+    pub fn resize(&mut self, stride: usize, length: usize) {
         self.stride = stride;
         for channel in &mut self.channels {
-            channel.clear();
             channel.resize(length, R::ZERO);
+        }
+    }
+
+    /// Makes all pixels black.
+    pub fn clear(&mut self, stride: usize, length: usize) {
+        self.resize(stride, length);
+        for channel in &mut self.channels {
+            channel.fill(R::ZERO);
         }
     }
 }
