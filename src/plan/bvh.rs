@@ -129,12 +129,8 @@ impl<R: Real> Node<R> {
 
     /// The box at `place` as if it were a member.
     fn get(&self, place: usize) -> Member<R> {
-        let corner = |planes: &[[R; GROUP]; 3]| Vec3::from(planes.map(|plane| plane[place]));
         Member {
-            bounds: BoundingBox {
-                low: corner(&self.planes[0]),
-                high: corner(&self.planes[1]),
-            },
+            bounds: self.bounds(place),
             thickness: self.thickness[place],
         }
     }

@@ -81,13 +81,9 @@ impl Recovery {
         let entries = fs::read_dir(self.path.parent()?).ok()?;
         let files = entries.filter_map(|entry| Some(entry.ok()?.path()));
         // What was being written when a program was killed has another name: the file before it counts.
-        let is_whole = |path: &PathBuf| {
-            let name = path.file_name().map(|name| name.to_string_lossy());
-            name.is_some_and(|name| name.starts_with(NAME))
-        };
         let is_other = |path: &PathBuf| {
-            path.extension().is_some_and(|ending| ending == "ron")
-                && is_whole(path)
+            let name = path.file_name().map(|name| name.to_string_lossy());
+            name.is_some_and(|name| name.starts_with(NAME) && name.ends_with(".ron"))
                 && *path != self.path
         };
         files.filter(is_other).find_map(|path| take(&path, of))
