@@ -23,6 +23,18 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
     beside.place_durably()
 }
 
+/// Copies a file to `NAME.bak`: that path.
+///
+/// # Errors
+/// Whatever the system answers.
+pub fn back_up(path: &Path) -> io::Result<PathBuf> {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".bak");
+    let backup = PathBuf::from(name);
+    write_atomic(&backup, &fs::read(path)?)?;
+    Ok(backup)
+}
+
 /// A new file beside the one whose place it will take: nobody else writes to it, and where it does not come to
 /// that, it is removed; [`remove_leftovers`] does so where the program was killed.
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! `glint export`: an animation as files, taken up where it was left; `glint job`: the same for a
 //! farm.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -12,10 +12,9 @@ use super::error::{CliError, say};
 use super::render::sized;
 use super::scene::read_scene;
 use crate::export::{ExportError, ExportStep, Exported, Exporting};
-use crate::export::{Frames, Pattern, Sequence, Video, job_template};
-use crate::files::write_atomic;
+use crate::export::{Frames, Pattern, Sequence, Video, write_job};
 use crate::image::Format;
-use crate::scene::{MAX_SIDE, Method as _, Sampling, Scene};
+use crate::scene::{Document, MAX_SIDE, Method as _, Sampling, Scene};
 use crate::trace::{RenderControl, Threads};
 
 /// What is exported, for a folder and for a job.
@@ -222,28 +221,16 @@ impl ProgressReporter {
 /// [`CliError`]: arguments that fit no scene, or a file that cannot be written.
 pub fn run_job(args: &JobArgs) -> Result<(), CliError> {
     let sequence = args.what.sequence(PathBuf::from("frames"))?;
-    let scene = &args.what.scene;
-    let stem = scene.file_stem().unwrap_or_default().to_string_lossy();
-    let file = scene.file_name().unwrap_or_default().to_string_lossy();
-    let text = job_template(&sequence, &stem, &file);
-    let written = write_atomic(&args.output, text.as_bytes());
-    let written = written.and_then(|()| copy_beside(scene, &args.output));
-    let path = args.output.display();
-    written.map_err(|error| CliError::failed(format!("cannot write {path}: {error}")))?;
+    let (file, path) = (&args.what.scene, &args.output);
+    let job = write_job(&Document::load(file)?, Some(file), &sequence, path);
+    let job = job.map_err(CliError::failed)?;
     let frames = counted(sequence.frames.count());
-    say(&format!("{path}: a job of {frames}"));
-    Ok(())
-}
-
-/// Copies the scene into the template's folder, unless it is there.
-fn copy_beside(scene: &Path, template: &Path) -> std::io::Result<()> {
-    let Some(name) = scene.file_name() else {
-        return Ok(());
-    };
-    let copy = template.with_file_name(name);
-    let is_same = |path: &Path| std::fs::canonicalize(path).ok();
-    if is_same(scene) == is_same(&copy) {
-        return Ok(());
+    say(&format!("{}: a job of {frames}", path.display()));
+    if let Some(backup) = job.backup {
+        let (scene, backup) = (job.scene.display(), backup.display());
+        say(&format!(
+            "{scene} held something else, which is kept as {backup}"
+        ));
     }
-    write_atomic(&copy, &std::fs::read(scene)?)
+    Ok(())
 }

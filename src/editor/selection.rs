@@ -2,6 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
+use glam::DVec3;
+
 use super::item::{Item, Kind};
 use crate::scene::Scene;
 
@@ -60,6 +62,17 @@ impl Selected {
     /// Whether it is among them.
     pub fn has(&self, item: Item) -> bool {
         self.0.contains(&item)
+    }
+
+    /// The middle of all that have a place; `None` if nothing has.
+    pub fn middle(&self, scene: &Scene) -> Option<DVec3> {
+        let middles = self.0.iter().filter_map(|item| match item.kind {
+            Kind::Object => Some(scene.objects.get(item.index)?.shape.middle()),
+            Kind::Light => Some(scene.lights.get(item.index)?.position),
+            Kind::Pack => None,
+        });
+        let middles: Vec<DVec3> = middles.collect();
+        (!middles.is_empty()).then(|| middles.iter().sum::<DVec3>() / middles.len() as f64)
     }
 
     /// The same with `item`, or without it if it was among them.

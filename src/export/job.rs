@@ -2,7 +2,14 @@
 //!
 //! <https://github.com/OpenJobDescription/openjd-specifications>, version 2023-09 with task chunking.
 
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::error::ExportError;
+use super::save::write_text;
 use super::sequence::Sequence;
+use crate::files::{back_up, is_same_file, write_atomic};
+use crate::scene::{Document, SceneError};
 
 /// Frames that one task makes, unless the farm says otherwise.
 const CHUNK: u32 = 10;
@@ -10,9 +17,71 @@ const CHUNK: u32 = 10;
 /// The template, with a name between @ signs for each value.
 const TEMPLATE: &str = include_str!("../../assets/job_template.yaml");
 
+/// Why a job could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum JobError {
+    /// Not the template, or not the copy of the scene.
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    /// The scene has no text.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+}
+
+/// What [`write_job`] has written.
+#[derive(Debug)]
+pub struct Job {
+    /// The scene that is rendered, beside the template.
+    pub scene: PathBuf,
+    /// Where what was there under its name is now, if it was something else.
+    pub backup: Option<PathBuf>,
+}
+
+/// Writes the template of a job to `path`, and the scene beside it, unless `file`, which holds this document, is
+/// there. A farm gets no other files: meshes that are files are taken in, in a copy of another name.
+///
+/// # Errors
+/// [`JobError`]: what could not be written.
+pub fn write_job(
+    document: &Document,
+    file: Option<&Path>,
+    sequence: &Sequence,
+    path: &Path,
+) -> Result<Job, JobError> {
+    let named = file.unwrap_or(path);
+    let stem = named.file_stem().unwrap_or_default().to_string_lossy();
+    let has_files = document.scene.has_mesh_files();
+    let end = if has_files { "-whole" } else { "" };
+    let name = format!("{stem}{end}.ron");
+    let scene = path.with_file_name(&name);
+    write_text(path, &job_template(sequence, &stem, &name))?;
+    let disk = |source| ExportError::Disk {
+        path: scene.clone(),
+        source,
+    };
+    let text = match file {
+        Some(file) if !has_files && is_same_file(file, &scene) => {
+            return Ok(Job {
+                scene,
+                backup: None,
+            });
+        }
+        Some(file) if !has_files => fs::read(file).map_err(disk)?,
+        _ => {
+            let (header, scene) = (document.header.clone(), document.scene.taken_in());
+            Document { header, scene }.to_text()?.into_bytes()
+        }
+    };
+    let is_other = fs::read(&scene).is_ok_and(|there| there != text);
+    let backup = is_other.then(|| back_up(&scene)).transpose();
+    let backup = backup.map_err(disk)?;
+    write_atomic(&scene, &text).map_err(disk)?;
+    Ok(Job { scene, backup })
+}
+
 /// The template: frames in chunks, then a video of all of them. The scene is an attached file, which
 /// lies beside the template under the name `scene`; `name` is what the job is called.
-pub fn job_template(sequence: &Sequence, name: &str, scene: &str) -> String {
+fn job_template(sequence: &Sequence, name: &str, scene: &str) -> String {
     // A JSON text in quotation marks is a YAML one too.
     let quoted = |text: &str| serde_json::Value::from(text).to_string();
     let (width, height) = sequence.size();

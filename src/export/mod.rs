@@ -23,7 +23,7 @@ mod povray;
 pub use error::ExportError;
 pub use exporting::{ExportStep, Exported, Exporting};
 pub use frames::{Frames, FramesError};
-pub use job::job_template;
+pub use job::{Job, JobError, write_job};
 pub use manifest::{Hash, Manifest};
 pub use pattern::{Pattern, PatternError};
 pub use povray::{ByPovray, PovrayError, by_povray, povray_differences, povray_text};

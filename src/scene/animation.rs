@@ -187,8 +187,13 @@ impl Animation {
 
     /// Number of frames: one at the start and one every 1/fps seconds, up to the last key.
     pub fn frame_count(&self) -> u64 {
+        Self::frames_in(self.duration(), self.frames_per_second)
+    }
+
+    /// Frames of so many seconds, with that at zero.
+    pub fn frames_in(seconds: f64, frames_per_second: f64) -> u64 {
         // A last key within a millionth of a frame's time is meant to be on it.
-        (self.duration() * self.frames_per_second + 1e-6).floor() as u64 + 1
+        (seconds * frames_per_second + 1e-6).floor() as u64 + 1
     }
 
     /// Time of a frame in seconds; frames are counted from 1.

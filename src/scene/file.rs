@@ -12,7 +12,7 @@ use super::check::{Problem, check};
 use super::locate::{claimed_version, has_inner_comments, header, locate};
 use super::parse_errors::sentence;
 use super::whole::{Scene, VERSION};
-use crate::files::{Stamp, time_of, write_atomic};
+use crate::files::{Stamp, back_up, time_of, write_atomic};
 
 /// The RON text of the demo scene, as embedded in the program.
 pub const DEMO_TEXT: &str = include_str!("../../scenes/demo.ron");
@@ -243,18 +243,9 @@ impl Document {
             path: path.to_owned(),
             source,
         };
-        let old = fs::read_to_string(path)
-            .ok()
-            .filter(|text| has_inner_comments(text));
-        let backup = old
-            .map(|text| {
-                let mut name = path.as_os_str().to_owned();
-                name.push(".bak");
-                let backup = PathBuf::from(name);
-                write_atomic(&backup, text.as_bytes()).map(|()| backup)
-            })
-            .transpose()
-            .map_err(disk)?;
+        let loses_comments = fs::read_to_string(path).is_ok_and(|text| has_inner_comments(&text));
+        let backup = loses_comments.then(|| back_up(path)).transpose();
+        let backup = backup.map_err(disk)?;
         write_atomic(path, text.as_bytes()).map_err(disk)?;
         Ok((backup, Stamp::of(text.as_bytes(), time_of(path))))
     }

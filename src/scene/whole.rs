@@ -220,6 +220,14 @@ impl Scene {
         meshes.sum()
     }
 
+    /// Whether the triangles of some mesh are in a file of their own.
+    pub fn has_mesh_files(&self) -> bool {
+        self.objects.iter().any(|object| match &object.shape {
+            Shape::Mesh(mesh) => matches!(mesh.source, MeshSource::File { .. }),
+            _ => false,
+        })
+    }
+
     /// The objects whose meshes could not be read, and why.
     pub fn mesh_problems(&self) -> impl Iterator<Item = (usize, &str)> {
         let objects = self.objects.iter().enumerate();

@@ -14,7 +14,7 @@ use super::interchange::{export_job, export_path, export_povray, import_path, im
 use super::outside::{Theirs, Watch};
 use super::prompts::{Answer, PathPrompt, ask_about_changes, ask_to_leave, ask_to_quit};
 use super::reading::{Read, Reading};
-use crate::editor::Editor;
+use crate::editor::{Action, Editor, Time};
 use crate::files::Stamp;
 use crate::scene::{Document, EXAMPLES, SceneError};
 
@@ -113,8 +113,10 @@ impl Files {
         self.question.is_some()
     }
 
-    /// Does `next`, after asking about unsaved changes.
+    /// Does `next`, after asking about unsaved changes. A flight that is still being recorded becomes keys, which
+    /// are some.
     pub fn start(&mut self, ctx: &Context, editor: &mut Editor, next: Next) -> Option<FileOutcome> {
+        editor.apply(Action::Time(Time::Stop));
         if editor.is_dirty() {
             self.question = Some(Question::Unsaved(next));
             return None;
@@ -123,9 +125,9 @@ impl Files {
     }
 
     /// Quits, after asking whether that is meant.
-    pub fn ask_to_quit(&mut self, editor: &Editor) {
-        let is_dirty = editor.is_dirty();
-        self.question = Some(if is_dirty {
+    pub fn ask_to_quit(&mut self, editor: &mut Editor) {
+        editor.apply(Action::Time(Time::Stop));
+        self.question = Some(if editor.is_dirty() {
             Question::Unsaved(Next::Quit)
         } else {
             Question::Quit

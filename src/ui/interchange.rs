@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use super::dialogs::Ask;
 use crate::animate::{from_table, from_text, to_table, to_text};
 use crate::editor::{Action, Edit, Editor};
-use crate::export::{Pattern, Sequence, job_template, povray_text, write_text};
+use crate::export::{Job, Pattern, Sequence, povray_text, write_job, write_text};
+use crate::files::is_same_file;
 use crate::image::Format;
 use crate::mesh::Part;
 use crate::scene::{Animation, read_text};
@@ -71,23 +72,34 @@ pub fn export_povray(editor: &mut Editor, path: &Path) {
     }
 }
 
-/// The template, and the scene as it is now beside it.
+/// The template of a job, and the scene as it is now beside it.
 pub fn export_job(editor: &mut Editor, path: &Path) {
-    let scene = path.with_extension("ron");
-    match write_job(editor, path, &scene) {
-        Ok(()) => editor.notify(format!("Saved {} and {}", path.display(), scene.display())),
+    match write(editor, path) {
+        Ok(Job { scene, backup }) => {
+            let kept = backup.map_or(String::new(), |backup| {
+                format!("; what was there is kept as {}", backup.display())
+            });
+            let (path, scene) = (path.display(), scene.display());
+            editor.notify(format!("Saved {path} and {scene}{kept}"));
+        }
         Err(error) => editor.report_error_in(Ask::ExportJob.title(), error.to_string()),
     }
 }
 
-fn write_job(editor: &Editor, path: &Path, scene: &Path) -> Result<(), Box<dyn Error>> {
-    let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    let file = scene.file_name().unwrap_or_default().to_string_lossy();
+fn write(editor: &Editor, path: &Path) -> Result<Job, Box<dyn Error>> {
+    let own = editor.path();
+    let beside = path.with_extension("ron");
+    if editor.is_dirty() && own.is_some_and(|own| is_same_file(own, &beside)) {
+        let sentence = format!(
+            "{} is rendered as it is on the disk; save it first",
+            beside.display()
+        );
+        return Err(sentence.into());
+    }
     let (pattern, folder) = (Pattern::default(), PathBuf::from("frames"));
     let sequence = Sequence::new(editor.scene().clone(), None, pattern, Format::Ppm, folder)?;
-    write_text(path, &job_template(&sequence, &name, &file))?;
-    editor.document().save(scene)?;
-    Ok(())
+    let own = own.filter(|_| !editor.is_dirty());
+    Ok(write_job(&editor.document(), own, &sequence, path)?)
 }
 
 fn is_table(path: &Path) -> bool {

@@ -118,6 +118,9 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
     let response = response.inner;
     // Formatting rounds what is shown; only a change by hand may reach the scene.
     let is_cancelled = is_cancelled(ui, &response);
+    if let Some(pasted) = pasted.filter(|_| is_cancelled) {
+        pasted.set(None);
+    }
     // A field that is left as it was entered gives back what it showed.
     let is_as_shown = !response.dragged() && shown(*value).parse() == Ok(edited);
     if response.changed() && edited.is_finite() && !is_cancelled && !is_as_shown {

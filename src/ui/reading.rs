@@ -66,7 +66,8 @@ impl Reading {
     /// Whether the document was changed since.
     pub fn is_outrun(&self, editor: &Editor) -> bool {
         let is_other = !Arc::ptr_eq(&self.before, editor.scene());
-        (editor.is_dirty() && is_other) || editor.is_making_keys()
+        let is_flying = editor.timeline().recorded().is_some() || editor.is_making_keys();
+        (editor.is_dirty() && is_other) || is_flying
     }
 
     /// The name of the file.

@@ -279,7 +279,7 @@ impl App {
         } else if self.editor.selection != Selection::Camera {
             self.editor.apply(Action::Select(Selection::Camera));
         } else if last.is_some_and(|last| time - last < TWICE) {
-            self.files.ask_to_quit(&self.editor);
+            self.files.ask_to_quit(&mut self.editor);
         } else {
             self.escaped = Some(time);
             self.editor
@@ -367,7 +367,8 @@ fn add(editor: &mut Editor, part: Scene, word: &'static str) {
 /// Does to everything that is selected what can be done to more than one thing.
 fn on_many(editor: &mut Editor, command: &Command) {
     let mut items = editor.selected().items().to_vec();
-    items.sort_unstable_by_key(|item| item.index);
+    // Packs first: what wears them is deleted before them.
+    items.sort_unstable_by_key(|item| (item.kind != Kind::Pack, item.index));
     let count = items.len();
     let before = editor.revision();
     match command {
@@ -381,6 +382,11 @@ fn on_many(editor: &mut Editor, command: &Command) {
             }
         }
         Command::Duplicate => {
+            if items.iter().all(|item| item.kind == Kind::Pack) {
+                let edits = items.iter().rev().map(|item| Edit::Duplicate(*item));
+                let edit = Edit::Each(edits.collect(), format!("Duplicate {count} items"));
+                return editor.apply(Action::Edit(edit));
+            }
             let part = excerpt(editor.scene(), editor.selected());
             add(editor, part, "Duplicate");
         }

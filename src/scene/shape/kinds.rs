@@ -106,6 +106,14 @@ macro_rules! shapes {
                 match self { $(Self::$kind(shape) => shape.position()),* }
             }
 
+            /// The middle of one that ends, or where it is.
+            pub fn middle(&self) -> DVec3 {
+                match self.bounds() {
+                    Some((low, high)) => low * 0.5 + high * 0.5,
+                    None => self.position(),
+                }
+            }
+
             /// The same shape, moved.
             #[must_use]
             pub fn moved(&self, by: DVec3) -> Self {

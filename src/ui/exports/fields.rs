@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::editor::Editor;
 use crate::export::{Frames, FramesError, Pattern, PatternError, Sequence, SequenceError, Video};
 use crate::image::Format;
-use crate::scene::{MAX_SIDE, Method as _, Problem, Sampling, Scene};
+use crate::scene::{Animation, MAX_SIDE, Method as _, Problem, Sampling, Scene};
 use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
 use crate::ui::requests::UiRequests;
@@ -31,9 +31,21 @@ const EXR_SHARE: f64 = 0.6;
 /// What a scene asks for itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Own {
-    frames: String,
+    /// How long its animation is.
+    #[serde(default)]
+    seconds: f64,
     size: (u32, u32),
     fps: f64,
+}
+
+impl Own {
+    /// All frames at a rate, as they are typed.
+    fn frames(&self, fps: f64) -> String {
+        match Animation::frames_in(self.seconds, fps) {
+            1 => "1".to_owned(),
+            count => format!("1-{count}"),
+        }
+    }
 }
 
 /// What is asked for.
@@ -64,18 +76,15 @@ impl Settings {
         let folder = folder.strip_prefix(&here).unwrap_or(folder);
         let title = editor.title();
         let stem = title.strip_suffix(".ron").unwrap_or(&title);
-        let frames = match scene.animation.frame_count() {
-            1 => "1".to_owned(),
-            count => format!("1-{count}"),
+        let own = Own {
+            seconds: scene.animation.duration(),
+            size: (scene.render.width, scene.render.height),
+            fps: scene.animation.frames_per_second,
         };
         Self {
             folder: folder.join(format!("{stem} frames")).display().to_string(),
-            own: Own {
-                frames: frames.clone(),
-                size: (scene.render.width, scene.render.height),
-                fps: scene.animation.frames_per_second,
-            },
-            frames,
+            frames: own.frames(own.fps),
+            own,
             name: Pattern::default().text(),
             format: Format::Ppm,
             width: scene.render.width,
@@ -89,17 +98,31 @@ impl Settings {
     /// The same for a scene that asks for `fresh` now: what was the scene's own is so again.
     pub fn for_scene(&self, fresh: Self) -> Self {
         let mut settings = self.clone();
-        if self.frames == self.own.frames {
-            settings.frames.clone_from(&fresh.frames);
-        }
         if (self.width, self.height) == self.own.size {
             (settings.width, settings.height) = fresh.own.size;
         }
         if self.fps == self.own.fps {
             settings.fps = fresh.fps;
         }
+        if self.has_all_frames() {
+            settings.frames = fresh.own.frames(settings.fps);
+        }
         settings.own = fresh.own;
         settings
+    }
+
+    /// Whether all frames are asked for, however many that are.
+    fn has_all_frames(&self) -> bool {
+        self.frames == self.own.frames(self.fps)
+    }
+
+    /// Another rate; all frames stay all.
+    fn set_fps(&mut self, fps: f64) {
+        let has_all_frames = self.has_all_frames();
+        self.fps = fps;
+        if has_all_frames {
+            self.frames = self.own.frames(fps);
+        }
     }
 
     /// What an export of a document is called.
@@ -268,11 +291,13 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
     ui.end_row();
     ui.weak("time");
     ui.horizontal(|ui| {
-        let fps = DragValue::new(&mut settings.fps)
+        let mut fps = settings.fps;
+        let drag = DragValue::new(&mut fps)
             .range(1.0..=240.0)
             .speed(0.1)
             .suffix(" fps");
-        ui.add(fps).accessible_name("export frames per second");
+        ui.add(drag).accessible_name("export frames per second");
+        settings.set_fps(fps);
         ui.weak("video");
         for video in VIDEOS {
             let hint = match video {

@@ -1,6 +1,7 @@
 //! The selected keys of the camera, and the keys of other values.
 
 use egui::{Button, Ui};
+use glam::DVec3;
 
 use super::camera::place_rows;
 use super::title::title;
@@ -13,7 +14,7 @@ use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, coordinate};
 
-/// Time, way and camera of the selected keys; what several keys do not share is not shown.
+/// Time, way and camera of the selected key; of several, way and pace of the first, which others take on.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let indices = &editor.timeline().selected;
@@ -51,9 +52,14 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         return out.time(Time::SelectKeys(new));
     }
     let changed = animation.with_each(indices, |each| {
-        each.interpolation = key.interpolation;
-        each.easing = key.easing;
-        if indices.len() == 1 {
+        // Of several, what was not changed stays as it is in each.
+        if key.interpolation != first.interpolation {
+            each.interpolation = key.interpolation;
+        }
+        if key.easing != first.easing {
+            each.easing = key.easing;
+        }
+        if key.value != first.value {
             each.value = key.value.clone();
         }
     });
@@ -106,32 +112,15 @@ fn way_rows(rows: &mut Rows, editor: &Editor, key: &mut Key<Camera>) {
     );
 }
 
-/// The middle of what is selected, or of everything.
-pub fn target(editor: &Editor) -> glam::DVec3 {
-    use crate::editor::{Item, Kind, Selection};
+/// The middle of what is selected, or of everything that ends.
+pub fn target(editor: &Editor) -> DVec3 {
     let scene = editor.shown();
-    let selected = match editor.selection {
-        Selection::Item(Item {
-            kind: Kind::Object,
-            index,
-        }) => scene
-            .objects
-            .get(index)
-            .and_then(|object| object.shape.bounds()),
-        Selection::Item(Item {
-            kind: Kind::Light,
-            index,
-        }) => scene
-            .lights
-            .get(index)
-            .map(|light| (light.position, light.position)),
-        _ => None,
-    };
-    let all = scene.objects.iter().filter(|object| object.visible);
-    let all = all.filter_map(|object| object.shape.bounds());
-    let all = all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
-    let bounds = selected.or(all);
-    bounds.map_or(glam::DVec3::splat(0.0), |(low, high)| (low + high) * 0.5)
+    let all = || scene.objects_bounds().map(|(low, high)| (low + high) * 0.5);
+    editor
+        .selected()
+        .middle(scene)
+        .or_else(all)
+        .unwrap_or_default()
 }
 
 fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {

@@ -49,6 +49,8 @@ impl Quality {
 
     /// A row to choose from.
     pub fn show(&mut self, rows: &mut Rows, editor: &Editor, out: &mut UiRequests) {
+        // What was asked about a document that is gone is not answered.
+        self.asked = self.asked.filter(|asked| asked.1 == editor.documents());
         let asked = self.asked.map(|(goal, _)| goal);
         let before = asked.or(self.in_use(editor.shown()).map(|choice| choice.goal));
         let mut goal = before;

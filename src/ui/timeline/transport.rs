@@ -11,6 +11,7 @@ use crate::scene::Animation;
 use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
+use crate::ui::number::is_cancelled;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
 
@@ -178,7 +179,8 @@ fn length(ui: &mut Ui, animation: &Animation, out: &mut UiRequests) {
         .suffix(" s");
     let drag = ui.add(drag).accessible_name("length of the flight");
     let hint = "Length of the flight; another one stretches it";
-    if drag.hint(hint).changed() && seconds.is_finite() {
+    let is_cancelled = is_cancelled(ui, &drag);
+    if drag.hint(hint).changed() && seconds.is_finite() && !is_cancelled {
         let changed = Animation {
             keys: Retime::Stretch(seconds).apply(&animation.keys),
             ..Animation::clone(animation)

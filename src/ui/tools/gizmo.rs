@@ -130,7 +130,7 @@ fn rim(lens: &Lens, center: DVec3, radius: f64) -> Vec<Pos2> {
 
 /// Everything that can be grabbed at what is selected.
 fn handles(lens: &Lens, selected: &Selected, scene: &Scene) -> Vec<Drawn> {
-    let Some(middle) = Subject::middle_of_selected(selected, scene) else {
+    let Some(middle) = selected.middle(scene) else {
         return Vec::new();
     };
     // Of many, nothing is copied: this is done in every frame.

@@ -30,19 +30,10 @@ impl Subject {
         items.filter_map(|item| Self::new(scene, *item)).collect()
     }
 
-    /// The middle of all that is selected and has a place.
-    pub fn middle_of_selected(selected: &Selected, scene: &Scene) -> Option<DVec3> {
-        let middles = selected.items().iter().filter_map(|item| match item.kind {
-            Kind::Object => Some(middle_of_shape(&scene.objects.get(item.index)?.shape)),
-            Kind::Light => Some(scene.lights.get(item.index)?.position),
-            Kind::Pack => None,
-        });
-        mean(middles)
-    }
-
     /// The middle of all.
     pub fn middle_of(subjects: &[Self]) -> Option<DVec3> {
-        mean(subjects.iter().map(Self::middle))
+        let sum: DVec3 = subjects.iter().map(Self::middle).sum();
+        (!subjects.is_empty()).then(|| sum / subjects.len() as f64)
     }
 
     /// The box around it, if it ends.
@@ -68,7 +59,7 @@ impl Subject {
     /// Where it is: the middle of what ends.
     pub fn middle(&self) -> DVec3 {
         match self {
-            Self::Object(_, object) => middle_of_shape(&object.shape),
+            Self::Object(_, object) => object.shape.middle(),
             Self::Light(_, light) => light.position,
         }
     }
@@ -129,22 +120,6 @@ impl Subject {
             }
             Self::Light(index, light) => Edit::Light(*index, light.clone(), field),
         }
-    }
-}
-
-/// The mean of points; `None` of none.
-fn mean(points: impl Iterator<Item = DVec3>) -> Option<DVec3> {
-    let (sum, count) = points.fold((DVec3::ZERO, 0), |(sum, count), point| {
-        (sum + point, count + 1)
-    });
-    (count > 0).then(|| sum / f64::from(count))
-}
-
-/// The middle of a shape that ends, or where it is.
-fn middle_of_shape(shape: &Shape) -> DVec3 {
-    match shape.bounds() {
-        Some((low, high)) => low * 0.5 + high * 0.5,
-        None => shape.position(),
     }
 }
 
