@@ -2,7 +2,7 @@
 
 use std::fs::{self, File};
 use std::io::{self, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::time::SystemTime;
 
 use tempfile::NamedTempFile;
@@ -21,6 +21,13 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
     remove_leftovers(&beside.folder);
     beside.as_file().write_all(bytes)?;
     beside.place_durably()
+}
+
+/// Whether a path that a file names leads to its own folder, or to one within it: nothing is read elsewhere, because
+/// the file may come from a stranger.
+pub fn stays_inside(path: &Path) -> bool {
+    path.components()
+        .all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
 }
 
 /// Copies a file to `NAME.bak`: that path.
@@ -203,6 +210,24 @@ impl Stamp {
             length: bytes.len() as u64,
             modified,
         }
+    }
+
+    /// Of a file that had this hash, as [`Self::hash`] gives it: as it is now, if it holds the same still.
+    pub fn of_hash(hash: &str, path: &Path) -> Option<Self> {
+        let hash = blake3::Hash::from_hex(hash).ok()?;
+        let now = fs::read(path)
+            .ok()
+            .map(|bytes| Self::of(&bytes, time_of(path)));
+        Some(now.filter(|now| now.hash == hash).unwrap_or(Self {
+            hash,
+            length: 0,
+            modified: None,
+        }))
+    }
+
+    /// What tells what the file held, in letters.
+    pub fn hash(&self) -> String {
+        self.hash.to_hex().to_string()
     }
 
     /// Whether the file may hold something else by now, by its length and time.

@@ -25,7 +25,7 @@ pub enum Preset {
     Crane,
     /// Around the target on an ellipse.
     Ellipse,
-    /// An eight that crosses above the target, looking at it.
+    /// An eight in front of the target, looking at it.
     FigureEight,
 }
 

@@ -7,7 +7,7 @@ use clap::Args;
 use super::error::{CliError, say};
 use super::scene::read_scene;
 use crate::export::{povray_text, write_text};
-use crate::scene::{Document, Scene};
+use crate::scene::{Document, Scene, check};
 
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
@@ -55,6 +55,9 @@ fn write_scene(args: &ConvertArgs) -> Result<(), CliError> {
     let input = absolute(&args.input).map_err(CliError::usage)?;
     let output = absolute(&args.output).map_err(CliError::usage)?;
     let scene = Scene::of_mesh_file(&input, output.parent()).map_err(CliError::usage)?;
+    check(&scene).map_err(|problem| {
+        CliError::failed(format!("{}: {}", input.display(), problem.sentence))
+    })?;
     let objects = scene.objects.len();
     let faces: usize = scene.faces();
     let document = Document {

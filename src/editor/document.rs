@@ -13,7 +13,9 @@ use super::selection::{Selected, Selection};
 use super::timeline::Timeline;
 use crate::animate::CameraPath;
 use crate::files::Stamp;
-use crate::scene::{Document, EXAMPLES, Example, Orientation, Scene, SceneError, check_edit};
+use crate::scene::{
+    Document, EXAMPLES, Example, Leftover, Orientation, Scene, SceneError, check_edit,
+};
 
 /// The open document and everything about working on it.
 #[derive(Debug)]
@@ -268,9 +270,16 @@ impl Editor {
         Ok(())
     }
 
-    /// Takes up unsaved work that another run of the program left behind.
-    pub fn recover(&mut self, document: Document, path: Option<PathBuf>) {
-        self.replace(document, path);
+    /// What the document's file held when it was read or written.
+    pub fn stamp(&self) -> Option<&Stamp> {
+        self.stamp.as_ref()
+    }
+
+    /// Takes up unsaved work that another run of the program left behind. What others have written to its file since
+    /// is asked about like other changes from outside.
+    pub fn recover(&mut self, leftover: Leftover) {
+        self.replace(leftover.document, leftover.path);
+        self.stamp = leftover.stamp;
         self.saved = Arc::new(Scene::empty());
         self.is_dirty = true;
         self.tell_missing_meshes();

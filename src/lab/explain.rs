@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::scene::{ColorPack, Scene, Shape};
+use crate::scene::{ColorPack, Scene, Shape, coincidences, unit};
 
 /// Roundings of the largest coordinate by which a ray must have left a surface to meet it again.
 const LEFT: f64 = 1e-10;
@@ -193,9 +193,30 @@ fn nearest(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<Met<'_>> {
         let what = What::Marker(&light.name, &marker.color_pack);
         Some(Met { t, normal, what })
     });
-    objects
+    let met = objects
         .chain(markers)
-        .min_by(|one, other| one.t.total_cmp(&other.t))
+        .min_by(|one, other| one.t.total_cmp(&other.t))?;
+    Some(in_its_place(scene, &met, (origin, direction)).unwrap_or(met))
+}
+
+/// What lies in the surface that is met and comes before it in the list: that is seen.
+fn in_its_place<'a>(
+    scene: &'a Scene,
+    met: &Met<'a>,
+    (origin, direction): (DVec3, DVec3),
+) -> Option<Met<'a>> {
+    let What::Object(later) = met.what else {
+        return None;
+    };
+    let bounds = scene.objects_bounds();
+    let centre = bounds.map_or(scene.camera.position, |(low, high)| low * 0.5 + high * 0.5);
+    let pairs = coincidences(&scene.objects, centre).into_iter();
+    let mut earlier = pairs.filter(|pair| pair.later == later);
+    earlier.find_map(|pair| {
+        let (t, normal) = meet(&scene.objects[pair.earlier].shape, origin, direction)?;
+        let what = What::Object(pair.earlier);
+        Some(Met { t, normal, what })
+    })
 }
 
 /// The name of something that stands between a point and a light.
@@ -257,7 +278,7 @@ fn meet_plane(
     origin: DVec3,
     direction: DVec3,
 ) -> Option<(f64, DVec3)> {
-    let normal = normal.try_normalize()?;
+    let normal = unit(normal)?;
     let t = (point - origin).dot(normal) / direction.dot(normal);
     (t.is_finite() && t > left(origin)).then_some((t, normal))
 }

@@ -235,7 +235,7 @@ impl Study {
     fn ask_povray(&mut self, index: usize, control: &RenderControl) -> Result<(), PovrayError> {
         let scene = self.measurements[index].candidate.scene(&self.scene);
         let drawn = by_povray(&scene, Threads::current(), control)?;
-        let light: Vec<LinearRgb> = drawn.picture.pixels.iter().copied().map(light_of).collect();
+        let light = drawn.picture.to_linear().pixels;
         let dot = &mut self.measurements[index];
         dot.metrics = Some(difference(&light, &self.references[0]));
         dot.rays_per_pixel = drawn.rays as f64 / light.len().max(1) as f64;
@@ -302,11 +302,6 @@ fn draw(
     let size = (scene.render.width as usize, scene.render.height as usize);
     let light = scaled(&light, (tracer.width(), tracer.height()), size);
     Some(eight_bits(light, (size.0, size.1)))
-}
-
-/// A pixel of 8 bits as light.
-fn light_of(pixel: [u8; 4]) -> LinearRgb {
-    [0, 1, 2].map(|channel| f32::from(pixel[channel]) / 255.0)
 }
 
 impl Measurement {

@@ -11,6 +11,7 @@ use gltf::{Accessor, Document};
 
 use super::error::{Fault, excerpt};
 use super::limits::read_companion;
+use crate::files::stays_inside;
 
 /// Exporters do and do not pad.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
@@ -157,6 +158,12 @@ fn read_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, Fault> {
         )));
     }
     let name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
+    if !stays_inside(Path::new(name.as_ref())) {
+        let name = excerpt(&name, 80);
+        return Err(Fault::new(format!(
+            "its buffer {name} is not read: it must lie in the folder of the file, or in one within it"
+        )));
+    }
     let path = folder.join(name.as_ref());
     read_companion(&path).map_err(|error| {
         let name = excerpt(&name, 80);

@@ -269,7 +269,6 @@ fn colors_of(material: &Material) -> Option<PartColors> {
             .map_or_else(|| format!("material {index}"), str::to_owned),
         diffuse: [red, green, blue].map(|channel| srgb_of(channel.into())),
         specular: None,
-        ambient: None,
         exponent: None,
     })
 }

@@ -7,6 +7,7 @@ use tobj::{LoadError, MTLLoadResult, Material};
 
 use super::limits::read_at_most;
 use super::part::PartColors;
+use crate::files::stays_inside;
 
 /// Most bytes of the material files of one OBJ file: room for thousands of materials.
 const MAX_BYTES: u64 = 4 << 20;
@@ -25,11 +26,14 @@ impl<'a> Libraries<'a> {
         Self { folder, left }
     }
 
-    /// Reads one. One that is not there, or cannot be read, only means that there are no colours.
+    /// Reads one. One that is not there or not in the folder, or cannot be read, only means that there are no colours.
     pub(super) fn load(&self, name: &Path) -> MTLLoadResult {
         let left = self.left.get();
         // Exporters on Windows write its separators.
         let name = name.to_string_lossy().replace('\\', "/");
+        if !stays_inside(Path::new(&name)) {
+            return Err(LoadError::OpenFileFailed);
+        }
         let bytes = read_at_most(&self.folder.join(name), left)
             .ok()
             .flatten()
@@ -72,7 +76,6 @@ pub(super) fn colors_of(material: &Material) -> Option<PartColors> {
         name: material.name.clone(),
         diffuse: clamp(material.diffuse?),
         specular: material.specular.map(clamp),
-        ambient: material.ambient.map(clamp),
         exponent: material.shininess.map(|exponent| exponent.max(0.0)),
     })
 }

@@ -23,8 +23,6 @@ pub struct PartColors {
     pub diffuse: [f64; 3],
     /// `Ks` of MTL.
     pub specular: Option<[f64; 3]>,
-    /// `Ka` of MTL.
-    pub ambient: Option<[f64; 3]>,
     /// `Ns` of MTL: the exponent of the highlight, 0 or more.
     pub exponent: Option<f64>,
 }

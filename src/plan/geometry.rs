@@ -58,7 +58,7 @@ pub struct Geometry<R> {
 #[derive(Clone, Debug, Default)]
 pub struct Kept<R> {
     last: Option<(Source, Arc<Geometry<R>>)>,
-    coincidences: Option<(List<Object>, Arc<[Coincidence]>)>,
+    coincidences: Option<(List<Object>, DVec3, Arc<[Coincidence]>)>,
     /// Meshes of other pictures.
     others: Vec<Arc<PackedMesh<R>>>,
     idle: KeptIdle<R>,
@@ -124,13 +124,14 @@ impl<R: Real> Kept<R> {
 
     /// The objects of a scene that fill the same surface; the last ones, if none has changed.
     pub fn coincidences(&mut self, objects: &List<Object>, centre: DVec3) -> Arc<[Coincidence]> {
-        if let Some((of, found)) = &self.coincidences
+        if let Some((of, around, found)) = &self.coincidences
             && of.is_same(objects)
+            && *around == centre
         {
             return Arc::clone(found);
         }
         let found: Arc<[Coincidence]> = coincidences(objects, centre).into();
-        self.coincidences = Some((objects.clone(), Arc::clone(&found)));
+        self.coincidences = Some((objects.clone(), centre, Arc::clone(&found)));
         found
     }
 

@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use super::request::RenderRequest;
-use crate::scene::{Light, List, Object, Outline, PlanePiece, Precision, Projection, Scene, Shape};
+use crate::scene::{
+    Light, List, Object, Outline, PlanePiece, Precision, Projection, Scene, Shape, unit,
+};
 
 /// Largest ratio of a sphere's distance to its radius in single precision: the perpendicular
 /// discriminant is then off by at most 3.2·u·ρ ≈ 1/1000 of the radius.
@@ -86,7 +88,7 @@ pub fn needs_double(scene: &Scene, projection: Projection) -> bool {
 fn farthest_wall(scene: &Scene) -> f64 {
     let (eye, direction) = (
         scene.camera.position,
-        scene.camera.look_at.normalize_or_zero(),
+        unit(scene.camera.look_at).unwrap_or_default(),
     );
     let visible = scene.objects.iter().filter(|object| object.visible);
     let planes = visible.filter_map(|object| match &object.shape {
@@ -136,7 +138,7 @@ fn is_just_above(scene: &Scene, extent: f64) -> bool {
 /// Whether rays that run side by side come from too far.
 fn is_far_in_parallel(scene: &Scene) -> bool {
     let camera = &scene.camera;
-    let direction = camera.look_at.normalize_or_zero();
+    let direction = unit(camera.look_at).unwrap_or_default();
     let distance = |object: &Object| match object.shape.bounds() {
         Some((low, high)) => (low * 0.5 + high * 0.5 - camera.position).length(),
         // Where the middle of the picture meets it.

@@ -96,20 +96,27 @@ impl<R: Real> Faces<'_, R> {
         let inwards = -self.triangles[face].normal;
         let middle = (a + b + c) * R::from_f64(1.0 / 3.0);
         let is_other = |other: u32| other as usize != face;
-        let met = cast(self.triangles, self.bvh, (middle, inwards), is_other);
-        met.map_or(R::INFINITY, |(t, _)| t)
+        let mut nearest = R::INFINITY;
+        cast(self.triangles, self.bvh, (middle, inwards), |face, t| {
+            if is_other(face) {
+                nearest = nearest.min(t);
+            }
+            nearest
+        });
+        nearest
     }
 }
 
-/// The first of the triangles that a ray meets, of those that are wanted, and how far it is.
+/// Tells of the triangles that a ray meets, in any order, and how far each is; what is told says how far is still
+/// looked.
 fn cast<R: Real>(
     triangles: &[PackedTriangle<R>],
     bvh: &Bvh<R>,
     (origin, direction): (Vec3<R>, Vec3<R>),
-    is_wanted: impl Fn(u32) -> bool,
-) -> Option<(R, u32)> {
+    mut tell: impl FnMut(u32, R) -> R,
+) {
     let inverse = direction.to_array().map(|part| R::ONE / part);
-    let mut nearest = (R::INFINITY, None);
+    let mut reach = R::INFINITY;
     let mut waiting = vec![0];
     while let Some(node) = waiting
         .pop()
@@ -118,33 +125,42 @@ fn cast<R: Real>(
         let (near, far) = slabs(&node.planes, origin.to_array(), inverse);
         for place in 0..node.count {
             // Not-a-number is in neither range: such a box is looked into.
-            if near[place] > far[place] || near[place] > nearest.0 || far[place] < R::ZERO {
+            if near[place] > far[place] || near[place] > reach || far[place] < R::ZERO {
                 continue;
             }
             match node.child(place) {
                 Child::Node(inner) => waiting.push(inner),
-                Child::Member(face) if is_wanted(face) => {
+                Child::Member(face) => {
                     let t = meet(&triangles[face as usize].corners, origin, direction);
-                    if t < nearest.0 {
-                        nearest = (t, Some(face));
+                    if t < R::INFINITY {
+                        reach = tell(face, t);
                     }
                 }
-                Child::Member(_) => {}
             }
         }
     }
-    nearest.1.map(|face| (nearest.0, face))
 }
 
-/// Whether a point is outside of a closed mesh whose faces look outwards: the first that is met from there
-/// is met from its front.
+/// Two directions: any will do; along none of the axes, edges are rarely met.
+const WAYS_OUT: [[f64; 3]; 2] = [[0.312, 0.871, 0.379], [-0.523, 0.233, -0.817]];
+
+/// Whether a point is outside of a closed mesh whose faces look outwards: what is met first on the way out is met
+/// from its front, and as much is left as is entered. A mesh may have parts inside of others.
 pub fn is_outside<R: Real>(triangles: &[PackedTriangle<R>], bvh: &Bvh<R>, point: Vec3<R>) -> bool {
-    // Any direction will do; along none of the axes, edges are rarely met.
-    let direction = Vec3::new(0.312, 0.871, 0.379).map(R::from_f64);
-    match cast(triangles, bvh, (point, direction), |_| true) {
-        None => true,
-        Some((_, face)) => triangles[face as usize].normal.dot(direction) < R::ZERO,
-    }
+    WAYS_OUT.iter().all(|way| {
+        let direction = Vec3::from(way.map(R::from_f64));
+        let (mut nearest, mut first, mut around) = (R::INFINITY, -1, 0);
+        cast(triangles, bvh, (point, direction), |face, t| {
+            let is_left = triangles[face as usize].normal.dot(direction) > R::ZERO;
+            let turn = if is_left { 1 } else { -1 };
+            around += turn;
+            if t < nearest {
+                (nearest, first) = (t, turn);
+            }
+            R::INFINITY
+        });
+        first == -1 && around == 0
+    })
 }
 
 /// Where a ray enters and leaves the boxes of a node.

@@ -80,9 +80,11 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
         }
     }
     pieces.sort_by(|a, b| a.bounds.0.x.total_cmp(&b.bounds.0.x));
+    let little = pieces.iter().map(Piece::little).fold(0.0, f64::max);
     for (place, one) in pieces.iter().enumerate() {
         let others = pieces[place + 1..].iter();
-        for other in others.take_while(|other| other.bounds.0.x <= one.bounds.1.x) {
+        let end = one.bounds.1.x + little;
+        for other in others.take_while(|other| other.bounds.0.x <= end) {
             if one.meets(other) {
                 add((one.index, &one.flat), (other.index, &other.flat));
             }
@@ -101,10 +103,14 @@ struct Piece {
 }
 
 impl Piece {
+    /// How near what fills its surface is, at most.
+    fn little(&self) -> f64 {
+        1e-6 * (self.bounds.1 - self.bounds.0).max_element()
+    }
+
     /// Whether the boxes meet, or would if they were a little wider: flat ones have no height.
     fn meets(&self, other: &Self) -> bool {
-        let size = |piece: &Self| (piece.bounds.1 - piece.bounds.0).max_element();
-        let little = DVec3::splat(1e-6 * size(self).max(size(other)));
+        let little = DVec3::splat(self.little().max(other.little()));
         self.bounds.0.cmple(other.bounds.1 + little).all()
             && other.bounds.0.cmple(self.bounds.1 + little).all()
     }

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::camera::{Camera, Projection};
 use super::coincidence::{Coincidence, MOST_COMPARED, coincidences};
+use super::direction::unit;
 use super::shape::Shape;
 use super::whole::Scene;
 
@@ -136,7 +137,7 @@ fn is_inside(shape: &Shape, point: DVec3) -> bool {
 
 fn is_on(shape: &Shape, point: DVec3) -> bool {
     let on_plane = |at: DVec3, normal: DVec3| {
-        let off = (point - at).dot(normal.normalize_or_zero()).abs();
+        let off = (point - at).dot(unit(normal).unwrap_or_default()).abs();
         off <= ON * (point.length() + at.length())
     };
     match shape {
@@ -163,10 +164,12 @@ fn is_edge_on(shape: &Shape, camera: &Camera, extent: f64) -> bool {
     let Some((at, normal)) = shape.endless_plane() else {
         return false;
     };
-    let normal = normal.normalize_or_zero();
+    let normal = unit(normal).unwrap_or_default();
     match camera.projection {
         Projection::Perspective => (camera.position - at).dot(normal).abs() < EDGE_ON * extent,
-        Projection::Orthographic => camera.look_at.normalize_or_zero().dot(normal).abs() < EDGE_ON,
+        Projection::Orthographic => {
+            unit(camera.look_at).unwrap_or_default().dot(normal).abs() < EDGE_ON
+        }
     }
 }
 

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::camera::Camera;
+use super::check::MAX_EXPONENT;
 use super::list::List;
 use super::material::ColorPack;
 use super::object::{Light, LightObj, Object};
@@ -134,7 +135,9 @@ fn color_pack(colors: &PartColors) -> ColorPack {
         ambient: diffuse,
         diffuse,
         specular: colors.specular.map_or(plain.specular, color),
-        phong_exponent: colors.exponent.unwrap_or(plain.phong_exponent),
+        phong_exponent: colors
+            .exponent
+            .map_or(plain.phong_exponent, |exponent| exponent.min(MAX_EXPONENT)),
         reflective: false,
     }
 }

@@ -7,10 +7,13 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::file::Document;
-use crate::files::write_atomic;
+use crate::files::{Stamp, write_atomic};
 
 /// First line of a recovery file: the path of the document follows.
 const MARK: &str = "// unsaved changes of: ";
+
+/// Second line, if the document's file was read or written: what tells what that held then follows.
+const BASE_MARK: &str = "// of the file that was: ";
 
 /// How the names of the files begin.
 const NAME: &str = "unsaved-";
@@ -31,6 +34,8 @@ pub struct Leftover {
     pub document: Document,
     /// The file that it belongs to, if it had one.
     pub path: Option<PathBuf>,
+    /// What that file held when the work began.
+    pub stamp: Option<Stamp>,
 }
 
 impl Recovery {
@@ -60,13 +65,16 @@ impl Recovery {
         }
     }
 
-    /// Keeps the unsaved work of the document of `path`.
+    /// Keeps the unsaved work of the document of `path`, a file that held what `stamp` tells.
     ///
     /// # Errors
     /// What the system answered; the last kept state is then still there.
-    pub fn keep(&self, text: &str, path: Option<&Path>) -> io::Result<()> {
+    pub fn keep(&self, text: &str, path: Option<&Path>, stamp: Option<&Stamp>) -> io::Result<()> {
         let name = path.map_or(String::new(), |path| path.display().to_string());
-        write_atomic(&self.path, format!("{MARK}{name}\n{text}").as_bytes())
+        let base = stamp.map_or(String::new(), |stamp| {
+            format!("{BASE_MARK}{}\n", stamp.hash())
+        });
+        write_atomic(&self.path, format!("{MARK}{name}\n{base}{text}").as_bytes())
     }
 
     /// There is no unsaved work (any more).
@@ -105,6 +113,11 @@ fn take(path: &Path, of: Option<&Path>) -> Option<Leftover> {
     if of.is_some_and(|of| of != Path::new(first)) {
         return None;
     }
+    let (base, body) = match body.strip_prefix(BASE_MARK) {
+        Some(rest) => rest.split_once('\n')?,
+        None => ("", body),
+    };
+    let stamp = Stamp::of_hash(base, Path::new(first));
     let mut document = Document::from_text(body).ok()?;
     document.scene.load_meshes(Path::new(first).parent());
     let _ = fs::remove_file(path);
@@ -112,6 +125,7 @@ fn take(path: &Path, of: Option<&Path>) -> Option<Leftover> {
     Some(Leftover {
         document,
         path: (!first.is_empty()).then(|| PathBuf::from(first)),
+        stamp,
     })
 }
 
@@ -125,7 +139,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let first = Recovery::new(folder.path()).expect("a place");
         first
-            .keep(DEMO_TEXT, Some(Path::new("/a/b.ron")))
+            .keep(DEMO_TEXT, Some(Path::new("/a/b.ron")), None)
             .expect("kept");
         let second = Recovery::new(folder.path()).expect("another place");
         assert!(
@@ -148,7 +162,7 @@ mod tests {
     fn cleared_work_is_gone() {
         let folder = tempfile::tempdir().expect("a folder");
         let first = Recovery::new(folder.path()).expect("a place");
-        first.keep(DEMO_TEXT, None).expect("kept");
+        first.keep(DEMO_TEXT, None, None).expect("kept");
         first.clear();
         drop(first);
         assert!(

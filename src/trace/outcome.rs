@@ -19,22 +19,24 @@ pub fn signatures_of<L: SimdFloat>(
     let mut signatures = [0; MAX_LANES];
     for lane in 0..L::WIDTH {
         // Odd multipliers spread the small numbers over all bits.
-        let number = object_of(plan, (numbers[lane] + L::Real::ONE).nearest());
+        let number = object_of(plan, numbers[lane]);
         let lit = lit[lane].nearest();
         signatures[lane] = number.wrapping_mul(0x9E37_79B1) ^ lit.wrapping_mul(0x85EB_CA6B);
     }
     signatures
 }
 
-/// What tells objects apart, from 1 plus the number of a primitive: the faces of a mesh are one thing.
+/// What tells objects apart, by the number of a primitive: the faces of a mesh are one thing.
 #[inline(always)]
-fn object_of<R: Real>(plan: &Plan<R>, number: u32) -> u32 {
+fn object_of<R: Real>(plan: &Plan<R>, number: R) -> u32 {
     let Some((geometry, first)) = plan.numbered_geometry() else {
-        return number;
+        return (number + R::ONE).nearest();
     };
-    let index = (number as usize).checked_sub(first + 1);
+    // Faces have numbers that `nearest` is not made for.
+    let number = (number.to_f64() + 1.0) as usize;
+    let index = number.checked_sub(first + 1);
     let mesh = index.and_then(|index| geometry.mesh_of(index));
-    mesh.map_or(number, |mesh| (first + mesh.first + 1) as u32)
+    mesh.map_or(number, |mesh| first + mesh.first + 1) as u32
 }
 
 /// Writes the colours and edges of all rays, packet by packet.

@@ -38,7 +38,7 @@ impl Autosave {
         {
             let path = leftover.path.as_ref();
             let name = path.map_or("a new scene".to_owned(), |path| path.display().to_string());
-            editor.recover(leftover.document, leftover.path);
+            editor.recover(leftover);
             editor.notify(format!(
                 "Glint ended with unsaved changes to {name}; here they are. Save them, or open the file again to discard them."
             ));
@@ -81,11 +81,11 @@ impl Autosave {
         }
         self.tried = Some(Instant::now());
         let document = editor.document_to_keep();
-        let path = editor.path().map(Path::to_owned);
+        let (path, stamp) = (editor.path().map(Path::to_owned), editor.stamp().cloned());
         let written = run_in_background("glint-autosave", move || {
             let text = document.to_text().map_err(|error| error.to_string());
             text.and_then(|text| {
-                let kept = recovery.keep(&text, path.as_deref());
+                let kept = recovery.keep(&text, path.as_deref(), stamp.as_ref());
                 kept.map_err(|error| error.to_string())
             })
         });

@@ -134,7 +134,7 @@ fn keeps_unsaved_work_until_it_is_killed() {
     let place = Recovery::new(Path::new(&folder)).expect("a place");
     for step in 1.. {
         let text = unsaved(step).to_text().expect("text");
-        place.keep(&text, None).expect("kept");
+        place.keep(&text, None, None).expect("kept");
     }
 }
 
@@ -201,7 +201,7 @@ fn whoever_is_killed_while_work_is_kept_leaves_all_of_it() {
     assert_eq!(found, KILLS / 3);
     let next = Recovery::new(folder.path()).expect("a place");
     let text = unsaved(1).to_text().expect("text");
-    next.keep(&text, None).expect("kept");
+    next.keep(&text, None, None).expect("kept");
     let unfinished = |name: &String| name.starts_with(".glint-");
     assert!(
         !names(folder.path()).iter().any(unfinished),

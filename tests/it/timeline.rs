@@ -12,7 +12,9 @@ use glint::animate::{CameraPath, Preset, shot};
 use glint::editor::{Action, Edit, Editor, Repeat, Time};
 use glint::image::render;
 use glint::plan::RenderRequest;
-use glint::scene::{Animation, Document, Interpolation, Key as SceneKey, Projection, Scene, Value};
+use glint::scene::{
+    Animation, Document, Interpolation, Key as SceneKey, Leftover, Projection, Scene, Value,
+};
 use glint::trace::RenderControl;
 use glint::ui::Ask;
 use glint::worker::{ThumbnailJob, Worker};
@@ -20,6 +22,15 @@ use glint::worker::{ThumbnailJob, Worker};
 use crate::harness::{CTRL, EditorHarness, survey_flight};
 
 const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
+
+/// Work that a program has left behind.
+fn unsaved(document: Document) -> Leftover {
+    Leftover {
+        document,
+        path: None,
+        stamp: None,
+    }
+}
 
 fn flight() -> Scene {
     Document::load(FLIGHT.as_ref()).expect("a scene").scene
@@ -122,7 +133,7 @@ fn a_flight_is_recorded_and_becomes_keys_in_one_step() {
     // The slider makes other keys of the same take.
     let mut editor = Editor::demo();
     let text = harness.editor().to_text().expect("a text");
-    editor.recover(Document::from_text(&text).expect("a scene"), None);
+    editor.recover(unsaved(Document::from_text(&text).expect("a scene")));
     editor.apply(Action::Time(Time::Simplify(0.1)));
     survey_flight(&mut editor);
     let fine = editor.scene().animation.keys.len();
@@ -213,7 +224,7 @@ fn keys_are_set_overwritten_and_deleted() {
 #[test]
 fn keys_made_anew_keep_the_time_that_the_flight_was_given() {
     let mut editor = Editor::demo();
-    editor.recover(Document::load(FLIGHT.as_ref()).expect("a scene"), None);
+    editor.recover(unsaved(Document::load(FLIGHT.as_ref()).expect("a scene")));
     survey_flight(&mut editor);
     let said = editor.timeline().worst.expect("a recording");
     assert!(

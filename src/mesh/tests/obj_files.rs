@@ -34,7 +34,7 @@ fn groups_are_parts_with_colors() {
     let red = sample.parts()[1].colors.clone().expect("colours");
     assert_eq!(red.diffuse, [1.0, 0.5, 0.0]);
     assert_eq!(red.specular, Some([1.0; 3]), "clamped");
-    assert_eq!((red.ambient, red.exponent), (None, Some(30.0)));
+    assert_eq!(red.exponent, Some(30.0));
     let all = sample.triangles();
     assert_eq!(
         all.points(),

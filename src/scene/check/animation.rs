@@ -138,6 +138,12 @@ fn check_take(at: &At, take: &Take) -> Check {
                 .field("from")
                 .refuse("lenses start at sample 0 and are in order".to_owned());
         }
+        if lens.from >= take.samples.len() {
+            let most = take.samples.len() - 1;
+            return at
+                .field("from")
+                .refuse(format!("the last sample of this take is {most}"));
+        }
         next = lens.from + 1;
         check_lens(&at, lens)?;
     }

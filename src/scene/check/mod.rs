@@ -21,7 +21,7 @@ use super::shape::{Field, FieldValue, Shape};
 use super::whole::{Scene, VERSION};
 
 /// Largest Phong exponent; the highlight is then a few ten-thousandths of a degree wide.
-const MAX_EXPONENT: f64 = 1e7;
+pub const MAX_EXPONENT: f64 = 1e7;
 /// Most pixels in a picture: 1 GiB of 8-bit RGBA.
 const MAX_PIXELS: u64 = 1 << 28;
 /// Longest name, in characters.

@@ -1,6 +1,6 @@
 //! Many triangles as one thing: written in the scene file, or in a file of their own.
 
-use std::path::{Component, Path};
+use std::path::Path;
 use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
@@ -9,6 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::describe::{Describe, Field, FieldValue, turned};
 use super::mesh_source::MeshSource;
+use crate::files::stays_inside;
 use crate::mesh::{FARTHEST, Triangles, icosphere, read_triangles};
 use crate::scene::notation;
 
@@ -194,14 +195,11 @@ impl Mesh {
             return;
         };
         *own_folder = folder.map(Path::to_owned);
-        let is_inside = Path::new(path)
-            .components()
-            .all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
         let read = match folder {
             None => Err(format!(
                 "cannot read {path}: the scene has no folder before it is saved"
             )),
-            Some(_) if !is_inside => Err(format!(
+            Some(_) if !stays_inside(Path::new(path)) => Err(format!(
                 "{path} is not read: a mesh file must lie in the folder of the scene, or in one within it"
             )),
             Some(folder) => read_triangles(&folder.join(path)).map_err(|error| error.to_string()),
@@ -209,6 +207,18 @@ impl Mesh {
         match read {
             Ok(new) => (*triangles, *problem) = (Arc::new(new), None),
             Err(sentence) => (*triangles, *problem) = (Arc::default(), Some(sentence)),
+        }
+        // Only now is it known how far they reach.
+        let too_far = self.problem();
+        if let MeshSource::File {
+            path,
+            triangles,
+            problem,
+            ..
+        } = &mut self.source
+            && let Some(sentence) = too_far
+        {
+            (*triangles, *problem) = (Arc::default(), Some(format!("{path}: {sentence}")));
         }
     }
 

@@ -50,7 +50,7 @@ impl Order {
             run_in_background("glint-order", move || {
                 // Without it, an export that is killed has to be asked for again.
                 let text = text_of(&settings, document);
-                let _ = text.map(|text| place.keep(&text, path.as_deref()));
+                let _ = text.map(|text| place.keep(&text, path.as_deref(), None));
             })
         });
         Self {
@@ -81,10 +81,10 @@ impl Order {
 
     /// An order that was left; its place, if it is none.
     fn read(leftover: Leftover, place: Recovery) -> Result<Self, Recovery> {
-        let Leftover { document, path } = leftover;
+        let Leftover { document, path, .. } = leftover;
         // It was taken out of where it was left, and belongs to this program now.
         let text = document.to_text().ok();
-        let kept = text.and_then(|text| place.keep(&text, path.as_deref()).ok());
+        let kept = text.and_then(|text| place.keep(&text, path.as_deref(), None).ok());
         let line = document.header.lines().next();
         let line = line.and_then(|line| line.strip_prefix(MARK));
         let settings = line.and_then(|line| serde_json::from_str::<Settings>(line).ok());
@@ -139,7 +139,7 @@ mod tests {
         let orders = folder.path().join(FOLDER);
         let place = Recovery::new(&orders).expect("a place");
         let text = format!("{MARK}{{\"of\": \"a later version\"}}\n{DEMO_TEXT}");
-        place.keep(&text, None).expect("kept");
+        place.keep(&text, None, None).expect("kept");
         drop(place);
         for _ in 0..2 {
             assert!(Order::left_in(folder.path()).is_empty());
