@@ -1,6 +1,7 @@
 //! The menu of what can be added.
 
 use egui::{Button, Ui};
+use egui_material_icons::MaterialIcon;
 use glam::DVec3;
 
 use super::icons;
@@ -9,48 +10,39 @@ use crate::editor::Edit;
 use crate::mesh::SOLIDS;
 use crate::scene::{Mesh, Scene, Shape};
 
-/// What can be added, placed in front of the camera.
+/// The menu of what can be added.
 pub fn add_menu(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
-    let (at, size) = in_front_of_camera(scene);
-    let shapes = Shape::examples(at, size).into_iter();
-    for shape in shapes.filter(|shape| !matches!(shape, Shape::Mesh(_))) {
-        let name = format!("Add {}", shape.kind());
-        if ui
-            .add(Button::new((icons::text(icons::of_shape(&shape)), &name)))
-            .accessible_name(name)
-            .clicked()
-        {
-            out.edit(Edit::AddObject(shape));
-        }
-    }
-    for (solid, make) in SOLIDS {
-        let name = format!("Add {solid}");
-        let button = Button::new((icons::text(icons::MESH), &name));
-        if ui.add(button).accessible_name(name).clicked() {
-            let mesh = Mesh {
-                position: at,
-                ..Mesh::of(make(size))
-            };
-            out.edit(Edit::AddMesh(solid, mesh));
-        }
-    }
-    let others = [
-        (
-            icons::LIGHT,
-            "Add Light",
-            Edit::AddLight(at + DVec3::new(0.0, size, 0.0)),
-        ),
-        (icons::PACK, "Add ColorPack", Edit::AddPack),
-    ];
-    for (icon, name, edit) in others {
-        if ui
-            .add(Button::new((icons::text(icon), name)))
-            .accessible_name(name)
-            .clicked()
-        {
+    for (icon, name, edit) in additions_to(scene) {
+        let button = ui.add(Button::new((icons::text(icon), &name)));
+        if button.accessible_name(name).clicked() {
             out.edit(edit);
         }
     }
+}
+
+/// What can be added, placed in front of the camera: its icon and name.
+pub fn additions_to(scene: &Scene) -> Vec<(MaterialIcon, String, Edit)> {
+    let (at, size) = in_front_of_camera(scene);
+    let shapes = Shape::examples(at, size).into_iter();
+    let shapes = shapes.filter(|shape| !matches!(shape, Shape::Mesh(_)));
+    let shapes = shapes.map(|shape| {
+        let (icon, name) = (icons::of_shape(&shape), format!("Add {}", shape.kind()));
+        (icon, name, Edit::AddObject(shape))
+    });
+    let solids = SOLIDS.into_iter().map(|(solid, make)| {
+        let mesh = Mesh {
+            position: at,
+            ..Mesh::of(make(size))
+        };
+        let edit = Edit::AddMesh(solid, mesh);
+        (icons::MESH, format!("Add {solid}"), edit)
+    });
+    let light = Edit::AddLight(at + DVec3::new(0.0, size, 0.0));
+    let others = [
+        (icons::LIGHT, "Add Light".to_owned(), light),
+        (icons::PACK, "Add ColorPack".to_owned(), Edit::AddPack),
+    ];
+    shapes.chain(solids).chain(others).collect()
 }
 
 /// Where a new thing goes, and how large it is: in the middle of the picture, a fifth of its height.

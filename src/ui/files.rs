@@ -363,6 +363,8 @@ impl Files {
     }
 
     fn go_on(&mut self, ctx: &Context, editor: &mut Editor, next: Next) -> Option<FileOutcome> {
+        // What was wrong with another file is over.
+        editor.begin(Ask::OpenScene.title());
         match next {
             Next::New => editor.start_new(),
             Next::Example(place) => EXAMPLES.get(place).into_iter().for_each(|example| {

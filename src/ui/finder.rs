@@ -4,16 +4,19 @@ use egui::{
     AtomExt as _, Button, Context, Frame, Id, Key, Modal, Modifiers, ScrollArea, TextEdit, Ui,
 };
 
+use super::add::additions_to;
 use super::commands::{Command, KEYLESS, SHORTCUTS, name_of, obstacle};
 use super::hint::Hint as _;
 use super::layout::Part;
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW};
-use crate::editor::{Editor, Item, Selection};
+use crate::editor::{Edit, Editor, Item, Selection};
 use crate::scene::{Aspect, EXAMPLES, Method, Setting, VisitSetting};
 
 /// Width of the window in points.
 const WIDTH: f32 = 460.0;
+/// Height of the list where there are many, in points.
+const HEIGHT: f32 = 12.0 * ROW;
 /// Most finds that are listed.
 const MOST: usize = 200;
 
@@ -39,7 +42,21 @@ struct Find {
 enum Target {
     Command(Command),
     Selection(Selection),
+    Edit(Edit),
 }
+
+/// What menus and buttons call commands that have other names here.
+const ALSO: [(Command, &str); 9] = [
+    (Command::SaveAs, "save as"),
+    (Command::SaveImage, "save image"),
+    (Command::ExportJob, "export farm job"),
+    (Command::AddKey, "add key"),
+    (Command::AddBookmark, "add this view"),
+    (Command::FrameSelected, "frame zoom to"),
+    (Command::FrameAll, "frame zoom all"),
+    (Command::ToggleVisible, "visible"),
+    (Command::RequestPaste, "insert"),
+];
 
 impl Finder {
     /// Starts looking.
@@ -66,6 +83,7 @@ impl Finder {
             match target {
                 Target::Command(command) => out.commands.push(command),
                 Target::Selection(selection) => out.select(selection),
+                Target::Edit(edit) => out.edit(edit),
             }
         } else if shown.should_close() {
             self.is_open = false;
@@ -92,7 +110,9 @@ impl Finder {
         let mut taken = is_entered.then_some(self.meant);
         ui.add_space(GRID / 2.0);
         ScrollArea::vertical()
-            .max_height(12.0 * ROW)
+            .max_height(HEIGHT)
+            // Where few were found, there was room for few in the frame before.
+            .min_scrolled_height(HEIGHT)
             .auto_shrink([false, true])
             .show(ui, |ui| {
                 for (place, find) in finds.iter().enumerate() {
@@ -127,8 +147,9 @@ fn finds(ui: &Ui, editor: &Editor, text: &str) -> Vec<Find> {
         words.iter().all(|word| name.contains(word))
     };
     let mut finds: Vec<Find> = commands(ui, editor)
-        .filter(|find| has(&find.name))
+        .filter(|find| has(&find.name) || has(also(&find.what)))
         .collect();
+    finds.extend(additions(editor).filter(|find| has(&find.name)));
     finds.extend(settings(editor).filter(|find| has(&find.name)));
     // There may be very many.
     let room = MOST.saturating_sub(finds.len());
@@ -157,6 +178,26 @@ fn commands<'a>(ui: &'a Ui, editor: &'a Editor) -> impl Iterator<Item = Find> + 
             what: Target::Command(command),
         }
     })
+}
+
+/// What else a command is called.
+fn also(what: &Target) -> &'static str {
+    let name = ALSO
+        .iter()
+        .find(|(command, _)| matches!(what, Target::Command(own) if own == command));
+    name.map_or("", |(_, name)| *name)
+}
+
+/// What the menu *Add* offers.
+fn additions(editor: &Editor) -> impl Iterator<Item = Find> {
+    additions_to(editor.scene())
+        .into_iter()
+        .map(|(_, name, edit)| Find {
+            name,
+            aside: String::new(),
+            what: Target::Edit(edit),
+            is_enabled: true,
+        })
 }
 
 /// What is chosen in menus below the menus.

@@ -1,7 +1,7 @@
 //! From held keys and mouse moves to steps of a flight. Speeds are per second, whatever the frame
 //! rate.
 
-use egui::{Context, Event, PointerButton, Response, Ui};
+use egui::{Context, Event, Key, PointerButton, Response, Ui};
 
 use super::flight_keys::{FLIGHT, FlightKey};
 use crate::editor::Motion;
@@ -36,6 +36,8 @@ const WHEEL_QUIET: f64 = 0.4;
 #[derive(Debug, Default)]
 pub struct Flying {
     ctrl: Ctrl,
+    /// Keys that were pressed for a shortcut and are held still: they fly when they are pressed anew.
+    taken: Vec<Key>,
     /// Whether keys moved the camera in the last frame.
     keys_fly: bool,
     /// When the wheel last turned.
@@ -69,6 +71,7 @@ impl Flying {
         keys_are_free: bool,
         (scene, factor): (&Scene, f64),
     ) -> Option<Motion> {
+        self.take_keys(ui);
         let held = if keys_are_free && picture.is_some() {
             self.held(ui)
         } else {
@@ -153,6 +156,25 @@ impl Flying {
         self.wheel_at.is_some() || self.ctrl == Ctrl::Flying || any_down
     }
 
+    /// Notes which keys are held for shortcuts: fast hands let the control key go before the other one.
+    fn take_keys(&mut self, ui: &Ui) {
+        let may_take = self.ctrl != Ctrl::Flying && !self.keys_fly;
+        ui.input(|input| {
+            // Of what was pressed for commands, only what came from the desktop knows.
+            let pressed = input.raw.events.iter().filter_map(|event| match event {
+                Event::Key {
+                    key,
+                    pressed: true,
+                    modifiers,
+                    ..
+                } if may_take && (modifiers.command || modifiers.alt) => Some(*key),
+                _ => None,
+            });
+            self.taken.extend(pressed);
+            self.taken.retain(|key| input.keys_down.contains(key));
+        });
+    }
+
     fn held(&mut self, ui: &Ui) -> Motion {
         let (ctrl, alt, now) =
             ui.input(|input| (input.modifiers.ctrl, input.modifiers.alt, input.time));
@@ -172,7 +194,7 @@ impl Flying {
             return Motion::default();
         }
         let held = FLIGHT.iter().filter(|flight| match flight.key {
-            Some(_) => is_down(ui, flight),
+            Some(key) => is_down(ui, flight) && !self.taken.contains(&key),
             None => self.ctrl == Ctrl::Flying,
         });
         held.fold(Motion::default(), |sum, flight| sum.plus(&flight.motion))

@@ -111,5 +111,8 @@ fn is_table(path: &Path) -> bool {
 pub fn imported(editor: &mut Editor, path: &Path, parts: Vec<Part>) {
     let count: usize = parts.iter().map(|part| part.triangles.faces().len()).sum();
     editor.apply(Action::Edit(Edit::Import(parts)));
-    editor.notify(format!("{count} triangles from {}", path.display()));
+    let path = path.display();
+    editor.notify(format!(
+        "{count} triangles from {path}; F brings them into the picture"
+    ));
 }

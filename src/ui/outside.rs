@@ -62,25 +62,29 @@ impl Theirs {
 
     /// Asks which of both is to stay: Yes for the own, No for theirs, and Other for both.
     pub fn ask(&self, ctx: &Context, title: &str) -> Answer {
-        question(ctx, "changed outside", 460.0, |ui, answer| {
-            ui.heading(format!("{title} was changed by another program"));
-            ui.add_space(GRID);
-            self.describe(ui);
-            ui.add_space(2.0 * GRID);
-            ui.horizontal(|ui| {
-                if primary(ui, "Keep mine").clicked() {
-                    *answer = Answer::Yes;
-                }
-                let can_take = self.document.is_ok();
-                let take = egui::Button::new("Take theirs");
-                if ui.add_enabled(can_take, take).clicked() {
-                    *answer = Answer::No;
-                }
-                if ui.button("Save as…").clicked() {
-                    *answer = Answer::Other;
-                }
-            });
-        })
+        question(
+            ctx,
+            ("changed outside", 460.0, Answer::Open),
+            |ui, answer| {
+                ui.heading(format!("{title} was changed by another program"));
+                ui.add_space(GRID);
+                self.describe(ui);
+                ui.add_space(2.0 * GRID);
+                ui.horizontal(|ui| {
+                    if primary(ui, "Keep mine").clicked() {
+                        *answer = Answer::Yes;
+                    }
+                    let can_take = self.document.is_ok();
+                    let take = egui::Button::new("Take theirs");
+                    if ui.add_enabled(can_take, take).clicked() {
+                        *answer = Answer::No;
+                    }
+                    if ui.button("Save as…").clicked() {
+                        *answer = Answer::Other;
+                    }
+                });
+            },
+        )
     }
 
     fn describe(&self, ui: &mut Ui) {

@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use egui::text::{CCursor, CCursorRange};
 use egui::{Button, Context, Frame, Id, Key, Modal, RichText, TextEdit, Ui};
 
 use super::dialogs::Ask;
@@ -26,7 +27,8 @@ pub enum Answer {
 
 /// Asks what becomes of unsaved changes: saved, lost, or neither.
 pub fn ask_about_changes(ctx: &Context, title: &str) -> Answer {
-    question(ctx, "unsaved changes", 380.0, |ui, answer| {
+    let look = ("unsaved changes", 380.0, Answer::Yes);
+    question(ctx, look, |ui, answer| {
         ui.heading(format!("Save changes to {title}?"));
         ui.add_space(GRID);
         ui.label("Without saving, the changes since the last save are lost.");
@@ -47,12 +49,11 @@ pub fn ask_about_changes(ctx: &Context, title: &str) -> Answer {
 
 /// Asks whether quitting is meant.
 pub fn ask_to_quit(ctx: &Context) -> Answer {
-    question(ctx, "quit", 160.0, |ui, answer| {
+    question(ctx, ("quit", 160.0, Answer::Yes), |ui, answer| {
         ui.heading("Quit Glint?");
         ui.add_space(2.0 * GRID);
         ui.horizontal(|ui| {
-            let entered = ui.input(|input| input.key_pressed(Key::Enter));
-            if primary(ui, "Quit now").clicked() || entered {
+            if primary(ui, "Quit now").clicked() {
                 *answer = Answer::Yes;
             }
             if ui.button("Stay").clicked() {
@@ -64,7 +65,7 @@ pub fn ask_to_quit(ctx: &Context) -> Answer {
 
 /// Asks whether exports that are going on are to be given up: Yes to stay, No to leave.
 pub fn ask_to_leave(ctx: &Context, going: &str) -> Answer {
-    question(ctx, "exports", 380.0, |ui, answer| {
+    question(ctx, ("exports", 380.0, Answer::Yes), |ui, answer| {
         ui.heading("Quit while exporting?");
         ui.add_space(GRID);
         ui.label(format!(
@@ -72,8 +73,7 @@ pub fn ask_to_leave(ctx: &Context, going: &str) -> Answer {
         ));
         ui.add_space(2.0 * GRID);
         ui.horizontal(|ui| {
-            let entered = ui.input(|input| input.key_pressed(Key::Enter));
-            if primary(ui, "Stay").clicked() || entered {
+            if primary(ui, "Stay").clicked() {
                 *answer = Answer::Yes;
             }
             if ui.button("Quit now").clicked() {
@@ -115,7 +115,7 @@ impl PathPrompt {
 
     /// Draws the prompt.
     pub fn show(&mut self, ctx: &Context) -> Answer {
-        question(ctx, "path prompt", 480.0, |ui, answer| {
+        question(ctx, ("path prompt", 480.0, Answer::Open), |ui, answer| {
             ui.heading(self.ask.title());
             ui.add_space(GRID);
             let label = ui.weak("Path (this desktop offers no file dialog)");
@@ -126,6 +126,7 @@ impl PathPrompt {
             }
             if self.is_new {
                 field.request_focus();
+                caret_to_end(ui, field.id, &self.text);
                 self.is_new = false;
             }
             let warning = self.warning();
@@ -187,6 +188,13 @@ impl PathPrompt {
                 is_possible: false,
             });
         }
+        if !self.ask.writes() && Path::new(self.text.trim()).is_dir() {
+            // Its name is not typed yet.
+            return Some(Warning {
+                words: String::new(),
+                is_possible: false,
+            });
+        }
         match (self.ask.writes(), is_there) {
             (true, true) if path.is_file() => Some(Warning {
                 words: format!("Replaces {}", path.display()),
@@ -208,14 +216,28 @@ struct Warning {
     is_possible: bool,
 }
 
-/// A question over the window, which Escape answers with [`Answer::Cancel`].
+/// Fields remember where the caret was in another text.
+fn caret_to_end(ui: &Ui, id: Id, text: &str) {
+    let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
+    let end = CCursorRange::one(CCursor::new(text.chars().count()));
+    state.cursor.set_char_range(Some(end));
+    state.store(ui.ctx(), id);
+}
+
+/// A question over the window, of a name, a width and what Enter answers; Escape answers it with
+/// [`Answer::Cancel`].
 pub fn question(
     ctx: &Context,
-    name: &str,
-    width: f32,
+    (name, width, on_enter): (&str, f32, Answer),
     add: impl FnOnce(&mut Ui, &mut Answer),
 ) -> Answer {
     let mut answer = Answer::Open;
+    let (id, now) = (Id::unique(name).with("asked"), ctx.cumulative_frame_nr());
+    let asked = ctx.data_mut(|data| {
+        let last = data.get_temp::<u64>(id);
+        data.insert_temp(id, now);
+        last
+    });
     let frame = Frame::popup(&ctx.global_style()).inner_margin(2.0 * GRID);
     let modal = Modal::new(Id::unique(name)).frame(frame).show(ctx, |ui| {
         ui.set_width(width);
@@ -223,6 +245,11 @@ pub fn question(
     });
     if answer == Answer::Open && modal.should_close() {
         answer = Answer::Cancel;
+    }
+    // The key that has led to the question does not answer it.
+    let was_asked = asked.is_some_and(|last| last + 1 == now);
+    if answer == Answer::Open && was_asked && ctx.input(|input| input.key_pressed(Key::Enter)) {
+        answer = on_enter;
     }
     answer
 }

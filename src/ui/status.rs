@@ -32,6 +32,8 @@ pub fn show(
     (check, scene): (&SceneCheck, &Scene),
     out: &mut UiRequests,
 ) {
+    // As high with hints as without.
+    ui.set_min_height(ui.available_height());
     ui.horizontal_centered(|ui| {
         ui.label(RichText::new(picture).monospace().weak());
         ui.spacing_mut().interact_size.y = BAR;

@@ -245,10 +245,21 @@ impl Mesh {
     }
 }
 
-/// Degrees about x, then y, then z.
-fn angles_of(orientation: DQuat) -> DVec3 {
+/// Degrees about x, then y, then z; of the two ways there are, each with any number of turns, the one nearer to
+/// those before.
+fn angles_of(orientation: DQuat, before: DVec3) -> DVec3 {
     let (z, y, x) = orientation.to_euler(EulerRot::ZYX);
-    DVec3::new(x.to_degrees(), y.to_degrees(), z.to_degrees())
+    let one = DVec3::new(x.to_degrees(), y.to_degrees(), z.to_degrees());
+    let other = DVec3::new(one.x + 180.0, 180.0 - one.y, one.z + 180.0);
+    let [one, other] = [one, other].map(|angles| {
+        let turns = ((before - angles) / 360.0).round();
+        angles + turns * 360.0
+    });
+    if one.distance_squared(before) <= other.distance_squared(before) {
+        one
+    } else {
+        other
+    }
 }
 
 impl Describe for Mesh {
@@ -324,7 +335,7 @@ impl Describe for Mesh {
     fn turned(&self, about: DVec3, by: DQuat) -> Self {
         Self {
             position: turned(self.position, about, by),
-            rotation: angles_of(by * self.orientation()),
+            rotation: angles_of(by * self.orientation(), self.rotation),
             ..self.clone()
         }
     }

@@ -54,6 +54,8 @@ pub struct Lab {
     pub(super) is_running: bool,
     /// Counts the studies.
     number: u64,
+    /// What the document was called that was measured.
+    name: String,
     pub(super) cost: CostAxis,
     pub(super) error: ErrorAxis,
     pub(super) chosen: Option<usize>,
@@ -84,6 +86,7 @@ impl Default for Lab {
             study: None,
             is_running: false,
             number: 0,
+            name: String::new(),
             cost: CostAxis::Time,
             error: ErrorAxis::Rmse,
             chosen: None,
@@ -143,6 +146,11 @@ impl Lab {
             && self.looked_for != Some(document)
         {
             self.looked_for = Some(document);
+            if !self.is_running {
+                // It was measured of another one.
+                (self.study, self.chosen) = (None, None);
+                self.number += 1;
+            }
             let (scene, machine) = (Arc::clone(editor.scene()), self.machine.clone());
             self.found = Some(run_in_background("glint-lab", move || {
                 kept(&scene, SIDE, &machine, &folder)
@@ -159,6 +167,7 @@ impl Lab {
             self.study = Some(Box::new(study));
             self.chosen = None;
             self.number += 1;
+            self.name = name_of(editor);
         }
     }
 
@@ -205,7 +214,7 @@ impl Lab {
             self.stability.show(ui, editor.shown());
             return wish;
         }
-        let Some((chart, members)) = self.chart(editor) else {
+        let Some((chart, members)) = self.chart() else {
             return self.show_invitation(ui, editor).or(wish);
         };
         ui.horizontal_top(|ui| {
@@ -235,6 +244,7 @@ impl Lab {
         self.study = Some(study.clone());
         self.chosen = None;
         self.number += 1;
+        self.name = name_of(editor);
         self.is_running = true;
         LabRequest::Measure(study)
     }
@@ -290,14 +300,19 @@ impl Lab {
         })
     }
 
-    fn chart(&self, editor: &Editor) -> Option<(Chart, Vec<Vec<usize>>)> {
-        let title = editor.title();
+    fn chart(&self) -> Option<(Chart, Vec<Vec<usize>>)> {
         let view = ChartView {
-            name: title.strip_suffix(".ron").unwrap_or(&title),
+            name: &self.name,
             machine: &self.machine,
             axes: (self.cost, self.error),
             chosen: self.chosen,
         };
         Some(chart(self.study.as_deref()?, &view))
     }
+}
+
+/// What the chart calls the document.
+fn name_of(editor: &Editor) -> String {
+    let title = editor.title();
+    title.strip_suffix(".ron").unwrap_or(&title).to_owned()
 }
