@@ -366,4 +366,32 @@ mod tests {
         assert_eq!((first.diffuse, first.specular), (DVec3::ZERO, DVec3::ZERO));
         assert!(lit.mirror.is_some());
     }
+
+    #[test]
+    fn of_what_fills_one_surface_the_first_is_named() {
+        let mut scene = Scene::demo();
+        scene.objects.retain(|object| object.name == "Plane");
+        let normal = DVec3::new(0.3, 1.0, 0.2);
+        let plane = crate::scene::Plane {
+            point: DVec3::ZERO,
+            normal,
+        };
+        scene.objects[0].shape = plane.into();
+        let (along, across) = (normal.cross(DVec3::X), normal.cross(normal.cross(DVec3::X)));
+        let [a, b, c] = [along, across, -along - across].map(|corner| corner * 50.0);
+        let piece = crate::scene::Triangle { a, b, c };
+        scene
+            .objects
+            .push(crate::scene::Object::new("Piece", "light", piece));
+        for place in 0..40 {
+            let place = f64::from(place);
+            let target = along * (place * 0.7 - 10.0) + across * (place * 0.3);
+            let origin = DVec3::new(3.0, 170.0, 11.0 + place);
+            let direction = (target - origin).normalize();
+            let Sight::Surface(lit) = explain(&scene, origin, direction) else {
+                panic!("the plane is met");
+            };
+            assert_eq!(lit.object, "Plane");
+        }
+    }
 }

@@ -427,4 +427,51 @@ mod tests {
         // At its corners the way across is short.
         assert!(thin < 80, "{thin} of 3200");
     }
+
+    /// A box around the origin, so large; clockwise seen from outside, or from inside.
+    fn solid(half: f64, at_y: f64, is_hollow: bool) -> Vec<[Vec3<f64>; 3]> {
+        let corner = |index: usize| {
+            let side = |bit: usize| if index >> bit & 1 == 0 { -half } else { half };
+            at(side(0), side(1) + at_y, side(2))
+        };
+        let sides = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
+        let faces = sides.iter().flat_map(|side| {
+            let [a, b, c, d] = side.map(corner);
+            square(a, b, c, d)
+        });
+        let turn = |[a, b, c]: [Vec3<f64>; 3]| if is_hollow { [a, c, b] } else { [a, b, c] };
+        faces.map(turn).collect()
+    }
+
+    #[test]
+    fn a_room_with_a_table_in_it_is_not_left_by_looking_at_the_table() {
+        let is_seen = |parts: &[Vec<[Vec3<f64>; 3]>], point: Vec3<f64>| {
+            let packed =
+                |corners: &[Vec3<f64>; 3]| PackedTriangle::of_mesh(corners.map(Vec3::to_dvec3));
+            let triangles: Vec<_> = parts.iter().flatten().filter_map(packed).collect();
+            let member = |triangle: &PackedTriangle<f64>| Member {
+                bounds: BoundingBox::around(&triangle.corners),
+                thickness: triangle.thickness,
+            };
+            let members: Vec<_> = triangles.iter().map(member).collect();
+            is_outside(&triangles, &Bvh::new(members.len(), |n| members[n]), point)
+        };
+        let room = [solid(10.0, 0.0, false), solid(3.0, 4.0, false)];
+        // Below the table, beside it, in it, and far away.
+        let points = [at(0.1, -3.0, 0.2), at(8.1, 0.2, 0.1), at(0.1, 4.2, 0.3)];
+        for point in points {
+            assert!(!is_seen(&room, point), "{point:?}");
+        }
+        assert!(is_seen(&room, at(1.0, -30.0, 2.0)));
+        // What is hollow has an outside within.
+        let shell = [solid(10.0, 0.0, false), solid(3.0, 4.0, true)];
+        assert!(is_seen(&shell, at(0.1, 4.2, 0.3)) && !is_seen(&shell, at(0.1, -3.0, 0.2)));
+    }
 }

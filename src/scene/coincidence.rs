@@ -115,3 +115,26 @@ impl Piece {
             && other.bounds.0.cmple(self.bounds.1 + little).all()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Disc;
+
+    #[test]
+    fn flat_pieces_fill_one_surface_whichever_way_they_face() {
+        for normal in DVec3::AXES {
+            let discs = [0.3, 0.1 + 0.2].map(|away| {
+                let center = normal * away;
+                let disc = Disc {
+                    center,
+                    normal,
+                    radius: 1.0,
+                };
+                Object::new("Disc", "pack", disc)
+            });
+            let found = coincidences(&discs.into_iter().collect(), DVec3::ZERO);
+            assert_eq!(found.len(), 1, "{normal}");
+        }
+    }
+}

@@ -227,4 +227,14 @@ mod tests {
             ["Plane is seen edge-on: the camera is in its plane"]
         );
     }
+
+    #[test]
+    fn normals_may_be_of_any_length() {
+        let mut scene = Scene::demo();
+        let Shape::Plane(plane) = &mut scene.objects[8].shape else {
+            panic!("a plane");
+        };
+        plane.normal *= 1e-200;
+        assert_eq!(words(&scene), Vec::<String>::new());
+    }
 }

@@ -828,3 +828,39 @@ fn clusters_make_the_same_bytes_by_the_lines_of_the_readme() {
     let said = done(script.arg(of_project("README.md")));
     assert_eq!(said.matches("202 frames").count(), 2, "{said}");
 }
+
+#[test]
+fn a_job_brings_its_meshes_and_keeps_what_was_there() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let template = folder.path().join("job.yaml");
+    let path = template.to_str().expect("plain");
+    let knot = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/knot.ron");
+    done(&mut glint(&["job", knot, "-o", path, "--format", "exr"]));
+    let text = fs::read_to_string(&template).expect("written");
+    assert!(text.contains("\"knot-whole.ron\"") && text.contains("allowedValues: [ppm, png, exr]"));
+    let load = |path: &Path| Document::load(path).expect("a scene").scene;
+    let whole = load(&folder.path().join("knot-whole.ron"));
+    assert_eq!(whole.mesh_problems().count(), 0);
+    assert_eq!(whole.faces(), load(Path::new(knot)).faces());
+
+    let other = folder.path().join("flight.ron");
+    fs::write(&other, "what somebody else made").expect("written");
+    let said = done(&mut glint(&["job", FLIGHT, "-o", path]));
+    assert!(said.contains("kept as"), "{said}");
+    let kept = fs::read_to_string(folder.path().join("flight.ron.bak")).expect("kept");
+    assert_eq!(kept, "what somebody else made");
+    assert!(fs::read(&other).expect("copied") == fs::read(FLIGHT).expect("there"));
+}
+
+#[test]
+fn at_another_rate_all_frames_are_still_all() {
+    let text = fs::read_to_string(FLIGHT).expect("readable");
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    harness.press(CTRL.plus(Modifiers::SHIFT), Key::E);
+    see(&mut harness, "202 frames to make");
+    harness.type_into("export frames per second", "28");
+    see(&mut harness, "403 frames to make");
+    harness.type_name("frames", "1-10");
+    harness.type_into("export frames per second", "7");
+    see(&mut harness, "10 frames to make");
+}

@@ -656,3 +656,24 @@ fn small_pictures_are_plain_renders_and_come_in_their_order() {
         .0;
     assert!(pictures.iter().all(|(_, image)| *image == direct));
 }
+
+#[test]
+fn a_pace_for_several_keys_leaves_their_ways() {
+    let mut scene = flight();
+    let animation = scene.animation_mut();
+    animation.keys[1].interpolation = Interpolation::Hold;
+    let ways: Vec<Interpolation> = animation.keys.iter().map(|key| key.interpolation).collect();
+    let mut harness = EditorHarness::on(scene);
+    harness.press(CTRL, Key::A);
+    harness
+        .window
+        .get_by_role_and_label(Role::ComboBox, "pace")
+        .click();
+    harness.settle();
+    harness.click("slow start");
+    let keys = &harness.scene().animation.keys;
+    let left: Vec<Interpolation> = keys.iter().map(|key| key.interpolation).collect();
+    assert_eq!(left, ways);
+    assert!(keys.iter().all(|key| key.easing == keys[0].easing));
+    assert_eq!(harness.editor().undo_label(), Some("Key: pace"));
+}

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::solid::{all, embedded_gltf, gltf_bytes, gltf_json, icosahedron};
-use super::{Sample, is_mesh_file};
+use super::{Sample, is_mesh_file, read_parts};
 
 #[test]
 fn every_format_gives_the_same_mesh() {
@@ -90,4 +90,31 @@ fn buffers_lie_in_the_file_beside_it_or_behind_its_json() {
     assert_eq!((colors.diffuse[0], colors.diffuse[2]), (1.0, 0.0));
     // Half the light is more than half of what a screen is sent.
     assert!((colors.diffuse[1] - 0.735_36).abs() < 1e-4);
+}
+
+#[test]
+fn nothing_beside_the_folder_is_read() {
+    let outside = Sample::new("b.bin", gltf_bytes());
+    outside.beside("c.mtl", "newmtl red\nKd 1 0 0\n");
+    let folder = outside.folder.path().join("in");
+    std::fs::create_dir(&folder).expect("a folder");
+    let place = |name: &str, text: String| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).expect("written");
+        path
+    };
+    let absolute = outside.path.display();
+    for name in ["../b.bin".to_owned(), absolute.to_string()] {
+        let path = place("m.gltf", gltf_json("", &format!(r#","uri":"{name}""#)));
+        let error = read_parts(&path).expect_err("refused").to_string();
+        assert!(
+            error.contains("must lie in the folder of the file"),
+            "{error}"
+        );
+    }
+    for name in ["../c.mtl", "..\\c.mtl"] {
+        let text = format!("mtllib {name}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
+        let parts = read_parts(&place("m.obj", text)).expect("a mesh");
+        assert_eq!(parts[0].colors, None, "{name}");
+    }
 }

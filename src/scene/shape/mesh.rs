@@ -407,4 +407,45 @@ mod tests {
             assert!(problem.is_some_and(|said| said.contains("must lie in the folder")));
         }
     }
+
+    #[test]
+    fn a_file_that_reaches_too_far_is_not_in_the_scene() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        std::fs::write(folder.path().join("a.obj"), text).expect("written");
+        for (x, is_there) in [(3.0, true), (1e12, false)] {
+            let mut mesh = Mesh {
+                position: DVec3::X * x,
+                source: MeshSource::File {
+                    path: "a.obj".to_owned(),
+                    folder: None,
+                    triangles: Arc::default(),
+                    problem: None,
+                },
+                ..Mesh::example(DVec3::ZERO, 1.0)
+            };
+            mesh.load(Some(folder.path()));
+            assert_eq!(mesh.source.problem().is_none(), is_there);
+            assert_eq!(mesh.source.triangles().faces().len(), usize::from(is_there));
+        }
+    }
+
+    #[test]
+    fn a_turn_about_one_axis_is_shown_as_one() {
+        for axis in DVec3::AXES {
+            let mut mesh = Mesh::example(DVec3::ZERO, 1.0);
+            for step in 1..=60 {
+                mesh = mesh.turned(
+                    DVec3::ZERO,
+                    DQuat::from_axis_angle(axis, 7_f64.to_radians()),
+                );
+                let expected = axis * 7.0 * f64::from(step);
+                assert!(
+                    (mesh.rotation - expected).length() < 1e-6,
+                    "{} for {expected}",
+                    mesh.rotation
+                );
+            }
+        }
+    }
 }

@@ -6,7 +6,8 @@ use std::time::{Duration, Instant};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use glint::scene::{Document, Scene, Shape};
+use glint::editor::Editor;
+use glint::scene::{Document, Recovery, Scene, Shape};
 use glint::ui::Ask;
 
 use crate::harness::{CTRL, EditorHarness, radius};
@@ -287,4 +288,50 @@ fn a_save_replaces_nothing_that_was_not_seen() {
     let on_disk = Document::load(&path).expect("valid").scene;
     assert_eq!(radius(&on_disk, 0), 20.0);
     assert!(!harness.editor().is_dirty());
+}
+
+#[test]
+fn a_flight_that_is_still_recorded_is_asked_about() {
+    let mut harness = EditorHarness::with(
+        |folder| vec![(Ask::SaveScene, Some(folder.join("flown.ron")))],
+        None,
+    );
+    harness.press(Modifiers::NONE, Key::R);
+    harness.window.key_down(Key::W);
+    (0..40).for_each(|_| harness.window.step());
+    harness.window.key_up(Key::W);
+    harness.settle();
+    assert!(harness.editor().timeline().recorded().is_some());
+    harness.press(CTRL, Key::N);
+    // Enter presses the button that is meant.
+    harness.press(Modifiers::NONE, Key::Enter);
+    let path = harness.folder.path().join("flown.ron");
+    wait_for(&mut harness, |_| path.exists());
+    let keys = Document::load(&path)
+        .expect("valid")
+        .scene
+        .animation
+        .keys
+        .len();
+    assert!(keys > 1, "{keys}");
+}
+
+#[test]
+fn recovered_work_does_not_replace_what_was_written_since() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.ron");
+    for (since, is_lost) in [(demo_text(20.0), false), (demo_text(31.5), true)] {
+        std::fs::write(&path, demo_text(20.0)).expect("written");
+        let (document, stamp) = Document::load_stamped(&path).expect("valid");
+        let place = Recovery::new(&folder.path().join("data")).expect("a place");
+        let text = document.to_text().expect("a text");
+        place.keep(&text, Some(&path), Some(&stamp)).expect("kept");
+        drop(place);
+        std::fs::write(&path, since).expect("written");
+        let next = Recovery::new(&folder.path().join("data")).expect("a place");
+        let mut editor = Editor::demo();
+        editor.recover(next.take_leftover(None).expect("left behind"));
+        assert_eq!(editor.would_lose(&path), is_lost);
+        assert_eq!(editor.is_changed_outside(), is_lost);
+    }
 }

@@ -215,3 +215,19 @@ fn a_field_that_is_left_as_it_was_changes_nothing() {
         assert!(!harness.editor().is_dirty(), "{field}");
     }
 }
+
+#[test]
+fn escape_gives_a_typed_vector_up() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    let before = harness.scene().objects[0].clone();
+    harness
+        .window
+        .get_by_role_and_label(Role::SpinButton, "center x")
+        .click();
+    harness.settle();
+    harness.window.event(Event::Text("1, 2, 3".to_owned()));
+    harness.settle();
+    harness.press(Modifiers::NONE, Key::Escape);
+    assert_eq!(harness.scene().objects[0], before);
+}

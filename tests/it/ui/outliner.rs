@@ -105,3 +105,22 @@ fn a_scene_of_thousands_shows_only_the_rows_in_sight() {
         "{picture:?}: panels keep their width"
     );
 }
+
+#[test]
+fn things_are_deleted_with_the_packs_that_they_wear() {
+    let mut harness = EditorHarness::new();
+    let with_control = |harness: &mut EditorHarness, name: &str| {
+        harness.window.get_by_label(name).click_modifiers(CTRL);
+        harness.settle();
+    };
+    harness.click("Sphere 1");
+    with_control(&mut harness, "sphere 1");
+    harness.press(Modifiers::NONE, Key::Delete);
+    let scene = harness.scene();
+    assert!(scene.objects.len() == 8 && !scene.color_packs.contains_key("sphere 1"));
+    harness.click("sphere 2");
+    with_control(&mut harness, "tetrahedron");
+    let packs = harness.scene().color_packs.len();
+    harness.press(CTRL, Key::D);
+    assert_eq!(harness.scene().color_packs.len(), packs + 2);
+}

@@ -7,7 +7,7 @@ use glint::editor::Mode;
 use glint::scene::{Scene, Shape, Sphere};
 use glint::ui::{Command, FLIGHT, SHORTCUTS};
 
-use crate::harness::EditorHarness;
+use crate::harness::{CTRL, EditorHarness};
 
 #[test]
 fn keys_do_nothing_while_a_text_is_edited() {
@@ -88,4 +88,31 @@ fn a_held_key_commands_once() {
         (225.0, 50.0),
         "the copy stands beside the original"
     );
+}
+
+#[test]
+fn keys_of_shortcuts_do_not_fly_when_control_is_let_go_first() {
+    let mut harness = EditorHarness::new();
+    let start = harness.scene().camera.clone();
+    let key = |pressed: bool, modifiers: Modifiers| Event::Key {
+        key: Key::A,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers,
+    };
+    harness.window.event_modifiers(key(true, CTRL), CTRL);
+    harness.window.step();
+    for _ in 0..20 {
+        harness.window.event(Event::PointerGone);
+        harness.window.step();
+    }
+    assert_eq!(harness.scene().camera, start);
+    harness.window.event(key(false, Modifiers::NONE));
+    harness.window.step();
+    harness.window.key_down(Key::A);
+    (0..5).for_each(|_| harness.window.step());
+    harness.window.key_up(Key::A);
+    harness.settle();
+    assert!(harness.scene().camera != start, "pressed anew, it flies");
 }
