@@ -37,6 +37,7 @@ pub fn show(
     ui.horizontal_centered(|ui| {
         ui.label(RichText::new(picture).monospace().weak());
         ui.spacing_mut().interact_size.y = BAR;
+        ui.spacing_mut().button_padding.y = 0.0;
         check.show(ui, scene, out);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| match activity {
             Activity::Still {
@@ -69,8 +70,6 @@ pub fn show(
 
 fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut UiRequests) {
     let share = done as f64 / total.max(1) as f64;
-    ui.spacing_mut().interact_size.y = BAR;
-    ui.spacing_mut().button_padding.y = 0.0;
     let cancel = egui::Button::new(RichText::new("Cancel").small());
     if ui
         .add(cancel)
