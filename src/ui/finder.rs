@@ -4,13 +4,13 @@ use egui::{
     AtomExt as _, Button, Context, Frame, Id, Key, Modal, Modifiers, ScrollArea, TextEdit, Ui,
 };
 
-use super::add::additions_to;
+use super::add::Addition;
 use super::commands::{Command, KEYLESS, SHORTCUTS, name_of, obstacle};
 use super::hint::Hint as _;
 use super::layout::Part;
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW};
-use crate::editor::{Edit, Editor, Item, Selection};
+use crate::editor::{Editor, Item, Selection};
 use crate::scene::{Aspect, EXAMPLES, Method, Setting, VisitSetting};
 
 /// Width of the window in points.
@@ -42,7 +42,7 @@ struct Find {
 enum Target {
     Command(Command),
     Selection(Selection),
-    Edit(Edit),
+    Addition(Addition),
 }
 
 /// What menus and buttons call commands that have other names here.
@@ -83,7 +83,7 @@ impl Finder {
             match target {
                 Target::Command(command) => out.commands.push(command),
                 Target::Selection(selection) => out.select(selection),
-                Target::Edit(edit) => out.edit(edit),
+                Target::Addition(addition) => out.edit(addition.edit(editor.scene())),
             }
         } else if shown.should_close() {
             self.is_open = false;
@@ -149,7 +149,7 @@ fn finds(ui: &Ui, editor: &Editor, text: &str) -> Vec<Find> {
     let mut finds: Vec<Find> = commands(ui, editor)
         .filter(|find| has(&find.name) || has(also(&find.what)))
         .collect();
-    finds.extend(additions(editor).filter(|find| has(&find.name)));
+    finds.extend(additions().filter(|find| has(&find.name)));
     finds.extend(settings(editor).filter(|find| has(&find.name)));
     // There may be very many.
     let room = MOST.saturating_sub(finds.len());
@@ -189,15 +189,13 @@ fn also(what: &Target) -> &'static str {
 }
 
 /// What the menu *Add* offers.
-fn additions(editor: &Editor) -> impl Iterator<Item = Find> {
-    additions_to(editor.scene())
-        .into_iter()
-        .map(|(_, name, edit)| Find {
-            name,
-            aside: String::new(),
-            what: Target::Edit(edit),
-            is_enabled: true,
-        })
+fn additions() -> impl Iterator<Item = Find> {
+    Addition::all().map(|(addition, _, name)| Find {
+        name,
+        aside: String::new(),
+        what: Target::Addition(addition),
+        is_enabled: true,
+    })
 }
 
 /// What is chosen in menus below the menus.
