@@ -7,9 +7,9 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
-use egui::{Context, Event, Key, Modifiers};
-use egui_kittest::Harness;
+use egui::{Context, Event, Key, Modifiers, TexturesDelta};
 use egui_kittest::kittest::Queryable as _;
+use egui_kittest::{Harness, TestRenderer};
 use glint::editor::{Action, Editor, Time};
 use glint::image::Image;
 use glint::scene::{Document, Scene, Shape, Sphere};
@@ -44,6 +44,15 @@ impl egui::DroppedFile for OnDisk {
 
     fn bytes(&self) -> Result<Vec<u8>, String> {
         std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+/// A screen that nobody looks at. The usual one keeps every part of a texture that was ever sent to it.
+struct Unseen;
+
+impl TestRenderer for Unseen {
+    fn handle_delta(&mut self, delta: &mut TexturesDelta) {
+        delta.clear();
     }
 }
 
@@ -107,6 +116,7 @@ impl EditorHarness {
             .with_size([1280.0, 800.0])
             .with_step_dt(1.0 / 60.0)
             .with_max_steps(32)
+            .renderer(Unseen)
             .build_eframe(move |cc| {
                 App::new(
                     cc,
