@@ -446,7 +446,7 @@ mod tests {
             let [a, b, c, d] = side.map(corner);
             square(a, b, c, d)
         });
-        let turn = |[a, b, c]: [Vec3<f64>; 3]| if is_hollow { [a, c, b] } else { [a, b, c] };
+        let turn = |[a, b, c]: [Vec3<f64>; 3]| if is_hollow { [a, b, c] } else { [a, c, b] };
         faces.map(turn).collect()
     }
 
