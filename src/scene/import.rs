@@ -7,9 +7,8 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::camera::Camera;
-use super::check::MAX_EXPONENT;
 use super::list::List;
-use super::material::ColorPack;
+use super::material::{ColorPack, MAX_EXPONENT};
 use super::object::{Light, LightObj, Object};
 use super::shape::{Mesh, MeshSource, Shape};
 use super::whole::Scene;

@@ -15,13 +15,12 @@ use std::sync::Arc;
 use camera::check_camera;
 use place::{At, Check};
 
+use super::material::MAX_EXPONENT;
 use super::object::{LightObj, Object};
 use super::render::{MAX_REFLECTIONS, MAX_SIDE, Render};
 use super::shape::{Field, FieldValue, Shape};
 use super::whole::{Scene, VERSION};
 
-/// Largest Phong exponent; the highlight is then a few ten-thousandths of a degree wide.
-pub const MAX_EXPONENT: f64 = 1e7;
 /// Most pixels in a picture: 1 GiB of 8-bit RGBA.
 const MAX_PIXELS: u64 = 1 << 28;
 /// Longest name, in characters.
