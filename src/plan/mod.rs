@@ -8,6 +8,8 @@ mod grouping;
 
 mod bvh;
 
+mod cast;
+
 mod thickness;
 
 mod smooth;

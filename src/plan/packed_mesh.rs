@@ -5,8 +5,9 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3};
 
 use super::bvh::{Bvh, Member};
+use super::cast::is_outside;
 use super::smooth::{corner_normals, largest_lift};
-use super::thickness::{is_outside, measures};
+use super::thickness::measures;
 use crate::mesh::Triangles;
 use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle};
 use crate::scene::Mesh;

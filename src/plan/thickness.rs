@@ -4,7 +4,8 @@
 use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 use rayon::slice::ParallelSliceMut as _;
 
-use super::bvh::{Bvh, Child, GROUP};
+use super::bvh::{Bvh, Child};
+use super::cast::cast;
 use crate::primitive::PackedTriangle;
 use crate::simd::{Real, Vec3};
 
@@ -104,99 +105,6 @@ impl<R: Real> Faces<'_, R> {
             nearest
         });
         nearest
-    }
-}
-
-/// Tells of the triangles that a ray meets, in any order, and how far each is; what is told says how far is still
-/// looked.
-fn cast<R: Real>(
-    triangles: &[PackedTriangle<R>],
-    bvh: &Bvh<R>,
-    (origin, direction): (Vec3<R>, Vec3<R>),
-    mut tell: impl FnMut(u32, R) -> R,
-) {
-    let inverse = direction.to_array().map(|part| R::ONE / part);
-    let mut reach = R::INFINITY;
-    let mut waiting = vec![0];
-    while let Some(node) = waiting
-        .pop()
-        .and_then(|index: u32| bvh.nodes.get(index as usize))
-    {
-        let (near, far) = slabs(&node.planes, origin.to_array(), inverse);
-        for place in 0..node.count {
-            // Not-a-number is in neither range: such a box is looked into.
-            if near[place] > far[place] || near[place] > reach || far[place] < R::ZERO {
-                continue;
-            }
-            match node.child(place) {
-                Child::Node(inner) => waiting.push(inner),
-                Child::Member(face) => {
-                    let t = meet(&triangles[face as usize].corners, origin, direction);
-                    if t < R::INFINITY {
-                        reach = tell(face, t);
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// Two directions: any will do; along none of the axes, edges are rarely met.
-const WAYS_OUT: [[f64; 3]; 2] = [[0.312, 0.871, 0.379], [-0.523, 0.233, -0.817]];
-
-/// Whether a point is outside of a closed mesh whose faces look outwards: what is met first on the way out is met
-/// from its front, and as much is left as is entered. A mesh may have parts inside of others.
-pub fn is_outside<R: Real>(triangles: &[PackedTriangle<R>], bvh: &Bvh<R>, point: Vec3<R>) -> bool {
-    WAYS_OUT.iter().all(|way| {
-        let direction = Vec3::from(way.map(R::from_f64));
-        let (mut nearest, mut first, mut around) = (R::INFINITY, -1, 0);
-        cast(triangles, bvh, (point, direction), |face, t| {
-            let is_left = triangles[face as usize].normal.dot(direction) > R::ZERO;
-            let turn = if is_left { 1 } else { -1 };
-            around += turn;
-            if t < nearest {
-                (nearest, first) = (t, turn);
-            }
-            R::INFINITY
-        });
-        first == -1 && around == 0
-    })
-}
-
-/// Where a ray enters and leaves the boxes of a node.
-fn slabs<R: Real>(
-    planes: &[[[R; GROUP]; 3]; 2],
-    origin: [R; 3],
-    inverse: [R; 3],
-) -> ([R; GROUP], [R; GROUP]) {
-    let (mut near, mut far) = ([R::ZERO; GROUP], [R::INFINITY; GROUP]);
-    for axis in 0..3 {
-        for place in 0..GROUP {
-            let low = (planes[0][axis][place] - origin[axis]) * inverse[axis];
-            let high = (planes[1][axis][place] - origin[axis]) * inverse[axis];
-            near[place] = near[place].max(low.min(high));
-            far[place] = far[place].min(low.max(high));
-        }
-    }
-    (near, far)
-}
-
-/// Where a ray meets a triangle from within; infinity if it does not. Möller and Trumbore's formula: a ray
-/// that slips through an edge is one of many.
-fn meet<R: Real>([a, b, c]: &[Vec3<R>; 3], origin: Vec3<R>, direction: Vec3<R>) -> R {
-    let (ab, ac) = (*b - *a, *c - *a);
-    let across = direction.cross(ac);
-    let determinant = ab.dot(across);
-    let from = origin - *a;
-    let u = from.dot(across) / determinant;
-    let turned = from.cross(ab);
-    let v = direction.dot(turned) / determinant;
-    let t = ac.dot(turned) / determinant;
-    let is_inside = u >= R::ZERO && v >= R::ZERO && u + v <= R::ONE;
-    if is_inside && t > R::ZERO && t < R::INFINITY {
-        t
-    } else {
-        R::INFINITY
     }
 }
 
@@ -426,52 +334,5 @@ mod tests {
         let thin = found(&faces).iter().filter(|t| **t < 20.0).count();
         // At its corners the way across is short.
         assert!(thin < 80, "{thin} of 3200");
-    }
-
-    /// A box around the origin, so large; clockwise seen from outside, or from inside.
-    fn solid(half: f64, at_y: f64, is_hollow: bool) -> Vec<[Vec3<f64>; 3]> {
-        let corner = |index: usize| {
-            let side = |bit: usize| if index >> bit & 1 == 0 { -half } else { half };
-            at(side(0), side(1) + at_y, side(2))
-        };
-        let sides = [
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-        ];
-        let faces = sides.iter().flat_map(|side| {
-            let [a, b, c, d] = side.map(corner);
-            square(a, b, c, d)
-        });
-        let turn = |[a, b, c]: [Vec3<f64>; 3]| if is_hollow { [a, b, c] } else { [a, c, b] };
-        faces.map(turn).collect()
-    }
-
-    #[test]
-    fn a_room_with_a_table_in_it_is_not_left_by_looking_at_the_table() {
-        let is_seen = |parts: &[Vec<[Vec3<f64>; 3]>], point: Vec3<f64>| {
-            let packed =
-                |corners: &[Vec3<f64>; 3]| PackedTriangle::of_mesh(corners.map(Vec3::to_dvec3));
-            let triangles: Vec<_> = parts.iter().flatten().filter_map(packed).collect();
-            let member = |triangle: &PackedTriangle<f64>| Member {
-                bounds: BoundingBox::around(&triangle.corners),
-                thickness: triangle.thickness,
-            };
-            let members: Vec<_> = triangles.iter().map(member).collect();
-            is_outside(&triangles, &Bvh::new(members.len(), |n| members[n]), point)
-        };
-        let room = [solid(10.0, 0.0, false), solid(3.0, 4.0, false)];
-        // Below the table, beside it, in it, and far away.
-        let points = [at(0.1, -3.0, 0.2), at(8.1, 0.2, 0.1), at(0.1, 4.2, 0.3)];
-        for point in points {
-            assert!(!is_seen(&room, point), "{point:?}");
-        }
-        assert!(is_seen(&room, at(1.0, -30.0, 2.0)));
-        // What is hollow has an outside within.
-        let shell = [solid(10.0, 0.0, false), solid(3.0, 4.0, true)];
-        assert!(is_seen(&shell, at(0.1, 4.2, 0.3)) && !is_seen(&shell, at(0.1, -3.0, 0.2)));
     }
 }

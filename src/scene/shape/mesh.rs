@@ -388,18 +388,23 @@ mod tests {
         assert!((found - expected).length() < 1e-12, "{found} {expected}");
     }
 
+    /// A mesh that is not read yet.
+    fn of_file(path: &str) -> Mesh {
+        Mesh {
+            source: MeshSource::File {
+                path: path.to_owned(),
+                folder: None,
+                triangles: Arc::default(),
+                problem: None,
+            },
+            ..Mesh::example(DVec3::ZERO, 1.0)
+        }
+    }
+
     #[test]
     fn nothing_outside_the_folder_is_read() {
         for path in ["/etc/passwd", "../up.ply", "a/../../b.ply"] {
-            let mut mesh = Mesh {
-                source: MeshSource::File {
-                    path: path.to_owned(),
-                    folder: None,
-                    triangles: Arc::default(),
-                    problem: None,
-                },
-                ..Mesh::example(DVec3::ZERO, 1.0)
-            };
+            let mut mesh = of_file(path);
             mesh.load(Some(Path::new("/tmp")));
             let MeshSource::File { problem, .. } = mesh.source else {
                 panic!("still a file");
@@ -414,16 +419,7 @@ mod tests {
         let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
         std::fs::write(folder.path().join("a.obj"), text).expect("written");
         for (x, is_there) in [(3.0, true), (1e12, false)] {
-            let mut mesh = Mesh {
-                position: DVec3::X * x,
-                source: MeshSource::File {
-                    path: "a.obj".to_owned(),
-                    folder: None,
-                    triangles: Arc::default(),
-                    problem: None,
-                },
-                ..Mesh::example(DVec3::ZERO, 1.0)
-            };
+            let mut mesh = of_file("a.obj").moved(DVec3::X * x);
             mesh.load(Some(folder.path()));
             assert_eq!(mesh.source.problem().is_none(), is_there);
             assert_eq!(mesh.source.triangles().faces().len(), usize::from(is_there));
