@@ -45,17 +45,15 @@ enum Target {
     Addition(Addition),
 }
 
-/// What menus and buttons call commands that have other names here.
-const ALSO: [(Command, &str); 9] = [
+/// What menus and buttons call commands whose names here say more, in small letters.
+const ALSO: [(Command, &str); 7] = [
     (Command::SaveAs, "save as"),
     (Command::SaveImage, "save image"),
     (Command::ExportJob, "export farm job"),
     (Command::AddKey, "add key"),
     (Command::AddBookmark, "add this view"),
-    (Command::FrameSelected, "frame zoom to"),
-    (Command::FrameAll, "frame zoom all"),
-    (Command::ToggleVisible, "visible"),
-    (Command::RequestPaste, "insert"),
+    (Command::FrameSelected, "frame what is selected"),
+    (Command::FrameAll, "frame everything"),
 ];
 
 impl Finder {

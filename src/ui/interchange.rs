@@ -89,7 +89,8 @@ pub fn export_job(editor: &mut Editor, path: &Path) {
 fn write(editor: &Editor, path: &Path) -> Result<Job, Box<dyn Error>> {
     let own = editor.path();
     let beside = path.with_extension("ron");
-    if editor.is_dirty() && own.is_some_and(|own| is_same_file(own, &beside)) {
+    let is_taken = editor.is_dirty() && !editor.scene().has_mesh_files();
+    if is_taken && own.is_some_and(|own| is_same_file(own, &beside)) {
         let sentence = format!(
             "{} is rendered as it is on the disk; save it first",
             beside.display()
