@@ -1,19 +1,27 @@
-//! An export on its way: frames are traced by one thread pool while the one before is written.
+//! An export on its way: frames are traced by one thread pool while those before are packed and written.
 
 use std::collections::VecDeque;
+use std::io;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
-use std::time::Duration;
+
+use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 
 use super::error::ExportError;
 use super::manifest::{Hash, Manifest};
 use super::sequence::{Sequence, fingerprint};
-use crate::image::{Film, Image};
+use super::writers::{WriteJob, WriteResult, Writers};
+use crate::image::{Film, Image, RenderCost};
 use crate::plan::Planner;
-use crate::trace::RenderControl;
+use crate::scene::Scene;
+use crate::trace::{RenderControl, Threads};
 
-/// Pictures that may wait to be written: memory stays bounded, however long the sequence is.
-const WAITING: usize = 2;
+/// Threads that one frame keeps busy: the more there are, the longer they wait for the last pieces of a
+/// picture, so that every so many trace a frame of their own.
+const THREADS_PER_FRAME: usize = 8;
+
+/// Most pixels of frames that are traced side by side, and of those that are packed meanwhile: memory stays
+/// bounded, however large they are and however many threads there are.
+const MOST_PIXELS: usize = 1 << 26;
 
 /// Height of the small picture of a frame, in pixels.
 const SMALL: usize = 64;
@@ -42,18 +50,13 @@ pub enum ExportStep {
     Failed(ExportError),
 }
 
-/// A picture on its way to the disk.
-struct WriteJob {
+/// A frame that is not there as it should be, and what is traced for it.
+struct Due {
     frame: u64,
-    film: Film,
+    shown: Arc<Scene>,
     fingerprint: Hash,
-    time: Duration,
-}
-
-/// What came of it, and the memory back.
-struct WriteResult {
-    written: Result<(), ExportError>,
     film: Film,
+    planner: Planner,
 }
 
 /// A sequence that is being exported.
@@ -61,8 +64,10 @@ pub struct Exporting {
     sequence: Arc<Sequence>,
     manifest: Manifest,
     left: VecDeque<u64>,
-    jobs: Option<SyncSender<WriteJob>>,
-    results: Receiver<WriteResult>,
+    /// Started with the first frame that is written.
+    writers: Option<Writers>,
+    /// Frames that the writers have not told about.
+    on_the_way: usize,
     spare: Vec<Film>,
     planner: Planner,
     done: Exported,
@@ -78,39 +83,25 @@ impl std::fmt::Debug for Exporting {
 }
 
 impl Exporting {
-    /// Opens the folder and starts the thread that writes.
+    /// Opens the folder.
     ///
     /// # Errors
     /// [`ExportError`], if the folder cannot be made or read.
     pub fn new(sequence: Sequence) -> Result<Self, ExportError> {
         sequence.prepare()?;
-        let manifest = sequence.manifest()?;
-        let sequence = Arc::new(sequence);
-        let (jobs, to_write) = sync_channel::<WriteJob>(WAITING);
-        let (to_return, results) = channel();
-        let writer = std::thread::Builder::new()
-            .name("glint-writer".to_owned())
-            .spawn({
-                let sequence = Arc::clone(&sequence);
-                move || write_all(&sequence, &to_write, &to_return)
-            });
-        writer.map_err(|source| ExportError::Disk {
-            path: sequence.folder.clone(),
-            source,
-        })?;
         Ok(Self {
-            manifest,
+            manifest: sequence.manifest()?,
             left: sequence.frames.iter().collect(),
+            writers: None,
+            on_the_way: 0,
+            spare: Vec::new(),
+            planner: Planner::default(),
             done: Exported {
                 total: sequence.frames.count(),
                 ..Exported::default()
             },
-            sequence,
-            jobs: Some(jobs),
-            results,
-            spare: Vec::new(),
-            planner: Planner::default(),
             last: None,
+            sequence: Arc::new(sequence),
         })
     }
 
@@ -129,88 +120,135 @@ impl Exporting {
         self.last.as_ref()
     }
 
-    /// Looks at the next frame and traces it, if it is not there as it should be.
+    /// Looks at the next frame, or at several where there are many threads, and traces what is not there as it
+    /// should be, on the threads of the current rayon pool.
     pub fn step(&mut self, control: &RenderControl) -> ExportStep {
-        while let Ok(result) = self.results.try_recv() {
-            if let Err(error) = self.take(result) {
-                return ExportStep::Failed(error);
+        self.try_step(control).unwrap_or_else(ExportStep::Failed)
+    }
+
+    fn try_step(&mut self, control: &RenderControl) -> Result<ExportStep, ExportError> {
+        while let Some(result) = self.writers.as_ref().and_then(Writers::result) {
+            self.take(result)?;
+        }
+        if self.left.is_empty() {
+            return Ok(ExportStep::Done);
+        }
+        let due = self.next_due()?;
+        let trace = |mut due: Due| {
+            let request = self.sequence.request(&due.shown);
+            let cost = due
+                .film
+                .expose(&mut due.planner, &due.shown, &request, control);
+            (due, cost)
+        };
+        let traced: Vec<(Due, Option<RenderCost>)> = due.into_par_iter().map(trace).collect();
+        let mut stopped = Vec::new();
+        for (due, cost) in traced {
+            match cost {
+                Some(cost) => self.write(due, &cost)?,
+                None => stopped.push(due),
             }
         }
-        let Some(frame) = self.left.pop_front() else {
-            return ExportStep::Done;
-        };
-        let shown = self.sequence.shown(frame);
-        let fingerprint = match fingerprint(&shown, self.sequence.format) {
-            Ok(fingerprint) => fingerprint,
-            Err(error) => return ExportStep::Failed(error),
-        };
-        if self
-            .manifest
-            .is_valid(&self.sequence.file(frame), &fingerprint)
-        {
-            self.done.kept += 1;
-            return ExportStep::Going;
+        if stopped.is_empty() {
+            return Ok(ExportStep::Going);
         }
-        let spare = self.spare.pop();
-        let mut film = spare.unwrap_or_else(|| Film::new(self.sequence.format));
-        let request = self.sequence.request(&shown);
-        let Some(cost) = film.expose(&mut self.planner, &shown, &request, control) else {
-            self.spare.push(film);
-            self.left.push_front(frame);
-            return ExportStep::Stopped;
+        for due in stopped.into_iter().rev() {
+            self.left.push_front(due.frame);
+            self.spare.push(due.film);
+            self.planner = due.planner;
+        }
+        Ok(ExportStep::Stopped)
+    }
+
+    /// How many frames of this size may be under way beside each other, for one reason or another.
+    fn at_once(&self, wanted: usize) -> usize {
+        let (width, height) = self.sequence.size();
+        let pixels = (width as usize * height as usize).max(1);
+        wanted.clamp(1, (MOST_PIXELS / pixels).max(1))
+    }
+
+    /// The next frames that have to be traced, of as many as are traced side by side; the others are there.
+    fn next_due(&mut self) -> Result<Vec<Due>, ExportError> {
+        // The others share what the first one has planned.
+        let is_first = self.last.is_none();
+        let wanted = if is_first {
+            1
+        } else {
+            Threads::current() / THREADS_PER_FRAME
         };
-        let step = film.size().1.div_ceil(SMALL).max(1);
-        self.last = Some(Arc::new(film.decimated(step)));
-        let job = WriteJob {
-            frame,
-            film,
-            fingerprint,
+        let count = self.at_once(wanted);
+        let mut due: Vec<Due> = Vec::new();
+        for frame in self.left.drain(..count.min(self.left.len())) {
+            let shown = self.sequence.shown(frame);
+            let fingerprint = fingerprint(&shown, self.sequence.format)?;
+            let file = self.sequence.file(frame);
+            if self.manifest.is_valid(&file, &fingerprint) {
+                self.done.kept += 1;
+                continue;
+            }
+            let film = self.spare.pop();
+            due.push(Due {
+                frame,
+                shown,
+                fingerprint,
+                film: film.unwrap_or_else(|| Film::new(self.sequence.format)),
+                planner: match due.first() {
+                    None => std::mem::take(&mut self.planner),
+                    Some(first) => first.planner.clone(),
+                },
+            });
+        }
+        Ok(due)
+    }
+
+    /// Sends a frame on its way to the disk.
+    fn write(&mut self, due: Due, cost: &RenderCost) -> Result<(), ExportError> {
+        self.planner = due.planner;
+        let step = due.film.size().1.div_ceil(SMALL).max(1);
+        self.last = Some(Arc::new(due.film.decimated(step)));
+        let count = self.at_once(Threads::current());
+        let writers = match self.writers.take() {
+            Some(writers) => writers,
+            None => Writers::start(&self.sequence, count)?,
+        };
+        self.on_the_way += 1;
+        let is_taken = writers.write(WriteJob {
+            frame: due.frame,
+            film: due.film,
+            fingerprint: due.fingerprint,
             time: cost.time,
-        };
-        // It hangs up only after a frame that failed, whose result tells why.
-        if let Some(jobs) = &self.jobs
-            && jobs.send(job).is_err()
-        {
-            return self
-                .finish()
-                .map_or_else(ExportStep::Failed, |_| ExportStep::Done);
+        });
+        self.writers = Some(writers);
+        // They hang up only after a frame that failed, whose result tells why.
+        if is_taken {
+            Ok(())
+        } else {
+            self.finish().map(|_| ())
         }
-        ExportStep::Going
     }
 
     /// Waits until the last frame is on the disk.
     ///
     /// # Errors
-    /// [`ExportError`] of the first frame that was not written.
+    /// [`ExportError`] of a frame that was not written.
     pub fn finish(&mut self) -> Result<Exported, ExportError> {
-        self.jobs = None;
-        while let Ok(result) = self.results.recv() {
+        for result in self.writers.take().into_iter().flat_map(Writers::finish) {
             self.take(result)?;
+        }
+        if self.on_the_way > 0 {
+            return Err(ExportError::Disk {
+                path: self.sequence.folder.clone(),
+                source: io::Error::other("a thread that writes stopped with a fault of its own"),
+            });
         }
         Ok(self.done)
     }
 
     fn take(&mut self, result: WriteResult) -> Result<(), ExportError> {
+        self.on_the_way -= 1;
         self.spare.push(result.film);
         result.written?;
         self.done.written += 1;
         Ok(())
-    }
-}
-
-/// Writes what arrives, in order; hangs up after the first that fails.
-fn write_all(sequence: &Sequence, jobs: &Receiver<WriteJob>, results: &Sender<WriteResult>) {
-    for job in jobs {
-        let WriteJob {
-            frame,
-            film,
-            fingerprint,
-            time,
-        } = job;
-        let written = sequence.write(frame, &film, &fingerprint, time);
-        let is_over = written.is_err();
-        if results.send(WriteResult { written, film }).is_err() || is_over {
-            return;
-        }
     }
 }

@@ -95,16 +95,7 @@ pub fn add_note(
     fingerprint: &Hash,
     time: Duration,
 ) -> io::Result<()> {
-    let mut options = OpenOptions::new();
-    options.create(true).append(true).read(true);
-    let mut manifest = options.open(folder.join(MANIFEST))?;
-    let mut line = String::new();
-    match last_byte(&mut manifest)? {
-        None => drop(writeln!(line, "{HEAD}")),
-        Some(b'\n') => {}
-        // A line was cut off: it must not take this one with it.
-        Some(_) => line.push('\n'),
-    }
+    let (mut manifest, mut line) = open(&folder.join(MANIFEST))?;
     let _ = writeln!(
         line,
         "{file}\t{}\t{fingerprint}\t{:.3}",
@@ -112,6 +103,22 @@ pub fn add_note(
         time.as_secs_f64() * 1e3
     );
     manifest.write_all(line.as_bytes())
+}
+
+/// The notes, to add to, and what has to stand before the next line: the head in a new file, which one of all that
+/// write at the same time makes; the end of a line that was cut off, so that it does not take the next one with it.
+fn open(path: &Path) -> io::Result<(File, String)> {
+    let mut options = OpenOptions::new();
+    options.append(true).read(true);
+    match options.clone().create_new(true).open(path) {
+        Ok(file) => return Ok((file, format!("{HEAD}\n"))),
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+        Err(error) => return Err(error),
+    }
+    let mut file = options.open(path)?;
+    let is_whole = last_byte(&mut file)?.is_none_or(|byte| byte == b'\n');
+    let end = if is_whole { "" } else { "\n" };
+    Ok((file, end.to_owned()))
 }
 
 fn last_byte(file: &mut File) -> io::Result<Option<u8>> {

@@ -12,6 +12,8 @@ mod manifest;
 
 mod sequence;
 
+mod writers;
+
 mod exporting;
 
 mod job;

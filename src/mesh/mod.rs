@@ -36,7 +36,7 @@ use std::path::Path;
 
 pub use error::MeshError;
 pub use part::{Part, PartColors};
-pub use solids::{SOLIDS, icosphere};
+pub use solids::{SOLIDS, Solid, icosphere};
 pub use triangles::{FARTHEST, Triangles, place_key};
 
 /// What a mesh is written in.

@@ -15,21 +15,48 @@ const SIDES: u32 = 48;
 /// Sides of the tube of a torus.
 const TUBE_SIDES: u32 = 24;
 
-/// A solid by its name, and what makes one of a given size.
-pub type Solid = (&'static str, fn(f64) -> Triangles);
+/// Largest angle between faces of what is round, in degrees: they look curved, and its rims stay sharp.
+const ROUND: f64 = 30.0;
+
+/// A solid that can be made.
+#[derive(Clone, Copy, Debug)]
+pub struct Solid {
+    /// What it is called.
+    pub name: &'static str,
+    /// Makes one of a given size.
+    pub make: fn(f64) -> Triangles,
+    /// Degrees up to which its faces are shaded as one; 0 for what has flat faces.
+    pub smooth: f64,
+}
+
+const fn flat(name: &'static str, make: fn(f64) -> Triangles) -> Solid {
+    Solid {
+        name,
+        make,
+        smooth: 0.0,
+    }
+}
+
+const fn round(name: &'static str, make: fn(f64) -> Triangles) -> Solid {
+    Solid {
+        name,
+        make,
+        smooth: ROUND,
+    }
+}
 
 /// What can be made.
 pub const SOLIDS: [Solid; 6] = [
-    ("Box", cuboid),
-    ("Tetrahedron", tetrahedron),
-    ("Icosphere", |size| icosphere(size / 2.0)),
-    ("Cylinder", |size| {
+    flat("Box", cuboid),
+    flat("Tetrahedron", tetrahedron),
+    round("Icosphere", |size| icosphere(size / 2.0)),
+    round("Cylinder", |size| {
         spun(&[(size / 2.0, size / 2.0), (size / 2.0, -size / 2.0)])
     }),
-    ("Cone", |size| {
+    round("Cone", |size| {
         spun(&[(0.0, size / 2.0), (size / 2.0, -size / 2.0)])
     }),
-    ("Torus", torus),
+    round("Torus", torus),
 ];
 
 fn cuboid(size: f64) -> Triangles {
@@ -191,7 +218,7 @@ mod tests {
 
     #[test]
     fn solids_are_closed_and_look_outwards() {
-        for (name, make) in SOLIDS {
+        for Solid { name, make, smooth } in SOLIDS {
             let solid = make(2.0);
             let mut edges = HashSet::new();
             for &[a, b, c] in solid.faces() {
@@ -210,6 +237,25 @@ mod tests {
             assert!((0.3..8.1).contains(&volume), "{name}: {volume}");
             let (low, high) = solid.bounds().expect("it has an end");
             assert!((high - low).max_element() <= 2.0 + 1e-12, "{name}");
+            // What is said to be round is made finely enough to look so, and has no rims that would vanish.
+            let normals: Vec<DVec3> = solid
+                .corners()
+                .map(|[a, b, c]| (c - a).cross(b - a))
+                .collect();
+            let mut faces_of: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
+            for (face, &[a, b, c]) in solid.faces().iter().enumerate() {
+                for (a, b) in [(a, b), (b, c), (c, a)] {
+                    faces_of.entry((a.min(b), a.max(b))).or_default().push(face);
+                }
+            }
+            for pair in faces_of.values() {
+                let angle = normals[pair[0]]
+                    .angle_between(normals[pair[1]])
+                    .to_degrees();
+                let (is_rim, is_curve) = (angle > 60.0, (1e-4..ROUND * 0.8).contains(&angle));
+                assert!(angle < 1e-4 || is_rim || is_curve, "{name}: {angle}");
+                assert!(smooth > 0.0 || !is_curve, "{name} is round: {angle}");
+            }
         }
     }
 }

@@ -184,7 +184,7 @@ impl<R: Real> MeshInstance<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{SOLIDS, icosphere};
+    use crate::mesh::{SOLIDS, Solid, icosphere};
 
     fn packed(triangles: Triangles, smooth: f64) -> PackedMesh<f64> {
         PackedMesh::new(&Mesh {
@@ -211,14 +211,14 @@ mod tests {
 
     #[test]
     fn faces_that_meet_at_a_larger_angle_stay_flat() {
-        let (name, cuboid) = SOLIDS[0];
-        let mesh = packed(cuboid(1.0), 89.0);
+        let Solid { name, make, .. } = SOLIDS[0];
+        let mesh = packed(make(1.0), 89.0);
         for (face, smooth) in mesh.triangles.iter().zip(&mesh.smooth) {
             let is_flat = |normal: &Vec3<f64>| (*normal - face.normal).length() < 1e-12;
             assert!(smooth.normals.iter().all(is_flat), "{name}");
         }
-        let round = packed(cuboid(1.0), 91.0);
+        let round = packed(make(1.0), 91.0);
         assert!(round.smooth.iter().all(|smooth| smooth.curvature > 0.5));
-        assert!(packed(cuboid(1.0), 0.0).smooth.is_empty());
+        assert!(packed(make(1.0), 0.0).smooth.is_empty());
     }
 }

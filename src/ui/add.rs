@@ -31,12 +31,13 @@ impl Addition {
         match self {
             Self::Shape(place) => Edit::AddObject(Shape::examples(at, size).swap_remove(place)),
             Self::Solid(place) => {
-                let (solid, make) = SOLIDS[place];
+                let solid = SOLIDS[place];
                 let mesh = Mesh {
                     position: at,
-                    ..Mesh::of(make(size))
+                    smooth: solid.smooth,
+                    ..Mesh::of((solid.make)(size))
                 };
-                Edit::AddMesh(solid, mesh)
+                Edit::AddMesh(solid.name, mesh)
             }
             Self::Light => Edit::AddLight(at + DVec3::new(0.0, size, 0.0)),
             Self::Pack => Edit::AddPack,
@@ -53,8 +54,13 @@ impl Addition {
             (Self::Shape(place), icons::of_shape(&shape), name)
         });
         let solids = SOLIDS.iter().enumerate();
-        let solids = solids
-            .map(|(place, (solid, _))| (Self::Solid(place), icons::MESH, format!("Add {solid}")));
+        let solids = solids.map(|(place, solid)| {
+            (
+                Self::Solid(place),
+                icons::MESH,
+                format!("Add {}", solid.name),
+            )
+        });
         let others = [
             (Self::Light, icons::LIGHT, "Add Light".to_owned()),
             (Self::Pack, icons::PACK, "Add ColorPack".to_owned()),

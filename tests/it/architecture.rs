@@ -27,6 +27,7 @@ const HOMES: &[(&[&str], &[&str])] = &[
         &[
             "worker",
             "export/exporting",
+            "export/writers",
             "export/povray",
             "plan/idle",
             "plan/thickness",

@@ -43,8 +43,8 @@ fn crowd(dice: &mut Dice) -> Scene {
     let mut add = |name: String, pack: &str, shape: Shape| {
         scene.objects.push(Object::new(name, pack, shape));
     };
-    let (_, solid) = SOLIDS[2];
-    add("Solid".to_owned(), "a", Shape::Mesh(Mesh::of(solid(30.0))));
+    let solid = (SOLIDS[2].make)(30.0);
+    add("Solid".to_owned(), "a", Shape::Mesh(Mesh::of(solid)));
     for ball in 0..BALLS {
         let shape = Shape::Sphere(Sphere {
             center: place(dice),
