@@ -94,16 +94,32 @@ fn play(harness: &mut EditorHarness) {
     harness.settle();
 }
 
-/// Exports three small frames. Whether they are there.
-fn export(harness: &mut EditorHarness, folder: &Path) -> bool {
+/// Opens the window of exports.
+fn show_exports(harness: &mut EditorHarness) {
     // The key also closes the window that the monkey may have left open.
-    let is_open = |harness: &EditorHarness| {
+    let is_open = {
         let mut buttons = harness.window.query_all_by_label("Start export");
         buttons.next().is_some()
     };
-    if !is_open(harness) {
+    if !is_open {
         harness.press(CTRL.plus(Modifiers::SHIFT), Key::E);
     }
+}
+
+/// Waits for the exports, those that the monkey has paused too.
+fn end_exports(harness: &mut EditorHarness) {
+    if harness.window.state().is_exporting() {
+        show_exports(harness);
+        while press(harness, "Resume") {}
+    }
+    wait(harness, "the exports end", |harness| {
+        !harness.window.state().is_exporting()
+    });
+}
+
+/// Exports three small frames. Whether they are there.
+fn export(harness: &mut EditorHarness, folder: &Path) -> bool {
+    show_exports(harness);
     harness.type_name("folder", folder.to_str().expect("plain"));
     harness.type_name("frames", "1-3");
     harness.type_into("export width", "24");
@@ -163,9 +179,7 @@ fn a_long_day_of_a_monkey_leaves_everything_in_order() {
         // While a dialog is open, nothing else is opened.
         dialogs.close(&mut harness);
         press(&mut harness, "Cancel");
-        wait(&mut harness, "the exports end", |harness| {
-            !harness.window.state().is_exporting()
-        });
+        end_exports(&mut harness);
         harness.settle();
         let text = keep(&harness, &folder.join("left.ron"));
         assert!(
