@@ -30,16 +30,29 @@ pub fn stays_inside(path: &Path) -> bool {
         .all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
 }
 
-/// Copies a file to `NAME.bak`: that path.
+/// Copies a file to `NAME.bak`, or to `NAME.bak2` and so on where that holds something else: that path.
 ///
 /// # Errors
 /// Whatever the system answers.
 pub fn back_up(path: &Path) -> io::Result<PathBuf> {
-    let mut name = path.as_os_str().to_owned();
-    name.push(".bak");
-    let backup = PathBuf::from(name);
-    write_atomic(&backup, &fs::read(path)?)?;
-    Ok(backup)
+    let bytes = fs::read(path)?;
+    let mut number = 1_u32;
+    loop {
+        let mut name = path.as_os_str().to_owned();
+        name.push(".bak");
+        if number > 1 {
+            name.push(number.to_string());
+        }
+        let backup = PathBuf::from(name);
+        match fs::read(&backup) {
+            Ok(there) if there == bytes => return Ok(backup),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                write_atomic(&backup, &bytes)?;
+                return Ok(backup);
+            }
+            _ => number += 1,
+        }
+    }
 }
 
 /// A new file beside the one whose place it will take: nobody else writes to it, and where it does not come to

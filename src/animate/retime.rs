@@ -43,7 +43,7 @@ impl Retime {
 
 fn stretched(keys: &[Key<Camera>], seconds: f64) -> Vec<Key<Camera>> {
     let (start, end) = (keys[0].time, keys[keys.len() - 1].time);
-    let scale = seconds.clamp(CLOSEST, MAX_SECONDS - start) / (end - start);
+    let scale = seconds.max(CLOSEST).min(MAX_SECONDS - start) / (end - start);
     let later = |key: &Key<Camera>| Key {
         time: start + (key.time - start) * scale,
         ..key.clone()

@@ -10,7 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::error::{CliError, say};
 use super::render::sized;
-use super::scene::read_scene;
+use super::scene::missing_meshes;
 use crate::export::{ExportError, ExportStep, Exported, Exporting};
 use crate::export::{Frames, Pattern, Sequence, Video, write_job};
 use crate::image::Format;
@@ -82,7 +82,12 @@ fn format_of(word: &str) -> Result<Format, String> {
 
 impl What {
     fn sequence(&self, folder: PathBuf) -> Result<Sequence, CliError> {
-        let mut scene: Scene = read_scene(&self.scene)?;
+        let mut scene: Scene = Document::load(&self.scene)?.scene;
+        // A farm would take frames without it for good ones.
+        if let Some(problem) = missing_meshes(&self.scene, &scene).first() {
+            let sentence = format!("{problem}; no frame is made without it");
+            return Err(CliError::failed(sentence));
+        }
         let render = &mut scene.render;
         (render.width, render.height) =
             sized((render.width, render.height), (self.width, self.height));

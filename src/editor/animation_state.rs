@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::edit::Replaced;
 use super::timeline::{MEASURED_AT, Timeline};
 use crate::animate::{CameraPath, Seen, Worst, pose, shot, worst_off};
 use crate::scene::{Camera, Key, Owners, Scene, Take, Target};
@@ -157,8 +158,10 @@ impl AnimationState {
             let is_flown_otherwise = new.keys != old.keys || new.take != old.take;
             if new.keys != old.keys {
                 self.path = CameraPath::new(&new.keys);
-                let count = new.keys.len();
-                self.timeline.selected.retain(|&place| place < count);
+                if new.keys.len() != old.keys.len() {
+                    // In those places are others now; who moved them says where they are.
+                    self.timeline.selected.clear();
+                }
             }
             self.scene = Arc::clone(scene);
             if is_flown_otherwise {
@@ -184,8 +187,8 @@ impl AnimationState {
     }
 
     /// What has keys gets one at the time that is on show, where the edit from `scene` to `next`
-    /// has changed it; the scene's own value stays.
-    pub fn key_tracked(&self, scene: &Scene, next: &mut Scene) {
+    /// has changed it, or has put something else in place of what is on show; the scene's own value stays.
+    pub fn key_tracked(&self, scene: &Scene, next: &mut Scene, replaced: &Replaced) {
         let time = self.timeline.shown_time(&next.animation);
         let targets: Vec<Target> = next
             .animation
@@ -202,7 +205,8 @@ impl AnimationState {
             let (Some(own), Some(new)) = (own, in_next.get(next, target)) else {
                 continue;
             };
-            if new != own && Some(new) != shown {
+            let is_touched = new != own || replaced.holds(target, in_scene.index(target));
+            if is_touched && Some(new) != shown {
                 next.animation = Arc::new(next.animation.with_value(target, time, new));
             }
             if new != own {

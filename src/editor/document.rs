@@ -10,7 +10,7 @@ use super::fly::Flight;
 use super::history::{History, Snapshot};
 use super::item::Item;
 use super::selection::{Selected, Selection};
-use super::timeline::Timeline;
+use super::timeline::{Time, Timeline};
 use crate::animate::CameraPath;
 use crate::files::Stamp;
 use crate::scene::{
@@ -180,7 +180,7 @@ impl Editor {
     /// Does what a panel asked for.
     pub fn apply(&mut self, action: Action) {
         match action {
-            Action::Edit(edit) => self.edit(edit),
+            Action::Edit(edit) => drop(self.edit(edit)),
             Action::Fly(motion) => {
                 let camera = self
                     .flight
@@ -205,7 +205,13 @@ impl Editor {
             }
             Action::Undo => self.travel(History::undo),
             Action::Redo => self.travel(History::redo),
-            Action::Show(mode) => self.mode = mode,
+            Action::Show(mode) => {
+                if mode == Mode::HighRes {
+                    // A picture of what moves would never be done.
+                    self.apply_time(Time::Play(false));
+                }
+                self.mode = mode;
+            }
             Action::Time(time) => self.apply_time(time),
         }
         self.animation_state.update(&self.scene);
@@ -331,23 +337,30 @@ impl Editor {
         };
     }
 
-    pub(super) fn edit(&mut self, edit: Edit) {
+    /// Makes a change. Whether it was; what changes nothing was, too.
+    pub(super) fn edit(&mut self, edit: Edit) -> bool {
         let label = edit.label(&self.scene);
         let is_camera = matches!(edit, Edit::Camera(..));
+        let replaced = edit.replaced();
         let mut next = Scene::clone(&self.scene);
         let selection = match edit.apply(&mut next) {
             Ok(selection) => selection,
-            Err(error) => return self.refuse(error.to_string()),
+            Err(error) => {
+                self.refuse(error.to_string());
+                return false;
+            }
         };
-        self.animation_state.key_tracked(&self.scene, &mut next);
+        self.animation_state
+            .key_tracked(&self.scene, &mut next, &replaced);
         if is_camera {
             self.animation_state.look_at_view();
         }
         if next == *self.scene {
-            return;
+            return true;
         }
         if let Err(problem) = check_edit(&next, &self.scene) {
-            return self.refuse(format!("{label}: {}", problem.sentence));
+            self.refuse(format!("{label}: {}", problem.sentence));
+            return false;
         }
         self.forget_refusal();
         let before = self.here();
@@ -357,6 +370,7 @@ impl Editor {
             None => self.follow(&next),
         }
         self.set_scene(Arc::new(next));
+        true
     }
 
     fn travel(&mut self, step: fn(&mut History, Snapshot) -> Option<Snapshot>) {

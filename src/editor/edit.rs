@@ -1,5 +1,6 @@
 //! The changes that can be made to a scene, each with its name in the history.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -7,7 +8,7 @@ use glam::DVec3;
 use crate::mesh::Part;
 use crate::scene::{
     Animation, Bookmark, Camera, ColorPack, Light, LightObj, List, Mesh, Object, Render, Scene,
-    Shape,
+    Shape, Target,
 };
 
 use super::clipboard::paste;
@@ -90,6 +91,37 @@ pub enum EditError {
     PackNameTaken(String),
 }
 
+/// What an edit puts in place of what is on show, wherever its keys have brought that: objects and lights by their
+/// places, and the ambient intensity.
+#[derive(Debug, Default)]
+pub struct Replaced {
+    objects: HashSet<usize>,
+    lights: HashSet<usize>,
+    ambient: bool,
+}
+
+impl Replaced {
+    fn add(&mut self, edit: &Edit) {
+        match edit {
+            Edit::Object(index, ..) => drop(self.objects.insert(*index)),
+            Edit::Light(index, ..) => drop(self.lights.insert(*index)),
+            Edit::Ambient(_) => self.ambient = true,
+            Edit::Each(edits, _) => edits.iter().for_each(|edit| self.add(edit)),
+            _ => {}
+        }
+    }
+
+    /// Whether a target that belongs to the light or object in this place is among it.
+    pub fn holds(&self, target: &Target, place: Option<usize>) -> bool {
+        let owners = match target {
+            Target::AmbientIntensity => return self.ambient,
+            Target::LightIntensity(_) | Target::LightPosition(_) => &self.lights,
+            Target::ObjectPosition(_) | Target::ObjectRotation(_) => &self.objects,
+        };
+        place.is_some_and(|place| owners.contains(&place))
+    }
+}
+
 impl Edit {
     /// Other keys; `what` is what was done to them.
     pub fn animation(animation: Animation, what: &'static str) -> Self {
@@ -101,7 +133,14 @@ impl Edit {
         Self::Object(index, Box::new(object), field)
     }
 
-    /// Shows or hides an item, if it can be hidden.
+    /// What it puts in place of what is on show.
+    pub fn replaced(&self) -> Replaced {
+        let mut replaced = Replaced::default();
+        replaced.add(self);
+        replaced
+    }
+
+    /// Shows or hides an item of what is on show, if it can be hidden.
     pub fn visible(scene: &Scene, item: Item, visible: bool) -> Option<Self> {
         let field = if visible { "show" } else { "hide" };
         let index = item.index;

@@ -9,7 +9,7 @@ use super::edit::Edit;
 use super::selection::{Selected, Selection};
 use super::timeline::{MEASURED_AT, Recording, Time};
 use crate::animate::{Seen, Worst, resampled, simplify};
-use crate::scene::{Animation, Camera, Key, Take};
+use crate::scene::{Animation, Camera, Key, MAX_SECONDS, Take};
 
 /// Keys that a recording becomes, at first, and for each second: about as many as a hand can edit.
 const FEW: (f64, f64) = (8.0, 2.5);
@@ -26,7 +26,8 @@ impl Editor {
         let timeline = &mut self.animation_state.timeline;
         match time {
             Time::Seek(seconds) => {
-                timeline.seek(animation, seconds.clamp(0.0, last_time(animation)));
+                // Behind the end, too: there the next key goes.
+                timeline.seek(animation, seconds.clamp(0.0, MAX_SECONDS));
                 self.show_time();
             }
             Time::Step(frames) => {
@@ -73,6 +74,10 @@ impl Editor {
                 let angles = self.orientation();
                 let camera = &self.animation_state.shown.camera;
                 self.animation_state.timeline.sample(now, camera, angles);
+                if self.timeline().is_full() {
+                    self.notify("The recording is as long as one can be, and ends here".to_owned());
+                    self.apply_time(Time::Stop);
+                }
             }
             Time::Stop => {
                 if let Some(Recording { take, .. }) = timeline.recording.take() {
@@ -205,7 +210,9 @@ impl Editor {
             ..Animation::clone(&self.scene.animation)
         };
         self.end_gesture();
-        self.edit(Edit::animation(animation, "Record flight"));
+        if !self.edit(Edit::animation(animation, "Record flight")) {
+            return;
+        }
         self.end_gesture();
         self.animation_state.timeline.playhead = 0.0;
         self.animation_state.timeline.stays_outside = false;
@@ -244,9 +251,4 @@ fn in_the_time_of(old: &[Key<Camera>], new: Vec<Key<Camera>>) -> Vec<Key<Camera>
         ..key
     })
     .collect()
-}
-
-/// How far the playhead goes.
-fn last_time(animation: &Animation) -> f64 {
-    animation.time_of(animation.frame_count())
 }

@@ -37,6 +37,8 @@ struct Step {
 pub struct History {
     done: VecDeque<Step>,
     undone: Vec<Step>,
+    /// Those that were undone before the gesture that goes on: it may come to nothing.
+    aside: Vec<Step>,
     /// The name of the step that edits are still joined to.
     gesture: Option<String>,
 }
@@ -45,10 +47,10 @@ impl History {
     /// Notes that `before` was left for `after` by doing `label`. During a gesture, edits of the same
     /// name are one step.
     pub fn record(&mut self, label: String, before: Snapshot, after: &Scene) {
-        self.undone.clear();
         if self.gesture.as_ref() == Some(&label) {
             return;
         }
+        self.aside = std::mem::take(&mut self.undone);
         self.gesture = Some(label.clone());
         let bytes = before.scene.bytes_apart(after);
         self.done.push_back(Step {
@@ -65,6 +67,7 @@ impl History {
 
     /// The next edit is a step of its own. A gesture that ends `here`, where it began, was none.
     pub fn end_gesture(&mut self, here: &Scene) {
+        let aside = std::mem::take(&mut self.aside);
         let was_any = self.gesture.take().is_some();
         if was_any
             && self
@@ -73,12 +76,14 @@ impl History {
                 .is_some_and(|step| *step.there.scene == *here)
         {
             self.done.pop_back();
+            self.undone = aside;
         }
     }
 
     /// The state before the gesture that goes on, which is forgotten; `None` if nothing was done in it.
     pub fn cancel_gesture(&mut self) -> Option<Snapshot> {
         self.gesture.take()?;
+        self.undone = std::mem::take(&mut self.aside);
         self.done.pop_back().map(|step| step.there)
     }
 
@@ -143,6 +148,36 @@ mod tests {
             })
             .collect();
         scene
+    }
+
+    #[test]
+    fn a_gesture_that_comes_to_nothing_leaves_what_can_be_done_again() {
+        let scene = Scene::demo();
+        let mut darker = scene.clone();
+        darker.ambient_intensity = 0.1;
+        for is_cancelled in [true, false] {
+            let mut history = History::default();
+            history.record("Darker".to_owned(), snapshot(&scene), &darker);
+            history.end_gesture(&darker);
+            assert!(history.undo(snapshot(&darker)).is_some());
+            history.record("Move".to_owned(), snapshot(&scene), &darker);
+            history.record("Move".to_owned(), snapshot(&darker), &scene);
+            if is_cancelled {
+                assert!(history.cancel_gesture().is_some());
+            } else {
+                history.end_gesture(&scene);
+            }
+            assert_eq!(
+                (history.undo_label(), history.redo_label()),
+                (None, Some("Darker"))
+            );
+            history.record("Move".to_owned(), snapshot(&scene), &darker);
+            history.end_gesture(&darker);
+            assert_eq!(
+                (history.undo_label(), history.redo_label()),
+                (Some("Move"), None)
+            );
+        }
     }
 
     #[test]

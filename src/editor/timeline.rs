@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use crate::animate::{Seen, Worst};
-use crate::scene::{Animation, Camera, Orientation, Take};
+use crate::scene::{Animation, Camera, MAX_KEYS, Orientation, Take};
 
 /// The picture that a deviation is told for, in pixels.
 pub const MEASURED_AT: f64 = 1024.0;
@@ -118,6 +118,12 @@ impl Timeline {
             take.samples.len(),
             take.samples.last().map_or(0.0, |last| last.0),
         ))
+    }
+
+    /// Whether what is recorded is as long as it can be.
+    pub(super) fn is_full(&self) -> bool {
+        let count = self.recorded().map_or(0, |(count, _)| count);
+        count >= MAX_KEYS
     }
 
     /// The time that is on show: that of the frame that the playhead has reached.

@@ -91,20 +91,22 @@ impl Frames {
 }
 
 impl fmt::Display for Frames {
-    /// In as few ranges as there are gaps.
+    /// In as few ranges as there are gaps; three and more that are equally far apart are a range with a step.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let mut rest = &self.0[..];
         let mut comma = "";
         while let [first, ..] = rest {
-            let run = rest
-                .iter()
-                .zip(*first..)
-                .take_while(|(a, b)| *a == b)
-                .count();
+            let step = rest.get(1).map_or(1, |second| second - first);
+            let apart = rest.windows(2).take_while(|pair| pair[1] - pair[0] == step);
+            let mut run = apart.count() + 1;
+            if step > 1 && run == 2 {
+                run = 1;
+            }
             let last = rest[run - 1];
-            match run {
-                1 => write!(f, "{comma}{first}")?,
-                _ => write!(f, "{comma}{first}-{last}")?,
+            match (run, step) {
+                (1, _) => write!(f, "{comma}{first}")?,
+                (_, 1) => write!(f, "{comma}{first}-{last}")?,
+                _ => write!(f, "{comma}{first}-{last}:{step}")?,
             }
             comma = ",";
             rest = &rest[run..];
@@ -125,6 +127,9 @@ mod tests {
         assert_eq!(frames("1,4"), [1, 4]);
         assert_eq!(frames("1-10:3"), [1, 4, 7, 10]);
         assert_eq!(frames(" 7 - 9 , 1-3, 2"), [1, 2, 3, 7, 8, 9]);
+        for set in ["1-4", "1-10:3", "1,4", "1-2,5-20:5,100", "7", "1,3-9"] {
+            assert_eq!(Frames::parse(set).expect("a set").to_string(), set);
+        }
         for wrong in [
             "",
             "0",

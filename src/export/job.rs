@@ -26,7 +26,23 @@ pub enum JobError {
     /// The scene has no text.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// The template has the name of the scene.
+    #[error("{path} is the scene: give the job another name, such as {other}", path = .path.display(), other = .other.display())]
+    IsScene {
+        /// Where the template was to go.
+        path: PathBuf,
+        /// Where it could go.
+        other: PathBuf,
+    },
+    /// The frames take more words than a job can hold.
+    #[error(
+        "the frames {0:.40}… are too many pieces for one job: make a job of each, or one of all frames"
+    )]
+    TooManyPieces(String),
 }
+
+/// Most characters of a value in a template, by its standard.
+const LONGEST: usize = 1024;
 
 /// What [`write_job`] has written.
 #[derive(Debug)]
@@ -54,29 +70,43 @@ pub fn write_job(
     let end = if has_files { "-whole" } else { "" };
     let name = format!("{stem}{end}.ron");
     let scene = path.with_file_name(&name);
+    if path == scene || file.is_some_and(|file| is_same_file(file, path)) {
+        let (path, other) = (path.to_owned(), path.with_extension("yaml"));
+        return Err(JobError::IsScene { path, other });
+    }
+    let frames = sequence.frames.to_string();
+    if frames.len() > LONGEST {
+        return Err(JobError::TooManyPieces(frames));
+    }
+    let backup = write_scene(document, file.filter(|_| !has_files), &scene)?;
     write_text(path, &job_template(sequence, &stem, &name))?;
+    Ok(Job { scene, backup })
+}
+
+/// Writes a document to `path`: as `file` has it, if it has one. Where what was there is now, if it was something
+/// else.
+fn write_scene(
+    document: &Document,
+    file: Option<&Path>,
+    path: &Path,
+) -> Result<Option<PathBuf>, JobError> {
     let disk = |source| ExportError::Disk {
-        path: scene.clone(),
+        path: path.to_owned(),
         source,
     };
     let text = match file {
-        Some(file) if !has_files && is_same_file(file, &scene) => {
-            return Ok(Job {
-                scene,
-                backup: None,
-            });
-        }
-        Some(file) if !has_files => fs::read(file).map_err(disk)?,
-        _ => {
+        Some(file) if is_same_file(file, path) => return Ok(None),
+        Some(file) => fs::read(file).map_err(disk)?,
+        None => {
             let (header, scene) = (document.header.clone(), document.scene.taken_in());
             Document { header, scene }.to_text()?.into_bytes()
         }
     };
-    let is_other = fs::read(&scene).is_ok_and(|there| there != text);
-    let backup = is_other.then(|| back_up(&scene)).transpose();
+    let is_other = fs::read(path).is_ok_and(|there| there != text);
+    let backup = is_other.then(|| back_up(path)).transpose();
     let backup = backup.map_err(disk)?;
-    write_atomic(&scene, &text).map_err(disk)?;
-    Ok(Job { scene, backup })
+    write_atomic(path, &text).map_err(disk)?;
+    Ok(backup)
 }
 
 /// The template: frames in chunks, then a video of all of them. The scene is an attached file, which

@@ -131,8 +131,8 @@ impl Video {
     ) -> Result<(), VideoError> {
         let beside = NewFile::beside(path).map_err(|error| disk(path, &error))?;
         match self {
-            Self::Gif => gif(sequence, beside.path(), &mut done)?,
-            Self::Apng => apng(sequence, beside.path(), &mut done)?,
+            Self::Gif => gif(sequence, (beside.as_file(), path), &mut done)?,
+            Self::Apng => apng(sequence, (beside.as_file(), path), &mut done)?,
             Self::H264 | Self::ProRes | Self::Lossless => {
                 self.by_ffmpeg(sequence, path, beside.path(), &mut done)?;
             }
@@ -290,9 +290,14 @@ fn read(path: &Path) -> Result<RgbaImage, VideoError> {
     Ok(RgbaImage::from_raw(width, height, levels).unwrap_or_default())
 }
 
-fn gif(sequence: &Sequence, path: &Path, done: &mut impl FnMut(usize)) -> Result<(), VideoError> {
-    let file = File::create(path).map_err(|error| disk(path, &error))?;
-    let mut encoder = GifEncoder::new_with_speed(BufWriter::new(file), GIF_SPEED);
+/// Writes a GIF into a file that is to be that of this path.
+fn gif(
+    sequence: &Sequence,
+    (file, path): (&File, &Path),
+    done: &mut impl FnMut(usize),
+) -> Result<(), VideoError> {
+    let mut file = BufWriter::new(file);
+    let mut encoder = GifEncoder::new_with_speed(&mut file, GIF_SPEED);
     let wrong = |error: image::ImageError| disk(path, &error);
     encoder.set_repeat(Repeat::Infinite).map_err(wrong)?;
     let ends = clock_ends(sequence.frames_per_second(), sequence.frames.count());
@@ -307,7 +312,9 @@ fn gif(sequence: &Sequence, path: &Path, done: &mut impl FnMut(usize)) -> Result
         }
         done(index + 1);
     }
-    Ok(())
+    // It writes its end when it is dropped, and cannot tell then that the disk is full.
+    drop(encoder);
+    file.flush().map_err(|error| disk(path, &error))
 }
 
 /// When the frames of a GIF end, in hundredths of a second, its clock: as many pass in a second as shall. Where
@@ -345,11 +352,16 @@ fn nearest_fraction(number: f64) -> (u16, u16) {
     (best.0 as u16, (best.1 as u16).max(1))
 }
 
-fn apng(sequence: &Sequence, path: &Path, done: &mut impl FnMut(usize)) -> Result<(), VideoError> {
-    let file = File::create(path).map_err(|error| disk(path, &error))?;
+/// Writes an animated PNG into a file that is to be that of this path.
+fn apng(
+    sequence: &Sequence,
+    (file, path): (&File, &Path),
+    done: &mut impl FnMut(usize),
+) -> Result<(), VideoError> {
     let (width, height) = sequence.size();
     let wrong = |error: png::EncodingError| disk(path, &error);
-    let mut encoder = png::Encoder::new(BufWriter::new(file), width, height);
+    let mut file = BufWriter::new(file);
+    let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
@@ -363,7 +375,8 @@ fn apng(sequence: &Sequence, path: &Path, done: &mut impl FnMut(usize)) -> Resul
         writer.write_image_data(&image).map_err(wrong)?;
         done(index + 1);
     }
-    writer.finish().map_err(wrong)
+    writer.finish().map_err(wrong)?;
+    file.flush().map_err(|error| disk(path, &error))
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::animation::Target;
+use super::animation::{Target, Track, Value};
 use super::import::Names;
 use super::list::List;
 use super::object::Object;
@@ -76,6 +76,7 @@ impl Scene {
             smooth,
             ..Mesh::of(Triangles::new(points, faces).ok()?).centred()
         };
+        let gone = joined[1..].to_vec();
         let mut rest = joined.into_iter().peekable();
         let objects = self
             .objects
@@ -90,8 +91,38 @@ impl Scene {
                     ..object.clone()
                 })
             });
-        self.objects = objects.collect::<List<_>>();
+        let objects = objects.collect::<List<_>>();
+        let before = std::mem::replace(&mut self.objects, objects);
+        let gone = gone.iter().map(|&index| &before[index]);
+        self.keep_tracks_of(&before[first], mesh.position, gone);
         Some(first)
+    }
+
+    /// What moved an object moves the mesh at this place that has taken its name, which nothing turns; what moved
+    /// those that are gone goes too.
+    fn keep_tracks_of<'a>(
+        &mut self,
+        object: &Object,
+        position: DVec3,
+        gone: impl Iterator<Item = &'a Object>,
+    ) {
+        if self.animation.tracks.is_empty() {
+            return;
+        }
+        let animation = Arc::make_mut(&mut self.animation);
+        gone.for_each(|object| animation.follow_name(false, &object.name, None));
+        let turns = Target::ObjectRotation(object.name.clone());
+        animation.tracks.retain(|track| track.target != turns);
+        let moves = Target::ObjectPosition(object.name.clone());
+        let further = position - object.shape.position();
+        let tracks = animation.tracks.iter_mut();
+        for track in tracks.filter(|track| track.target == moves) {
+            for key in &mut track.keys {
+                if let Value::Point(point) = &mut key.value {
+                    *point += further;
+                }
+            }
+        }
     }
 
     /// Puts triangles in place of the mesh at `index`, if there are no more than [`MOST_SEPARATE`]. Whether
@@ -107,7 +138,7 @@ impl Scene {
         if !(1..=MOST_SEPARATE).contains(&triangles.faces().len()) {
             return false;
         }
-        let rotation = Target::ObjectRotation(object.name.clone());
+        let name = object.name.clone();
         let others = self
             .objects
             .iter()
@@ -123,11 +154,10 @@ impl Scene {
         let before = self.objects.iter().take(index).cloned();
         let after = self.objects.iter().skip(index + 1).cloned();
         self.objects = before.chain(pieces).chain(after).collect::<List<_>>();
-        // Triangles are not turned.
-        let tracks = &self.animation.tracks;
-        if tracks.iter().any(|track| track.target == rotation) {
-            let animation = Arc::make_mut(&mut self.animation);
-            animation.tracks.retain(|track| track.target != rotation);
+        // What moved it would move one of them.
+        let is_moved = |track: &Track| track.target.owner() == Some(&*name);
+        if self.animation.tracks.iter().any(is_moved) {
+            Arc::make_mut(&mut self.animation).follow_name(false, &name, None);
         }
         true
     }
@@ -146,7 +176,7 @@ fn world_corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::check;
+    use crate::scene::{Animation, check};
 
     #[test]
     fn the_pyramid_of_the_demo_becomes_a_mesh_and_triangles_again() {
@@ -175,6 +205,38 @@ mod tests {
         };
         assert_eq!(shapes(&scene), shapes(&demo));
         assert!(demo.connected_triangles(0).is_empty(), "a sphere");
+    }
+
+    #[test]
+    fn what_moves_goes_on_where_it_can() {
+        let mut scene = Scene::demo();
+        let moves = |place: usize| Target::ObjectPosition(scene.objects[place].name.clone());
+        let (first, second) = (moves(2), moves(3));
+        let start = scene.objects[2].shape.position();
+        let mut animation = Animation::default();
+        for (target, time, point) in [
+            (&first, 0.0, start),
+            (&first, 1.0, start + DVec3::X),
+            (&second, 0.0, DVec3::ZERO),
+        ] {
+            animation = animation.with_value(target, time, Value::Point(point));
+        }
+        scene.animation = Arc::new(animation);
+        assert_eq!(scene.join(vec![2, 3]), Some(2));
+        assert_eq!(check(&scene), Ok(()));
+        let tracks = &scene.animation.tracks;
+        assert_eq!(tracks.len(), 1);
+        let place = scene.objects[2].shape.position();
+        let there = [place, place + DVec3::X].map(Value::Point);
+        for (key, there) in tracks[0].keys.iter().zip(there) {
+            let (Value::Point(key), Value::Point(there)) = (key.value, there) else {
+                panic!("a place");
+            };
+            assert!((key - there).length() < 1e-9, "{key} {there}");
+        }
+        assert!(scene.separate(2));
+        assert_eq!(check(&scene), Ok(()));
+        assert!(scene.animation.tracks.is_empty());
     }
 
     #[test]

@@ -7,16 +7,31 @@ use super::camera::Camera;
 
 /// Keys nearer to each other than this share of a frame are one.
 const SAME: f64 = 0.25;
+/// Keys nearer to each other than this are at the same time, in seconds.
+const EQUAL: f64 = 1e-6;
 
 impl Animation {
     fn is_same_time(&self, a: f64, b: f64) -> bool {
         (a - b).abs() < SAME / self.frames_per_second
     }
 
+    /// Place of the key that counts as being at this time, the nearest, if there is one.
+    fn place_at<T>(&self, keys: &[Key<T>], time: f64) -> Option<usize> {
+        let off = |index: &usize| (keys[*index].time - time).abs();
+        let near = (0..keys.len()).filter(|&index| self.is_same_time(keys[index].time, time));
+        near.min_by(|a, b| off(a).total_cmp(&off(b)))
+    }
+
     /// Place of the camera key at this time, if there is one.
     pub fn key_at(&self, time: f64) -> Option<usize> {
-        let mut keys = self.keys.iter();
-        keys.position(|key| self.is_same_time(key.time, time))
+        self.place_at(&self.keys, time)
+    }
+
+    /// Whether a key that is moved takes the place of another: where it comes to be near it. Those that were near
+    /// each other before are two on purpose, as on both sides of a jump.
+    fn replaces(&self, (from, to): (f64, f64), other: f64) -> bool {
+        let were_apart = !self.is_same_time(from, other);
+        self.is_same_time(to, other) && (were_apart || (to - other).abs() < EQUAL)
     }
 
     /// With a camera key at this time, in place of one that is there; and its place.
@@ -61,12 +76,20 @@ impl Animation {
                 ..key.clone()
             })
             .collect();
+        // A copy was nowhere before.
+        let from = |moved: &Key<Camera>| {
+            if are_copies {
+                f64::INFINITY
+            } else {
+                moved.time - later
+            }
+        };
         let others = self.keys.iter().enumerate();
         let others = others.filter(|(index, _)| are_copies || !indices.contains(index));
         let is_free = |key: &Key<Camera>| {
             !moved
                 .iter()
-                .any(|moved| self.is_same_time(moved.time, key.time))
+                .any(|moved| self.replaces((from(moved), moved.time), key.time))
         };
         let others = others.map(|(_, key)| key).filter(|key| is_free(key));
         let mut keys: Vec<Key<Camera>> = others.cloned().chain(moved.iter().cloned()).collect();
@@ -98,16 +121,14 @@ impl Animation {
         self.tracks.iter().find(|track| track.target == *target)
     }
 
-    /// Whether something has a key of its own at this time.
-    pub fn has_value(&self, target: &Target, time: f64) -> bool {
-        self.track(target).is_some_and(|track| {
-            let mut keys = track.keys.iter();
-            keys.any(|key| self.is_same_time(key.time, time))
-        })
+    /// Place of the key that something has at this time, if it has one.
+    pub fn value_at(&self, target: &Target, time: f64) -> Option<usize> {
+        self.place_at(&self.track(target)?.keys, time)
     }
 
     /// With a key of a track at this time, in place of one that is there.
     pub fn with_value(&self, target: &Target, time: f64, value: Value) -> Self {
+        let there = self.value_at(target, time);
         let mut animation = self.clone();
         let tracks = &mut animation.tracks;
         let index = tracks.iter().position(|track| track.target == *target);
@@ -119,11 +140,8 @@ impl Animation {
             tracks.len() - 1
         });
         let keys = &mut tracks[index].keys;
-        let there = keys
-            .iter_mut()
-            .find(|key| self.is_same_time(key.time, time));
-        if let Some(key) = there {
-            key.value = value;
+        if let Some(there) = there {
+            keys[there].value = value;
         } else {
             let at = keys.partition_point(|key| key.time < time);
             keys.insert(at, Key::new(time, value));
@@ -131,41 +149,31 @@ impl Animation {
         animation
     }
 
-    /// Without the key that a track has at this time; without the track, if that was its last.
-    pub fn without_value(&self, target: &Target, time: f64) -> Self {
+    /// Without the key in this place of a track; without the track, if that was its last.
+    pub fn without_value(&self, target: &Target, index: usize) -> Self {
         let mut animation = self.clone();
         for track in &mut animation.tracks {
-            if track.target == *target {
-                track.keys.retain(|key| !self.is_same_time(key.time, time));
+            if track.target == *target && index < track.keys.len() {
+                track.keys.remove(index);
             }
         }
         animation.tracks.retain(|track| !track.keys.is_empty());
         animation
     }
 
-    /// With the key that a track has at one time moved to another; it replaces what it lands on.
-    pub fn with_value_moved(&self, target: &Target, from: f64, to: f64) -> Self {
-        let key = self.track(target).and_then(|track| {
-            let mut keys = track.keys.iter();
-            keys.find(|key| self.is_same_time(key.time, from))
-        });
-        let Some(key) = key else {
-            return self.clone();
-        };
+    /// With the key in this place of a track moved to another time; it replaces what it lands on.
+    pub fn with_value_moved(&self, target: &Target, index: usize, to: f64) -> Self {
         let mut animation = self.clone();
-        for track in &mut animation.tracks {
-            if track.target == *target {
-                track.keys.retain(|other| {
-                    !self.is_same_time(other.time, from) && !self.is_same_time(other.time, to)
-                });
-                let at = track.keys.partition_point(|key| key.time < to);
-                let moved = Key {
-                    time: to,
-                    ..key.clone()
-                };
-                track.keys.insert(at, moved);
-            }
-        }
+        let tracks = &mut animation.tracks;
+        let track = tracks.iter_mut().find(|track| track.target == *target);
+        let Some(track) = track.filter(|track| index < track.keys.len()) else {
+            return animation;
+        };
+        let key = track.keys.remove(index);
+        let way = (key.time, to);
+        track.keys.retain(|other| !self.replaces(way, other.time));
+        let at = track.keys.partition_point(|key| key.time < to);
+        track.keys.insert(at, Key { time: to, ..key });
         animation
     }
 

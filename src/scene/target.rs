@@ -107,7 +107,8 @@ impl<'a> Owners<'a> {
         }
     }
 
-    fn index(&self, target: &Target) -> Option<usize> {
+    /// Where the one of this target is in its list.
+    pub fn index(&self, target: &Target) -> Option<usize> {
         let places = match target {
             Target::LightIntensity(_) | Target::LightPosition(_) => &self.lights,
             _ => &self.objects,

@@ -10,6 +10,7 @@ use super::intersect::Kernel;
 use super::outcome::clamped;
 use super::samples::{Edges, Samples, Traced};
 use super::stats::Rays;
+use crate::plan::Show;
 use crate::simd::{SimdFloat, Vec3};
 
 /// What traces the samples of a tile.
@@ -79,7 +80,11 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
         }
         self.rays.camera += count as u64;
         if seen.is_empty() {
-            return traced.fill(count, length, edges, clamped(kernel.plan.background));
+            let sky = match kernel.plan.show {
+                Show::Mirrors => Vec3::default(),
+                _ => clamped(kernel.plan.background),
+            };
+            return traced.fill(count, length, edges, sky);
         }
         let with_edges = edges != Edges::Ignored;
         traced.resize(count, length, edges);

@@ -107,14 +107,16 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
         }
     };
     // Whole numbers read better in the inspector, where the scene is large enough for them.
-    let tidy = |x: f64| if distance > 10.0 { x.round() } else { x };
+    let tidy = |x: f64| if height * SHARE > 10.0 { x.round() } else { x };
     let at = origin + look * distance;
     (
         DVec3::new(tidy(at.x), tidy(at.y), tidy(at.z)),
-        tidy(height * SHARE).max(1e-6),
+        tidy(height * SHARE).max(SMALLEST),
     )
 }
 
+/// The smallest that a new thing is, in world units.
+const SMALLEST: f64 = 1e-6;
 /// How large a new thing is, in heights of the picture.
 const SHARE: f64 = 0.2;
 /// What is nearer than this, in distances where a new thing goes, is not gone before.

@@ -1,7 +1,7 @@
 //! The window's frame: reads input, shows the panels, applies what they asked for, and hands the
 //! scene to the render thread.
 
-use egui::{Context, Event, Theme, Ui, ViewportCommand};
+use egui::{Context, Event, SurrenderFocusOn, Theme, Ui, ViewportCommand};
 
 use super::autosave::Autosave;
 use super::commands::{Command, is_about_files, pressed};
@@ -98,6 +98,8 @@ impl App {
         cc.egui_ctx.options_mut(|options| {
             options.quit_shortcuts.clear();
             options.zoom_with_keyboard = true;
+            // What was typed is taken over before the click that ends it does something of its own.
+            options.input_options.surrender_focus_on = SurrenderFocusOn::Presses;
         });
         let recent = cc
             .storage
@@ -332,6 +334,10 @@ impl eframe::App for App {
         let ctx = ui.ctx().clone();
         self.exports
             .show(&ctx, &mut self.editor, &self.pictures, &mut out);
+        if self.files.is_asking() {
+            // Its field would have the keys of the question.
+            self.finder.is_open = false;
+        }
         self.finder.show(&ctx, &self.editor, &mut out);
         self.why.show(&ctx);
         // Still pictures are looked at, not flown through: they would be gone.
@@ -371,7 +377,8 @@ impl eframe::App for App {
             || egui::Popup::is_any_open(&ctx)
             || self.files.is_asking()
             || self.finder.is_open
-            || self.tools.is_dragging();
+            || self.tools.is_dragging()
+            || self.timeline.is_dragging();
         let messages = std::mem::take(&mut self.editor.messages);
         self.toasts.push(&ctx, messages);
         self.toasts.show(&ctx, place.rect);

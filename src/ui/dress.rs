@@ -15,7 +15,7 @@ pub fn dropped_pack(response: &Response) -> Option<Item> {
 
 /// The change that makes an object wear a pack; all that is selected, if the object is among it.
 pub fn dressed(editor: &Editor, pack: Item, item: Item) -> Option<Edit> {
-    let scene = editor.scene();
+    let scene = editor.shown();
     let name = pack.name(scene)?;
     let selected = editor.selected();
     let one = [item];

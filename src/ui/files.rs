@@ -79,6 +79,20 @@ struct Waiting {
 struct PathRequest {
     ask: Ask,
     then: Option<Next>,
+    /// The document that was asked about, and its state then.
+    document: u64,
+    revision: u64,
+}
+
+impl PathRequest {
+    fn new(editor: &Editor, ask: Ask, then: Option<Next>) -> Self {
+        Self {
+            ask,
+            then,
+            document: editor.documents(),
+            revision: editor.revision(),
+        }
+    }
 }
 
 /// A question over the window.
@@ -150,10 +164,7 @@ impl Files {
         editor: &mut Editor,
         then: Option<Next>,
     ) -> Option<FileOutcome> {
-        let wish = PathRequest {
-            ask: Ask::SaveScene,
-            then,
-        };
+        let wish = PathRequest::new(editor, Ask::SaveScene, then);
         if let Some(path) = editor.path().map(Path::to_owned) {
             self.answered(ctx, editor, wish, path)
         } else {
@@ -164,7 +175,7 @@ impl Files {
 
     /// Asks for a path.
     pub fn ask(&mut self, ctx: &Context, editor: &Editor, ask: Ask) {
-        self.wish(ctx, editor, PathRequest { ask, then: None });
+        self.wish(ctx, editor, PathRequest::new(editor, ask, None));
     }
 
     /// One dialog at a time: while one is open, further wishes are not heard.
@@ -294,8 +305,16 @@ impl Files {
     ) -> Option<FileOutcome> {
         editor.begin(wish.ask.title());
         self.folders.note(&wish.ask, &path);
+        // The desktop's dialog leaves the window alive: what was done in it meanwhile was asked about by nobody.
+        let is_same = wish.document == editor.documents();
+        let is_as_asked = is_same && wish.revision == editor.revision();
         match wish.ask {
+            Ask::OpenScene if !is_as_asked => return self.start(ctx, editor, Next::Open(path)),
             Ask::OpenScene => self.open(ctx, editor, &path),
+            Ask::SaveScene if !is_same => {
+                let why = "What was to be saved is not open any more";
+                editor.report_error_in(wish.ask.title(), why.to_owned());
+            }
             Ask::ImportMesh => self.import_mesh(ctx, editor, &path),
             Ask::SaveImage => return Some(FileOutcome::SaveImage(path)),
             Ask::ExportFolder => return Some(FileOutcome::ExportFolder(path)),
@@ -320,11 +339,14 @@ impl Files {
 
     /// Reads a file anew that another program has written; asks where the document was changed too.
     fn look_outside(&mut self, editor: &mut Editor) {
-        let Some(path) = editor.path().filter(|_| editor.is_changed_outside()) else {
+        let Some(path) = editor.path().map(Path::to_owned) else {
             return;
         };
-        // What cannot be read may be half written: the next look tells, or the next save.
-        let Ok(theirs) = Document::load_stamped(path) else {
+        if !self.watch.is_news(&path) || !editor.is_changed_outside() {
+            return;
+        }
+        // What cannot be read may be half written: when more is, the next look tells, or the next save.
+        let Ok(theirs) = Document::load_stamped(&path) else {
             return;
         };
         if editor.is_dirty() && theirs.0.scene != **editor.scene() {
@@ -354,8 +376,8 @@ impl Files {
                 return then.and_then(|next| self.go_on(ctx, editor, next));
             }
             (_, Answer::Other) => {
-                let ask = Ask::SaveScene;
-                self.wish(ctx, editor, PathRequest { ask, then });
+                let wish = PathRequest::new(editor, Ask::SaveScene, then);
+                self.wish(ctx, editor, wish);
             }
             _ => self.watch.leave(editor),
         }

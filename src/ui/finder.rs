@@ -81,7 +81,7 @@ impl Finder {
             match target {
                 Target::Command(command) => out.commands.push(command),
                 Target::Selection(selection) => out.select(selection),
-                Target::Addition(addition) => out.edit(addition.edit(editor.scene())),
+                Target::Addition(addition) => out.edit(addition.edit(editor.shown())),
             }
         } else if shown.should_close() {
             self.is_open = false;

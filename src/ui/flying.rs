@@ -72,8 +72,8 @@ impl Flying {
         (scene, factor): (&Scene, f64),
     ) -> Option<Motion> {
         self.take_keys(ui);
-        let held = if keys_are_free && picture.is_some() {
-            self.held(ui)
+        let held = if let Some(picture) = picture.filter(|_| keys_are_free) {
+            self.held(ui, picture)
         } else {
             // A key that was held for something else flies only when it is pressed anew.
             let is_held = ui.input(|input| input.modifiers.ctrl);
@@ -175,7 +175,7 @@ impl Flying {
         });
     }
 
-    fn held(&mut self, ui: &Ui) -> Motion {
+    fn held(&mut self, ui: &Ui, picture: &Response) -> Motion {
         let (ctrl, alt, now) =
             ui.input(|input| (input.modifiers.ctrl, input.modifiers.alt, input.time));
         let any_key = ui.input(is_held_for_more);
@@ -183,6 +183,8 @@ impl Flying {
             _ if !ctrl => Ctrl::Up,
             Ctrl::Up if self.keys_fly => Ctrl::Flying,
             Ctrl::Up | Ctrl::Waiting(_) if any_key => Ctrl::Shortcut,
+            // Elsewhere it is held for a click that comes later.
+            Ctrl::Up if !picture.contains_pointer() => Ctrl::Shortcut,
             Ctrl::Up => Ctrl::Waiting(now),
             Ctrl::Waiting(since) if now - since >= CTRL_DELAY => Ctrl::Flying,
             going_on => going_on,
@@ -201,12 +203,26 @@ impl Flying {
     }
 }
 
+/// Keys that mean something only with others.
+const MODIFIERS: [Key; 8] = [
+    Key::ControlLeft,
+    Key::ControlRight,
+    Key::ShiftLeft,
+    Key::ShiftRight,
+    Key::AltLeft,
+    Key::AltRight,
+    Key::SuperLeft,
+    Key::SuperRight,
+];
+
 /// Whether the control key is held with something else: a key, a button, the wheel, or what the desktop
 /// makes of it.
 fn is_held_for_more(input: &egui::InputState) -> bool {
     let is_from_desktop =
         |event: &Event| matches!(event, Event::Copy | Event::Cut | Event::Paste(_));
-    !input.keys_down.is_empty()
+    // Desktops tell of the keys of modifiers as well.
+    let is_other = |key: &Key| !MODIFIERS.contains(key);
+    input.keys_down.iter().any(is_other)
         || input.pointer.any_down()
         || input.zoom_delta() != 1.0
         || input.events.iter().any(is_from_desktop)

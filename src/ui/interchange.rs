@@ -24,6 +24,10 @@ pub fn import_path(editor: &mut Editor, path: &Path) {
         from_text(&text)
     };
     match keys {
+        Ok(keys) if keys.is_empty() => {
+            let why = format!("{}: there are no keys in it", path.display());
+            editor.report_error_in(Ask::ImportPath.title(), why);
+        }
         Ok(keys) => {
             let count = keys.len();
             let animation = Animation {
@@ -31,8 +35,10 @@ pub fn import_path(editor: &mut Editor, path: &Path) {
                 take: None,
                 ..Animation::clone(&editor.scene().animation)
             };
-            editor.apply(Action::Edit(Edit::animation(animation, "Import path")));
-            editor.notify(format!("{count} keys from {}", path.display()));
+            let edit = Edit::animation(animation, "Import path");
+            if is_made(editor, edit) {
+                editor.notify(format!("{count} keys from {}", path.display()));
+            }
         }
         Err(error) => {
             editor.report_error_in(
@@ -103,6 +109,13 @@ fn write(editor: &Editor, path: &Path) -> Result<Job, Box<dyn Error>> {
     Ok(write_job(&editor.document(), own, &sequence, path)?)
 }
 
+/// Makes a change. Whether there was one: it may be refused, with a reason of its own.
+fn is_made(editor: &mut Editor, edit: Edit) -> bool {
+    let before = editor.revision();
+    editor.apply(Action::Edit(edit));
+    editor.revision() != before
+}
+
 fn is_table(path: &Path) -> bool {
     path.extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
@@ -111,7 +124,9 @@ fn is_table(path: &Path) -> bool {
 /// The parts of a mesh file become objects.
 pub fn imported(editor: &mut Editor, path: &Path, parts: Vec<Part>) {
     let count: usize = parts.iter().map(|part| part.triangles.faces().len()).sum();
-    editor.apply(Action::Edit(Edit::Import(parts)));
+    if !is_made(editor, Edit::Import(parts)) {
+        return;
+    }
     let path = path.display();
     editor.notify(format!(
         "{count} triangles from {path}; F brings them into the picture"

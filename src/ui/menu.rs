@@ -29,7 +29,7 @@ pub fn show(
     MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| file_menu(ui, (recent, examples), out));
         ui.menu_button("Edit", |ui| edit_menu(ui, editor, out));
-        ui.menu_button("Add", |ui| add_menu(ui, editor.scene(), out));
+        ui.menu_button("Add", |ui| add_menu(ui, editor.shown(), out));
         ui.menu_button("View", |ui| view_menu(ui, editor, (layout, panels), out));
         ui.menu_button("Render", |ui| {
             entry(ui, "High-res picture", Command::HighRes, true, out);

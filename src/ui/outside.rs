@@ -1,13 +1,14 @@
 //! The open file, written by another program: read anew, or held against the own changes.
 
-use std::time::{Duration, Instant};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant, SystemTime};
 
 use egui::{Context, Ui};
 
 use super::prompts::{Answer, primary, question};
 use super::theme::GRID;
 use crate::editor::Editor;
-use crate::files::Stamp;
+use crate::files::{Stamp, time_of};
 use crate::scene::{Document, SceneError, differences};
 
 /// How often the open file is looked at.
@@ -19,6 +20,8 @@ const MOST_LINES: usize = 8;
 #[derive(Default)]
 pub struct Watch {
     looked: Option<Instant>,
+    /// When it was written last, as far as is known.
+    found: Option<(PathBuf, SystemTime)>,
     /// The state of the editor that was left as it was: the file is not brought up again before the next save.
     left: Option<u64>,
 }
@@ -35,6 +38,15 @@ impl Watch {
             self.looked = Some(Instant::now());
         }
         is_due && self.left != Some(editor.saves())
+    }
+
+    /// Whether the file is another than when it was looked at last, by what the disk says of it: it is not read
+    /// every second because it was touched, or cannot be read.
+    pub fn is_news(&mut self, path: &Path) -> bool {
+        let found = time_of(path).map(|time| (path.to_owned(), time));
+        let is_news = found.is_none() || found != self.found;
+        self.found = found;
+        is_news
     }
 
     /// Says nothing more of the file as it is, until the document is saved or another one is open.

@@ -124,7 +124,7 @@ impl App {
             let reading = self.files.describe_reading();
             let note = reading.or_else(|| self.exports.describe(&self.pictures));
             let note = note.or_else(|| kept.map(status::autosaved));
-            let check = (&self.check, &**self.editor.scene());
+            let check = (&self.check, &**self.editor.shown());
             status::show(ui, picture, &self.pictures.activity(), note, check, out);
         });
         if self.lab.is_open {

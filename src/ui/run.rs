@@ -227,7 +227,7 @@ impl App {
             on_item => match (on_item, editor.selection) {
                 (Command::Rename, Selection::Item(item)) => {
                     self.layout.outliner = true;
-                    return self.outliner.rename(item);
+                    return self.outliner.rename(editor.scene(), item);
                 }
                 (Command::Duplicate, Selection::Item(item)) => Action::Edit(Edit::Duplicate(item)),
                 (Command::Delete, Selection::Item(item)) => Action::Edit(Edit::Delete(item)),
@@ -290,7 +290,7 @@ impl App {
 
 /// Hides everything that is selected, or shows it if all of it is hidden.
 fn toggle_visible(editor: &mut Editor) {
-    let scene = editor.scene();
+    let scene = editor.shown();
     let items = editor.selected().items();
     let is_visible = |item: &Item| match item.kind {
         Kind::Object => scene.objects.get(item.index).map(|object| object.visible),

@@ -11,6 +11,7 @@ use super::hint::Hint as _;
 use super::icons;
 use super::theme::{GRID, ROW, palette};
 use super::upload::{changes, piece, whole};
+use crate::image::Image;
 use crate::plan::Region;
 use crate::scene::{Sampling, Scene};
 use crate::worker::Frame;
@@ -63,10 +64,19 @@ impl Display {
         } else {
             "live view"
         };
+        // A graphics card takes no more: the file that is written stays whole.
+        let longest = ctx.input(|input| input.max_texture_side).max(1);
+        let side = frame.image.width.max(frame.image.height);
+        let step = side.div_ceil(longest).max(1);
+        let texture = |image: &Image| match step {
+            1 => whole(image),
+            _ => whole(&image.decimated(step)),
+        };
         match place {
             Some(shown) => {
-                match changes(&shown.frame.image, &frame.image) {
-                    None => shown.texture.set(whole(&frame.image), SHARP),
+                let parts = changes(&shown.frame.image, &frame.image);
+                match parts.filter(|_| step == 1) {
+                    None => shown.texture.set(texture(&frame.image), SHARP),
                     Some(parts) => {
                         for part in parts {
                             let place = [part.columns.start, part.rows.start];
@@ -80,7 +90,7 @@ impl Display {
             }
             None => {
                 *place = Some(Shown {
-                    texture: ctx.load_texture(name, whole(&frame.image), SHARP),
+                    texture: ctx.load_texture(name, texture(&frame.image), SHARP),
                     frame,
                 });
             }

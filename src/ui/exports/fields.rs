@@ -95,6 +95,14 @@ impl Settings {
         }
     }
 
+    /// The same with a folder that is found from everywhere.
+    pub fn at_home(self) -> Self {
+        let folder = Path::new(self.folder.trim());
+        let absolute = std::path::absolute(folder);
+        let folder = absolute.map_or(self.folder.clone(), |folder| folder.display().to_string());
+        Self { folder, ..self }
+    }
+
     /// The same for a scene that asks for `fresh` now: what was the scene's own is so again.
     pub fn for_scene(&self, fresh: Self) -> Self {
         let mut settings = self.clone();
@@ -158,7 +166,9 @@ impl Settings {
 
     /// The video that is to follow the frames.
     pub fn video(&self, sequence: &Sequence) -> Option<(PathBuf, Video)> {
-        let name = sequence.folder.file_name()?.to_string_lossy().into_owned();
+        let folder = std::path::absolute(&sequence.folder).ok();
+        let name = folder.as_deref().and_then(Path::file_name);
+        let name = name.map_or("frames".into(), |name| name.to_string_lossy());
         let path = sequence.folder.join(format!("{name}.{}", self.video));
         Video::of_path(&path).ok().map(|video| (path, video))
     }

@@ -34,6 +34,8 @@ pub struct KeptSettings(Vec<(Owner, Settings)>);
 impl KeptSettings {
     /// Puts settings away, for the next time that their document is exported.
     pub fn keep(&mut self, owner: Owner, settings: Settings) {
+        // The next program may run elsewhere.
+        let settings = settings.at_home();
         self.0.retain(|(other, _)| *other != owner);
         self.0.push((owner, settings));
     }

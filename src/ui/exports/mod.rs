@@ -42,6 +42,8 @@ const EXPORT: &str = "export";
 struct Shown {
     /// See [`Editor::documents`].
     document: u64,
+    /// The scene that the settings know.
+    revision: u64,
     owner: Owner,
     settings: Settings,
 }
@@ -243,9 +245,14 @@ impl Exports {
         pictures: &Pictures,
         out: &mut UiRequests,
     ) {
-        let document = editor.documents();
+        let (document, revision) = (editor.documents(), editor.revision());
         let mut settings = match self.shown.take() {
-            Some(shown) if shown.document == document => shown.settings,
+            Some(shown) if (shown.document, shown.revision) == (document, revision) => {
+                shown.settings
+            }
+            Some(shown) if shown.document == document => {
+                shown.settings.for_scene(Settings::of(editor))
+            }
             Some(other) => {
                 self.kept.keep(other.owner, other.settings);
                 self.settings(editor)
@@ -281,6 +288,7 @@ impl Exports {
         }
         self.shown = Some(Shown {
             document,
+            revision,
             owner: Owner::of(editor),
             settings,
         });

@@ -1,6 +1,9 @@
 //! The selected keys of the camera, and the keys of other values.
 
-use egui::{Button, Ui};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use egui::{Button, Id, Ui};
 use glam::DVec3;
 
 use super::camera::place_rows;
@@ -16,6 +19,9 @@ use crate::ui::rows::{Field, Rows, coordinate};
 
 /// Time, way and camera of the selected key; of several, way and pace of the first, which others take on.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+    if !ui.input(|input| input.pointer.any_down()) {
+        ui.data_mut(|data| data.remove::<Moved>(drag_id()));
+    }
     let animation = &editor.scene().animation;
     let indices = &editor.timeline().selected;
     let Some(first) = indices
@@ -47,9 +53,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         return;
     };
     if key.time != first.time {
-        let (moved, new) = animation.with_moved(indices, key.time - first.time, false);
-        out.edit(Edit::animation(moved, "Key: time"));
-        return out.time(Time::SelectKeys(new));
+        return move_key(ui, editor, key.time, out);
     }
     let changed = animation.with_each(indices, |each| {
         // Of several, what was not changed stays as it is in each.
@@ -69,6 +73,39 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         _ => "Key: camera",
     };
     out.edit(Edit::animation(changed, label));
+}
+
+/// A key before its time was dragged: it replaces what it lands on, and not what it passes.
+#[derive(Clone)]
+struct Moved {
+    animation: Arc<Animation>,
+    indices: BTreeSet<usize>,
+    time: f64,
+}
+
+/// Moves the selected key to another time.
+fn move_key(ui: &Ui, editor: &Editor, to: f64, out: &mut UiRequests) {
+    let animation = &editor.scene().animation;
+    let indices = &editor.timeline().selected;
+    let Some(first) = indices.first().and_then(|&index| animation.keys.get(index)) else {
+        return;
+    };
+    let now = || Moved {
+        animation: Arc::clone(animation),
+        indices: indices.clone(),
+        time: first.time,
+    };
+    // A typed time has nothing to remember: it is one step.
+    let before = ui.data_mut(|data| data.get_temp_mut_or_insert_with(drag_id(), now).clone());
+    let later = to - before.time;
+    let (moved, new) = before.animation.with_moved(&before.indices, later, false);
+    out.edit(Edit::animation(moved, "Key: time"));
+    out.time(Time::SelectKeys(new));
+}
+
+/// Where the key that is dragged is remembered.
+fn drag_id() -> Id {
+    Id::unique("key before its time was dragged")
 }
 
 fn time_field() -> Field {
@@ -146,7 +183,7 @@ fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     if ui.button("Delete").clicked() {
         let kept = animation.without_keys(indices);
         out.edit(Edit::animation(kept, "Delete keys"));
-        out.time(Time::SelectKeys(std::collections::BTreeSet::new()));
+        out.time(Time::SelectKeys(BTreeSet::new()));
     }
 }
 
@@ -158,7 +195,8 @@ pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[(&str, Target)], out: &
         ui.weak("Keys");
         for (name, target) in values {
             let track = animation.track(target);
-            let has_key = animation.has_value(target, time);
+            let there = animation.value_at(target, time);
+            let has_key = there.is_some();
             let count = track.map_or(String::new(), |track| format!(" ({})", track.keys.len()));
             let text = (icons::text(icons::KEY), format!("{name}{count}"));
             let button = Button::selectable(has_key, text);
@@ -169,8 +207,8 @@ pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[(&str, Target)], out: &
             };
             let button = ui.add(button).hint(hint);
             if button.accessible_name(format!("key {name}")).clicked() {
-                let changed = if has_key {
-                    Some(animation.without_value(target, time))
+                let changed = if let Some(there) = there {
+                    Some(animation.without_value(target, there))
                 } else {
                     let value = target.get(editor.shown());
                     value.map(|value| animation.with_value(target, time, value))

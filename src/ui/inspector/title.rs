@@ -31,9 +31,10 @@ pub fn title_field(ui: &mut Ui, icon: MaterialIcon, item: Item, name: &str, out:
 /// A text field that gives the text when it is left with Enter or a click elsewhere, and forgets it
 /// on Escape.
 pub fn name_field(ui: &mut Ui, label: &str, id: Id, name: &str) -> Option<String> {
-    let mut text = ui
-        .data(|data| data.get_temp::<String>(id))
-        .unwrap_or_else(|| name.to_owned());
+    // What was typed belongs to the name that it was typed over: the item may be another by now.
+    let typed = ui.data(|data| data.get_temp::<(String, String)>(id));
+    let typed = typed.filter(|(over, _)| over == name);
+    let mut text = typed.map_or_else(|| name.to_owned(), |(_, text)| text);
     let field = TextEdit::singleline(&mut text)
         .id(id)
         .char_limit(200)
@@ -42,12 +43,14 @@ pub fn name_field(ui: &mut Ui, label: &str, id: Id, name: &str) -> Option<String
         .add_sized([ui.available_width(), ROW], field)
         .accessible_name(label);
     if response.lost_focus() {
-        ui.data_mut(|data| data.remove::<String>(id));
+        ui.data_mut(|data| data.remove::<(String, String)>(id));
         let is_cancelled = ui.input(|input| input.key_pressed(egui::Key::Escape));
         return (!is_cancelled && text.trim() != name).then_some(text);
     }
     if response.changed() {
-        ui.data_mut(|data| data.insert_temp(id, text));
+        ui.data_mut(|data| data.insert_temp(id, (name.to_owned(), text)));
+    } else if !response.has_focus() {
+        ui.data_mut(|data| data.remove::<(String, String)>(id));
     }
     None
 }

@@ -27,7 +27,7 @@ impl GroupRows {
         if self.renaming.as_ref() == Some(&group.name) {
             return self.rename(ui, group, out);
         }
-        let scene = editor.scene();
+        let scene = editor.shown();
         let members = || group.members.iter().map(|index| Item::object(*index));
         let is_seen = |index: &usize| scene.objects.get(*index).is_some_and(|o| o.visible);
         let is_bright = group.members.iter().any(is_seen);

@@ -32,16 +32,24 @@ pub struct Outliner {
     scrolled: (f32, f32),
     folded: Vec<Kind>,
     renaming: Option<Item>,
+    /// Whether what is selected is brought into sight, wherever the list was scrolled to.
+    reveals: bool,
     groups: Groups,
     group_rows: GroupRows,
 }
 
 impl Outliner {
     /// Starts editing the name of an item in its row.
-    pub fn rename(&mut self, item: Item) {
+    pub fn rename(&mut self, scene: &Scene, item: Item) {
         self.filter.clear();
         self.folded.retain(|kind| *kind != item.kind);
+        if let (Kind::Object, Some(object)) = (item.kind, scene.objects.get(item.index)) {
+            self.group_rows
+                .folded
+                .retain(|group| *group != object.group);
+        }
         self.renaming = Some(item);
+        self.reveals = true;
     }
 
     /// Lists everything again. Whether not everything was listed.
@@ -72,7 +80,7 @@ impl Outliner {
                 self.clear_filter();
             }
             let add = icons::button(ui, icons::ADD, "Add to scene");
-            egui::Popup::menu(&add).show(|ui| add_menu(ui, editor.scene(), out));
+            egui::Popup::menu(&add).show(|ui| add_menu(ui, editor.shown(), out));
         });
         let mut groups = std::mem::take(&mut self.groups);
         groups.update(&editor.scene().objects, &self.group_rows.folded);
@@ -83,6 +91,7 @@ impl Outliner {
             area = area.vertical_scroll_offset(to);
         }
         self.listed = (editor.documents(), editor.selection);
+        self.reveals = false;
         let shown = area.show_rows(ui, ROW, lines.len(), |ui, range| {
             for index in range {
                 match lines.get(index) {
@@ -124,7 +133,7 @@ impl Outliner {
         let Selection::Item(item) = editor.selection else {
             return None;
         };
-        let is_new = self.listed != (editor.documents(), editor.selection);
+        let is_new = self.reveals || self.listed != (editor.documents(), editor.selection);
         let top = lines.row_of(item).filter(|_| is_new)? as f32 * ROW;
         let (from, height) = self.scrolled;
         let is_seen = top >= from && top + ROW <= from + height;
@@ -215,7 +224,7 @@ impl Outliner {
         (item, is_in_group): (Item, bool),
         out: &mut UiRequests,
     ) {
-        let scene = editor.scene();
+        let scene = editor.shown();
         let Some(name) = item.name(scene) else { return };
         if self.renaming == Some(item) {
             self.rename_row(ui, scene, item, out);

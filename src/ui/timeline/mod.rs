@@ -12,7 +12,7 @@ mod thumbs;
 
 mod transport;
 
-use egui::{Rect, ScrollArea, Ui};
+use egui::{InputState, Key, Modifiers, Rect, ScrollArea, Ui};
 
 use self::graph::Graph;
 pub use self::overlay::Overlay;
@@ -23,7 +23,7 @@ pub use self::transport::{actions, clock};
 use super::commands::Command;
 use super::requests::UiRequests;
 use super::theme::{GRID, TRACK_LABEL};
-use crate::editor::Editor;
+use crate::editor::{Action, Editor};
 use crate::scene::Animation;
 use crate::ui::hint::Hint as _;
 
@@ -120,6 +120,11 @@ impl TimelinePanel {
                 end: self.span.1,
             };
             self.zoom(ui, (&scale, area), end);
+            let gives_up = |input: &mut InputState| input.consume_key(Modifiers::NONE, Key::Escape);
+            if self.drag.is_some() && ui.input_mut(gives_up) {
+                self.drag = None;
+                out.actions.push(Action::CancelGesture);
+            }
             tracks_area::ruler(ui, &scale, editor, out);
             if !animation.keys.is_empty() {
                 thumbs.show(ui, &scale, animation);
@@ -137,6 +142,11 @@ impl TimelinePanel {
     /// Shows all of the line again.
     pub fn fit(&mut self) {
         self.chosen = None;
+    }
+
+    /// Whether keys are being moved.
+    pub fn is_dragging(&self) -> bool {
+        self.drag.is_some()
     }
 
     /// Whether the pointer is over the line, in this frame of the window.

@@ -29,8 +29,8 @@ const SMALL: f32 = 10.0;
 /// Keys on their way.
 #[derive(Clone, Debug)]
 pub struct Drag {
-    /// What they are keys of; `None` for the camera.
-    target: Option<Target>,
+    /// What they are keys of, and which of them is held; `None` for the camera.
+    target: Option<(Target, usize)>,
     /// The animation before.
     before: Arc<Animation>,
     /// Places of the camera's keys.
@@ -45,7 +45,9 @@ pub fn ruler(ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) 
     let (rect, response) = band(ui, scale, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Playhead"));
     if let Some(pointer) = response.interact_pointer_pos() {
-        out.time(Time::Seek(scale.time(pointer.x).max(0.0)));
+        out.time(Time::Seek(
+            scale.time(pointer.x).clamp(scale.start, scale.end),
+        ));
     }
     let colors = palette(ui.ctx());
     let painter = ui.painter();
@@ -385,7 +387,7 @@ pub fn tracks(
             }
             if response.drag_started() {
                 *drag = Some(Drag {
-                    target: Some(track.target.clone()),
+                    target: Some((track.target.clone(), index)),
                     before: Arc::clone(animation),
                     indices: BTreeSet::new(),
                     from: key.time,
@@ -396,14 +398,14 @@ pub fn tracks(
         }
     }
     let Some(held) = drag.as_ref() else { return };
-    let Some(target) = held.target.clone() else {
+    let Some((target, index)) = &held.target else {
         return;
     };
     let Some(to) = pointed(ui, scale, &held.before) else {
         *drag = None;
         return;
     };
-    let moved = held.before.with_value_moved(&target, held.from, to);
+    let moved = held.before.with_value_moved(target, *index, to);
     if moved != **animation {
         out.edit(Edit::animation(moved, "Move key"));
     }
@@ -435,9 +437,8 @@ fn value_menu(
         }
     }
     ui.separator();
-    let time = key.time;
     if ui.button("Delete").clicked() {
-        changed = animation.without_value(target, time);
+        changed = animation.without_value(target, index);
     }
     if changed != *animation {
         out.edit(Edit::animation(changed, "Key value"));

@@ -7,7 +7,7 @@ use egui::{Button, DragValue, PopupCloseBehavior, RichText, Slider, Ui};
 
 use crate::animate::{Retime, paused_seconds};
 use crate::editor::{Edit, Editor, Repeat, Time};
-use crate::scene::Animation;
+use crate::scene::{Animation, MAX_SECONDS};
 use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
@@ -172,7 +172,8 @@ fn length(ui: &mut Ui, animation: &Animation, out: &mut UiRequests) {
     };
     let mut seconds = last.time - first.time;
     let drag = DragValue::new(&mut seconds)
-        .range(0.1..=36_000.0)
+        .range(0.1..=MAX_SECONDS)
+        .clamp_existing_to_range(false)
         .speed(0.05)
         .max_decimals(3)
         .update_while_editing(false)
@@ -257,8 +258,10 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action>
     use crate::editor::Action;
     let animation = &editor.scene().animation;
     let time = editor.shown_time();
-    let is_later = |key: &f64| *key > time + 1e-4;
-    let is_earlier = |key: &f64| *key < time - 1e-4;
+    // The playhead goes to the frame nearest to a key, which may be before or behind it.
+    let frame = |time: f64| animation.frame_at(time + 0.5 / animation.frames_per_second);
+    let is_later = |key: &f64| frame(*key) > frame(time);
+    let is_earlier = |key: &f64| frame(*key) < frame(time);
     let mut keys = animation.keys.iter().map(|key| key.time);
     let timed = |time: Time| vec![Action::Time(time)];
     let has_time = !animation.is_still();
