@@ -25,7 +25,10 @@ pub struct ConvertArgs {
 /// # Errors
 /// [`CliError`]: a file that cannot be read, or one that cannot be written.
 pub fn run(args: &ConvertArgs) -> Result<(), CliError> {
-    let ends_in = |path: &Path, ending: &str| path.extension().is_some_and(|end| end == ending);
+    let ends_in = |path: &Path, ending: &str| {
+        let end = path.extension();
+        end.is_some_and(|end| end.eq_ignore_ascii_case(ending))
+    };
     let output = args.output.display();
     match (ends_in(&args.input, "ron"), &args.output) {
         (true, path) if ends_in(path, "pov") => write_povray(args),

@@ -23,8 +23,10 @@ pub fn picture_instead_of_window(scene: Option<&Path>, reason: &str) -> Result<(
         None => (Scene::demo(), PathBuf::from("demo.png")),
         Some(path) => {
             let stem = path.file_stem().unwrap_or(path.as_os_str());
-            let name = Path::new(stem).with_extension("png");
-            (read_scene(path)?, name)
+            // What is before the last point of a name may have points too.
+            let mut name = stem.to_owned();
+            name.push(".png");
+            (read_scene(path)?, PathBuf::from(name))
         }
     };
     {

@@ -9,7 +9,7 @@ use indexmap::IndexMap;
 use super::item::{Item, Kind};
 use super::names::{Taken, copy_offset, free_light_name, free_pack_name};
 use super::selection::Selected;
-use crate::scene::{ColorPack, Document, Scene, SceneError};
+use crate::scene::{ColorPack, Document, List, Scene, SceneError, names_field};
 
 /// How far a copy of a light alone is from it, in world units.
 const LIGHT_APART: f64 = 10.0;
@@ -47,16 +47,32 @@ pub fn excerpt(scene: &Scene, selected: &Selected) -> Scene {
     part
 }
 
-/// What a text means that is pasted into a scene: the text of a scene, or of objects, or of lights. Packs that
-/// objects wear are looked up in the scene.
+/// What a text means that is pasted into a scene: the text of a scene, or of objects, of lights, or of packs. Packs
+/// that objects wear are looked up in the scene.
 ///
 /// # Errors
 /// [`SceneError::Refused`]: why it is neither; places are those of the whole that the text is part of.
 pub fn read(text: &str, scene: &Scene) -> Result<Scene, SceneError> {
     let text = text.trim().trim_end_matches(',');
     let word = text.split(|c: char| !c.is_alphanumeric()).next();
+    if text.starts_with('"') {
+        let whole =
+            format!("Scene(version: 1, color_packs: {{\n{text}\n}}, objects: [], lights: [])");
+        return Document::from_text(&whole).map(|document| document.scene);
+    }
     if !matches!(word, Some("Object" | "Light")) {
-        return Document::from_text(text).map(|document| document.scene);
+        let mut read = Document::from_text(text)?.scene;
+        // What a scene leaves out is that of the demo, which nobody has written here.
+        if !names_field(text, "lights") {
+            read.lights = List::new();
+        }
+        if !names_field(text, "objects") {
+            read.objects = List::new();
+        }
+        if names_field(text, "color_packs") {
+            return Ok(read);
+        }
+        return Ok(excerpt(&read, &Selected::all(items(&read))));
     }
     let mut packs = String::new();
     for name in scene.color_packs.keys() {

@@ -242,7 +242,6 @@ impl Editor {
     pub fn open(&mut self, (document, stamp): (Document, Stamp), path: &Path) {
         self.replace(document, Some(absolute(path)));
         self.stamp = Some(stamp);
-        self.tell_missing_meshes();
     }
 
     /// Grows when the file and the scene become one: by opening, saving, or taking up what is there.
@@ -288,7 +287,6 @@ impl Editor {
         self.stamp = leftover.stamp;
         self.saved = Arc::new(Scene::empty());
         self.is_dirty = true;
-        self.tell_missing_meshes();
     }
 
     /// The text of the document as it would be saved.
@@ -335,6 +333,7 @@ impl Editor {
             messages,
             ..other
         };
+        self.tell_missing_meshes();
     }
 
     /// Makes a change. Whether it was; what changes nothing was, too.

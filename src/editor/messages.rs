@@ -5,6 +5,8 @@ use super::document::Editor;
 
 /// What messages about edits are about.
 const EDIT: &str = "edit";
+/// What messages about meshes that are missing are about.
+const MESHES: &str = "meshes";
 
 impl Editor {
     /// Tells the user something.
@@ -41,6 +43,7 @@ impl Editor {
 
     /// Says which meshes could not be read.
     pub(super) fn tell_missing_meshes(&mut self) {
+        self.begin(MESHES);
         let mut problems = self.scene.mesh_problems();
         let Some((index, why)) = problems.next() else {
             return;
@@ -51,7 +54,7 @@ impl Editor {
         };
         let name = &self.scene.objects[index].name;
         let text = format!("{name:?} is not in the picture: {why}{more}");
-        self.report_error(text);
+        self.report_error_in(MESHES, text);
     }
 
     /// Tells why an edit is not made.

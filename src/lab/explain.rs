@@ -32,6 +32,9 @@ pub struct Lit {
     pub point: DVec3,
     /// The unit normal, turned to the viewer.
     pub normal: DVec3,
+    /// Whether it is a mesh whose faces the picture shades as one curved surface: the normal here is that of the
+    /// flat face, and so are the terms.
+    pub is_smooth: bool,
     /// How far from where the ray set out, in world units.
     pub distance: f64,
     /// Ambient intensity · ambient colour.
@@ -138,6 +141,7 @@ fn look(scene: &Scene, (origin, direction): (DVec3, DVec3), bounces: u32) -> Sig
         pack: object.color_pack.clone(),
         point,
         normal,
+        is_smooth: matches!(&object.shape, Shape::Mesh(mesh) if mesh.smooth > 0.0),
         distance: met.t,
         ambient: linear(pack.ambient) * scene.ambient_intensity,
         lights: lights.collect(),

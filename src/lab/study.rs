@@ -336,8 +336,14 @@ impl Measurement {
     pub fn timing(&self) -> Option<Timing> {
         let mut times = self.times.clone();
         times.sort_by(f64::total_cmp);
-        let at = |share: f64| times.get(((times.len() as f64 - 1.0) * share).round() as usize);
-        let (median, low, high) = (*at(0.5)?, *at(0.25)?, *at(0.75)?);
+        // Between neighbours in proportion (Hyndman and Fan, "Sample quantiles in statistical packages", The
+        // American Statistician 50(4), 1996, definition 7).
+        let at = |share: f64| {
+            let place = times.len().checked_sub(1)? as f64 * share;
+            let (below, above) = (times[place.floor() as usize], times[place.ceil() as usize]);
+            Some(below + (above - below) * place.fract())
+        };
+        let (median, low, high) = (at(0.5)?, at(0.25)?, at(0.75)?);
         Some(Timing {
             median,
             quartiles: (low, high),

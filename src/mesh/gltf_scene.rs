@@ -18,8 +18,11 @@ use super::triangles::Triangles;
 
 /// Most objects and lists in the JSON: each can cost hundreds of bytes.
 const MAX_OBJECTS: usize = 1_000_000;
+/// How often points are gone through, on average, where many parts share one list.
+const MOST_SCANS: usize = 100;
 /// Extensions without which the triangles cannot be read.
-const GEOMETRY_EXTENSIONS: [&str; 3] = [
+const GEOMETRY_EXTENSIONS: [&str; 4] = [
+    "EXT_mesh_gpu_instancing",
     "KHR_draco_mesh_compression",
     "KHR_mesh_quantization",
     "EXT_meshopt_compression",
@@ -39,6 +42,7 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<Vec<Part>,
         stem,
         parts: Vec::new(),
         points: 0,
+        scanned: 0,
         faces: 0,
     };
     let mut visited = vec![false; document.nodes().len()];
@@ -169,6 +173,8 @@ struct Walk<'a> {
     stem: &'a str,
     parts: Vec<Part>,
     points: usize,
+    /// Points that were gone through for them.
+    scanned: usize,
     faces: usize,
 }
 
@@ -209,8 +215,11 @@ impl Walk<'_> {
         let corners = primitive
             .indices()
             .map_or(accessor.count(), |indices| indices.count());
-        // Many nodes may show the same mesh, so a small file can be a large scene.
-        self.points = self.points.saturating_add(accessor.count());
+        // Many nodes may show the same mesh, so a small file can be a large scene; of a list that many share,
+        // what each needs counts, and to have gone through it.
+        self.points = self.points.saturating_add(corners.min(accessor.count()));
+        self.scanned = self.scanned.saturating_add(accessor.count());
+        check_points(self.scanned / MOST_SCANS)?;
         self.faces = self.faces.saturating_add(match mode {
             Mode::Triangles => corners / 3,
             _ => corners.saturating_sub(2),

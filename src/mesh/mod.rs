@@ -12,6 +12,8 @@ mod triangles;
 
 mod solids;
 
+mod polygon;
+
 mod part;
 
 mod mtl;

@@ -1,5 +1,6 @@
 //! Colours of OBJ files.
 
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::path::Path;
 
@@ -28,23 +29,45 @@ impl<'a> Libraries<'a> {
 
     /// Reads one. One that is not there or not in the folder, or cannot be read, only means that there are no colours.
     pub(super) fn load(&self, name: &Path) -> MTLLoadResult {
-        let left = self.left.get();
         // Exporters on Windows write its separators.
         let name = name.to_string_lossy().replace('\\', "/");
-        if !stays_inside(Path::new(&name)) {
-            return Err(LoadError::OpenFileFailed);
+        let text = match self.text(&name) {
+            Some(text) => text,
+            // Several files may be named in one line, or one whose name has spaces.
+            None => name
+                .split_whitespace()
+                .filter_map(|name| self.text(name))
+                .reduce(|all, one| format!("{all}\n{one}"))
+                .ok_or(LoadError::OpenFileFailed)?,
+        };
+        let lines = text.lines().map(|line| whole_color(line.trim()));
+        let lines = lines.filter(|line| is_color(line));
+        let kept = lines.collect::<Vec<_>>().join("\n");
+        tobj::load_mtl_buf(&mut kept.as_bytes())
+    }
+
+    /// What is in a file.
+    fn text(&self, name: &str) -> Option<String> {
+        if !stays_inside(Path::new(name)) {
+            return None;
         }
-        let bytes = read_at_most(&self.folder.join(name), left)
-            .ok()
-            .flatten()
-            .ok_or(LoadError::OpenFileFailed)?;
+        let left = self.left.get();
+        let bytes = read_at_most(&self.folder.join(name), left).ok()??;
         // An empty file costs something too.
         self.left
             .set(left.saturating_sub(bytes.len() as u64 + 1024));
-        let text = String::from_utf8_lossy(&bytes);
-        let lines = text.lines().map(str::trim).filter(|line| is_color(line));
-        let kept = lines.collect::<Vec<_>>().join("\n");
-        tobj::load_mtl_buf(&mut kept.as_bytes())
+        Some(String::from_utf8_lossy(&bytes).into_owned())
+    }
+}
+
+/// A colour of one number is grey, which `tobj` does not know.
+fn whole_color(line: &str) -> Cow<'_, str> {
+    let mut words = line.split_whitespace();
+    match (words.next(), words.next(), words.next()) {
+        (Some(word @ ("Kd" | "Ks" | "Ka")), Some(grey), None) => {
+            Cow::Owned(format!("{word} {grey} {grey} {grey}"))
+        }
+        _ => Cow::Borrowed(line),
     }
 }
 
@@ -83,6 +106,13 @@ pub(super) fn colors_of(material: &Material) -> Option<PartColors> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_number_is_grey() {
+        assert_eq!(whole_color("Kd 0.5"), "Kd 0.5 0.5 0.5");
+        assert_eq!(whole_color("Kd 0.5 1 0"), "Kd 0.5 1 0");
+        assert_eq!(whole_color("Ns 10"), "Ns 10");
+    }
 
     #[test]
     fn lines_that_would_panic_are_left_out() {

@@ -10,12 +10,14 @@ use super::mtl::{Libraries, colors_of};
 use super::obj_fault::find_fault;
 use super::obj_lines::ObjLines;
 use super::part::Part;
+use super::polygon::mend_fan;
 use super::triangles::Triangles;
 
 /// Only positions matter: the corners of a face need no texture coordinates or normals.
 const OPTIONS: LoadOptions = LoadOptions {
     single_index: false,
-    triangulate: true,
+    // Concave polygons are not fans.
+    triangulate: false,
     ignore_points: true,
     ignore_lines: true,
 };
@@ -59,10 +61,22 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<Vec<Part>,
 
 fn triangles_of(model: &Model) -> Result<Triangles, Fault> {
     let (points, _) = model.mesh.positions.as_chunks::<3>();
-    let (faces, _) = model.mesh.indices.as_chunks::<3>();
-    Triangles::weld(
-        points.len(),
-        |index| DVec3::from_array(points[index]),
-        faces.iter().copied(),
-    )
+    let point = |index: usize| DVec3::from_array(points[index]);
+    // Where all faces are triangles, there are no numbers of corners.
+    if model.mesh.face_arities.is_empty() {
+        let (faces, _) = model.mesh.indices.as_chunks::<3>();
+        return Triangles::weld(points.len(), point, faces.iter().copied());
+    }
+    let mut faces = Vec::new();
+    let mut corners = &model.mesh.indices[..];
+    for &count in &model.mesh.face_arities {
+        let (polygon, rest) = corners.split_at(count as usize);
+        corners = rest;
+        let start = faces.len();
+        if let [first, others @ ..] = polygon {
+            faces.extend(others.windows(2).map(|pair| [*first, pair[0], pair[1]]));
+        }
+        mend_fan(&mut faces[start..], |corner| point(corner as usize));
+    }
+    Triangles::weld(points.len(), point, faces.into_iter())
 }

@@ -1,6 +1,7 @@
 //! Where an OBJ file is wrong, looked for once it is known to be: `tobj` says what and not where.
 
 use super::error::{Fault, excerpt};
+use super::triangles::FARTHEST;
 
 /// Most characters of a word that a sentence shows.
 const EXCERPT: usize = 24;
@@ -22,6 +23,7 @@ pub(super) fn find_fault(text: &str, said: &str) -> Fault {
                 if goes_on { None } else { wrong_point(words) }
             }
             Some("f") => words
+                .take_while(|word| !word.starts_with('#'))
                 .filter(|&word| word != "\\")
                 .find_map(|word| wrong_corner(word, before, total)),
             _ => None,
@@ -38,11 +40,15 @@ fn wrong_point<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<String> {
         let Some(word) = words.next() else {
             return Some("a point needs three coordinates".to_owned());
         };
-        if !word.parse::<f64>().is_ok_and(f64::is_finite) {
+        let number = word.parse::<f64>().ok().filter(|number| number.is_finite());
+        let Some(number) = number else {
             return Some(format!(
                 "the coordinate {:?} is no finite number",
                 excerpt(word, EXCERPT)
             ));
+        };
+        if number.abs() > FARTHEST {
+            return Some(format!("the coordinate {number} is beyond {FARTHEST:e}"));
         }
     }
     None

@@ -41,6 +41,8 @@ pub(super) struct ObjLines<'a> {
     piece: &'a [u8],
     /// What comes behind the piece: a line break, or a space where the line goes on.
     behind: &'static [u8],
+    /// What comes behind that, up to the end of the line.
+    rest_of_line: &'a str,
     /// The line goes on in the next of the file.
     going_on: Option<Kind>,
     corners: usize,
@@ -57,6 +59,7 @@ impl<'a> ObjLines<'a> {
             rest: text,
             piece: b"",
             behind: b"",
+            rest_of_line: "",
             going_on: None,
             corners: 0,
             faces: 0,
@@ -69,6 +72,10 @@ impl<'a> ObjLines<'a> {
     fn next_piece(&mut self) -> Result<&'a [u8], Fault> {
         if !self.behind.is_empty() {
             return Ok(std::mem::take(&mut self.behind));
+        }
+        if !self.rest_of_line.is_empty() {
+            self.behind = b"\n";
+            return Ok(std::mem::take(&mut self.rest_of_line).as_bytes());
         }
         while !self.rest.is_empty() {
             let (line, rest) = self.rest.split_once('\n').unwrap_or((self.rest, ""));
@@ -86,6 +93,8 @@ impl<'a> ObjLines<'a> {
             self.going_on = goes_on.then_some(kind);
             let line = match kind {
                 Kind::Point if begun.is_none() && !goes_on => three_numbers(line),
+                // Names may have it in them.
+                Kind::Face => line.split('#').next().unwrap_or_default(),
                 _ => line,
             };
             self.count(kind, line, goes_on)?;
@@ -96,6 +105,14 @@ impl<'a> ObjLines<'a> {
             // An empty piece would be the end of the text.
             if line.is_empty() {
                 return Ok(behind);
+            }
+            if matches!(kind, Kind::Group | Kind::Library)
+                && let Some((word, name)) = line.split_once('\t')
+                && !word.contains(' ')
+            {
+                // `tobj` knows a name behind a space alone.
+                (self.behind, self.rest_of_line) = (b" ", name.trim_ascii_start());
+                return Ok(word.as_bytes());
             }
             self.behind = behind;
             return Ok(line.as_bytes());
@@ -172,6 +189,15 @@ impl Read for ObjLines<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_stand_behind_a_space_and_remarks_go() {
+        let text = "mtllib\t\ta b.mtl\nusemtl\tred\nf 1 2 3 # all\nusemtl blue\tsky\n";
+        let mut read = String::new();
+        ObjLines::new(text).read_to_string(&mut read).expect("text");
+        let expected = "mtllib a b.mtl\nusemtl red\nf 1 2 3 \nusemtl blue\tsky\n";
+        assert_eq!(read, expected);
+    }
 
     #[test]
     fn only_what_matters_is_left() {

@@ -3,6 +3,7 @@
 //! programs write.
 
 use std::io::ErrorKind;
+use std::ops::Range;
 
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -12,12 +13,13 @@ use super::error::Fault;
 use super::limits::{check_faces, check_points};
 use super::part::Part;
 use super::ply_element::{Element, is_corners, least_bytes};
+use super::polygon::mend_fan;
 use super::triangles::{Triangles, out_of_range};
 
 /// Longest header; one without an end is not searched for gigabytes.
 const MAX_HEADER: usize = 1 << 20;
 
-/// Reads a PLY file; polygons become fans of triangles.
+/// Reads a PLY file; polygons become triangles.
 pub(super) fn read(bytes: &[u8], stem: &str) -> Result<Vec<Part>, Fault> {
     let parser = Parser::<Element>::new();
     // Comments may be in any encoding, and the crate wants UTF-8.
@@ -34,7 +36,14 @@ pub(super) fn read(bytes: &[u8], stem: &str) -> Result<Vec<Part>, Fault> {
         rest,
         line: reader.line(),
     };
-    let (points, faces) = body.read(&header)?;
+    let Polygons {
+        points,
+        mut faces,
+        fans,
+    } = body.read(&header)?;
+    for fan in fans {
+        mend_fan(&mut faces[fan], |corner| points[corner as usize]);
+    }
     let triangles = Triangles::weld(points.len(), |index| points[index], faces.into_iter())?;
     Ok(vec![Part {
         name: stem.to_owned(),
@@ -54,6 +63,13 @@ fn header_fault(error: &ParseError, bytes: &[u8]) -> Fault {
     }
 }
 
+/// Points, triangles, and which of those are polygons that were cut into fans.
+struct Polygons {
+    points: Vec<DVec3>,
+    faces: Vec<[u32; 3]>,
+    fans: Vec<Range<usize>>,
+}
+
 /// What comes behind the header.
 struct Body<'a> {
     parser: Parser<Element>,
@@ -64,10 +80,10 @@ struct Body<'a> {
 }
 
 impl Body<'_> {
-    fn read(&mut self, header: &Header) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), Fault> {
+    fn read(&mut self, header: &Header) -> Result<Polygons, Fault> {
         let vertices = check_vertices(header)?;
         check_points(vertices)?;
-        let (mut points, mut faces) = (Vec::new(), Vec::new());
+        let (mut points, mut faces, mut fans) = (Vec::new(), Vec::new(), Vec::new());
         for (name, element) in &header.elements {
             self.check_length(element)?;
             match name.as_str() {
@@ -83,7 +99,12 @@ impl Body<'_> {
                     check_faces(element.count)?;
                     faces.reserve_exact(element.count);
                     self.each(element, |number, read| {
-                        add_fan(&mut faces, number, &read.corners, vertices)
+                        let start = faces.len();
+                        add_fan(&mut faces, number, &read.corners, vertices)?;
+                        if faces.len() > start + 1 {
+                            fans.push(start..faces.len());
+                        }
+                        Ok(())
                     })?;
                     // Nothing behind the faces matters, if the points were before.
                     if points.len() == vertices {
@@ -93,7 +114,11 @@ impl Body<'_> {
                 _ => self.each(element, |_, _| Ok(()))?,
             }
         }
-        Ok((points, faces))
+        Ok(Polygons {
+            points,
+            faces,
+            fans,
+        })
     }
 
     /// A header may claim any number: it is held against what the file has left.

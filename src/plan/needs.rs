@@ -1,5 +1,7 @@
 //! What a picture of a scene needs, and why: the plan in words, one line for each of its rules.
 
+use std::collections::HashSet;
+
 use serde::Serialize;
 
 use super::geometry::{Kept, LARGEST_LIST, MOST_LISTED_TRIANGLES, SMALLEST_TREE};
@@ -38,9 +40,9 @@ pub fn needs(scene: &Scene, request: &RenderRequest) -> Vec<Need> {
         markers(scene, &plan),
         hidden(scene),
         faces(&plan),
-        accelerator(&plan, scene.faces()),
+        accelerator(&plan, visible_faces(scene)),
         normals(scene),
-        highlights(&plan),
+        highlights(scene, &plan),
         edges(request),
     ]
 }
@@ -290,12 +292,24 @@ fn normals(scene: &Scene) -> Need {
     }
 }
 
-fn highlights(plan: &Plan<f64>) -> Need {
+fn visible_faces(scene: &Scene) -> usize {
+    let visible = scene.objects.iter().filter(|object| object.visible);
+    let faces = visible.filter_map(|object| match &object.shape {
+        Shape::Mesh(mesh) => Some(mesh.source.triangles().faces().len()),
+        _ => None,
+    });
+    faces.sum()
+}
+
+fn highlights(scene: &Scene, plan: &Plan<f64>) -> Need {
     let rule = "highlights";
-    let surfaces = plan
-        .materials
-        .iter()
-        .filter_map(|Material { surface, .. }| surface.as_ref());
+    // Of packs that nothing wears, none is computed.
+    let visible = scene.objects.iter().filter(|object| object.visible);
+    let worn: HashSet<&str> = visible.map(|object| &*object.color_pack).collect();
+    let packs = plan.materials.iter().zip(scene.color_packs.keys());
+    let surfaces = packs
+        .filter(|(_, name)| worn.contains(name.as_str()))
+        .filter_map(|(Material { surface, .. }, _)| surface.as_ref());
     let exponents: Vec<Exponent> = surfaces.filter_map(|surface| surface.exponent).collect();
     if exponents.is_empty() {
         need(

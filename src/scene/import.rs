@@ -10,9 +10,12 @@ use super::camera::Camera;
 use super::list::List;
 use super::material::{ColorPack, MAX_EXPONENT};
 use super::object::{Light, LightObj, Object};
-use super::shape::{Mesh, MeshSource, Shape};
+use super::shape::{Mesh, MeshFiles, MeshSource, Shape};
 use super::whole::Scene;
 use crate::mesh::{MeshError, Part, PartColors, read_parts};
+
+/// Packs that parts of one file have been given, by the names that they asked for.
+type PacksOfParts = HashMap<String, Vec<(ColorPack, String)>>;
 
 /// The pack of what a file gives no colours.
 const PLAIN: &str = "mesh";
@@ -44,7 +47,7 @@ impl Scene {
                 position: DVec3::ZERO,
                 ..mesh.clone()
             };
-            linked.load(folder);
+            linked.load(folder, &mut MeshFiles::new());
             if linked.source.problem().is_none() {
                 *mesh = linked;
             }
@@ -57,8 +60,9 @@ impl Scene {
     pub fn add_parts(&mut self, parts: Vec<Part>) -> usize {
         let first = self.objects.len();
         let mut names = Names::new(self.objects.iter().map(|object| object.name.as_str()));
+        let mut packs = PacksOfParts::default();
         for part in parts {
-            let color_pack = self.pack_of(part.colors.as_ref());
+            let color_pack = self.pack_of(part.colors.as_ref(), &mut packs);
             let Part {
                 name, triangles, ..
             } = part;
@@ -72,7 +76,7 @@ impl Scene {
     }
 
     /// The pack of a part: that of its colours, which may be there already.
-    fn pack_of(&mut self, colors: Option<&PartColors>) -> String {
+    fn pack_of(&mut self, colors: Option<&PartColors>, packs: &mut PacksOfParts) -> String {
         let (wanted, pack) = match colors {
             None => (PLAIN.to_owned(), plain_pack()),
             Some(colors) => (tidy(&colors.name), color_pack(colors)),
@@ -80,7 +84,12 @@ impl Scene {
         if self.color_packs.get(&wanted) == Some(&pack) {
             return wanted;
         }
+        let given = packs.entry(wanted.clone()).or_default();
+        if let Some((_, name)) = given.iter().find(|(other, _)| *other == pack) {
+            return name.clone();
+        }
         let name = Names::new(self.color_packs.keys().map(String::as_str)).take(&wanted);
+        given.push((pack.clone(), name.clone()));
         self.packs_mut().insert(name.clone(), pack);
         name
     }

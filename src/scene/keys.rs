@@ -177,6 +177,21 @@ impl Animation {
         animation
     }
 
+    /// With a copy of the key in this place of a track at another time; it replaces what it lands on.
+    pub fn with_value_copied(&self, target: &Target, index: usize, to: f64) -> Self {
+        let key = self.track(target).and_then(|track| track.keys.get(index));
+        let Some(key) = key else { return self.clone() };
+        let mut animation = self.with_value(target, to, key.value);
+        let place = animation.value_at(target, to);
+        let tracks = &mut animation.tracks;
+        let track = tracks.iter_mut().find(|track| track.target == *target);
+        if let Some((track, place)) = track.zip(place) {
+            (track.keys[place].interpolation, track.keys[place].easing) =
+                (key.interpolation, key.easing);
+        }
+        animation
+    }
+
     /// What belongs to a light or object follows its new name, or goes with it.
     pub fn follow_name(&mut self, is_light: bool, name: &str, to: Option<&str>) {
         let is_meant = |target: &Target| {

@@ -31,9 +31,20 @@ pub fn locate(text: &str, path: &[PathStep]) -> usize {
 /// The `version` that a text claims, if it has the shape of a scene at all. Read before anything
 /// else, so that a file from the future is refused by its version and not by its new fields.
 pub fn claimed_version(text: &str) -> Option<u32> {
-    let at = locate(text, &[PathStep::Field("version")]);
-    let digits = text[at..].split(|c: char| !c.is_ascii_digit()).next()?;
-    u32::from_str(digits).ok()
+    let mut cursor = Cursor { text, at: 0 };
+    cursor.skip_preamble();
+    let is_there = cursor.enter(&PathStep::Field("version"));
+    let digits = text[cursor.at..]
+        .split(|c: char| !c.is_ascii_digit())
+        .next()?;
+    u32::from_str(digits).ok().filter(|_| is_there)
+}
+
+/// Whether the value that a text is names a field of its own.
+pub fn names_field(text: &str, name: &'static str) -> bool {
+    let mut cursor = Cursor { text, at: 0 };
+    cursor.skip_preamble();
+    cursor.enter(&PathStep::Field(name))
 }
 
 /// The comments (and blank lines) before the first value.

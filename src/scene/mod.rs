@@ -75,7 +75,7 @@ pub use file::{DEMO_TEXT, Document, SceneError, read_text};
 pub use hints::{About, Hint, hints};
 pub use join::MOST_SEPARATE;
 pub use list::List;
-pub use locate::PathStep;
+pub use locate::{PathStep, names_field};
 pub use material::ColorPack;
 pub use methods::{
     Accelerator, HighlightMethod, MAX_GRID, MAX_HALVINGS, Method, MethodInfo, Methods, Precision,

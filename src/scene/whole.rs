@@ -15,7 +15,7 @@ use super::material::{ColorPack, read_packs};
 use super::notation;
 use super::object::{Light, LightObj, Object, default_intensity, yes};
 use super::render::Render;
-use super::shape::{Mesh, MeshSource, Shape};
+use super::shape::{Mesh, MeshFiles, MeshSource, Shape};
 
 /// The scene-file version that this program writes and the newest that it reads.
 pub const VERSION: u32 = 1;
@@ -156,9 +156,11 @@ impl Scene {
     /// Reads the meshes that are files in `folder`, where the scene file is. What cannot be read is noted
     /// with the mesh, which is then empty; see [`Self::mesh_problems`].
     pub fn load_meshes(&mut self, folder: Option<&Path>) {
+        // What several objects refer to is read once, and shared by them.
+        let mut files = MeshFiles::new();
         self.change_meshes(|mesh| {
             let mut loaded = mesh.clone();
-            loaded.load(folder);
+            loaded.load(folder, &mut files);
             loaded
         });
     }
@@ -193,7 +195,7 @@ impl Scene {
     }
 
     /// Puts another mesh in place of each.
-    pub(super) fn change_meshes(&mut self, change: impl Fn(&Mesh) -> Mesh) {
+    pub(super) fn change_meshes(&mut self, mut change: impl FnMut(&Mesh) -> Mesh) {
         let meshes = self.objects.iter().enumerate();
         let meshes = meshes.filter_map(|(index, object)| match object.shape {
             Shape::Mesh(_) => Some(index),

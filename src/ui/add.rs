@@ -29,7 +29,18 @@ impl Addition {
     pub fn edit(self, scene: &Scene) -> Edit {
         let (at, size) = in_front_of_camera(scene);
         match self {
-            Self::Shape(place) => Edit::AddObject(Shape::examples(at, size).swap_remove(place)),
+            Self::Shape(place) => {
+                let shape = Shape::examples(at, size).swap_remove(place);
+                let floor = scene.objects_bounds().map(|(low, _)| low.y);
+                match (&shape, floor) {
+                    // What is there stands on it.
+                    (Shape::Plane(_), Some(floor)) => {
+                        let down = DVec3::Y * (floor - shape.position().y);
+                        Edit::AddObject(shape.moved(down))
+                    }
+                    _ => Edit::AddObject(shape),
+                }
+            }
             Self::Solid(place) => {
                 let solid = SOLIDS[place];
                 let mesh = Mesh {
@@ -79,48 +90,112 @@ pub fn add_menu(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
     }
 }
 
-/// Where a new thing goes, and how large it is: in the middle of the picture, a fifth of its height, before what
-/// is there.
+/// How large a new thing is, in heights of the picture.
+const SHARE: f64 = 0.2;
+/// How far apart the places are that are tried, in sizes of a new thing.
+const APART: f64 = 1.3;
+/// How far what it stands on may be, in distances where a new thing goes.
+const FARTHEST_FLOOR: f64 = 2.0;
+/// What is nearer than this, in distances where a new thing goes, is not gone before.
+const NEAREST: f64 = 0.1;
+/// The smallest that a new thing is, in world units.
+const SMALLEST: f64 = 1e-6;
+
+/// Where a new thing goes, and how large it is: a fifth of the picture's height, as far away as the scene is, on the
+/// floor if one is seen there, and beside what is there already; before that, if there is no room.
 fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     let camera = &scene.camera;
-    let middle = camera.framing().map(|framing| framing.ray([0.0, 0.0]));
-    let (origin, look) = middle.unwrap_or((camera.position, DVec3::NEG_Z));
-    let extent = scene
-        .bounds()
-        .map_or(0.0, |(low, high)| (high - low).length());
-    let usual = if extent > 0.0 { extent / 2.0 } else { 100.0 };
+    let Some(framing) = camera.framing() else {
+        return (camera.position, SMALLEST);
+    };
+    let usual = usual_distance(scene);
+    let half = f64::from(scene.render.width) / f64::from(scene.render.height) / 2.0;
+    let step = SHARE * APART;
+    let across = [0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0].map(|steps| steps * step);
+    let across = across
+        .into_iter()
+        .filter(|x| x.abs() + SHARE / 2.0 <= half.max(SHARE / 2.0));
+    let up = [0.0, -step, step].into_iter();
+    let places = up.flat_map(|y| across.clone().map(move |x| [x, y]));
+    let mut free = places.filter_map(|place| free_place(scene, framing.ray(place), usual));
+    let (at, size) = free
+        .next()
+        .unwrap_or_else(|| before_what_is_seen(scene, framing.ray([0.0, 0.0]), usual));
+    // Whole numbers read better in the inspector, where the scene is large enough for them.
+    let tidy = |x: f64| if size > 10.0 { x.round() } else { x };
+    let at = DVec3::new(tidy(at.x), tidy(at.y), tidy(at.z));
+    (at, tidy(size).max(SMALLEST))
+}
+
+/// How far away the middle of the scene is; where the eye is within it, half as far as it reaches.
+fn usual_distance(scene: &Scene) -> f64 {
+    let camera = &scene.camera;
+    let Some((low, high)) = scene.objects_bounds() else {
+        return 100.0;
+    };
+    let (reach, middle) = ((high - low).length() / 2.0, (low + high) / 2.0);
+    let look = camera.look_at.normalize_or_zero();
+    let ahead = (middle - camera.position).dot(look);
+    if ahead > reach { ahead } else { reach }
+}
+
+/// How large a fifth of the picture's height is at a distance.
+fn size_at(scene: &Scene, distance: f64) -> f64 {
+    let camera = &scene.camera;
+    SHARE
+        * match camera.projection {
+            Projection::Perspective => distance / camera.projection_distance,
+            Projection::Orthographic => camera.orthographic_height,
+        }
+}
+
+/// The place along a ray, and the size there, if nothing is in the way.
+fn free_place(scene: &Scene, ray: (DVec3, DVec3), usual: f64) -> Option<(DVec3, f64)> {
+    let (origin, direction) = ray;
+    let (mut at, mut size) = (origin + direction * usual, size_at(scene, usual));
+    if let Sight::Surface(lit) = explain(scene, origin, direction) {
+        let mut objects = scene.objects.iter();
+        let seen = objects.find(|object| object.name == lit.object);
+        let is_floor = seen.is_some_and(|object| matches!(object.shape, Shape::Plane(_)));
+        if is_floor && lit.distance < usual * FARTHEST_FLOOR {
+            size = size_at(scene, lit.distance);
+            at = lit.point;
+        } else if lit.distance < usual + size {
+            return None;
+        }
+    }
+    let visible = scene.objects.iter().filter(|object| object.visible);
+    // It stands on a plane, not in it.
+    let planes = visible
+        .clone()
+        .filter(|object| matches!(object.shape, Shape::Plane(_)));
+    for piece in planes.filter_map(|object| object.shape.plane_piece()) {
+        let (height, eye) = (piece.height(at), piece.height(origin));
+        if height.abs() < size / 2.0 {
+            at += piece.normal * (size / 2.0 * eye.signum() - height);
+        }
+    }
+    let is_in_the_way =
+        |(low, high): (DVec3, DVec3)| (at.clamp(low, high) - at).length() < size * (APART - 0.5);
+    let mut bounds = visible.filter_map(|object| object.shape.bounds());
+    (!bounds.any(is_in_the_way)).then_some((at, size))
+}
+
+/// The place before what a ray sees, however near that is.
+fn before_what_is_seen(scene: &Scene, ray: (DVec3, DVec3), usual: f64) -> (DVec3, f64) {
+    let (origin, direction) = ray;
     // What is close to the eye fills the picture anyway.
-    let seen = match explain(scene, origin, look) {
+    let seen = match explain(scene, origin, direction) {
         Sight::Surface(lit) if lit.distance > NEAREST * usual => lit.distance,
         _ => f64::INFINITY,
     };
-    let (distance, height) = match camera.projection {
-        Projection::Perspective => {
-            // The farther, the larger: half of it is between its middle and what is seen.
-            let per_distance = SHARE / camera.projection_distance;
-            let distance = usual.min(seen / (1.0 + per_distance / 2.0));
-            (distance, distance / camera.projection_distance)
-        }
-        Projection::Orthographic => {
-            let height = camera.orthographic_height;
-            (usual.min(seen - height * SHARE / 2.0), height)
-        }
+    // Half of it is between its middle and what is seen; the farther, the larger.
+    let distance = match scene.camera.projection {
+        Projection::Perspective => usual.min(seen / (1.0 + size_at(scene, 1.0) / 2.0)),
+        Projection::Orthographic => usual.min(seen - size_at(scene, seen) / 2.0),
     };
-    // Whole numbers read better in the inspector, where the scene is large enough for them.
-    let tidy = |x: f64| if height * SHARE > 10.0 { x.round() } else { x };
-    let at = origin + look * distance;
-    (
-        DVec3::new(tidy(at.x), tidy(at.y), tidy(at.z)),
-        tidy(height * SHARE).max(SMALLEST),
-    )
+    (origin + direction * distance, size_at(scene, distance))
 }
-
-/// The smallest that a new thing is, in world units.
-const SMALLEST: f64 = 1e-6;
-/// How large a new thing is, in heights of the picture.
-const SHARE: f64 = 0.2;
-/// What is nearer than this, in distances where a new thing goes, is not gone before.
-const NEAREST: f64 = 0.1;
 
 #[cfg(test)]
 mod tests {
@@ -139,12 +214,58 @@ mod tests {
                 addition.edit(&scene).apply(&mut with).expect("added");
                 let framing = with.camera.framing().expect("a basis");
                 // A torus has nothing in its middle.
-                let seen = [0.0, 0.04, 0.06].iter().any(|x| {
-                    let (origin, direction) = framing.ray([*x, 0.0]);
+                let grid = (-20..=20)
+                    .flat_map(|y| (-20..=20).map(move |x| [x, y].map(|at| f64::from(at) / 40.0)));
+                let mut grid = grid.map(|place| framing.ray(place));
+                let seen = grid.any(|(origin, direction)| {
                     let sight = explain(&with, origin, direction);
                     matches!(sight, Sight::Surface(lit) if lit.object == with.objects[9].name)
                 });
                 assert!(seen, "{projection:?}: {name}");
+            }
+        }
+    }
+
+    /// Boxes around what was added.
+    fn added(scene: &mut Scene, names: &[&str]) -> Vec<(DVec3, DVec3)> {
+        for name in names {
+            let (addition, ..) = Addition::all()
+                .find(|(.., all)| all == name)
+                .expect("there is");
+            addition.edit(scene).apply(scene).expect("added");
+        }
+        let bounds = scene
+            .objects
+            .iter()
+            .filter_map(|object| object.shape.bounds());
+        bounds.collect()
+    }
+
+    #[test]
+    fn a_still_life_stands_side_by_side_on_its_floor() {
+        for floor_first in [true, false] {
+            let mut scene = Scene::empty();
+            scene.objects.clear();
+            let mut names = vec!["Add Sphere", "Add Sphere", "Add Box", "Add Sphere"];
+            names.insert(if floor_first { 0 } else { names.len() }, "Add Plane");
+            let bounds = added(&mut scene, &names);
+            assert_eq!(bounds.len(), 4);
+            let floor = scene
+                .objects
+                .iter()
+                .find_map(|object| object.shape.plane_piece());
+            let floor = floor.expect("a floor");
+            let sizes: Vec<f64> = bounds.iter().map(|(low, high)| (*high - *low).x).collect();
+            for (index, (low, high)) in bounds.iter().enumerate() {
+                assert!(
+                    floor.height(*low) > -1.0,
+                    "{floor_first}: {index} is sunk in {low}"
+                );
+                assert!((0.5..2.0).contains(&(sizes[index] / sizes[0])), "{sizes:?}");
+                for (other_low, other_high) in &bounds[..index] {
+                    let apart = low.cmpgt(*other_high).any() || high.cmplt(*other_low).any();
+                    assert!(apart, "{floor_first}: {index} in another");
+                }
             }
         }
     }

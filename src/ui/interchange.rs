@@ -124,9 +124,24 @@ fn is_table(path: &Path) -> bool {
 /// The parts of a mesh file become objects.
 pub fn imported(editor: &mut Editor, path: &Path, parts: Vec<Part>) {
     let count: usize = parts.iter().map(|part| part.triangles.faces().len()).sum();
-    if !is_made(editor, Edit::Import(parts)) {
+    let (first, last) = (
+        editor.scene().objects.len(),
+        editor.scene().objects.len() + parts.len(),
+    );
+    let import = Edit::Import(parts);
+    let label = import.label(editor.scene());
+    let mut edits = vec![import];
+    if last - first > 1 {
+        // They belong together.
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        edits.push(Edit::Group((first..last).collect(), stem.trim().to_owned()));
+    }
+    if !is_made(editor, Edit::Each(edits, label)) {
         return;
     }
+    let objects = editor.scene().objects.iter().skip(first);
+    let names: Vec<String> = objects.map(|object| object.name.clone()).collect();
+    editor.select_named(&names);
     let path = path.display();
     editor.notify(format!(
         "{count} triangles from {path}; F brings them into the picture"

@@ -6,8 +6,9 @@ use super::icons;
 use super::theme::{GRID, palette};
 use crate::editor::Message;
 
-/// Seconds that a message stays that is not an error.
-const LIFETIME: f64 = 5.0;
+/// Seconds that a message stays that is not an error, and those that it takes to read a letter of it.
+const LIFETIME: f64 = 4.0;
+const PER_LETTER: f64 = 0.06;
 /// Width of a message in points: the excerpt of a refused file fits in.
 const WIDTH: f32 = 560.0;
 /// Most messages on screen; older ones make room.
@@ -24,6 +25,13 @@ struct Toast {
     message: Message,
     /// Time of `Context` at which it appeared.
     since: f64,
+}
+
+impl Toast {
+    /// When it goes by itself.
+    fn end(&self) -> f64 {
+        self.since + LIFETIME + PER_LETTER * self.message.text.len() as f64
+    }
 }
 
 impl Toasts {
@@ -48,12 +56,12 @@ impl Toasts {
     pub fn show(&mut self, ctx: &Context, area: Rect) {
         let now = ctx.input(|input| input.time);
         self.shown
-            .retain(|toast| toast.message.is_error || now - toast.since < LIFETIME);
+            .retain(|toast| toast.message.is_error || now < toast.end());
         let next = self
             .shown
             .iter()
             .filter(|toast| !toast.message.is_error)
-            .map(|t| t.since + LIFETIME - now);
+            .map(|toast| toast.end() - now);
         if let Some(seconds) = next.reduce(f64::min) {
             ctx.request_repaint_after_secs(seconds as f32);
         }

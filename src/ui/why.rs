@@ -95,6 +95,9 @@ fn show_surface(ui: &mut Ui, lit: &Lit, depth: usize) {
         place(lit.point),
         place(lit.normal)
     ));
+    if lit.is_smooth {
+        ui.weak("The picture shades this mesh as curved: its numbers are nearly these, of the flat face.");
+    }
     ui.indent(("why", depth), |ui| {
         term(ui, "ambient intensity · ambient", lit.ambient);
         for share in &lit.lights {

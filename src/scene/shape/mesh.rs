@@ -8,9 +8,8 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::describe::{Describe, Field, FieldValue, turned};
-use super::mesh_source::MeshSource;
-use crate::files::stays_inside;
-use crate::mesh::{FARTHEST, Triangles, icosphere, read_triangles};
+use super::mesh_source::{MeshFiles, MeshSource};
+use crate::mesh::{FARTHEST, Triangles, icosphere};
 use crate::scene::notation;
 
 /// Triangles that are moved, turned and scaled as one.
@@ -168,8 +167,12 @@ impl Mesh {
         let Some((low, high)) = triangles.bounds() else {
             return self;
         };
-        // Whole numbers keep the coordinates of the corners what they are.
-        let middle = (low * 0.5 + high * 0.5).round();
+        // Whole numbers keep the coordinates of the corners what they are; where those would be far from its
+        // middle, binary fractions change them the least.
+        let size = (high - low).max_element();
+        let step = (size / 8.0).log2().floor().exp2().min(1.0);
+        let step = if step > 0.0 { step } else { 1.0 };
+        let middle = ((low * 0.5 + high * 0.5) / step).round() * step;
         let points = triangles.points().iter().map(|&point| point - middle);
         match Triangles::new(points.collect(), triangles.faces().to_vec()) {
             Ok(moved) => Self {
@@ -181,33 +184,10 @@ impl Mesh {
         }
     }
 
-    /// Reads the triangles of a file that it refers to, which lies in `folder` or a folder in it; nothing
-    /// is read outside, because a scene may come from a stranger. What is wrong is kept with the
-    /// reference, and the mesh is empty.
-    pub fn load(&mut self, folder: Option<&Path>) {
-        let MeshSource::File {
-            path,
-            folder: own_folder,
-            triangles,
-            problem,
-        } = &mut self.source
-        else {
-            return;
-        };
-        *own_folder = folder.map(Path::to_owned);
-        let read = match folder {
-            None => Err(format!(
-                "cannot read {path}: the scene has no folder before it is saved"
-            )),
-            Some(_) if !stays_inside(Path::new(path)) => Err(format!(
-                "{path} is not read: a mesh file must lie in the folder of the scene, or in one within it"
-            )),
-            Some(folder) => read_triangles(&folder.join(path)).map_err(|error| error.to_string()),
-        };
-        match read {
-            Ok(new) => (*triangles, *problem) = (Arc::new(new), None),
-            Err(sentence) => (*triangles, *problem) = (Arc::default(), Some(sentence)),
-        }
+    /// Reads the triangles of a file that it refers to, see [`MeshSource::load`]. What is wrong is kept with
+    /// the reference, and the mesh is empty.
+    pub fn load(&mut self, folder: Option<&Path>, files: &mut MeshFiles) {
+        self.source.load(folder, files);
         // Only now is it known how far they reach.
         let too_far = self.problem();
         if let MeshSource::File {
@@ -405,7 +385,7 @@ mod tests {
     fn nothing_outside_the_folder_is_read() {
         for path in ["/etc/passwd", "../up.ply", "a/../../b.ply"] {
             let mut mesh = of_file(path);
-            mesh.load(Some(Path::new("/tmp")));
+            mesh.load(Some(Path::new("/tmp")), &mut MeshFiles::new());
             let MeshSource::File { problem, .. } = mesh.source else {
                 panic!("still a file");
             };
@@ -420,7 +400,7 @@ mod tests {
         std::fs::write(folder.path().join("a.obj"), text).expect("written");
         for (x, is_there) in [(3.0, true), (1e12, false)] {
             let mut mesh = of_file("a.obj").moved(DVec3::X * x);
-            mesh.load(Some(folder.path()));
+            mesh.load(Some(folder.path()), &mut MeshFiles::new());
             assert_eq!(mesh.source.problem().is_none(), is_there);
             assert_eq!(mesh.source.triangles().faces().len(), usize::from(is_there));
         }

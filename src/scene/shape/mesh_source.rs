@@ -1,9 +1,11 @@
 //! Where the triangles of a mesh come from.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::mesh::Triangles;
+use crate::files::stays_inside;
+use crate::mesh::{Triangles, read_triangles};
 
 /// Where the triangles of a mesh come from.
 #[derive(Clone, Debug)]
@@ -44,7 +46,45 @@ impl PartialEq for MeshSource {
     }
 }
 
+/// Files that the meshes of one scene refer to, and what was read of them, by their paths.
+pub type MeshFiles = HashMap<String, Result<Arc<Triangles>, String>>;
+
 impl MeshSource {
+    /// Reads the triangles of a file that it refers to, which lies in `folder` or a folder in it; nothing
+    /// is read outside, because a scene may come from a stranger. What is wrong is kept with the reference.
+    /// What is in `files` is not read again, and what is read is added to it.
+    pub fn load(&mut self, folder: Option<&Path>, files: &mut MeshFiles) {
+        let Self::File {
+            path,
+            folder: own_folder,
+            triangles,
+            problem,
+        } = self
+        else {
+            return;
+        };
+        *own_folder = folder.map(Path::to_owned);
+        let read = match folder {
+            None => Err(format!(
+                "cannot read {path}: the scene has no folder before it is saved"
+            )),
+            Some(_) if !stays_inside(Path::new(path)) => Err(format!(
+                "{path} is not read: a mesh file must lie in the folder of the scene, or in one within it"
+            )),
+            Some(folder) => {
+                let read = || match read_triangles(&folder.join(&path)) {
+                    Ok(triangles) => Ok(Arc::new(triangles)),
+                    Err(error) => Err(error.to_string()),
+                };
+                files.entry(path.clone()).or_insert_with(read).clone()
+            }
+        };
+        match read {
+            Ok(new) => (*triangles, *problem) = (new, None),
+            Err(sentence) => (*triangles, *problem) = (Arc::default(), Some(sentence)),
+        }
+    }
+
     /// Why the file that it refers to could not be read.
     pub fn problem(&self) -> Option<&str> {
         match self {

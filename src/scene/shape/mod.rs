@@ -25,7 +25,7 @@ pub use describe::{Describe, Field, FieldValue};
 pub use disc::Disc;
 pub use kinds::Shape;
 pub use mesh::Mesh;
-pub use mesh_source::MeshSource;
+pub use mesh_source::{MeshFiles, MeshSource};
 pub use plane::Plane;
 pub use plane_piece::{Outline, PlanePiece};
 pub use sphere::Sphere;

@@ -31,7 +31,9 @@ use crate::scene::{Shape, Target};
 
 /// Shows the selection and pushes its changes.
 pub fn show(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiRequests) {
-    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+    // Each thing is read from its top.
+    let area = ScrollArea::vertical().id_salt(format!("{:?}", editor.selection));
+    area.auto_shrink(false).show(ui, |ui| {
         ui.add_space(GRID / 2.0);
         let scene = editor.shown();
         match editor.selection {

@@ -58,7 +58,7 @@ pub fn compose(picture: &Image, reference: &Image, face: Face) -> Image {
             Face::Picture => i64::from(a),
             Face::Reference => i64::from(b),
             Face::Off(gain) => off.abs() * i64::from(gain),
-            Face::Signed(gain) => 128 + off * i64::from(gain) / 2,
+            Face::Signed(gain) => 128 + off * i64::from(gain),
         };
         shown.clamp(0, 255) as u8
     };
@@ -161,7 +161,7 @@ mod tests {
         assert_eq!(shown(Face::Reference), [12, 100, 30, 255]);
         assert_eq!(shown(Face::Off(1)), [2, 100, 0, 255]);
         assert_eq!(shown(Face::Off(8)), [16, 255, 0, 255]);
-        assert_eq!(shown(Face::Signed(8)), [120, 255, 128, 255]);
+        assert_eq!(shown(Face::Signed(8)), [112, 255, 128, 255]);
         assert!(pixel(&a, &b, egui::vec2(0.9, 0.9)).ends_with("difference -2 +100 +0"));
     }
 }

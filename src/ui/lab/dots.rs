@@ -5,6 +5,8 @@ use crate::lab::{EIGHT_BIT_FLOOR, Family, Measurement, Study, account, clusters,
 use crate::plan::Model;
 use crate::scene::{Render, Sampling};
 
+/// Twice the error that is drawn for none, where nothing has less.
+const NO_ERROR: f64 = 1e-4;
 /// Letters of a line beside a dot.
 const LINE: usize = 60;
 
@@ -67,12 +69,19 @@ pub fn chart(study: &Study, view: &ChartView) -> (Chart, Vec<Vec<usize>>) {
             is_doubtful: view.axes.0 == CostAxis::Time && dot.is_doubtful(),
         }
     });
-    // A logarithm has no zero.
-    let spots: Vec<ChartDot> = spots.collect();
+    let mut spots: Vec<ChartDot> = spots.collect();
+    // A logarithm has no zero: what has no error stands below all that have one; its words tell the figure.
+    let errors = spots.iter().map(|spot| spot.error);
+    let least = errors.filter(|error| *error > 0.0).fold(NO_ERROR, f64::min);
+    for spot in &mut spots {
+        if spot.error == 0.0 {
+            spot.error = least / 2.0;
+        }
+    }
     let (spots, clusters): (Vec<_>, Vec<_>) = spots
         .into_iter()
         .zip(clusters)
-        .filter(|(spot, _)| spot.error > 0.0)
+        .filter(|(spot, _)| spot.error.is_finite())
         .unzip();
     let spot_of = |place: usize| clusters.iter().position(|members| members.contains(&place));
     let (width, height) = study.size();

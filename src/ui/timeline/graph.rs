@@ -169,7 +169,7 @@ fn steps(animation: &Animation, path: &CameraPath) -> Vec<PaceStep> {
         let CameraChange { distance, turn } = motions[index];
         let distance = if distance > noise { distance } else { 0.0 };
         let turn = if turn > NOISE_TURN { turn } else { 0.0 };
-        let is_jump = is_jump(|m| m.distance, mean_distance)
+        let is_jump = is_jump(|m| m.distance, mean_distance.max(noise))
             || is_jump(|m| m.turn, mean_turn.max(SEEN / JUMP));
         PaceStep {
             time,
@@ -213,6 +213,14 @@ mod tests {
     fn a_jump_is_told_and_a_cut_is_not() {
         let even = flight(&[(0.0, 0.0), (2.0, 20.0), (4.0, 40.0)]);
         assert!(rough(&even).is_empty());
+        // What stands still only trembles in its last digit.
+        let still = flight(&[
+            (0.0, 300.0),
+            (1.0, 300.0),
+            (1.1, 300.000_000_000_1),
+            (4.0, 300.0),
+        ]);
+        assert!(rough(&still).is_empty());
         let mut jumpy = flight(&[(0.0, 0.0), (2.0, 20.0), (2.1, 90.0), (4.0, 109.0)]);
         assert_eq!(rough(&jumpy), [2.1]);
         jumpy.keys[1].interpolation = Interpolation::Hold;

@@ -391,10 +391,15 @@ pub fn tracks(
                     before: Arc::clone(animation),
                     indices: BTreeSet::new(),
                     from: key.time,
-                    are_copies: false,
+                    are_copies: ui.input(|input| input.modifiers.command),
                 });
             }
             response.context_menu(|ui| value_menu(ui, animation, &track.target, index, out));
+            response.hint(format!(
+                "{name}: {:.3} s, {}\nDrag to move, Ctrl-drag to copy",
+                key.time,
+                key.interpolation.name()
+            ));
         }
     }
     let Some(held) = drag.as_ref() else { return };
@@ -405,9 +410,16 @@ pub fn tracks(
         *drag = None;
         return;
     };
-    let moved = held.before.with_value_moved(target, *index, to);
+    let (moved, label) = if held.are_copies {
+        (
+            held.before.with_value_copied(target, *index, to),
+            "Copy key",
+        )
+    } else {
+        (held.before.with_value_moved(target, *index, to), "Move key")
+    };
     if moved != **animation {
-        out.edit(Edit::animation(moved, "Move key"));
+        out.edit(Edit::animation(moved, label));
     }
 }
 

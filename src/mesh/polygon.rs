@@ -1,0 +1,177 @@
+//! Faces of more than three corners.
+
+use glam::{DVec2, DVec3};
+
+/// Corners of the largest polygon whose ears are looked for: that takes the square of their number.
+const MOST_CORNERS: usize = 1024;
+
+/// Cuts a polygon anew that was cut into a fan around its first corner, where that leaves its outline: where it is
+/// concave, ears are clipped (Meisters, "Polygons have ears", American Mathematical Monthly 82, 1975). What has no
+/// ear because it crosses itself, or has more than 1024 corners, stays a fan.
+pub(super) fn mend_fan(fan: &mut [[u32; 3]], point: impl Fn(u32) -> DVec3) {
+    let area = |[a, b, c]: [u32; 3]| {
+        let a = point(a);
+        (point(b) - a).cross(point(c) - a)
+    };
+    let normal: DVec3 = fan.iter().map(|&face| area(face)).sum();
+    // All of its parts on one side: the first corner sees the whole outline.
+    if fan.len() < 2 || fan.iter().all(|&face| area(face).dot(normal) >= 0.0) {
+        return;
+    }
+    let first = &fan[0][..2];
+    let corners: Vec<u32> = first
+        .iter()
+        .copied()
+        .chain(fan.iter().map(|face| face[2]))
+        .collect();
+    if corners.len() > MOST_CORNERS {
+        return;
+    }
+    let flat: Vec<DVec2> = corners
+        .iter()
+        .map(|&corner| seen_along(normal, point(corner)))
+        .collect();
+    if let Some(ears) = ears(&flat) {
+        for (face, ear) in fan.iter_mut().zip(ears) {
+            *face = ear.map(|corner| corners[corner]);
+        }
+    }
+}
+
+/// A point without the axis along which the polygon is largest; what turns left around its normal turns left.
+fn seen_along(normal: DVec3, point: DVec3) -> DVec2 {
+    let size = normal.abs();
+    if size.x >= size.y && size.x >= size.z {
+        DVec2::new(point.y, point.z * normal.x.signum())
+    } else if size.y >= size.z {
+        DVec2::new(point.z, point.x * normal.y.signum())
+    } else {
+        DVec2::new(point.x, point.y * normal.z.signum())
+    }
+}
+
+/// Twice the area of a triangle, above 0 where it turns left.
+fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    (b - a).perp_dot(c - a)
+}
+
+/// The triangles of a polygon that turns left, by the places of its corners.
+fn ears(points: &[DVec2]) -> Option<Vec<[usize; 3]>> {
+    let mut left: Vec<usize> = (0..points.len()).collect();
+    let mut ears = Vec::with_capacity(points.len());
+    let (mut at, mut tried) = (0, 0);
+    while left.len() > 3 {
+        let count = left.len();
+        if tried == count {
+            return None;
+        }
+        let ear = [
+            left[(at + count - 1) % count],
+            left[at % count],
+            left[(at + 1) % count],
+        ];
+        if is_ear(points, &left, ear) {
+            ears.push(ear);
+            left.remove(at % count);
+            tried = 0;
+        } else {
+            at += 1;
+            tried += 1;
+        }
+        at %= left.len();
+    }
+    ears.push([left[0], left[1], left[2]]);
+    Some(ears)
+}
+
+/// Whether a corner can be cut off: it turns left, and no other corner is in the triangle.
+fn is_ear(points: &[DVec2], left: &[usize], [a, b, c]: [usize; 3]) -> bool {
+    let (a, b, c) = (points[a], points[b], points[c]);
+    let is_within = |&other: &usize| {
+        let p = points[other];
+        // Corners that touch it are those of cuts that lead to holes.
+        p != a
+            && p != b
+            && p != c
+            && turn(a, b, p) >= 0.0
+            && turn(b, c, p) >= 0.0
+            && turn(c, a, p) >= 0.0
+    };
+    turn(a, b, c) > 0.0 && !left.iter().any(is_within)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mended(points: &[DVec3]) -> Vec<[u32; 3]> {
+        let count = points.len() as u32;
+        let mut fan: Vec<[u32; 3]> = (1..count - 1)
+            .map(|corner| [0, corner, corner + 1])
+            .collect();
+        mend_fan(&mut fan, |corner| points[corner as usize]);
+        fan
+    }
+
+    fn areas(points: &[DVec3], faces: &[[u32; 3]]) -> Vec<DVec3> {
+        let corner = |index: u32| points[index as usize];
+        let area =
+            |&[a, b, c]: &[u32; 3]| (corner(b) - corner(a)).cross(corner(c) - corner(a)) / 2.0;
+        faces.iter().map(area).collect()
+    }
+
+    #[test]
+    fn a_notch_stays_open_seen_from_anywhere() {
+        // Its area is 10 of the 16 of the square, and the fan around its first corner covers the notch.
+        let outline = [(0.0, 4.0), (0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 1.0)];
+        for start in 0..outline.len() {
+            for (x, y) in [
+                (DVec3::X, DVec3::Y),
+                (DVec3::Y, DVec3::Z),
+                (DVec3::NEG_Z, DVec3::X),
+            ] {
+                for is_turned in [false, true] {
+                    let place = |place: usize| {
+                        let (u, v) = outline[(start + place) % outline.len()];
+                        x * u + y * v
+                    };
+                    let mut points: Vec<DVec3> = (0..outline.len()).map(place).collect();
+                    if is_turned {
+                        points.reverse();
+                    }
+                    let areas = areas(&points, &mended(&points));
+                    let whole: DVec3 = areas.iter().sum();
+                    let sum: f64 = areas.iter().map(|area| area.length()).sum();
+                    assert!((sum - 10.0).abs() < 1e-12, "{start}: {sum}");
+                    assert!(areas.iter().all(|area| area.dot(whole) > 0.0));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn stars_are_cut_and_what_is_convex_or_crosses_itself_stays_a_fan() {
+        let star = |sides: u32| -> Vec<DVec3> {
+            let corner = |at: u32| {
+                let angle = f64::from(at) / f64::from(2 * sides) * std::f64::consts::TAU;
+                let radius = if at.is_multiple_of(2) { 3.0 } else { 1.0 };
+                DVec3::new(angle.cos(), angle.sin(), 0.0) * radius
+            };
+            (0..2 * sides).map(corner).collect()
+        };
+        for sides in [3, 5, 40] {
+            let points = star(sides);
+            let areas = areas(&points, &mended(&points));
+            let whole: DVec3 = areas.iter().sum();
+            let sum: f64 = areas.iter().map(|area| area.length()).sum();
+            assert!(
+                (sum - whole.length()).abs() < 1e-9,
+                "{sides}: {sum} {whole}"
+            );
+        }
+        let square = [DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y];
+        assert_eq!(mended(&square), [[0, 1, 2], [0, 2, 3]]);
+        let bow = [DVec3::ZERO, DVec3::X + DVec3::Y, DVec3::X, DVec3::Y * 0.5];
+        assert_eq!(mended(&bow).len(), 2);
+    }
+}
