@@ -14,8 +14,9 @@ use super::sequence::Sequence;
 use crate::files::{NewFile, remove_leftovers};
 use crate::image::{Format, Image, LinearImage};
 
-/// Speed of the GIF encoder's search for colours, 1 (slow) to 30.
-const GIF_SPEED: i32 = 10;
+/// Pixels of a frame that the colours of a GIF are learnt from: of so many more, one of so many is looked at, but of
+/// no more than ten.
+const GIF_PIXELS: u32 = 100_000;
 
 /// How a video is encoded; its ending says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -297,7 +298,9 @@ fn gif(
     done: &mut impl FnMut(usize),
 ) -> Result<(), VideoError> {
     let mut file = BufWriter::new(file);
-    let mut encoder = GifEncoder::new_with_speed(&mut file, GIF_SPEED);
+    let (width, height) = sequence.size();
+    let speed = (width.saturating_mul(height) / GIF_PIXELS).clamp(1, 10);
+    let mut encoder = GifEncoder::new_with_speed(&mut file, speed.cast_signed());
     let wrong = |error: image::ImageError| disk(path, &error);
     encoder.set_repeat(Repeat::Infinite).map_err(wrong)?;
     let ends = clock_ends(sequence.frames_per_second(), sequence.frames.count());

@@ -48,7 +48,7 @@ fn wrong_point<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<String> {
             ));
         };
         if number.abs() > FARTHEST {
-            return Some(format!("the coordinate {number} is beyond {FARTHEST:e}"));
+            return Some(format!("the coordinate {number:e} is beyond {FARTHEST:e}"));
         }
     }
     None

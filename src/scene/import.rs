@@ -224,6 +224,47 @@ mod tests {
     }
 
     #[test]
+    fn parts_of_one_colour_share_a_pack_whatever_it_is_called() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("m.obj");
+        std::fs::write(&path, OBJ).expect("written");
+        std::fs::write(folder.path().join("m.mtl"), MTL).expect("written");
+        let mut scene = Scene::demo();
+        let other = ColorPack::default();
+        scene.packs_mut().insert("red".to_owned(), other);
+        let first = scene.add_parts(read_parts(&path).expect("read"));
+        let packs = [0, 1].map(|part| scene.objects[first + part].color_pack.as_str());
+        assert_eq!(packs, ["red 2", "red 2"]);
+    }
+
+    #[test]
+    fn a_file_that_several_objects_show_is_read_once() {
+        let folder = tempfile::tempdir().expect("a folder");
+        std::fs::write(
+            folder.path().join("m.obj"),
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+        )
+        .expect("written");
+        let object = |name: &str| {
+            format!("Object(name: {name:?}, color_pack: \"plane\", shape: Mesh(file: \"m.obj\"))")
+        };
+        let text = format!(
+            "Scene(version: 1, objects: [{}, {}])",
+            object("a"),
+            object("b")
+        );
+        let path = folder.path().join("two.ron");
+        std::fs::write(&path, text).expect("written");
+        let scene = Document::load(&path).expect("a scene").scene;
+        let triangles = |index: usize| match &scene.objects[index].shape {
+            Shape::Mesh(mesh) => mesh.source.triangles(),
+            _ => panic!("a mesh"),
+        };
+        assert_eq!(triangles(0).faces().len(), 1);
+        assert!(Arc::ptr_eq(triangles(0), triangles(1)));
+    }
+
+    #[test]
     fn one_part_beside_the_scene_is_referred_to() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("m.obj");

@@ -209,3 +209,59 @@ impl Animation {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn places(animation: &Animation) -> Vec<f64> {
+        let keys = animation.tracks[0].keys.iter();
+        keys.map(|key| (key.time * 1e3).round() / 1e3).collect()
+    }
+
+    #[test]
+    fn keys_beside_each_other_are_deleted_and_moved_one_by_one() {
+        let target = Target::AmbientIntensity;
+        let mut animation = Animation {
+            frames_per_second: 10.0,
+            ..Animation::default()
+        };
+        for time in [0.0, 1.0, 1.2, 1.4, 3.0] {
+            animation = animation.with_value(&target, time, Value::Number(time / 10.0));
+        }
+        // In slower pictures, three of them are within a quarter of a frame.
+        animation.frames_per_second = 1.0;
+        assert_eq!(
+            places(&animation.without_value(&target, 2)),
+            [0.0, 1.0, 1.4, 3.0]
+        );
+        let moved = animation.with_value_moved(&target, 2, 2.0);
+        assert_eq!(places(&moved), [0.0, 1.0, 1.4, 2.0, 3.0]);
+        let moved = animation.with_value_moved(&target, 2, 2.9);
+        assert_eq!(places(&moved), [0.0, 1.0, 1.4, 2.9], "onto the last");
+        let copied = animation.with_value_copied(&target, 2, 2.0);
+        assert_eq!(places(&copied), [0.0, 1.0, 1.2, 1.4, 2.0, 3.0]);
+        assert_eq!(copied.tracks[0].keys[4].value, Value::Number(0.12));
+        assert_eq!(animation.value_at(&target, 1.15), Some(2), "the nearest");
+    }
+
+    #[test]
+    fn both_sides_of_a_jump_stay_two_keys() {
+        let key = |time: f64| Key::new(time, Camera::default());
+        let animation = Animation {
+            frames_per_second: 10.0,
+            keys: [0.0, 1.0, 1.02, 2.0].map(key).into(),
+            ..Animation::default()
+        };
+        let one = BTreeSet::from([1]);
+        for (later, are_copies, count) in [
+            (0.01, false, 4),
+            (0.02, false, 3),
+            (1.0, false, 3),
+            (0.01, true, 3),
+        ] {
+            let (moved, _) = animation.with_moved(&one, later, are_copies);
+            assert_eq!(moved.keys.len(), count, "{later} {are_copies}");
+        }
+    }
+}

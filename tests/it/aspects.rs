@@ -93,7 +93,8 @@ fn normals_depth_and_shadows_of_a_ball_are_those_of_geometry() {
 
 #[test]
 fn mirrors_alone_are_what_the_picture_without_them_lacks() {
-    let scene = Scene::demo();
+    let mut scene = Scene::demo();
+    scene.background = DVec3::new(30.0, 60.0, 90.0);
     let show = |aspect| {
         let request = RenderRequest {
             aspect,

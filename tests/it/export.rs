@@ -889,6 +889,112 @@ fn a_job_brings_its_meshes_and_keeps_what_was_there() {
 }
 
 #[test]
+fn a_job_takes_no_ones_place_and_no_backup_that_of_another() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = folder.path().join("s.ron");
+    fs::copy(FLIGHT, &scene).expect("copied");
+    let path = scene.to_str().expect("plain");
+    let output = run(&mut glint(&["job", path, "-o", path]));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("is the scene") && said.contains("s.yaml"),
+        "{said}"
+    );
+    assert!(fs::read(&scene).expect("there") == fs::read(FLIGHT).expect("there"));
+    // Two others in its place are kept both.
+    let inner = folder.path().join("jobs");
+    fs::create_dir(&inner).expect("a folder");
+    let template = inner.join("job.yaml");
+    for text in ["one", "another"] {
+        fs::write(inner.join("s.ron"), text).expect("written");
+        done(&mut glint(&[
+            "job",
+            path,
+            "-o",
+            template.to_str().expect("plain"),
+        ]));
+    }
+    let kept =
+        ["s.ron.bak", "s.ron.bak2"].map(|name| fs::read_to_string(inner.join(name)).expect("kept"));
+    assert_eq!(kept, ["one", "another"]);
+    // Every third of a thousand frames is one piece.
+    let mut long = Document::load(FLIGHT.as_ref()).expect("a scene");
+    long.scene.animation_mut().frames_per_second = 240.0;
+    long.save(&scene).expect("saved");
+    done(&mut glint(&[
+        "job",
+        path,
+        "-o",
+        template.to_str().expect("plain"),
+        "--frames",
+        "1-3000:3",
+    ]));
+    assert!(
+        fs::read_to_string(&template)
+            .expect("there")
+            .contains("\"1-2998:3\"")
+    );
+}
+
+#[test]
+fn no_frame_is_made_without_a_mesh_that_is_missing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = folder.path().join("knot.ron");
+    fs::copy(
+        concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/knot.ron"),
+        &scene,
+    )
+    .expect("copied");
+    let path = scene.to_str().expect("plain");
+    let frames = folder.path().join("frames");
+    let output = run(&mut glint(&[
+        "export",
+        path,
+        "-o",
+        frames.to_str().expect("plain"),
+        "--width",
+        "20",
+    ]));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("knot.ply") && said.contains("no frame is made"),
+        "{said}"
+    );
+    assert!(!frames.exists());
+}
+
+/// The disk is full in the last bytes of a GIF, which its encoder writes when it is dropped.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_video_that_is_cut_off_takes_no_ones_place() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, video) = (folder.path().join("frames"), folder.path().join("b.gif"));
+    let words = [
+        "--frames",
+        "1-20",
+        "--video",
+        video.to_str().expect("plain"),
+        "--format",
+        "png",
+    ];
+    done(&mut export(&frames, &words));
+    let whole = fs::read(&video).expect("there");
+    fs::write(&video, "older").expect("written");
+    let again = export(&frames, &words);
+    let mut limited = Command::new("bash");
+    limited.args(["-c", "trap '' XFSZ; ulimit -f $0; exec \"$@\""]);
+    limited.arg(((whole.len() - 1) / 1024).to_string());
+    limited.arg(again.get_program()).args(again.get_args());
+    let output = run(&mut limited);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("b.gif: File too large"), "{said}");
+    assert_eq!(fs::read_to_string(&video).expect("there"), "older");
+}
+
+#[test]
 fn at_another_rate_all_frames_are_still_all() {
     let text = fs::read_to_string(FLIGHT).expect("readable");
     let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));

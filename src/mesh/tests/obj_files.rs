@@ -106,3 +106,45 @@ fn broken_lines_are_named() {
         "m.obj: there are no faces in this file"
     );
 }
+
+#[test]
+fn concave_polygons_keep_their_notches() {
+    let outline = "0 0 0\n4 0 0\n4 4 0\n2 1 0\n0 4 0";
+    let obj = format!("v {}\nf 5 1 2 3 4\n", outline.replace('\n', "\nv "));
+    let ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n{outline}\n5 4 0 1 2 3\n"
+    );
+    for (name, text) in [("m.obj", obj), ("m.ply", ply)] {
+        let triangles = Sample::new(name, text).triangles();
+        let areas = triangles
+            .corners()
+            .map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0);
+        let area: f64 = areas.sum();
+        assert!((area - 10.0).abs() < 1e-12, "{name}: {area}");
+        assert_eq!(triangles.faces().len(), 3, "{name}");
+    }
+}
+
+#[test]
+fn colours_are_found_as_other_programs_write_them() {
+    let square = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    let sample = Sample::new(
+        "m.obj",
+        format!(
+            "mtllib\tm.mtl more.mtl\n{square}usemtl\tred\nf 1 2 3 # all of it\ng b\nusemtl grey\nf 3 2 1\n"
+        ),
+    );
+    sample.beside("m.mtl", "newmtl red\nKd 1 0 0\n");
+    sample.beside("more.mtl", "newmtl grey\nKd 0.5\n");
+    let parts = sample.parts();
+    let colors = parts
+        .iter()
+        .map(|part| part.colors.as_ref().expect("colours").diffuse);
+    assert_eq!(colors.collect::<Vec<_>>(), [[1.0, 0.0, 0.0], [0.5; 3]]);
+    let far = Sample::new("m.obj", format!("v 1e13 0 0\n{square}f 1 2 3\n"));
+    assert!(
+        far.error().starts_with("m.obj:1: the coordinate 1e13"),
+        "{}",
+        far.error()
+    );
+}

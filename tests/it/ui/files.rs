@@ -10,6 +10,7 @@ use glint::editor::Editor;
 use glint::scene::{Document, Recovery, Scene, Shape};
 use glint::ui::Ask;
 
+use super::monkey::Unanswered;
 use crate::harness::{CTRL, EditorHarness, radius};
 
 #[test]
@@ -334,4 +335,56 @@ fn recovered_work_does_not_replace_what_was_written_since() {
         assert_eq!(editor.would_lose(&path), is_lost);
         assert_eq!(editor.is_changed_outside(), is_lost);
     }
+}
+
+#[test]
+fn what_is_done_while_the_desktop_asks_is_asked_about() {
+    let dialogs = Unanswered::default();
+    let mut harness = EditorHarness::asked(|_| Box::new(dialogs.clone()), None);
+    let path = harness.folder.path().join("other.ron");
+    std::fs::write(&path, demo_text(31.5)).expect("written");
+    harness.press(Modifiers::COMMAND, Key::O);
+    harness.press(Modifiers::NONE, Key::O);
+    assert!(harness.editor().is_dirty());
+    dialogs.answer(&path);
+    harness.settle();
+    harness.window.get_by_label("Save changes to demo?");
+    harness.click("Don't save");
+    assert_eq!(harness.editor().path(), Some(path.as_path()));
+    // What was to be saved is not there any more.
+    harness.click("Sphere 1");
+    harness.type_into("radius", "12");
+    let copy = harness.folder.path().join("copy.ron");
+    harness.press(CTRL.plus(Modifiers::SHIFT), Key::S);
+    harness.drop_file(path.clone());
+    harness.click("Don't save");
+    dialogs.answer(&copy);
+    harness.settle();
+    assert!(!copy.exists());
+}
+
+#[test]
+fn a_typed_name_is_taken_before_the_click_that_ends_it_and_belongs_to_its_item() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    let name = |harness: &EditorHarness| {
+        let field = harness
+            .window
+            .get_by_role_and_label(Role::TextInput, "name");
+        field.rect().center()
+    };
+    let at = name(&harness);
+    harness.window.drag_at(at);
+    harness.window.drop_at(at);
+    harness.settle();
+    harness.press(CTRL, Key::A);
+    harness.window.event(Event::Text("Ball".to_owned()));
+    harness.settle();
+    let eye = harness.window.get_by_label("Hide Sphere 1").rect().center();
+    harness.window.drag_at(eye);
+    harness.window.step();
+    harness.window.drop_at(eye);
+    harness.settle();
+    let ball = &harness.scene().objects[0];
+    assert_eq!((ball.name.as_str(), ball.visible), ("Ball", false));
 }

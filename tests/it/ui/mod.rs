@@ -2,6 +2,7 @@
 
 mod files;
 mod inspector;
+mod keys;
 mod lab;
 mod monkey;
 mod outliner;

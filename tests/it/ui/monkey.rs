@@ -1,7 +1,7 @@
 //! Twenty thousand events that nobody means: nothing panics, and undoing everything gives back the first scene.
 
 use std::cell::RefCell;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -23,6 +23,12 @@ const AT_ONCE: usize = 8;
 pub struct Unanswered(Rc<RefCell<Vec<Sender<Option<PathBuf>>>>>);
 
 impl Unanswered {
+    /// Answers the last of those that are open.
+    pub fn answer(&self, path: &Path) {
+        let asked = self.0.borrow_mut().pop().expect("a dialog");
+        asked.send(Some(path.to_owned())).expect("it is waited for");
+    }
+
     /// Closes those that are open.
     pub fn close(&self, harness: &mut EditorHarness) {
         self.0.borrow_mut().clear();

@@ -155,11 +155,24 @@ fn ctrl_flies_down_and_is_no_shortcut_in_flight() {
     let start = harness.scene().camera.position;
     let frames =
         |harness: &mut EditorHarness, count| (0..count).for_each(|_| harness.window.step());
-    harness.window.event(Event::ModifiersChanged(CTRL));
+    // As a desktop tells it: the key, and what it changes.
+    let ctrl = |harness: &mut EditorHarness, is_down: bool| {
+        harness.window.event(Event::Key {
+            key: Key::ControlLeft,
+            physical_key: None,
+            pressed: is_down,
+            repeat: false,
+            modifiers: if is_down { CTRL } else { Modifiers::NONE },
+        });
+        let modifiers = if is_down { CTRL } else { Modifiers::NONE };
+        harness.window.event(Event::ModifiersChanged(modifiers));
+    };
+    let middle = harness.view().center();
+    harness.window.hover_at(middle);
+    frames(&mut harness, 2);
+    ctrl(&mut harness, true);
     frames(&mut harness, 30);
-    harness
-        .window
-        .event(Event::ModifiersChanged(Modifiers::NONE));
+    ctrl(&mut harness, false);
     harness.settle();
     assert!(
         harness.scene().camera.position.y < start.y - 5.0,

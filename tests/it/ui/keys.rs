@@ -1,0 +1,174 @@
+//! Keys on the line of time where hands are less tidy: between frames, beyond the end, onto each other.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, Pos2};
+use egui_kittest::kittest::Queryable as _;
+use glint::editor::Mode;
+use glint::scene::{Document, Key as SceneKey, Scene};
+
+use crate::harness::EditorHarness;
+
+/// A window on a demo whose camera moves at ten frames a second, with keys at these times.
+fn window(times: &[f64]) -> EditorHarness {
+    let mut scene = Scene::demo();
+    let key = |&time: &f64| {
+        let mut camera = scene.camera.clone();
+        camera.position.x += time;
+        SceneKey::new(time, camera)
+    };
+    scene.animation_mut().keys = times.iter().map(key).collect();
+    scene.animation_mut().frames_per_second = 10.0;
+    let header = String::new();
+    let text = Document { header, scene }.to_text().expect("a text");
+    EditorHarness::with(|_| Vec::new(), Some(&text))
+}
+
+fn times(harness: &EditorHarness) -> Vec<f64> {
+    let keys = harness.scene().animation.keys.iter();
+    keys.map(|key| (key.time * 1e3).round() / 1e3).collect()
+}
+
+/// Where a time is on the ruler, which shows four seconds.
+fn on_ruler(harness: &EditorHarness, seconds: f32) -> Pos2 {
+    let ruler = harness
+        .window
+        .get_by_role_and_label(Role::Slider, "Playhead")
+        .rect();
+    // It can be hit from a little to both sides.
+    let inner = ruler.shrink2(egui::vec2(8.0, 0.0));
+    Pos2::new(
+        inner.left() + inner.width() * seconds / 4.0,
+        inner.center().y,
+    )
+}
+
+#[test]
+fn the_second_key_goes_where_there_was_no_time_yet() {
+    let mut harness = EditorHarness::new();
+    harness.press(Modifiers::NONE, Key::K);
+    let at = on_ruler(&harness, 3.0);
+    harness.window.drag_at(at);
+    harness.window.drop_at(at);
+    harness.settle();
+    let shown = harness.editor().shown_time();
+    assert!((2.8..3.2).contains(&shown), "{shown}");
+    harness.press(Modifiers::NONE, Key::K);
+    assert_eq!(harness.scene().animation.keys.len(), 2);
+    assert!((harness.scene().animation.duration() - shown).abs() < 1e-9);
+}
+
+#[test]
+fn brackets_go_from_key_to_key_wherever_those_are_between_frames() {
+    let mut harness = window(&[0.0, 0.34, 0.36, 1.02, 1.98]);
+    let mut shown = vec![harness.editor().shown_time()];
+    for key in [Key::CloseBracket, Key::OpenBracket] {
+        for _ in 0..6 {
+            harness.press(Modifiers::NONE, key);
+            shown.push(harness.editor().shown_time());
+        }
+    }
+    shown.dedup();
+    let frames: Vec<i32> = shown
+        .iter()
+        .map(|time| (time * 10.0).round() as i32)
+        .collect();
+    assert_eq!(frames, [0, 3, 4, 10, 20, 10, 4, 3, 0]);
+}
+
+#[test]
+fn a_time_that_is_dragged_passes_other_keys_and_leaves_them() {
+    let mut harness = window(&[0.0, 0.5, 1.0, 1.5, 2.0, 4.0]);
+    harness.click("Key 2");
+    harness.drag("time", 110.0);
+    let moved = times(&harness);
+    assert_eq!(moved.len(), 6, "{moved:?}");
+    assert!(
+        moved.contains(&1.0) && moved.contains(&1.5) && !moved.contains(&0.5),
+        "{moved:?}"
+    );
+    harness.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(times(&harness), [0.0, 0.5, 1.0, 1.5, 2.0, 4.0], "one step");
+}
+
+#[test]
+fn escape_takes_the_drag_of_a_key_back() {
+    let mut harness = window(&[0.0, 1.0, 2.0]);
+    let from = harness
+        .window
+        .get_by_role_and_label(Role::Button, "Key 2")
+        .rect()
+        .center();
+    harness.window.drag_at(from);
+    harness.window.step();
+    for part in 1..=4_u8 {
+        harness
+            .window
+            .hover_at(from + egui::vec2(f32::from(part) * 20.0, 0.0));
+        harness.window.step();
+    }
+    assert_ne!(times(&harness), [0.0, 1.0, 2.0]);
+    harness.window.key_press(Key::Escape);
+    harness.window.step();
+    harness.window.hover_at(from + egui::vec2(120.0, 0.0));
+    harness.window.step();
+    harness.window.drop_at(from + egui::vec2(120.0, 0.0));
+    harness.settle();
+    assert_eq!(times(&harness), [0.0, 1.0, 2.0]);
+    assert_eq!(harness.editor().undo_label(), None);
+}
+
+#[test]
+fn deleting_twice_deletes_once() {
+    let mut harness = window(&[0.0, 1.0, 2.0, 3.0]);
+    harness.click("Key 2");
+    harness.press(Modifiers::NONE, Key::Delete);
+    harness.press(Modifiers::NONE, Key::Delete);
+    assert_eq!(times(&harness), [0.0, 2.0, 3.0]);
+}
+
+#[test]
+fn a_flight_of_any_length_is_left_as_it_is() {
+    for keys in [[0.0, 43_200.0], [0.0, 0.05], [86_399.998, 86_400.0]] {
+        let harness = window(&keys);
+        assert!(!harness.editor().is_dirty(), "{keys:?}");
+        assert_eq!(times(&harness), keys);
+    }
+}
+
+#[test]
+fn what_is_keyed_can_have_the_value_that_it_had_without_keys() {
+    let mut harness = window(&[0.0, 2.0]);
+    harness.click("Light 1");
+    harness.click("key intensity");
+    harness.press(Modifiers::NONE, Key::End);
+    harness.type_into("intensity", "0.8");
+    harness.type_into("intensity", "0.2");
+    assert_eq!(harness.editor().shown().lights[0].intensity, 0.2);
+    // To hide it is no change of its keys.
+    harness.type_into("intensity", "0.6");
+    let animation = harness.scene().animation.clone();
+    harness.click("Hide Light 1");
+    assert!(!harness.scene().lights[0].visible);
+    assert_eq!(harness.scene().animation, animation);
+    assert_eq!(harness.scene().lights[0].intensity, 0.2);
+}
+
+#[test]
+fn the_still_picture_stops_what_plays() {
+    let mut harness = window(&[0.0, 2.0]);
+    harness.window.key_press(Key::G);
+    (0..20).for_each(|_| harness.window.step());
+    harness.press(Modifiers::NONE, Key::H);
+    assert!(!harness.editor().timeline().is_playing);
+    assert_eq!(harness.editor().mode, Mode::HighRes);
+}
+
+#[test]
+fn the_window_of_exports_follows_the_scene() {
+    let mut harness = window(&[0.0, 1.0]);
+    harness.press(crate::harness::CTRL.plus(Modifiers::SHIFT), Key::E);
+    harness.window.get_by_label_contains("11 frames");
+    harness.click("Key 2");
+    harness.type_into("time", "3");
+    harness.window.get_by_label_contains("31 frames");
+}
