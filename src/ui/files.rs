@@ -14,6 +14,7 @@ use super::interchange::{export_job, export_path, export_povray, import_path, im
 use super::outside::{Theirs, Watch};
 use super::prompts::{Answer, PathPrompt, ask_about_changes, ask_to_leave, ask_to_quit};
 use super::reading::{Read, Reading};
+use super::wishes::{FileOutcome, Next, PathRequest};
 use crate::editor::{Action, Editor, Time};
 use crate::files::Stamp;
 use crate::scene::{Document, EXAMPLES, SceneError};
@@ -24,34 +25,6 @@ const NO_DIALOG: Duration = Duration::from_millis(400);
 const AT_ONCE: Duration = Duration::from_millis(30);
 /// Files that "Open recent" remembers.
 const RECENT: usize = 10;
-
-/// What is done once unsaved changes are out of the way.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Next {
-    /// Start an empty document.
-    New,
-    /// Start from the example in this place.
-    Example(usize),
-    /// Choose a file and open it.
-    Choose,
-    /// Open this file.
-    Open(PathBuf),
-    /// Close the window.
-    Quit,
-}
-
-/// What became of the wishes, for the window to act on.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum FileOutcome {
-    /// The window may close, as far as files go.
-    Quit,
-    /// The window may close, whatever is going on.
-    Leave,
-    /// The still picture is to be traced and written here.
-    SaveImage(PathBuf),
-    /// Frames are to be written here.
-    ExportFolder(PathBuf),
-}
 
 /// The wishes in progress.
 pub struct Files {
@@ -72,27 +45,6 @@ struct Waiting {
     wish: PathRequest,
     answer: Receiver<Option<PathBuf>>,
     since: Instant,
-}
-
-/// A path that is wanted, and what follows when it is there.
-#[derive(Clone)]
-struct PathRequest {
-    ask: Ask,
-    then: Option<Next>,
-    /// The document that was asked about, and its state then.
-    document: u64,
-    revision: u64,
-}
-
-impl PathRequest {
-    fn new(editor: &Editor, ask: Ask, then: Option<Next>) -> Self {
-        Self {
-            ask,
-            then,
-            document: editor.documents(),
-            revision: editor.revision(),
-        }
-    }
 }
 
 /// A question over the window.

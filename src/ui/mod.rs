@@ -47,6 +47,8 @@ mod interchange;
 
 mod reading;
 
+mod wishes;
+
 mod files;
 
 mod upload;

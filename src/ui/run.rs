@@ -8,9 +8,9 @@ use glam::DVec3;
 use super::app::App;
 use super::commands::{Command, is_enabled};
 use super::dialogs::Ask;
-use super::files::{FileOutcome, Next};
 use super::timeline::actions;
 use super::tools::{axis_camera, framing_camera};
+use super::wishes::{FileOutcome, Next};
 use crate::editor::{
     Action, Edit, Editor, Item, Kind, Mode, Selected, Selection, Time, excerpt, free_bookmark_name,
     free_group_name, read,

@@ -4,6 +4,8 @@ mod scale;
 
 mod overlay;
 
+mod strip;
+
 mod tracks_area;
 
 mod graph;

@@ -3,9 +3,10 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Align2, FontId, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use super::scale::Scale;
+use super::strip::{KEY, SMALL, band, diamond, label};
 use crate::editor::{Edit, Editor, Time};
 use crate::scene::{Animation, Easing, Interpolation, Target};
 use crate::ui::hint::Hint as _;
@@ -13,8 +14,6 @@ use crate::ui::inspector::target;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, TRACK, palette};
 
-/// Half the width of a key.
-const KEY: f32 = 5.0;
 /// Least room between two times that are written out.
 const APART: f32 = 64.0;
 /// Least room between two marks of frames.
@@ -23,8 +22,6 @@ const FRAME_APART: f32 = 4.0;
 const STEPS: [f64; 11] = [
     0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 600.0, 3600.0,
 ];
-/// Size of the written times.
-const SMALL: f32 = 10.0;
 
 /// Keys on their way.
 #[derive(Clone, Debug)]
@@ -96,53 +93,6 @@ fn playhead(ui: &Ui, scale: &Scale, rect: Rect, editor: &Editor) {
         let stroke = Stroke::new(1.0, palette(ui.ctx()).accent);
         ui.painter().vline(scale.x(time), rect.y_range(), stroke);
     }
-}
-
-/// A strip as wide as the time, with the part for a label to its left.
-fn band(ui: &mut Ui, scale: &Scale, sense: Sense) -> (Rect, Response) {
-    let (whole, _) = ui.allocate_exact_size(vec2(ui.available_width(), TRACK), Sense::hover());
-    let rect = Rect::from_x_y_ranges(scale.left..=scale.left + scale.width, whole.y_range());
-    let id = ui.scope_id().with(("band", whole.top() as i32));
-    // The first moment can be hit from a little to its left.
-    let response = ui.interact(rect.expand2(vec2(GRID, 0.0)), id, sense);
-    (rect, response)
-}
-
-fn label(ui: &Ui, rect: Rect, text: &str) {
-    let colors = palette(ui.ctx());
-    let room = Rect::from_min_max(pos2(ui.max_rect().left(), rect.top()), rect.left_bottom());
-    let painter = ui.painter().with_clip_rect(room.shrink2(vec2(GRID, 0.0)));
-    let at = room.left_center() + vec2(GRID, 0.0);
-    painter.text(
-        at,
-        Align2::LEFT_CENTER,
-        text,
-        FontId::proportional(SMALL + 1.0),
-        colors.muted,
-    );
-}
-
-fn diamond(ui: &Ui, at: Pos2, fill: Color32, is_cut: bool) {
-    let corners = if is_cut {
-        // What is held is a square.
-        let half = KEY * 0.8;
-        [
-            vec2(-half, -half),
-            vec2(half, -half),
-            vec2(half, half),
-            vec2(-half, half),
-        ]
-    } else {
-        [
-            vec2(0.0, -KEY),
-            vec2(KEY, 0.0),
-            vec2(0.0, KEY),
-            vec2(-KEY, 0.0),
-        ]
-    };
-    let corners = corners.map(|corner| at + corner).to_vec();
-    ui.painter()
-        .add(Shape::convex_polygon(corners, fill, Stroke::NONE));
 }
 
 /// The camera's keys: click, Shift-click, drag, Ctrl-drag, and a menu.

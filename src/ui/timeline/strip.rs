@@ -1,0 +1,60 @@
+//! Strips of the line of time, and what is drawn on each of them.
+
+use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
+
+use super::scale::Scale;
+use crate::ui::theme::{GRID, TRACK, palette};
+
+/// Half the width of a key.
+pub const KEY: f32 = 5.0;
+/// Size of written times.
+pub const SMALL: f32 = 10.0;
+
+/// A strip as wide as the time, with the part for a label to its left.
+pub fn band(ui: &mut Ui, scale: &Scale, sense: Sense) -> (Rect, Response) {
+    let (whole, _) = ui.allocate_exact_size(vec2(ui.available_width(), TRACK), Sense::hover());
+    let rect = Rect::from_x_y_ranges(scale.left..=scale.left + scale.width, whole.y_range());
+    let id = ui.scope_id().with(("band", whole.top() as i32));
+    // The first moment can be hit from a little to its left.
+    let response = ui.interact(rect.expand2(vec2(GRID, 0.0)), id, sense);
+    (rect, response)
+}
+
+/// Writes to the left of a strip what it is about.
+pub fn label(ui: &Ui, rect: Rect, text: &str) {
+    let colors = palette(ui.ctx());
+    let room = Rect::from_min_max(pos2(ui.max_rect().left(), rect.top()), rect.left_bottom());
+    let painter = ui.painter().with_clip_rect(room.shrink2(vec2(GRID, 0.0)));
+    let at = room.left_center() + vec2(GRID, 0.0);
+    painter.text(
+        at,
+        Align2::LEFT_CENTER,
+        text,
+        FontId::proportional(SMALL + 1.0),
+        colors.muted,
+    );
+}
+
+/// Draws a key: what is held is a square.
+pub fn diamond(ui: &Ui, at: Pos2, fill: Color32, is_cut: bool) {
+    let corners = if is_cut {
+        // What is held is a square.
+        let half = KEY * 0.8;
+        [
+            vec2(-half, -half),
+            vec2(half, -half),
+            vec2(half, half),
+            vec2(-half, half),
+        ]
+    } else {
+        [
+            vec2(0.0, -KEY),
+            vec2(KEY, 0.0),
+            vec2(0.0, KEY),
+            vec2(-KEY, 0.0),
+        ]
+    };
+    let corners = corners.map(|corner| at + corner).to_vec();
+    ui.painter()
+        .add(Shape::convex_polygon(corners, fill, Stroke::NONE));
+}
