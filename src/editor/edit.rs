@@ -7,10 +7,10 @@ use glam::DVec3;
 
 use crate::mesh::Part;
 use crate::scene::{
-    Animation, Bookmark, Camera, ColorPack, Light, LightObj, List, Mesh, Object, Render, Scene,
-    Shape, Target,
+    Animation, Bookmark, Camera, ColorPack, Light, List, Mesh, Object, Render, Scene, Shape, Target,
 };
 
+use super::adding::{add_light, add_object, add_pack};
 use super::clipboard::paste;
 use super::item::{Item, Kind};
 use super::names::{copy_offset, free_light_name, free_object_name, free_pack_name};
@@ -260,50 +260,6 @@ fn replace<T: Clone>(list: &mut List<T>, index: usize, value: T) {
     if let Some(place) = list.get_mut(index) {
         *place = value;
     }
-}
-
-/// The pack that a new object or marker wears: the named one, any, or a new one.
-fn some_pack(scene: &mut Scene, preferred: &str) -> String {
-    if scene.color_packs.contains_key(preferred) {
-        return preferred.to_owned();
-    }
-    if scene.color_packs.is_empty() {
-        add_pack(scene);
-    }
-    scene.color_packs.keys().next().cloned().unwrap_or_default()
-}
-
-fn add_object(scene: &mut Scene, name: &str, shape: Shape) -> Item {
-    let name = free_object_name(scene, &format!("{name} 1"));
-    let color_pack = some_pack(scene, "");
-    scene.objects.push(Object::new(name, color_pack, shape));
-    Item::object(scene.objects.len() - 1)
-}
-
-fn add_light(scene: &mut Scene, position: DVec3) -> Item {
-    let name = free_light_name(scene, "Light 1");
-    let radius = scene
-        .lights
-        .iter()
-        .find_map(|light| Some(light.marker.as_ref()?.radius));
-    let marker = LightObj {
-        color_pack: some_pack(scene, "light"),
-        radius: radius.unwrap_or(LightObj::default().radius),
-    };
-    scene.lights.push(Light {
-        name,
-        position,
-        intensity: 0.2,
-        marker: Some(marker),
-        visible: true,
-    });
-    Item::light(scene.lights.len() - 1)
-}
-
-fn add_pack(scene: &mut Scene) -> Item {
-    let name = free_pack_name(scene, "pack 1");
-    let (index, _) = scene.packs_mut().insert_full(name, ColorPack::default());
-    Item::pack(index)
 }
 
 fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {

@@ -32,7 +32,8 @@ impl Editor {
             }
             Time::Step(frames) => {
                 let frame = animation.frame_at(timeline.playhead);
-                let last = animation.frame_count();
+                // From behind the end it goes on from there.
+                let last = animation.frame_count().max(frame);
                 let frame = frame.saturating_add_signed(frames).clamp(1, last);
                 timeline.is_playing = false;
                 timeline.seek(animation, animation.time_of(frame));

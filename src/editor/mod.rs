@@ -8,6 +8,8 @@ mod selection;
 
 mod names;
 
+mod adding;
+
 mod clipboard;
 
 mod edit;

@@ -94,6 +94,8 @@ pub fn add_menu(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
 const SHARE: f64 = 0.2;
 /// How far apart the places are that are tried, in sizes of a new thing.
 const APART: f64 = 1.3;
+/// How far what is there already must be from its middle, in sizes.
+const ROOM: f64 = 0.65;
 /// How far what it stands on may be, in distances where a new thing goes.
 const FARTHEST_FLOOR: f64 = 2.0;
 /// What is nearer than this, in distances where a new thing goes, is not gone before.
@@ -176,7 +178,7 @@ fn free_place(scene: &Scene, ray: (DVec3, DVec3), usual: f64) -> Option<(DVec3, 
         }
     }
     let is_in_the_way =
-        |(low, high): (DVec3, DVec3)| (at.clamp(low, high) - at).length() < size * (APART - 0.5);
+        |(low, high): (DVec3, DVec3)| (at.clamp(low, high) - at).length() < size * ROOM;
     let mut bounds = visible.filter_map(|object| object.shape.bounds());
     (!bounds.any(is_in_the_way)).then_some((at, size))
 }

@@ -2,9 +2,9 @@
 
 use std::sync::mpsc::{Receiver, TryRecvError};
 
-use egui::{RichText, ScrollArea, Ui, vec2};
+use egui::{Button, RichText, ScrollArea, Ui, vec2};
 
-use super::super::theme::{GRID, palette};
+use super::super::theme::{GRID, ROW, palette};
 use super::heat;
 use crate::lab::stability::{Map, maps};
 use crate::scene::Scene;
@@ -76,13 +76,13 @@ impl Stability {
     fn show_list(&mut self, ui: &mut Ui, scene: &Scene) {
         for (place, map) in self.maps.iter().enumerate() {
             let used = if is_used(scene, map) { "●" } else { " " };
-            let text = format!(
-                "{used} {:<22}{:<29}{:>8.3}%",
-                map.subject.name(),
-                map.method,
-                map.total().rate() * 100.0
-            );
-            let row = ui.selectable_label(place == self.chosen, RichText::new(text).monospace());
+            let text = format!("{used} {}: {}", map.subject.name(), map.method);
+            let share = format!("{:.3} %", map.total().rate() * 100.0);
+            let row = Button::selectable(place == self.chosen, text.as_str())
+                .truncate()
+                .right_text(RichText::new(&share).monospace())
+                .min_size(vec2(ui.available_width(), ROW));
+            let row = ui.add(row).accessible_name(format!("{text} {share}"));
             if row.hint(headline(map)).clicked() {
                 self.chosen = place;
             }
