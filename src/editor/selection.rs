@@ -38,6 +38,21 @@ impl Selection {
 pub struct Selected(Vec<Item>);
 
 impl Selected {
+    /// The group that several objects are in, all of them and nothing else.
+    pub fn group<'a>(&self, scene: &'a Scene) -> Option<&'a str> {
+        let group_of = |item: &Item| {
+            let objects = scene.objects.get(item.index);
+            let object = objects.filter(|_| item.kind == Kind::Object)?;
+            Some(object.group.as_str()).filter(|group| !group.is_empty())
+        };
+        let [first, _, ..] = &self.0[..] else {
+            return None;
+        };
+        let group = group_of(first)?;
+        let is_in_it = |item: &Item| group_of(item) == Some(group);
+        self.0.iter().all(is_in_it).then_some(group)
+    }
+
     /// What `selection` is by itself.
     pub fn only(selection: Selection) -> Self {
         Self(match selection {

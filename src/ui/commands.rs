@@ -373,6 +373,7 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             let has = pairs.any(|(n, m)| packs[n] == packs[m]);
             (!has).then_some("no two color packs are equal")
         }
+        Command::Rename if editor.selected().group(editor.scene()).is_some() => None,
         Command::Rename | Command::MoveUp | Command::MoveDown => match editor.selection {
             Selection::Item(_) if editor.selected().items().len() > 1 => {
                 Some("several things are selected")

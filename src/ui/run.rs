@@ -223,6 +223,11 @@ impl App {
                 };
                 Action::SelectItems(with_same_pack(editor.scene(), item))
             }
+            Command::Rename if editor.selected().items().len() > 1 => {
+                self.layout.outliner = true;
+                let group = editor.selected().group(editor.scene());
+                return self.outliner.rename_group(group.map(str::to_owned));
+            }
             many if editor.selected().items().len() > 1 => return on_many(editor, many),
             on_item => match (on_item, editor.selection) {
                 (Command::Rename, Selection::Item(item)) => {

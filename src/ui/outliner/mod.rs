@@ -52,6 +52,13 @@ impl Outliner {
         self.reveals = true;
     }
 
+    /// Starts editing the name of a group in its row.
+    pub fn rename_group(&mut self, group: Option<String>) {
+        self.filter.clear();
+        self.folded.retain(|kind| *kind != Kind::Object);
+        self.group_rows.renaming = group;
+    }
+
     /// Lists everything again. Whether not everything was listed.
     pub fn clear_filter(&mut self) -> bool {
         let is_filtered = !self.filter.is_empty();

@@ -73,6 +73,14 @@ fn a_group_is_listed_hidden_renamed_and_moved_as_one() {
     harness.settle();
     harness.press(NONE, Key::Enter);
     assert_eq!(groups(&harness), ["Balls", "Balls", ""]);
+    // The key is for groups, too.
+    harness.click("Balls");
+    harness.press(NONE, Key::F2);
+    harness.window.event(Event::Text("Toys".to_owned()));
+    harness.settle();
+    harness.press(NONE, Key::Enter);
+    assert_eq!(groups(&harness), ["Toys", "Toys", ""]);
+    harness.press(CTRL, Key::Z);
     // What is dropped on it is in it.
     let (from, to) = (middle(&harness, "Plane"), middle(&harness, "Balls"));
     carry(&mut harness, from, to);
