@@ -323,7 +323,7 @@ mod tests {
                 pixels
             });
             assert!(pictures[0] == pictures[1], "{sampling:?}");
-            assert_eq!(tracer.pieces(1).count(), 12);
+            assert_eq!(tracer.pieces(1).count(), 18);
             assert_eq!(tracer.pieces(24).count(), 66, "every tile");
             assert_eq!(
                 tracer.pieces(24).map(Region::pixels).sum::<usize>(),

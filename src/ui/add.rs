@@ -96,6 +96,8 @@ const SHARE: f64 = 0.2;
 const APART: f64 = 1.3;
 /// How far what is there already must be from its middle, in sizes.
 const ROOM: f64 = 0.65;
+/// How much more of the picture what stands near may fill than what stands far away.
+const NEARER: f64 = 1.6;
 /// How far what it stands on may be, in distances where a new thing goes.
 const FARTHEST_FLOOR: f64 = 2.0;
 /// What is nearer than this, in distances where a new thing goes, is not gone before.
@@ -160,7 +162,7 @@ fn free_place(scene: &Scene, ray: (DVec3, DVec3), usual: f64) -> Option<(DVec3, 
         let seen = objects.find(|object| object.name == lit.object);
         let is_floor = seen.is_some_and(|object| matches!(object.shape, Shape::Plane(_)));
         if is_floor && lit.distance < usual * FARTHEST_FLOOR {
-            size = size_at(scene, lit.distance);
+            size = size.min(size_at(scene, lit.distance) * NEARER);
             at = lit.point;
         } else if lit.distance < usual + size {
             return None;

@@ -343,8 +343,13 @@ fn what_is_done_while_the_desktop_asks_is_asked_about() {
     let mut harness = EditorHarness::asked(|_| Box::new(dialogs.clone()), None);
     let path = harness.folder.path().join("other.ron");
     std::fs::write(&path, demo_text(31.5)).expect("written");
-    harness.press(Modifiers::COMMAND, Key::O);
-    harness.press(Modifiers::NONE, Key::O);
+    // While a dialog is open, nothing is settled.
+    let tap = |harness: &mut EditorHarness, modifiers: Modifiers, key: Key| {
+        harness.window.key_press_modifiers(modifiers, key);
+        (0..5).for_each(|_| harness.window.step());
+    };
+    tap(&mut harness, CTRL, Key::O);
+    tap(&mut harness, Modifiers::NONE, Key::O);
     assert!(harness.editor().is_dirty());
     dialogs.answer(&path);
     harness.settle();
@@ -355,9 +360,11 @@ fn what_is_done_while_the_desktop_asks_is_asked_about() {
     harness.click("Sphere 1");
     harness.type_into("radius", "12");
     let copy = harness.folder.path().join("copy.ron");
-    harness.press(CTRL.plus(Modifiers::SHIFT), Key::S);
-    harness.drop_file(path.clone());
-    harness.click("Don't save");
+    tap(&mut harness, CTRL.plus(Modifiers::SHIFT), Key::S);
+    tap(&mut harness, CTRL, Key::N);
+    harness.window.get_by_label("Don't save").click();
+    (0..5).for_each(|_| harness.window.step());
+    assert!(harness.scene().objects.is_empty());
     dialogs.answer(&copy);
     harness.settle();
     assert!(!copy.exists());
