@@ -9,7 +9,7 @@ use super::requests::UiRequests;
 use crate::editor::Edit;
 use crate::lab::{Sight, explain};
 use crate::mesh::SOLIDS;
-use crate::scene::{Mesh, Projection, Scene, Shape};
+use crate::scene::{Mesh, Object, Projection, Scene, Shape};
 
 /// Something that can be added.
 #[derive(Clone, Copy, Debug)]
@@ -119,7 +119,12 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     let across = across
         .into_iter()
         .filter(|x| x.abs() + SHARE / 2.0 <= half.max(SHARE / 2.0));
-    let up = [0.0, -step, step].into_iter();
+    let is_floor = |object: &Object| object.visible && matches!(object.shape, Shape::Plane(_));
+    let has_floor = scene.objects.iter().any(is_floor);
+    // Nothing hangs in the air over a floor.
+    let up = [0.0, -step, step]
+        .into_iter()
+        .take(if has_floor { 2 } else { 3 });
     let places = up.flat_map(|y| across.clone().map(move |x| [x, y]));
     let mut free = places.filter_map(|place| free_place(scene, framing.ray(place), usual));
     let (at, size) = free
