@@ -30,14 +30,16 @@ pub fn stays_inside(path: &Path) -> bool {
         .all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
 }
 
+/// More backups of a file than anybody wants.
+const MOST_BACKUPS: u32 = 1000;
+
 /// Copies a file to `NAME.bak`, or to `NAME.bak2` and so on where that holds something else: that path.
 ///
 /// # Errors
 /// Whatever the system answers.
 pub fn back_up(path: &Path) -> io::Result<PathBuf> {
     let bytes = fs::read(path)?;
-    let mut number = 1_u32;
-    loop {
+    for number in 1..MOST_BACKUPS {
         let mut name = path.as_os_str().to_owned();
         name.push(".bak");
         if number > 1 {
@@ -50,9 +52,13 @@ pub fn back_up(path: &Path) -> io::Result<PathBuf> {
                 write_atomic(&backup, &bytes)?;
                 return Ok(backup);
             }
-            _ => number += 1,
+            // Another backup, or something of that name that is no file.
+            Ok(_) => {}
+            Err(_) if backup.exists() => {}
+            Err(error) => return Err(error),
         }
     }
+    Err(io::Error::other("there are too many backups of it already"))
 }
 
 /// A new file beside the one whose place it will take: nobody else writes to it, and where it does not come to

@@ -160,7 +160,7 @@ fn export(
 ) -> Result<Exported, CliError> {
     let again = "; what is done stays, and the same command goes on from there";
     let failed = |error: ExportError| CliError::failed(format!("{error}{again}"));
-    let mut exporting = Exporting::new(sequence)?;
+    let mut exporting = Exporting::new(sequence)?.side_by_side();
     let control = RenderControl::default();
     threads.run(|| {
         loop {

@@ -199,18 +199,20 @@ impl AnimationState {
         // Positions in lists stay; each scene has its own.
         let scenes = [scene, &self.shown, &*next];
         let [in_scene, in_shown, in_next] = scenes.map(|scene| Owners::of(scene, &targets));
-        for target in &targets {
-            let own = in_scene.get(scene, target);
-            let shown = in_shown.get(&self.shown, target);
-            let (Some(own), Some(new)) = (own, in_next.get(next, target)) else {
-                continue;
-            };
+        // To put one value back may put others of the same object back: all are looked at before.
+        let values = |target: &Target| {
+            let (own, new) = (in_scene.get(scene, target)?, in_next.get(next, target)?);
             let is_touched = new != own || replaced.holds(target, in_scene.index(target));
-            if is_touched && Some(new) != shown {
-                next.animation = Arc::new(next.animation.with_value(target, time, new));
+            let is_keyed = is_touched && Some(new) != in_shown.get(&self.shown, target);
+            Some((target.clone(), new, is_keyed, new != own))
+        };
+        let values: Vec<_> = targets.iter().filter_map(values).collect();
+        for (target, new, is_keyed, is_other) in values {
+            if is_keyed {
+                next.animation = Arc::new(next.animation.with_value(&target, time, new));
             }
-            if new != own {
-                restore(target, scene, &self.shown, next);
+            if is_other {
+                restore(&target, scene, &self.shown, next);
             }
         }
     }

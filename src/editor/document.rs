@@ -340,6 +340,8 @@ impl Editor {
     pub(super) fn edit(&mut self, edit: Edit) -> bool {
         let label = edit.label(&self.scene);
         let is_camera = matches!(edit, Edit::Camera(..));
+        // What moves the joined things is taken along by it.
+        let is_join = matches!(edit, Edit::Join(_) | Edit::Separate(_));
         let replaced = edit.replaced();
         let mut next = Scene::clone(&self.scene);
         let selection = match edit.apply(&mut next) {
@@ -349,8 +351,10 @@ impl Editor {
                 return false;
             }
         };
-        self.animation_state
-            .key_tracked(&self.scene, &mut next, &replaced);
+        if !is_join {
+            let state = &self.animation_state;
+            state.key_tracked(&self.scene, &mut next, &replaced);
+        }
         if is_camera {
             self.animation_state.look_at_view();
         }

@@ -44,9 +44,9 @@ pub fn free_pack_name(scene: &Scene, wanted: &str) -> String {
     free_name(wanted, |name| scene.color_packs.contains_key(name))
 }
 
-/// A name that no group has.
-pub fn free_group_name(scene: &Scene) -> String {
-    free_name("Group 1", |name| {
+/// A name for a group that no other has, like the one that is wanted.
+pub fn free_group_name(scene: &Scene, wanted: &str) -> String {
+    free_name(wanted, |name| {
         scene.objects.iter().any(|object| object.group == name)
     })
 }

@@ -38,7 +38,7 @@ impl Selection {
 pub struct Selected(Vec<Item>);
 
 impl Selected {
-    /// The group that several objects are in, all of them and nothing else.
+    /// The group that is selected: all of its objects, of which there are several, and nothing else.
     pub fn group<'a>(&self, scene: &'a Scene) -> Option<&'a str> {
         let group_of = |item: &Item| {
             let objects = scene.objects.get(item.index);
@@ -50,7 +50,9 @@ impl Selected {
         };
         let group = group_of(first)?;
         let is_in_it = |item: &Item| group_of(item) == Some(group);
-        self.0.iter().all(is_in_it).then_some(group)
+        let members = scene.objects.iter().filter(|object| object.group == group);
+        let is_whole = self.0.iter().all(is_in_it) && members.count() == self.0.len();
+        is_whole.then_some(group)
     }
 
     /// What `selection` is by itself.
@@ -77,6 +79,17 @@ impl Selected {
     /// Whether it is among them.
     pub fn has(&self, item: Item) -> bool {
         self.0.contains(&item)
+    }
+
+    /// Whether all of these are among them.
+    pub fn has_all(&self, items: impl ExactSizeIterator<Item = Item>) -> bool {
+        // Mostly, fewer are selected.
+        if self.0.len() < items.len() {
+            return false;
+        }
+        let selected: HashSet<&Item> = self.0.iter().collect();
+        let mut items = items;
+        items.all(|item| selected.contains(&item))
     }
 
     /// The middle of all that have a place; `None` if nothing has.

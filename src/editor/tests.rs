@@ -1,7 +1,7 @@
 use glam::DVec3;
 
 use super::*;
-use crate::scene::{Scene, check};
+use crate::scene::{Animation, Scene, Target, Value, check};
 use crate::scene::{Shape, Sphere};
 use proptest::prelude::*;
 
@@ -43,6 +43,46 @@ fn a_drag_is_one_step_and_two_drags_are_two() {
     );
     assert_eq!(steps(&mut editor), 1);
     assert!(!editor.is_dirty(), "undone to the saved state");
+}
+
+#[test]
+fn hiding_leaves_keys_alone_and_joining_takes_them_along() {
+    let mut editor = Editor::demo();
+    editor.apply(Action::Edit(Edit::Join(vec![2, 3, 4])));
+    let mesh = &editor.scene().objects[2];
+    let (name, place) = (mesh.name.clone(), mesh.shape.position());
+    let moves = Target::ObjectPosition(name.clone());
+    let turns = Target::ObjectRotation(name);
+    let further = place + DVec3::X * 10.0;
+    let mut animation = Animation::default();
+    for (target, time, point) in [
+        (&moves, 0.0, place),
+        (&moves, 2.0, further),
+        (&turns, 0.0, DVec3::ZERO),
+        (&turns, 2.0, DVec3::Y * 90.0),
+    ] {
+        animation = animation.with_value(target, time, Value::Point(point));
+    }
+    editor.apply(Action::Edit(Edit::animation(animation, "Keys")));
+    editor.apply(Action::Time(Time::Seek(1.0)));
+    let before = editor.scene().animation.clone();
+    let hide = Edit::visible(editor.shown(), Item::object(2), false).expect("an object");
+    editor.apply(Action::Edit(hide));
+    assert!(!editor.scene().objects[2].visible);
+    assert_eq!(editor.scene().animation, before);
+    assert_eq!(editor.scene().objects[2].shape.position(), place);
+
+    editor.apply(Action::Edit(Edit::Join(vec![2, 3])));
+    let scene = editor.scene();
+    let tracks = &scene.animation.tracks;
+    assert_eq!((tracks.len(), tracks[0].keys.len()), (1, 2));
+    let place = scene.objects[2].shape.position();
+    for (key, there) in tracks[0].keys.iter().zip([place, place + DVec3::X * 10.0]) {
+        let Value::Point(key) = key.value else {
+            panic!("a place");
+        };
+        assert!((key - there).length() < 1e-9, "{key} {there}");
+    }
 }
 
 #[test]

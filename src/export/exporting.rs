@@ -70,6 +70,7 @@ pub struct Exporting {
     on_the_way: usize,
     spare: Vec<Film>,
     planner: Planner,
+    is_side_by_side: bool,
     done: Exported,
     last: Option<Arc<Image>>,
 }
@@ -96,6 +97,7 @@ impl Exporting {
             on_the_way: 0,
             spare: Vec::new(),
             planner: Planner::default(),
+            is_side_by_side: false,
             done: Exported {
                 total: sequence.frames.count(),
                 ..Exported::default()
@@ -103,6 +105,16 @@ impl Exporting {
             last: None,
             sequence: Arc::new(sequence),
         })
+    }
+
+    /// Traces several frames side by side where there are many threads: for those who do nothing else, since all
+    /// that are begun are lost where a step is stopped.
+    #[must_use]
+    pub fn side_by_side(self) -> Self {
+        Self {
+            is_side_by_side: true,
+            ..self
+        }
     }
 
     /// What is exported.
@@ -171,10 +183,10 @@ impl Exporting {
     fn next_due(&mut self) -> Result<Vec<Due>, ExportError> {
         // The others share what the first one has planned.
         let is_first = self.last.is_none();
-        let wanted = if is_first {
-            1
-        } else {
+        let wanted = if self.is_side_by_side && !is_first {
             Threads::current() / THREADS_PER_FRAME
+        } else {
+            1
         };
         let count = self.at_once(wanted);
         let mut due: Vec<Due> = Vec::new();

@@ -105,13 +105,17 @@ pub fn add_note(
     manifest.write_all(line.as_bytes())
 }
 
-/// The notes, to add to, and what has to stand before the next line: the head in a new file, which one of all that
-/// write at the same time makes; the end of a line that was cut off, so that it does not take the next one with it.
+/// The notes, to add to, and what has to stand before the next line: the end of one that was cut off, so that it does
+/// not take the next one with it. The head is written by the one of all that write at the same time who makes the
+/// file.
 fn open(path: &Path) -> io::Result<(File, String)> {
     let mut options = OpenOptions::new();
     options.append(true).read(true);
     match options.clone().create_new(true).open(path) {
-        Ok(file) => return Ok((file, format!("{HEAD}\n"))),
+        Ok(mut file) => {
+            file.write_all(format!("{HEAD}\n").as_bytes())?;
+            return Ok((file, String::new()));
+        }
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
         Err(error) => return Err(error),
     }

@@ -41,7 +41,7 @@ impl Writers {
     /// # Errors
     /// [`ExportError::Disk`] when the system refuses a thread.
     pub fn start(sequence: &Arc<Sequence>, count: usize) -> Result<Self, ExportError> {
-        let (jobs, to_write) = sync_channel::<WriteJob>(count);
+        let (jobs, to_write) = sync_channel::<WriteJob>(1);
         let (to_return, results) = channel();
         let to_write = Arc::new(Mutex::new(to_write));
         for index in 0..count {

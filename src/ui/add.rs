@@ -94,6 +94,8 @@ pub fn add_menu(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
 const SHARE: f64 = 0.2;
 /// How far apart the places are that are tried, in sizes of a new thing.
 const APART: f64 = 1.3;
+/// With more things than this, only one place is looked at.
+const CROWDED: usize = 100_000;
 /// How far what is there already must be from its middle, in sizes.
 const ROOM: f64 = 0.65;
 /// How much more of the picture what stands near may fill than what stands far away.
@@ -126,7 +128,15 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
         .into_iter()
         .take(if has_floor { 2 } else { 3 });
     let places = up.flat_map(|y| across.clone().map(move |x| [x, y]));
-    let mut free = places.filter_map(|place| free_place(scene, framing.ray(place), usual));
+    // To look costs as much as there is to be looked at.
+    let tries = if scene.faces() + scene.objects.len() > CROWDED {
+        1
+    } else {
+        21
+    };
+    let mut free = places
+        .take(tries)
+        .filter_map(|place| free_place(scene, framing.ray(place), usual));
     let (at, size) = free
         .next()
         .unwrap_or_else(|| before_what_is_seen(scene, framing.ray([0.0, 0.0]), usual));

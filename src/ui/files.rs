@@ -298,8 +298,10 @@ impl Files {
             return;
         }
         // What cannot be read may be half written: when more is, the next look tells, or the next save.
-        let Ok(theirs) = Document::load_stamped(&path) else {
-            return;
+        let theirs = match Document::load_stamped(&path) {
+            Ok(theirs) => theirs,
+            Err(SceneError::Disk { .. }) => return self.watch.look_again(),
+            Err(_) => return,
         };
         if editor.is_dirty() && theirs.0.scene != **editor.scene() {
             let theirs = Theirs::new(editor, Ok(theirs));

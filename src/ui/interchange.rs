@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::dialogs::Ask;
 use crate::animate::{from_table, from_text, to_table, to_text};
-use crate::editor::{Action, Edit, Editor};
+use crate::editor::{Action, Edit, Editor, Item, Selected, free_group_name};
 use crate::export::{Job, Pattern, Sequence, povray_text, write_job, write_text};
 use crate::files::is_same_file;
 use crate::image::Format;
@@ -134,14 +134,14 @@ pub fn imported(editor: &mut Editor, path: &Path, parts: Vec<Part>) {
     if last - first > 1 {
         // They belong together.
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        edits.push(Edit::Group((first..last).collect(), stem.trim().to_owned()));
+        let group = free_group_name(editor.scene(), stem.trim());
+        edits.push(Edit::Group((first..last).collect(), group));
     }
     if !is_made(editor, Edit::Each(edits, label)) {
         return;
     }
-    let objects = editor.scene().objects.iter().skip(first);
-    let names: Vec<String> = objects.map(|object| object.name.clone()).collect();
-    editor.select_named(&names);
+    let parts = Selected::all((first..last).map(Item::object));
+    editor.apply(Action::SelectItems(parts));
     let path = path.display();
     editor.notify(format!(
         "{count} triangles from {path}; F brings them into the picture"

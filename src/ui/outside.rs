@@ -49,6 +49,11 @@ impl Watch {
         is_news
     }
 
+    /// What was found could not be read: it may be so next time.
+    pub fn look_again(&mut self) {
+        self.found = None;
+    }
+
     /// Says nothing more of the file as it is, until the document is saved or another one is open.
     pub fn leave(&mut self, editor: &Editor) {
         self.left = Some(editor.saves());

@@ -206,7 +206,7 @@ impl App {
             Command::ToggleVisible => return toggle_visible(editor),
             Command::Group => Action::Edit(Edit::Group(
                 selected_objects(editor),
-                free_group_name(editor.scene()),
+                free_group_name(editor.scene(), "Group 1"),
             )),
             Command::Ungroup => Action::Edit(Edit::Group(selected_objects(editor), String::new())),
             Command::MergePacks => Action::Edit(Edit::MergePacks),

@@ -364,7 +364,8 @@ fn frames_side_by_side_are_the_same_and_none_is_left_out() {
         let numbers = Some(Frames::parse("1-30").expect("frames"));
         let (pattern, format) = (Pattern::default(), Format::Png);
         let sequence = Sequence::new(Arc::clone(&scene), numbers, pattern, format, frames.clone());
-        let mut exporting = Exporting::new(sequence.expect("frames")).expect("a folder");
+        let exporting = Exporting::new(sequence.expect("frames")).expect("a folder");
+        let mut exporting = exporting.side_by_side();
         let threads = Threads::new(Some(threads)).expect("threads");
         threads.run(|| {
             for round in 0.. {

@@ -37,7 +37,7 @@ impl GroupRows {
         let look = RowStyle {
             icon: icons::GROUP,
             is_bright,
-            is_selected: members().all(|item| editor.selected().has(item)),
+            is_selected: editor.selected().has_all(members()),
         };
         let response = entry(ui, rect, look, &group.name);
         let all = || Action::SelectItems(Selected::all(members()));

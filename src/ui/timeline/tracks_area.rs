@@ -7,7 +7,7 @@ use egui::{Align2, FontId, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2}
 
 use super::scale::Scale;
 use super::strip::{KEY, SMALL, band, diamond, label};
-use crate::editor::{Edit, Editor, Time};
+use crate::editor::{Action, Edit, Editor, Time};
 use crate::scene::{Animation, Easing, Interpolation, Target};
 use crate::ui::hint::Hint as _;
 use crate::ui::inspector::target;
@@ -213,6 +213,8 @@ fn pick(
             BTreeSet::from([index])
         };
         let before = Arc::clone(&editor.scene().animation);
+        // What was done before is none of it, and stays where it is taken back.
+        out.actions.push(Action::BeginGesture);
         *drag = Some(Drag {
             target: None,
             from: before.keys[index].time,
@@ -336,6 +338,7 @@ pub fn tracks(
                 out.time(Time::Seek(key.time));
             }
             if response.drag_started() {
+                out.actions.push(Action::BeginGesture);
                 *drag = Some(Drag {
                     target: Some((track.target.clone(), index)),
                     before: Arc::clone(animation),
