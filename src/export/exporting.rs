@@ -135,7 +135,11 @@ impl Exporting {
     /// Looks at the next frame, or at several where there are many threads, and traces what is not there as it
     /// should be, on the threads of the current rayon pool.
     pub fn step(&mut self, control: &RenderControl) -> ExportStep {
-        self.try_step(control).unwrap_or_else(ExportStep::Failed)
+        self.try_step(control).unwrap_or_else(|error| {
+            // What else is on the way is written whole, or removed, before anybody ends the program.
+            let _ = self.finish();
+            ExportStep::Failed(error)
+        })
     }
 
     fn try_step(&mut self, control: &RenderControl) -> Result<ExportStep, ExportError> {
@@ -244,9 +248,12 @@ impl Exporting {
     /// # Errors
     /// [`ExportError`] of a frame that was not written.
     pub fn finish(&mut self) -> Result<Exported, ExportError> {
+        let mut all = Ok(());
         for result in self.writers.take().into_iter().flat_map(Writers::finish) {
-            self.take(result)?;
+            let taken = self.take(result);
+            all = all.and(taken);
         }
+        all?;
         if self.on_the_way > 0 {
             return Err(ExportError::Disk {
                 path: self.sequence.folder.clone(),

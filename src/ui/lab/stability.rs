@@ -78,7 +78,9 @@ impl Stability {
             let used = if is_used(scene, map) { "●" } else { " " };
             let text = format!("{used} {}: {}", map.subject.name(), map.method);
             let share = format!("{:.3} %", map.total().rate() * 100.0);
-            let row = Button::selectable(place == self.chosen, text.as_str())
+            // The sign of what is used is in no other font.
+            let words = RichText::new(&text).monospace();
+            let row = Button::selectable(place == self.chosen, words)
                 .truncate()
                 .right_text(RichText::new(&share).monospace())
                 .min_size(vec2(ui.available_width(), ROW));
