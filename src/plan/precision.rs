@@ -34,6 +34,16 @@ const MOST_PAIRS: usize = 100_000;
 /// precision: 1/16 of a pixel, of a thousand.
 const MAX_DISTANCE_PER_HEIGHT: f64 = 1e3;
 
+/// Smallest distance of the surfaces of two spheres as a share of the scene's extent in single precision: where
+/// they are nearer everywhere, rounding decides which is seen, or whether one shadows the other.
+const MIN_GAP_PER_EXTENT: f64 = 3e-4;
+/// The same as a share of their radii, for small ones.
+const MIN_GAP_PER_RADIUS: f64 = 1e-2;
+/// Most spheres that are held against each other.
+const MOST_SPHERES: usize = 2_000;
+/// A direction in which the places of spheres that stand in rows differ all the same.
+const ASKEW: DVec3 = DVec3::new(0.79, 0.53, 0.31);
+
 /// Most things that single precision can number.
 const MAX_NUMBER: usize = 1 << 24;
 
@@ -63,7 +73,7 @@ pub fn needs_double(scene: &Scene, projection: Projection) -> bool {
     let centre = (low + high) * 0.5;
     let eye = scene.camera.position;
     let extent = (high - low).length().max((eye - centre).length());
-    if extent < MIN_EXTENT || is_just_above(scene, extent) {
+    if extent < MIN_EXTENT || is_just_above(scene, extent) || has_twins(scene, extent) {
         return true;
     }
     let wall = if scene.lights.is_empty() {
@@ -132,6 +142,30 @@ fn is_just_above(scene: &Scene, extent: f64) -> bool {
             || lights
                 .iter()
                 .any(|light| is_just_above(&piece, light.position, MIN_HEIGHT_PER_EXTENT))
+    })
+}
+
+/// Whether two spheres all but fill the same surface. Those that do fill it are one.
+fn has_twins(scene: &Scene, extent: f64) -> bool {
+    let visible = scene.objects.iter().filter(|object| object.visible);
+    let spheres = visible.filter_map(|object| match &object.shape {
+        Shape::Sphere(sphere) => Some((sphere.center.dot(ASKEW), sphere)),
+        _ => None,
+    });
+    let mut spheres: Vec<_> = spheres.take(MOST_SPHERES + 1).collect();
+    if spheres.len() > MOST_SPHERES {
+        return false;
+    }
+    spheres.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
+    let nearest = MIN_GAP_PER_EXTENT * extent;
+    spheres.iter().enumerate().any(|(place, (along, one))| {
+        let least = nearest.min(MIN_GAP_PER_RADIUS * one.radius);
+        let others = spheres[place + 1..].iter();
+        let near = others.take_while(|(other, _)| other - along < least);
+        let mut gaps = near.map(|(_, other)| {
+            one.center.distance(other.center) + (one.radius - other.radius).abs()
+        });
+        gaps.any(|gap| gap > 0.0 && gap < least)
     })
 }
 
@@ -229,6 +263,26 @@ mod tests {
             .into();
         };
         assert!(wants(&tiny));
+    }
+
+    #[test]
+    fn spheres_that_all_but_fill_one_surface_need_double_precision() {
+        for (gap, expected) in [(0.0, false), (1e-6, true), (0.04, true), (0.2, false)] {
+            let mut scene = Scene::demo();
+            let mut twin = scene.objects[0].clone();
+            twin.name = "Twin".into();
+            twin.shape = Sphere {
+                center: DVec3::new(125.0, 50.0, -150.0 + gap / 2.0),
+                radius: 50.0 + gap / 2.0,
+            }
+            .into();
+            scene.objects.push(twin);
+            assert_eq!(
+                needs_double(&scene, scene.camera.projection),
+                expected,
+                "{gap}"
+            );
+        }
     }
 
     #[test]
