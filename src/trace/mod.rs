@@ -70,6 +70,7 @@ mod tracer;
 
 mod query;
 
+pub use heat::heat;
 pub use query::{survey, visible};
 pub use stats::{Rays, RenderControl};
 pub use threads::{PoolError, Threads};

@@ -8,6 +8,8 @@ use super::theme::{GRID, palette};
 
 /// Room that all of it takes, in points.
 const SIZE: Vec2 = vec2(1180.0, 640.0);
+/// Width in which commands and the keys of hands have room side by side, in points.
+const TWO_COLUMNS: f32 = 800.0;
 
 /// Shows the list while `open`.
 pub fn show(ctx: &Context, open: &mut bool) {
@@ -24,30 +26,46 @@ pub fn show(ctx: &Context, open: &mut bool) {
                 .max_width(room.x)
                 .max_height(room.y)
                 .show(ui, |ui| {
-                    ui.horizontal_top(lists);
+                    lists(ui, room.x);
                 });
         });
 }
 
-fn lists(ui: &mut Ui) {
+/// All lists, in as many columns as have room: where it is wide, everything is seen without scrolling.
+fn lists(ui: &mut Ui, width: f32) {
     let commands = SHORTCUTS.iter().map(|shortcut| {
         let keys: Vec<String> = shortcut.keys.iter().map(|key| name_of(ui, *key)).collect();
         (keys.join(", "), shortcut.what)
     });
     let mut commands: Vec<_> = commands.collect();
-    // Two columns: all of it is seen without scrolling.
-    let rest = commands.split_off(commands.len().div_ceil(2));
-    list(ui, "Commands", commands);
-    ui.add_space(2.0 * GRID);
-    list(ui, "More commands", rest);
-    ui.add_space(2.0 * GRID);
-    ui.vertical(|ui| {
-        let flight = FLIGHT.iter().map(|key| (key.name().to_owned(), key.what));
-        list(ui, "Flying (hold)", flight.collect());
+    if width < TWO_COLUMNS {
+        list(ui, "Commands", commands);
         ui.add_space(2.0 * GRID);
-        let mouse = MOUSE.iter().map(|(name, what)| ((*name).to_owned(), *what));
-        list(ui, "Mouse", mouse.collect());
+        flying_and_mouse(ui);
+        return;
+    }
+    let rest = if width < SIZE.x {
+        Vec::new()
+    } else {
+        commands.split_off(commands.len().div_ceil(2))
+    };
+    ui.horizontal_top(|ui| {
+        list(ui, "Commands", commands);
+        ui.add_space(2.0 * GRID);
+        if !rest.is_empty() {
+            list(ui, "More commands", rest);
+            ui.add_space(2.0 * GRID);
+        }
+        ui.vertical(flying_and_mouse);
     });
+}
+
+fn flying_and_mouse(ui: &mut Ui) {
+    let flight = FLIGHT.iter().map(|key| (key.name().to_owned(), key.what));
+    list(ui, "Flying (hold)", flight.collect());
+    ui.add_space(2.0 * GRID);
+    let mouse = MOUSE.iter().map(|(name, what)| ((*name).to_owned(), *what));
+    list(ui, "Mouse", mouse.collect());
 }
 
 fn list(ui: &mut Ui, title: &str, keys: Vec<(String, &str)>) {

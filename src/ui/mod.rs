@@ -79,6 +79,8 @@ mod toasts;
 
 mod histogram;
 
+mod cost_scale;
+
 mod magnifier;
 
 mod viewport;

@@ -14,7 +14,7 @@ use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, TIMELINE, palette};
 use super::timeline::clock;
 use super::tools::label;
 use super::viewport::{Place, badge, describe, fit};
-use super::{inspector, menu, status};
+use super::{cost_scale, inspector, menu, status};
 use crate::editor::Mode;
 use crate::scene::Aspect;
 
@@ -189,6 +189,9 @@ impl App {
         let aspect = self.layout.aspect;
         if !is_still && aspect != Aspect::All && badge(ui, place, aspect.name()) {
             self.layout.aspect = Aspect::All;
+        }
+        if !is_still && aspect == Aspect::Cost {
+            cost_scale::show(ui, place.rect);
         }
         if let Some((_, seconds)) = self.editor.timeline().recorded() {
             show_recording(ui, place, seconds);

@@ -86,6 +86,7 @@ fn show_surface(ui: &mut Ui, lit: &Lit, depth: usize) {
     let color = Sight::Surface(Box::new(lit.clone())).color();
     ui.horizontal(|ui| {
         swatch(ui, color);
+        ui.label(RichText::new(channels(color)).monospace());
         ui.label(RichText::new(&lit.object).strong());
         ui.weak(format!("in {}, {} away", lit.pack, number(lit.distance)));
     });

@@ -9,6 +9,7 @@ use std::sync::atomic::Ordering;
 use std::thread::sleep;
 use std::time::Duration;
 
+use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use glint::export::{ExportStep, Exporting};
@@ -635,6 +636,26 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
     harness
         .window
         .get_by_label_contains("expected frames such as");
+}
+
+#[test]
+fn the_size_of_frames_keeps_the_shape_of_the_picture_until_it_is_freed() {
+    let wide = fs::read_to_string("scenes/mirrors.ron").expect("readable");
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&wide));
+    harness.press(CTRL.plus(Modifiers::SHIFT), Key::E);
+    let size = |harness: &EditorHarness| {
+        ["export width", "export height"].map(|side| {
+            let field = harness.window.get_by_role_and_label(Role::SpinButton, side);
+            field.value().expect("a number")
+        })
+    };
+    harness.type_into("export width", "640");
+    assert_eq!(size(&harness), ["640 px", "400 px"]);
+    harness.type_into("export height", "1600");
+    assert_eq!(size(&harness), ["2560 px", "1600 px"]);
+    harness.click("keep the shape of the picture");
+    harness.type_into("export width", "320");
+    assert_eq!(size(&harness), ["320 px", "1600 px"]);
 }
 
 #[test]

@@ -12,6 +12,7 @@ use crate::image::Format;
 use crate::scene::{Animation, MAX_SIDE, Method as _, Problem, Sampling, Scene};
 use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
+use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::status::in_words;
 use crate::ui::theme::ROW;
@@ -58,6 +59,9 @@ pub struct Settings {
     format: Format,
     width: u32,
     height: u32,
+    /// Whether width and height are set each by itself, in another shape than the scene's.
+    #[serde(default)]
+    is_free: bool,
     fps: f64,
     /// What the scene asked for when the settings were made.
     own: Own,
@@ -89,6 +93,7 @@ impl Settings {
             format: Format::Ppm,
             width: scene.render.width,
             height: scene.render.height,
+            is_free: false,
             fps: scene.animation.frames_per_second,
             antialias: scene.render.antialias,
             video: VIDEOS[0].to_owned(),
@@ -122,6 +127,22 @@ impl Settings {
     /// Whether all frames are asked for, however many that are.
     fn has_all_frames(&self) -> bool {
         self.frames == self.own.frames(self.fps)
+    }
+
+    /// Another width and height; the one that was not changed follows, if it is not free.
+    fn set_size(&mut self, (width, height): (u32, u32)) {
+        let before = (self.width, self.height);
+        (self.width, self.height) = (width, height);
+        if self.is_free {
+            return;
+        }
+        let (wide, high) = (f64::from(self.own.size.0), f64::from(self.own.size.1));
+        let side = |length: f64| (length.round() as u32).clamp(1, MAX_SIDE);
+        if width != before.0 {
+            self.height = side(f64::from(width) * high / wide);
+        } else if height != before.1 {
+            self.width = side(f64::from(height) * wide / high);
+        }
     }
 
     /// Another rate; all frames stay all.
@@ -280,13 +301,17 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
     ui.end_row();
     ui.weak("picture");
     ui.horizontal(|ui| {
-        for (name, side) in [
-            ("width", &mut settings.width),
-            ("height", &mut settings.height),
-        ] {
+        let mut size = (settings.width, settings.height);
+        for (name, side) in [("width", &mut size.0), ("height", &mut size.1)] {
             ui.add(DragValue::new(side).range(1..=MAX_SIDE).suffix(" px"))
                 .accessible_name(format!("export {name}"));
         }
+        settings.set_size(size);
+        let mut keeps_shape = !settings.is_free;
+        ui.toggle_value(&mut keeps_shape, icons::text(icons::LINK))
+            .accessible_name("keep the shape of the picture")
+            .hint("Width and height follow each other, in the shape of the scene's picture");
+        settings.is_free = !keeps_shape;
         ComboBox::from_id_salt("export antialias")
             .selected_text(settings.antialias.id())
             .show_ui(ui, |ui| {

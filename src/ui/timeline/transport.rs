@@ -17,6 +17,8 @@ use crate::ui::theme::palette;
 
 /// Width of a window in which everything has its place, in points.
 const WIDE: f32 = 1040.0;
+/// Width of a window in which all but the rates has its place, in points.
+const NARROW: f32 = 860.0;
 
 /// Playing, keys, and what time it is.
 pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out: &mut UiRequests) {
@@ -72,11 +74,14 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
         clock(animation.duration())
     );
     ui.label(RichText::new(times).monospace());
-    let frame = animation.frame_at(timeline.playhead);
-    let frames = format!("{frame:>4}/{}", animation.frame_count());
-    let hint = "Frame, from 1; the number that glint render --frame takes";
-    ui.label(RichText::new(frames).monospace().weak())
-        .hint(hint);
+    let width = ui.content_rect().width();
+    if width >= NARROW {
+        let frame = animation.frame_at(timeline.playhead);
+        let frames = format!("{frame:>4}/{}", animation.frame_count());
+        let hint = "Frame, from 1; the number that glint render --frame takes";
+        ui.label(RichText::new(frames).monospace().weak())
+            .hint(hint);
+    }
     ui.separator();
     record_button(ui, editor, out);
     let key = ui
@@ -85,21 +90,21 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
     if key.clicked() {
         out.commands.push(Command::AddKey);
     }
-    let through = ui.add_enabled(
-        !animation.keys.is_empty(),
-        Button::selectable(editor.looks_through(), "Through shot"),
-    );
-    let hint = "Look through the shot camera, or at it from the view (C)";
-    if through.hint(hint).clicked() {
-        out.commands.push(Command::LookThrough);
+    if width >= NARROW {
+        through_shot(ui, editor, out);
     }
     ui.separator();
-    if ui.content_rect().width() >= WIDE {
+    if width >= WIDE {
         rates(ui, editor, graph, out);
     } else {
         let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
         let more = MenuButton::from_button(Button::new(icons::text(icons::OTHER))).config(stays);
-        let (button, _) = more.ui(ui, |ui| rates(ui, editor, graph, out));
+        let (button, _) = more.ui(ui, |ui| {
+            if width < NARROW {
+                through_shot(ui, editor, out);
+            }
+            rates(ui, editor, graph, out);
+        });
         button
             .accessible_name("More of the timeline")
             .hint("Length, frames per second, playing speed, graph of the speed");
@@ -111,6 +116,15 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
         );
         ui.label(RichText::new(text).monospace().weak())
             .hint("Pictures a second on screen; a slow scene loses resolution, never time");
+    }
+}
+
+fn through_shot(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+    let has_keys = !editor.scene().animation.keys.is_empty();
+    let through = Button::selectable(editor.looks_through(), "Through shot");
+    let hint = "Look through the shot camera, or at it from the view (C)";
+    if ui.add_enabled(has_keys, through).hint(hint).clicked() {
+        out.commands.push(Command::LookThrough);
     }
 }
 

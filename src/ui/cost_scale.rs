@@ -1,0 +1,57 @@
+//! What the colours of *Rays per pixel* mean, in a corner of the picture.
+
+use egui::{Align2, Color32, Mesh, Rect, Shape, Stroke, StrokeKind, TextStyle, Ui, pos2, vec2};
+
+use super::theme::{GRID, palette};
+use crate::trace::heat;
+
+/// Width and height of the strip in points.
+const STRIP: (f32, f32) = (192.0, 10.0);
+/// Room for the words below.
+const WORDS: f32 = 16.0;
+/// How many columns it is drawn of.
+const COLUMNS: u32 = 96;
+/// The counts that have a mark, from one end of the strip to the other.
+const MARKS: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
+
+/// Draws the scale over the lower right corner of the picture.
+pub fn show(ui: &Ui, picture: Rect) {
+    let colors = palette(ui.ctx());
+    let size = vec2(STRIP.0, STRIP.1 + WORDS) + vec2(3.0, 1.0) * 2.0 * GRID;
+    let corner = picture.right_bottom() - size - vec2(GRID, GRID);
+    let frame = Rect::from_min_size(corner, size);
+    let painter = ui.painter().with_clip_rect(picture);
+    let line = Stroke::new(1.0, colors.line);
+    painter.rect(frame, 4, colors.panel, line, StrokeKind::Inside);
+    let strip = Rect::from_min_size(frame.min + vec2(3.0 * GRID, GRID), STRIP.into());
+    painter.add(colored(strip));
+    let font = TextStyle::Small.resolve(ui.style());
+    for (count, place) in MARKS.into_iter().zip(0_u8..) {
+        let along = f32::from(place) / (MARKS.len() - 1) as f32;
+        let at = pos2(
+            strip.left() + along * strip.width(),
+            strip.bottom() + GRID / 2.0,
+        );
+        let words = match count {
+            1.0 => "1 ray".to_owned(),
+            count => format!("{count}"),
+        };
+        painter.text(at, Align2::CENTER_TOP, words, font.clone(), colors.text);
+    }
+}
+
+/// The strip: equal factors are equal widths, as in the picture.
+fn colored(strip: Rect) -> Shape {
+    let mut mesh = Mesh::default();
+    let [first, .., last] = MARKS;
+    for column in 0..COLUMNS {
+        let along = f64::from(column) / f64::from(COLUMNS - 1);
+        let [red, green, blue] =
+            heat::<f64>(first * (last / first).powf(along)).map(|channel| (channel * 255.0) as u8);
+        let width = strip.width() / COLUMNS as f32;
+        let left = strip.left() + column as f32 * width;
+        let rect = Rect::from_x_y_ranges(left..=left + width, strip.y_range());
+        mesh.add_colored_rect(rect, Color32::from_rgb(red, green, blue));
+    }
+    Shape::mesh(mesh)
+}
