@@ -15,6 +15,8 @@ pub const MAX_LANES: usize = 16;
 /// not depend on how many others there are. A comparison with NaN is false.
 pub trait SimdFloat:
     Copy
+    + Send
+    + 'static
     + Debug
     + Add<Output = Self>
     + Sub<Output = Self>
@@ -25,7 +27,7 @@ pub trait SimdFloat:
     /// One number of the row.
     type Real: Real;
     /// One truth value per lane.
-    type Mask: Mask;
+    type Mask: Mask + Send;
     /// The proof that the processor has these lanes.
     type Token: Copy;
     /// How many lanes there are.

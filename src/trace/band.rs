@@ -4,11 +4,12 @@ use std::ops::Range;
 use std::sync::atomic::Ordering;
 
 use super::candidates::{Candidates, Span};
-use super::engine::Engine;
+use super::engine::{Engine, Workspace};
 use super::heat::heat;
 use super::intersect::Kernel;
 use super::lattice::Limits;
 use super::sampler::Sampler;
+use super::shelf::Shelf;
 use super::stats::{Rays, RenderControl};
 use super::tile::{Grid, Pixel, Tile, TileColors};
 use crate::plan::{Plan, Region, Show};
@@ -37,8 +38,31 @@ pub struct Band<'a, R, P> {
     pub grid: Grid,
     /// How they are sampled.
     pub sampling: Sampling,
+    /// Memory of other bands of the plan.
+    pub shelf: &'a Shelf,
     /// Tells when to stop.
     pub control: &'a RenderControl,
+}
+
+/// What a band works with.
+struct Desk<L: SimdFloat> {
+    work: Workspace<L>,
+    sampler: Sampler<L>,
+    colors: TileColors<L::Real>,
+    in_band: Candidates,
+    in_tile: Candidates,
+}
+
+impl<L: SimdFloat> Desk<L> {
+    fn new(in_squares: bool) -> Self {
+        Self {
+            work: Workspace::default(),
+            sampler: Sampler::new(in_squares),
+            colors: TileColors::default(),
+            in_band: Candidates::default(),
+            in_tile: Candidates::default(),
+        }
+    }
 }
 
 impl<R: SimdReal, P: Pixel> WithSimd<R> for Band<'_, R, P> {
@@ -57,11 +81,6 @@ impl<R: SimdReal, P: Pixel> WithSimd<R> for Band<'_, R, P> {
 impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
     #[inline(always)]
     fn trace<L: SimdFloat<Real = R>, const TREE: bool>(mut self, token: L::Token) -> Option<Rays> {
-        let plan = self.plan;
-        let mut engine = Engine::<L, TREE>::new(Kernel { token, plan }, &self.control.stop);
-        let mut sampler = Sampler::new(self.in_squares);
-        let mut colors = TileColors::default();
-        let (mut in_band, mut in_tile) = (Candidates::default(), Candidates::default());
         let band = Tile {
             columns: self.columns.clone(),
             rows: self.rows.clone(),
@@ -69,6 +88,17 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
         if !band.is_in(self.region) {
             return Some(Rays::default());
         }
+        let (plan, stop) = (self.plan, &self.control.stop);
+        let left = self.shelf.take::<Desk<L>>();
+        let mut desk = left.unwrap_or_else(|| Box::new(Desk::new(self.in_squares)));
+        let Desk {
+            work,
+            sampler,
+            colors,
+            in_band,
+            in_tile,
+        } = &mut *desk;
+        let mut engine = Engine::<L, TREE>::new(Kernel { token, plan }, work, stop);
         in_band.keep_seen(self.seen, plan, &self.rows, Span::Rows);
         for left in self.columns.clone().step_by(self.tile) {
             let tile = Tile {
@@ -79,26 +109,26 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
                 continue;
             }
             let before = engine.rays.total();
-            in_tile.keep_seen(&in_band, plan, &tile.columns, Span::Columns);
+            in_tile.keep_seen(in_band, plan, &tile.columns, Span::Columns);
             if plan.screen.is_some() {
                 in_tile.drop_unseen_planes(self.plan, &tile);
             }
             let (stride, channels) = match self.sampling {
                 Sampling::Centres if self.grid == Grid::ALL => {
-                    let traced = sampler.all(&mut engine, &in_tile, &tile, (0.5, 0.5));
+                    let traced = sampler.all(&mut engine, in_tile, &tile, (0.5, 0.5));
                     (tile.width(), traced.channels())
                 }
                 Sampling::Centres => {
-                    let traced = sampler.centres(&mut engine, &in_tile, self.grid.pixels(&tile));
+                    let traced = sampler.centres(&mut engine, in_tile, self.grid.pixels(&tile));
                     (1, traced.channels())
                 }
                 Sampling::Grid(side) => {
-                    sampler.grid(&mut engine, &in_tile, &tile, side, &mut colors);
+                    sampler.grid(&mut engine, in_tile, &tile, side, colors);
                     (colors.stride, colors.channels())
                 }
                 Sampling::Adaptive { contrast, depth } => {
                     let limits = Limits::new(contrast, depth);
-                    sampler.adaptive(&mut engine, &in_tile, &tile, limits, &mut colors);
+                    sampler.adaptive(&mut engine, in_tile, &tile, limits, colors);
                     (colors.stride, colors.channels())
                 }
             };
@@ -114,7 +144,9 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
                 self.fill_with_heat(&tile, engine.rays.total() - before);
             }
         }
-        Some(engine.rays)
+        let rays = engine.rays;
+        self.shelf.put(desk);
+        Some(rays)
     }
 
     fn pixel(&mut self, column: usize, row: usize) -> &mut P {

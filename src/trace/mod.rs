@@ -64,6 +64,8 @@ mod heat;
 
 mod threads;
 
+mod shelf;
+
 mod band;
 
 mod tracer;

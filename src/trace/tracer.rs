@@ -7,6 +7,7 @@ use rayon::slice::ParallelSliceMut as _;
 
 use super::band::Band;
 use super::candidates::Candidates;
+use super::shelf::Shelf;
 use super::stats::{Rays, RenderControl};
 use super::threads::Threads;
 use super::tile::{Grid, Pass, Pixel};
@@ -45,6 +46,7 @@ pub struct Tracer {
     sampling: Sampling,
     level: Level,
     plan: PlanOf,
+    shelf: Shelf,
 }
 
 #[derive(Debug)]
@@ -92,6 +94,7 @@ impl Tracer {
             sampling: request.sampling,
             level: request.level.unwrap_or_else(Level::widest),
             plan,
+            shelf: Shelf::default(),
         }
     }
 
@@ -214,6 +217,7 @@ impl Tracer {
             pixels,
             grid,
             sampling,
+            shelf: &self.shelf,
             control,
         })
     }
