@@ -9,7 +9,7 @@ use super::theme::{GRID, palette};
 /// Room that all of it takes, in points.
 const SIZE: Vec2 = vec2(1180.0, 640.0);
 /// Width in which commands and the keys of hands have room side by side, in points.
-const TWO_COLUMNS: f32 = 800.0;
+const TWO_COLUMNS: f32 = 845.0;
 
 /// Shows the list while `open`.
 pub fn show(ctx: &Context, open: &mut bool) {
