@@ -105,6 +105,8 @@ struct RayCounts {
     camera: u64,
     shadow: u64,
     reflected: u64,
+    /// Those from the camera that were traced again in double precision.
+    again: u64,
 }
 
 fn lanes(word: &str) -> Result<Level, String> {
@@ -299,6 +301,7 @@ fn stats((film, choice): (&Film, Option<Choice>), costs: &[RenderCost], threads:
             camera: rays.camera,
             shadow: rays.shadow,
             reflected: rays.reflected,
+            again: rays.again,
         },
         lanes,
         chosen: choice.map(|choice| Chosen {
@@ -319,7 +322,13 @@ fn summary(path: &Path, stats: &Stats) -> String {
         trace_ms,
         ..
     } = stats;
-    let rays = stats.rays.camera + stats.rays.shadow + stats.rays.reflected;
+    let RayCounts {
+        camera,
+        shadow,
+        reflected,
+        again,
+    } = stats.rays;
+    let rays = camera + shadow + reflected + again;
     let per_pixel = rays as f64 / (width * height) as f64;
     format!(
         "{}: {width}×{height}, {trace_ms:.1} ms, {per_pixel:.2} rays/px",

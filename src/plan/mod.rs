@@ -61,7 +61,7 @@ pub use materials::{Material, Surface};
 pub use needs::{ACCELERATOR, Need, needs};
 pub use pack::Plan;
 pub use packed_mesh::{MeshInstance, PackedMesh};
-pub use precision::is_double;
+pub use precision::{is_double, is_filtered};
 pub use ray_origin::RayOrigin;
 pub use request::{Model, Region, RenderRequest};
 pub use show::Show;

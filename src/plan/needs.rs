@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::geometry::{Kept, LARGEST_LIST, MOST_LISTED_TRIANGLES, SMALLEST_TREE};
 use super::materials::Material;
 use super::pack::Plan;
-use super::precision::needs_double;
+use super::precision::{is_filtered, needs_double};
 use super::request::RenderRequest;
 use crate::scene::{Object, Precision, Sampling, Scene, Shape};
 use crate::simd::Exponent;
@@ -74,7 +74,11 @@ fn precision(scene: &Scene, request: &RenderRequest) -> Need {
         ),
         Precision::Auto => need(
             rule,
-            "single precision",
+            if is_filtered(scene, request) {
+                "single precision, and double where rounding may decide what is seen"
+            } else {
+                "single precision"
+            },
             "nothing is farther than 5,000 of its radii or smaller than 1/10,000 of the scene",
             "time: a vector holds twice as many numbers",
         ),

@@ -17,7 +17,7 @@ use super::request::{Model, RenderRequest};
 use super::show::Show;
 use super::view::View;
 use crate::primitive::{
-    BoundingBox, CAUTION, KINDS, Packed, Packing, Primitives, Projector, Rectangle,
+    Blur, BoundingBox, CAUTION, KINDS, Packed, Packing, Primitives, Projector, Rectangle,
     count_corner_users,
 };
 use crate::scene::{
@@ -82,6 +82,8 @@ pub struct Plan<R> {
     pub ties: Vec<Tie>,
     /// The largest coordinate of what ends.
     pub extent: R,
+    /// How far the camera's rays may be beside their place; nothing where nobody asks what that leaves undecided.
+    pub blur: Blur<R>,
 }
 
 /// Pixels added around everything for the rounding of the kernel.
@@ -130,6 +132,7 @@ impl<R: Real> Plan<R> {
             eye_on: None,
             ties: Vec::new(),
             extent: R::from_f64(half),
+            blur: Blur::NONE,
         };
         let found = kept.coincidences(&scene.objects, centre);
         let contacts = Contacts::new(scene, request, &found);
@@ -171,6 +174,19 @@ impl<R: Real> Plan<R> {
         }
         kept.idle().end();
         plan
+    }
+
+    /// Whether what rounding may decide is told.
+    pub fn is_doubted(&self) -> bool {
+        R::ZERO < self.blur.spread
+    }
+
+    /// From now on it is.
+    pub fn doubt(&mut self, scene: &Scene) {
+        let eye = (scene.camera.position - self.centre).abs().max_element();
+        let lights = self.lights.iter().map(|light| light.position.max_abs());
+        let size = lights.fold(self.extent.max(R::from_f64(eye)), R::max);
+        self.blur = Blur::of_size(size);
     }
 
     /// Whether a point may be on a mesh.

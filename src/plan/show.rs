@@ -23,6 +23,8 @@ pub enum Show<R> {
     Mirrors,
     /// The rays of each tile, for each of its pixels.
     Cost,
+    /// Samples that are traced again, in white, and the others darkened.
+    Again,
 }
 
 /// How deep a scene without any end is shown, in distances from the eye to the origin.
@@ -46,6 +48,7 @@ impl<R: Real> Show<R> {
             }
             Aspect::Mirrors => Self::Mirrors,
             Aspect::Cost => Self::Cost,
+            Aspect::Again => Self::Again,
             Aspect::All
             | Aspect::Ambient
             | Aspect::Diffuse

@@ -1,6 +1,10 @@
 //! Boxes around things, along the axes.
 
-use crate::simd::{Real, Vec3};
+use super::ray::Ray;
+use crate::simd::{Real, SimdFloat, Vec3};
+
+/// The smallest component of a direction that is divided by.
+const LEAST: f64 = 1e-30;
 
 /// A box along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +66,37 @@ impl<R: Real> BoundingBox<R> {
         let half = R::from_f64(0.5);
         let middle = self.low * half + self.high * half;
         (middle, (self.high - self.low).length() * half)
+    }
+
+    /// How far along rays it begins, or where they pass within so much of it; infinity where they do not. A function of
+    /// its own: it is long, and few rays need it.
+    #[inline(never)]
+    pub fn entry<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, beside: L) -> L {
+        L::vectorize(
+            beside.token(),
+            #[inline(always)]
+            || {
+                let slack = Vec3::splat(beside);
+                let low = slack.like(self.low) - rays.origin - slack;
+                let high = slack.like(self.high) - rays.origin + slack;
+                let (zero, one) = (beside.like(R::ZERO), beside.like(R::ONE));
+                let infinity = beside.like(R::INFINITY);
+                let (mut near, mut far) = (zero, infinity);
+                let axes = [
+                    (low.x, high.x, rays.direction.x),
+                    (low.y, high.y, rays.direction.y),
+                    (low.z, high.z, rays.direction.z),
+                ];
+                for (low, high, along) in axes {
+                    let size = along.abs().max(along.like_f64(LEAST));
+                    let inverse = one / L::select(along.less(zero), -size, size);
+                    let (low, high) = (low * inverse, high * inverse);
+                    near = near.max(low.min(high));
+                    far = far.min(low.max(high));
+                }
+                L::select(near.at_most(far), near, infinity)
+            },
+        )
     }
 
     /// The largest coordinate, of either sign.

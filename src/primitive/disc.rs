@@ -1,12 +1,13 @@
 //! Ray against disc. Both sides are hit.
 
 use super::ball::Ball;
+use super::blur::Blur;
 use super::bounding_box::BoundingBox;
 use super::kind::{Approach, Packing, Primitive, SurfacePoint};
 use super::projector::{Projector, Rectangle};
 use super::ray::Ray;
 use crate::scene::{Disc, Methods, unit};
-use crate::simd::{Real, SimdFloat, Vec3};
+use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// A flat disc: the points p with normal · (p - center) = 0 and |p - center| ≤ radius.
 #[derive(Clone, Copy, Debug)]
@@ -78,6 +79,44 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
         let is_inside = off.dot(off).at_most(t.like(self.radius * self.radius));
         let is_ahead = t.like(R::ZERO).less(t);
         L::select(is_inside & is_ahead, t, t.like(R::INFINITY))
+    }
+
+    /// Undecided where they pass its rim, which they meet farther off the more they slant, where they go along it, and
+    /// where they start on it.
+    #[inline(always)]
+    fn intersect_in_doubt<L: SimdFloat<Real = R>>(
+        &self,
+        rays: &Ray<L>,
+        (): &(),
+        methods: &Methods,
+        (blur, wanted): (&Blur<L>, L::Mask),
+    ) -> Option<(L, L)> {
+        let normal = rays.origin.like(self.normal);
+        let from = rays.origin - rays.origin.like(self.center);
+        let radius = from.x.like(self.radius);
+        let b = -rays.direction.dot(from);
+        let perpendicular = from + rays.direction * b;
+        let width = blur.at(b.abs() + radius);
+        let reach = radius + width;
+        let comes_near = perpendicular.dot(perpendicular).at_most(reach * reach);
+        if !(wanted & comes_near).any() {
+            return None;
+        }
+        let infinity = b.like(R::INFINITY);
+        let (height, speed) = (normal.dot(from), normal.dot(rays.direction));
+        let off = from - rays.direction * (height / speed);
+        let aside = width / speed.abs();
+        let bound = aside * (radius + radius + aside);
+        let passes_rim = (off.dot(off) - radius * radius).abs().at_most(bound);
+        let is_open = passes_rim | speed.abs().at_most(blur.spread);
+        let is_open = comes_near & (is_open | height.abs().at_most(blur.start));
+        let distance = self.intersect(rays, &(), methods);
+        if !(wanted & is_open).any() {
+            return Some((distance, infinity));
+        }
+        let around = BoundingBox::around_ball(self.center, self.radius);
+        let entry = around.entry(rays, blur.at(b.abs()));
+        Some((distance, L::select(is_open, entry, infinity)))
     }
 
     #[inline(always)]

@@ -7,6 +7,7 @@ use std::fmt::Debug;
 use glam::DVec3;
 
 use super::ball::Ball;
+use super::blur::Blur;
 use super::bounding_box::BoundingBox;
 use super::projector::{Projector, Rectangle};
 use super::ray::Ray;
@@ -104,6 +105,16 @@ pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
         prepared: &Self::Prepared<L>,
         methods: &Methods,
     ) -> L;
+
+    /// The same, and from where along rays that are so blurred it is undecided whether they meet it: infinity where
+    /// that is decided. `None` if none does that is wanted; where one is not wanted, anything.
+    fn intersect_in_doubt<L: SimdFloat<Real = R>>(
+        &self,
+        rays: &Ray<L>,
+        prepared: &Self::Prepared<L>,
+        methods: &Methods,
+        blur_where_wanted: (&Blur<L>, L::Mask),
+    ) -> Option<(L, L)>;
 
     /// Where rays that start on it meet it again; infinity for what is flat.
     #[inline(always)]

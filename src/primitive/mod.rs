@@ -11,6 +11,8 @@ mod bounding_box;
 
 mod projector;
 
+mod blur;
+
 mod kind;
 
 mod sphere;
@@ -24,6 +26,7 @@ mod disc;
 mod list;
 
 pub use ball::{Ball, CAUTION, FAR_CAUTION, roundings};
+pub use blur::Blur;
 pub use bounding_box::BoundingBox;
 pub use disc::PackedDisc;
 pub use kind::{Approach, Corner, Packing, Primitive, SurfacePoint};

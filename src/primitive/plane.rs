@@ -1,12 +1,13 @@
 //! Ray against plane.
 
 use super::ball::Ball;
+use super::blur::Blur;
 use super::bounding_box::BoundingBox;
 use super::kind::{Approach, Packing, Primitive, SurfacePoint};
 use super::projector::{Projector, Rectangle};
 use super::ray::Ray;
 use crate::scene::{Methods, Plane, unit};
-use crate::simd::{Real, SimdFloat, Vec3};
+use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// An endless plane: the points p with normal · p = offset.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +69,31 @@ impl<R: Real> Primitive<R> for PackedPlane<R> {
         let height = normal.x.like(self.offset) - normal.dot(rays.origin);
         let t = height / normal.dot(rays.direction);
         L::select(t.like(R::ZERO).less(t), t, t.like(R::INFINITY))
+    }
+
+    /// Undecided where they start on it, or go along it.
+    #[inline(always)]
+    fn intersect_in_doubt<L: SimdFloat<Real = R>>(
+        &self,
+        rays: &Ray<L>,
+        (): &(),
+        _methods: &Methods,
+        (blur, wanted): (&Blur<L>, L::Mask),
+    ) -> Option<(L, L)> {
+        let normal = rays.origin.like(self.normal);
+        let height = normal.x.like(self.offset) - normal.dot(rays.origin);
+        let speed = normal.dot(rays.direction);
+        let t = height / speed;
+        let (zero, infinity) = (t.like(R::ZERO), t.like(R::INFINITY));
+        let distance = L::select(zero.less(t), t, infinity);
+        let (height, speed) = (height.abs(), speed.abs());
+        let starts_on_it = height.at_most(blur.at(t.like(self.offset.abs())));
+        let is_along = speed.at_most(blur.spread);
+        if !(wanted & (starts_on_it | is_along)).any() {
+            return Some((distance, infinity));
+        }
+        let earliest = L::select(is_along, height / (speed + blur.spread), infinity);
+        Some((distance, L::select(starts_on_it, zero, earliest)))
     }
 
     #[inline(always)]

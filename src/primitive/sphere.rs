@@ -3,12 +3,13 @@
 use glam::DVec3;
 
 use super::ball::Ball;
+use super::blur::Blur;
 use super::bounding_box::BoundingBox;
 use super::kind::{Approach, Packing, Primitive, SurfacePoint};
 use super::projector::{Projector, Rectangle};
 use super::ray::Ray;
 use crate::scene::{Methods, Sphere, SphereMethod};
-use crate::simd::{Real, SimdFloat, Vec3};
+use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// A ball.
 #[derive(Clone, Copy, Debug)]
@@ -113,9 +114,43 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
             SphereMethod::Stable => stable(x, rays.direction, radius),
             SphereMethod::Classic => classic(x, rays.direction, radius),
         };
-        let zero = near.like(R::ZERO);
-        let behind = L::select(zero.less(far), far, near.like(R::INFINITY));
-        L::select(zero.less(near), near, behind)
+        first_ahead(near, far)
+    }
+
+    /// Undecided where they graze it, R² - |x + b·d|² being off by no more than (2R + w)·w where they are off by w, and
+    /// where they start on it.
+    #[inline(always)]
+    fn intersect_in_doubt<L: SimdFloat<Real = R>>(
+        &self,
+        rays: &Ray<L>,
+        (): &(),
+        methods: &Methods,
+        (blur, wanted): (&Blur<L>, L::Mask),
+    ) -> Option<(L, L)> {
+        let x = rays.origin - rays.origin.like(self.center);
+        let (zero, infinity) = (x.x.like(R::ZERO), x.x.like(R::INFINITY));
+        if methods.sphere == SphereMethod::Classic {
+            return Some((self.intersect(rays, &(), methods), infinity));
+        }
+        let radius = x.x.like(self.radius);
+        let (b, inside) = perpendicular(x, rays.direction, radius);
+        let square_of = |width: L| width * (radius + radius + width);
+        let bound = square_of(blur.at(b.abs()));
+        let passes_by = inside.less(-bound);
+        if !(wanted & !passes_by).any() {
+            return None;
+        }
+        let half_chord = inside.sqrt();
+        let distance = first_ahead(b - half_chord, b + half_chord);
+        let grazes = inside.abs().at_most(bound);
+        let starts_on_it = (b * b - inside).abs().at_most(square_of(blur.start)) & !passes_by;
+        if !(wanted & (grazes | starts_on_it)).any() {
+            return Some((distance, infinity));
+        }
+        let around = BoundingBox::around_ball(self.center, self.radius);
+        let entry = around.entry(rays, blur.at(b.abs()));
+        let from = L::select(grazes, entry, infinity);
+        Some((distance, L::select(starts_on_it, zero, from)))
     }
 
     /// t = -2·d·(p - c), or infinity. The root at t = 0 is the start itself and never counts, however
@@ -167,10 +202,25 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
 /// Tracing Gems (2019), ch. 7.
 #[inline(always)]
 fn stable<L: SimdFloat>(x: Vec3<L>, d: Vec3<L>, radius: L) -> Roots<L> {
+    let (b, inside) = perpendicular(x, d, radius);
+    let half_chord = inside.sqrt();
+    (b - half_chord, b + half_chord)
+}
+
+/// b and disc.
+#[inline(always)]
+fn perpendicular<L: SimdFloat>(x: Vec3<L>, d: Vec3<L>, radius: L) -> (L, L) {
     let b = -d.dot(x);
     let perpendicular = x + d * b;
-    let half_chord = (radius * radius - perpendicular.dot(perpendicular)).sqrt();
-    (b - half_chord, b + half_chord)
+    (b, radius * radius - perpendicular.dot(perpendicular))
+}
+
+/// The smaller of two roots that is above zero; infinity if there is none.
+#[inline(always)]
+fn first_ahead<L: SimdFloat>(near: L, far: L) -> L {
+    let zero = near.like(L::Real::ZERO);
+    let behind = L::select(zero.less(far), far, near.like(L::Real::INFINITY));
+    L::select(zero.less(near), near, behind)
 }
 
 /// t = -d·x ± √((d·x)² - x·x + R²), the formula of the original program. Needs |d| = 1; loses all

@@ -33,6 +33,8 @@ pub enum Aspect {
     Mirrors,
     /// How many rays each pixel takes.
     Cost,
+    /// Which samples are traced again in double precision.
+    Again,
 }
 
 /// Golden angle in turns: hues so far apart differ for as many neighbours as can be.
@@ -42,7 +44,7 @@ const CLAY: f64 = 200.0;
 
 impl Aspect {
     /// Every aspect, with its name and what it shows.
-    pub const EACH: [(Self, &'static str, &'static str); 12] = [
+    pub const EACH: [(Self, &'static str, &'static str); 13] = [
         (Self::All, "Everything", "The picture as it is"),
         (
             Self::Ambient,
@@ -95,6 +97,11 @@ impl Aspect {
             "Rays per pixel",
             "What the picture costs, in squares of 8 pixels: black is 1 ray for each, white 1,000",
         ),
+        (
+            Self::Again,
+            "Traced again",
+            "Where rounding may decide what is seen, and double precision does: white, in a dark picture",
+        ),
     ];
 
     /// Its name.
@@ -125,7 +132,7 @@ impl Aspect {
             shown.packs_mut().values_mut().for_each(change);
         };
         match self {
-            Self::All | Self::Mirrors | Self::Cost => {}
+            Self::All | Self::Mirrors | Self::Cost | Self::Again => {}
             Self::Normals | Self::Depth => unlit(&mut shown),
             Self::Shadows => {
                 clay(&mut shown);
@@ -228,7 +235,7 @@ mod tests {
         for (aspect, name, _) in &Aspect::EACH[1..] {
             let shown = aspect.of(&demo);
             // What the tracer writes instead is not the scene's to say.
-            let is_traced = matches!(aspect, Aspect::Mirrors | Aspect::Cost);
+            let is_traced = matches!(aspect, Aspect::Mirrors | Aspect::Cost | Aspect::Again);
             assert_eq!(shown == demo, is_traced, "{name}");
             assert_eq!(check(&shown), Ok(()), "{name}");
         }
@@ -238,7 +245,7 @@ mod tests {
     fn words_are_short() {
         assert_eq!(
             Aspect::words(),
-            "everything, ambient, diffuse, specular, without-mirrors, clay, objects, normals, depth, shadows, mirrors, rays-per-pixel"
+            "everything, ambient, diffuse, specular, without-mirrors, clay, objects, normals, depth, shadows, mirrors, rays-per-pixel, traced-again"
         );
     }
 

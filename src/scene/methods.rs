@@ -70,7 +70,7 @@ const ORIGINAL: &str = "the original program";
 /// The real type of the kernel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Precision {
-    /// Single, unless the scene needs double.
+    /// Single, unless the scene needs double, or a sample does.
     #[default]
     Auto,
     /// Single precision.
@@ -84,8 +84,8 @@ impl Method for Precision {
         method(
             Self::Auto,
             "auto",
-            "f32 unless it would show",
-            "Glint's plan",
+            "f32; f64 where that may show: for a scene, or for a sample",
+            "Shewchuk, Adaptive precision floating-point arithmetic, Discrete & Computational Geometry 18, 1997",
         ),
         method(Self::Single, "f32", "single precision", "IEEE 754"),
         method(Self::Double, "f64", "double precision", "IEEE 754"),

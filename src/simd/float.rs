@@ -104,6 +104,8 @@ pub trait Real:
     const ONE: Self;
     /// Its name in Rust.
     const NAME: &'static str;
+    /// Whether what its rounding may decide is traced again in double precision.
+    const IS_FILTERED: bool;
 
     /// The nearest representable number.
     fn from_f64(value: f64) -> Self;
@@ -114,13 +116,14 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($type:ty, $name:literal) => {
+    ($type:ty, $name:literal, $is_filtered:literal) => {
         impl Real for $type {
             const UNIT_ROUNDOFF: Self = <$type>::EPSILON / 2.0;
             const INFINITY: Self = <$type>::INFINITY;
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const NAME: &'static str = $name;
+            const IS_FILTERED: bool = $is_filtered;
 
             #[inline(always)]
             fn from_f64(value: f64) -> Self {
@@ -141,8 +144,8 @@ macro_rules! real {
     };
 }
 
-real!(f32, "f32");
-real!(f64, "f64");
+real!(f32, "f32", true);
+real!(f64, "f64", false);
 
 /// One truth value per lane.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::atomic::Ordering;
 
 use super::candidates::{Candidates, Span};
-use super::engine::{Engine, Workspace};
+use super::engine::{Engine, Reference, Workspace};
 use super::heat::heat;
 use super::intersect::Kernel;
 use super::lattice::Limits;
@@ -38,6 +38,8 @@ pub struct Band<'a, R, P> {
     pub grid: Grid,
     /// How they are sampled.
     pub sampling: Sampling,
+    /// What traces again what is in doubt.
+    pub reference: Option<&'a dyn Reference>,
     /// Memory of other bands of the plan.
     pub shelf: &'a Shelf,
     /// Tells when to stop.
@@ -70,7 +72,7 @@ impl<R: SimdReal, P: Pixel> WithSimd<R> for Band<'_, R, P> {
 
     #[inline(always)]
     fn run<L: SimdFloat<Real = R>>(self, token: L::Token) -> Option<Rays> {
-        if self.plan.geometry.is_some() {
+        if self.plan.geometry.is_some() || self.plan.is_doubted() {
             self.trace::<L, true>(token)
         } else {
             self.trace::<L, false>(token)
@@ -98,7 +100,8 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
             in_band,
             in_tile,
         } = &mut *desk;
-        let mut engine = Engine::<L, TREE>::new(Kernel { token, plan }, work, stop);
+        let ways = (stop, self.reference);
+        let mut engine = Engine::<L, TREE>::new(Kernel { token, plan }, work, ways);
         in_band.keep_seen(self.seen, plan, &self.rows, Span::Rows);
         for left in self.columns.clone().step_by(self.tile) {
             let tile = Tile {

@@ -1,11 +1,13 @@
 //! The rays of a packet as one: boxes that no ray of it can meet are left out, sixteen at a time.
 
 use crate::plan::{GROUP, Node};
-use crate::primitive::{BoundingBox, Ray, roundings};
+use crate::primitive::{Blur, BoundingBox, CAUTION, Ray, roundings};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// The smallest component of a direction; one over it is still a number in single precision.
 const LEAST: f64 = 1e-30;
+/// The length of a way in a box, in its longest side: the root of 3, and a little more.
+const LONGEST: f64 = 1.75;
 /// How many times as far as a start a ray may be rounded that sets out to a point.
 const ROUNDED_TWICE: f64 = 2.0;
 
@@ -63,12 +65,13 @@ impl<R: Real> Beside<R> {
 }
 
 impl<L: SimdFloat> Bundle<L> {
-    /// The rays where the mask is set, among things whose coordinates are at most `reach`.
+    /// The rays where the mask is set, among things whose coordinates are at most `reach`. Boxes that a ray may meet
+    /// by so much blur are met: whether it is in doubt does not depend on the rays beside it.
     #[inline(always)]
-    pub fn new(rays: &Ray<L>, active: L::Mask, reach: L::Real) -> Self {
+    pub fn new(rays: &Ray<L>, blur: &Blur<L>, active: L::Mask, reach: L::Real) -> Self {
         let like = rays.origin.x;
         let size = rays.origin.max_abs() + like.like(reach);
-        let slack = size * like.like(roundings());
+        let slack = size * like.like(roundings()) + aside(blur, size);
         Self::between(rays.origin, slack, rays.direction, active)
     }
 
@@ -77,14 +80,15 @@ impl<L: SimdFloat> Bundle<L> {
     #[inline(always)]
     pub fn from_point(
         point: Vec3<L::Real>,
-        rays: &Ray<L>,
+        (rays, blur): (&Ray<L>, &Blur<L>),
         active: L::Mask,
         reach: L::Real,
     ) -> Self {
         let origin = rays.origin.like(point);
         let size = rays.origin.max_abs() + origin.x.like(reach + point.max_abs());
         // A ray passes the point as far off as its start and its direction are rounded.
-        let slack = size * size.like_f64(ROUNDED_TWICE) * size.like(roundings());
+        let rounded = size * size.like_f64(ROUNDED_TWICE) * size.like(roundings());
+        let slack = rounded + aside(blur, size);
         Self::between(origin, slack, rays.origin - origin, active)
     }
 
@@ -381,6 +385,17 @@ impl<R: Real> Axis<R> {
                 inverse,
             }
         }
+    }
+}
+
+/// How far beside rays boxes are met, where no coordinate is larger than this.
+#[inline(always)]
+pub fn aside<L: SimdFloat>(blur: &Blur<L>, size: L) -> L {
+    if L::Real::IS_FILTERED {
+        // As far as doubts go, along the longest way through the scene.
+        blur.at(size * size.like_f64(LONGEST)) * size.like_f64(1.0 + CAUTION)
+    } else {
+        size.like(L::Real::ZERO)
     }
 }
 

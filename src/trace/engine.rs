@@ -11,7 +11,7 @@ use super::outcome::clamped;
 use super::samples::{Edges, Samples, Traced};
 use super::stats::Rays;
 use crate::plan::Show;
-use crate::simd::{SimdFloat, Vec3};
+use crate::simd::{Real, SimdFloat, Vec3};
 
 /// What an engine works with, and the next one for the same plan may as well.
 pub struct Workspace<L: SimdFloat> {
@@ -19,6 +19,28 @@ pub struct Workspace<L: SimdFloat> {
     scratch: Scratch<L::Real>,
     /// What was seen by rays that were put in another order than the samples.
     unsorted: Traced<L::Real>,
+    again: Repeated,
+}
+
+/// Samples that are traced again.
+#[derive(Default)]
+struct Repeated {
+    /// Which they are.
+    places: Vec<u32>,
+    samples: Samples<f64>,
+    traced: Traced<f64>,
+}
+
+/// What traces samples again where rounding may have decided what was seen.
+pub trait Reference: Sync {
+    /// Traces the samples in double precision.
+    fn trace(
+        &self,
+        samples: &mut Samples<f64>,
+        edges: Edges,
+        stop: &AtomicBool,
+        traced: &mut Traced<f64>,
+    );
 }
 
 impl<L: SimdFloat> Default for Workspace<L> {
@@ -27,6 +49,7 @@ impl<L: SimdFloat> Default for Workspace<L> {
             bounces: Vec::new(),
             scratch: Scratch::default(),
             unsorted: Traced::default(),
+            again: Repeated::default(),
         }
     }
 }
@@ -37,21 +60,24 @@ pub struct Engine<'a, L: SimdFloat, const TREE: bool> {
     work: &'a mut Workspace<L>,
     /// Whether nobody wants the picture any more: the rays of one tile can take minutes.
     stop: &'a AtomicBool,
+    reference: Option<&'a dyn Reference>,
     /// Rays traced so far.
     pub rays: Rays,
 }
 
 impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
-    /// An engine for a plan, which does nothing more once `stop` is set.
+    /// An engine for a plan, which does nothing more once `stop` is set, and what traces again what is in doubt, if
+    /// something does.
     pub fn new(
         kernel: Kernel<'a, L, TREE>,
         work: &'a mut Workspace<L>,
-        stop: &'a AtomicBool,
+        (stop, reference): (&'a AtomicBool, Option<&'a dyn Reference>),
     ) -> Self {
         Self {
             kernel,
             work,
             stop,
+            reference,
             rays: Rays::default(),
         }
     }
@@ -80,6 +106,37 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
             #[inline(always)]
             || self.trace_vectorized(samples, seen, edges, traced),
         );
+        let is_anything_seen = !seen.is_empty() && !self.is_stopped();
+        if let Some(reference) = self.reference.filter(|_| is_anything_seen) {
+            self.repeat(reference, samples, edges, traced);
+        }
+        if self.kernel.plan.show == Show::Again {
+            let places = &self.work.again.places;
+            traced.mark(if is_anything_seen { places } else { &[] });
+        }
+    }
+
+    /// Traces the samples again that are in doubt.
+    fn repeat(
+        &mut self,
+        reference: &dyn Reference,
+        samples: &Samples<L::Real>,
+        edges: Edges,
+        traced: &mut Traced<L::Real>,
+    ) {
+        let Workspace { bounces, again, .. } = &mut *self.work;
+        bounces[0].list_doubtful(samples.count, &mut again.places);
+        if again.places.is_empty() {
+            return;
+        }
+        again.samples.clear();
+        for &place in &again.places {
+            let (x, y) = (samples.x[place as usize], samples.y[place as usize]);
+            again.samples.push(x.to_f64(), y.to_f64());
+        }
+        reference.trace(&mut again.samples, edges, self.stop, &mut again.traced);
+        traced.replace(&again.places, &again.traced, edges);
+        self.rays.again += again.places.len() as u64;
     }
 
     #[inline(always)]

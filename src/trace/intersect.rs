@@ -2,11 +2,12 @@
 
 use super::bundle::Beside;
 use super::candidates::Among;
+use super::doubt::Doubt;
 use super::paths::{NOTHING, Paths, real};
 use super::scan::{Test, Thicket, scan_lists};
 use super::walk::Stack;
 use crate::plan::{Geometry, Plan, RayOrigin};
-use crate::primitive::{FAR_CAUTION, Primitive, WithPrimitive};
+use crate::primitive::{Blur, FAR_CAUTION, Primitive, WithPrimitive};
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
@@ -54,7 +55,11 @@ impl<'a, L: SimdFloat, const TREE: bool> Kernel<'a, L, TREE> {
 
     /// What stands in the plan's tree, if it is among these.
     #[inline(always)]
-    pub fn thicket<'b>(self, among: Among<'b, L::Real>, active: L::Mask) -> Option<Thicket<'b, L>>
+    pub fn thicket<'b>(
+        self,
+        among: Among<'b, L::Real>,
+        (active, blur): (L::Mask, Blur<L>),
+    ) -> Option<Thicket<'b, L>>
     where
         'a: 'b,
     {
@@ -69,6 +74,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Kernel<'a, L, TREE> {
                 _ => None,
             },
             active,
+            blur,
             beside: Beside::default(),
             is_boxed: self.plan.is_boxed,
         })
@@ -88,32 +94,40 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         L::splat(self.token, L::Real::INFINITY)
     }
 
-    /// The nearest primitives along the paths where the mask is set.
+    /// The nearest primitives along the paths where the mask is set, and where that is in doubt.
     #[inline(always)]
     pub fn nearest(
         self,
         among: Among<L::Real>,
-        paths: &Paths<L>,
+        (paths, blur): (&Paths<L>, Blur<L>),
         active: L::Mask,
         stack: &mut Stack<L::Real>,
-    ) -> Nearest<L> {
-        let mut test = NearestTest::<L, true> {
+    ) -> (Nearest<L>, L::Mask) {
+        let nothing = Nearest {
+            t: self.infinity(),
+            number: self.splat(NOTHING),
+        };
+        let is_tied = !self.plan.ties.is_empty();
+        let mut test = NearestTest::<L, TREE, true> {
             methods: &self.plan.methods,
-            best: Nearest {
-                t: self.infinity(),
-                number: self.splat(NOTHING),
-            },
+            best: nothing,
+            active,
+            doubt: Doubt::new(blur, (self.plan.is_doubted(), !is_tied)),
         };
         scan_lists(self.plan, among.candidates, paths, &mut test);
-        let mut best = test.best;
-        if let Some(thicket) = self.thicket(among, active) {
-            best = self.nearest_in(&thicket, paths, best, stack);
+        let (mut best, mut doubt) = (test.best, test.doubt);
+        if let Some(thicket) = self.thicket(among, (active, blur)) {
+            (best, doubt) = self.nearest_in(&thicket, paths, (best, doubt), stack);
         }
-        if self.plan.ties.is_empty() {
-            best
+        let doubt = if doubt.is_asked() {
+            (doubt.before(best.t) | doubt.is_tie(best.t, doubt.second)) & active
         } else {
-            self.settled(paths, best)
+            active & !active
+        };
+        if is_tied {
+            best = self.settled(paths, best);
         }
+        (best, doubt)
     }
 
     /// The same, but for what lies in the surface of the nearest and is seen there. Which of them is nearer,
@@ -151,73 +165,84 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         self,
         thicket: &Thicket<L>,
         paths: &Paths<L>,
-        best: Nearest<L>,
+        (best, doubt): (Nearest<L>, Doubt<L, TREE>),
         stack: &mut Stack<L::Real>,
-    ) -> Nearest<L> {
+    ) -> (Nearest<L>, Doubt<L, TREE>) {
         L::vectorize(
             self.token,
             #[inline(always)]
             || {
-                let mut test = NearestTest::<L, false> {
+                let mut test = NearestTest::<L, TREE, false> {
                     methods: &self.plan.methods,
                     best,
+                    active: thicket.active,
+                    doubt,
                 };
                 thicket.scan(paths, stack, &mut test);
-                test.best
+                (test.best, test.doubt)
             },
         )
     }
 
-    /// Where one of the primitives meets the paths before `distance`; looked for only where `wanted`.
+    /// Where one of the primitives meets the paths before `distance`, and where that is in doubt; looked for only
+    /// where `wanted`.
     #[inline(always)]
     pub fn blocked(
         self,
         among: Among<L::Real>,
-        paths: &Paths<L>,
+        (paths, doubt): (&Paths<L>, Doubt<L, TREE>),
         (distance, wanted): (L, L::Mask),
         stack: &mut Stack<L::Real>,
-    ) -> L::Mask {
-        let mut test = BlockedTest::<L, true> {
+    ) -> (L::Mask, L::Mask) {
+        let mut test = BlockedTest::<L, TREE, true> {
             methods: &self.plan.methods,
             distance,
+            sure: doubt.ahead_of(distance),
             reach: distance,
-            free: wanted,
+            way: Way {
+                free: wanted,
+                met: !wanted & wanted,
+                doubt,
+            },
         };
         scan_lists(self.plan, among.candidates, paths, &mut test);
-        let mut free = test.free;
-        if free.any()
-            && let Some(thicket) = self.thicket(among, free)
+        let mut way = test.way;
+        if way.free.any()
+            && let Some(thicket) = self.thicket(among, (way.free, way.doubt.blur))
         {
-            free = self.free_in(&thicket, paths, distance, stack);
+            way = self.way_in(&thicket, paths, (distance, way), stack);
         }
-        wanted & !free
+        let blocked = wanted & (!way.free | way.met);
+        // What may be behind the light is not looked for.
+        (blocked, way.free & way.doubt.from.at_most(distance))
     }
 
-    /// Where nothing in the tree meets the paths before `distance`.
+    /// The same among what is in the tree.
     #[inline(never)]
-    fn free_in(
+    fn way_in(
         self,
         thicket: &Thicket<L>,
         paths: &Paths<L>,
-        distance: L,
+        (distance, way): (L, Way<L, TREE>),
         stack: &mut Stack<L::Real>,
-    ) -> L::Mask {
+    ) -> Way<L, TREE> {
         L::vectorize(
             self.token,
             #[inline(always)]
             || {
-                let all = L::Real::from_f64(1.0 + FAR_CAUTION);
-                let mut test = BlockedTest::<L, false> {
+                let all = distance.like_f64(1.0 + FAR_CAUTION);
+                let mut test = BlockedTest::<L, TREE, false> {
                     methods: &self.plan.methods,
                     distance,
+                    sure: way.doubt.ahead_of(distance),
                     reach: match thicket.back_from {
                         None => distance,
-                        Some(_) => distance.like(all),
+                        Some(_) => all * way.doubt.stretch(distance),
                     },
-                    free: thicket.active,
+                    way,
                 };
                 thicket.scan(paths, stack, &mut test);
-                test.free
+                test.way
             },
         )
     }
@@ -240,15 +265,19 @@ impl<L: SimdFloat> WithPrimitive<L::Real> for Meet<'_, L> {
 
 /// Looks for the nearest primitive. Of two at the same distance it is the one with the smaller number:
 /// the first that is tested, where they are tested in order.
-struct NearestTest<'a, L, const LISTED: bool> {
+struct NearestTest<'a, L: SimdFloat, const TREE: bool, const LISTED: bool> {
     methods: &'a Methods,
     best: Nearest<L>,
+    active: L::Mask,
+    doubt: Doubt<L, TREE>,
 }
 
-impl<L: SimdFloat, const LISTED: bool> Test<L> for NearestTest<'_, L, LISTED> {
+impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
+    for NearestTest<'_, L, TREE, LISTED>
+{
     #[inline(always)]
     fn reach(&self) -> L {
-        self.best.t
+        self.doubt.after(self.best.t)
     }
 
     #[inline(always)]
@@ -259,7 +288,19 @@ impl<L: SimdFloat, const LISTED: bool> Test<L> for NearestTest<'_, L, LISTED> {
         paths: &Paths<L>,
         number: usize,
     ) {
-        let t = paths.distance::<LISTED, P>(primitive, prepared, number, self.methods);
+        let doubt = &mut self.doubt;
+        let t = if doubt.is_asked() {
+            let (primitive, asked) = ((primitive, number), (self.methods, self.active));
+            let Some((t, from)) = doubt.distance::<LISTED, P>(primitive, prepared, paths, asked)
+            else {
+                return;
+            };
+            doubt.from = doubt.from.min(from);
+            doubt.second = doubt.second.min(t.max(self.best.t));
+            t
+        } else {
+            paths.distance::<LISTED, P>(primitive, prepared, number, self.methods)
+        };
         let own = t.like(real(number));
         let mut closer = t.less(self.best.t);
         if !LISTED {
@@ -271,24 +312,37 @@ impl<L: SimdFloat, const LISTED: bool> Test<L> for NearestTest<'_, L, LISTED> {
 }
 
 /// Looks for anything before a distance.
-struct BlockedTest<'a, L: SimdFloat, const LISTED: bool> {
+struct BlockedTest<'a, L: SimdFloat, const TREE: bool, const LISTED: bool> {
     methods: &'a Methods,
     distance: L,
+    /// What is nearer than that is nearer than the distance.
+    sure: L,
     /// How far boxes are looked for.
     reach: L,
-    /// Where nothing was met yet.
-    free: L::Mask,
+    way: Way<L, TREE>,
 }
 
-impl<L: SimdFloat, const LISTED: bool> Test<L> for BlockedTest<'_, L, LISTED> {
+/// What is known of the way before a distance.
+#[derive(Clone, Copy)]
+struct Way<L: SimdFloat, const TREE: bool> {
+    /// Where nothing was met yet for sure.
+    free: L::Mask,
+    /// Where something was met, sure or not.
+    met: L::Mask,
+    doubt: Doubt<L, TREE>,
+}
+
+impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
+    for BlockedTest<'_, L, TREE, LISTED>
+{
     #[inline(always)]
     fn reach(&self) -> L {
-        L::select(self.free, self.reach, self.reach.like_f64(-1.0))
+        L::select(self.way.free, self.reach, self.reach.like_f64(-1.0))
     }
 
     #[inline(always)]
     fn is_done(&self) -> bool {
-        !self.free.any()
+        !self.way.free.any()
     }
 
     #[inline(always)]
@@ -299,7 +353,21 @@ impl<L: SimdFloat, const LISTED: bool> Test<L> for BlockedTest<'_, L, LISTED> {
         paths: &Paths<L>,
         number: usize,
     ) {
-        let t = paths.distance::<LISTED, P>(primitive, prepared, number, self.methods);
-        self.free = self.free & !t.less(self.distance);
+        let way = &mut self.way;
+        if way.doubt.is_asked() {
+            let (primitive, asked) = ((primitive, number), (self.methods, way.free));
+            let distance = way
+                .doubt
+                .distance::<LISTED, P>(primitive, prepared, paths, asked);
+            let Some((t, from)) = distance else { return };
+            // Where it is met for sure, doubts count no more.
+            let is_sure = t.less(self.sure) & self.distance.less(from);
+            way.doubt.from = way.doubt.from.min(from).min(t);
+            way.met = way.met | t.less(self.distance);
+            way.free = way.free & !is_sure;
+        } else {
+            let t = paths.distance::<LISTED, P>(primitive, prepared, number, self.methods);
+            way.free = way.free & !t.less(self.distance);
+        }
     }
 }

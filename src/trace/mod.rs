@@ -24,6 +24,8 @@ mod walk;
 
 mod paths;
 
+mod doubt;
+
 mod scan;
 
 mod intersect;
@@ -50,9 +52,13 @@ mod outcome;
 
 mod cull;
 
+mod mirrored;
+
 mod shade;
 
 mod bounce;
+
+mod forth;
 
 mod engine;
 
@@ -65,6 +71,8 @@ mod heat;
 mod threads;
 
 mod shelf;
+
+mod again;
 
 mod band;
 

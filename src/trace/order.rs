@@ -2,6 +2,7 @@
 //! in the scene, and their rays to a light then have little in common.
 
 use super::beam::Bounds;
+use super::doubt::Uncertainty;
 use super::intersect::{Kernel, Nearest};
 use super::packet::Packet;
 use super::paths::NOTHING;
@@ -39,6 +40,8 @@ pub struct Order<R> {
     t: Vec<R>,
     /// The numbers of what was hit.
     number: Vec<R>,
+    /// 1 where that is in doubt, else 0.
+    doubt: Vec<R>,
     /// Where the hits are, in cells.
     cells: [Vec<R>; 3],
     keys: Vec<u16>,
@@ -54,6 +57,7 @@ impl<R: Real> Order<R> {
         self.samples.clear();
         self.t.clear();
         self.number.clear();
+        self.doubt.clear();
         self.cells.iter_mut().for_each(Vec::clear);
     }
 
@@ -63,7 +67,7 @@ impl<R: Real> Order<R> {
     pub fn arrange<L: SimdFloat<Real = R>, const TREE: bool>(
         &mut self,
         kernel: Kernel<L, TREE>,
-        packets: &mut [Packet<L>],
+        (packets, uncertainties): (&mut [Packet<L>], &mut [Uncertainty<L>]),
         samples: &Samples<R>,
     ) {
         let Some((_, first)) = kernel.geometry() else {
@@ -73,8 +77,12 @@ impl<R: Real> Order<R> {
             return;
         }
         let around = bounds_of(kernel, packets).around();
+        let (zero, one) = (kernel.splat(0.0), kernel.splat(1.0));
         for Packet { rays, near, .. } in &*packets {
             self.add((near.t, near.number), rays.at(near.t), &around);
+        }
+        for Uncertainty { doubt, .. } in &*uncertainties {
+            push(&mut self.doubt, L::select(*doubt, one, zero));
         }
         self.find(samples.count, first);
         let count = kernel.splat(samples.count as f64);
@@ -89,6 +97,10 @@ impl<R: Real> Order<R> {
                 number: self.gather(kernel.token, &self.number, first),
             };
             packet.active = self.numbers::<L>(kernel.token, first).less(count);
+        }
+        for (index, uncertainty) in uncertainties.iter_mut().enumerate() {
+            let doubt: L = self.gather(kernel.token, &self.doubt, index * L::WIDTH);
+            uncertainty.doubt = zero.less(doubt);
         }
     }
 

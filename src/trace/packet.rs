@@ -1,10 +1,11 @@
 //! Rays that travel in step, and what goes with them.
 
+use super::doubt::Uncertainty;
 use super::footprint::RayCone;
 use super::intersect::{Kernel, Nearest};
 use super::paths::{IgnoredPrimitive, NOTHING};
 use crate::primitive::Ray;
-use crate::simd::{Real, SimdFloat, Vec3};
+use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// Rays that are traced in step, what they meet and what they bring back.
 #[derive(Clone, Copy)]
@@ -67,4 +68,26 @@ impl<L: SimdFloat> EdgeInfo<L> {
             near: cone.width.like(L::Real::INFINITY),
         }
     }
+}
+
+/// Lists which of so many samples are in doubt, given which of them each ray is, if they are in another order; none
+/// where nothing is noted.
+pub fn list_doubtful<L: SimdFloat>(
+    (packets, uncertainties): (&[Packet<L>], &[Uncertainty<L>]),
+    order: &[u32],
+    count: usize,
+    places: &mut Vec<u32>,
+) {
+    places.clear();
+    for (index, (packet, own)) in packets.iter().zip(uncertainties).enumerate() {
+        let first = index * L::WIDTH;
+        let mut left = (own.doubt & packet.active).bits();
+        while left != 0 {
+            let place = first + left.trailing_zeros() as usize;
+            places.push(order.get(place).map_or(place as u32, |&sample| sample));
+            left &= left - 1;
+        }
+    }
+    places.retain(|&place| (place as usize) < count);
+    places.sort_unstable();
 }

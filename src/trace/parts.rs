@@ -8,11 +8,13 @@ use crate::plan::{Material, Plan, Show, Surface};
 use crate::simd::{Exponent, MAX_LANES, Real, SimdFloat, Vec3};
 
 /// The light that arrives, summed over the lights.
-pub struct Arriving<L> {
+pub struct Arriving<L: SimdFloat> {
     /// Σ intensity · n·l, what matte colours are multiplied by.
     pub matte: L,
     /// Σ intensity · (n·h)^p, what the colours of highlights are multiplied by.
     pub highlight: L,
+    /// Where rounding may decide whether something of it does.
+    pub doubt: L::Mask,
 }
 
 impl<L: SimdFloat> Arriving<L> {

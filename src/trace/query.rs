@@ -16,7 +16,7 @@ use super::roots::Roots;
 use super::stats::RenderControl;
 use crate::animate::Seen;
 use crate::plan::{Kept, Plan, RenderRequest};
-use crate::primitive::Ray;
+use crate::primitive::{Blur, Ray};
 use crate::scene::{Camera, Framing, Scene, Take};
 use crate::simd::Vec3;
 
@@ -60,7 +60,8 @@ impl SceneQuery {
             roots: &Roots::default(),
             light: None,
         };
-        let nearest = kernel.nearest(among, &paths, true, &mut Vec::new());
+        let rays = (&paths, Blur::NONE);
+        let (nearest, _) = kernel.nearest(among, rays, true, &mut Vec::new());
         nearest.t
     }
 

@@ -45,6 +45,9 @@ pub struct Traced<R> {
     pub near: Vec<R>,
 }
 
+/// What is left of the light where others are marked.
+const DARKENED: f64 = 0.25;
+
 /// Side of the squares that packets look at: sixteen rays, or two packets of eight.
 const SQUARE: usize = 4;
 
@@ -148,6 +151,39 @@ impl<R: Real> Traced<R> {
     /// Red, green and blue.
     pub fn channels(&self) -> [&[R]; 3] {
         [&self.red, &self.green, &self.blue]
+    }
+
+    /// What was seen at these samples becomes what was seen in double precision.
+    pub fn replace(&mut self, places: &[u32], seen: &Traced<f64>, edges: Edges) {
+        let columns = [
+            (&mut self.red, &seen.red),
+            (&mut self.green, &seen.green),
+            (&mut self.blue, &seen.blue),
+            (&mut self.near, &seen.near),
+        ];
+        let noted = if edges == Edges::Ignored { 3 } else { 4 };
+        for (to, from) in columns.into_iter().take(noted) {
+            for (&place, &number) in places.iter().zip(from) {
+                to[place as usize] = R::from_f64(number);
+            }
+        }
+        if edges != Edges::Ignored {
+            for (&place, &signature) in places.iter().zip(&seen.signature) {
+                self.signature[place as usize] = signature;
+            }
+        }
+    }
+
+    /// Makes these samples white, and all others darker.
+    pub fn mark(&mut self, places: &[u32]) {
+        for column in [&mut self.red, &mut self.green, &mut self.blue] {
+            for number in column.iter_mut() {
+                *number = *number * R::from_f64(DARKENED);
+            }
+            for &place in places {
+                column[place as usize] = R::ONE;
+            }
+        }
     }
 
     /// Becomes so many views of nothing but this colour.

@@ -6,7 +6,7 @@ use super::paths::Paths;
 use super::roots::Roots;
 use super::walk::{Seek, Stack, walk, walk_beside};
 use crate::plan::{Child, Geometry, IdleFaces, PackedMesh, Plan, PointLight};
-use crate::primitive::{Kind, Prepared, Primitive, Ray, Visit, WithPrepared};
+use crate::primitive::{Blur, Kind, Prepared, Primitive, Ray, Visit, WithPrepared};
 use crate::simd::{SimdFloat, Vec3};
 
 /// What is to be found out about each primitive.
@@ -111,6 +111,8 @@ pub struct Thicket<'a, L: SimdFloat> {
     pub back_from: Option<Vec3<L::Real>>,
     /// Where there is a ray.
     pub active: L::Mask,
+    /// How far the rays may be beside their place.
+    pub blur: Blur<L>,
     /// How far beside the rays thin things are looked for, by a test that does.
     pub beside: Beside<L::Real>,
     /// Whether boxes are looked at; otherwise everything is tested.
@@ -124,8 +126,8 @@ impl<L: SimdFloat> Thicket<'_, L> {
         let bvh = &self.geometry.bvh;
         let (rays, reach) = (&paths.rays, bvh.bounds.max_abs());
         let mut bundle = match self.back_from {
-            None => Bundle::new(rays, self.active, reach),
-            Some(point) => Bundle::from_point(point, rays, self.active, reach),
+            None => Bundle::new(rays, &self.blur, self.active, reach),
+            Some(point) => Bundle::from_point(point, (rays, &self.blur), self.active, reach),
         };
         if !self.is_boxed {
             bundle.meet_all();

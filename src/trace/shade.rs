@@ -5,8 +5,10 @@
 
 use super::candidates::{Among, Candidates};
 use super::cull::LightCandidates;
-use super::footprint::{Footprint, RayCone};
+use super::doubt::{Doubt, Slant, Uncertainty, is_filtered};
+use super::footprint::Footprint;
 use super::intersect::Kernel;
+use super::mirrored::Mirrored;
 use super::packet::{EdgeInfo, Packet};
 use super::parts::{Arriving, Parts};
 use super::paths::{IgnoredPrimitive, NOTHING, Paths};
@@ -16,7 +18,7 @@ use super::thin::Gaze;
 use super::thresholds::EDGE_CONTRAST;
 use super::walk::Stack;
 use crate::plan::{PointLight, RayOrigin, Show, Surface};
-use crate::primitive::{Ray, roundings};
+use crate::primitive::{Blur, roundings};
 use crate::simd::{Mask as _, SimdFloat, Vec3};
 
 /// Lights that an edge tells apart: sums of so many powers of two are exact in any real type.
@@ -38,17 +40,8 @@ pub struct Shader<'a, L: SimdFloat, const TREE: bool> {
     pub lights: &'a [LightCandidates<L::Real>],
 }
 
-/// Rays that a mirror sends on.
-pub struct Mirrored<L: SimdFloat> {
-    /// Where there are some.
-    pub active: L::Mask,
-    /// What their colours are multiplied by.
-    pub filter: Vec3<L>,
-    /// The rays.
-    pub paths: Paths<L>,
-    /// How wide a pixel is along them, where edges are noted.
-    pub cone: Option<RayCone<L>>,
-}
+/// What is noted of a packet, where it is.
+pub type Notes<'a, L> = (Option<&'a mut EdgeInfo<L>>, Option<&'a mut Uncertainty<L>>);
 
 /// The hits of one packet on one primitive, or on several of a kind.
 struct ShadingPoint<'a, L: SimdFloat> {
@@ -58,6 +51,8 @@ struct ShadingPoint<'a, L: SimdFloat> {
     view: Vec3<L>,
     /// How large a pixel is here, where edges are noted.
     footprint: Option<Footprint<L>>,
+    /// How far the hits may be off, where doubts are noted.
+    slant: Option<Slant<L>>,
 }
 
 /// What hits are made of.
@@ -102,11 +97,12 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
     pub fn shade(
         &self,
         packet: &mut Packet<L>,
-        (ignored, mut edge): (IgnoredPrimitive<L>, Option<&mut EdgeInfo<L>>),
+        (ignored, (mut edge, uncertainty)): (IgnoredPrimitive<L>, Notes<L>),
         parts: &mut Parts<L>,
         (stack, rays): (&mut Stack<L::Real>, &mut Rays),
     ) -> Option<Mirrored<L>> {
         let kernel = self.kernel;
+        let mut uncertainty = uncertainty.filter(|_| is_filtered::<L, TREE>());
         let mut mirrored: Option<Mirrored<L>> = None;
         if let Some(edge) = edge.as_mut().filter(|_| self.looks_beside) {
             let paths = Paths {
@@ -133,11 +129,12 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             let Some(coat) = self.coat(packet, &mut hit, instead, parts) else {
                 continue;
             };
-            let point = self.shading_point(packet, hit, coat, edge.as_deref());
+            let point = self.shading_point(packet, hit, coat, (&edge, &uncertainty));
             if instead.is_none() {
                 let mut arriving = Arriving {
                     matte: kernel.splat(0.0),
                     highlight: kernel.splat(0.0),
+                    doubt: nothing.less(nothing),
                 };
                 for (index, light) in kernel.plan.lights.iter().enumerate() {
                     let light = LightSource {
@@ -147,6 +144,9 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                     };
                     let edge = edge.as_deref_mut();
                     self.add_light(edge, &point, &light, &mut arriving, (stack, rays));
+                }
+                if let Some(uncertainty) = &mut uncertainty {
+                    uncertainty.doubt = uncertainty.doubt | arriving.doubt;
                 }
                 match point.coat {
                     Coat::One(surface) => {
@@ -161,7 +161,8 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             if self.may_mirror
                 && let Some(mirrors) = self.mirrors(&point)
             {
-                mirrored = Some(join(mirrored, self.mirror(&point, mirrors)));
+                let onwards = self.mirror(&point, mirrors, uncertainty.as_deref_mut());
+                mirrored = Some(onwards.joined(mirrored));
             }
         }
         if kernel.plan.show == Show::Mirrors && self.is_first {
@@ -177,7 +178,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
     fn instead(&self, packet: &Packet<L>, hit: &Hit<L>) -> Option<Vec3<L>> {
         let kernel = self.kernel;
         match kernel.plan.show {
-            Show::Light | Show::Shadows(_) | Show::Cost => None,
+            Show::Light | Show::Shadows(_) | Show::Cost | Show::Again => None,
             Show::Mirrors => self.is_first.then(|| Vec3::splat(kernel.splat(0.0))),
             Show::Normals => {
                 let normal = hit.surface.normal;
@@ -204,12 +205,20 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         packet: &Packet<L>,
         mut hit: Hit<L>,
         coat: Coat<'a, L>,
-        edge: Option<&EdgeInfo<L>>,
+        (edge, uncertainty): (&Option<&mut EdgeInfo<L>>, &Option<&mut Uncertainty<L>>),
     ) -> ShadingPoint<'a, L> {
         let view = packet.rays.direction;
         let normal = hit.surface.normal;
-        let away = self.kernel.splat(0.0).less(normal.dot(view));
+        let along = normal.dot(view);
+        let away = self.kernel.splat(0.0).less(along);
         hit.surface.normal = Vec3::select(away, -normal, normal);
+        let slant = uncertainty.as_ref().map(|own| Slant {
+            blur: own.blur,
+            t: packet.near.t,
+            cosine: along,
+            curvature: hit.surface.curvature,
+            is_first: self.is_first,
+        });
         let footprint = match edge {
             None => None,
             Some(edge) => {
@@ -223,6 +232,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             coat,
             view,
             footprint,
+            slant,
         }
     }
 
@@ -263,10 +273,19 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
     /// r = d - 2(d·n)n, the direction of perfect reflection; Whitted, "An improved illumination model
     /// for shaded display", CACM 23(6), 1980.
     #[inline(always)]
-    fn mirror(&self, point: &ShadingPoint<L>, (active, filter): (L::Mask, Vec3<L>)) -> Mirrored<L> {
+    fn mirror(
+        &self,
+        point: &ShadingPoint<L>,
+        (active, filter): (L::Mask, Vec3<L>),
+        uncertainty: Option<&mut Uncertainty<L>>,
+    ) -> Mirrored<L> {
         let normal = point.hit.surface.normal;
         let along = point.view.dot(normal);
         let direction = point.view - normal * (along + along);
+        if let (Some(slant), Some(own)) = (&point.slant, uncertainty) {
+            let share = filter.x.max(filter.y).max(filter.z);
+            slant.mirror(self.kernel.plan, (active, share), own);
+        }
         Mirrored {
             active,
             filter,
@@ -306,6 +325,13 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             Some(rounding) => part + shrink * shrink.like(rounding),
         };
         let lit_side = hit.here & lowest.less(cosine);
+        // Highlights may end sharply where light comes from the side.
+        if let Some(slant) = point.slant.as_ref().filter(|_| light.rounding.is_none())
+            && !matches!(point.coat, Coat::One(surface) if surface.exponent.is_none())
+        {
+            let grazes = slant.grazes(kernel.plan, (cosine, shrink));
+            arriving.doubt = arriving.doubt | hit.here & grazes;
+        }
         let facing = if kernel.plan.shadows_behind {
             hit.here
         } else {
@@ -351,12 +377,8 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             if candidates.is_umbra {
                 return;
             }
-            let among = Among {
-                candidates: &candidates.casters,
-                roots: &candidates.roots,
-                light: Some(light),
-            };
-            lit = lit & !kernel.blocked(among, &paths, (reach, facing), stack);
+            let shadow = self.shadow(point, source, (&paths, reach, facing), (arriving, stack));
+            lit = lit & !shadow;
             if !lit.any() {
                 return;
             }
@@ -392,29 +414,32 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             }
         }
     }
-}
 
-/// Merges the rays of several mirrors into one packet.
-#[inline(always)]
-fn join<L: SimdFloat>(before: Option<Mirrored<L>>, new: Mirrored<L>) -> Mirrored<L> {
-    let Some(before) = before else { return new };
-    let is_new = new.active;
-    let (ours, theirs) = (new.paths, before.paths);
-    let rays = Ray {
-        origin: Vec3::select(is_new, ours.rays.origin, theirs.rays.origin),
-        direction: Vec3::select(is_new, ours.rays.direction, theirs.rays.direction),
-    };
-    let ignored = ours.ignored.over(is_new, theirs.ignored);
-    Mirrored {
-        active: before.active | is_new,
-        filter: Vec3::select(is_new, new.filter, before.filter),
-        paths: Paths { rays, ignored },
-        cone: match (new.cone, before.cone) {
-            (Some(new), Some(before)) => Some(RayCone {
-                width: L::select(is_new, new.width, before.width),
-                spread: L::select(is_new, new.spread, before.spread),
-            }),
-            _ => None,
-        },
+    /// Where something stands between hits and a light; notes where that is in doubt.
+    #[inline(always)]
+    fn shadow(
+        &self,
+        point: &ShadingPoint<L>,
+        source: &LightSource<L::Real>,
+        (paths, reach, facing): (&Paths<L>, L, L::Mask),
+        (arriving, stack): (&mut Arriving<L>, &mut Stack<L::Real>),
+    ) -> L::Mask {
+        let (kernel, light) = (self.kernel, source.light);
+        let among = Among {
+            candidates: &source.candidates.casters,
+            roots: &source.candidates.roots,
+            light: Some(light),
+        };
+        let (onwards, is_lost) = match &point.slant {
+            None => (Blur::splat(kernel.token, Blur::NONE), reach.less(reach)),
+            Some(slant) => slant.onwards(kernel.plan),
+        };
+        // What a light is on does not stand before it.
+        let doubt = Doubt::new(onwards, (point.slant.is_some(), light.rounding.is_none()));
+        let (blocked, doubt) = kernel.blocked(among, (paths, doubt), (reach, facing), stack);
+        if point.slant.is_some() {
+            arriving.doubt = arriving.doubt | facing & (doubt | is_lost);
+        }
+        blocked
     }
 }

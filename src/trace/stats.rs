@@ -12,12 +12,15 @@ pub struct Rays {
     pub shadow: u64,
     /// From a mirror.
     pub reflected: u64,
+    /// From the camera, for the second time: in double precision, where rounding may have decided what was seen.
+    /// What these have sent on is not counted.
+    pub again: u64,
 }
 
 impl Rays {
     /// All of them.
     pub fn total(self) -> u64 {
-        self.camera + self.shadow + self.reflected
+        self.camera + self.shadow + self.reflected + self.again
     }
 }
 
@@ -34,6 +37,7 @@ impl Add for Rays {
             camera: self.camera + other.camera,
             shadow: self.shadow + other.shadow,
             reflected: self.reflected + other.reflected,
+            again: self.again + other.again,
         }
     }
 }

@@ -12,7 +12,7 @@ use super::scan::{Test, Thicket, scan_lists};
 use super::thresholds::{CROWDED, LARGEST_SPREAD, NEAR, ONE_THING, SLIPPING, SMALL};
 use super::walk::Stack;
 use crate::plan::{PackedMesh, Plan};
-use crate::primitive::{Approach, Primitive};
+use crate::primitive::{Approach, Blur, Primitive};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// How fast a pixel may widen along rays that look for what is thin, scene units per scene unit.
@@ -68,7 +68,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             roots: &roots,
             light: None,
         };
-        let best = match self.thicket(among, looking) {
+        let exact = Blur::splat(self.token, Blur::NONE);
+        let best = match self.thicket(among, (looking, exact)) {
             Some(thicket) => self.thin_in(&thicket, gaze, best, stack),
             None => best,
         };

@@ -5,13 +5,15 @@ use std::time::{Duration, Instant};
 use rayon::iter::{IndexedParallelIterator as _, IntoParallelIterator as _, ParallelIterator as _};
 use rayon::slice::ParallelSliceMut as _;
 
+use super::again::Exact;
 use super::band::Band;
 use super::candidates::Candidates;
+use super::engine::Reference;
 use super::shelf::Shelf;
 use super::stats::{Rays, RenderControl};
 use super::threads::Threads;
 use super::tile::{Grid, Pass, Pixel};
-use crate::plan::{Plan, Planner, Region, RenderRequest, is_double};
+use crate::plan::{Plan, Planner, Region, RenderRequest, is_double, is_filtered};
 use crate::scene::{Aspect, Sampling, Scene};
 use crate::simd::{Level, SimdReal};
 
@@ -32,7 +34,7 @@ const PIXELS_IN_SQUARES: u64 = 128;
 /// Pieces of a picture for each thread, at least, where there are so many tiles. The dearest piece of a mesh of a
 /// million faces takes 20 times as long as others: with a quarter as many, 16 threads wait for the last of them a
 /// fifth of their time, and 64 half of it.
-const PIECES_PER_THREAD: usize = 64;
+const PIECES_PER_THREAD: usize = 128;
 
 /// A picture of a scene, planned for the real type it needs.
 #[derive(Debug)]
@@ -47,6 +49,8 @@ pub struct Tracer {
     sampling: Sampling,
     level: Level,
     plan: PlanOf,
+    /// What traces again what single precision leaves in doubt.
+    exact: Option<Exact>,
     shelf: Shelf,
 }
 
@@ -75,10 +79,18 @@ impl Tracer {
 
     /// The same after other pictures: what they need as well is not made again.
     pub fn planned(scene: &Scene, request: &RenderRequest, planner: &mut Planner) -> Self {
-        let plan = if is_double(scene, request) {
-            PlanOf::Double(Box::new(Plan::new(scene, request, &mut planner.double)))
+        let level = request.level.unwrap_or_else(Level::widest);
+        let Planner { single, double } = planner;
+        let mut in_single = || Box::new(Plan::new(scene, request, single));
+        let mut in_double = || Box::new(Plan::new(scene, request, double));
+        let (plan, exact) = if is_double(scene, request) {
+            (PlanOf::Double(in_double()), None)
+        } else if is_filtered(scene, request) {
+            let (mut plan, exact) = rayon::join(in_single, in_double);
+            plan.doubt(scene);
+            (PlanOf::Single(plan), Some(Exact::new(exact, level)))
         } else {
-            PlanOf::Single(Box::new(Plan::new(scene, request, &mut planner.single)))
+            (PlanOf::Single(in_single()), None)
         };
         let pixels = request.pixels();
         let is_sparse = plan.bounded() * PIXELS_PER_PRIMITIVE <= pixels;
@@ -93,8 +105,9 @@ impl Tracer {
             in_squares: plan.bounded() * PIXELS_IN_SQUARES > pixels,
             region: request.region,
             sampling: request.sampling,
-            level: request.level.unwrap_or_else(Level::widest),
+            level,
             plan,
+            exact,
             shelf: Shelf::default(),
         }
     }
@@ -218,6 +231,7 @@ impl Tracer {
             pixels,
             grid,
             sampling,
+            reference: self.exact.as_ref().map(|exact| exact as &dyn Reference),
             shelf: &self.shelf,
             control,
         })
@@ -330,7 +344,7 @@ mod tests {
             assert!(pictures[0] == pictures[1], "{sampling:?}");
             assert_eq!(tracer.pieces(24).count(), 66, "every tile");
             let large = Tracer::new(&scene, &RenderRequest::sized(1024, 1024));
-            assert_eq!(large.pieces(1).count(), 64, "halves of rows");
+            assert_eq!(large.pieces(1).count(), 128, "quarters of rows");
             assert_eq!(
                 tracer.pieces(24).map(Region::pixels).sum::<usize>(),
                 171 * 93

@@ -511,7 +511,8 @@ fn rays_are_traced_only_where_they_can_show() {
         Rays {
             camera: 25_600,
             shadow: 0,
-            reflected: 0
+            reflected: 0,
+            again: 0
         }
     );
 }

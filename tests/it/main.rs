@@ -12,6 +12,7 @@ mod dependencies;
 mod export;
 mod extremes;
 mod faults;
+mod filter;
 mod fuzz;
 mod harness;
 mod image_model;

@@ -23,6 +23,8 @@ mod secondary;
 
 mod coincident;
 
+mod rounding;
+
 mod thin;
 
 mod terminator;
@@ -49,6 +51,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     maps.extend(triangle::maps(effort));
     maps.extend(secondary::maps());
     maps.push(coincident::map());
+    maps.extend(rounding::maps());
     maps.extend(terminator::maps(effort));
     maps.extend(thin::maps(effort));
     maps.extend(highlight::maps(effort));

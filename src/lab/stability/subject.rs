@@ -22,6 +22,8 @@ pub enum Subject {
     MeshLeak,
     /// Surfaces in one place.
     Coincident,
+    /// What rounding decides in pictures.
+    Rounding,
     /// Where light ends on meshes that are shaded as if they were curved.
     Terminator,
     /// Things that are thinner than a pixel.
@@ -55,6 +57,7 @@ impl Subject {
             Self::MeshAcne => "mesh acne",
             Self::MeshLeak => "mesh leak",
             Self::Coincident => "surfaces in one place",
+            Self::Rounding => "decided by rounding",
             Self::Terminator => "smooth terminator",
             Self::Thin => "thin things",
             Self::Highlight => "highlight",
@@ -74,6 +77,7 @@ impl Subject {
             Self::Sphere => Some(render.sphere.id()),
             Self::Triangle => Some(render.triangle.id()),
             Self::Highlight => Some(render.specular.id()),
+            Self::Rounding => Some(render.precision.id()),
             Self::Thin => Some(render.antialias.id()),
             Self::ShadowAcne | Self::ShadowLeak | Self::MeshAcne | Self::MeshLeak => {
                 Some(render.offset.id())
@@ -92,6 +96,7 @@ impl Subject {
             }
             Self::Terminator
             | Self::Coincident
+            | Self::Rounding
             | Self::Thin
             | Self::Plane
             | Self::CameraTurns

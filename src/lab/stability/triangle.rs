@@ -80,6 +80,7 @@ fn placed(corners: [DVec3; 3], away: f64, scale: f64) -> PackedTriangle<f32> {
         normal: Vec3::from_dvec3(normal.try_normalize().unwrap_or(normal)),
         in_mesh: true,
         thickness: 1.0,
+        longest: 1.0,
         material: 0,
     }
 }

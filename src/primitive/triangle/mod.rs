@@ -8,13 +8,17 @@ mod watertight;
 
 mod weak;
 
+mod in_doubt;
+
 pub use curved::{CornerNormals, Curved};
+use in_doubt::watertight_in_doubt;
 pub use packed::{PackedTriangle, corner, count_corner_users, number_corners};
 use watertight::{Shear, watertight};
 
 use glam::DVec3;
 
 use super::ball::Ball;
+use super::blur::Blur;
 use super::bounding_box::BoundingBox;
 use super::kind::{Approach, Packing, Primitive, SurfacePoint};
 use super::projector::{Projector, Rectangle};
@@ -75,6 +79,7 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
             normal: Vec3::from_dvec3(normal),
             in_mesh: [a, b, c].iter().any(is_shared),
             thickness: R::from_f64(description.thickness()),
+            longest: R::from_f64(description.longest_side()),
             material,
         })
     }
@@ -120,6 +125,21 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
             TriangleMethod::Watertight => watertight(rays, shear, self),
             weak => weak::weak(rays, self, weak),
         }
+    }
+
+    #[inline(always)]
+    fn intersect_in_doubt<L: SimdFloat<Real = R>>(
+        &self,
+        rays: &Ray<L>,
+        shear: &Shear<L>,
+        methods: &Methods,
+        blur: (&Blur<L>, L::Mask),
+    ) -> Option<(L, L)> {
+        if methods.triangle == TriangleMethod::Watertight {
+            return watertight_in_doubt(rays, shear, self, blur);
+        }
+        let infinity = rays.origin.x.like(R::INFINITY);
+        Some((self.intersect(rays, shear, methods), infinity))
     }
 
     #[inline(always)]
@@ -185,6 +205,7 @@ mod tests {
             normal: Vec3::from_dvec3(normal),
             in_mesh: true,
             thickness: 1.0,
+            longest: 1.0,
             material: 0,
         }
     }

@@ -21,6 +21,8 @@ pub struct PackedTriangle<R> {
     pub in_mesh: bool,
     /// Its smallest altitude.
     pub thickness: R,
+    /// The length of its longest edge.
+    pub longest: R,
     /// Index of its material.
     pub material: u32,
 }
@@ -30,11 +32,13 @@ impl<R: Real> PackedTriangle<R> {
     pub fn of_mesh(corners: [DVec3; 3]) -> Option<Self> {
         let [a, b, c] = corners;
         let normal = (c - a).cross(b - a).try_normalize()?;
+        let triangle = Triangle { a, b, c };
         Some(Self {
             corners: corners.map(Vec3::from_dvec3),
             normal: Vec3::from_dvec3(normal),
             in_mesh: true,
-            thickness: R::from_f64(Triangle { a, b, c }.thickness()),
+            thickness: R::from_f64(triangle.thickness()),
+            longest: R::from_f64(triangle.longest_side()),
             material: 0,
         })
     }

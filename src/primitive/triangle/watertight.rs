@@ -115,14 +115,7 @@ pub fn watertight<L: SimdFloat>(
     shear: &Shear<L>,
     triangle: &PackedTriangle<L::Real>,
 ) -> L {
-    // Written out: what runs in a closure of the standard library does not know the lanes.
-    let [a, b, c] = triangle.corners;
-    let a = shear.apply(ray.origin.like(a) - ray.origin);
-    let b = shear.apply(ray.origin.like(b) - ray.origin);
-    let c = shear.apply(ray.origin.like(c) - ray.origin);
-    let u = c[0] * b[1] - c[1] * b[0];
-    let v = a[0] * c[1] - a[1] * c[0];
-    let w = b[0] * a[1] - b[1] * a[0];
+    let ([a, b, c], [u, v, w]) = edges_of(ray, shear, triangle);
     let zero = u.like(L::Real::ZERO);
     let none_negative = zero.at_most(u) & zero.at_most(v) & zero.at_most(w);
     let none_positive = u.at_most(zero) & v.at_most(zero) & w.at_most(zero);
@@ -134,4 +127,22 @@ pub fn watertight<L: SimdFloat>(
     // All three zero is a triangle seen edge-on: 0/0 fails the comparison.
     let t = (u * a[2] + v * b[2] + w * c[2]) * shear.z / (u + v + w);
     L::select(inside & zero.less(t), t, infinity)
+}
+
+/// The sheared corners, and which way each edge turns around the ray.
+#[inline(always)]
+pub fn edges_of<L: SimdFloat>(
+    ray: &Ray<L>,
+    shear: &Shear<L>,
+    triangle: &PackedTriangle<L::Real>,
+) -> ([[L; 3]; 3], [L; 3]) {
+    // Written out: what runs in a closure of the standard library does not know the lanes.
+    let [a, b, c] = triangle.corners;
+    let a = shear.apply(ray.origin.like(a) - ray.origin);
+    let b = shear.apply(ray.origin.like(b) - ray.origin);
+    let c = shear.apply(ray.origin.like(c) - ray.origin);
+    let u = c[0] * b[1] - c[1] * b[0];
+    let v = a[0] * c[1] - a[1] * c[0];
+    let w = b[0] * a[1] - b[1] * a[0];
+    ([a, b, c], [u, v, w])
 }

@@ -39,6 +39,11 @@ impl Triangle {
         (longest, (b - a).cross(c - a).length())
     }
 
+    /// The length of the longest side.
+    pub fn longest_side(&self) -> f64 {
+        self.measures().0
+    }
+
     /// The smallest altitude: twice the area over the longest side.
     pub fn thickness(&self) -> f64 {
         let (longest, twice_area) = self.measures();

@@ -1,0 +1,126 @@
+//! Pictures in single precision: pixels of which rounding decides what is seen, at the edges of things, in their
+//! shadows and, more and more, in mirrors that are seen in mirrors.
+
+use glam::DVec3;
+
+use super::map::{Axis, Map, Tries};
+use super::stage::light;
+use super::subject::Subject;
+use crate::mesh::SOLIDS;
+use crate::plan::RenderRequest;
+use crate::scene::{
+    Camera, ColorPack, Light, List, Mesh, Method as _, Object, Plane, Precision, Sampling, Scene,
+    Shape, Sphere,
+};
+
+/// Side of the pictures in pixels.
+const SIDE: u32 = 128;
+/// Solids along each side of the floor.
+const ROW: usize = 5;
+/// How much a channel may differ: a step of 8 bits.
+const STEP: f32 = 1.0 / 255.0;
+
+/// Plain single precision, and what the plan does with it.
+pub fn maps() -> Vec<Map> {
+    let map = |precision: Precision| {
+        Map::measure(
+            (Subject::Rounding, "pixel other than in double precision"),
+            (precision.id(), precision == Precision::default()),
+            (bounces(), distances()),
+            |bounces, away| {
+                let scene = scene(bounces as u32, away);
+                let [exact, other] = [Precision::Double, precision].map(|precision| {
+                    let request = RenderRequest {
+                        precision,
+                        sampling: Sampling::Centres,
+                        ..RenderRequest::sized(SIDE, SIDE)
+                    };
+                    light(&scene, &request)
+                });
+                let pixels = exact.iter().zip(&other);
+                Tries::count(pixels.map(|(exact, other)| differ(*exact, *other)))
+            },
+        )
+    };
+    vec![map(Precision::Single), map(Precision::default())]
+}
+
+fn bounces() -> Axis {
+    Axis {
+        name: "bounces",
+        values: vec![0.0, 1.0, 2.0, 3.0, 4.0],
+    }
+}
+
+fn distances() -> Axis {
+    Axis {
+        name: "sizes away",
+        values: vec![3.0, 30.0, 300.0, 3000.0],
+    }
+}
+
+/// As 8 bits show them: what is brighter than white is white.
+fn differ(one: [f32; 3], other: [f32; 3]) -> bool {
+    let channels = one.into_iter().zip(other);
+    let mut gaps = channels.map(|(one, other)| (one.min(1.0) - other.min(1.0)).abs());
+    gaps.any(|gap| gap > STEP)
+}
+
+/// Mirrors, flat and round, that see each other over a floor, seen from so many sizes away through a lens that keeps
+/// them as large.
+fn scene(bounces: u32, away: f64) -> Scene {
+    let mut scene = Scene::empty();
+    let pack = ColorPack {
+        ambient: DVec3::new(30.0, 60.0, 90.0),
+        diffuse: DVec3::new(120.0, 90.0, 60.0),
+        specular: DVec3::splat(200.0),
+        phong_exponent: 30.0,
+        reflective: true,
+    };
+    scene.packs_mut().insert("mirror".to_owned(), pack);
+    scene.render.reflection_limit = bounces;
+    scene.lights = List::from(vec![Light {
+        position: DVec3::new(3.1, 7.3, 4.7),
+        intensity: 0.8,
+        name: "Lamp".to_owned(),
+        marker: None,
+        visible: true,
+    }]);
+    let mut objects = vec![Object::new(
+        "Floor",
+        "mirror",
+        Plane {
+            point: DVec3::ZERO,
+            normal: DVec3::Y,
+        },
+    )];
+    for place in 0..ROW * ROW {
+        let along = |number: usize| (number as f64 / (ROW - 1) as f64 - 0.5) * 2.3;
+        let at = DVec3::new(along(place % ROW), 0.29, along(place / ROW));
+        let name = format!("Solid {place}");
+        // A ball, or a solid at an angle of its own.
+        let shape: Shape = match SOLIDS.get(place % (SOLIDS.len() + 1)) {
+            None => Sphere {
+                center: at,
+                radius: 0.25,
+            }
+            .into(),
+            Some(solid) => Mesh {
+                position: at,
+                rotation: DVec3::new(11.0, 23.0, 37.0) * (place + 1) as f64,
+                ..Mesh::of((solid.make)(0.4))
+            }
+            .into(),
+        };
+        objects.push(Object::new(name, "mirror", shape));
+    }
+    scene.objects = List::from(objects);
+    let view = DVec3::new(0.41, 0.37, 0.83).normalize();
+    scene.camera = Camera {
+        position: view * away,
+        look_at: DVec3::new(0.0, 0.4, 0.0) - view * away,
+        projection_distance: away / 3.0,
+        ..Camera::default()
+    };
+    scene
+}

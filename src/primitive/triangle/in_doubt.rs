@@ -1,0 +1,50 @@
+//! Where rounding may decide whether a triangle is met.
+
+use super::packed::PackedTriangle;
+use super::watertight::{Shear, edges_of};
+use crate::primitive::blur::Blur;
+use crate::primitive::bounding_box::BoundingBox;
+use crate::primitive::ray::Ray;
+use crate::simd::{Mask as _, Real, SimdFloat};
+
+/// How much an edge function changes at most where the ray is moved aside, as a multiple of how far and of the longest
+/// edge: 3 where its corners move as one, the shear stretching both by up to √3, and half as much again since they are
+/// rounded one by one.
+const STEEPNESS: f64 = 4.5;
+
+/// The watertight test, and from where on its answer is undecided: where some edge function may have either sign and
+/// the others do not say that the triangle is missed, and where it is met at the very start. `None` if no ray that is
+/// wanted meets it.
+#[inline(always)]
+pub fn watertight_in_doubt<L: SimdFloat>(
+    ray: &Ray<L>,
+    shear: &Shear<L>,
+    triangle: &PackedTriangle<L::Real>,
+    (blur, wanted): (&Blur<L>, L::Mask),
+) -> Option<(L, L)> {
+    let ([a, b, c], [u, v, w]) = edges_of(ray, shear, triangle);
+    let longest = u.like(triangle.longest);
+    let width = blur.at((a[2] * shear.z).abs() + longest);
+    let bound = width * longest * u.like_f64(STEEPNESS);
+    let (low, high) = (u.min(v).min(w), u.max(v).max(w));
+    let is_missed = low.less(-bound) & bound.less(high);
+    let (zero, infinity) = (u.like(L::Real::ZERO), u.like(L::Real::INFINITY));
+    if !(wanted & !is_missed).any() {
+        return None;
+    }
+    let is_met = bound.less(low) | high.less(-bound);
+    let t = (u * a[2] + v * b[2] + w * c[2]) * shear.z / (u + v + w);
+    let inside = zero.at_most(low) | high.at_most(zero);
+    let distance = L::select(inside & zero.less(t), t, infinity);
+    let starts_on_it = is_met & t.abs().at_most(blur.start);
+    let from = L::select(starts_on_it, zero, infinity);
+    let passes_edge = wanted & !is_missed & !is_met;
+    if !passes_edge.any() {
+        return Some((distance, from));
+    }
+    let last = (a[2] * shear.z).max(b[2] * shear.z).max(c[2] * shear.z);
+    // A narrow one's edges are uncertain far beyond its corners: only rays count that pass the box around it.
+    let around = BoundingBox::around(&triangle.corners);
+    let entry = around.entry(ray, blur.at(last.max(zero)));
+    Some((distance, L::select(passes_edge, entry.min(from), from)))
+}

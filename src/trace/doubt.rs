@@ -1,0 +1,276 @@
+//! Whether rounding may decide what rays meet. A picture in single precision traces the samples again, in double
+//! precision, of which it may.
+
+use super::paths::Paths;
+use crate::plan::Plan;
+use crate::primitive::{Blur, Primitive};
+use crate::scene::Methods;
+use crate::simd::{Mask as _, Real, SimdFloat};
+
+/// Two hits as close along a ray as so many times what it is off aside may change places: of surfaces that the ray
+/// meets at up to 89 degrees from their normals.
+const SLANT: f64 = 64.0;
+
+/// Whether kernels tell what is in doubt. Those for plans without a tree do not, and lose no time by it: a few things
+/// have few edges.
+pub const fn is_filtered<L: SimdFloat, const TREE: bool>() -> bool {
+    TREE && L::Real::IS_FILTERED
+}
+
+/// What rays leave undecided.
+#[derive(Clone, Copy, Debug)]
+pub struct Doubt<L: SimdFloat, const TREE: bool> {
+    is_asked: bool,
+    /// How far the rays may be beside their place.
+    pub blur: Blur<L>,
+    /// How far along them a hit may be off.
+    along: Blur<L>,
+    /// From where on they may meet something else.
+    pub from: L,
+    /// How far the second thing is that they meet.
+    pub second: L,
+}
+
+impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
+    /// Nothing is undecided yet, and nothing ever is if nobody asks. Without `tells_nearer`, which of two hits is nearer
+    /// never is.
+    #[inline(always)]
+    pub fn new(blur: Blur<L>, (is_asked, tells_nearer): (bool, bool)) -> Self {
+        Self {
+            is_asked,
+            blur,
+            along: blur.times(if tells_nearer { SLANT } else { 0.0 }),
+            from: blur.start.like(L::Real::INFINITY),
+            second: blur.start.like(L::Real::INFINITY),
+        }
+    }
+
+    /// Whether anybody asks.
+    #[inline(always)]
+    pub fn is_asked(&self) -> bool {
+        is_filtered::<L, TREE>() && self.is_asked
+    }
+
+    /// A distance, and as much more as rounding may have taken away.
+    #[inline(always)]
+    pub fn after(&self, t: L) -> L {
+        if self.is_asked() {
+            L::select(t.less(t.like(L::Real::INFINITY)), t + self.along.at(t), t)
+        } else {
+            t
+        }
+    }
+
+    /// The same as a multiple of a distance.
+    #[inline(always)]
+    pub fn stretch(&self, t: L) -> L {
+        let one = t.like(L::Real::ONE);
+        if self.is_asked() {
+            L::select(t.like(L::Real::ZERO).less(t), self.after(t) / t, one)
+        } else {
+            one
+        }
+    }
+
+    /// A distance, and so much less.
+    #[inline(always)]
+    pub fn ahead_of(&self, t: L) -> L {
+        t - self.along.at(t)
+    }
+
+    /// Where the nearest hit and the second may change places. What is equally near in single precision is so by
+    /// construction, and has an order.
+    #[inline(always)]
+    pub fn is_tie(&self, nearest: L, second: L) -> L::Mask {
+        // Infinity less infinity is no number.
+        let gap = second - nearest;
+        gap.less(self.along.at(nearest)) & gap.like(L::Real::ZERO).less(gap)
+    }
+
+    /// How far a primitive is, and from where on that is undecided; `None` if no ray that is wanted meets it.
+    #[inline(always)]
+    pub fn distance<const LISTED: bool, P: Primitive<L::Real>>(
+        &self,
+        (primitive, number): (&P, usize),
+        prepared: &P::Prepared<L>,
+        paths: &Paths<L>,
+        (methods, wanted): (&Methods, L::Mask),
+    ) -> Option<(L, L)> {
+        let infinity = self.blur.start.like(L::Real::INFINITY);
+        if LISTED && paths.ignored.shared() == Some(number) {
+            // Where they start on it, they are known not to meet it.
+            return P::IS_CURVED.then(|| (primitive.exit(&paths.rays), infinity));
+        }
+        let blur = (&self.blur, wanted);
+        let found = primitive.intersect_in_doubt(&paths.rays, prepared, methods, blur);
+        let own = paths.ignored.is(number);
+        if !own.any() || (found.is_none() && !P::IS_CURVED) {
+            return found;
+        }
+        let (t, from) = found.unwrap_or((infinity, infinity));
+        let t = L::select(own, primitive.exit(&paths.rays), t);
+        Some((t, L::select(own, infinity, from)))
+    }
+
+    /// Where the rays may meet something else up to a distance.
+    #[inline(always)]
+    pub fn before(&self, t: L) -> L::Mask {
+        let infinity = t.like(L::Real::INFINITY);
+        self.from.less(infinity) & self.from.at_most(self.after(t))
+    }
+}
+
+/// The smallest cosine between rays and a surface's normal at which hits are told.
+const LEAST_COSINE: f64 = 2.5e-4;
+/// The same for mirrored rays, which are farther off: the more so, the more that is looked for around hits costs.
+const LEAST_MIRRORED: f64 = 4e-3;
+/// How much farther off at distance 1 mirrored rays may be.
+const WIDEST: f64 = 1e-3;
+/// Rays that bring back no more than this are not doubted, nor is what they see in mirrors: less than a step of 8 bits.
+const FAINTEST: f64 = 1.0 / 400.0;
+
+/// How far off along a surface hits may be at most that are told, where rays are no farther off than this.
+pub fn farthest_off<R: Real>(off: R, is_first: bool) -> R {
+    off * R::from_f64(1.0 / least_cosine(is_first))
+}
+
+fn least_cosine(is_first: bool) -> f64 {
+    if is_first {
+        LEAST_COSINE
+    } else {
+        LEAST_MIRRORED
+    }
+}
+
+/// What is known of how right the rays of a packet are.
+#[derive(Clone, Copy)]
+pub struct Uncertainty<L: SimdFloat> {
+    /// How far they may be beside their place.
+    pub blur: Blur<L>,
+    /// What of their colours comes back to the camera, at most.
+    pub weight: L,
+    /// Where rounding may decide what comes back.
+    pub doubt: L::Mask,
+    /// The same blur and weight of the rays that mirrors send on.
+    mirrored: (Blur<L>, L),
+}
+
+impl<L: SimdFloat> Uncertainty<L> {
+    /// Of rays from the camera.
+    #[inline(always)]
+    pub fn new(token: L::Token, plan: &Plan<L::Real>) -> Self {
+        let weight = L::splat(token, L::Real::ONE);
+        Self {
+            blur: Blur::splat(token, plan.blur),
+            weight,
+            doubt: weight.less(weight),
+            mirrored: (Blur::splat(token, Blur::NONE), weight),
+        }
+    }
+
+    /// Of the rays that mirrors have sent on.
+    #[inline(always)]
+    #[must_use]
+    pub fn of_mirrored(&self) -> Self {
+        let (blur, weight) = self.mirrored;
+        let doubt = weight.less(weight);
+        Self {
+            blur,
+            weight,
+            doubt,
+            ..*self
+        }
+    }
+}
+
+/// How far any of the rays may be beside its place.
+#[inline(always)]
+pub fn widest_blur<L: SimdFloat>(
+    token: L::Token,
+    uncertainties: &[Uncertainty<L>],
+) -> Blur<L::Real> {
+    let zero = L::splat(token, L::Real::ZERO);
+    let (mut start, mut spread) = (zero, zero);
+    for Uncertainty { blur, .. } in uncertainties {
+        start = start.max(blur.start);
+        spread = spread.max(blur.spread);
+    }
+    Blur {
+        start: start.greatest(),
+        spread: spread.greatest(),
+    }
+}
+
+/// How rays have met a surface, and with it how far along it their hits may be off. Worked out where it is asked for:
+/// most hits send no rays on that can meet anything.
+#[derive(Clone, Copy, Debug)]
+pub struct Slant<L: SimdFloat> {
+    /// How far the rays were beside their place when they set out.
+    pub blur: Blur<L>,
+    /// How far they have come.
+    pub t: L,
+    /// The cosine of their angle from the normal.
+    pub cosine: L,
+    /// Of the surface.
+    pub curvature: L,
+    /// Whether they came from the camera.
+    pub is_first: bool,
+}
+
+impl<L: SimdFloat> Slant<L> {
+    /// How far hits may be off along the surface, and where that is so far that nothing can be told of rays that go on
+    /// from there.
+    #[inline(always)]
+    fn off(&self) -> (L, L::Mask) {
+        let cosine = self.cosine.abs();
+        let least = cosine.like_f64(least_cosine(self.is_first));
+        (self.blur.at(self.t) / cosine, cosine.less(least))
+    }
+
+    /// Where light, whose angle from the normal has this cosine, may come from either side of the surface; given one over
+    /// its distance.
+    #[inline(always)]
+    pub fn grazes(&self, plan: &Plan<L::Real>, (cosine, per_length): (L, L)) -> L::Mask {
+        let (off, _) = self.off();
+        let turn = off * (self.curvature + per_length);
+        let own = cosine.like(plan.blur.spread);
+        let rounded = own + per_length * cosine.like(plan.blur.start);
+        cosine.abs().at_most(turn + rounded)
+    }
+
+    /// How far rays that go on to a light may be off, and where nothing can be told of them.
+    #[inline(always)]
+    pub fn onwards(&self, plan: &Plan<L::Real>) -> (Blur<L>, L::Mask) {
+        let (off, is_lost) = self.off();
+        let own = Blur::splat(off.token(), plan.blur);
+        let start = L::select(is_lost, own.start, off + own.start);
+        (Blur { start, ..own }, is_lost)
+    }
+
+    /// Notes what is known of the rays that a mirror sends on, where there are some, which bring back so much of what
+    /// they see. Where they are too far off for anything to be told, all of it is in doubt.
+    #[inline(always)]
+    pub fn mirror(
+        &self,
+        plan: &Plan<L::Real>,
+        (active, share): (L::Mask, L),
+        own: &mut Uncertainty<L>,
+    ) {
+        let (off, is_lost) = self.off();
+        let weight = own.weight * share;
+        let turn = off * self.curvature;
+        let blur = Blur {
+            start: off + off.like(plan.blur.start),
+            spread: self.blur.spread + turn + turn + off.like(plan.blur.spread),
+        };
+        let is_told = blur.spread.less(off.like_f64(WIDEST)) & !is_lost;
+        let counts = off.like_f64(FAINTEST).less(weight) & active;
+        let none = Blur::splat(off.token(), Blur::NONE);
+        let (other_blur, other_weight) = own.mirrored;
+        own.mirrored = (
+            blur.over(is_told & counts, &none).over(active, &other_blur),
+            L::select(active, weight, other_weight),
+        );
+        own.doubt = own.doubt | counts & !is_told;
+    }
+}

@@ -1,0 +1,324 @@
+//! One depth of reflection: what its packets can meet, and what they see.
+
+use super::beam::{Bounds, beam_around};
+use super::bounce::Bounce;
+use super::bundle::{Shaft, aside};
+use super::candidates::{Among, Candidates};
+use super::cull::Scratch;
+use super::doubt::{Uncertainty, farthest_off, is_filtered, widest_blur};
+use super::footprint::RayCone;
+use super::intersect::Kernel;
+use super::packet::{EdgeInfo, Packet, ReflectionParent};
+use super::paths::{IgnoredPrimitive, Paths, real};
+use super::samples::{Edges, Samples};
+use super::shade::Shader;
+use super::stats::Rays;
+use super::thin::widest_spread;
+use super::thresholds::{LARGEST_STRETCH, SLIPPING};
+use super::walk::Stack;
+use crate::plan::{HitOrder, Plan};
+use crate::primitive::{Blur, CAUTION, Kind, Ray, roundings};
+use crate::simd::{Mask as _, Real, SimdFloat};
+
+impl<L: SimdFloat> Bounce<L> {
+    /// Becomes the rays from the camera through the samples, which can meet what is in `seen`.
+    #[inline(always)]
+    pub fn start<const TREE: bool>(
+        &mut self,
+        kernel: Kernel<L, TREE>,
+        samples: &Samples<L::Real>,
+        seen: &Candidates,
+        edges: Edges,
+    ) {
+        let (token, view) = (kernel.token, &kernel.plan.view);
+        self.clear();
+        self.order.clear();
+        self.seen.clone_from(seen);
+        let lane_number = L::from_fn(token, |lane| L::Real::from_f64(lane as f64));
+        for first in (0..samples.x.len()).step_by(L::WIDTH) {
+            let x = L::load(token, &samples.x[first..]);
+            let y = L::load(token, &samples.y[first..]);
+            let (origin, direction) = view.rays(x, y);
+            let wanted = L::Real::from_f64((samples.count - first) as f64);
+            let active = lane_number.less(lane_number.like(wanted));
+            let rays = Ray { origin, direction };
+            self.packets.push(Packet::new(kernel, rays, active));
+        }
+        if is_filtered::<L, TREE>() && kernel.plan.is_doubted() {
+            let uncertainty = Uncertainty::new(token, kernel.plan);
+            self.uncertainties.resize(self.packets.len(), uncertainty);
+        }
+        self.edges_are = edges;
+        if edges != Edges::Ignored {
+            let (width, spread) = view.footprint();
+            let cone = RayCone {
+                width: L::splat(token, width),
+                spread: L::splat(token, spread),
+            };
+            self.edges.resize(self.packets.len(), EdgeInfo::new(cone));
+        }
+    }
+
+    /// Whether what may slip between samples is looked for.
+    fn looks_beside(&self) -> bool {
+        self.edges_are == Edges::Near
+    }
+
+    /// What the rays of a packet start on.
+    #[inline(always)]
+    fn ignored_by<const TREE: bool>(
+        &self,
+        kernel: Kernel<L, TREE>,
+        packet: usize,
+    ) -> IgnoredPrimitive<L> {
+        match (self.parents.get(packet), kernel.plan.eye_on) {
+            (Some(parent), _) => parent.ignored,
+            (None, None) => IgnoredPrimitive::nothing(kernel.token),
+            (None, Some(number)) => {
+                IgnoredPrimitive::listed(number, L::splat(kernel.token, real(number)))
+            }
+        }
+    }
+
+    /// Finds what the packets meet, and what can cast shadows there. Whether there is anything.
+    #[inline(always)]
+    pub fn find<const TREE: bool>(
+        &mut self,
+        kernel: Kernel<L, TREE>,
+        scratch: &mut Scratch<L::Real>,
+    ) -> bool {
+        if self.seen.is_empty() {
+            return false;
+        }
+        let plan = kernel.plan;
+        // What is thin beside the rays may be there where they meet nothing.
+        self.find_thin(plan);
+        self.enter(kernel);
+        let infinity = kernel.infinity();
+        let mut bounds = Bounds::new(kernel.token);
+        let mut farthest = kernel.splat(0.0);
+        let none = Blur::splat(kernel.token, Blur::NONE);
+        for index in 0..self.packets.len() {
+            let ignored = self.ignored_by(kernel, index);
+            let packet = &mut self.packets[index];
+            let rays = packet.rays;
+            let paths = Paths { rays, ignored };
+            let among = Among {
+                candidates: &self.seen,
+                roots: &self.roots,
+                light: None,
+            };
+            let (active, stack) = (packet.active, &mut scratch.stack);
+            let mut uncertainty = self.uncertainties.get_mut(index);
+            let blur = uncertainty.as_ref().map_or(none, |own| own.blur);
+            let doubt;
+            (packet.near, doubt) = kernel.nearest(among, (&paths, blur), active, stack);
+            if let Some(uncertainty) = &mut uncertainty {
+                uncertainty.doubt = doubt;
+            }
+            let hit = packet.near.t.less(infinity) & active;
+            bounds.add(hit, rays.at(packet.near.t));
+            if TREE {
+                farthest = L::select(hit, farthest.max(packet.near.t), farthest);
+            }
+        }
+        let Some(mut ball) = bounds.ball() else {
+            return !self.thin.is_empty();
+        };
+        let mut lift = L::Real::ZERO;
+        if let Some((geometry, _)) = kernel.geometry() {
+            // Rays go on from the curved surfaces that flat faces stand for.
+            lift = geometry.lift * L::Real::from_f64(1.0 + CAUTION);
+            ball.radius += lift.to_f64();
+        }
+        // Hits may be off.
+        let farthest = farthest.greatest();
+        let off = widest_blur(kernel.token, &self.uncertainties).at(farthest);
+        let off = farthest_off(off, self.parents.is_empty());
+        ball.radius += off.to_f64();
+        if plan.screen.is_some() {
+            // Room for what passes beside the rays to the lights, closer than a pixel.
+            let footprint = self
+                .looks_beside()
+                .then(|| self.widest(kernel) * L::Real::from_f64(LARGEST_STRETCH));
+            for (between, light) in self.lights.iter_mut().zip(&plan.lights) {
+                kernel.keep_between(between, light, (&ball, footprint), scratch);
+            }
+            if TREE {
+                // A ray that has come far is off by a few roundings of its length.
+                let hits = bounds.around().widened(farthest * roundings() + lift + off);
+                for (between, light) in self.lights.iter_mut().zip(&plan.lights) {
+                    kernel.enter_towards(between, light, &hits);
+                }
+            }
+        }
+        true
+    }
+
+    /// Finds where the packets can start to look into the trees.
+    #[inline(always)]
+    fn enter<const TREE: bool>(&mut self, kernel: Kernel<L, TREE>) {
+        self.roots.forget();
+        let Some((geometry, _)) = kernel.geometry() else {
+            return;
+        };
+        if !self.seen.has_geometry || !kernel.plan.is_boxed {
+            return;
+        }
+        let mut origins = Bounds::new(kernel.token);
+        let mut directions = origins;
+        for Packet { rays, active, .. } in &self.packets {
+            origins.add(*active, rays.origin);
+            directions.add(*active, rays.direction);
+        }
+        let (origins, directions) = (origins.around(), directions.around());
+        let size = origins.max_abs() + geometry.bvh.bounds.max_abs();
+        let slack =
+            size * roundings() + aside(&widest_blur(kernel.token, &self.uncertainties), size);
+        let shaft = Shaft::of(&origins.widened(slack), &directions);
+        let infinity = L::Real::INFINITY;
+        self.seen.has_geometry = self
+            .roots
+            .narrow::<L>(kernel.token, geometry, &shaft, infinity);
+    }
+
+    /// Finds what rays from the camera can meet, or just miss, between samples; nothing without
+    /// edges. For mirrored rays, [`Self::aim`] knows.
+    fn find_thin(&mut self, plan: &Plan<L::Real>) {
+        if !self.looks_beside() {
+            self.thin.clear();
+        } else if self.parents.is_empty() {
+            let slipping = L::Real::from_f64(SLIPPING);
+            self.thin.keep_narrow(&self.seen, plan, |center, radius| {
+                plan.view.width_at(center, radius) * slipping
+            });
+        }
+    }
+
+    /// The widest pixel at what was hit; zero without edges.
+    #[inline(always)]
+    fn widest<const TREE: bool>(&self, kernel: Kernel<L, TREE>) -> L::Real {
+        let mut widest = kernel.splat(0.0);
+        for (edge, packet) in self.edges.iter().zip(&self.packets) {
+            let hit = packet.near.t.less(kernel.infinity()) & packet.active;
+            let width = edge.cone.width_at(packet.near.t);
+            widest = L::select(hit, widest.max(width), widest);
+        }
+        widest.greatest()
+    }
+
+    /// Shades the packets; `next` gets the rays that mirrors send on.
+    #[inline(always)]
+    pub fn shade<const TREE: bool>(
+        &mut self,
+        kernel: Kernel<L, TREE>,
+        may_mirror: bool,
+        next: &mut Self,
+        (stack, rays): (&mut Stack<L::Real>, &mut Rays),
+    ) {
+        let looks_beside = self.looks_beside();
+        for index in 0..self.packets.len() {
+            let ignored = self.ignored_by(kernel, index);
+            let shader = Shader {
+                kernel,
+                is_first: self.parents.is_empty(),
+                may_mirror,
+                looks_beside,
+                thin: &self.thin,
+                lights: &self.lights,
+            };
+            let notes = (self.edges.get_mut(index), self.uncertainties.get_mut(index));
+            let packet = &mut self.packets[index];
+            let Some(mirrored) =
+                shader.shade(packet, (ignored, notes), &mut self.parts, (stack, rays))
+            else {
+                continue;
+            };
+            rays.reflected += u64::from(mirrored.active.bits().count_ones());
+            let paths = mirrored.paths;
+            next.packets
+                .push(Packet::new(kernel, paths.rays, mirrored.active));
+            let own = self.uncertainties.get(index);
+            next.uncertainties.extend(own.map(Uncertainty::of_mirrored));
+            next.parents.push(ReflectionParent {
+                packet: index,
+                ignored: paths.ignored,
+                filter: mirrored.filter,
+            });
+            if let Some(cone) = mirrored.cone {
+                next.edges.push(EdgeInfo::new(cone));
+            }
+        }
+    }
+
+    /// Finds what mirrored rays can meet.
+    #[inline(always)]
+    pub fn aim<const TREE: bool>(
+        &mut self,
+        kernel: Kernel<L, TREE>,
+        scratch: &mut Scratch<L::Real>,
+    ) {
+        let plan = kernel.plan;
+        let rays = self
+            .packets
+            .iter()
+            .map(|packet| (packet.active, packet.rays));
+        let beam = if plan.screen.is_some() {
+            beam_around(kernel.token, rays)
+        } else {
+            None
+        };
+        let Some(mut beam) = beam else {
+            self.seen = Candidates::all(plan);
+            self.thin.clone_from(&self.seen);
+            return;
+        };
+        let (mut width, mut spread) = (kernel.splat(0.0), kernel.splat(0.0));
+        let mut narrowest = kernel.infinity();
+        for (edge, packet) in self.edges.iter().zip(&self.packets) {
+            width = L::select(packet.active, width.max(edge.cone.width), width);
+            spread = L::select(packet.active, spread.max(edge.cone.spread), spread);
+            narrowest = L::select(packet.active, narrowest.min(edge.cone.spread), narrowest);
+        }
+        let (width, spread) = (width.greatest(), spread.greatest());
+        if self.looks_beside() && widest_spread(plan) < narrowest.least() {
+            self.edges_are = Edges::Signed;
+        }
+        if self.looks_beside() {
+            // Room for what passes beside the rays, closer than a pixel.
+            beam = beam.widened(width, spread);
+        }
+        let blur = widest_blur(kernel.token, &self.uncertainties);
+        beam = beam.widened(blur.start, blur.spread);
+        let start_plane = self.start_plane(plan);
+        kernel.keep_met(&mut self.seen, &beam, start_plane, scratch);
+        if self.looks_beside() {
+            let slipping = L::Real::from_f64(SLIPPING);
+            self.thin.keep_narrow(&self.seen, plan, |center, radius| {
+                (width + spread * beam.distance(center, radius)) * slipping
+            });
+        }
+    }
+
+    /// The plane that all rays start on, if they all start on one.
+    fn start_plane(&self, plan: &Plan<L::Real>) -> Option<usize> {
+        let first = self.parents.first()?.ignored.shared()?;
+        let mut parents = self.parents.iter();
+        let is_shared = parents.all(|parent| parent.ignored.shared() == Some(first));
+        let plane = first.checked_sub(plan.primitives.firsts()[Kind::Plane as usize])?;
+        (is_shared && plane < plan.primitives.planes.len()).then_some(plane)
+    }
+
+    /// Makes packets of hits that are close to each other, where the plan asks for it.
+    #[inline(always)]
+    pub fn arrange<const TREE: bool>(
+        &mut self,
+        kernel: Kernel<L, TREE>,
+        samples: &Samples<L::Real>,
+    ) {
+        if TREE && kernel.plan.hit_order == HitOrder::OfPlaces {
+            let packets = (&mut self.packets[..], &mut self.uncertainties[..]);
+            self.order.arrange(kernel, packets, samples);
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! Single precision with a filter: what rounding may decide is traced again in double precision, and the picture is
+//! that of double precision.
+
+use glam::DVec3;
+use glint::image::{Image, render};
+use glint::mesh::{SOLIDS, Triangles};
+use glint::plan::RenderRequest;
+use glint::scene::{
+    Accelerator, Camera, List, Mesh, Object, Plane, Precision, Sampling, Scene, check,
+};
+use glint::simd::Level;
+use glint::trace::{Rays, RenderControl};
+
+use crate::random::{self, Dice};
+
+const WIDTH: u32 = 160;
+const HEIGHT: u32 = 120;
+/// Random scenes of each kind.
+const SCENES: u64 = 24;
+
+fn picture(scene: &Scene, request: &RenderRequest) -> (Image, Rays) {
+    let picture = render(scene, request, &RenderControl::default());
+    let (image, cost) = picture.expect("nobody stops it");
+    (image, cost.rays)
+}
+
+fn with(precision: Precision) -> RenderRequest {
+    RenderRequest {
+        precision,
+        ..RenderRequest::sized(WIDTH, HEIGHT)
+    }
+}
+
+/// Pixels that differ by more than a step of 8 bits.
+fn differing(one: &Image, other: &Image) -> usize {
+    let pixels = one.pixels.iter().zip(&other.pixels);
+    let differ = pixels.filter(|(one, other)| {
+        let channels = one.iter().zip(other.iter());
+        channels
+            .into_iter()
+            .any(|(one, other)| one.abs_diff(*other) > 1)
+    });
+    differ.count()
+}
+
+/// How many pixels of scenes are other than in double precision with single precision alone; with the filter none may be.
+fn wrong(scenes: impl Iterator<Item = Scene>) -> usize {
+    let mut alone = 0;
+    for (number, scene) in scenes.enumerate() {
+        assert_eq!(check(&scene), Ok(()));
+        let exact = picture(&scene, &with(Precision::Double)).0;
+        let (filtered, rays) = picture(&scene, &with(Precision::Auto));
+        let share = rays.again as f64 / rays.camera as f64;
+        assert!(share < 0.25, "{number}: {share} are traced again");
+        let off = differing(&filtered, &exact);
+        assert_eq!(off, 0, "scene {number}");
+        alone += differing(&picture(&scene, &with(Precision::Single)).0, &exact);
+    }
+    alone
+}
+
+fn mirroring(mut scene: Scene) -> Scene {
+    scene.render.reflection_limit = 4;
+    scene
+}
+
+/// The scene of a seed with solids in it, flat and smooth, at every angle.
+fn with_solids(seed: u64) -> Scene {
+    let mut scene = random::scene(seed);
+    let dice = &mut Dice(seed.wrapping_mul(65_537) + 3);
+    let mut vector = |reach: f64| DVec3::from([0; 3].map(|_| dice.real(-reach, reach)));
+    for (number, solid) in SOLIDS.iter().enumerate() {
+        let mesh = Mesh {
+            position: vector(50.0),
+            rotation: vector(180.0),
+            smooth: if seed.is_multiple_of(3) { 50.0 } else { 0.0 },
+            ..Mesh::of((solid.make)(25.0))
+        };
+        let pack = format!("pack {}", number % 6);
+        scene.objects.push(Object::new(solid.name, pack, mesh));
+    }
+    scene
+}
+
+/// Thousands of facets of rings that see each other, from afar through a long lens.
+fn rings(seed: u64) -> Scene {
+    let mut scene = random::scene(seed);
+    let dice = &mut Dice(seed.wrapping_mul(31_337) + 9);
+    let mut objects = Vec::new();
+    for number in 0..4 {
+        let tube = [0.02, 0.2, 0.6][(dice.real(0.0, 3.0)) as usize];
+        let mut vector = |reach: f64| DVec3::from([0; 3].map(|_| dice.real(-reach, reach)));
+        let mesh = Mesh {
+            position: vector(1.5),
+            rotation: vector(180.0),
+            ..Mesh::of(ring(tube))
+        };
+        let pack = format!("pack {}", number % 2);
+        objects.push(Object::new(format!("Ring {number}"), pack, mesh));
+    }
+    let floor = Plane {
+        point: DVec3::new(0.0, -1.5, 0.0),
+        normal: DVec3::Y,
+    };
+    objects.push(Object::new("Floor", "pack 3", floor));
+    scene.objects = List::from(objects);
+    for light in scene.lights.iter_mut() {
+        light.position /= 20.0;
+    }
+    let view = DVec3::new(dice.real(-1.0, 1.0), dice.real(0.2, 1.0), 1.0).normalize();
+    let away = dice.real(30.0, 300.0);
+    scene.camera = Camera {
+        position: view * away,
+        look_at: -view,
+        projection_distance: away / 5.0,
+        ..Camera::default()
+    };
+    scene
+}
+
+/// A ring of radius 1, with a tube of this radius.
+fn ring(tube: f64) -> Triangles {
+    const AROUND: u32 = 30;
+    const ALONG: u32 = 20;
+    let turn = |part: u32, parts: u32| f64::from(part) / f64::from(parts) * std::f64::consts::TAU;
+    let places = (0..AROUND).flat_map(|i| (0..ALONG).map(move |j| (i, j)));
+    let point = |(i, j)| {
+        let ((y, out), (z, x)) = (turn(j, ALONG).sin_cos(), turn(i, AROUND).sin_cos());
+        let out = 1.0 + tube * out;
+        DVec3::new(out * x, tube * y, out * z)
+    };
+    let number = |i: u32, j: u32| (i % AROUND) * ALONG + j % ALONG;
+    let faces = |(i, j)| {
+        let [a, b, c, d] =
+            [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| number(i, j));
+        [[a, b, c], [a, c, d]]
+    };
+    let points = places.clone().map(point).collect();
+    Triangles::new(points, places.flat_map(faces).collect()).expect("a ring")
+}
+
+#[test]
+fn the_filtered_picture_is_that_of_double_precision() {
+    let kinds: [fn(u64) -> Scene; 4] = [
+        random::scene,
+        |seed| mirroring(random::with_discs(seed)),
+        |seed| mirroring(with_solids(seed)),
+        |seed| mirroring(rings(seed)),
+    ];
+    let alone = kinds.map(|kind| wrong((0..SCENES).map(kind)));
+    // Single precision alone errs.
+    println!("single precision alone: {alone:?} pixels");
+    assert!(alone[3] > 3, "{alone:?}");
+}
+
+#[test]
+fn what_is_traced_again_depends_on_no_lanes_and_no_tree() {
+    for seed in 0..4 {
+        let scene = mirroring(if seed < 2 {
+            with_solids(seed)
+        } else {
+            rings(seed)
+        });
+        for sampling in [Sampling::Centres, Sampling::ADAPTIVE] {
+            // One lane at a time looks for what is thin in other steps, which a smooth mesh may show.
+            let is_meant = |level: &Level| sampling == Sampling::Centres || level.name != "single";
+            let levels = Level::available().into_iter().filter(is_meant);
+            let pictures = levels.map(|level| {
+                let request = RenderRequest {
+                    level: Some(level),
+                    sampling,
+                    ..with(Precision::Auto)
+                };
+                picture(&scene, &request)
+            });
+            let pictures: Vec<_> = pictures.collect();
+            assert!(pictures[0].1.again > 0);
+            for (image, rays) in &pictures[1..] {
+                assert!(image.pixels == pictures[0].0.pixels, "{seed} {sampling:?}");
+                assert_eq!(rays.again, pictures[0].1.again, "{seed} {sampling:?}");
+            }
+            let trees = [Accelerator::List, Accelerator::Bvh].map(|accelerator| {
+                let request = RenderRequest {
+                    accelerator,
+                    sampling,
+                    ..with(Precision::Auto)
+                };
+                picture(&scene, &request)
+            });
+            assert!(
+                trees[0].0.pixels == trees[1].0.pixels,
+                "{seed} {sampling:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn few_objects_need_no_filter_and_little_of_a_mesh_is_traced_again() {
+    let share = |scene: &Scene| {
+        let rays = picture(scene, &RenderRequest::sized(256, 256)).1;
+        rays.again as f64 / rays.camera as f64
+    };
+    assert_eq!(share(&Scene::demo()), 0.0);
+    let share = share(&rings(1));
+    assert!(share > 0.0 && share < 0.02, "{share}");
+}
