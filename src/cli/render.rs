@@ -22,7 +22,7 @@ use crate::lab::{Choice, Goal, choose};
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::{Aspect, MAX_SIDE, Method as _, Projection, Scene};
 use crate::simd::Level;
-use crate::trace::{RenderControl, Threads};
+use crate::trace::{Rays, RenderControl, Threads};
 use crate::worker::run_in_background;
 
 /// Time after which a running render is worth a progress bar, and between its updates.
@@ -81,7 +81,7 @@ enum CameraArg {
 struct Stats {
     trace_ms: f64,
     trace_ms_min: f64,
-    rays: RayCounts,
+    rays: Rays,
     lanes: String,
     /// What was chosen, where that was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -98,15 +98,6 @@ struct Chosen {
     rmse: f64,
     /// Whether it keeps to what was asked for.
     is_met: bool,
-}
-
-#[derive(Serialize)]
-struct RayCounts {
-    camera: u64,
-    shadow: u64,
-    reflected: u64,
-    /// Those from the camera that were traced again in double precision.
-    again: u64,
 }
 
 fn lanes(word: &str) -> Result<Level, String> {
@@ -297,12 +288,7 @@ fn stats((film, choice): (&Film, Option<Choice>), costs: &[RenderCost], threads:
     Stats {
         trace_ms: median,
         trace_ms_min: millis[0],
-        rays: RayCounts {
-            camera: rays.camera,
-            shadow: rays.shadow,
-            reflected: rays.reflected,
-            again: rays.again,
-        },
+        rays,
         lanes,
         chosen: choice.map(|choice| Chosen {
             antialias: choice.sampling.id(),
@@ -322,13 +308,7 @@ fn summary(path: &Path, stats: &Stats) -> String {
         trace_ms,
         ..
     } = stats;
-    let RayCounts {
-        camera,
-        shadow,
-        reflected,
-        again,
-    } = stats.rays;
-    let rays = camera + shadow + reflected + again;
+    let rays = stats.rays.total();
     let per_pixel = rays as f64 / (width * height) as f64;
     format!(
         "{}: {width}×{height}, {trace_ms:.1} ms, {per_pixel:.2} rays/px",

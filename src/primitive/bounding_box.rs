@@ -1,10 +1,7 @@
 //! Boxes around things, along the axes.
 
-use super::ray::Ray;
+use super::ray::{Ray, inverse};
 use crate::simd::{Real, SimdFloat, Vec3};
-
-/// The smallest component of a direction that is divided by.
-const LEAST: f64 = 1e-30;
 
 /// A box along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,17 +76,15 @@ impl<R: Real> BoundingBox<R> {
                 let slack = Vec3::splat(beside);
                 let low = slack.like(self.low) - rays.origin - slack;
                 let high = slack.like(self.high) - rays.origin + slack;
-                let (zero, one) = (beside.like(R::ZERO), beside.like(R::ONE));
                 let infinity = beside.like(R::INFINITY);
-                let (mut near, mut far) = (zero, infinity);
+                let (mut near, mut far) = (beside.like(R::ZERO), infinity);
+                let inverse = inverse(rays.direction);
                 let axes = [
-                    (low.x, high.x, rays.direction.x),
-                    (low.y, high.y, rays.direction.y),
-                    (low.z, high.z, rays.direction.z),
+                    (low.x, high.x, inverse.x),
+                    (low.y, high.y, inverse.y),
+                    (low.z, high.z, inverse.z),
                 ];
-                for (low, high, along) in axes {
-                    let size = along.abs().max(along.like_f64(LEAST));
-                    let inverse = one / L::select(along.less(zero), -size, size);
+                for (low, high, inverse) in axes {
                     let (low, high) = (low * inverse, high * inverse);
                     near = near.max(low.min(high));
                     far = far.min(low.max(high));

@@ -33,7 +33,7 @@ pub use kind::{Approach, Corner, Packing, Primitive, SurfacePoint};
 pub use list::{KINDS, Kind, Packed, Prepared, Primitives, Visit, WithPrepared, WithPrimitive};
 pub use plane::PackedPlane;
 pub use projector::{Extent, Projector, Rectangle};
-pub use ray::Ray;
+pub use ray::{Ray, inverse};
 pub use sphere::{PackedSphere, Round};
 pub use triangle::{
     CornerNormals, Curved, Flat, PackedTriangle, corner, count_corner_users, number_corners,

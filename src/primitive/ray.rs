@@ -1,6 +1,9 @@
 //! Half-lines.
 
-use crate::simd::{SimdFloat, Vec3};
+use crate::simd::{Real, SimdFloat, Vec3};
+
+/// The smallest component of a direction; one over it is still a number in single precision.
+const LEAST: f64 = 1e-30;
 
 /// Half-lines: origins and unit directions.
 #[derive(Clone, Copy, Debug)]
@@ -17,4 +20,21 @@ impl<L: SimdFloat> Ray<L> {
     pub fn at(&self, t: L) -> Vec3<L> {
         self.origin + self.direction * t
     }
+}
+
+/// One over each component of directions; a large number where that is nothing.
+#[inline(always)]
+pub fn inverse<L: SimdFloat>(direction: Vec3<L>) -> Vec3<L> {
+    Vec3::new(
+        one_over(direction.x),
+        one_over(direction.y),
+        one_over(direction.z),
+    )
+}
+
+#[inline(always)]
+fn one_over<L: SimdFloat>(along: L) -> L {
+    let size = along.abs().max(along.like_f64(LEAST));
+    let along = L::select(along.less(along.like(L::Real::ZERO)), -size, size);
+    along.like(L::Real::ONE) / along
 }

@@ -39,6 +39,14 @@ impl Object {
             group: String::new(),
         }
     }
+
+    /// How many triangles it has, if it is a mesh.
+    pub fn faces(&self) -> usize {
+        match &self.shape {
+            Shape::Mesh(mesh) => mesh.source.triangles().faces().len(),
+            _ => 0,
+        }
+    }
 }
 
 /// A point light that does not fall off with distance.

@@ -210,16 +210,9 @@ impl Scene {
         }
     }
 
-    /// How many triangles the meshes have.
+    /// How many triangles the meshes have, hidden ones as well.
     pub fn faces(&self) -> usize {
-        let meshes = self
-            .objects
-            .iter()
-            .filter_map(|object| match &object.shape {
-                Shape::Mesh(mesh) => Some(mesh.source.triangles().faces().len()),
-                _ => None,
-            });
-        meshes.sum()
+        self.objects.iter().map(Object::faces).sum()
     }
 
     /// Whether the triangles of some mesh are in a file of their own.

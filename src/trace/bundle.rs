@@ -1,11 +1,9 @@
 //! The rays of a packet as one: boxes that no ray of it can meet are left out, sixteen at a time.
 
 use crate::plan::{GROUP, Node};
-use crate::primitive::{Blur, BoundingBox, CAUTION, Ray, roundings};
+use crate::primitive::{Blur, BoundingBox, CAUTION, Ray, inverse, roundings};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
-/// The smallest component of a direction; one over it is still a number in single precision.
-const LEAST: f64 = 1e-30;
 /// The length of a way in a box, in its longest side: the root of 3, and a little more.
 const LONGEST: f64 = 1.75;
 /// How many times as far as a start a ray may be rounded that sets out to a point.
@@ -95,11 +93,7 @@ impl<L: SimdFloat> Bundle<L> {
     #[inline(always)]
     fn between(origin: Vec3<L>, slack: L, direction: Vec3<L>, active: L::Mask) -> Self {
         let slack = Vec3::splat(slack);
-        let inverse = Vec3::new(
-            inverse(direction.x),
-            inverse(direction.y),
-            inverse(direction.z),
-        );
+        let inverse = inverse(direction);
         let origins = [origin - slack, origin + slack];
         Self {
             active,
@@ -409,12 +403,4 @@ fn least<L: SimdFloat>(active: L::Mask, numbers: L) -> L::Real {
 #[inline(always)]
 fn greatest<L: SimdFloat>(active: L::Mask, numbers: L) -> L::Real {
     L::select(active, numbers, numbers.like(-L::Real::INFINITY)).greatest()
-}
-
-/// One over a component of directions.
-#[inline(always)]
-fn inverse<L: SimdFloat>(along: L) -> L {
-    let size = along.abs().max(along.like_f64(LEAST));
-    let along = L::select(along.less(along.like(L::Real::ZERO)), -size, size);
-    along.like(L::Real::ONE) / along
 }

@@ -12,8 +12,8 @@ use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
 /// What the kernels of a picture share: the proof that the processor has the lanes, and the plan. Without
-/// `TREE` they are compiled for plans that have no tree, and are faster: what may be in a list or in a tree
-/// is copied back and forth.
+/// `TREE` they are compiled for plans that have no tree and are not doubted, and are faster: what may be in a list or
+/// in a tree is copied back and forth.
 pub struct Kernel<'a, L: SimdFloat, const TREE: bool> {
     /// Proof that the processor has these vectors.
     pub token: L::Token,

@@ -3,8 +3,10 @@
 use std::ops::{Add, AddAssign};
 use std::sync::atomic::{AtomicBool, AtomicU64};
 
+use serde::Serialize;
+
 /// How many rays were traced, by what they were for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Rays {
     /// From the camera.
     pub camera: u64,

@@ -32,7 +32,7 @@ const PIXELS_PER_PRIMITIVE: u64 = 16_384;
 const PIXELS_IN_SQUARES: u64 = 128;
 
 /// Pieces of a picture for each thread, at least, where there are so many tiles. The dearest piece of a mesh of a
-/// million faces takes 20 times as long as others: with a quarter as many, 16 threads wait for the last of them a
+/// million faces takes 20 times as long as others: with an eighth as many, 16 threads wait for the last of them a
 /// fifth of their time, and 64 half of it.
 const PIECES_PER_THREAD: usize = 128;
 

@@ -22,7 +22,8 @@ pub fn watertight_in_doubt<L: SimdFloat>(
     triangle: &PackedTriangle<L::Real>,
     (blur, wanted): (&Blur<L>, L::Mask),
 ) -> Option<(L, L)> {
-    let ([a, b, c], [u, v, w]) = edges_of(ray, shear, triangle);
+    let (corners, edges) = edges_of(ray, shear, triangle);
+    let ([a, b, c], [u, v, w]) = (corners, edges);
     let longest = u.like(triangle.longest);
     let width = blur.at((a[2] * shear.z).abs() + longest);
     let bound = width * longest * u.like_f64(STEEPNESS);
@@ -33,7 +34,7 @@ pub fn watertight_in_doubt<L: SimdFloat>(
         return None;
     }
     let is_met = bound.less(low) | high.less(-bound);
-    let t = (u * a[2] + v * b[2] + w * c[2]) * shear.z / (u + v + w);
+    let t = shear.distance(corners, edges);
     let inside = zero.at_most(low) | high.at_most(zero);
     let distance = L::select(inside & zero.less(t), t, infinity);
     let starts_on_it = is_met & t.abs().at_most(blur.start);

@@ -96,6 +96,13 @@ impl<L: SimdFloat> Shear<L> {
         (from[0] * y - from[1] * x, square)
     }
 
+    /// How far the plane of sheared corners is, which edges turn around the ray like this. All three zero is a triangle
+    /// seen edge-on: 0/0 fails every comparison.
+    #[inline(always)]
+    pub fn distance(&self, [a, b, c]: [[L; 3]; 3], [u, v, w]: [L; 3]) -> L {
+        (u * a[2] + v * b[2] + w * c[2]) * self.z / (u + v + w)
+    }
+
     /// A corner relative to the ray's origin: sheared x and y, and its depth along the axis.
     #[inline(always)]
     pub fn apply(&self, corner: Vec3<L>) -> [L; 3] {
@@ -115,7 +122,8 @@ pub fn watertight<L: SimdFloat>(
     shear: &Shear<L>,
     triangle: &PackedTriangle<L::Real>,
 ) -> L {
-    let ([a, b, c], [u, v, w]) = edges_of(ray, shear, triangle);
+    let (corners, edges) = edges_of(ray, shear, triangle);
+    let [u, v, w] = edges;
     let zero = u.like(L::Real::ZERO);
     let none_negative = zero.at_most(u) & zero.at_most(v) & zero.at_most(w);
     let none_positive = u.at_most(zero) & v.at_most(zero) & w.at_most(zero);
@@ -124,8 +132,7 @@ pub fn watertight<L: SimdFloat>(
     if !inside.any() {
         return infinity;
     }
-    // All three zero is a triangle seen edge-on: 0/0 fails the comparison.
-    let t = (u * a[2] + v * b[2] + w * c[2]) * shear.z / (u + v + w);
+    let t = shear.distance(corners, edges);
     L::select(inside & zero.less(t), t, infinity)
 }
 
