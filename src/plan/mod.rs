@@ -42,6 +42,8 @@ mod show;
 
 mod hit_order;
 
+mod tips;
+
 mod pack;
 
 mod faces;
@@ -65,4 +67,5 @@ pub use precision::{is_double, is_filtered};
 pub use ray_origin::RayOrigin;
 pub use request::{Model, Region, RenderRequest};
 pub use show::Show;
+pub use tips::{Tip, Tips};
 pub use view::View;

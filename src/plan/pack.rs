@@ -15,6 +15,7 @@ use super::plane_occluders::classify_planes;
 use super::ray_origin::{RayOrigin, ray_origin};
 use super::request::{Model, RenderRequest};
 use super::show::Show;
+use super::tips::Tips;
 use super::view::View;
 use crate::primitive::{
     Blur, BoundingBox, CAUTION, KINDS, Packed, Packing, Primitives, Projector, Rectangle,
@@ -68,6 +69,8 @@ pub struct Plan<R> {
     /// Where each primitive that ends is in the picture, kind by kind; `None` where formulas are in use
     /// whose failures must not be hidden.
     pub screen: Option<[Vec<Rectangle>; KINDS]>,
+    /// What the corners of pixels may miss of triangles; none without smoothing that looks there first.
+    pub tips: Tips,
     /// Balls around the `primitives` that end.
     pub balls: Balls<R>,
     /// Their numbers.
@@ -125,6 +128,7 @@ impl<R: Real> Plan<R> {
             planes_cast: occluders.is_none(),
             shadows_behind: model == Model::Everything,
             screen: may_cull.then(Default::default),
+            tips: Tips::default(),
             balls: Balls::default(),
             in_balls: Vec::new(),
             camera_culled_faces: Vec::new(),
@@ -163,6 +167,7 @@ impl<R: Real> Plan<R> {
         plan.lights = pack_lights(scene, centre, (occluders, model), (touches, holders));
         if matches!(request.sampling, Sampling::Adaptive { .. }) {
             measure_loose(&mut plan.primitives);
+            plan.tips = Tips::of(scene, request);
         }
         if may_cull {
             plan.bound();

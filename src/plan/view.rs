@@ -23,6 +23,8 @@ pub struct View<R> {
     half: (R, R),
     /// Image heights per pixel.
     pixel: R,
+    /// See [`Self::footprint`].
+    footprint: (R, R),
 }
 
 impl<R: Real> View<R> {
@@ -36,23 +38,26 @@ impl<R: Real> View<R> {
             Projection::Orthographic => (camera.orthographic_height, -w),
         };
         let (width, height) = (f64::from(request.width), f64::from(request.height));
+        let pixel = R::from_f64(1.0 / height);
+        let (right, ahead) = (Vec3::from_dvec3(u * scale), Vec3::from_dvec3(forward));
         Self {
             origin: Vec3::from_dvec3(camera.position - centre),
-            u: Vec3::from_dvec3(u * scale),
+            u: right,
             v: Vec3::from_dvec3(v * scale),
-            forward: Vec3::from_dvec3(forward),
+            forward: ahead,
             projection,
             half: (R::from_f64(width / 2.0), R::from_f64(height / 2.0)),
-            pixel: R::from_f64(1.0 / height),
+            pixel,
+            footprint: match projection {
+                Projection::Orthographic => (right.length() * pixel, R::ZERO),
+                Projection::Perspective => (R::ZERO, pixel / ahead.length()),
+            },
         }
     }
 
     /// How wide a pixel is at the eye, and how much wider at distance 1, at most.
     pub fn footprint(&self) -> (R, R) {
-        match self.projection {
-            Projection::Orthographic => (self.u.length() * self.pixel, R::ZERO),
-            Projection::Perspective => (R::ZERO, self.pixel / self.forward.length()),
-        }
+        self.footprint
     }
 
     /// How much wider a pixel becomes at distance 1; where the camera's rays are parallel, as much as in a
@@ -60,13 +65,13 @@ impl<R: Real> View<R> {
     pub fn spread(&self) -> R {
         match self.projection {
             Projection::Orthographic => self.pixel,
-            Projection::Perspective => self.footprint().1,
+            Projection::Perspective => self.footprint.1,
         }
     }
 
     /// How wide a pixel is within this distance of a point, at most.
     pub fn width_at(&self, point: Vec3<R>, reach: R) -> R {
-        let (width, spread) = self.footprint();
+        let (width, spread) = self.footprint;
         width + spread * ((point - self.origin).length() + reach)
     }
 

@@ -89,22 +89,34 @@ impl Projector {
 
     /// The rectangle around a triangle.
     pub fn triangle(&self, corners: [DVec3; 3]) -> Rectangle {
+        let flat = self.flat(corners);
+        let range = |axis: usize| flat.map(|flat| bounds(flat.map(|place| place[axis])));
+        Rectangle {
+            columns: self.columns(range(0)),
+            rows: self.rows(range(1)),
+        }
+    }
+
+    /// Where the corners of a triangle are, in pixels from the left and upper edge of the picture; `None` unless all
+    /// are ahead of the eye.
+    pub fn places(&self, corners: [DVec3; 3]) -> Option<[[f64; 2]; 3]> {
+        let place = |[x, y]: [f64; 2]| [self.half.0 + x * self.scale, self.half.1 - y * self.scale];
+        self.flat(corners).map(|flat| flat.map(place))
+    }
+
+    /// The corners of a triangle on the image plane: right and up of its middle.
+    fn flat(&self, corners: [DVec3; 3]) -> Option<[[f64; 2]; 3]> {
         let seen = corners.map(|corner| self.seen(corner));
         let size = seen
             .iter()
             .flatten()
             .fold(0.0, |size: f64, part| size.max(part.abs()));
-        let is_ahead = seen.iter().all(|[_, _, depth]| *depth > size * 1e-6);
-        let range = |axis: usize| match self.projection {
-            Projection::Orthographic => Some(bounds(seen.map(|point| point[axis]))),
-            Projection::Perspective if is_ahead => {
-                Some(bounds(seen.map(|point| point[axis] / point[2])))
+        match self.projection {
+            Projection::Orthographic => Some(seen.map(|[x, y, _]| [x, y])),
+            Projection::Perspective => {
+                let is_ahead = seen.iter().all(|[_, _, depth]| *depth > size * 1e-6);
+                is_ahead.then(|| seen.map(|[x, y, depth]| [x / depth, y / depth]))
             }
-            Projection::Perspective => None,
-        };
-        Rectangle {
-            columns: self.columns(range(0)),
-            rows: self.rows(range(1)),
         }
     }
 

@@ -1,42 +1,26 @@
 //! The samples of a tile that its pixels share, and when a cell between them is subdivided.
 
+use std::ops::Range;
+
+use super::points::Points;
 use super::samples::{Samples, Traced};
-use super::thresholds::{EDGE_ERROR, FINEST, NEAR};
+use super::thresholds::{EDGE_ERROR, FINEST, NEAR, UNEVEN};
 use super::tile::{Tile, TileColors};
+use crate::plan::{Tip, Tips};
 use crate::scene::MAX_HALVINGS;
 use crate::simd::{Real, SimdFloat};
 
-/// Points of the finest grid in a pixel.
-const POINTS: usize = FINEST * FINEST;
-
-/// The place of each point of a pixel, row by row, among those of the pixel: what fewer halvings reach comes first, so
-/// that what is looked at together is together in the cache.
-const PLACES: [u8; POINTS] = {
-    let mut places = [0; POINTS];
-    let (mut next, mut step) = (0, FINEST);
-    while step > 0 {
-        let mut point = 0;
-        while point < POINTS {
-            let (x, y) = (point % FINEST, point / FINEST);
-            let is_reached = x % step == 0 && y % step == 0;
-            let was_reached = step < FINEST && x % (2 * step) == 0 && y % (2 * step) == 0;
-            if is_reached && !was_reached {
-                places[point] = next as u8;
-                next += 1;
-            }
-            point += 1;
-        }
-        step /= 2;
-    }
-    places
-};
+/// Cells of this side are still divided where a triangle is narrow: what passes between the samples of smaller ones
+/// covers less of the pixel than a level of 255.
+const SMALLEST_AT_TIP: u16 = (FINEST / 4) as u16;
 
 /// What was seen at a point.
 #[derive(Clone, Copy, Debug)]
-struct Sample<R> {
+pub struct Sample<R> {
     /// Red, green and blue, and what is near: one row, so that they are handled in step.
-    values: [R; 4],
-    signature: u32,
+    pub values: [R; 4],
+    /// Equal where the same is seen.
+    pub signature: u32,
 }
 
 impl<R: Real> Sample<R> {
@@ -53,12 +37,13 @@ impl<R: Real> Sample<R> {
 /// Samples on the finest grid of a tile that are shared by the cells around them.
 #[derive(Debug)]
 pub struct Lattice<R> {
-    /// Pixels from one row to the next, with one at the end of each that has corners alone.
-    stride: usize,
-    /// 1 + the index of each point's sample, 0 where there is none; pixel by pixel.
-    indices: Vec<u32>,
-    /// Column and row of the points that have a sample, in order of their samples.
-    points: Vec<[u16; 2]>,
+    /// The points that have a sample or are wanted.
+    points: Points,
+    /// What corners may miss, in steps of the grid from the corner of the picture.
+    pub tips: Vec<Tip>,
+    /// Where the tile is, in the same steps.
+    corner: [f64; 2],
+    /// In order of their points.
     samples: Vec<Sample<R>>,
 }
 
@@ -70,9 +55,11 @@ pub struct Cell {
     /// Rows of the finest grid from the top.
     pub y: u16,
     /// Steps of the finest grid.
-    side: u16,
+    pub side: u16,
+    /// Whether its corners know what may slip between them, or samples beside them did.
+    is_watched: bool,
     /// The samples at its corners: upper left and right, lower left and right.
-    corners: [u32; 4],
+    pub corners: [u32; 4],
 }
 
 impl Cell {
@@ -82,8 +69,34 @@ impl Cell {
             x: (column * FINEST) as u16,
             y: (row * FINEST) as u16,
             side: FINEST as u16,
+            is_watched: true,
             corners: [0; 4],
         }
+    }
+
+    /// Whether it begins where another one does.
+    pub fn is_at(&self, other: &Self) -> bool {
+        (self.x, self.y) == (other.x, other.y)
+    }
+
+    /// The same, about which nobody has looked what may slip between samples.
+    pub fn unwatched(self) -> Self {
+        Self {
+            is_watched: false,
+            ..self
+        }
+    }
+
+    /// The pixel that it is in, `stride` from one row of them to the next.
+    #[inline(always)]
+    pub fn pixel_in(&self, stride: usize) -> usize {
+        self.y as usize / FINEST * stride + self.x as usize / FINEST
+    }
+
+    /// Its side in pixels.
+    #[inline(always)]
+    pub fn width(&self) -> f64 {
+        f64::from(self.side) / FINEST as f64
     }
 }
 
@@ -125,9 +138,14 @@ impl<R: Real> Limits<R> {
         }
     }
 
-    /// How often a pixel is subdivided at most.
-    pub fn finest_depth(self) -> u32 {
-        self.depth + 1
+    /// The side of the smallest cells, in steps of the finest grid.
+    pub fn least_side(self) -> u16 {
+        (FINEST >> (self.depth + 1)) as u16
+    }
+
+    /// The contrast above which a cell is subdivided whose corners see the same.
+    pub fn contrast_of_same(self, side: f64) -> R {
+        self.at(R::from_f64(side)).contrast(true)
     }
 
     /// The contrast of the corners of a cell above which its inside must be looked at, by whether they see
@@ -147,9 +165,9 @@ impl<R: Real> Lattice<R> {
     /// No samples.
     pub fn new() -> Self {
         Self {
-            stride: 0,
-            indices: Vec::new(),
-            points: Vec::new(),
+            points: Points::new(),
+            tips: Vec::new(),
+            corner: [0.0; 2],
             samples: Vec::new(),
         }
     }
@@ -157,48 +175,27 @@ impl<R: Real> Lattice<R> {
     /// Forgets the tile before, and starts with the corners of these pixels, among those of all.
     #[inline(always)]
     pub fn start(&mut self, tile: &Tile, corners: &Traced<R>, pixels: &mut [Cell]) {
-        for &[x, y] in &self.points {
-            let point = self.point(x.into(), y.into());
-            self.indices[point] = 0;
-        }
         self.points.clear();
-        self.stride = tile.width() + 1;
-        let points = self.stride * (tile.rows.len() + 1) * POINTS;
-        if self.indices.len() < points {
-            self.indices.resize(points, 0);
-        }
         self.samples.clear();
         for pixel in pixels {
-            let (left, top) = (pixel.x as usize, pixel.y as usize);
-            let (right, bottom) = (left + FINEST, top + FINEST);
+            let (left, top) = (pixel.x, pixel.y);
+            let (right, bottom) = (left + pixel.side, top + pixel.side);
             let places = [(left, top), (right, top), (left, bottom), (right, bottom)];
             for (corner, (x, y)) in pixel.corners.iter_mut().zip(places) {
                 *corner = self.want(x, y);
                 if *corner as usize == self.samples.len() {
-                    let number = y / FINEST * self.stride + x / FINEST;
+                    let (column, row) = (x as usize / FINEST, y as usize / FINEST);
+                    let number = row * (tile.width() + 1) + column;
                     self.samples.push(Sample::of(corners, number));
                 }
             }
         }
     }
 
-    /// The number of a point of the grid.
-    #[inline(always)]
-    fn point(&self, x: usize, y: usize) -> usize {
-        let pixel = y / FINEST * self.stride + x / FINEST;
-        pixel * POINTS + PLACES[y % FINEST * FINEST + x % FINEST] as usize
-    }
-
     /// Makes sure that there will be a sample at a point of the grid: its index.
     #[inline(always)]
-    fn want(&mut self, x: usize, y: usize) -> u32 {
-        let point = self.point(x, y);
-        let index = &mut self.indices[point];
-        if *index == 0 {
-            self.points.push([x as u16, y as u16]);
-            *index = self.points.len() as u32;
-        }
-        *index - 1
+    pub fn want(&mut self, x: u16, y: u16) -> u32 {
+        self.points.number(x, y)
     }
 
     /// `samples` become those that are wanted and not there yet.
@@ -206,7 +203,7 @@ impl<R: Real> Lattice<R> {
     pub fn wanted_samples<L: SimdFloat<Real = R>>(&self, tile: &Tile, samples: &mut Samples<R>) {
         samples.clear();
         let step = 1.0 / FINEST as f64;
-        for &[x, y] in &self.points[self.samples.len()..] {
+        for &[x, y] in self.points.from(self.samples.len()) {
             samples.push(
                 R::from_f64(tile.columns.start as f64 + f64::from(x) * step),
                 R::from_f64(tile.rows.start as f64 + f64::from(y) * step),
@@ -222,38 +219,134 @@ impl<R: Real> Lattice<R> {
         self.samples.extend(new);
     }
 
+    /// A sample by its index.
+    #[inline(always)]
+    pub fn sample(&self, index: u32) -> &Sample<R> {
+        &self.samples[index as usize]
+    }
+
     /// The samples at the corners of a cell. Written out: mapping an array is a call there.
     #[inline(always)]
-    fn corners(&self, cell: &Cell) -> [&Sample<R>; 4] {
+    pub fn corners(&self, cell: &Cell) -> [&Sample<R>; 4] {
         let [a, b, c, d] = cell.corners;
         let at = |corner: u32| &self.samples[corner as usize];
         [at(a), at(b), at(c), at(d)]
     }
 
+    /// Whether something may have slipped between the corners of a cell.
+    #[inline(always)]
+    pub fn is_near(&self, cell: &Cell) -> bool {
+        let [a, b, c, d] = self.corners(cell);
+        let (a, b, c, d) = (a.values[3], b.values[3], c.values[3], d.values[3]);
+        let least = a.min(b).min(c.min(d));
+        let is_thin = cell.is_watched && least < R::from_f64(NEAR * cell.width());
+        is_thin || (SMALLEST_AT_TIP <= cell.side && self.meets_tip(cell))
+    }
+
+    /// Takes those of the tips that are in a tile.
+    pub fn start_tips(&mut self, tips: &Tips, tile: &Tile) {
+        let corner = [tile.columns.start, tile.rows.start];
+        self.corner = corner.map(|start| (start * FINEST) as f64);
+        let meets = |(from, to): (f64, f64), pixels: &Range<usize>| {
+            from <= pixels.end as f64 && pixels.start as f64 <= to
+        };
+        self.tips.clear();
+        for tip in tips.in_rows(&tile.rows) {
+            let [columns, rows] = tip.extent();
+            if meets(columns, &tile.columns) && meets(rows, &tile.rows) {
+                self.tips.push(tip.scaled(FINEST as f64));
+            }
+        }
+    }
+
+    /// Whether some of them may be in a row of pixels.
+    pub fn has_tips_in(&self, row: usize) -> bool {
+        let top = self.corner[1] + (row * FINEST) as f64;
+        self.tips.iter().any(|tip| {
+            let (from, to) = tip.extent()[1];
+            from <= top + FINEST as f64 && top <= to
+        })
+    }
+
+    /// Whether a triangle is narrow in a cell.
+    #[inline(always)]
+    pub fn meets_tip(&self, cell: &Cell) -> bool {
+        let [left, top] = self.corner;
+        let at = [left + f64::from(cell.x), top + f64::from(cell.y)];
+        let mut tips = self.tips.iter();
+        tips.any(|tip| tip.meets(at, cell.side.into()))
+    }
+
     /// Whether the inside of a cell must be looked at.
     #[inline(always)]
-    pub fn is_split(&self, cell: &Cell, depth: u32, limits: Limits<R>) -> bool {
+    pub fn is_split(&self, cell: &Cell, limits: Limits<R>) -> bool {
         let [a, b, c, d] = self.corners(cell);
         let differing =
             (a.signature ^ b.signature) | (a.signature ^ c.signature) | (a.signature ^ d.signature);
-        let (mut least, mut ranges) = ([R::ZERO; 4], [R::ZERO; 4]);
+        let mut ranges = [R::ZERO; 4];
+        for (index, span) in ranges.iter_mut().enumerate() {
+            let (a, b) = (a.values[index], b.values[index]);
+            let (c, d) = (c.values[index], d.values[index]);
+            *span = range(a, b, c, d);
+        }
+        let contrast = ranges[0] + ranges[1] + ranges[2];
+        let limit = limits
+            .at(R::from_f64(cell.width()))
+            .contrast(differing == 0);
+        limits.least_side() < cell.side && (self.is_near(cell) || contrast > limit)
+    }
+
+    /// Whether the corners of a cell see the same.
+    pub fn is_one(&self, cell: &Cell) -> bool {
+        let [a, b, c, d] = self.corners(cell);
+        (a.signature ^ b.signature) | (a.signature ^ c.signature) | (a.signature ^ d.signature) == 0
+    }
+
+    /// Makes sure that there will be a sample in the middle of a cell: its index.
+    pub fn want_middle(&mut self, cell: &Cell) -> u32 {
+        let half = cell.side / 2;
+        self.want(cell.x + half, cell.y + half)
+    }
+
+    /// Adds the colour of a cell whose corners see the same to its pixel, if its middle does too and has nearly their
+    /// mean colour: then it changes evenly between them.
+    pub fn accumulate_even(
+        &self,
+        (cell, middle): (&Cell, u32),
+        limits: Limits<R>,
+        colors: &mut TileColors<R>,
+    ) -> bool {
+        let [a, b, c, d] = self.corners(cell);
+        let middle = self.sample(middle);
+        let quarter = R::from_f64(0.25);
+        let (mut ranges, mut offs, mut means) = ([R::ZERO; 4], [R::ZERO; 4], [R::ZERO; 4]);
         for index in 0..4 {
             let (a, b) = (a.values[index], b.values[index]);
             let (c, d) = (c.values[index], d.values[index]);
-            least[index] = a.min(b).min(c.min(d));
+            let mean = ((a + b) + (c + d)) * quarter;
             ranges[index] = range(a, b, c, d);
+            offs[index] = (middle.values[index] - mean).abs();
+            // Exact for polynomials of degree 2.
+            means[index] = mean + (middle.values[index] - mean) * R::from_f64(2.0 / 3.0);
         }
-        let contrast = ranges[0] + ranges[1] + ranges[2];
-        let side = f64::from(cell.side) / FINEST as f64;
-        let is_near = least[3] < R::from_f64(NEAR * side);
-        let limit = limits.at(R::from_f64(side)).contrast(differing == 0);
-        depth < limits.finest_depth() && (is_near || contrast > limit)
+        let [contrast, off] = [ranges, offs].map(|[red, green, blue, _]| red + green + blue);
+        let limit = limits.contrast_of_same(cell.width());
+        let is_even =
+            middle.signature == a.signature && off <= limit.min(contrast * R::from_f64(UNEVEN));
+        if is_even {
+            let area = R::from_f64(cell.width() * cell.width());
+            let pixel = cell.pixel_in(colors.stride);
+            for (sum, mean) in colors.channels.iter_mut().zip(means) {
+                sum[pixel] = sum[pixel] + mean * area;
+            }
+        }
+        is_even
     }
 
     /// Adds the mean of a cell's corners to its pixel, by its area.
     #[inline(always)]
     pub fn accumulate(&self, cell: &Cell, pixel: usize, colors: &mut TileColors<R>) {
-        let side = f64::from(cell.side) / FINEST as f64;
+        let side = cell.width();
         let share = R::from_f64(side * side / 4.0);
         let [a, b, c, d] = self.corners(cell);
         let mut part = [R::ZERO; 4];
@@ -271,19 +364,20 @@ impl<R: Real> Lattice<R> {
     #[inline(always)]
     pub fn subdivide(&mut self, cell: &Cell, cells: &mut Vec<Cell>) {
         let half = cell.side / 2;
-        let (left, top) = (cell.x as usize, cell.y as usize);
-        let (middle, centre) = (left + half as usize, top + half as usize);
-        let (right, bottom) = (middle + half as usize, centre + half as usize);
+        let (left, top) = (cell.x, cell.y);
+        let (middle, centre) = (left + half, top + half);
+        let (right, bottom) = (middle + half, centre + half);
         let [a, b, c, d] = cell.corners;
         let above = self.want(middle, top);
         let before = self.want(left, centre);
         let inside = self.want(middle, centre);
         let behind = self.want(right, centre);
         let below = self.want(middle, bottom);
-        let quarter = |x: usize, y: usize, corners: [u32; 4]| Cell {
-            x: x as u16,
-            y: y as u16,
+        let quarter = |x: u16, y: u16, corners: [u32; 4]| Cell {
+            x,
+            y,
             side: half,
+            is_watched: cell.is_watched,
             corners,
         };
         cells.extend([

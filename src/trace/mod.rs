@@ -62,7 +62,13 @@ mod forth;
 
 mod engine;
 
+mod points;
+
 mod lattice;
+
+mod crossing;
+
+mod coverage;
 
 mod sampler;
 

@@ -3,11 +3,13 @@
 use std::ops::Range;
 
 use super::candidates::Candidates;
+use super::coverage::{CrossedCell, Found};
 use super::engine::Engine;
 use super::lattice::{Cell, Lattice, Limits, range};
 use super::samples::{Edges, Samples, Traced};
-use super::thresholds::{FINEST, LOOKING, NEAR};
+use super::thresholds::NEAR;
 use super::tile::{Tile, TileColors};
+use crate::plan::Tips;
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
 
 /// Samples the pixels of tiles; its buffers are used again.
@@ -26,6 +28,9 @@ pub struct Sampler<L: SimdFloat> {
     lattice: Lattice<L::Real>,
     cells: Vec<Cell>,
     split: Vec<Cell>,
+    crossed: Vec<CrossedCell<L::Real>>,
+    /// Cells that may be even, and the samples in their middles.
+    even: Vec<(Cell, u32)>,
 }
 
 impl<L: SimdFloat> Sampler<L> {
@@ -42,6 +47,8 @@ impl<L: SimdFloat> Sampler<L> {
             lattice: Lattice::new(),
             cells: Vec::new(),
             split: Vec::new(),
+            crossed: Vec::new(),
+            even: Vec::new(),
         }
     }
 
@@ -133,7 +140,9 @@ impl<L: SimdFloat> Sampler<L> {
     /// The means of pixels that are subdivided as long as their corners differ; corners are shared.
     ///
     /// Whitted, "An improved illumination model for shaded display", CACM 23(6), 1980; here with
-    /// the things that were hit and lit, beside the colours, to tell the corners apart.
+    /// the things that were hit and lit, beside the colours, to tell the corners apart. Where these say that one edge
+    /// crosses a cell, [`CrossedCell`] takes a third of the samples, and where the cell shows one thing whose colour
+    /// changes evenly, [`Lattice::accumulate_even`] takes one.
     #[inline(always)]
     pub fn adaptive<const TREE: bool>(
         &mut self,
@@ -147,34 +156,124 @@ impl<L: SimdFloat> Sampler<L> {
         let rows = tile.rows.start..tile.rows.end + 1;
         self.trace(engine, seen, (columns, rows), ((0.0, 0.0), Edges::Near));
         self.judge(engine.token(), tile, limits, colors);
+        self.add_tips(engine.tips(), tile, colors);
         if self.split.is_empty() {
             return;
         }
         self.lattice.start(tile, &self.traced, &mut self.split);
-        for depth in 1..=limits.finest_depth() {
-            self.cells.clear();
-            for cell in &self.split {
-                self.lattice.subdivide(cell, &mut self.cells);
+        self.crossed.clear();
+        self.even.clear();
+        self.cells.clear();
+        self.cells.append(&mut self.split);
+        self.sort(limits);
+        // What slips between samples is looked for once more, in the middle of pixels and of their sides; what is
+        // thinner than their quarters is met by some sample nearby, or shows too little.
+        self.subdivide();
+        self.look(engine, seen, tile, Edges::Near);
+        while !(self.cells.is_empty() && self.crossed.is_empty() && self.even.is_empty()) {
+            for cell in &mut self.crossed {
+                cell.want(&mut self.lattice);
             }
-            self.lattice.wanted_samples::<L>(tile, &mut self.samples);
-            let edges = if depth <= LOOKING {
-                Edges::Near
-            } else {
-                Edges::Signed
-            };
-            engine.trace(&self.samples, seen, edges, &mut self.traced);
-            self.lattice.take_results(&self.traced);
-            self.split.clear();
-            for cell in &self.cells {
-                if self.lattice.is_split(cell, depth, limits) {
-                    self.split.push(*cell);
-                } else {
-                    let pixel = cell.y as usize / FINEST * colors.stride + cell.x as usize / FINEST;
-                    self.lattice.accumulate(cell, pixel, colors);
+            for (cell, middle) in &mut self.even {
+                *middle = self.lattice.want_middle(cell);
+            }
+            self.look(engine, seen, tile, Edges::Signed);
+            self.settle(limits, colors);
+            self.subdivide();
+        }
+    }
+
+    /// Adds the pixels in which triangles are narrow to those to subdivide.
+    fn add_tips(&mut self, tips: &Tips, tile: &Tile, colors: &mut TileColors<L::Real>) {
+        self.lattice.start_tips(tips, tile);
+        if self.lattice.tips.is_empty() {
+            return;
+        }
+        let rows = (0..tile.rows.len()).filter(|row| self.lattice.has_tips_in(*row));
+        for row in rows {
+            for column in 0..tile.width() {
+                let pixel = Cell::pixel(column, row);
+                let mut others = self.split.iter();
+                if self.lattice.meets_tip(&pixel) && others.all(|other| !other.is_at(&pixel)) {
+                    for channel in &mut colors.channels {
+                        channel[pixel.pixel_in(colors.stride)] = L::Real::ZERO;
+                    }
+                    self.split.push(pixel);
                 }
             }
-            if self.split.is_empty() {
-                break;
+        }
+    }
+
+    /// Divides the cells that are to be divided.
+    #[inline(always)]
+    fn subdivide(&mut self) {
+        self.cells.clear();
+        for cell in &self.split {
+            self.lattice.subdivide(cell, &mut self.cells);
+        }
+        self.split.clear();
+    }
+
+    /// Traces what is wanted and not there yet.
+    #[inline(always)]
+    fn look<const TREE: bool>(
+        &mut self,
+        engine: &mut Engine<L, TREE>,
+        seen: &Candidates,
+        tile: &Tile,
+        edges: Edges,
+    ) {
+        self.lattice.wanted_samples::<L>(tile, &mut self.samples);
+        if self.samples.count > 0 {
+            engine.trace(&self.samples, seen, edges, &mut self.traced);
+            self.lattice.take_results(&self.traced);
+        }
+    }
+
+    /// Adds the colours of the cells that are known well enough, and notes what is to be done with the others.
+    fn settle(&mut self, limits: Limits<L::Real>, colors: &mut TileColors<L::Real>) {
+        let (lattice, split) = (&self.lattice, &mut self.split);
+        self.crossed
+            .retain_mut(|cell| match cell.take(lattice, colors) {
+                Found::Nothing => true,
+                Found::Color => false,
+                Found::Disorder(cell) => {
+                    split.push(cell);
+                    false
+                }
+            });
+        for (cell, middle) in self.even.drain(..) {
+            if lattice.accumulate_even((&cell, middle), limits, colors) {
+                continue;
+            }
+            match CrossedCell::of_colors(&cell, lattice, limits) {
+                Some(crossed) => self.crossed.push(crossed),
+                None => split.push(cell.unwatched()),
+            }
+        }
+        self.cells.retain(|cell| {
+            let is_split = lattice.is_split(cell, limits);
+            if !is_split {
+                lattice.accumulate(cell, cell.pixel_in(colors.stride), colors);
+            }
+            is_split
+        });
+        self.sort(limits);
+    }
+
+    /// Puts the cells whose inside must be looked at where they belong: those that one edge crosses, those that may be
+    /// even, and those to subdivide.
+    fn sort(&mut self, limits: Limits<L::Real>) {
+        let lattice = &self.lattice;
+        for cell in &self.cells {
+            if lattice.is_near(cell) {
+                self.split.push(*cell);
+            } else if lattice.is_one(cell) {
+                self.even.push((*cell, 0));
+            } else if let Some(crossed) = CrossedCell::of(cell, lattice, limits) {
+                self.crossed.push(crossed);
+            } else {
+                self.split.push(*cell);
             }
         }
     }
@@ -205,13 +304,12 @@ impl<L: SimdFloat> Sampler<L> {
                 contrast = contrast + range(a, b, c, d);
             }
             let mut limit = [L::Real::ZERO; MAX_LANES];
-            let signatures = &self.traced.signature[first..];
-            for (lane, limit) in limit[..L::WIDTH].iter_mut().enumerate() {
-                let own = signatures[lane];
-                let across = own ^ signatures[lane + 1];
-                let below =
-                    (own ^ signatures[lane + stride]) | (own ^ signatures[lane + stride + 1]);
-                *limit = limits.contrast(across | below == 0);
+            let seen = |from: usize| &self.traced.signature[from..from + L::WIDTH];
+            let (a, b) = (seen(first), seen(first + 1));
+            let (c, d) = (seen(first + stride), seen(first + stride + 1));
+            for lane in 0..L::WIDTH {
+                let differing = (a[lane] ^ b[lane]) | (a[lane] ^ c[lane]) | (a[lane] ^ d[lane]);
+                limit[lane] = limits.contrast(differing == 0);
             }
             let [a, b, c, d] = corners_at::<L>(token, &self.traced.near, first, stride);
             let is_near = a.min(b).min(c.min(d)).less(reach);

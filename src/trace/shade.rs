@@ -104,7 +104,8 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let kernel = self.kernel;
         let mut uncertainty = uncertainty.filter(|_| is_filtered::<L, TREE>());
         let mut mirrored: Option<Mirrored<L>> = None;
-        if let Some(edge) = edge.as_mut().filter(|_| self.looks_beside) {
+        let looks_beside = self.looks_beside && !self.thin.is_empty();
+        if let Some(edge) = edge.as_mut().filter(|_| looks_beside) {
             let paths = Paths {
                 rays: packet.rays,
                 ignored,
@@ -356,7 +357,8 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 RayOrigin::Roundings => distance,
                 RayOrigin::Along(start) => distance - distance.like(start),
             };
-            if let Some((edge, footprint)) = edge.as_mut().filter(|_| self.looks_beside) {
+            let looks_beside = self.looks_beside && !candidates.thin.is_empty();
+            if let Some((edge, footprint)) = edge.as_mut().filter(|_| looks_beside) {
                 let gaze = Gaze {
                     paths: &paths,
                     active: facing,

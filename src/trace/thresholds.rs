@@ -19,20 +19,20 @@ pub const GRAZING: f64 = 0.25;
 pub const LARGEST_STRETCH: f64 = 1.0 / GRAZING;
 /// Half the width of a highlight of exponent p, in units of 1/√p: it has fallen to 1 % there.
 pub const HIGHLIGHT_REACH: f64 = 3.0;
-/// Steps of the finest grid in a pixel.
-pub const FINEST: usize = 1 << (MAX_HALVINGS + 1);
+/// Steps of the finest grid in a pixel: half of the side of the smallest cells.
+pub const FINEST: usize = 1 << (MAX_HALVINGS + 2);
 /// Difference of the corners of a cell, summed over the channels, times its side in pixels, above which it
 /// is divided where they see different things: an edge in it is off by half of its side at most, and the
 /// pixel by half of this, three levels of 255.
 pub const EDGE_ERROR: f64 = 0.025;
 /// So much light on a surface is an edge where it ends in shadow: four levels of 255, which nobody sees.
 pub const EDGE_CONTRAST: f64 = 4.0 / 255.0;
-/// How often a pixel is halved to look for what slips between samples; what is thinner than its quarters
-/// is met by some sample nearby, or shows too little.
-pub const LOOKING: u32 = 1;
 /// How many times as fast as the camera's own a pixel may widen along mirrored rays that still look for
 /// what slips between samples: in the image of a strongly curved mirror everything does, and samples meet it.
 pub const LARGEST_SPREAD: f64 = 24.0;
 /// A thing can be in a cell without being nearer than this to a corner, in sides of the cell: half
 /// its diagonal, and a little for the rounding.
 pub const NEAR: f64 = 0.75;
+/// How far what is even may be from it, in parts of the range of the corners' colours: the middle of a cell from their
+/// mean, which an edge between two colours puts a quarter away at least; and colours of one face from each other.
+pub const UNEVEN: f64 = 0.125;

@@ -1,0 +1,192 @@
+//! Sharp corners in the picture: where triangles are narrower than a pixel that are wide elsewhere.
+
+use std::ops::Range;
+
+use super::request::RenderRequest;
+use crate::primitive::Projector;
+use crate::scene::{Camera, Scene, Shape};
+
+/// Where a triangle is narrower than so many pixels, it may pass between the corners of pixels: a strip that is one
+/// pixel wide may, and a little for the rounding.
+const NARROW: f64 = 1.1;
+
+/// Triangles that are smaller than so many pixels are known to slip between samples.
+const SMALL: f64 = 2.0;
+/// Rows of the picture whose tips are listed together.
+const BAND: usize = 16;
+
+/// A corner of a triangle as far as it is narrower than 1.1 pixels, as a triangle in the picture: pixels from its left
+/// and upper edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tip {
+    corners: [[f64; 2]; 3],
+    /// First and last column.
+    columns: (f64, f64),
+    /// First and last row.
+    rows: (f64, f64),
+}
+
+impl Tip {
+    /// The corner of a triangle, given the others; `None` where it has no area.
+    fn of(corner: [f64; 2], others: [[f64; 2]; 2]) -> Option<Self> {
+        let sides = others.map(|[x, y]| [x - corner[0], y - corner[1]]);
+        let lengths = sides.map(|[x, y]| x.hypot(y));
+        let [[ax, ay], [bx, by]] = sides;
+        let sine = (ax * by - ay * bx).abs() / (lengths[0] * lengths[1]);
+        // As far along both sides as the way between them is so long: a chord of 2 sin(angle/2).
+        let cosine = (ax * bx + ay * by) / (lengths[0] * lengths[1]);
+        let chord = (2.0 * (1.0 - cosine).max(0.0)).sqrt();
+        let end = |side: usize| {
+            let part = (NARROW / chord / lengths[side]).min(1.0);
+            [
+                corner[0] + sides[side][0] * part,
+                corner[1] + sides[side][1] * part,
+            ]
+        };
+        let (first, second) = (end(0), end(1));
+        let range = |axis: usize| {
+            let [a, b, c] = [corner[axis], first[axis], second[axis]];
+            (a.min(b).min(c), a.max(b).max(c))
+        };
+        let tip = Self {
+            corners: [corner, first, second],
+            columns: range(0),
+            rows: range(1),
+        };
+        let is_finite = tip.corners.as_flattened().iter().all(|at| at.is_finite());
+        (sine > 0.0 && is_finite).then_some(tip)
+    }
+
+    /// The same in steps of which so many make a pixel.
+    pub fn scaled(&self, steps: f64) -> Self {
+        let scaled = |(from, to): (f64, f64)| (from * steps, to * steps);
+        Self {
+            corners: self.corners.map(|corner| corner.map(|at| at * steps)),
+            columns: scaled(self.columns),
+            rows: scaled(self.rows),
+        }
+    }
+
+    /// The columns and the rows that it is in.
+    pub fn extent(&self) -> [(f64, f64); 2] {
+        [self.columns, self.rows]
+    }
+
+    /// Whether it meets a square: no side of either has all of the other beyond it (the separating axis theorem).
+    pub fn meets(&self, [left, top]: [f64; 2], side: f64) -> bool {
+        let Self { columns, rows, .. } = self;
+        if columns.1 < left || left + side < columns.0 || rows.1 < top || top + side < rows.0 {
+            return false;
+        }
+        let [a, b, c] = self.corners;
+        [(a, b, c), (b, c, a), (c, a, b)].iter().all(|(p, q, r)| {
+            let across = [p[1] - q[1], q[0] - p[0]];
+            let off = |x: f64, y: f64| (x - p[0]) * across[0] + (y - p[1]) * across[1];
+            let inside = off(r[0], r[1]).signum();
+            let (right, bottom) = (left + side, top + side);
+            let corners = [(left, top), (right, top), (left, bottom), (right, bottom)];
+            corners.iter().any(|&(x, y)| off(x, y) * inside >= 0.0)
+        })
+    }
+}
+
+/// The tips in a picture, by the rows that they are in.
+#[derive(Clone, Debug, Default)]
+pub struct Tips {
+    /// Those that are in each [`BAND`] of rows.
+    bands: Vec<Vec<Tip>>,
+}
+
+impl Tips {
+    /// Those of the visible triangles that stand alone. Of those that are narrow as a whole, or nearly so small, each
+    /// ray knows that they may slip between samples.
+    pub fn of(scene: &Scene, request: &RenderRequest) -> Self {
+        let camera = Camera {
+            projection: request.projection_of(&scene.camera),
+            ..scene.camera.clone()
+        };
+        let mut tips = Self::default();
+        let Some(projector) = Projector::new(&camera, (request.width, request.height), 0.0) else {
+            return tips;
+        };
+        let bands = (request.height as usize).div_ceil(BAND);
+        tips.bands.resize_with(bands, Vec::new);
+        for object in scene.objects.iter().filter(|object| object.visible) {
+            if let Shape::Triangle(triangle) = &object.shape
+                && let Some([a, b, c]) = projector.places([triangle.a, triangle.b, triangle.c])
+                && is_large([a, b, c])
+            {
+                let corners = [Tip::of(a, [b, c]), Tip::of(b, [c, a]), Tip::of(c, [a, b])];
+                for tip in corners.into_iter().flatten() {
+                    tips.add(tip, request.width.into());
+                }
+            }
+        }
+        tips
+    }
+
+    fn add(&mut self, tip: Tip, width: f64) {
+        let [columns, (top, bottom)] = tip.extent();
+        let band = |row: f64| (row / BAND as f64).max(0.0) as usize;
+        if columns.1 < 0.0 || width < columns.0 || bottom < 0.0 {
+            return;
+        }
+        let last = self.bands.len().min(band(bottom) + 1);
+        for band in self.bands.iter_mut().take(last).skip(band(top)) {
+            band.push(tip);
+        }
+    }
+
+    /// Those that may be in these rows; some come more than once.
+    pub fn in_rows(&self, rows: &Range<usize>) -> impl Iterator<Item = &Tip> {
+        let bands = self.bands.iter().take(rows.end.div_ceil(BAND));
+        bands.skip(rows.start / BAND).flatten()
+    }
+}
+
+fn is_large(corners: [[f64; 2]; 3]) -> bool {
+    let [a, b, c] = corners;
+    [(a, b), (b, c), (c, a)]
+        .iter()
+        .any(|(a, b)| SMALL < (a[0] - b[0]).hypot(a[1] - b[1]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tip_ends_where_the_triangle_is_as_wide_as_a_pixel() {
+        let tip = Tip::of([10.0, 10.0], [[20.0, 9.0], [20.0, 11.0]]).expect("some area");
+        let [columns, rows] = tip.extent();
+        assert_eq!(columns.0, 10.0);
+        assert!((columns.1 - 15.5).abs() < 0.01, "{columns:?}");
+        assert!((rows.1 - rows.0 - NARROW).abs() < 0.01, "{rows:?}");
+        assert!(tip.meets([12.0, 9.5], 1.0));
+        assert!(!tip.meets([12.0, 10.5], 1.0), "beside it");
+        assert!(!tip.meets([16.0, 9.5], 1.0), "behind its end");
+        // What is narrow everywhere is a tip as a whole.
+        let thin = Tip::of([0.0, 0.0], [[50.0, 50.0], [50.5, 50.0]]).expect("some area");
+        assert_eq!(thin.extent()[0], (0.0, 50.5));
+        assert!(thin.meets([30.0, 29.6], 1.0));
+        assert!(!thin.meets([30.0, 32.0], 1.0));
+        assert_eq!(Tip::of([0.0; 2], [[1.0; 2], [2.0; 2]]), None);
+        assert_eq!(Tip::of([0.0; 2], [[0.0; 2], [2.0; 2]]), None);
+    }
+
+    #[test]
+    fn tips_are_found_in_their_rows() {
+        let scene = Scene::demo();
+        let tips = Tips::of(&scene, &RenderRequest::sized(200, 100));
+        let all: Vec<_> = tips.in_rows(&(0..100)).collect();
+        assert!(all.len() >= 18, "{} of six triangles", all.len());
+        for rows in [0..7, 30..55, 90..100] {
+            let found: Vec<_> = tips.in_rows(&rows).collect();
+            for tip in &all {
+                let (top, bottom) = tip.extent()[1];
+                let is_there = top < rows.end as f64 && rows.start as f64 <= bottom;
+                assert!(!is_there || found.contains(tip), "{tip:?} in {rows:?}");
+            }
+        }
+    }
+}

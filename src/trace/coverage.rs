@@ -1,0 +1,344 @@
+//! Cells that one edge crosses. Where it crosses their sides is searched for, which says how much of them lies on
+//! either side of it; two colours are then enough.
+
+use super::crossing::{Crossing, Thing, contrast};
+use super::lattice::{Cell, Lattice, Limits, Sample};
+use super::thresholds::{EDGE_ERROR, FINEST, UNEVEN};
+use super::tile::TileColors;
+use crate::simd::Real;
+
+/// An edge that is known within more steps of the finest grid than this is so faint that its shape does not matter.
+const SHAPELESS: u16 = 2;
+/// How far beside an edge, in parts of what it is known within, a sample is taken to see whether it is straight.
+const BESIDE: f64 = 1.1;
+/// How far that sample must be from it to say so: the ends of the edge are known within a half.
+const SURE: f64 = 0.6;
+
+/// A cell that one edge crosses.
+#[derive(Clone, Copy, Debug)]
+pub struct CrossedCell<R> {
+    cell: Cell,
+    /// Which corners are on the first side of the edge, bit by bit.
+    first: u8,
+    /// What is seen on both sides.
+    things: [Thing<R>; 2],
+    crossings: [Crossing; 2],
+    /// Whether it was looked whether the edge is straight, and where.
+    is_checked: bool,
+    checks: [Option<[u16; 2]>; 2],
+    /// The samples there.
+    checked: [u32; 2],
+}
+
+/// What is known of a cell.
+pub enum Found {
+    /// Not enough.
+    Nothing,
+    /// That it is not crossed by one straight edge.
+    Disorder(Cell),
+    /// Its colour.
+    Color,
+}
+
+impl<R: Real> CrossedCell<R> {
+    /// The cell, if its corners say that one edge crosses it and what is seen on either side of it has one colour.
+    pub fn of(cell: &Cell, lattice: &Lattice<R>, limits: Limits<R>) -> Option<Self> {
+        let limit = limits.contrast_of_same(cell.width());
+        let is_like = |a: &Sample<R>, b: &Sample<R>| a.signature == b.signature;
+        Self::new(cell, lattice, limits, (limit, is_like))
+    }
+
+    /// The same for a cell whose corners all see one thing, if that has two colours, as faces of a mesh have.
+    pub fn of_colors(cell: &Cell, lattice: &Lattice<R>, limits: Limits<R>) -> Option<Self> {
+        let [a, b, c, d] = lattice.corners(cell);
+        let apart = contrast(a, b).max(contrast(a, c)).max(contrast(a, d));
+        let limit = apart * R::from_f64(UNEVEN);
+        let is_like = |a: &Sample<R>, b: &Sample<R>| contrast(a, b) <= limit;
+        Self::new(cell, lattice, limits, (limit, is_like))
+    }
+
+    /// The cell, if it is clear which corners see the same, and their colours differ by no more than a limit.
+    #[inline(always)]
+    fn new(
+        cell: &Cell,
+        lattice: &Lattice<R>,
+        limits: Limits<R>,
+        (limit, is_like): (R, impl Fn(&Sample<R>, &Sample<R>) -> bool),
+    ) -> Option<Self> {
+        let corners = lattice.corners(cell);
+        let mut like_first = 0_u8;
+        for (corner, sample) in corners.iter().enumerate() {
+            like_first |= u8::from(is_like(sample, corners[0])) << corner;
+        }
+        let (first, sides) = sides_of(like_first)?;
+        // Written out: mapping arrays is a call here.
+        let crossing = |(corner, axis): (usize, usize)| {
+            let apart = contrast(corners[corner], corners[corner ^ (1 << axis)]);
+            Crossing::new(cell, (corner, axis), enough(cell, apart, limits))
+        };
+        let [(corner, axis), other] = sides;
+        let thing = |corner: usize| Thing {
+            seen: *corners[corner],
+            limit,
+        };
+        let things = [thing(corner), thing(corner ^ (1 << axis))];
+        for (corner, sample) in corners.iter().enumerate() {
+            let is_first = first >> corner & 1 == 1;
+            if !things[usize::from(!is_first)].is_in(sample) {
+                return None;
+            }
+        }
+        Some(Self {
+            cell: *cell,
+            first,
+            things,
+            crossings: [crossing(sides[0]), crossing(other)],
+            is_checked: false,
+            checks: [None; 2],
+            checked: [0; 2],
+        })
+    }
+
+    /// Wants the samples that it needs next.
+    pub fn want(&mut self, lattice: &mut Lattice<R>) {
+        for crossing in &mut self.crossings {
+            crossing.want(lattice);
+        }
+        for (check, index) in self.checks.into_iter().zip(&mut self.checked) {
+            if let Some([x, y]) = check {
+                *index = lattice.want(x, y);
+            }
+        }
+    }
+
+    /// Takes what was seen there. What is found goes into the colours.
+    pub fn take(&mut self, lattice: &Lattice<R>, colors: &mut TileColors<R>) -> Found {
+        let disorder = Found::Disorder(self.cell.unwatched());
+        for crossing in &mut self.crossings {
+            if !crossing.narrow(lattice, &self.things) {
+                return disorder;
+            }
+        }
+        for (side, check) in self.checks.iter().enumerate() {
+            let seen = lattice.sample(self.checked[side]);
+            if check.is_some() && !self.things[side].is_in(seen) {
+                return disorder;
+            }
+        }
+        if !self.crossings.iter().all(Crossing::is_found) {
+            return Found::Nothing;
+        }
+        if !self.is_checked {
+            self.is_checked = true;
+            self.checks = self.beside();
+            if self.checks != [None; 2] {
+                return Found::Nothing;
+            }
+        }
+        self.accumulate(self.seen(lattice, 0), self.seen(lattice, 1), colors);
+        Found::Color
+    }
+
+    /// Points closely beside the middle of the edge, on its first side and on its second, where they say whether it
+    /// is straight.
+    fn beside(&self) -> [Option<[u16; 2]>; 2] {
+        let [p, q] = &self.crossings;
+        let within = (p.high - p.low).max(q.high - q.low);
+        if within > SHAPELESS {
+            return [None; 2];
+        }
+        let within = f64::from(within);
+        let ([px, py], [qx, qy]) = (p.place(), q.place());
+        let (along_x, along_y) = (qx - px, qy - py);
+        let length = (along_x * along_x + along_y * along_y).sqrt();
+        if length <= within {
+            return [None; 2]; // A corner is cut off, and nearly nothing with it.
+        }
+        // Across the edge, away from the corner that the first crossing is counted from.
+        let mut across = [-along_y / length, along_x / length];
+        if (across[p.axis] < 0.0) != p.is_back {
+            across = across.map(|part| -part);
+        }
+        let middle = [(px + qx) * 0.5, (py + qy) * 0.5];
+        let low = [self.cell.x, self.cell.y].map(f64::from);
+        let side = f64::from(self.cell.side);
+        [-1.0, 1.0].map(|sign| {
+            let place = [0, 1].map(|axis| {
+                let place = middle[axis] + across[axis] * sign * BESIDE * within;
+                place.round()
+            });
+            let is_inside =
+                (0..2).all(|axis| low[axis] <= place[axis] && place[axis] <= low[axis] + side);
+            let off = (place[0] - middle[0]) * across[0] + (place[1] - middle[1]) * across[1];
+            (is_inside && off * sign >= SURE * within).then(|| place.map(|place| place as u16))
+        })
+    }
+
+    /// The mean of what is seen on a side, at the corners and beside the edge.
+    #[inline(always)]
+    fn seen(&self, lattice: &Lattice<R>, side: usize) -> [R; 4] {
+        let (mut sum, mut count) = ([R::ZERO; 4], 0);
+        let mut add = |sample: &Sample<R>| {
+            for (sum, &value) in sum.iter_mut().zip(&sample.values) {
+                *sum = *sum + value;
+            }
+            count += 1;
+        };
+        for (corner, sample) in lattice.corners(&self.cell).into_iter().enumerate() {
+            if (self.first >> corner & 1 == 1) == (side == 0) {
+                add(sample);
+            }
+        }
+        for crossing in &self.crossings {
+            add(lattice.sample(crossing.seen[side]));
+        }
+        let share = R::from_f64(1.0 / f64::from(count));
+        let [red, green, blue, rest] = sum;
+        [red * share, green * share, blue * share, rest]
+    }
+
+    /// Adds the colours on both sides to the cell's pixel, by the areas that they have.
+    fn accumulate(&self, first: [R; 4], second: [R; 4], colors: &mut TileColors<R>) {
+        let side = f64::from(self.cell.side);
+        let [p, q] = &self.crossings;
+        let (p, q) = (p.distance() / side, q.distance() / side);
+        let is_pair = self.crossings[0].axis == self.crossings[1].axis;
+        let covered = if is_pair { p + q } else { p * q } * 0.5;
+        let area = self.cell.width() * self.cell.width();
+        let (covered, rest) = (
+            R::from_f64(area * covered),
+            R::from_f64(area * (1.0 - covered)),
+        );
+        let pixel = self.cell.pixel_in(colors.stride);
+        let both = first.into_iter().zip(second);
+        for (sum, (first, second)) in colors.channels.iter_mut().zip(both) {
+            sum[pixel] = sum[pixel] + (first * covered + second * rest);
+        }
+    }
+}
+
+/// The corners (upper left and right, lower left and right) on the first side of an edge, bit by bit, and the two sides
+/// that it crosses: the corner on its first side, and the axis along which it goes on; by which of them are like the
+/// first. `None` if it is not one edge.
+fn sides_of(like_first: u8) -> Option<(u8, [(usize, usize); 2])> {
+    let alone = |corner: usize| Some((1 << corner, [(corner, 0), (corner, 1)]));
+    match like_first {
+        0b0001 => alone(0),
+        0b1101 => alone(1),
+        0b1011 => alone(2),
+        0b0111 => alone(3),
+        0b0011 => Some((0b0011, [(0, 1), (1, 1)])),
+        0b0101 => Some((0b0101, [(0, 0), (2, 0)])),
+        _ => None,
+    }
+}
+
+/// Within how many steps the crossing of an edge of that contrast must be known.
+fn enough<R: Real>(cell: &Cell, contrast: R, limits: Limits<R>) -> u16 {
+    let least = limits.least_side() / 2;
+    let mut enough = cell.side / 4;
+    let error = |steps: u16| contrast * R::from_f64(f64::from(steps) / FINEST as f64);
+    while enough > least && R::from_f64(EDGE_ERROR / 2.0) < error(enough) {
+        enough /= 2;
+    }
+    enough.max(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::samples::{Edges, Samples, Traced};
+    use super::super::tile::Tile;
+    use super::*;
+    use crate::scene::Sampling;
+
+    const PIXEL: Tile = Tile {
+        columns: 0..1,
+        rows: 0..1,
+    };
+
+    /// What is seen at these places of a pixel: black, or white where it says so.
+    fn see(samples: &Samples<f64>, is_white: impl Fn(f64, f64) -> bool) -> Traced<f64> {
+        let mut traced = Traced::default();
+        traced.resize(samples.count, samples.count, Edges::Signed);
+        for index in 0..samples.count {
+            let is_white = is_white(samples.x[index], samples.y[index]);
+            let value = f64::from(u8::from(is_white));
+            for channel in [&mut traced.red, &mut traced.green, &mut traced.blue] {
+                channel[index] = value;
+            }
+            traced.signature[index] = u32::from(is_white) + 5;
+            traced.near[index] = f64::INFINITY;
+        }
+        traced
+    }
+
+    /// How white a pixel is found, if it is found that one edge crosses it, and how many samples more that took.
+    fn found(is_white: impl Fn(f64, f64) -> bool) -> Option<(f64, usize)> {
+        let Sampling::Adaptive { contrast, depth } = Sampling::ADAPTIVE else {
+            return None;
+        };
+        let limits = Limits::new(contrast, depth);
+        let (mut lattice, mut samples) = (Lattice::new(), Samples::default());
+        for (x, y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+            samples.push(x, y);
+        }
+        samples.pad(1);
+        let mut pixel = [Cell::pixel(0, 0)];
+        lattice.start(&PIXEL, &see(&samples, &is_white), &mut pixel);
+        let mut colors = TileColors::default();
+        colors.clear(1, 1);
+        let mut crossed = CrossedCell::of(&pixel[0], &lattice, limits)?;
+        let mut taken = 0;
+        loop {
+            crossed.want(&mut lattice);
+            lattice.wanted_samples::<f64>(&PIXEL, &mut samples);
+            taken += samples.count;
+            lattice.take_results(&see(&samples, &is_white));
+            match crossed.take(&lattice, &mut colors) {
+                Found::Nothing => {}
+                Found::Disorder(_) => return None,
+                Found::Color => return Some((colors.channels[0][0], taken)),
+            }
+        }
+    }
+
+    /// The same by many samples.
+    fn counted(is_white: impl Fn(f64, f64) -> bool) -> f64 {
+        let side = 256;
+        let place = |index: usize| (index as f64 + 0.5) / side as f64;
+        let white = (0..side * side).filter(|at| is_white(place(at % side), place(at / side)));
+        white.count() as f64 / (side * side) as f64
+    }
+
+    proptest! {
+        #[test]
+        fn a_straight_edge_covers_what_is_beside_it(turn in 0.0..360.0_f64, x in 0.0..1.0_f64, y in 0.0..1.0_f64) {
+            let (sine, cosine) = turn.to_radians().sin_cos();
+            let is_white = |u: f64, v: f64| (u - x) * cosine + (v - y) * sine > 0.0;
+            let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(|(u, v)| is_white(u, v));
+            prop_assume!(corners.contains(&true) && corners.contains(&false));
+            let (got, taken) = found(is_white).expect("one straight edge");
+            prop_assert!((got - counted(is_white)).abs() < 1.0 / 32.0, "{got}");
+            prop_assert!(taken <= 2 * (3 + 3 + 1) + 2, "{taken} samples");
+        }
+
+        #[test]
+        fn what_is_found_of_a_round_edge_is_right_too(radius in 0.3..30.0_f64, turn in 0.0..360.0_f64, x in 0.0..1.0_f64, y in 0.0..1.0_f64) {
+            let (sine, cosine) = turn.to_radians().sin_cos();
+            let is_white = |u: f64, v: f64| (u - x - radius * cosine).hypot(v - y - radius * sine) < radius;
+            if let Some((got, _)) = found(is_white) {
+                prop_assert!((got - counted(is_white)).abs() < 0.08, "{got} of {}", counted(is_white));
+            }
+        }
+    }
+
+    #[test]
+    fn a_corner_is_not_taken_for_a_straight_edge() {
+        let is_white = |u: f64, v: f64| u > 0.2 && v > 0.3;
+        assert_eq!(found(is_white), None);
+        assert_eq!(found(|u, _| u > 0.4 && u < 0.7), None, "unseen at corners");
+        assert_eq!(found(|u, v| (u > 0.5) != (v > 0.5)), None, "two edges");
+    }
+}

@@ -1,0 +1,97 @@
+//! The points of a tile that have a sample: numbered in the order in which they are asked for.
+
+/// Slots for so many points at least.
+const LEAST_SLOTS: u32 = 1 << 9;
+
+/// Points of a grid and their numbers: a table with open addresses (Knuth, "The Art of Computer Programming", vol. 3,
+/// 6.4, algorithm L), which is small enough for the first cache where an array of the whole grid is not.
+#[derive(Debug)]
+pub struct Points {
+    /// Column and row.
+    places: Vec<[u16; 2]>,
+    /// A point in the upper half, 1 + its number in the lower half; 0 where there is none. A power of two of them.
+    slots: Vec<u64>,
+}
+
+impl Points {
+    /// None.
+    pub fn new() -> Self {
+        Self {
+            places: Vec::new(),
+            slots: vec![0; LEAST_SLOTS as usize],
+        }
+    }
+
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.places.clear();
+        self.slots.fill(0);
+    }
+
+    /// Those with this number and later ones.
+    pub fn from(&self, number: usize) -> &[[u16; 2]] {
+        &self.places[number..]
+    }
+
+    /// The number of a point, which is the next one if it has none yet.
+    #[inline(always)]
+    pub fn number(&mut self, x: u16, y: u16) -> u32 {
+        let key = u64::from(x) << 16 | u64::from(y);
+        let slot = self.slot(key);
+        if self.slots[slot] != 0 {
+            return self.slots[slot] as u32 - 1;
+        }
+        let number = self.places.len() as u32;
+        self.places.push([x, y]);
+        self.slots[slot] = key << 32 | u64::from(number + 1);
+        if self.places.len() * 2 > self.slots.len() {
+            self.grow();
+        }
+        number
+    }
+
+    /// Where a point is, or would be.
+    #[inline(always)]
+    fn slot(&self, key: u64) -> usize {
+        let last = self.slots.len() - 1;
+        // Fibonacci hashing: the upper bits of a product with 2⁶⁴ over the golden ratio.
+        let mixed = key.wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let mut slot = (mixed >> 32) as usize & last;
+        while self.slots[slot] != 0 && self.slots[slot] >> 32 != key {
+            slot = (slot + 1) & last;
+        }
+        slot
+    }
+
+    #[cold]
+    fn grow(&mut self) {
+        let length = self.slots.len() * 2;
+        for slot in std::mem::replace(&mut self.slots, vec![0; length]) {
+            if slot != 0 {
+                let place = self.slot(slot >> 32);
+                self.slots[place] = slot;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_has_one_number() {
+        let mut points = Points::new();
+        for _ in 0..2 {
+            for (x, y) in (0..70).flat_map(|y| (0..90).map(move |x| (x * 32, y * 32))) {
+                let number = u32::from(y / 32 * 90 + x / 32);
+                assert_eq!(points.number(x, y), number);
+            }
+        }
+        assert_eq!(points.from(6298), [[88 * 32, 69 * 32], [89 * 32, 69 * 32]]);
+        points.clear();
+        assert_eq!(points.number(5, 7), 0);
+        assert_eq!(points.number(7, 5), 1);
+        assert_eq!(points.number(5, 7), 0);
+    }
+}
