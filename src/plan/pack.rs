@@ -140,17 +140,14 @@ impl<R: Real> Plan<R> {
         };
         let found = kept.coincidences(&scene.objects, centre);
         let contacts = Contacts::new(scene, request, &found);
-        let projector = if may_cull {
-            projector(scene, request)
-        } else {
-            None
-        };
+        let camera = projector(scene, request);
+        let projector = camera.as_ref().filter(|_| may_cull);
         if is_tree(scene, request, may_cull) {
             let geometry = kept.geometry(scene, (centre, contacts.apart()), request.sampling);
             plan.hit_order = HitOrder::of(geometry.members(), request);
-            plan.take_geometry(geometry, projector.as_ref(), centre);
+            plan.take_geometry(geometry, projector, centre);
         }
-        let numbers = plan.pack(scene, &contacts, projector.as_ref());
+        let numbers = plan.pack(scene, &contacts, projector);
         let number = |place: &usize| numbers.get(place).copied();
         plan.edge_on = contacts.edge_on.iter().filter_map(number).collect();
         plan.eye_on = contacts.eye_on.as_ref().and_then(number);
@@ -167,7 +164,8 @@ impl<R: Real> Plan<R> {
         plan.lights = pack_lights(scene, centre, (occluders, model), (touches, holders));
         if matches!(request.sampling, Sampling::Adaptive { .. }) {
             measure_loose(&mut plan.primitives);
-            plan.tips = Tips::of(scene, request);
+            plan.tips =
+                camera.map_or_else(Tips::default, |camera| Tips::of(scene, request, &camera));
         }
         if may_cull {
             plan.bound();

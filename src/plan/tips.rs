@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::request::RenderRequest;
 use crate::primitive::Projector;
-use crate::scene::{Camera, Scene, Shape};
+use crate::scene::{Scene, Shape};
 
 /// Where a triangle is narrower than so many pixels, it may pass between the corners of pixels: a strip that is one
 /// pixel wide may, and a little for the rounding.
@@ -32,7 +32,6 @@ impl Tip {
         let sides = others.map(|[x, y]| [x - corner[0], y - corner[1]]);
         let lengths = sides.map(|[x, y]| x.hypot(y));
         let [[ax, ay], [bx, by]] = sides;
-        let sine = (ax * by - ay * bx).abs() / (lengths[0] * lengths[1]);
         // As far along both sides as the way between them is so long: a chord of 2 sin(angle/2).
         let cosine = (ax * bx + ay * by) / (lengths[0] * lengths[1]);
         let chord = (2.0 * (1.0 - cosine).max(0.0)).sqrt();
@@ -54,7 +53,7 @@ impl Tip {
             rows: range(1),
         };
         let is_finite = tip.corners.as_flattened().iter().all(|at| at.is_finite());
-        (sine > 0.0 && is_finite).then_some(tip)
+        (ax * by - ay * bx != 0.0 && is_finite).then_some(tip)
     }
 
     /// The same in steps of which so many make a pixel.
@@ -98,19 +97,13 @@ pub struct Tips {
 }
 
 impl Tips {
-    /// Those of the visible triangles that stand alone. Of those that are narrow as a whole, or nearly so small, each
+    /// Those of the visible triangles that stand alone, as the request's camera sees them. Of those that are narrow as a whole, or nearly so small, each
     /// ray knows that they may slip between samples.
-    pub fn of(scene: &Scene, request: &RenderRequest) -> Self {
-        let camera = Camera {
-            projection: request.projection_of(&scene.camera),
-            ..scene.camera.clone()
-        };
-        let mut tips = Self::default();
-        let Some(projector) = Projector::new(&camera, (request.width, request.height), 0.0) else {
-            return tips;
-        };
+    pub fn of(scene: &Scene, request: &RenderRequest, projector: &Projector) -> Self {
         let bands = (request.height as usize).div_ceil(BAND);
-        tips.bands.resize_with(bands, Vec::new);
+        let mut tips = Self {
+            bands: vec![Vec::new(); bands],
+        };
         for object in scene.objects.iter().filter(|object| object.visible) {
             if let Shape::Triangle(triangle) = &object.shape
                 && let Some([a, b, c]) = projector.places([triangle.a, triangle.b, triangle.c])
@@ -177,7 +170,8 @@ mod tests {
     #[test]
     fn tips_are_found_in_their_rows() {
         let scene = Scene::demo();
-        let tips = Tips::of(&scene, &RenderRequest::sized(200, 100));
+        let camera = Projector::new(&scene.camera, (200, 100), 0.0).expect("a basis");
+        let tips = Tips::of(&scene, &RenderRequest::sized(200, 100), &camera);
         let all: Vec<_> = tips.in_rows(&(0..100)).collect();
         assert!(all.len() >= 18, "{} of six triangles", all.len());
         for rows in [0..7, 30..55, 90..100] {

@@ -98,6 +98,28 @@ impl Cell {
     pub fn width(&self) -> f64 {
         f64::from(self.side) / FINEST as f64
     }
+
+    /// Adds its colour, red, green and blue first, to its pixel, by its area.
+    #[inline(always)]
+    pub fn add_color<R: Real>(&self, color: [R; 4], colors: &mut TileColors<R>) {
+        let pixel = self.pixel_in(colors.stride);
+        let area = R::from_f64(self.width() * self.width());
+        for (sum, color) in colors.channels.iter_mut().zip(color) {
+            sum[pixel] = sum[pixel] + color * area;
+        }
+    }
+}
+
+/// What is inside of a cell, as far as its corners tell.
+pub enum Inside {
+    /// About their mean.
+    Known,
+    /// One thing of some colours.
+    One,
+    /// Several things.
+    Several,
+    /// Perhaps what they do not know of.
+    Anything,
 }
 
 /// The largest difference of four numbers.
@@ -235,7 +257,7 @@ impl<R: Real> Lattice<R> {
 
     /// Whether something may have slipped between the corners of a cell.
     #[inline(always)]
-    pub fn is_near(&self, cell: &Cell) -> bool {
+    fn is_near(&self, cell: &Cell) -> bool {
         let [a, b, c, d] = self.corners(cell);
         let (a, b, c, d) = (a.values[3], b.values[3], c.values[3], d.values[3]);
         let least = a.min(b).min(c.min(d));
@@ -277,9 +299,15 @@ impl<R: Real> Lattice<R> {
         tips.any(|tip| tip.meets(at, cell.side.into()))
     }
 
-    /// Whether the inside of a cell must be looked at.
+    /// What must be known of a cell.
     #[inline(always)]
-    pub fn is_split(&self, cell: &Cell, limits: Limits<R>) -> bool {
+    pub fn inside(&self, cell: &Cell, limits: Limits<R>) -> Inside {
+        if cell.side <= limits.least_side() {
+            return Inside::Known;
+        }
+        if self.is_near(cell) {
+            return Inside::Anything;
+        }
         let [a, b, c, d] = self.corners(cell);
         let differing =
             (a.signature ^ b.signature) | (a.signature ^ c.signature) | (a.signature ^ d.signature);
@@ -290,16 +318,13 @@ impl<R: Real> Lattice<R> {
             *span = range(a, b, c, d);
         }
         let contrast = ranges[0] + ranges[1] + ranges[2];
-        let limit = limits
-            .at(R::from_f64(cell.width()))
-            .contrast(differing == 0);
-        limits.least_side() < cell.side && (self.is_near(cell) || contrast > limit)
-    }
-
-    /// Whether the corners of a cell see the same.
-    pub fn is_one(&self, cell: &Cell) -> bool {
-        let [a, b, c, d] = self.corners(cell);
-        (a.signature ^ b.signature) | (a.signature ^ c.signature) | (a.signature ^ d.signature) == 0
+        let is_one = differing == 0;
+        let limit = limits.at(R::from_f64(cell.width())).contrast(is_one);
+        match (contrast > limit, is_one) {
+            (false, _) => Inside::Known,
+            (true, true) => Inside::One,
+            (true, false) => Inside::Several,
+        }
     }
 
     /// Makes sure that there will be a sample in the middle of a cell: its index.
@@ -334,30 +359,23 @@ impl<R: Real> Lattice<R> {
         let is_even =
             middle.signature == a.signature && off <= limit.min(contrast * R::from_f64(UNEVEN));
         if is_even {
-            let area = R::from_f64(cell.width() * cell.width());
-            let pixel = cell.pixel_in(colors.stride);
-            for (sum, mean) in colors.channels.iter_mut().zip(means) {
-                sum[pixel] = sum[pixel] + mean * area;
-            }
+            cell.add_color(means, colors);
         }
         is_even
     }
 
     /// Adds the mean of a cell's corners to its pixel, by its area.
     #[inline(always)]
-    pub fn accumulate(&self, cell: &Cell, pixel: usize, colors: &mut TileColors<R>) {
-        let side = cell.width();
-        let share = R::from_f64(side * side / 4.0);
+    pub fn accumulate(&self, cell: &Cell, colors: &mut TileColors<R>) {
+        let quarter = R::from_f64(0.25);
         let [a, b, c, d] = self.corners(cell);
-        let mut part = [R::ZERO; 4];
-        for (index, part) in part.iter_mut().enumerate() {
+        let mut mean = [R::ZERO; 4];
+        for (index, mean) in mean.iter_mut().enumerate() {
             let upper = a.values[index] + b.values[index];
             let lower = c.values[index] + d.values[index];
-            *part = (upper + lower) * share;
+            *mean = (upper + lower) * quarter;
         }
-        for (sum, part) in colors.channels.iter_mut().zip(part) {
-            sum[pixel] = sum[pixel] + part;
-        }
+        cell.add_color(mean, colors);
     }
 
     /// Puts the four quarters of a cell into `cells`, and wants their corners.

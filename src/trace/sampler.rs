@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::candidates::Candidates;
 use super::coverage::{CrossedCell, Found};
 use super::engine::Engine;
-use super::lattice::{Cell, Lattice, Limits, range};
+use super::lattice::{Cell, Inside, Lattice, Limits, range};
 use super::samples::{Edges, Samples, Traced};
 use super::thresholds::NEAR;
 use super::tile::{Tile, TileColors};
@@ -156,7 +156,7 @@ impl<L: SimdFloat> Sampler<L> {
         let rows = tile.rows.start..tile.rows.end + 1;
         self.trace(engine, seen, (columns, rows), ((0.0, 0.0), Edges::Near));
         self.judge(engine.token(), tile, limits, colors);
-        self.add_tips(engine.tips(), tile, colors);
+        self.add_tips(engine.tips(), tile);
         if self.split.is_empty() {
             return;
         }
@@ -165,7 +165,12 @@ impl<L: SimdFloat> Sampler<L> {
         self.even.clear();
         self.cells.clear();
         self.cells.append(&mut self.split);
-        self.sort(limits);
+        for channel in &mut colors.channels {
+            for pixel in &self.cells {
+                channel[pixel.pixel_in(colors.stride)] = L::Real::ZERO;
+            }
+        }
+        self.sort(limits, colors);
         // What slips between samples is looked for once more, in the middle of pixels and of their sides; what is
         // thinner than their quarters is met by some sample nearby, or shows too little.
         self.subdivide();
@@ -184,7 +189,7 @@ impl<L: SimdFloat> Sampler<L> {
     }
 
     /// Adds the pixels in which triangles are narrow to those to subdivide.
-    fn add_tips(&mut self, tips: &Tips, tile: &Tile, colors: &mut TileColors<L::Real>) {
+    fn add_tips(&mut self, tips: &Tips, tile: &Tile) {
         self.lattice.start_tips(tips, tile);
         if self.lattice.tips.is_empty() {
             return;
@@ -195,9 +200,6 @@ impl<L: SimdFloat> Sampler<L> {
                 let pixel = Cell::pixel(column, row);
                 let mut others = self.split.iter();
                 if self.lattice.meets_tip(&pixel) && others.all(|other| !other.is_at(&pixel)) {
-                    for channel in &mut colors.channels {
-                        channel[pixel.pixel_in(colors.stride)] = L::Real::ZERO;
-                    }
                     self.split.push(pixel);
                 }
             }
@@ -251,29 +253,22 @@ impl<L: SimdFloat> Sampler<L> {
                 None => split.push(cell.unwatched()),
             }
         }
-        self.cells.retain(|cell| {
-            let is_split = lattice.is_split(cell, limits);
-            if !is_split {
-                lattice.accumulate(cell, cell.pixel_in(colors.stride), colors);
-            }
-            is_split
-        });
-        self.sort(limits);
+        self.sort(limits, colors);
     }
 
-    /// Puts the cells whose inside must be looked at where they belong: those that one edge crosses, those that may be
-    /// even, and those to subdivide.
-    fn sort(&mut self, limits: Limits<L::Real>) {
+    /// Adds the colours of the cells that are known by their corners, and puts the others where they belong: those that
+    /// one edge crosses, those that may be even, and those to subdivide.
+    fn sort(&mut self, limits: Limits<L::Real>, colors: &mut TileColors<L::Real>) {
         let lattice = &self.lattice;
         for cell in &self.cells {
-            if lattice.is_near(cell) {
-                self.split.push(*cell);
-            } else if lattice.is_one(cell) {
-                self.even.push((*cell, 0));
-            } else if let Some(crossed) = CrossedCell::of(cell, lattice, limits) {
-                self.crossed.push(crossed);
-            } else {
-                self.split.push(*cell);
+            match lattice.inside(cell, limits) {
+                Inside::Known => lattice.accumulate(cell, colors),
+                Inside::One => self.even.push((*cell, 0)),
+                Inside::Several => match CrossedCell::of(cell, lattice, limits) {
+                    Some(crossed) => self.crossed.push(crossed),
+                    None => self.split.push(*cell),
+                },
+                Inside::Anything => self.split.push(*cell),
             }
         }
     }
@@ -323,9 +318,6 @@ impl<L: SimdFloat> Sampler<L> {
                     continue;
                 }
                 self.split.push(Cell::pixel(column, row));
-                for channel in &mut colors.channels {
-                    channel[index] = L::Real::ZERO;
-                }
             }
         }
     }

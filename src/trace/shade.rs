@@ -91,6 +91,12 @@ struct LightSource<'a, R> {
 }
 
 impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
+    /// Whether rays look beside themselves for one of these.
+    #[inline(always)]
+    fn looks_for(&self, thin: &Candidates) -> bool {
+        self.looks_beside && !thin.is_empty()
+    }
+
     /// Colours what the packet has met, and notes its edges if they are wanted. Gives the rays that
     /// mirrors send on.
     #[inline(always)]
@@ -104,8 +110,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let kernel = self.kernel;
         let mut uncertainty = uncertainty.filter(|_| is_filtered::<L, TREE>());
         let mut mirrored: Option<Mirrored<L>> = None;
-        let looks_beside = self.looks_beside && !self.thin.is_empty();
-        if let Some(edge) = edge.as_mut().filter(|_| looks_beside) {
+        if let Some(edge) = edge.as_mut().filter(|_| self.looks_for(self.thin)) {
             let paths = Paths {
                 rays: packet.rays,
                 ignored,
@@ -357,7 +362,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 RayOrigin::Roundings => distance,
                 RayOrigin::Along(start) => distance - distance.like(start),
             };
-            let looks_beside = self.looks_beside && !candidates.thin.is_empty();
+            let looks_beside = self.looks_for(&candidates.thin);
             if let Some((edge, footprint)) = edge.as_mut().filter(|_| looks_beside) {
                 let gaze = Gaze {
                     paths: &paths,
