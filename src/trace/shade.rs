@@ -225,14 +225,10 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             curvature: hit.surface.curvature,
             is_first: self.is_first,
         });
-        let footprint = match edge {
-            None => None,
-            Some(edge) => {
-                let cosine = hit.surface.normal.dot(view);
-                let curvature = hit.surface.curvature;
-                Some(Footprint::new(edge.cone, packet.near.t, cosine, curvature))
-            }
-        };
+        let footprint = edge.as_ref().map(|edge| {
+            let cosine = hit.surface.normal.dot(view);
+            Footprint::new(edge.cone, packet.near.t, cosine, hit.surface.curvature)
+        });
         ShadingPoint {
             hit,
             coat,

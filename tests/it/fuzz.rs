@@ -23,6 +23,9 @@ const FEW: u64 = 2000;
 /// Scenes with longer texts are left out: most damage to them is damage to numbers.
 const LONGEST: usize = 6000;
 
+/// A path has so many keys: more of them only make each text take longer.
+const KEYS: usize = 8;
+
 /// How many of [`WORDS`] are numbers.
 const NUMBERS: usize = 18;
 /// What breaks more than random bytes do.
@@ -183,7 +186,8 @@ fn doors() -> Vec<Door> {
         .iter()
         .find(|example| example.name.contains("light"));
     let keys = flight.map_or(Vec::new(), |flight| {
-        flight.document().scene.animation.keys.clone()
+        let keys = flight.document().scene.animation.keys.clone();
+        keys.into_iter().take(KEYS).collect()
     });
     let table = to_table(keys.iter().map(|key| (key.time, &key.value)));
     let note = format!(
