@@ -292,7 +292,8 @@ mod tests {
         let mut taken = 0;
         loop {
             crossed.want(&mut lattice);
-            lattice.wanted_samples::<f64>(&PIXEL, &mut samples);
+            lattice.wanted_samples(&PIXEL, &mut samples);
+            samples.pad(1);
             taken += samples.count;
             lattice.take_results(&see(&samples, &is_white));
             match crossed.take(&lattice, &mut colors) {

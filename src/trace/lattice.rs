@@ -221,8 +221,7 @@ impl<R: Real> Lattice<R> {
     }
 
     /// `samples` become those that are wanted and not there yet.
-    #[inline(always)]
-    pub fn wanted_samples<L: SimdFloat<Real = R>>(&self, tile: &Tile, samples: &mut Samples<R>) {
+    pub fn wanted_samples(&self, tile: &Tile, samples: &mut Samples<R>) {
         samples.clear();
         let step = 1.0 / FINEST as f64;
         for &[x, y] in self.points.from(self.samples.len()) {
@@ -231,7 +230,6 @@ impl<R: Real> Lattice<R> {
                 R::from_f64(tile.rows.start as f64 + f64::from(y) * step),
             );
         }
-        samples.pad(L::WIDTH);
     }
 
     /// Adds what was seen at the points that were wanted last.

@@ -70,6 +70,8 @@ mod crossing;
 
 mod coverage;
 
+mod refinement;
+
 mod sampler;
 
 mod heat;

@@ -3,13 +3,12 @@
 use std::ops::Range;
 
 use super::candidates::Candidates;
-use super::coverage::{CrossedCell, Found};
 use super::engine::Engine;
-use super::lattice::{Cell, Inside, Lattice, Limits, range};
+use super::lattice::{Limits, range};
+use super::refinement::Refinement;
 use super::samples::{Edges, Samples, Traced};
 use super::thresholds::NEAR;
 use super::tile::{Tile, TileColors};
-use crate::plan::Tips;
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
 
 /// Samples the pixels of tiles; its buffers are used again.
@@ -25,12 +24,7 @@ pub struct Sampler<L: SimdFloat> {
     unsorted: Traced<L::Real>,
     samples: Samples<L::Real>,
     traced: Traced<L::Real>,
-    lattice: Lattice<L::Real>,
-    cells: Vec<Cell>,
-    split: Vec<Cell>,
-    crossed: Vec<CrossedCell<L::Real>>,
-    /// Cells that may be even, and the samples in their middles.
-    even: Vec<(Cell, u32)>,
+    refinement: Refinement<L::Real>,
 }
 
 impl<L: SimdFloat> Sampler<L> {
@@ -44,11 +38,7 @@ impl<L: SimdFloat> Sampler<L> {
             unsorted: Traced::default(),
             samples: Samples::default(),
             traced: Traced::default(),
-            lattice: Lattice::new(),
-            cells: Vec::new(),
-            split: Vec::new(),
-            crossed: Vec::new(),
-            even: Vec::new(),
+            refinement: Refinement::new(),
         }
     }
 
@@ -140,9 +130,7 @@ impl<L: SimdFloat> Sampler<L> {
     /// The means of pixels that are subdivided as long as their corners differ; corners are shared.
     ///
     /// Whitted, "An improved illumination model for shaded display", CACM 23(6), 1980; here with
-    /// the things that were hit and lit, beside the colours, to tell the corners apart. Where these say that one edge
-    /// crosses a cell, [`CrossedCell`] takes a third of the samples, and where the cell shows one thing whose colour
-    /// changes evenly, [`Lattice::accumulate_even`] takes one.
+    /// the things that were hit and lit, beside the colours, to tell the corners apart.
     #[inline(always)]
     pub fn adaptive<const TREE: bool>(
         &mut self,
@@ -156,64 +144,17 @@ impl<L: SimdFloat> Sampler<L> {
         let rows = tile.rows.start..tile.rows.end + 1;
         self.trace(engine, seen, (columns, rows), ((0.0, 0.0), Edges::Near));
         self.judge(engine.token(), tile, limits, colors);
-        self.add_tips(engine.tips(), tile);
-        if self.split.is_empty() {
+        self.refinement.add_tips(engine.tips(), tile);
+        if !self.refinement.start(tile, &self.traced, limits, colors) {
             return;
         }
-        self.lattice.start(tile, &self.traced, &mut self.split);
-        self.crossed.clear();
-        self.even.clear();
-        self.cells.clear();
-        self.cells.append(&mut self.split);
-        for channel in &mut colors.channels {
-            for pixel in &self.cells {
-                channel[pixel.pixel_in(colors.stride)] = L::Real::ZERO;
-            }
-        }
-        self.sort(limits, colors);
         // What slips between samples is looked for once more, in the middle of pixels and of their sides; what is
         // thinner than their quarters is met by some sample nearby, or shows too little.
-        self.subdivide();
         self.look(engine, seen, tile, Edges::Near);
-        while !(self.cells.is_empty() && self.crossed.is_empty() && self.even.is_empty()) {
-            for cell in &mut self.crossed {
-                cell.want(&mut self.lattice);
-            }
-            for (cell, middle) in &mut self.even {
-                *middle = self.lattice.want_middle(cell);
-            }
+        while self.refinement.want() {
             self.look(engine, seen, tile, Edges::Signed);
-            self.settle(limits, colors);
-            self.subdivide();
+            self.refinement.settle(limits, colors);
         }
-    }
-
-    /// Adds the pixels in which triangles are narrow to those to subdivide.
-    fn add_tips(&mut self, tips: &Tips, tile: &Tile) {
-        self.lattice.start_tips(tips, tile);
-        if self.lattice.tips.is_empty() {
-            return;
-        }
-        let rows = (0..tile.rows.len()).filter(|row| self.lattice.has_tips_in(*row));
-        for row in rows {
-            for column in 0..tile.width() {
-                let pixel = Cell::pixel(column, row);
-                let mut others = self.split.iter();
-                if self.lattice.meets_tip(&pixel) && others.all(|other| !other.is_at(&pixel)) {
-                    self.split.push(pixel);
-                }
-            }
-        }
-    }
-
-    /// Divides the cells that are to be divided.
-    #[inline(always)]
-    fn subdivide(&mut self) {
-        self.cells.clear();
-        for cell in &self.split {
-            self.lattice.subdivide(cell, &mut self.cells);
-        }
-        self.split.clear();
     }
 
     /// Traces what is wanted and not there yet.
@@ -225,51 +166,11 @@ impl<L: SimdFloat> Sampler<L> {
         tile: &Tile,
         edges: Edges,
     ) {
-        self.lattice.wanted_samples::<L>(tile, &mut self.samples);
+        self.refinement.wanted_samples(tile, &mut self.samples);
+        self.samples.pad(L::WIDTH);
         if self.samples.count > 0 {
             engine.trace(&self.samples, seen, edges, &mut self.traced);
-            self.lattice.take_results(&self.traced);
-        }
-    }
-
-    /// Adds the colours of the cells that are known well enough, and notes what is to be done with the others.
-    fn settle(&mut self, limits: Limits<L::Real>, colors: &mut TileColors<L::Real>) {
-        let (lattice, split) = (&self.lattice, &mut self.split);
-        self.crossed
-            .retain_mut(|cell| match cell.take(lattice, colors) {
-                Found::Nothing => true,
-                Found::Color => false,
-                Found::Disorder(cell) => {
-                    split.push(cell);
-                    false
-                }
-            });
-        for (cell, middle) in self.even.drain(..) {
-            if lattice.accumulate_even((&cell, middle), limits, colors) {
-                continue;
-            }
-            match CrossedCell::of_colors(&cell, lattice, limits) {
-                Some(crossed) => self.crossed.push(crossed),
-                None => split.push(cell.unwatched()),
-            }
-        }
-        self.sort(limits, colors);
-    }
-
-    /// Adds the colours of the cells that are known by their corners, and puts the others where they belong: those that
-    /// one edge crosses, those that may be even, and those to subdivide.
-    fn sort(&mut self, limits: Limits<L::Real>, colors: &mut TileColors<L::Real>) {
-        let lattice = &self.lattice;
-        for cell in &self.cells {
-            match lattice.inside(cell, limits) {
-                Inside::Known => lattice.accumulate(cell, colors),
-                Inside::One => self.even.push((*cell, 0)),
-                Inside::Several => match CrossedCell::of(cell, lattice, limits) {
-                    Some(crossed) => self.crossed.push(crossed),
-                    None => self.split.push(*cell),
-                },
-                Inside::Anything => self.split.push(*cell),
-            }
+            self.refinement.take_results(&self.traced);
         }
     }
 
@@ -288,7 +189,7 @@ impl<L: SimdFloat> Sampler<L> {
         let length = stride * tile.rows.len() - 1;
         colors.resize(stride, length.next_multiple_of(L::WIDTH));
         self.traced.lengthen(L::WIDTH);
-        self.split.clear();
+        self.refinement.clear();
         let quarter = L::splat(token, L::Real::from_f64(0.25));
         let reach = quarter.like_f64(NEAR);
         for first in (0..length).step_by(L::WIDTH) {
@@ -317,7 +218,7 @@ impl<L: SimdFloat> Sampler<L> {
                 if column == width || row >= tile.rows.len() {
                     continue;
                 }
-                self.split.push(Cell::pixel(column, row));
+                self.refinement.add(column, row);
             }
         }
     }

@@ -10,9 +10,7 @@ use glint::animate::{from_table, from_text, to_table, to_text};
 use glint::export::{Frames, Hash, Manifest, Pattern};
 use glint::image::render;
 use glint::plan::RenderRequest;
-use glint::scene::{
-    Camera, DEMO_TEXT, Document, EXAMPLES, Method as _, RayOffset, Sampling, check,
-};
+use glint::scene::{Camera, Document, EXAMPLES, Method as _, RayOffset, Sampling, Scene, check};
 use glint::trace::RenderControl;
 
 use crate::random::Dice;
@@ -23,8 +21,8 @@ const FEW: u64 = 2000;
 /// Scenes with longer texts are left out: most damage to them is damage to numbers.
 const LONGEST: usize = 6000;
 
-/// A path has so many keys: more of them only make each text take longer.
-const KEYS: usize = 8;
+/// So many keys, objects or lights are enough: more of them only make each text take longer.
+const ENOUGH: usize = 4;
 
 /// How many of [`WORDS`] are numbers.
 const NUMBERS: usize = 18;
@@ -181,13 +179,33 @@ fn enter_words(text: &str) -> bool {
     frames.is_ok() || pattern.is_ok() || sampling.is_ok() || offset.is_ok()
 }
 
+/// The same scene with a few of everything that it has, and nothing that moves.
+fn small(mut document: Document) -> Document {
+    let Scene {
+        objects, lights, ..
+    } = &mut document.scene;
+    objects.truncate(ENOUGH);
+    lights.truncate(ENOUGH / 2);
+    let of_objects = objects.iter().map(|object| object.color_pack.clone());
+    let markers = lights.iter().filter_map(|light| light.marker.as_ref());
+    let of_markers = markers.map(|marker| marker.color_pack.clone());
+    let used: Vec<String> = of_objects.chain(of_markers).collect();
+    let packs = document.scene.packs_mut();
+    packs.retain(|name, _| used.contains(name));
+    let animation = document.scene.animation_mut();
+    animation.keys.truncate(ENOUGH / 2);
+    animation.tracks.clear();
+    animation.take = None;
+    document
+}
+
 fn doors() -> Vec<Door> {
     let flight = EXAMPLES
         .iter()
         .find(|example| example.name.contains("light"));
     let keys = flight.map_or(Vec::new(), |flight| {
         let keys = flight.document().scene.animation.keys.clone();
-        keys.into_iter().take(KEYS).collect()
+        keys.into_iter().take(ENOUGH).collect()
     });
     let table = to_table(keys.iter().map(|key| (key.time, &key.value)));
     let note = format!(
@@ -199,10 +217,12 @@ fn doors() -> Vec<Door> {
         .iter()
         .filter_map(|path| std::fs::read_to_string(path).ok());
     let bad: Vec<String> = bad.collect();
-    let examples = EXAMPLES.iter().map(|example| example.document().to_text());
-    let scenes = examples.flatten().filter(|text| text.len() < LONGEST);
+    let examples = EXAMPLES.iter().map(|example| example.document());
+    let small = examples.clone().map(|example| small(example).to_text());
     // As many good ones as bad ones: what has one fault already is seldom let in.
-    let scenes = scenes.cycle().take(bad.len());
+    let small = small.flatten().cycle().take(bad.len());
+    let scenes = examples.flat_map(|example| example.to_text());
+    let scenes = scenes.filter(|text| text.len() < LONGEST);
     let words = [
         "1-10:3,20",
         "frame_####.png",
@@ -212,10 +232,7 @@ fn doors() -> Vec<Door> {
     vec![
         Door {
             name: "scenes",
-            seeds: scenes
-                .chain(bad.clone())
-                .chain([DEMO_TEXT.to_owned()])
-                .collect(),
+            seeds: small.chain(bad.clone()).chain(scenes).collect(),
             enter: enter_scene,
         },
         Door {
