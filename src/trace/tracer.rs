@@ -94,13 +94,15 @@ impl Tracer {
         };
         let pixels = request.pixels();
         let is_sparse = plan.bounded() * PIXELS_PER_PRIMITIVE <= pixels;
+        let side = if is_sparse { LARGE_TILE } else { SMALL_TILE };
         Self {
             width: request.width as usize,
             height: request.height as usize,
-            tile: match request.aspect {
-                Aspect::Cost => COST_TILE,
-                _ if is_sparse => LARGE_TILE,
-                _ => SMALL_TILE,
+            tile: match (request.aspect, request.sampling) {
+                (Aspect::Cost, _) => COST_TILE,
+                // It has one more corner than pixels in a row: they fill whole packets.
+                (_, Sampling::Adaptive { .. }) => side - 1,
+                _ => side,
             },
             in_squares: plan.bounded() * PIXELS_IN_SQUARES > pixels,
             region: request.region,
