@@ -10,7 +10,9 @@ use glint::animate::{from_table, from_text, to_table, to_text};
 use glint::export::{Frames, Hash, Manifest, Pattern};
 use glint::image::render;
 use glint::plan::RenderRequest;
-use glint::scene::{Camera, Document, EXAMPLES, Method as _, RayOffset, Sampling, Scene, check};
+use glint::scene::{
+    Camera, Document, EXAMPLES, Example, Method as _, RayOffset, Sampling, Scene, check,
+};
 use glint::trace::RenderControl;
 
 use crate::random::Dice;
@@ -217,7 +219,7 @@ fn doors() -> Vec<Door> {
         .iter()
         .filter_map(|path| std::fs::read_to_string(path).ok());
     let bad: Vec<String> = bad.collect();
-    let examples = EXAMPLES.iter().map(|example| example.document());
+    let examples = EXAMPLES.iter().map(Example::document);
     let small = examples.clone().map(|example| small(example).to_text());
     // As many good ones as bad ones: what has one fault already is seldom let in.
     let small = small.flatten().cycle().take(bad.len());
