@@ -181,7 +181,7 @@ fn enter_words(text: &str) -> bool {
     frames.is_ok() || pattern.is_ok() || sampling.is_ok() || offset.is_ok()
 }
 
-/// The same scene with a few of everything that it has, and nothing that moves.
+/// The same scene with a few of everything that it has, in which nothing moves but the camera.
 fn small(mut document: Document) -> Document {
     let Scene {
         objects, lights, ..
