@@ -347,6 +347,11 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
     ui.end_row();
 }
 
+fn frames(count: usize) -> String {
+    let s = if count == 1 { "" } else { "s" };
+    format!("{count} frame{s}")
+}
+
 /// What will happen: frames, time, room on the disk.
 pub fn forecast(
     settings: &Settings,
@@ -357,7 +362,7 @@ pub fn forecast(
     let pixels = f64::from(settings.width) * f64::from(settings.height);
     let total = sequence.frames.count();
     let (missing, what) = match found {
-        None => (total, "looking into the folder…".to_owned()),
+        None => (total, format!("{}, looking into the folder…", frames(total))),
         Some(Err(error)) => (total, error.clone()),
         Some(Ok((missing, replaced, total))) => {
             let there = total - missing;
@@ -369,11 +374,8 @@ pub fn forecast(
                 0 => String::new(),
                 replaced => format!(", {replaced} replace older files"),
             };
-            let s = if *missing == 1 { "" } else { "s" };
-            (
-                *missing,
-                format!("{missing} frame{s} to make{stay}{replace}"),
-            )
+            let frames = frames(*missing);
+            (*missing, format!("{frames} to make{stay}{replace}"))
         }
     };
     let bytes = match settings.format {
