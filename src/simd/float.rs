@@ -32,6 +32,9 @@ pub trait SimdFloat:
     type Token: Copy;
     /// How many lanes there are.
     const WIDTH: usize;
+    /// Whether kernels are worth being compiled once more for what is simple, and quicker then: those of vectors in
+    /// single precision.
+    const HAS_SIMPLE_KERNELS: bool;
 
     /// The same number in every lane.
     fn splat(token: Self::Token, value: Self::Real) -> Self;
@@ -162,6 +165,7 @@ macro_rules! single_lane {
             type Mask = bool;
             type Token = ();
             const WIDTH: usize = 1;
+            const HAS_SIMPLE_KERNELS: bool = false;
 
             #[inline(always)]
             fn splat((): (), value: Self) -> Self {
@@ -309,6 +313,7 @@ where
     type Mask = WideMask<S, V::Mask>;
     type Token = S;
     const WIDTH: usize = V::LEN;
+    const HAS_SIMPLE_KERNELS: bool = <V::Element as Real>::IS_FILTERED;
 
     #[inline(always)]
     fn splat(token: S, value: Self::Real) -> Self {

@@ -1,6 +1,6 @@
 //! Which vectors the processor has, found out at run time.
 
-use fearless_simd::{Simd, dispatch, f32x16, f64x8};
+use fearless_simd::{Level as Vectors, Simd, f32x16, f64x8};
 
 use super::float::Wide;
 use super::{Real, SimdFloat};
@@ -11,7 +11,7 @@ pub struct Level {
     /// What `--lanes` calls it.
     pub name: &'static str,
     /// `None` for one number at a time.
-    vectors: Option<fearless_simd::Level>,
+    vectors: Option<Vectors>,
 }
 
 /// Something to be done with lanes of any width.
@@ -60,13 +60,12 @@ impl Level {
         vectors: None,
     };
 
-    /// Every level that this processor has, narrowest first.
+    /// Every level that this processor has, narrowest first. SSE2 alone is none: kernels for it would be a third of
+    /// all, for processors of before 2011.
     pub fn available() -> Vec<Self> {
-        use fearless_simd::Level as Vectors;
         let has = Vectors::new();
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         let found = [
-            ("sse2", has.as_sse2().map(Vectors::Sse2)),
             ("sse4.2", has.as_sse4_2().map(Vectors::Sse4_2)),
             ("avx2", has.as_avx2().map(Vectors::Avx2)),
             ("avx512", has.as_avx512().map(Vectors::Avx512)),
@@ -95,7 +94,16 @@ impl Level {
     pub fn run<R: SimdReal, W: WithSimd<R>>(self, work: W) -> W::Output {
         match self.vectors {
             None => work.run::<R>(()),
-            Some(level) => dispatch!(level, simd => R::with_vectors(simd, work)),
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Some(Vectors::Avx512(simd)) => with_vectors(simd, work),
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Some(Vectors::Avx2(simd)) => with_vectors(simd, work),
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Some(Vectors::Sse4_2(simd)) => with_vectors(simd, work),
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Some(_) => work.run::<R>(()),
+            #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+            Some(level) => fearless_simd::dispatch!(level, simd => R::with_vectors(simd, work)),
         }
     }
 
@@ -104,4 +112,13 @@ impl Level {
         let width = self.vectors.map_or(1, |_| R::LANES);
         format!("{}×{width} {}", R::NAME, self.name)
     }
+}
+
+/// Does the work with the processor's instructions known to the compiler.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+fn with_vectors<S: Simd, R: SimdReal, W: WithSimd<R>>(simd: S, work: W) -> W::Output {
+    simd.vectorize(
+        #[inline(always)]
+        || R::with_vectors(simd, work),
+    )
 }

@@ -64,24 +64,13 @@ impl WithSimd<f64> for Again<'_> {
 
     #[inline(always)]
     fn run<L: SimdFloat<Real = f64>>(self, token: L::Token) {
-        if self.exact.plan.geometry.is_some() {
-            self.trace::<L, true>(token);
-        } else {
-            self.trace::<L, false>(token);
-        }
-    }
-}
-
-impl Again<'_> {
-    #[inline(always)]
-    fn trace<L: SimdFloat<Real = f64>, const TREE: bool>(self, token: L::Token) {
         let Exact {
             plan, seen, shelf, ..
         } = self.exact;
         let mut work = shelf.take::<Workspace<L>>().unwrap_or_default();
         self.samples.pad(L::WIDTH);
         let kernel = Kernel { token, plan };
-        let mut engine = Engine::<L, TREE>::new(kernel, &mut work, (self.stop, None));
+        let mut engine = Engine::<L, true>::new(kernel, &mut work, (self.stop, None));
         engine.trace(self.samples, seen, self.edges, self.traced);
         shelf.put(work);
     }

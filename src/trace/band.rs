@@ -72,10 +72,11 @@ impl<R: SimdReal, P: Pixel> WithSimd<R> for Band<'_, R, P> {
 
     #[inline(always)]
     fn run<L: SimdFloat<Real = R>>(self, token: L::Token) -> Option<Rays> {
-        if self.plan.geometry.is_some() || self.plan.is_doubted() {
-            self.trace::<L, true>(token)
-        } else {
+        let is_simple = self.plan.geometry.is_none() && !self.plan.is_doubted();
+        if L::HAS_SIMPLE_KERNELS && is_simple {
             self.trace::<L, false>(token)
+        } else {
+            self.trace::<L, true>(token)
         }
     }
 }

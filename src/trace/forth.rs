@@ -44,7 +44,10 @@ impl<L: SimdFloat> Bounce<L> {
             let rays = Ray { origin, direction };
             self.packets.push(Packet::new(kernel, rays, active));
         }
-        if is_filtered::<L, TREE>() && kernel.plan.is_doubted() {
+        // What looks for an edge inside of a pixel is not doubted: of what rounding may decide there, both sides are as
+        // near to it, and the pixel is the same.
+        let is_doubted = edges != Edges::Signed && kernel.plan.is_doubted();
+        if is_filtered::<L, TREE>() && is_doubted {
             let uncertainty = Uncertainty::new(token, kernel.plan);
             self.uncertainties.resize(self.packets.len(), uncertainty);
         }

@@ -362,7 +362,10 @@ pub fn forecast(
     let pixels = f64::from(settings.width) * f64::from(settings.height);
     let total = sequence.frames.count();
     let (missing, what) = match found {
-        None => (total, format!("{}, looking into the folder…", frames(total))),
+        None => (
+            total,
+            format!("{}, looking into the folder…", frames(total)),
+        ),
         Some(Err(error)) => (total, error.clone()),
         Some(Ok((missing, replaced, total))) => {
             let there = total - missing;
