@@ -1,7 +1,7 @@
 //! The picture of how cost grows: lines on logarithmic axes.
 
-use egui::Ui;
-use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoints, Points};
+use egui::{Align2, RichText, Ui};
+use egui_plot::{Line, LineStyle, Plot, PlotPoint, PlotPoints, Points, Text};
 
 use super::super::theme::{GRID, palette};
 use super::axes::{decades, plain};
@@ -9,10 +9,13 @@ use super::pictures::picture;
 use crate::image::Image;
 use crate::lab::{Cost, Crowd, Growth, PictureLook, Way};
 
+/// How far the name of a line is above its end, in decades.
+const NAME_ABOVE: f64 = 0.06;
+
 /// A picture of what was measured.
 pub fn growth_picture(growth: &Growth, look: PictureLook) -> Image {
     picture(look, |ui| {
-        ui.label(egui::RichText::new(finding(growth)).heading());
+        ui.label(RichText::new(finding(growth)).heading());
         ui.add_space(GRID);
         show(ui, growth);
     })
@@ -48,7 +51,6 @@ fn show(ui: &mut Ui, growth: &Growth) {
     }
     let side = growth.side();
     Plot::new("growth chart")
-        .legend(Legend::default().position(Corner::LeftTop))
         .x_axis_label("primitives")
         .y_axis_label(format!("ms per {side}×{side} picture"))
         .x_axis_formatter(plain)
@@ -71,6 +73,11 @@ fn show(ui: &mut Ui, growth: &Growth) {
                 };
                 let dots = Points::new(name.clone(), PlotPoints::from(points.clone()));
                 plot.points(dots.radius(4.0).color(color));
+                if let Some([x, y]) = points.last() {
+                    let at = PlotPoint::new(*x, y + NAME_ABOVE);
+                    let text = Text::new(name.clone(), at, RichText::new(&name).size(14.0));
+                    plot.text(text.color(color).anchor(Align2::RIGHT_BOTTOM));
+                }
                 plot.line(Line::new(name, points).color(color).style(style).width(1.5));
             }
         });
