@@ -161,7 +161,7 @@ fn a_tree_changes_no_bit_and_no_ray() {
                     );
                     let (ours, theirs) = (tree.1.camera as f64, flat.1.camera as f64);
                     assert!(
-                        (ours / theirs - 1.0).abs() < 2e-2,
+                        (ours / theirs - 1.0).abs() < 6e-2,
                         "{case}: {ours} {theirs}"
                     );
                 }
