@@ -13,8 +13,6 @@ use crate::simd::{Real, Vec3};
 const MEASURED: usize = 8;
 /// Cosine between the normals of faces above which they look the same way.
 const ALIKE: f64 = 0.7;
-/// What is nearer than this before a face, in parts of its smallest altitude, lies on it.
-const TOUCHING: f64 = 1e-3;
 /// Where faces are measured, as shares of their corners: not in the middle, which lies before an edge of the other side
 /// where that is its mirror image.
 const NEARLY_MIDDLE: [f64; 3] = [0.38, 0.34, 0.28];
@@ -23,8 +21,8 @@ const LONGEST_WALK: usize = 32;
 
 /// For each triangle how thick the mesh is there, at least: through the inside to the other side of it
 /// (Shapira, Shamir and Cohen-Or, "Consistent mesh partitioning and skeletonisation using the shape
-/// diameter function", The Visual Computer 24, 2008; with one ray), across the gap before it, and along the surface from
-/// border to border. Infinity where there is neither. `points` numbers the corners of each triangle.
+/// diameter function", The Visual Computer 24, 2008; with one ray), and along the surface from border to
+/// border. Infinity where there is neither. `points` numbers the corners of each triangle.
 pub fn measures<R: Real>(
     triangles: &[PackedTriangle<R>],
     points: &[[u32; 3]],
@@ -70,7 +68,7 @@ pub struct Measures<R> {
 }
 
 impl<R: Real> Faces<'_, R> {
-    /// Through the inside or across a gap. Neighbours share the least of what some of them have.
+    /// Through the inside. Neighbours share the least of what some of them have.
     fn depths(&self) -> Vec<R> {
         let nodes = (0..self.bvh.nodes.len()).into_par_iter();
         let found: Vec<(Vec<u32>, R)> = nodes
@@ -110,23 +108,21 @@ impl<R: Real> Faces<'_, R> {
         least
     }
 
-    /// How far the next face is from about the middle of one, straight through the inside or across a gap. Which side is
-    /// the inside is not asked: faces may be wound either way, and what slips between samples may be a gap as well.
+    /// How far the other side is from about the middle of a face, straight through the inside.
     fn depth(&self, face: usize) -> R {
-        let triangle = &self.triangles[face];
-        let [a, b, c] = triangle.corners;
+        let [a, b, c] = self.triangles[face].corners;
         let [of_a, of_b, of_c] = NEARLY_MIDDLE.map(R::from_f64);
+        // Corners are clockwise seen from outside.
+        let inwards = -self.triangles[face].normal;
         let middle = a * of_a + b * of_b + c * of_c;
-        let touching = triangle.thickness * R::from_f64(TOUCHING);
+        let is_other = |other: u32| other as usize != face;
         let mut nearest = R::INFINITY;
-        for (way, least) in [(-triangle.normal, R::ZERO), (triangle.normal, touching)] {
-            cast(self.triangles, self.bvh, (middle, way), |other, t| {
-                if other as usize != face && least < t {
-                    nearest = nearest.min(t);
-                }
-                nearest
-            });
-        }
+        cast(self.triangles, self.bvh, (middle, inwards), |face, t| {
+            if is_other(face) {
+                nearest = nearest.min(t);
+            }
+            nearest
+        });
         nearest
     }
 }
@@ -348,11 +344,8 @@ mod tests {
                 faces.push([corner(0, 0), corner(0, side), corner(0, side + 1)]);
                 faces.push([corner(1, 0), corner(1, side + 1), corner(1, side)]);
             }
-            let inside_out: Vec<_> = faces.iter().map(|&[a, b, c]| [a, c, b]).collect();
-            for faces in [faces, inside_out] {
-                for (face, thickness) in found(&faces)[..2 * SIDES].iter().enumerate() {
-                    assert!(*thickness < 2.0 * radius, "{turn} {face}: {thickness}");
-                }
+            for (face, thickness) in found(&faces)[..2 * SIDES].iter().enumerate() {
+                assert!(*thickness < 2.0 * radius, "{turn} {face}: {thickness}");
             }
         }
     }
