@@ -8,6 +8,7 @@ use glam::DVec3;
 use super::bvh::{Bvh, Member};
 use super::idle::KeptIdle;
 use super::packed_mesh::{MeshInstance, PackedMesh, measure, member};
+use super::parts::things;
 use super::request::RenderRequest;
 use crate::primitive::{
     BoundingBox, KINDS, Kind, Packing, Primitive, Primitives, Visit, count_corner_users,
@@ -328,12 +329,13 @@ pub fn is_planted(object: &Object) -> bool {
     object.visible && object.shape.bounds().is_some()
 }
 
-/// Measures how thick what loose triangles make is, where they hang together.
+/// Measures how thick what loose triangles make is, where they hang together, and finds what of them is one thing.
 pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>) {
     let triangles = &mut primitives.triangles;
     let corners = number_corners(triangles);
     let mut bvh = Bvh::new(triangles.len(), |number| member(&triangles[number]));
-    measure(triangles, &corners, &mut bvh);
+    let parts = measure(triangles, &corners, &mut bvh).parts;
+    primitives.things = things(triangles, &parts);
 }
 
 /// The place of a pack among the materials.

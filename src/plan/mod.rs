@@ -10,6 +10,8 @@ mod bvh;
 
 mod cast;
 
+mod parts;
+
 mod thickness;
 
 mod smooth;

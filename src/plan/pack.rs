@@ -164,8 +164,7 @@ impl<R: Real> Plan<R> {
         plan.lights = pack_lights(scene, centre, (occluders, model), (touches, holders));
         if matches!(request.sampling, Sampling::Adaptive { .. }) {
             measure_loose(&mut plan.primitives);
-            plan.tips =
-                camera.map_or_else(Tips::default, |camera| Tips::of(scene, request, &camera));
+            plan.tips = camera.map_or_else(Tips::default, |camera| plan.tips(request, &camera));
         }
         if may_cull {
             plan.bound();
@@ -177,6 +176,20 @@ impl<R: Real> Plan<R> {
         }
         kept.idle().end();
         plan
+    }
+
+    /// The sharp corners of triangles that are no part of something larger.
+    fn tips(&self, request: &RenderRequest, projector: &Projector) -> Tips {
+        let in_tree = self.geometry.iter().map(|geometry| &geometry.primitives);
+        let lists = [&self.primitives].into_iter().chain(in_tree);
+        let corners = lists
+            .flat_map(Primitives::single_triangles)
+            .map(|triangle| {
+                triangle
+                    .corners
+                    .map(|corner| corner.to_dvec3() + self.centre)
+            });
+        Tips::of(corners, request, projector)
     }
 
     /// Whether what rounding may decide is told.

@@ -6,8 +6,9 @@ use glam::{DMat3, DVec3};
 
 use super::bvh::{Bvh, Member};
 use super::cast::is_outside;
+use super::parts::volume;
 use super::smooth::{corner_normals, largest_lift};
-use super::thickness::measures;
+use super::thickness::{Measures, measures};
 use crate::mesh::Triangles;
 use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle};
 use crate::scene::Mesh;
@@ -27,7 +28,7 @@ pub struct PackedMesh<R> {
     pub bvh: Bvh<R>,
     /// How far they reach from the middle of the box around them.
     pub reach: R,
-    /// Whether it has an inside, and its normals point away from there.
+    /// Whether it has an inside; its normals then point away from there, however its file winds them.
     is_solid: bool,
     /// The middle, from the origin of the mesh.
     middle: DVec3,
@@ -75,7 +76,11 @@ impl<R: Real> PackedMesh<R> {
         let faces: Vec<_> = order.map(|number| faces[number as usize]).collect();
         let mut triangles: Vec<_> = faces.iter().filter_map(packed).collect();
         drop(points);
-        let is_closed = measure(&mut triangles, &faces, &mut bvh);
+        let is_closed = measure(&mut triangles, &faces, &mut bvh).is_closed;
+        let volume = volume(&triangles);
+        if is_closed && volume < 0.0 {
+            triangles.iter_mut().for_each(PackedTriangle::turn);
+        }
         let smooth = if mesh.smooth > 0.0 {
             corner_normals(&triangles, mesh.smooth)
         } else {
@@ -86,7 +91,7 @@ impl<R: Real> PackedMesh<R> {
             reach: reach(&triangles, bvh.bounds.ball().0),
             smooth,
             bvh,
-            is_solid: is_closed && volume(&triangles) > 0.0,
+            is_solid: is_closed && volume != 0.0,
             triangles,
             middle,
             source: Arc::clone(source),
@@ -108,30 +113,19 @@ impl<R: Real> PackedMesh<R> {
     }
 }
 
-/// Six times the volume that the triangles surround; negative where they look inwards.
-fn volume<R: Real>(triangles: &[PackedTriangle<R>]) -> f64 {
-    let corners = triangles.iter().map(|triangle| triangle.corners);
-    let volumes = corners.map(|corners| {
-        let [a, b, c] = corners.map(Vec3::to_dvec3);
-        // Clockwise seen from outside.
-        a.dot(c.cross(b))
-    });
-    volumes.sum()
-}
-
 /// Sets how thick each of the triangles is, whose corners have these numbers and that are in this tree, and how
-/// thick is what is in its boxes. Whether the triangles are closed.
+/// thick is what is in its boxes.
 pub fn measure<R: Real>(
     triangles: &mut [PackedTriangle<R>],
     faces: &[[u32; 3]],
     bvh: &mut Bvh<R>,
-) -> bool {
+) -> Measures<R> {
     let measures = measures(triangles, faces, bvh);
-    for (triangle, thickness) in triangles.iter_mut().zip(measures.thicknesses) {
+    for (triangle, &thickness) in triangles.iter_mut().zip(&measures.thicknesses) {
         triangle.thickness = triangle.thickness.max(thickness);
     }
     bvh.refit(|number| member(&triangles[number]));
-    measures.is_closed
+    measures
 }
 
 /// How far the corners of triangles are from a point, at most.

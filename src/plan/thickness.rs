@@ -6,6 +6,7 @@ use rayon::slice::ParallelSliceMut as _;
 
 use super::bvh::{Bvh, Child};
 use super::cast::cast;
+use super::parts::{inside_out, parts};
 use crate::primitive::PackedTriangle;
 use crate::simd::{Real, Vec3};
 
@@ -21,17 +22,19 @@ const LONGEST_WALK: usize = 32;
 
 /// For each triangle how thick the mesh is there, at least: through the inside to the other side of it
 /// (Shapira, Shamir and Cohen-Or, "Consistent mesh partitioning and skeletonisation using the shape
-/// diameter function", The Visual Computer 24, 2008; with one ray), and along the surface from border to
-/// border. Infinity where there is neither. `points` numbers the corners of each triangle.
+/// diameter function", The Visual Computer 24, 2008; with one ray), whichever way its faces are wound, and along
+/// the surface from border to border. Infinity where there is neither. `points` numbers the corners of each triangle.
 pub fn measures<R: Real>(
     triangles: &[PackedTriangle<R>],
     points: &[[u32; 3]],
     bvh: &Bvh<R>,
 ) -> Measures<R> {
+    let parts = parts(points);
     let faces = Faces {
         triangles,
         points,
         bvh,
+        inside_out: inside_out(triangles, &parts),
     };
     let mut thicknesses = faces.depths();
     let borders = faces.borders();
@@ -43,6 +46,7 @@ pub fn measures<R: Real>(
     Measures {
         thicknesses,
         is_closed: borders.is_closed(),
+        parts,
     }
 }
 
@@ -53,6 +57,8 @@ struct Faces<'a, R> {
     points: &'a [[u32; 3]],
     /// The way to the faces.
     bvh: &'a Bvh<R>,
+    /// Which of them look inwards.
+    inside_out: Vec<bool>,
 }
 
 /// An edge, from the smaller number to the larger, and a face that has it, twice its number, and 1 if the
@@ -65,6 +71,8 @@ pub struct Measures<R> {
     pub thicknesses: Vec<R>,
     /// Whether every edge is passed once in each direction: it has an inside.
     pub is_closed: bool,
+    /// For each triangle the part that it is connected with.
+    pub parts: Vec<u32>,
 }
 
 impl<R: Real> Faces<'_, R> {
@@ -112,8 +120,12 @@ impl<R: Real> Faces<'_, R> {
     fn depth(&self, face: usize) -> R {
         let [a, b, c] = self.triangles[face].corners;
         let [of_a, of_b, of_c] = NEARLY_MIDDLE.map(R::from_f64);
-        // Corners are clockwise seen from outside.
-        let inwards = -self.triangles[face].normal;
+        let normal = self.triangles[face].normal;
+        let inwards = if self.inside_out[face] {
+            normal
+        } else {
+            -normal
+        };
         let middle = a * of_a + b * of_b + c * of_c;
         let is_other = |other: u32| other as usize != face;
         let mut nearest = R::INFINITY;
@@ -320,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rod_with_ends_is_no_thicker_whichever_way_it_lies() {
+    fn a_rod_with_ends_is_no_thicker_whichever_way_it_lies_or_is_wound() {
         const SIDES: usize = 6;
         let radius = 0.2;
         for turn in 0..60 {
@@ -344,8 +356,24 @@ mod tests {
                 faces.push([corner(0, 0), corner(0, side), corner(0, side + 1)]);
                 faces.push([corner(1, 0), corner(1, side + 1), corner(1, side)]);
             }
-            for (face, thickness) in found(&faces)[..2 * SIDES].iter().enumerate() {
-                assert!(*thickness < 2.0 * radius, "{turn} {face}: {thickness}");
+            let other_way: Vec<_> = faces.iter().map(|&[a, b, c]| [a, c, b]).collect();
+            // Parts of a mesh need not be wound alike.
+            let beside =
+                |[a, b, c]: [Vec3<f64>; 3]| [a, b, c].map(|corner| corner + at(0.0, 0.0, 90.0));
+            let both: Vec<_> = faces
+                .iter()
+                .copied()
+                .chain(other_way.iter().copied().map(beside))
+                .collect();
+            let sides = |found: Vec<f64>| found.into_iter().take(2 * SIDES);
+            let beside = found(&both).split_off(faces.len());
+            let all = sides(found(&faces)).chain(sides(found(&other_way)));
+            for (face, thickness) in all
+                .chain(sides(found(&both)))
+                .chain(sides(beside))
+                .enumerate()
+            {
+                assert!(thickness < 2.0 * radius, "{turn} {face}: {thickness}");
             }
         }
     }

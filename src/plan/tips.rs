@@ -2,9 +2,10 @@
 
 use std::ops::Range;
 
+use glam::DVec3;
+
 use super::request::RenderRequest;
 use crate::primitive::Projector;
-use crate::scene::{Scene, Shape};
 
 /// Where a triangle is narrower than so many pixels, it may pass between the corners of pixels: a strip that is one
 /// pixel wide may, and a little for the rounding.
@@ -97,16 +98,19 @@ pub struct Tips {
 }
 
 impl Tips {
-    /// Those of the visible triangles that stand alone, as the request's camera sees them. Of those that are narrow as a whole, or nearly so small, each
-    /// ray knows that they may slip between samples.
-    pub fn of(scene: &Scene, request: &RenderRequest, projector: &Projector) -> Self {
+    /// Those of triangles with these corners, as the request's camera sees them. Of those that are narrow as a whole, or
+    /// nearly so small, each ray knows that they may slip between samples.
+    pub fn of(
+        triangles: impl Iterator<Item = [DVec3; 3]>,
+        request: &RenderRequest,
+        projector: &Projector,
+    ) -> Self {
         let bands = (request.height as usize).div_ceil(BAND);
         let mut tips = Self {
             bands: vec![Vec::new(); bands],
         };
-        for object in scene.objects.iter().filter(|object| object.visible) {
-            if let Shape::Triangle(triangle) = &object.shape
-                && let Some([a, b, c]) = projector.places([triangle.a, triangle.b, triangle.c])
+        for corners in triangles {
+            if let Some([a, b, c]) = projector.places(corners)
                 && is_large([a, b, c])
             {
                 let corners = [Tip::of(a, [b, c]), Tip::of(b, [c, a]), Tip::of(c, [a, b])];
@@ -147,6 +151,7 @@ fn is_large(corners: [[f64; 2]; 3]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Scene, Shape};
 
     #[test]
     fn a_tip_ends_where_the_triangle_is_as_wide_as_a_pixel() {
@@ -171,7 +176,14 @@ mod tests {
     fn tips_are_found_in_their_rows() {
         let scene = Scene::demo();
         let camera = Projector::new(&scene.camera, (200, 100), 0.0).expect("a basis");
-        let tips = Tips::of(&scene, &RenderRequest::sized(200, 100), &camera);
+        let triangles = scene
+            .objects
+            .iter()
+            .filter_map(|object| match &object.shape {
+                Shape::Triangle(triangle) => Some(triangle.corners()),
+                _ => None,
+            });
+        let tips = Tips::of(triangles, &RenderRequest::sized(200, 100), &camera);
         let all: Vec<_> = tips.in_rows(&(0..100)).collect();
         assert!(all.len() >= 18, "{} of six triangles", all.len());
         for rows in [0..7, 30..55, 90..100] {

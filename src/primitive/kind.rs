@@ -87,6 +87,13 @@ pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
     /// than a pixel.
     fn thickness(&self) -> R;
 
+    /// How thick it is as what light of these directions is blocked by. Faces of solids that are turned to a light may have
+    /// been left out before it: those count for nothing.
+    #[inline(always)]
+    fn breadth<L: SimdFloat<Real = R>>(&self, directions: Vec3<L>) -> L {
+        directions.x.like(self.thickness())
+    }
+
     /// A point of it, and how far from there it reaches.
     fn reach(&self) -> (Vec3<R>, R);
 

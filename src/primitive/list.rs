@@ -55,7 +55,9 @@ macro_rules! kinds {
         /// the order of [`Kind`], and is exact in `f32` below 2²⁴.
         #[derive(Clone, Debug)]
         pub struct Primitives<R> {
-            $(#[doc = concat!("Every [`", stringify!($packed), "`].")] pub $list: Vec<$packed<R>>),*
+            $(#[doc = concat!("Every [`", stringify!($packed), "`].")] pub $list: Vec<$packed<R>>,)*
+            /// For each triangle the first one that it is one thing with, if it is not one by itself; empty where all are.
+            pub things: Vec<Option<u32>>,
         }
 
         /// What the test of each kind needs of the directions of rays.
@@ -74,7 +76,7 @@ macro_rules! kinds {
 
         impl<R> Default for Primitives<R> {
             fn default() -> Self {
-                Self { $($list: Vec::new()),* }
+                Self { $($list: Vec::new(),)* things: Vec::new() }
             }
         }
 
@@ -164,6 +166,22 @@ impl<R: Real> Primitives<R> {
             next += count;
             first
         })
+    }
+
+    /// What the primitive of a number is one thing with: the number of the first of them.
+    #[inline(always)]
+    pub fn thing_of(&self, number: usize) -> usize {
+        let first = self.firsts()[Kind::Triangle as usize];
+        let index = number.checked_sub(first);
+        let thing = index.and_then(|index| *self.things.get(index)?);
+        thing.map_or(number, |thing| first + thing as usize)
+    }
+
+    /// The triangles that are things by themselves.
+    pub fn single_triangles(&self) -> impl Iterator<Item = &PackedTriangle<R>> {
+        let things = self.things.iter().copied().chain(std::iter::repeat(None));
+        let triangles = self.triangles.iter().zip(things);
+        triangles.filter_map(|(triangle, thing)| thing.is_none().then_some(triangle))
     }
 
     /// How many there are.

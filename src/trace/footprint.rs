@@ -63,6 +63,12 @@ impl<L: SimdFloat> Footprint<L> {
         }
     }
 
+    /// How wide is what casts shadows between samples, at most.
+    #[inline(always)]
+    pub fn slipping(&self) -> L {
+        self.length * self.length.like_f64(SLIPPING)
+    }
+
     /// How much wider a pixel becomes along the rays that come here.
     #[inline(always)]
     pub fn spread(&self) -> L {

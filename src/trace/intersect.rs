@@ -184,24 +184,27 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         )
     }
 
-    /// Where one of the primitives meets the paths before `distance`, and where that is in doubt; looked for only
-    /// where `wanted`.
+    /// What stands before `distance` in the way of the paths; looked for only where `wanted`. Where something is thicker
+    /// there than `thick` is told apart, if that is given: the way is then searched until it is found.
     #[inline(always)]
     pub fn blocked(
         self,
         among: Among<L::Real>,
         (paths, doubt): (&Paths<L>, Doubt<L, TREE>),
-        (distance, wanted): (L, L::Mask),
+        (distance, wanted, thick): (L, L::Mask, Option<L>),
         stack: &mut Stack<L::Real>,
-    ) -> (L::Mask, L::Mask) {
+    ) -> Blocked<L> {
+        let none = !wanted & wanted;
         let mut test = BlockedTest::<L, TREE, true> {
             methods: &self.plan.methods,
             distance,
             sure: doubt.ahead_of(distance),
             reach: distance,
+            thick,
             way: Way {
                 free: wanted,
-                met: !wanted & wanted,
+                met: none,
+                passed: none,
                 doubt,
             },
         };
@@ -210,11 +213,14 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         if way.free.any()
             && let Some(thicket) = self.thicket(among, (way.free, way.doubt.blur))
         {
-            way = self.way_in(&thicket, paths, (distance, way), stack);
+            way = self.way_in(&thicket, paths, (distance, thick, way), stack);
         }
-        let blocked = wanted & (!way.free | way.met);
-        // What may be behind the light is not looked for.
-        (blocked, way.free & way.doubt.from.at_most(distance))
+        Blocked {
+            anywhere: wanted & (!way.free | way.passed | way.met),
+            wide: wanted & !way.free,
+            // What may be behind the light is not looked for.
+            doubt: way.free & !way.passed & way.doubt.from.at_most(distance),
+        }
     }
 
     /// The same among what is in the tree.
@@ -223,7 +229,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         self,
         thicket: &Thicket<L>,
         paths: &Paths<L>,
-        (distance, way): (L, Way<L, TREE>),
+        (distance, thick, way): (L, Option<L>, Way<L, TREE>),
         stack: &mut Stack<L::Real>,
     ) -> Way<L, TREE> {
         L::vectorize(
@@ -239,6 +245,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                         None => distance,
                         Some(_) => all * way.doubt.stretch(distance),
                     },
+                    thick,
                     way,
                 };
                 thicket.scan(paths, stack, &mut test);
@@ -246,6 +253,17 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             },
         )
     }
+}
+
+/// What stands before something.
+#[derive(Clone, Copy, Debug)]
+pub struct Blocked<L: SimdFloat> {
+    /// Where anything does.
+    pub anywhere: L::Mask,
+    /// Where something does that is not passed by.
+    pub wide: L::Mask,
+    /// Where that is in doubt.
+    pub doubt: L::Mask,
 }
 
 /// How far one primitive is.
@@ -319,16 +337,20 @@ struct BlockedTest<'a, L: SimdFloat, const TREE: bool, const LISTED: bool> {
     sure: L,
     /// How far boxes are looked for.
     reach: L,
+    /// What is no thicker is passed by, if that is given.
+    thick: Option<L>,
     way: Way<L, TREE>,
 }
 
 /// What is known of the way before a distance.
 #[derive(Clone, Copy)]
 struct Way<L: SimdFloat, const TREE: bool> {
-    /// Where nothing was met yet for sure.
+    /// Where nothing was met yet for sure, but what was passed by.
     free: L::Mask,
     /// Where something was met, sure or not.
     met: L::Mask,
+    /// Where something was met for sure and passed by.
+    passed: L::Mask,
     doubt: Doubt<L, TREE>,
 }
 
@@ -354,20 +376,27 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
         number: usize,
     ) {
         let way = &mut self.way;
-        if way.doubt.is_asked() {
+        let is_met = if way.doubt.is_asked() {
             let (primitive, asked) = ((primitive, number), (self.methods, way.free));
             let distance = way
                 .doubt
                 .distance::<LISTED, P>(primitive, prepared, paths, asked);
             let Some((t, from)) = distance else { return };
             // Where it is met for sure, doubts count no more.
-            let is_sure = t.less(self.sure) & self.distance.less(from);
             way.doubt.from = way.doubt.from.min(from).min(t);
             way.met = way.met | t.less(self.distance);
-            way.free = way.free & !is_sure;
+            t.less(self.sure) & self.distance.less(from)
         } else {
             let t = paths.distance::<LISTED, P>(primitive, prepared, number, self.methods);
-            way.free = way.free & !t.less(self.distance);
-        }
+            t.less(self.distance)
+        };
+        let is_end = match self.thick {
+            None => is_met,
+            Some(thick) => {
+                way.passed = way.passed | way.free & is_met;
+                is_met & thick.less(primitive.breadth(paths.rays.direction))
+            }
+        };
+        way.free = way.free & !is_end;
     }
 }

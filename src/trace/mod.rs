@@ -36,6 +36,8 @@ mod footprint;
 
 mod parts;
 
+mod coat;
+
 mod gather;
 
 mod surface;

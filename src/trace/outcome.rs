@@ -29,14 +29,23 @@ pub fn signatures_of<L: SimdFloat>(
 /// What tells objects apart, by the number of a primitive: the faces of a mesh are one thing.
 #[inline(always)]
 fn object_of<R: Real>(plan: &Plan<R>, number: R) -> u32 {
-    let Some((geometry, first)) = plan.numbered_geometry() else {
+    if plan.geometry.is_none() && plan.primitives.things.is_empty() {
         return (number + R::ONE).nearest();
-    };
+    }
     // Faces have numbers that `nearest` is not made for.
-    let number = (number.to_f64() + 1.0) as usize;
-    let index = number.checked_sub(first + 1);
-    let mesh = index.and_then(|index| geometry.mesh_of(index));
-    mesh.map_or(number, |mesh| first + mesh.first + 1) as u32
+    let number = ((number.to_f64() + 1.0) as usize).checked_sub(1);
+    number.map_or(0, |number| thing_of(plan, number) as u32 + 1)
+}
+
+/// The number of the first primitive that one of this number is one thing with.
+#[inline(never)]
+fn thing_of<R: Real>(plan: &Plan<R>, number: usize) -> usize {
+    let in_tree = plan.numbered_geometry().and_then(|(geometry, first)| {
+        let index = number.checked_sub(first)?;
+        let mesh = geometry.mesh_of(index).map(|mesh| mesh.first);
+        Some(first + mesh.unwrap_or_else(|| geometry.primitives.thing_of(index)))
+    });
+    in_tree.unwrap_or_else(|| plan.primitives.thing_of(number))
 }
 
 /// Writes the colours and edges of all rays, packet by packet.

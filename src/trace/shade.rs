@@ -4,10 +4,11 @@
 //! rays, each material colours its own part, and the results are put together.
 
 use super::candidates::{Among, Candidates};
+use super::coat::Coat;
 use super::cull::LightCandidates;
 use super::doubt::{Doubt, Slant, Uncertainty, is_filtered};
 use super::footprint::Footprint;
-use super::intersect::Kernel;
+use super::intersect::{Blocked, Kernel};
 use super::mirrored::Mirrored;
 use super::packet::{EdgeInfo, Packet};
 use super::parts::{Arriving, Parts};
@@ -17,7 +18,7 @@ use super::surface::Hit;
 use super::thin::Gaze;
 use super::thresholds::EDGE_CONTRAST;
 use super::walk::Stack;
-use crate::plan::{PointLight, RayOrigin, Show, Surface};
+use crate::plan::{PointLight, RayOrigin, Show};
 use crate::primitive::{Blur, roundings};
 use crate::simd::{Mask as _, SimdFloat, Vec3};
 
@@ -53,34 +54,6 @@ struct ShadingPoint<'a, L: SimdFloat> {
     footprint: Option<Footprint<L>>,
     /// How far the hits may be off, where doubts are noted.
     slant: Option<Slant<L>>,
-}
-
-/// What hits are made of.
-enum Coat<'a, L: SimdFloat> {
-    One(&'a Surface<L::Real>),
-    /// Seldom, and never without a tree.
-    Several(&'a Parts<L>),
-}
-
-impl<L: SimdFloat> Coat<'_, L> {
-    /// The highlights, see [`crate::simd::Exponent::highlight`]; `None` where nothing has any.
-    #[inline(always)]
-    fn highlight(&self, normal: Vec3<L>, half: Vec3<L>) -> Option<L> {
-        match self {
-            Self::One(surface) => surface
-                .exponent
-                .map(|exponent| exponent.highlight(normal, half)),
-            Self::Several(parts) => Some(parts.highlight(normal, half)),
-        }
-    }
-
-    /// Whether some highlight may be smaller than a pixel.
-    fn is_sharp(&self) -> bool {
-        match self {
-            Self::One(surface) => surface.size_of_highlight().is_some(),
-            Self::Several(parts) => parts.is_any_sharp(),
-        }
-    }
 }
 
 /// One of the plan's lights.
@@ -359,29 +332,31 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 RayOrigin::Along(start) => distance - distance.like(start),
             };
             let looks_beside = self.looks_for(&candidates.thin);
+            let thick = edge.as_ref().filter(|_| looks_beside);
+            let thick = thick.map(|(_, footprint)| footprint.slipping());
+            if candidates.is_umbra && thick.is_none() {
+                return;
+            }
+            let ways = (&paths, reach, facing, thick);
+            let blocked = self.shadow(point, source, ways, (arriving, stack));
             if let Some((edge, footprint)) = edge.as_mut().filter(|_| looks_beside) {
+                // What is in the shadow of something wide is not seen to be in that of something thin as well.
+                let open = facing & !blocked.wide;
                 let gaze = Gaze {
                     paths: &paths,
-                    active: facing,
+                    active: open,
                     cone: footprint.shadow(),
                     spread: footprint.spread(),
                     reach,
                 };
                 let near = kernel.thin_distance(&candidates.thin, &gaze, stack);
                 // The shadow of a light that nobody sees is not seen either.
-                let brightness = match point.coat {
-                    Coat::One(surface) => zero.like(surface.brightness()),
-                    Coat::Several(parts) => parts.brightness(kernel.plan, zero),
-                };
+                let brightness = point.coat.brightness(kernel.plan, zero);
                 let brightest = brightness * zero.like(light.intensity);
                 let visible = kernel.splat(EDGE_CONTRAST).less(cosine * brightest);
-                edge.near = L::select(facing & visible, near.min(edge.near), edge.near);
+                edge.near = L::select(open & visible, near.min(edge.near), edge.near);
             }
-            if candidates.is_umbra {
-                return;
-            }
-            let shadow = self.shadow(point, source, (&paths, reach, facing), (arriving, stack));
-            lit = lit & !shadow;
+            lit = lit & !blocked.anywhere;
             if !lit.any() {
                 return;
             }
@@ -406,27 +381,21 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             edge.lit = L::select(lit, edge.lit + bit, edge.lit);
             if point.coat.is_sharp() {
                 let off = (normal - half * (one / half.length())).length();
-                let near = match point.coat {
-                    Coat::One(surface) => {
-                        let size = surface.size_of_highlight().unwrap_or_default();
-                        footprint.highlight_distance(size, off, distance)
-                    }
-                    Coat::Several(parts) => parts.highlight_distance(footprint, off, distance),
-                };
+                let near = point.coat.highlight_distance(footprint, off, distance);
                 edge.near = L::select(lit, near.min(edge.near), edge.near);
             }
         }
     }
 
-    /// Where something stands between hits and a light; notes where that is in doubt.
+    /// What stands between hits and a light, see [`Kernel::blocked`]; notes where that is in doubt.
     #[inline(always)]
     fn shadow(
         &self,
         point: &ShadingPoint<L>,
         source: &LightSource<L::Real>,
-        (paths, reach, facing): (&Paths<L>, L, L::Mask),
+        (paths, reach, facing, thick): (&Paths<L>, L, L::Mask, Option<L>),
         (arriving, stack): (&mut Arriving<L>, &mut Stack<L::Real>),
-    ) -> L::Mask {
+    ) -> Blocked<L> {
         let (kernel, light) = (self.kernel, source.light);
         let among = Among {
             candidates: &source.candidates.casters,
@@ -439,9 +408,10 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         };
         // What a light is on does not stand before it.
         let doubt = Doubt::new(onwards, (point.slant.is_some(), light.rounding.is_none()));
-        let (blocked, doubt) = kernel.blocked(among, (paths, doubt), (reach, facing), stack);
+        let wanted = (reach, facing, thick);
+        let blocked = kernel.blocked(among, (paths, doubt), wanted, stack);
         if point.slant.is_some() {
-            arriving.doubt = arriving.doubt | facing & (doubt | is_lost);
+            arriving.doubt = arriving.doubt | facing & (blocked.doubt | is_lost);
         }
         blocked
     }

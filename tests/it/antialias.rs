@@ -3,8 +3,9 @@
 use glam::DVec3;
 use glint::image::LinearRgb;
 use glint::lab::{difference, trace_light};
+use glint::mesh::Triangles;
 use glint::plan::RenderRequest;
-use glint::scene::{Disc, List, Object, Precision, Sampling, Scene, Shape, Sphere, Triangle};
+use glint::scene::{Disc, List, Mesh, Object, Precision, Sampling, Scene, Shape, Sphere, Triangle};
 use glint::trace::{Rays, RenderControl, Tracer};
 
 use crate::random;
@@ -307,5 +308,62 @@ fn a_grid_is_the_mean_of_its_samples() {
             let mean = (at(x, y) + at(x + 1, y) + at(x, y + 1) + at(x + 1, y + 1)) / 4.0;
             assert!((pixel[channel] - mean).abs() < 1e-5, "{index}");
         }
+    }
+}
+
+/// A hoop of wire half a pixel thick before the demo's camera, with its faces wound one way or the other.
+fn hoop(is_inside_out: bool) -> Scene {
+    const AROUND: u32 = 60;
+    const SIDES: u32 = 7;
+    let share = |part: u32, of: u32| f64::from(part) / f64::from(of) * std::f64::consts::TAU;
+    let place = |index: u32| {
+        let ((y, x), (up, out)) = (
+            share(index / SIDES, AROUND).sin_cos(),
+            share(index % SIDES, SIDES).sin_cos(),
+        );
+        let radius = 30.0 + 0.2 * out;
+        DVec3::new(radius * x, radius * y, 0.2 * up)
+    };
+    let quad = |index: u32| {
+        let (ring, side) = (index / SIDES, index % SIDES);
+        let number = |ring: u32, side: u32| ring % AROUND * SIDES + side % SIDES;
+        let [a, b] = [number(ring, side), number(ring, side + 1)];
+        let [c, d] = [number(ring + 1, side + 1), number(ring + 1, side)];
+        let faces = [[a, b, c], [a, c, d]];
+        faces.map(|[a, b, c]| if is_inside_out { [a, c, b] } else { [a, b, c] })
+    };
+    let points = (0..AROUND * SIDES).map(place).collect();
+    let faces = (0..AROUND * SIDES).flat_map(quad).collect();
+    let mut scene = Scene::demo();
+    let mesh = Mesh {
+        position: DVec3::new(130.0, 60.0, -60.0),
+        ..Mesh::of(Triangles::new(points, faces).expect("a hoop"))
+    };
+    scene.objects.push(Object::new("Hoop", "sphere 1", mesh));
+    scene
+}
+
+#[test]
+fn wires_are_whole_whichever_way_their_faces_are_wound() {
+    for is_inside_out in [false, true] {
+        let scene = hoop(is_inside_out);
+        let with = |sampling, precision| RenderRequest {
+            precision,
+            ..picture(sampling)
+        };
+        let truth = linear(&scene, &with(Sampling::Grid(16), Precision::Double)).0;
+        let got = linear(&scene, &with(Sampling::ADAPTIVE, Precision::Auto)).0;
+        let off = difference(&got, &truth);
+        let is_visible = |(got, truth): &(&LinearRgb, &LinearRgb)| {
+            let mut channels = got.iter().zip(truth.iter());
+            channels.any(|(got, truth)| f64::from(got - truth).abs() * 255.0 > 2.0 * INVISIBLE)
+        };
+        let visible = got.iter().zip(&truth).filter(is_visible).count();
+        println!("{is_inside_out}: {} dB, {visible} pixels", off.psnr());
+        assert!(
+            off.psnr() > 56.0 && visible <= 2,
+            "{} {visible}",
+            off.psnr()
+        );
     }
 }

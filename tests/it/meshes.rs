@@ -51,10 +51,10 @@ fn bumpy(triangles: f64) -> Triangles {
             let (c, d) = (number(ring + 1, column + 1), number(ring + 1, column));
             // Clockwise seen from outside.
             if ring > 0 {
-                faces.push([a, b, c]);
+                faces.push([a, c, b]);
             }
             if ring + 1 < rings {
-                faces.push([a, c, d]);
+                faces.push([a, d, c]);
             }
         }
     }
@@ -125,10 +125,15 @@ fn a_tree_changes_no_bit_and_no_ray() {
             mesh.smooth = 70.0;
         }
     }
-    for (number, scene) in [exhibition(), apart(&exhibition()), mirrors, crowd]
-        .iter()
-        .enumerate()
-    {
+    // How many rays more or fewer with clean edges, in parts: a list also counts as near what is thin beside the way
+    // behind a ray, and a tree takes what is in a box half a pixel large for one thing.
+    let scenes = [
+        (exhibition(), 0.0),
+        (apart(&exhibition()), 0.25),
+        (mirrors, 0.0),
+        (crowd, 0.01),
+    ];
+    for (number, (scene, other_rays)) in scenes.iter().enumerate() {
         for sampling in [Sampling::Centres, Sampling::Grid(2), Sampling::ADAPTIVE] {
             for precision in [Precision::Single, Precision::Double] {
                 let with = |accelerator, model| {
@@ -152,16 +157,15 @@ fn a_tree_changes_no_bit_and_no_ray() {
                         assert!(tree == flat, "{case}");
                         continue;
                     }
-                    // A list also counts as near what is thin beside the way behind a ray, and a tree takes
-                    // what is in a box half a pixel large for one thing.
                     let off = [1, 8].map(|levels| differing(&tree.0, &flat.0, levels));
                     assert!(
                         off[0] <= 10 && off[1] == 0,
                         "{case}: {off:?} of 10800 pixels"
                     );
                     let (ours, theirs) = (tree.1.camera as f64, flat.1.camera as f64);
+
                     assert!(
-                        (ours / theirs - 1.0).abs() < 6e-2,
+                        (ours / theirs - 1.0).abs() <= *other_rays,
                         "{case}: {ours} {theirs}"
                     );
                 }

@@ -104,6 +104,13 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
         self.thickness
     }
 
+    #[inline(always)]
+    fn breadth<L: SimdFloat<Real = R>>(&self, directions: Vec3<L>) -> L {
+        let zero = directions.x.like(R::ZERO);
+        let is_left = zero.less(directions.dot(directions.like(self.normal)));
+        L::select(is_left, zero, zero.like(self.thickness))
+    }
+
     fn reach(&self) -> (Vec3<R>, R) {
         let [a, b, c] = self.corners;
         (a, (b - a).length().max((c - a).length()))

@@ -42,6 +42,12 @@ impl<R: Real> PackedTriangle<R> {
             material: 0,
         })
     }
+
+    /// Turns its outside in.
+    pub fn turn(&mut self) {
+        self.corners.swap(1, 2);
+        self.normal = -self.normal;
+    }
 }
 
 /// A corner as a key: corners are one where their coordinates are equal.

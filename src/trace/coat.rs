@@ -1,0 +1,56 @@
+//! What hits are made of that are lit as one.
+
+use super::footprint::Footprint;
+use super::parts::Parts;
+use crate::plan::{Plan, Surface};
+use crate::simd::{SimdFloat, Vec3};
+
+/// What hits are made of.
+pub enum Coat<'a, L: SimdFloat> {
+    /// One material.
+    One(&'a Surface<L::Real>),
+    /// Seldom, and never without a tree.
+    Several(&'a Parts<L>),
+}
+
+impl<L: SimdFloat> Coat<'_, L> {
+    /// The highlights, see [`crate::simd::Exponent::highlight`]; `None` where nothing has any.
+    #[inline(always)]
+    pub fn highlight(&self, normal: Vec3<L>, half: Vec3<L>) -> Option<L> {
+        match self {
+            Self::One(surface) => surface
+                .exponent
+                .map(|exponent| exponent.highlight(normal, half)),
+            Self::Several(parts) => Some(parts.highlight(normal, half)),
+        }
+    }
+
+    /// Whether some highlight may be smaller than a pixel.
+    pub fn is_sharp(&self) -> bool {
+        match self {
+            Self::One(surface) => surface.size_of_highlight().is_some(),
+            Self::Several(parts) => parts.is_any_sharp(),
+        }
+    }
+
+    /// How many pixels away a highlight is, see [`Footprint::highlight_distance`].
+    #[inline(always)]
+    pub fn highlight_distance(&self, footprint: &Footprint<L>, off: L, light_distance: L) -> L {
+        match self {
+            Self::One(surface) => {
+                let size = surface.size_of_highlight().unwrap_or_default();
+                footprint.highlight_distance(size, off, light_distance)
+            }
+            Self::Several(parts) => parts.highlight_distance(footprint, off, light_distance),
+        }
+    }
+
+    /// The brightest that light of intensity 1 makes it.
+    #[inline(always)]
+    pub fn brightness(&self, plan: &Plan<L::Real>, like: L) -> L {
+        match self {
+            Self::One(surface) => like.like(surface.brightness()),
+            Self::Several(parts) => parts.brightness(plan, like),
+        }
+    }
+}
