@@ -113,3 +113,68 @@ impl Forest {
         point
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::icosphere;
+    use crate::primitive::number_corners;
+
+    /// A ball of triangles in a place, of a material.
+    fn ball(x: f64, material: u32) -> Vec<PackedTriangle<f64>> {
+        let ball = icosphere(1.0);
+        let moved = |corners: [DVec3; 3]| corners.map(|corner| corner + DVec3::X * x);
+        let faces = ball
+            .corners()
+            .map(moved)
+            .filter_map(PackedTriangle::of_mesh);
+        faces
+            .map(|face| PackedTriangle { material, ..face })
+            .collect()
+    }
+
+    #[test]
+    fn each_part_looks_its_own_way_and_a_sheet_looks_neither() {
+        let (mut triangles, turned) = (ball(0.0, 0), ball(10.0, 0));
+        let each = triangles.len();
+        triangles.extend(turned);
+        triangles[each..].iter_mut().for_each(PackedTriangle::turn);
+        let sheet = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|corner| corner + DVec3::Z * 7.0);
+        triangles.extend(PackedTriangle::of_mesh(sheet));
+        // A tube without ends: what of a ball is near its equator.
+        let mut tube = ball(20.0, 0);
+        tube.retain(|face| face.corners.iter().all(|corner| corner.y.abs() < 0.9));
+        tube.iter_mut().for_each(PackedTriangle::turn);
+        triangles.extend(tube);
+        let parts = parts(&number_corners(&triangles));
+        let inside_out = inside_out(&triangles, &parts);
+        let (outwards, others) = inside_out.split_at(each);
+        let (inwards, others) = others.split_at(each);
+        assert!(outwards.iter().all(|is_out| !is_out));
+        assert!(inwards.iter().all(|is_out| *is_out));
+        assert!(!others[0], "a sheet");
+        assert!(others.len() > 1 && others[1..].iter().all(|is_out| *is_out));
+    }
+
+    #[test]
+    fn many_triangles_of_a_part_and_a_material_are_one_thing() {
+        let mut triangles = ball(0.0, 0);
+        let each = triangles.len();
+        triangles.extend(ball(10.0, 0));
+        triangles[each].material = 1;
+        let few = ball(20.0, 0).into_iter().take(MANY as usize - 1);
+        triangles.extend(few);
+        let parts = parts(&number_corners(&triangles));
+        let things = things(&triangles, &parts);
+        assert!(things[..each].iter().all(|thing| *thing == Some(0)));
+        assert_eq!(things[each], None, "another material");
+        let second = Some(each as u32 + 1);
+        assert!(
+            things[each + 1..2 * each]
+                .iter()
+                .all(|thing| *thing == second)
+        );
+        assert!(things[2 * each..].iter().all(Option::is_none));
+        assert!(super::things(&triangles[2 * each..], &parts[2 * each..]).is_empty());
+    }
+}

@@ -367,3 +367,30 @@ fn wires_are_whole_whichever_way_their_faces_are_wound() {
         );
     }
 }
+
+#[test]
+fn what_is_thin_inside_of_something_wide_costs_few_rays() {
+    let demo = Scene::demo();
+    let mut scene = demo.clone();
+    for n in 0..30 {
+        let angle = f64::from(n) / 30.0 * std::f64::consts::TAU;
+        let around = DVec3::new(angle.cos(), (5.0 * angle).sin(), angle.sin());
+        let speck = Sphere {
+            center: DVec3::new(125.0, 50.0, -150.0) + around * 25.0,
+            radius: 0.1,
+        };
+        let speck = Object::new(format!("Speck {n}"), "sphere 1", speck);
+        scene.objects.push(speck);
+    }
+    let [(without, few), (with, rays)] =
+        [&demo, &scene].map(|scene| linear(scene, &picture(Sampling::ADAPTIVE)));
+    let difference = difference(&with, &without);
+    assert!(difference.psnr() > 70.0, "{}", difference.psnr());
+    // Twice as many where the shadow of the ball is searched for theirs.
+    assert!(
+        rays.camera * 100 < few.camera * 115,
+        "{} instead of {}",
+        rays.camera,
+        few.camera
+    );
+}
