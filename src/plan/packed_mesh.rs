@@ -77,8 +77,8 @@ impl<R: Real> PackedMesh<R> {
         let mut triangles: Vec<_> = faces.iter().filter_map(packed).collect();
         drop(points);
         let is_closed = measure(&mut triangles, &faces, &mut bvh).is_closed;
-        let volume = volume(&triangles);
-        if is_closed && volume < 0.0 {
+        let volume = if is_closed { volume(&triangles) } else { 0.0 };
+        if volume < 0.0 {
             triangles.iter_mut().for_each(PackedTriangle::turn);
         }
         let smooth = if mesh.smooth > 0.0 {
@@ -91,7 +91,7 @@ impl<R: Real> PackedMesh<R> {
             reach: reach(&triangles, bvh.bounds.ball().0),
             smooth,
             bvh,
-            is_solid: is_closed && volume != 0.0,
+            is_solid: volume != 0.0,
             triangles,
             middle,
             source: Arc::clone(source),

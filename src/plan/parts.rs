@@ -21,10 +21,16 @@ pub fn volume<R: Real>(triangles: &[PackedTriangle<R>]) -> f64 {
         .sum()
 }
 
-/// For each face, of which these are the numbers of the corners, the part that it is connected with.
+/// For each face, of which these are the numbers of the corners, the part that it is connected with; parts have numbers
+/// from 0 on.
 pub fn parts(points: &[[u32; 3]]) -> Vec<u32> {
     let mut forest = Forest::new(points);
-    points.iter().map(|face| forest.first(face[0])).collect()
+    let mut numbers = HashMap::new();
+    let part = |face: &[u32; 3]| {
+        let next = numbers.len() as u32;
+        *numbers.entry(forest.first(face[0])).or_insert(next)
+    };
+    points.iter().map(part).collect()
 }
 
 /// For each triangle whether it is of a part that looks inwards. Parts with borders are seen from the mean of their

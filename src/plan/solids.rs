@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
+use super::parts::parts;
 use crate::primitive::{Corner, corner};
 
 /// Most faces of a solid: its corners are held against each of its faces.
@@ -24,16 +25,13 @@ pub struct Solids {
 impl Solids {
     /// Finds the closed convex solids among the triangles.
     pub fn among(triangles: Vec<[DVec3; 3]>) -> Self {
-        let mut parts = parts(&triangles);
-        parts.retain(|faces| {
+        let mut solids = connected(&triangles);
+        solids.retain(|faces| {
             faces.len() <= MOST_FACES
                 && is_closed(&triangles, faces)
                 && is_convex(&triangles, faces)
         });
-        Self {
-            triangles,
-            solids: parts,
-        }
+        Self { triangles, solids }
     }
 
     /// For each triangle, whether no ray that comes from `point`, or arrives there, has to be
@@ -66,33 +64,23 @@ fn plane([a, b, c]: &[DVec3; 3]) -> (DVec3, f64, f64) {
 }
 
 /// Triangles that hang together by common corners.
-fn parts(triangles: &[[DVec3; 3]]) -> Vec<Vec<usize>> {
-    // Each triangle points to one of its part; the last of the chain names the part.
-    let mut chain: Vec<usize> = (0..triangles.len()).collect();
-    let mut users: HashMap<Corner, usize> = HashMap::new();
-    for (index, corners) in triangles.iter().enumerate() {
-        for point in corners {
-            let user = *users.entry(corner(*point)).or_insert(index);
-            let (a, b) = (last(&mut chain, index), last(&mut chain, user));
-            chain[a] = b;
-        }
+fn connected(triangles: &[[DVec3; 3]]) -> Vec<Vec<usize>> {
+    let mut numbers = HashMap::new();
+    let mut number = |point: DVec3| {
+        let next = numbers.len() as u32;
+        *numbers.entry(corner(point)).or_insert(next)
+    };
+    let points: Vec<_> = triangles
+        .iter()
+        .map(|corners| corners.map(&mut number))
+        .collect();
+    let mut found: Vec<Vec<usize>> = Vec::new();
+    for (index, part) in parts(&points).into_iter().enumerate() {
+        // Parts are numbered as they come.
+        found.resize_with(found.len().max(part as usize + 1), Vec::new);
+        found[part as usize].push(index);
     }
-    let mut parts: HashMap<usize, Vec<usize>> = HashMap::new();
-    for index in 0..triangles.len() {
-        parts
-            .entry(last(&mut chain, index))
-            .or_default()
-            .push(index);
-    }
-    parts.into_values().collect()
-}
-
-fn last(chain: &mut [usize], mut index: usize) -> usize {
-    while chain[index] != index {
-        chain[index] = chain[chain[index]];
-        index = chain[index];
-    }
-    index
+    found
 }
 
 /// Whether every edge is passed once in each direction.

@@ -262,7 +262,7 @@ pub struct Blocked<L: SimdFloat> {
     pub anywhere: L::Mask,
     /// Where something does that is not passed by.
     pub wide: L::Mask,
-    /// Where that is in doubt.
+    /// Where it is in doubt whether anything does.
     pub doubt: L::Mask,
 }
 

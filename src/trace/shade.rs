@@ -332,14 +332,14 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 RayOrigin::Along(start) => distance - distance.like(start),
             };
             let looks_beside = self.looks_for(&candidates.thin);
-            let thick = edge.as_ref().filter(|_| looks_beside);
-            let thick = thick.map(|(_, footprint)| footprint.slipping());
+            let beside = edge.as_mut().filter(|_| looks_beside);
+            let thick = beside.as_ref().map(|(_, footprint)| footprint.slipping());
             if candidates.is_umbra && thick.is_none() {
                 return;
             }
             let ways = (&paths, reach, facing, thick);
             let blocked = self.shadow(point, source, ways, (arriving, stack));
-            if let Some((edge, footprint)) = edge.as_mut().filter(|_| looks_beside) {
+            if let Some((edge, footprint)) = beside {
                 // What is in the shadow of something wide is not seen to be in that of something thin as well.
                 let open = facing & !blocked.wide;
                 let gaze = Gaze {
