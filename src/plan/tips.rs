@@ -57,19 +57,41 @@ impl Tip {
         (ax * by - ay * bx != 0.0 && is_finite).then_some(tip)
     }
 
-    /// The same in steps of which so many make a pixel.
-    pub fn scaled(&self, steps: f64) -> Self {
-        let scaled = |(from, to): (f64, f64)| (from * steps, to * steps);
+    /// The same, seen from a place in the picture, in steps of which so many make a pixel.
+    pub fn seen_from(&self, place: [f64; 2], steps: f64) -> Self {
+        let seen = |axis: usize, at: f64| (at - place[axis]) * steps;
+        let range = |axis: usize, (from, to): (f64, f64)| (seen(axis, from), seen(axis, to));
         Self {
-            corners: self.corners.map(|corner| corner.map(|at| at * steps)),
-            columns: scaled(self.columns),
-            rows: scaled(self.rows),
+            corners: self.corners.map(|[x, y]| [seen(0, x), seen(1, y)]),
+            columns: range(0, self.columns),
+            rows: range(1, self.rows),
         }
     }
 
     /// The columns and the rows that it is in.
     pub fn extent(&self) -> [(f64, f64); 2] {
         [self.columns, self.rows]
+    }
+
+    /// The columns that it is in between two rows; `None` where it is not.
+    pub fn columns_in(&self, (top, bottom): (f64, f64)) -> Option<(f64, f64)> {
+        let [a, b, c] = self.corners;
+        let mut columns = (f64::INFINITY, f64::NEG_INFINITY);
+        for ([x, y], [other_x, other_y]) in [(a, b), (b, c), (c, a)] {
+            let (across, down) = (other_x - x, other_y - y);
+            // Which part of the side is between the rows.
+            let (from, to) = if down == 0.0 {
+                (0.0, if top <= y && y <= bottom { 1.0 } else { -1.0 })
+            } else {
+                let (one, other) = ((top - y) / down, (bottom - y) / down);
+                (one.min(other).max(0.0), one.max(other).min(1.0))
+            };
+            if from <= to {
+                let (one, other) = (x + across * from, x + across * to);
+                columns = (columns.0.min(one.min(other)), columns.1.max(one.max(other)));
+            }
+        }
+        (columns.0 <= columns.1).then_some(columns)
     }
 
     /// Whether it meets a square: no side of either has all of the other beyond it (the separating axis theorem).
@@ -150,6 +172,8 @@ fn is_large(corners: [[f64; 2]; 3]) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
     use crate::scene::{Scene, Shape};
 
@@ -170,6 +194,28 @@ mod tests {
         assert!(!thin.meets([30.0, 32.0], 1.0));
         assert_eq!(Tip::of([0.0; 2], [[1.0; 2], [2.0; 2]]), None);
         assert_eq!(Tip::of([0.0; 2], [[0.0; 2], [2.0; 2]]), None);
+    }
+
+    proptest! {
+        /// Two ways to say where a tip is: by its columns row by row, and square by square.
+        #[test]
+        fn the_columns_of_a_row_are_those_of_the_squares_that_it_meets(
+            at in prop::array::uniform6(0.0..9.0_f64),
+            row in 0..9_u32,
+            column in 0..9_u32,
+        ) {
+            let [a, b, c, d, e, f] = at;
+            let tip = Tip::of([a, b], [[c, d], [e, f]]);
+            prop_assume!(tip.is_some());
+            let tip = tip.expect("some area");
+            let [left, top] = [column, row].map(f64::from);
+            let apart = match tip.columns_in((top, top + 1.0)) {
+                None => f64::INFINITY,
+                Some((from, to)) => (from - left - 1.0).max(left - to),
+            };
+            prop_assume!(apart.abs() > 1e-9);
+            prop_assert_eq!(tip.meets([left, top], 1.0), apart < 0.0, "{:?}", tip);
+        }
     }
 
     #[test]

@@ -39,10 +39,8 @@ impl<R: Real> Sample<R> {
 pub struct Lattice<R> {
     /// The points that have a sample or are wanted.
     points: Points,
-    /// What corners may miss, in steps of the grid from the corner of the picture.
-    pub tips: Vec<Tip>,
-    /// Where the tile is, in the same steps.
-    corner: [f64; 2],
+    /// What corners may miss, in steps of the grid from the corner of the tile.
+    tips: Vec<Tip>,
     /// In order of their points.
     samples: Vec<Sample<R>>,
 }
@@ -72,11 +70,6 @@ impl Cell {
             is_watched: true,
             corners: [0; 4],
         }
-    }
-
-    /// Whether it begins where another one does.
-    pub fn is_at(&self, other: &Self) -> bool {
-        (self.x, self.y) == (other.x, other.y)
     }
 
     /// The same, about which nobody has looked what may slip between samples.
@@ -189,7 +182,6 @@ impl<R: Real> Lattice<R> {
         Self {
             points: Points::new(),
             tips: Vec::new(),
-            corner: [0.0; 2],
             samples: Vec::new(),
         }
     }
@@ -263,36 +255,44 @@ impl<R: Real> Lattice<R> {
         is_thin || (SMALLEST_AT_TIP <= cell.side && self.meets_tip(cell))
     }
 
-    /// Takes those of the tips that are in a tile.
-    pub fn start_tips(&mut self, tips: &Tips, tile: &Tile) {
-        let corner = [tile.columns.start, tile.rows.start];
-        self.corner = corner.map(|start| (start * FINEST) as f64);
+    /// Takes those of the tips that are in a tile: the pixels in which triangles are narrow, their columns and row, are
+    /// given to `add`; some come more than once.
+    pub fn start_tips(
+        &mut self,
+        tips: &Tips,
+        tile: &Tile,
+        mut add: impl FnMut(Range<usize>, usize),
+    ) {
+        let corner = [tile.columns.start, tile.rows.start].map(|start| start as f64);
+        let side = FINEST as f64;
+        let pixels = |(from, to): (f64, f64), end: usize| {
+            let number = |at: f64| (at / side).max(0.0) as usize;
+            number(from)..(number(to) + 1).min(end)
+        };
         let meets = |(from, to): (f64, f64), pixels: &Range<usize>| {
             from <= pixels.end as f64 && pixels.start as f64 <= to
         };
         self.tips.clear();
         for tip in tips.in_rows(&tile.rows) {
             let [columns, rows] = tip.extent();
-            if meets(columns, &tile.columns) && meets(rows, &tile.rows) {
-                self.tips.push(tip.scaled(FINEST as f64));
+            if !meets(columns, &tile.columns) || !meets(rows, &tile.rows) {
+                continue;
             }
+            let tip = tip.seen_from(corner, side);
+            for row in pixels(tip.extent()[1], tile.rows.len()) {
+                let top = row as f64 * side;
+                if let Some(columns) = tip.columns_in((top, top + side)) {
+                    add(pixels(columns, tile.width()), row);
+                }
+            }
+            self.tips.push(tip);
         }
-    }
-
-    /// Whether some of them may be in a row of pixels.
-    pub fn has_tips_in(&self, row: usize) -> bool {
-        let top = self.corner[1] + (row * FINEST) as f64;
-        self.tips.iter().any(|tip| {
-            let (from, to) = tip.extent()[1];
-            from <= top + FINEST as f64 && top <= to
-        })
     }
 
     /// Whether a triangle is narrow in a cell.
     #[inline(always)]
-    pub fn meets_tip(&self, cell: &Cell) -> bool {
-        let [left, top] = self.corner;
-        let at = [left + f64::from(cell.x), top + f64::from(cell.y)];
+    fn meets_tip(&self, cell: &Cell) -> bool {
+        let at = [cell.x, cell.y].map(f64::from);
         let mut tips = self.tips.iter();
         tips.any(|tip| tip.meets(at, cell.side.into()))
     }

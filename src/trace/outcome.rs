@@ -17,21 +17,29 @@ pub fn signatures_of<L: SimdFloat>(
     packet.near.number.store(&mut numbers);
     edge.lit.store(&mut lit);
     let mut signatures = [0; MAX_LANES];
-    for lane in 0..L::WIDTH {
-        // Odd multipliers spread the small numbers over all bits.
-        let number = object_of(plan, numbers[lane]);
-        let lit = lit[lane].nearest();
-        signatures[lane] = number.wrapping_mul(0x9E37_79B1) ^ lit.wrapping_mul(0x85EB_CA6B);
+    // Loops of their own: all lanes go in step where nothing is called.
+    if plan.geometry.is_none() && plan.primitives.things.is_empty() {
+        for lane in 0..L::WIDTH {
+            let object = (numbers[lane] + L::Real::ONE).nearest();
+            signatures[lane] = signature_of(object, lit[lane]);
+        }
+    } else {
+        for lane in 0..L::WIDTH {
+            signatures[lane] = signature_of(object_of(plan, numbers[lane]), lit[lane]);
+        }
     }
     signatures
+}
+
+/// An object and the lights on it as one number: odd multipliers spread small ones over all bits.
+#[inline(always)]
+fn signature_of<R: Real>(object: u32, lit: R) -> u32 {
+    object.wrapping_mul(0x9E37_79B1) ^ lit.nearest().wrapping_mul(0x85EB_CA6B)
 }
 
 /// What tells objects apart, by the number of a primitive: the faces of a mesh are one thing.
 #[inline(always)]
 fn object_of<R: Real>(plan: &Plan<R>, number: R) -> u32 {
-    if plan.geometry.is_none() && plan.primitives.things.is_empty() {
-        return (number + R::ONE).nearest();
-    }
     // Faces have numbers that `nearest` is not made for.
     let number = ((number.to_f64() + 1.0) as usize).checked_sub(1);
     number.map_or(0, |number| thing_of(plan, number) as u32 + 1)

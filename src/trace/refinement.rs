@@ -19,6 +19,8 @@ pub struct Refinement<R> {
     crossed: Vec<CrossedCell<R>>,
     /// Cells that may be even, and the samples in their middles.
     even: Vec<(Cell, u32)>,
+    /// Which pixels of a tile are among those that were added.
+    listed: Vec<bool>,
 }
 
 impl<R: Real> Refinement<R> {
@@ -30,6 +32,7 @@ impl<R: Real> Refinement<R> {
             split: Vec::new(),
             crossed: Vec::new(),
             even: Vec::new(),
+            listed: Vec::new(),
         }
     }
 
@@ -50,20 +53,23 @@ impl<R: Real> Refinement<R> {
     /// Adds the pixels in which triangles are narrow.
     #[inline(never)]
     pub fn add_tips(&mut self, tips: &Tips, tile: &Tile) {
-        self.lattice.start_tips(tips, tile);
-        if self.lattice.tips.is_empty() {
-            return;
-        }
-        let rows = (0..tile.rows.len()).filter(|row| self.lattice.has_tips_in(*row));
-        for row in rows {
-            for column in 0..tile.width() {
-                let pixel = Cell::pixel(column, row);
-                let mut others = self.split.iter();
-                if self.lattice.meets_tip(&pixel) && others.all(|other| !other.is_at(&pixel)) {
-                    self.split.push(pixel);
+        let (width, split, listed) = (tile.width(), &mut self.split, &mut self.listed);
+        listed.clear();
+        self.lattice.start_tips(tips, tile, |columns, row| {
+            if listed.is_empty() {
+                listed.resize(width * tile.rows.len(), false);
+                for pixel in &*split {
+                    listed[pixel.pixel_in(width)] = true;
                 }
             }
-        }
+            for column in columns {
+                let is_listed = &mut listed[row * width + column];
+                if !*is_listed {
+                    split.push(Cell::pixel(column, row));
+                }
+                *is_listed = true;
+            }
+        });
     }
 
     /// Starts with the pixels that were added, whose colours become nothing, and with what was seen at the corners of
