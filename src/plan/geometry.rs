@@ -335,7 +335,7 @@ pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>) {
     let corners = number_corners(triangles);
     let mut bvh = Bvh::new(triangles.len(), |number| member(&triangles[number]));
     let parts = measure(triangles, &corners, &mut bvh).parts;
-    primitives.things = things(triangles, &parts);
+    primitives.things = things(&parts);
 }
 
 /// The place of a pack among the materials.

@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 
 use super::bvh::{Bvh, Member};
 use super::cast::is_outside;
-use super::parts::volume;
+use super::parts::{first_of_parts, volume};
 use super::smooth::{corner_normals, largest_lift};
 use super::thickness::{Measures, measures};
 use crate::mesh::Triangles;
@@ -28,6 +28,8 @@ pub struct PackedMesh<R> {
     pub bvh: Bvh<R>,
     /// How far they reach from the middle of the box around them.
     pub reach: R,
+    /// For each of them the first of those that it hangs together with; none if all do.
+    things: Vec<u32>,
     /// Whether it has an inside; its normals then point away from there, however its file winds them.
     is_solid: bool,
     /// The middle, from the origin of the mesh.
@@ -76,8 +78,13 @@ impl<R: Real> PackedMesh<R> {
         let faces: Vec<_> = order.map(|number| faces[number as usize]).collect();
         let mut triangles: Vec<_> = faces.iter().filter_map(packed).collect();
         drop(points);
-        let is_closed = measure(&mut triangles, &faces, &mut bvh).is_closed;
-        let volume = if is_closed { volume(&triangles) } else { 0.0 };
+        let measures = measure(&mut triangles, &faces, &mut bvh);
+        let things = first_of_parts(&measures.parts);
+        let volume = if measures.is_closed {
+            volume(&triangles)
+        } else {
+            0.0
+        };
         if volume < 0.0 {
             triangles.iter_mut().for_each(PackedTriangle::turn);
         }
@@ -90,6 +97,7 @@ impl<R: Real> PackedMesh<R> {
             lift: largest_lift(&triangles, &smooth),
             reach: reach(&triangles, bvh.bounds.ball().0),
             smooth,
+            things,
             bvh,
             is_solid: volume != 0.0,
             triangles,
@@ -98,6 +106,11 @@ impl<R: Real> PackedMesh<R> {
             turn,
             smooth_degrees: mesh.smooth,
         }
+    }
+
+    /// The first of its faces that one of this number hangs together with.
+    pub fn thing_of(&self, face: usize) -> usize {
+        self.things.get(face).map_or(0, |&first| first as usize)
     }
 
     /// Whether it is what would be packed of a mesh, wherever that is.

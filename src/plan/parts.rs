@@ -24,13 +24,48 @@ pub fn volume<R: Real>(triangles: &[PackedTriangle<R>]) -> f64 {
 /// For each face, of which these are the numbers of the corners, the part that it is connected with; parts have numbers
 /// from 0 on.
 pub fn parts(points: &[[u32; 3]]) -> Vec<u32> {
-    let mut forest = Forest::new(points);
+    let count = points.iter().flatten().max().map_or(0, |&last| last + 1);
+    let mut forest = Forest::new(count);
+    for &[a, b, c] in points {
+        forest.join(a, b);
+        forest.join(b, c);
+    }
+    numbered(points.iter().map(|face| forest.first(face[0])))
+}
+
+/// The same for so many faces, of which these pairs have an edge in common: those that only touch at a corner are parts
+/// of their own.
+pub fn parts_along_edges(count: usize, pairs: impl Iterator<Item = [u32; 2]>) -> Vec<u32> {
+    let mut forest = Forest::new(count as u32);
+    for [one, other] in pairs {
+        forest.join(one, other);
+    }
+    numbered((0..count as u32).map(|face| forest.first(face)))
+}
+
+/// Numbers from 0 on for what these are, in their order.
+fn numbered(firsts: impl Iterator<Item = u32>) -> Vec<u32> {
     let mut numbers = HashMap::new();
-    let part = |face: &[u32; 3]| {
+    let number = |first| {
         let next = numbers.len() as u32;
-        *numbers.entry(forest.first(face[0])).or_insert(next)
+        *numbers.entry(first).or_insert(next)
     };
-    points.iter().map(part).collect()
+    firsts.map(number).collect()
+}
+
+/// For each face the first one of its part; none if there is one part.
+pub fn first_of_parts(parts: &[u32]) -> Vec<u32> {
+    let mut firsts = Vec::new();
+    let first = |(face, &part): (u32, &u32)| {
+        if part as usize == firsts.len() {
+            firsts.push(face);
+        }
+        firsts[part as usize]
+    };
+    if parts.iter().all(|&part| part == 0) {
+        return Vec::new();
+    }
+    (0..).zip(parts).map(first).collect()
 }
 
 /// For each triangle whether it is of a part that looks inwards. Parts with borders are seen from the mean of their
@@ -58,25 +93,24 @@ pub fn inside_out<R: Real>(triangles: &[PackedTriangle<R>], parts: &[u32]) -> Ve
     parts.iter().map(is_inside_out).collect()
 }
 
-/// For each triangle the first one that it is one thing with, as the faces of a mesh are: those of a part and a
-/// material, if they are many. Empty if that is none.
-pub fn things<R: Real>(triangles: &[PackedTriangle<R>], parts: &[u32]) -> Vec<Option<u32>> {
-    let mut found = HashMap::new();
-    let keys = triangles
-        .iter()
-        .map(|triangle| triangle.material)
-        .zip(parts);
-    for (index, key) in (0..).zip(keys.clone()) {
-        found.entry(key).or_insert((index, 0)).1 += 1;
+/// For each triangle the first one that it is one thing with, as the faces of a mesh are: those of a part, if they are
+/// many. Empty if that is none.
+pub fn things(parts: &[u32]) -> Vec<Option<u32>> {
+    let mut found: Vec<(u32, u32)> = Vec::new();
+    for (face, &part) in (0..).zip(parts) {
+        if part as usize == found.len() {
+            found.push((face, 0));
+        }
+        found[part as usize].1 += 1;
     }
-    if found.values().all(|&(_, count)| count < MANY) {
+    if found.iter().all(|&(_, count)| count < MANY) {
         return Vec::new();
     }
-    let thing = |key| match found[&key] {
+    let thing = |&part: &u32| match found[part as usize] {
         (first, MANY..) => Some(first),
         _ => None,
     };
-    keys.map(thing).collect()
+    parts.iter().map(thing).collect()
 }
 
 fn corners<R: Real>(triangle: &PackedTriangle<R>) -> [DVec3; 3] {
@@ -89,19 +123,13 @@ fn volume_from(tip: DVec3, foot: [DVec3; 3]) -> f64 {
     a.dot(c.cross(b))
 }
 
-/// Points that faces connect, as a forest: each names one before it, the first of a part itself
+/// What is connected, as a forest: each names one before it, the first of a part itself
 /// (Tarjan, "Efficiency of a good but not linear set union algorithm", J. ACM 22, 1975).
 struct Forest(Vec<u32>);
 
 impl Forest {
-    fn new(faces: &[[u32; 3]]) -> Self {
-        let count = faces.iter().flatten().max().map_or(0, |&last| last + 1);
-        let mut forest = Self((0..count).collect());
-        for &[a, b, c] in faces {
-            forest.join(a, b);
-            forest.join(b, c);
-        }
-        forest
+    fn new(count: u32) -> Self {
+        Self((0..count).collect())
     }
 
     fn join(&mut self, a: u32, b: u32) {
@@ -109,7 +137,7 @@ impl Forest {
         self.0[a.max(b) as usize] = a.min(b);
     }
 
-    /// The first point of the part that a point is in.
+    /// The first of the part that one is in.
     fn first(&mut self, mut point: u32) -> u32 {
         while self.0[point as usize] != point {
             let before = self.0[self.0[point as usize] as usize];
@@ -163,24 +191,26 @@ mod tests {
     }
 
     #[test]
-    fn many_triangles_of_a_part_and_a_material_are_one_thing() {
-        let mut triangles = ball(0.0, 0);
-        let each = triangles.len();
-        triangles.extend(ball(10.0, 0));
-        triangles[each].material = 1;
-        let few = ball(20.0, 0).into_iter().take(MANY as usize - 1);
-        triangles.extend(few);
-        let parts = parts(&number_corners(&triangles));
-        let things = things(&triangles, &parts);
-        assert!(things[..each].iter().all(|thing| *thing == Some(0)));
-        assert_eq!(things[each], None, "another material");
-        let second = Some(each as u32 + 1);
-        assert!(
-            things[each + 1..2 * each]
-                .iter()
-                .all(|thing| *thing == second)
-        );
-        assert!(things[2 * each..].iter().all(Option::is_none));
-        assert!(super::things(&triangles[2 * each..], &parts[2 * each..]).is_empty());
+    fn many_triangles_of_a_part_are_one_thing() {
+        let many = MANY as usize;
+        let parts = [vec![0; many], vec![1; many - 1], vec![2; many]].concat();
+        let things = things(&parts);
+        assert!(things[..many].iter().all(|thing| *thing == Some(0)));
+        assert!(things[many..2 * many - 1].iter().all(Option::is_none));
+        let last = Some(2 * MANY - 1);
+        assert!(things[2 * many - 1..].iter().all(|thing| *thing == last));
+        assert!(super::things(&vec![0; many - 1]).is_empty());
+    }
+
+    #[test]
+    fn faces_hang_together_along_edges() {
+        // Faces 0, 2 and 3 in a row, and two by themselves.
+        let parts = parts_along_edges(5, [[3, 2], [0, 3]].into_iter());
+        assert_eq!(parts, [0, 1, 0, 0, 2]);
+        assert_eq!(first_of_parts(&parts), [0, 1, 0, 0, 4]);
+        assert!(first_of_parts(&[0; 5]).is_empty());
+        // Those that touch at a corner are one part only where corners count.
+        let touching = [[0, 1, 2], [2, 3, 4]];
+        assert_eq!(super::parts(&touching), [0, 0]);
     }
 }

@@ -6,7 +6,7 @@ use rayon::slice::ParallelSliceMut as _;
 
 use super::bvh::{Bvh, Child};
 use super::cast::cast;
-use super::parts::{inside_out, parts};
+use super::parts::{inside_out, parts_along_edges};
 use crate::primitive::PackedTriangle;
 use crate::simd::{Real, Vec3};
 
@@ -29,15 +29,20 @@ pub fn measures<R: Real>(
     points: &[[u32; 3]],
     bvh: &Bvh<R>,
 ) -> Measures<R> {
-    let parts = parts(points);
+    let borders = Borders::of(points);
+    let mut parts = parts_along_edges(points.len(), borders.pairs());
     let faces = Faces {
         triangles,
         points,
         bvh,
         inside_out: inside_out(triangles, &parts),
     };
+    let material_of = |face: u32| triangles[face as usize].material;
+    if (1..points.len() as u32).any(|face| material_of(face) != material_of(0)) {
+        let is_alike = |&[one, other]: &[u32; 2]| material_of(one) == material_of(other);
+        parts = parts_along_edges(points.len(), borders.pairs().filter(is_alike));
+    }
     let mut thicknesses = faces.depths();
-    let borders = faces.borders();
     for &face in &borders.faces {
         let width = faces.width(face as usize, &borders);
         let thickness = &mut thicknesses[face as usize];
@@ -71,7 +76,7 @@ pub struct Measures<R> {
     pub thicknesses: Vec<R>,
     /// Whether every edge is passed once in each direction: it has an inside.
     pub is_closed: bool,
-    /// For each triangle the part that it is connected with.
+    /// For each triangle the part that it is connected with, along edges and in one material.
     pub parts: Vec<u32>,
 }
 
@@ -148,6 +153,32 @@ struct Borders {
 }
 
 impl Borders {
+    /// Those of faces whose corners have these numbers.
+    fn of(points: &[[u32; 3]]) -> Self {
+        let mut edges: Vec<Edge> = Vec::with_capacity(points.len() * 3);
+        for (face, &[a, b, c]) in (0..).zip(points) {
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                edges.push((from.min(to), from.max(to), face * 2 + u32::from(from < to)));
+            }
+        }
+        edges.par_sort_unstable();
+        let alone = edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1));
+        let mut faces: Vec<u32> = alone
+            .filter(|edge| edge.len() == 1)
+            .map(|edge| edge[0].2 / 2)
+            .collect();
+        faces.sort_unstable();
+        faces.dedup();
+        Self { faces, edges }
+    }
+
+    /// Pairs of faces that have an edge in common: enough of them to connect all that do.
+    fn pairs(&self) -> impl Iterator<Item = [u32; 2]> {
+        let neighbours = self.edges.windows(2);
+        let pairs = neighbours.filter(|pair| (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1));
+        pairs.map(|pair| [pair[0].2 / 2, pair[1].2 / 2])
+    }
+
     /// Whether two faces meet at every edge and pass it in different directions.
     fn is_closed(&self) -> bool {
         let mut edges = self.edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1));
@@ -170,24 +201,6 @@ impl Borders {
 }
 
 impl<R: Real> Faces<'_, R> {
-    fn borders(&self) -> Borders {
-        let mut edges: Vec<Edge> = Vec::with_capacity(self.points.len() * 3);
-        for (face, &[a, b, c]) in (0..).zip(self.points) {
-            for (from, to) in [(a, b), (b, c), (c, a)] {
-                edges.push((from.min(to), from.max(to), face * 2 + u32::from(from < to)));
-            }
-        }
-        edges.par_sort_unstable();
-        let alone = edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1));
-        let mut faces: Vec<u32> = alone
-            .filter(|edge| edge.len() == 1)
-            .map(|edge| edge[0].2 / 2)
-            .collect();
-        faces.sort_unstable();
-        faces.dedup();
-        Borders { faces, edges }
-    }
-
     /// The way along the surface from the border of a face to the next one; infinity if that is far.
     fn width(&self, face: usize, borders: &Borders) -> R {
         let mut least = R::INFINITY;

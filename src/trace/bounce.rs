@@ -4,7 +4,7 @@ use super::candidates::Candidates;
 use super::cull::LightCandidates;
 use super::doubt::Uncertainty;
 use super::order::Order;
-use super::outcome::{clamped, signatures_of, store};
+use super::outcome::{clamped, joined, signatures_of, store};
 use super::packet::{EdgeInfo, Packet, ReflectionParent, list_doubtful};
 use super::parts::Parts;
 use super::roots::Roots;
@@ -112,7 +112,7 @@ impl<L: SimdFloat> Bounce<L> {
             let theirs = &mirrored.signatures[index];
             for (lane, own) in self.signatures[parent].iter_mut().enumerate() {
                 if active >> lane & 1 == 1 {
-                    *own = own.rotate_left(11) ^ theirs[lane];
+                    *own = joined(*own, theirs[lane]);
                 }
             }
         }

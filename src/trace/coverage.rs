@@ -3,7 +3,8 @@
 
 use super::crossing::{Crossing, Thing, contrast};
 use super::lattice::{Cell, Lattice, Limits, Sample};
-use super::thresholds::{EDGE_ERROR, FINEST, UNEVEN};
+use super::samples::THING;
+use super::thresholds::{EDGE_ERROR, FINEST, GAP_CONTRAST, UNEVEN};
 use super::tile::TileColors;
 use crate::simd::Real;
 
@@ -74,7 +75,11 @@ impl<R: Real> CrossedCell<R> {
         let (first, sides) = sides_of(like_first)?;
         // Written out: mapping arrays is a call here.
         let crossing = |(corner, axis): (usize, usize)| {
-            let apart = contrast(corners[corner], corners[corner ^ (1 << axis)]);
+            let (one, other) = (corners[corner], corners[corner ^ (1 << axis)]);
+            let mut apart = contrast(one, other);
+            if (one.signature ^ other.signature) & THING != 0 {
+                apart = apart.max(R::from_f64(GAP_CONTRAST));
+            }
             Crossing::new(cell, (corner, axis), enough(cell, apart, limits))
         };
         let [(corner, axis), other] = sides;

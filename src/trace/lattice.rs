@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::points::Points;
-use super::samples::{Samples, Traced};
+use super::samples::{Samples, THING, Traced};
 use super::thresholds::{EDGE_ERROR, FINEST, NEAR, UNEVEN};
 use super::tile::{Tile, TileColors};
 use crate::plan::{Tip, Tips};
@@ -13,6 +13,9 @@ use crate::simd::{Real, SimdFloat};
 /// Cells of this side are still divided where a triangle is narrow: what passes between the samples of smaller ones
 /// covers less of the pixel than a level of 255.
 const SMALLEST_AT_TIP: u16 = (FINEST / 4) as u16;
+
+/// Between things there may be a gap, whatever their colours; in smaller cells than these, it is not looked for.
+const HIDING: u16 = (FINEST / 8) as u16;
 
 /// What was seen at a point.
 #[derive(Clone, Copy, Debug)]
@@ -318,7 +321,8 @@ impl<R: Real> Lattice<R> {
         let contrast = ranges[0] + ranges[1] + ranges[2];
         let is_one = differing == 0;
         let limit = limits.at(R::from_f64(cell.width())).contrast(is_one);
-        match (contrast > limit, is_one) {
+        let may_hide = differing & THING != 0 && HIDING <= cell.side;
+        match (limit < contrast || may_hide, is_one) {
             (false, _) => Inside::Known,
             (true, true) => Inside::One,
             (true, false) => Inside::Several,

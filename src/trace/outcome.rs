@@ -1,7 +1,7 @@
 //! What packets have found out, sample by sample.
 
 use super::packet::{EdgeInfo, Packet};
-use super::samples::Traced;
+use super::samples::{THING, Traced};
 use crate::plan::Plan;
 use crate::simd::{MAX_LANES, Real, SimdFloat, Vec3};
 
@@ -34,10 +34,25 @@ pub fn signatures_of<L: SimdFloat>(
 /// An object and the lights on it as one number: odd multipliers spread small ones over all bits.
 #[inline(always)]
 fn signature_of<R: Real>(object: u32, lit: R) -> u32 {
-    object.wrapping_mul(0x9E37_79B1) ^ lit.nearest().wrapping_mul(0x85EB_CA6B)
+    let object = object.wrapping_mul(0x9E37_79B1);
+    let mixed = object ^ lit.nearest().wrapping_mul(0x85EB_CA6B);
+    object & THING | folded(mixed)
 }
 
-/// What tells objects apart, by the number of a primitive: the faces of a mesh are one thing.
+/// A signature together with that of what is seen in its mirror: that is no thing of its own, since in curved mirrors
+/// each pixel shows another.
+#[inline(always)]
+pub fn joined(own: u32, mirrored: u32) -> u32 {
+    own & THING | folded(own.rotate_left(11) ^ mirrored)
+}
+
+/// All bits of a number in those that do not tell things.
+#[inline(always)]
+fn folded(mixed: u32) -> u32 {
+    (mixed ^ mixed >> 16) & !THING
+}
+
+/// What tells objects apart, by the number of a primitive: the faces of a mesh that hang together are one thing.
 #[inline(always)]
 fn object_of<R: Real>(plan: &Plan<R>, number: R) -> u32 {
     // Faces have numbers that `nearest` is not made for.
@@ -51,8 +66,11 @@ fn object_of<R: Real>(plan: &Plan<R>, number: R) -> u32 {
 fn thing_of<R: Real>(plan: &Plan<R>, number: usize) -> usize {
     let in_tree = plan.numbered_geometry().and_then(|(geometry, first)| {
         let index = number.checked_sub(first)?;
-        let mesh = geometry.mesh_of(index).map(|mesh| mesh.first);
-        Some(first + mesh.unwrap_or_else(|| geometry.primitives.thing_of(index)))
+        let thing = match geometry.mesh_of(index) {
+            Some(mesh) => mesh.first + mesh.mesh.thing_of(index - mesh.first),
+            None => geometry.primitives.thing_of(index),
+        };
+        Some(first + thing)
     });
     in_tree.unwrap_or_else(|| plan.primitives.thing_of(number))
 }

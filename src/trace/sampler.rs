@@ -6,7 +6,7 @@ use super::candidates::Candidates;
 use super::engine::Engine;
 use super::lattice::{Limits, range};
 use super::refinement::Refinement;
-use super::samples::{Edges, Samples, Traced};
+use super::samples::{Edges, Samples, THING, Traced};
 use super::thresholds::NEAR;
 use super::tile::{Tile, TileColors};
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
@@ -205,7 +205,11 @@ impl<L: SimdFloat> Sampler<L> {
             let (c, d) = (seen(first + stride), seen(first + stride + 1));
             for lane in 0..L::WIDTH {
                 let differing = (a[lane] ^ b[lane]) | (a[lane] ^ c[lane]) | (a[lane] ^ d[lane]);
-                limit[lane] = limits.contrast(differing == 0);
+                limit[lane] = if differing & THING == 0 {
+                    limits.contrast(differing == 0)
+                } else {
+                    -L::Real::ONE
+                };
             }
             let [a, b, c, d] = corners_at::<L>(token, &self.traced.near, first, stride);
             let is_near = a.min(b).min(c.min(d)).less(reach);

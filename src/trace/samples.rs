@@ -45,6 +45,10 @@ pub struct Traced<R> {
     pub near: Vec<R>,
 }
 
+/// The bits of signatures that tell things apart which are seen directly; the others also tell which lights shine on
+/// them and what is seen in mirrors.
+pub const THING: u32 = 0xFFFF_0000;
+
 /// What is left of the light where others are marked.
 const DARKENED: f64 = 0.25;
 

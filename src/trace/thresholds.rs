@@ -25,6 +25,9 @@ pub const FINEST: usize = 1 << (MAX_HALVINGS + 2);
 /// is divided where they see different things: an edge in it is off by half of its side at most, and the
 /// pixel by half of this, three levels of 255.
 pub const EDGE_ERROR: f64 = 0.025;
+/// Contrast of what may be seen in a gap between two things, which is looked for along with their edges: gaps that are
+/// wider than they are known within are found.
+pub const GAP_CONTRAST: f64 = 0.2;
 /// So much light on a surface is an edge where it ends in shadow: four levels of 255, which nobody sees.
 pub const EDGE_CONTRAST: f64 = 4.0 / 255.0;
 /// How many times as fast as the camera's own a pixel may widen along mirrored rays that still look for

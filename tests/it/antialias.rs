@@ -1,5 +1,7 @@
 //! Clean edges: against many samples per pixel, in double precision, on the published views.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use glint::image::LinearRgb;
 use glint::lab::{difference, trace_light};
@@ -366,6 +368,84 @@ fn wires_are_whole_whichever_way_their_faces_are_wound() {
             off.psnr()
         );
     }
+}
+
+/// Corners of a board that stands upright, 100 away and a little turned: its left side and right side.
+fn board(left: f64, right: f64) -> [DVec3; 4] {
+    let (sine, cosine) = 0.02_f64.sin_cos();
+    [(left, -40.0), (left, 40.0), (right, 40.0), (right, -40.0)]
+        .map(|(x, y)| DVec3::new(x * cosine - y * sine, x * sine + y * cosine, -100.0))
+}
+
+/// Boards of one colour with gaps of half a pixel between them, as one mesh or as triangles.
+fn boards(is_mesh: bool) -> Scene {
+    let mut scene = rays_of_a_sun();
+    let pack = scene.objects[0].color_pack.clone();
+    scene.objects = List::default();
+    let boards = (-6..6_i32).map(|n| board(f64::from(n) * 6.0 + 0.1, f64::from(n + 1) * 6.0 - 0.1));
+    let faces = [[0, 1, 2], [0, 2, 3]];
+    if is_mesh {
+        let count = boards.len() as u32;
+        let points: Vec<DVec3> = boards.flatten().collect();
+        let faces = (0..count).flat_map(|n| faces.map(|face| face.map(|corner| corner + 4 * n)));
+        let triangles = Triangles::new(points, faces.collect()).expect("boards");
+        let mesh = Mesh::of(triangles);
+        scene.objects.push(Object::new("Boards", pack, mesh));
+        return scene;
+    }
+    for (n, corners) in boards.enumerate() {
+        for (half, face) in faces.into_iter().enumerate() {
+            let [a, b, c] = face.map(|corner: u32| corners[corner as usize]);
+            let name = format!("Board {n} {half}");
+            let triangle = Shape::Triangle(Triangle { a, b, c });
+            scene.objects.push(Object::new(name, &*pack, triangle));
+        }
+    }
+    scene
+}
+
+#[test]
+fn gaps_between_things_of_one_colour_are_seen() {
+    for is_mesh in [true, false] {
+        let got = quality(&boards(is_mesh), &picture(Sampling::ADAPTIVE));
+        assert!(
+            got.psnr >= EIGHT_BITS && got.visible == 0 && got.rays < 3.0,
+            "{is_mesh} {got:?}"
+        );
+    }
+}
+
+/// Squares of triangles, a pixel and a half wide, black and white in turn.
+fn squares() -> Scene {
+    let mut scene = rays_of_a_sun();
+    scene.objects = List::default();
+    let mut dark = scene.color_packs[0].clone();
+    dark.ambient = DVec3::ZERO;
+    Arc::make_mut(&mut scene.color_packs).insert("dark".to_owned(), dark);
+    let bright = scene.color_packs.keys().next().cloned().unwrap_or_default();
+    let at =
+        |column: i32, row: i32| DVec3::new(f64::from(column) * 0.65, f64::from(row) * 0.63, -100.0);
+    for (column, row) in (-12..12).flat_map(|row| (-12..12).map(move |column| (column, row))) {
+        let pack = if (column + row) % 2 == 0 {
+            "dark"
+        } else {
+            &*bright
+        };
+        let [a, b] = [at(column, row), at(column + 1, row)];
+        let [c, d] = [at(column + 1, row + 1), at(column, row + 1)];
+        for (half, [a, b, c]) in [[a, b, c], [a, c, d]].into_iter().enumerate() {
+            let name = format!("Square {column} {row} {half}");
+            let triangle = Shape::Triangle(Triangle { a, b, c });
+            scene.objects.push(Object::new(name, pack, triangle));
+        }
+    }
+    scene
+}
+
+#[test]
+fn squares_of_one_colour_that_touch_at_corners_do_not_hide_what_is_between_them() {
+    let got = quality(&squares(), &picture(Sampling::ADAPTIVE));
+    assert!(got.psnr >= EIGHT_BITS && got.visible <= 4, "{got:?}");
 }
 
 #[test]
