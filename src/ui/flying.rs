@@ -28,7 +28,7 @@ const TOLD: f64 = 1.2;
 /// Longest frame that counts, in seconds: after a stall the camera does not leap.
 const LONGEST_FRAME: f64 = 0.1;
 /// Seconds that the control key must be held by itself before it flies: it also starts shortcuts.
-const CTRL_DELAY: f64 = 0.2;
+const CTRL_DELAY: f64 = 0.4;
 /// Seconds without the wheel after which its next turn is a step of its own.
 const WHEEL_QUIET: f64 = 0.4;
 
@@ -40,6 +40,8 @@ pub struct Flying {
     taken: Vec<Key>,
     /// Whether keys moved the camera in the last frame.
     keys_fly: bool,
+    /// Whether that was the control key by itself: what is pressed next may still be a shortcut's.
+    ctrl_flies_alone: bool,
     /// When the wheel last turned.
     wheel_at: Option<f64>,
     /// When the speed was last changed.
@@ -78,6 +80,7 @@ impl Flying {
             // A key that was held for something else flies only when it is pressed anew.
             let is_held = ui.input(|input| input.modifiers.ctrl);
             self.ctrl = if is_held { Ctrl::Shortcut } else { Ctrl::Up };
+            self.ctrl_flies_alone = false;
             Motion::default()
         };
         self.keys_fly = held != Motion::default();
@@ -142,7 +145,7 @@ impl Flying {
 
     /// Whether keys move the camera: they are then no shortcuts.
     pub fn is_flying(&self) -> bool {
-        self.keys_fly
+        self.keys_fly && !self.ctrl_flies_alone
     }
 
     /// Whether the flight goes on, as one step in the history.
@@ -158,7 +161,7 @@ impl Flying {
 
     /// Notes which keys are held for shortcuts: fast hands let the control key go before the other one.
     fn take_keys(&mut self, ui: &Ui) {
-        let may_take = self.ctrl != Ctrl::Flying && !self.keys_fly;
+        let may_take = self.ctrl_flies_alone || self.ctrl != Ctrl::Flying && !self.keys_fly;
         ui.input(|input| {
             // Of what was pressed for commands, only what came from the desktop knows.
             let pressed = input.raw.events.iter().filter_map(|event| match event {
@@ -187,11 +190,13 @@ impl Flying {
             Ctrl::Up if !picture.contains_pointer() => Ctrl::Shortcut,
             Ctrl::Up => Ctrl::Waiting(now),
             Ctrl::Waiting(since) if now - since >= CTRL_DELAY => Ctrl::Flying,
+            Ctrl::Flying if self.ctrl_flies_alone && any_key => Ctrl::Shortcut,
             going_on => going_on,
         };
         if matches!(self.ctrl, Ctrl::Waiting(_)) {
             ui.request_repaint();
         }
+        self.ctrl_flies_alone = self.ctrl == Ctrl::Flying && !any_key;
         if alt || matches!(self.ctrl, Ctrl::Waiting(_) | Ctrl::Shortcut) {
             return Motion::default();
         }

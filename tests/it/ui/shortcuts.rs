@@ -116,3 +116,34 @@ fn keys_of_shortcuts_do_not_fly_when_control_is_let_go_first() {
     harness.settle();
     assert!(harness.scene().camera != start, "pressed anew, it flies");
 }
+
+#[test]
+fn a_shortcut_is_one_however_long_control_was_held_before() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    let start = harness.scene().camera.clone();
+    let middle = harness.view().center();
+    harness.window.hover_at(middle);
+    (0..2).for_each(|_| harness.window.step());
+    harness.window.event(Event::ModifiersChanged(CTRL));
+    (0..40).for_each(|_| harness.window.step());
+    assert!(harness.scene().camera != start, "held by itself, it flies");
+    let key = |pressed: bool| Event::Key {
+        key: Key::D,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers: CTRL,
+    };
+    harness.window.event(key(true));
+    harness.window.step();
+    let there = harness.scene().camera.clone();
+    assert_eq!(harness.scene().objects.len(), 10, "duplicated");
+    (0..5).for_each(|_| harness.window.step());
+    harness.window.event(key(false));
+    harness
+        .window
+        .event(Event::ModifiersChanged(Modifiers::NONE));
+    harness.settle();
+    assert_eq!(harness.scene().camera, there, "and nothing flies meanwhile");
+}
