@@ -55,17 +55,22 @@ fn numbered(firsts: impl Iterator<Item = u32>) -> Vec<u32> {
 
 /// For each face the first one of its part; none if there is one part.
 pub fn first_of_parts(parts: &[u32]) -> Vec<u32> {
-    let mut firsts = Vec::new();
-    let first = |(face, &part): (u32, &u32)| {
-        if part as usize == firsts.len() {
-            firsts.push(face);
-        }
-        firsts[part as usize]
-    };
-    if parts.iter().all(|&part| part == 0) {
-        return Vec::new();
+    match &firsts(parts)[..] {
+        [] | [_] => Vec::new(),
+        firsts => parts.iter().map(|&part| firsts[part as usize].0).collect(),
     }
-    (0..).zip(parts).map(first).collect()
+}
+
+/// The first face of each part, and how many there are.
+fn firsts(parts: &[u32]) -> Vec<(u32, u32)> {
+    let mut firsts = Vec::new();
+    for (face, &part) in (0..).zip(parts) {
+        if part as usize == firsts.len() {
+            firsts.push((face, 0));
+        }
+        firsts[part as usize].1 += 1;
+    }
+    firsts
 }
 
 /// For each triangle whether it is of a part that looks inwards. Parts with borders are seen from the mean of their
@@ -96,13 +101,7 @@ pub fn inside_out<R: Real>(triangles: &[PackedTriangle<R>], parts: &[u32]) -> Ve
 /// For each triangle the first one that it is one thing with, as the faces of a mesh are: those of a part, if they are
 /// many. Empty if that is none.
 pub fn things(parts: &[u32]) -> Vec<Option<u32>> {
-    let mut found: Vec<(u32, u32)> = Vec::new();
-    for (face, &part) in (0..).zip(parts) {
-        if part as usize == found.len() {
-            found.push((face, 0));
-        }
-        found[part as usize].1 += 1;
-    }
+    let found = firsts(parts);
     if found.iter().all(|&(_, count)| count < MANY) {
         return Vec::new();
     }

@@ -40,8 +40,6 @@ pub struct Flying {
     taken: Vec<Key>,
     /// Whether keys moved the camera in the last frame.
     keys_fly: bool,
-    /// Whether that was the control key by itself: what is pressed next may still be a shortcut's.
-    ctrl_flies_alone: bool,
     /// When the wheel last turned.
     wheel_at: Option<f64>,
     /// When the speed was last changed.
@@ -56,10 +54,18 @@ enum Ctrl {
     Up,
     /// Held by itself since this time: it may yet become either.
     Waiting(f64),
-    /// Flying down.
+    /// Flying down along with other keys.
     Flying,
+    /// Flying down by itself: what is pressed next is a shortcut's.
+    FlyingAlone,
     /// A shortcut.
     Shortcut,
+}
+
+impl Ctrl {
+    fn is_flying(self) -> bool {
+        matches!(self, Self::Flying | Self::FlyingAlone)
+    }
 }
 
 impl Flying {
@@ -80,7 +86,6 @@ impl Flying {
             // A key that was held for something else flies only when it is pressed anew.
             let is_held = ui.input(|input| input.modifiers.ctrl);
             self.ctrl = if is_held { Ctrl::Shortcut } else { Ctrl::Up };
-            self.ctrl_flies_alone = false;
             Motion::default()
         };
         self.keys_fly = held != Motion::default();
@@ -145,7 +150,7 @@ impl Flying {
 
     /// Whether keys move the camera: they are then no shortcuts.
     pub fn is_flying(&self) -> bool {
-        self.keys_fly && !self.ctrl_flies_alone
+        self.keys_fly && self.ctrl != Ctrl::FlyingAlone
     }
 
     /// Whether the flight goes on, as one step in the history.
@@ -156,12 +161,12 @@ impl Flying {
             ctx.request_repaint_after_secs(WHEEL_QUIET as f32);
         }
         let any_down = FLIGHT.iter().any(|flight| is_down(ctx, flight));
-        self.wheel_at.is_some() || self.ctrl == Ctrl::Flying || any_down
+        self.wheel_at.is_some() || self.ctrl.is_flying() || any_down
     }
 
     /// Notes which keys are held for shortcuts: fast hands let the control key go before the other one.
     fn take_keys(&mut self, ui: &Ui) {
-        let may_take = self.ctrl_flies_alone || self.ctrl != Ctrl::Flying && !self.keys_fly;
+        let may_take = self.ctrl != Ctrl::Flying && !self.is_flying();
         ui.input(|input| {
             // Of what was pressed for commands, only what came from the desktop knows.
             let pressed = input.raw.events.iter().filter_map(|event| match event {
@@ -185,24 +190,25 @@ impl Flying {
         self.ctrl = match self.ctrl {
             _ if !ctrl => Ctrl::Up,
             Ctrl::Up if self.keys_fly => Ctrl::Flying,
-            Ctrl::Up | Ctrl::Waiting(_) if any_key => Ctrl::Shortcut,
+            Ctrl::Up | Ctrl::Waiting(_) | Ctrl::FlyingAlone if any_key => Ctrl::Shortcut,
             // Elsewhere it is held for a click that comes later.
             Ctrl::Up if !picture.contains_pointer() => Ctrl::Shortcut,
             Ctrl::Up => Ctrl::Waiting(now),
             Ctrl::Waiting(since) if now - since >= CTRL_DELAY => Ctrl::Flying,
-            Ctrl::Flying if self.ctrl_flies_alone && any_key => Ctrl::Shortcut,
             going_on => going_on,
         };
         if matches!(self.ctrl, Ctrl::Waiting(_)) {
             ui.request_repaint();
         }
-        self.ctrl_flies_alone = self.ctrl == Ctrl::Flying && !any_key;
+        if self.ctrl == Ctrl::Flying && !any_key {
+            self.ctrl = Ctrl::FlyingAlone;
+        }
         if alt || matches!(self.ctrl, Ctrl::Waiting(_) | Ctrl::Shortcut) {
             return Motion::default();
         }
         let held = FLIGHT.iter().filter(|flight| match flight.key {
             Some(key) => is_down(ui, flight) && !self.taken.contains(&key),
-            None => self.ctrl == Ctrl::Flying,
+            None => self.ctrl.is_flying(),
         });
         held.fold(Motion::default(), |sum, flight| sum.plus(&flight.motion))
     }
