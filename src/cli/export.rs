@@ -122,7 +122,13 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
     reporter.end();
     if let Some((path, video)) = video {
         reporter.say_status("encoding");
-        let made = video.make(&sequence, path, |_| ());
+        let bar = bar(
+            &sequence,
+            args.openjd,
+            "{bar:32} {pos}/{len} frames encoded",
+        );
+        let made = video.make(&sequence, path, |frames| bar.set_position(frames as u64));
+        bar.finish_and_clear();
         made.map_err(CliError::failed)?;
     }
     let seconds = start.elapsed().as_secs_f64();
@@ -174,6 +180,18 @@ fn export(
     })
 }
 
+/// A bar as long as a sequence; none is seen where a runner reads.
+fn bar(sequence: &Sequence, is_openjd: bool, style: &str) -> ProgressBar {
+    if is_openjd {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(sequence.frames.count() as u64);
+    match ProgressStyle::with_template(style) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
 /// Tells how far it is: a bar on a terminal, or lines for a runner.
 struct ProgressReporter {
     bar: ProgressBar,
@@ -182,17 +200,8 @@ struct ProgressReporter {
 
 impl ProgressReporter {
     fn new(sequence: &Sequence, is_openjd: bool) -> Self {
-        let count = sequence.frames.count() as u64;
-        let bar = if is_openjd {
-            ProgressBar::hidden()
-        } else {
-            ProgressBar::new(count)
-        };
-        bar.set_length(count);
         let style = "{bar:32} {pos}/{len} frames  {per_sec}  {eta} left";
-        if let Ok(style) = ProgressStyle::with_template(style) {
-            bar.set_style(style);
-        }
+        let bar = bar(sequence, is_openjd, style);
         Self { bar, is_openjd }
     }
 

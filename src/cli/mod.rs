@@ -32,7 +32,7 @@ mod desktop;
 mod fallback;
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
@@ -165,15 +165,18 @@ impl CliArgs {
     }
 }
 
-/// The first of several plain words, if it is no command: the editor takes one scene only.
+/// The first word, if it was meant as a command that there is not: the editor takes one scene only, and a name
+/// without folder and ending that is no file is not one.
 fn unknown_command(words: &[OsString]) -> Option<String> {
     let is_plain = |word: &OsString| !word.to_string_lossy().starts_with('-');
-    let [_, first, second, ..] = words else {
+    let [_, first, others @ ..] = words else {
         return None;
     };
     let is_command = CliArgs::command().find_subcommand(first).is_some() || first == "help";
-    (is_plain(first) && is_plain(second) && !is_command)
-        .then(|| first.to_string_lossy().into_owned())
+    let is_word = |path: &Path| path.components().count() == 1 && path.extension().is_none();
+    let is_meant = others.first().is_some_and(is_plain)
+        || (is_word(Path::new(first)) && !Path::new(first).exists());
+    (is_plain(first) && is_meant && !is_command).then(|| first.to_string_lossy().into_owned())
 }
 
 #[cfg(test)]

@@ -206,6 +206,7 @@ fn wrong_words_and_wrong_files_exit_with_2() {
         ),
         (&["export", DEMO], "--output <DIR>"),
         (&["check"], "<SCENE>..."),
+        (&["rendr"], "there is no command \"rendr\"; there are render"),
         (
             &["chek", DEMO],
             "there is no command \"chek\"; there are render, export, job, check, convert, plan, chart, stability and referee",

@@ -628,10 +628,17 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
         made == files(&alone),
         "the same bytes, as the scene was at the start"
     );
-    harness.window.get_by_label_contains("14 frames are in");
+    harness.window.get_by_label_contains("14 frames in");
+    harness.window.get_by_label_contains("ppm + gif");
+    harness
+        .window
+        .get_by_label_contains("14 frames and frames.gif");
     harness.click("Remove");
     // With the lights' markers off, the frames that show one are others.
     see(&mut harness, "replace older files");
+    harness.click("Start export");
+    finish(&mut harness);
+    see(&mut harness, "all 14 frames are there, then frames.gif");
     harness.type_name("frames", "nonsense");
     harness
         .window
@@ -702,7 +709,7 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
     harness.window.get_by_label("Interrupted");
     harness.click("Resume");
     finish(&mut harness);
-    harness.window.get_by_label_contains("202 frames are in");
+    harness.window.get_by_label_contains("202 frames in");
     assert!(harness.window.query_by_label("Interrupted").is_none());
     drop(harness);
     let sequence = |size: u32| {

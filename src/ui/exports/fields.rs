@@ -17,8 +17,8 @@ use crate::ui::requests::UiRequests;
 use crate::ui::status::in_words;
 use crate::ui::theme::ROW;
 
-/// Frames that are to be made, how many of them replace files, and all that are asked for.
-pub type Found = Result<(usize, usize, usize), String>;
+/// Frames that are to be made, and how many of them replace files.
+pub type Found = Result<(usize, usize), String>;
 
 /// Width of the window's fields, in points.
 pub const FIELDS: f32 = 360.0;
@@ -162,10 +162,12 @@ impl Settings {
             height,
             ..
         } = self;
-        format!(
-            "{title} · {frames} · {width}×{height} · {}",
-            self.format.ending()
-        )
+        let video = match self.video.as_str() {
+            none if none == VIDEOS[0] => String::new(),
+            video => format!(" + {video}"),
+        };
+        let ending = self.format.ending();
+        format!("{title} · {frames} · {width}×{height} · {ending}{video}")
     }
 
     /// The sequence, with the scene as it is now.
@@ -347,7 +349,8 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
     ui.end_row();
 }
 
-fn frames(count: usize) -> String {
+/// So many frames, in words.
+pub fn frames(count: usize) -> String {
     let s = if count == 1 { "" } else { "s" };
     format!("{count} frame{s}")
 }
@@ -361,13 +364,18 @@ pub fn forecast(
 ) -> String {
     let pixels = f64::from(settings.width) * f64::from(settings.height);
     let total = sequence.frames.count();
+    let video = settings.video(sequence).map_or(String::new(), |(path, _)| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        format!(", then {name}")
+    });
     let (missing, what) = match found {
         None => (
             total,
             format!("{}, looking into the folder…", frames(total)),
         ),
         Some(Err(error)) => (total, error.clone()),
-        Some(Ok((missing, replaced, total))) => {
+        Some(Ok((0, _))) => return format!("all {} are there{video}", frames(total)),
+        Some(Ok((missing, replaced))) => {
             let there = total - missing;
             let stay = match there {
                 0 => String::new(),
@@ -391,5 +399,5 @@ pub fn forecast(
     let time = seconds.map_or(String::new(), |seconds| {
         format!(", about {}", in_words(seconds))
     });
-    format!("{what}{time}, {megabytes:.0} MB")
+    format!("{what}{time}, {megabytes:.0} MB{video}")
 }

@@ -1,39 +1,37 @@
 //! Exporting the animation: what, where to and how, and how far the exports are.
 
+mod entry;
+
 mod fields;
 
 mod kept;
 
 mod order;
 
-mod following;
-
 mod progress;
+
+mod video_maker;
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::Duration;
 
-use egui::{
-    Button, Context, Grid, Image as Picture, RichText, TextureHandle, TextureOptions, Ui, Window,
-    vec2,
-};
+use egui::{Button, Context, Grid, RichText, Ui, Window};
 
+use self::entry::Entry;
 use self::fields::{Found, Settings, fields, forecast, presets};
-use self::following::Following;
 pub use self::kept::KeptSettings;
 use self::kept::Owner;
 use self::order::Order;
-use self::progress::{seconds_left, show_state};
+use self::progress::seconds_left;
 use super::pictures::Pictures;
 use super::requests::UiRequests;
 use super::status::in_words;
-use super::theme::{GRID, THUMB, palette};
-use super::upload::whole;
+use super::theme::{GRID, palette};
 use crate::editor::Editor;
 use crate::export::Sequence;
 use crate::ui::hint::Hint as _;
-use crate::worker::{ExportState, run_in_background};
+use crate::worker::run_in_background;
 
 /// What messages about exports are about.
 const EXPORT: &str = "export";
@@ -58,21 +56,16 @@ pub struct Exports {
     /// What is asked for.
     shown: Option<Shown>,
     kept: KeptSettings,
-    /// What each export was ordered with.
-    orders: Vec<(u64, Order)>,
+    /// What was ordered and is listed.
+    entries: Vec<Entry>,
     /// What ended without being finished.
     interrupted: Vec<Order>,
     /// What was found in the folder, for these settings, this state of the scene, and so many exports
     /// that have ended.
     found: Option<(Settings, (u64, usize), Option<Found>)>,
     looking: Option<Receiver<Found>>,
-    /// Videos that follow their frames.
-    videos: Vec<Following>,
-    thumbs: Vec<(u64, usize, TextureHandle)>,
-    /// Exports whose end was told.
-    told: Vec<u64>,
-    /// What those are called.
-    ended: Vec<(u64, String)>,
+    /// Exports that have ended, of all.
+    ended: usize,
 }
 
 impl Exports {
@@ -116,63 +109,16 @@ impl Exports {
 
     /// Tells of exports that have ended, and makes their videos.
     pub fn update(&mut self, editor: &mut Editor, pictures: &Pictures) {
-        for state in pictures.exports() {
-            let Some(ended) = &state.ended else { continue };
-            if self.told.contains(&state.id) {
-                continue;
-            }
-            self.told.push(state.id);
-            match ended {
-                Ok(()) => editor.notify(format!(
-                    "{} frames are in {}",
-                    state.done.total,
-                    state.folder.display()
-                )),
-                Err(error) => editor.report_error_in(EXPORT, format!(
-                    "{error}; what is done stays, and Resume in the window of exports goes on from there"
-                )),
-            }
-            let is_done = ended.is_ok();
-            let ordered = self.orders.iter().position(|(id, _)| *id == state.id);
-            if let Some((_, order)) = ordered.map(|at| self.orders.remove(at)) {
-                self.ended.push((state.id, order.name.clone()));
-                let video = self.videos.iter_mut().find(|video| video.id == state.id);
-                match video {
-                    _ if !is_done => self.interrupted.push(order),
-                    // It has not ended before its video is there.
-                    Some(video) => video.order = Some(order),
-                    None => order.end(),
-                }
-            }
-            self.videos.retain(|video| is_done || video.id != state.id);
-            let mut videos = self.videos.iter_mut();
-            if let Some(video) = videos.find(|video| video.id == state.id) {
-                video.make();
-            }
-        }
-        // One whose export was given up is not made either.
         let states = pictures.exports();
-        let is_wanted = |video: &Following| states.iter().any(|state| state.id == video.id);
-        self.videos
-            .retain(|video| video.is_making() || is_wanted(video));
-        let interrupted = &mut self.interrupted;
-        self.videos.retain_mut(|video| {
-            let Some(made) = video.made() else {
-                return true;
-            };
-            let order = video.order.take();
-            match made {
-                Ok(()) => {
-                    editor.notify(format!("Saved {}", video.path.display()));
-                    order.into_iter().for_each(Order::end);
-                }
-                Err(error) => {
-                    editor.report_error_in(EXPORT, error);
-                    interrupted.extend(order);
-                }
-            }
-            false
-        });
+        for entry in &mut self.entries {
+            let state = states.iter().find(|state| state.id == entry.id);
+            let was_over = entry.is_over();
+            self.interrupted.extend(entry.update(state, editor));
+            self.ended += usize::from(entry.is_over() && !was_over);
+        }
+        let is_listed = |entry: &Entry| states.iter().any(|state| state.id == entry.id);
+        self.entries
+            .retain(|entry| is_listed(entry) || !entry.is_over());
     }
 
     /// What is going on, in words; `None` if nothing is.
@@ -180,7 +126,7 @@ impl Exports {
         let states = pictures.exports();
         let mut going = states.iter().filter(|state| state.ended.is_none());
         let Some(state) = going.next() else {
-            return (!self.videos.is_empty()).then(|| "making a video".to_owned());
+            return self.entries.iter().find_map(Entry::describe_video);
         };
         let done = state.done.kept + state.done.written;
         let left = match seconds_left(state) {
@@ -196,7 +142,9 @@ impl Exports {
 
     /// Whether there is something that the window should be drawn again for.
     pub fn is_busy(&self, pictures: &Pictures) -> bool {
-        pictures.is_exporting() || !self.videos.is_empty() || self.looking.is_some()
+        pictures.is_exporting()
+            || self.entries.iter().any(|entry| !entry.is_over())
+            || self.looking.is_some()
     }
 
     /// Draws the window, if it is open.
@@ -306,11 +254,8 @@ impl Exports {
         editor.begin(EXPORT);
         match pictures.export(sequence.clone()) {
             Ok(id) => {
-                if let Some((path, video)) = order.settings.video(&sequence) {
-                    let following = Following::new(id, sequence, path, video);
-                    self.videos.push(following);
-                }
-                self.orders.push((id, order));
+                let entry = Entry::new(id, order, sequence);
+                self.entries.push(entry);
             }
             Err(error) => {
                 // A folder that is not there now may be there later.
@@ -334,7 +279,7 @@ impl Exports {
             }
             self.looking = None;
         }
-        let state = (editor.revision(), self.told.len());
+        let state = (editor.revision(), self.ended);
         let is_same =
             |(of, at, _): &(Settings, (u64, usize), Option<Found>)| of == settings && *at == state;
         if self.found.as_ref().is_some_and(is_same) {
@@ -344,44 +289,24 @@ impl Exports {
         let sequence = sequence.clone();
         self.looking = Some(run_in_background("glint-look", move || {
             // A folder that is not there has no frames; looking must not make it.
-            let total = sequence.frames.count();
             if !sequence.folder.exists() {
-                return Ok((total, 0, total));
+                return Ok((sequence.frames.count(), 0));
             }
             let missing = sequence.missing().map_err(|error| error.to_string())?;
             let replaced = missing
                 .iter()
                 .filter(|frame| sequence.path(**frame).exists());
-            Ok((missing.len(), replaced.count(), total))
+            Ok((missing.len(), replaced.count()))
         }));
     }
 
     fn show_list(&mut self, ui: &mut Ui, pictures: &Pictures) {
         let states = pictures.exports();
-        let mut given_up = None;
-        let is_listed = |id: u64| states.iter().any(|state| state.id == id);
-        self.thumbs.retain(|(id, ..)| is_listed(*id));
-        self.ended.retain(|(id, _)| is_listed(*id));
-        for state in &states {
-            ui.separator();
-            ui.horizontal(|ui| {
-                self.show_thumb(ui, state);
-                let going = self.orders.iter().find(|(id, _)| *id == state.id);
-                let ended = self.ended.iter().find(|(id, _)| *id == state.id);
-                let name = going.map(|(_, order)| &order.name);
-                let name = name.or(ended.map(|(_, name)| name));
-                let name = name.map_or("", |name| name);
-                let is_given_up = ui
-                    .vertical(|ui| show_state(ui, (name, state), pictures))
-                    .inner;
-                if is_given_up {
-                    given_up = Some(state.id);
-                }
-            });
-        }
-        let at = |id| self.orders.iter().position(|(of, _)| *of == id);
-        if let Some(at) = given_up.and_then(at) {
-            self.orders.remove(at).1.end();
+        for entry in &mut self.entries {
+            if let Some(state) = states.iter().find(|state| state.id == entry.id) {
+                ui.separator();
+                entry.show(ui, state, pictures);
+            }
         }
     }
 
@@ -416,31 +341,6 @@ impl Exports {
             }
         } else if let Some(index) = removed {
             self.interrupted.remove(index).end();
-        }
-    }
-
-    fn show_thumb(&mut self, ui: &mut Ui, state: &ExportState) {
-        if let Some(image) = &state.last {
-            let at = state.done.written;
-            let known = self.thumbs.iter_mut().find(|(id, ..)| *id == state.id);
-            match known {
-                Some((_, when, texture)) if *when != at => {
-                    *when = at;
-                    texture.set(whole(image), TextureOptions::LINEAR);
-                }
-                Some(_) => {}
-                None => {
-                    let picture = whole(image);
-                    let texture =
-                        ui.ctx()
-                            .load_texture("exported", picture, TextureOptions::LINEAR);
-                    self.thumbs.push((state.id, at, texture));
-                }
-            }
-        }
-        let thumb = self.thumbs.iter().find(|(id, ..)| *id == state.id);
-        if let Some((.., texture)) = thumb {
-            ui.add(Picture::new(texture).fit_to_exact_size(vec2(THUMB, THUMB)));
         }
     }
 }

@@ -2,7 +2,8 @@
 
 use egui::{ProgressBar, RichText, Ui};
 
-use super::fields::FIELDS;
+use super::fields::{FIELDS, frames};
+use super::video_maker::{VideoMaker, VideoState};
 use crate::ui::hint::Hint as _;
 use crate::ui::pictures::Pictures;
 use crate::ui::status::in_words;
@@ -17,31 +18,63 @@ pub fn seconds_left(state: &ExportState) -> Option<f64> {
     is_known.then_some((state.done.total - done) as f64 * per_frame)
 }
 
-/// How far an export is; what it waits for does not count as its time. Whether it is given up.
-pub fn show_state(ui: &mut Ui, (name, state): (&str, &ExportState), pictures: &Pictures) -> bool {
-    let mut is_given_up = false;
+/// How much of an export is done, from 0 to 1, and in words.
+fn progress(state: &ExportState, video: Option<&VideoMaker>) -> (f64, String) {
+    let total = state.done.total;
     let done = state.done.kept + state.done.written;
-    let share = done as f64 / state.done.total.max(1) as f64;
+    let share = done as f64 / total.max(1) as f64;
     let busy = state.busy.as_secs_f64();
-    let rate = state.done.written as f64 / busy.max(1e-3);
-    let text = match &state.ended {
-        Some(Ok(())) => format!("{done} frames, {busy:.1} s"),
-        Some(Err(_)) => format!("{done} of {}, failed", state.done.total),
-        None if state.is_paused => format!("{done} of {}, paused", state.done.total),
-        None => match seconds_left(state).map(in_words) {
-            None => format!("{done} of {}", state.done.total),
-            Some(left) => format!(
-                "{done} of {} · {rate:.0} frames/s · {left} left",
-                state.done.total
-            ),
+    let text = match (&state.ended, video) {
+        (Some(Ok(())), Some(video)) => return video_progress(video),
+        (Some(Ok(())), None) if state.done.written == 0 => {
+            format!("{}, all there already", frames(done))
+        }
+        (Some(Ok(())), None) => format!("{}, {busy:.1} s", frames(done)),
+        (Some(Err(_)), _) => format!("{done} of {total}, failed"),
+        (None, _) if state.is_paused => format!("{done} of {total}, paused"),
+        (None, _) => match seconds_left(state).map(in_words) {
+            None => format!("{done} of {total}"),
+            Some(left) => {
+                let rate = state.done.written as f64 / busy.max(1e-3);
+                format!("{done} of {total} · {rate:.0} frames/s · {left} left")
+            }
         },
     };
-    ui.label(name).hint(state.folder.display().to_string());
+    (share, text)
+}
+
+/// The same for the video, when its frames are there.
+fn video_progress(video: &VideoMaker) -> (f64, String) {
+    let total = video.frames();
+    let name = video.path.file_name().unwrap_or_default().to_string_lossy();
+    match &video.state {
+        VideoState::Waiting => (0.0, frames(total)),
+        VideoState::Making(done) => {
+            let share = *done as f64 / total.max(1) as f64;
+            (share, format!("{name}: {done} of {total}"))
+        }
+        VideoState::Made => (1.0, format!("{} and {name}", frames(total))),
+        VideoState::Failed(_) => (1.0, format!("{}, but no video", frames(total))),
+    }
+}
+
+/// Draws how far an export is, and its buttons; what it waits for does not count as its time.
+pub fn show_state(
+    ui: &mut Ui,
+    name: &str,
+    state: &ExportState,
+    video: Option<&VideoMaker>,
+    pictures: &Pictures,
+) {
+    let place = video.map_or(&state.folder, |video| &video.path);
+    ui.label(name).hint(place.display().to_string());
     ui.horizontal(|ui| {
+        let (share, text) = progress(state, video);
         let bar = ProgressBar::new(share as f32).desired_width(FIELDS - 120.0);
         ui.add(bar.text(RichText::new(text).small().color(palette(ui.ctx()).text)));
         if state.ended.is_some() {
-            if ui.button("Remove").clicked() {
+            let is_making = video.is_some_and(|video| matches!(video.state, VideoState::Making(_)));
+            if !is_making && ui.button("Remove").clicked() {
                 pictures.forget_export(state.id);
             }
             return;
@@ -53,10 +86,8 @@ pub fn show_state(ui: &mut Ui, (name, state): (&str, &ExportState), pictures: &P
         let cancel = ui
             .button("Cancel")
             .hint("What is written stays; exporting again goes on from there");
-        is_given_up = cancel.clicked();
-        if is_given_up {
+        if cancel.clicked() {
             pictures.forget_export(state.id);
         }
     });
-    is_given_up
 }

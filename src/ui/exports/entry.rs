@@ -1,0 +1,135 @@
+//! One export of the list: its frames, then its video.
+
+use egui::{Image as Picture, TextureHandle, TextureOptions, Ui, vec2};
+
+use super::EXPORT;
+use super::fields::frames;
+use super::order::Order;
+use super::progress::show_state;
+use super::video_maker::{VideoMaker, VideoState};
+use crate::editor::Editor;
+use crate::export::Sequence;
+use crate::ui::pictures::Pictures;
+use crate::ui::theme::THUMB;
+use crate::ui::upload::whole;
+use crate::worker::ExportState;
+
+/// An export that was ordered.
+pub struct Entry {
+    /// What it is called by the worker.
+    pub id: u64,
+    /// What it is called here.
+    name: String,
+    /// What it was ordered with, until it is over.
+    order: Option<Order>,
+    /// The video that follows its frames, if one shall.
+    video: Option<VideoMaker>,
+    /// A small picture of the frame that was written last, and how many were before it.
+    thumb: Option<(usize, TextureHandle)>,
+}
+
+impl Entry {
+    /// What was ordered, as these frames.
+    pub fn new(id: u64, order: Order, sequence: Sequence) -> Self {
+        let video = order.settings.video(&sequence);
+        let video = video.map(|(path, video)| VideoMaker::new(sequence, path, video));
+        Self {
+            id,
+            name: order.name.clone(),
+            order: Some(order),
+            video,
+            thumb: None,
+        }
+    }
+
+    /// Whether nothing more will happen to it.
+    pub fn is_over(&self) -> bool {
+        self.order.is_none()
+    }
+
+    /// What it does after its frames, in words.
+    pub fn describe_video(&self) -> Option<String> {
+        let video = self.video.as_ref()?;
+        let VideoState::Making(done) = video.state else {
+            return None;
+        };
+        Some(format!("video {done}/{}", video.frames()))
+    }
+
+    /// Goes on to what is next, for what its frames are now; `None` if they were given up. The order, if it
+    /// ended without being finished.
+    pub fn update(&mut self, state: Option<&ExportState>, editor: &mut Editor) -> Option<Order> {
+        if self.is_over() {
+            return None;
+        }
+        if let Some(video) = &mut self.video
+            && !matches!(video.state, VideoState::Waiting)
+        {
+            match video.update() {
+                VideoState::Made => {
+                    editor.notify(format!("Saved {}", video.path.display()));
+                    self.end();
+                }
+                VideoState::Failed(error) => {
+                    editor.report_error_in(EXPORT, error.clone());
+                    return self.order.take();
+                }
+                VideoState::Waiting | VideoState::Making(_) => {}
+            }
+            return None;
+        }
+        let Some(state) = state else {
+            self.end();
+            return None;
+        };
+        match state.ended.as_ref()? {
+            Ok(()) => {
+                let (total, folder) = (frames(state.done.total), state.folder.display());
+                editor.notify(format!("{total} in {folder}"));
+                match &mut self.video {
+                    Some(video) => video.make(),
+                    None => self.end(),
+                }
+                None
+            }
+            Err(error) => {
+                let on =
+                    "what is done stays, and Resume in the window of exports goes on from there";
+                editor.report_error_in(EXPORT, format!("{error}; {on}"));
+                self.order.take()
+            }
+        }
+    }
+
+    /// There is nothing left of it to take up.
+    fn end(&mut self) {
+        if let Some(order) = self.order.take() {
+            order.end();
+        }
+    }
+
+    /// Draws its row.
+    pub fn show(&mut self, ui: &mut Ui, state: &ExportState, pictures: &Pictures) {
+        ui.horizontal(|ui| {
+            self.show_thumb(ui, state);
+            ui.vertical(|ui| show_state(ui, &self.name, state, self.video.as_ref(), pictures));
+        });
+    }
+
+    fn show_thumb(&mut self, ui: &mut Ui, state: &ExportState) {
+        let Some(image) = &state.last else { return };
+        let at = state.done.written;
+        let (when, texture) = self.thumb.get_or_insert_with(|| {
+            let load = |name| {
+                ui.ctx()
+                    .load_texture(name, whole(image), TextureOptions::LINEAR)
+            };
+            (at, load("exported"))
+        });
+        if *when != at {
+            *when = at;
+            texture.set(whole(image), TextureOptions::LINEAR);
+        }
+        ui.add(Picture::new(&*texture).fit_to_exact_size(vec2(THUMB, THUMB)));
+    }
+}

@@ -1,0 +1,82 @@
+//! A video that is made when its frames are there.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, TryRecvError};
+
+use crate::export::{Sequence, Video, VideoError};
+use crate::worker::run_in_background;
+
+/// What has become of a video.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum VideoState {
+    /// Its frames are not there yet.
+    Waiting,
+    /// So many of its frames are in it.
+    Making(usize),
+    /// It is there.
+    Made,
+    /// It is not, and why.
+    Failed(String),
+}
+
+/// Makes a video of frames when they are there.
+pub struct VideoMaker {
+    /// Where it goes.
+    pub path: PathBuf,
+    /// How far it is.
+    pub state: VideoState,
+    sequence: Sequence,
+    video: Video,
+    making: Option<Receiver<Result<(), VideoError>>>,
+    /// Frames that are in it.
+    done: Arc<AtomicUsize>,
+}
+
+impl VideoMaker {
+    /// For a sequence that is being exported.
+    pub fn new(sequence: Sequence, path: PathBuf, video: Video) -> Self {
+        Self {
+            path,
+            state: VideoState::Waiting,
+            sequence,
+            video,
+            making: None,
+            done: Arc::default(),
+        }
+    }
+
+    /// How many frames it is made of.
+    pub fn frames(&self) -> usize {
+        self.sequence.frames.count()
+    }
+
+    /// Makes it, on a thread of its own.
+    pub fn make(&mut self) {
+        let (kind, sequence, path) = (self.video, self.sequence.clone(), self.path.clone());
+        let done = Arc::clone(&self.done);
+        let tell = move |frames| done.store(frames, Ordering::Relaxed);
+        let make = move || kind.make(&sequence, &path, tell);
+        self.making = Some(run_in_background("glint-video", make));
+        self.state = VideoState::Making(0);
+    }
+
+    /// Looks how far it is.
+    pub fn update(&mut self) -> &VideoState {
+        if let Some(made) = &self.making {
+            self.state = match made.try_recv() {
+                Ok(Ok(())) => VideoState::Made,
+                Ok(Err(error)) => VideoState::Failed(error.to_string()),
+                Err(TryRecvError::Disconnected) => {
+                    VideoState::Failed("the video was not made".to_owned())
+                }
+                Err(TryRecvError::Empty) => VideoState::Making(self.done.load(Ordering::Relaxed)),
+            };
+            if !matches!(self.state, VideoState::Making(_)) {
+                self.making = None;
+            }
+        }
+        &self.state
+    }
+}
