@@ -10,6 +10,9 @@ use crate::scene::{ColorPack, Scene, Shape, coincidences, unit};
 /// Roundings of the largest coordinate by which a ray must have left a surface to meet it again.
 const LEFT: f64 = 1e-10;
 
+/// Share of the coordinates within which two hits are on one surface: what single precision cannot tell apart.
+const ONE_SURFACE: f64 = 1e-6;
+
 /// What a ray sees, and why.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sight {
@@ -218,6 +221,11 @@ fn in_its_place<'a>(
     let mut earlier = pairs.filter(|pair| pair.later == later);
     earlier.find_map(|pair| {
         let (t, normal) = meet(&scene.objects[pair.earlier].shape, origin, direction)?;
+        // A mesh may be met elsewhere.
+        let across = (t - met.t).abs() * normal.dot(direction).abs();
+        if across > ONE_SURFACE * (met.t + (origin - centre).length()) {
+            return None;
+        }
         let what = What::Object(pair.earlier);
         Some(Met { t, normal, what })
     })

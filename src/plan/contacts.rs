@@ -2,11 +2,12 @@
 //! is seen there; here it is decided once, for all rays and in any precision.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use glam::DVec3;
 
 use super::request::{Model, RenderRequest};
-use crate::scene::{Coincidence, List, Object, Projection, Scene};
+use crate::scene::{Coincidence, Extent, List, Object, Projection, Scene, Shape};
 
 /// Most touching objects that are kept out of the tree; of more, none is.
 const MOST_APART: usize = 256;
@@ -28,8 +29,8 @@ pub type Places = Vec<usize>;
 pub struct Contacts {
     /// Objects that others hide altogether.
     pub covered: BTreeSet<usize>,
-    /// Objects in whose surface earlier ones lie, which are seen there: those, in their order.
-    pub under: Vec<(usize, Places)>,
+    /// Objects in whose surface earlier ones lie in part, which are seen there; sorted.
+    pub shared: Vec<Coincidence>,
     /// The flat objects whose planes hold the eye: it sees their edges at most.
     pub edge_on: Places,
     /// The round object whose surface the eye is on.
@@ -41,13 +42,13 @@ pub struct Contacts {
     apart: BTreeSet<usize>,
 }
 
-/// A primitive in whose surface others lie.
+/// An object in whose surface others lie.
 #[derive(Clone, Debug)]
 pub struct Tie {
-    /// Its number.
-    pub number: usize,
-    /// The numbers of the others; the first that a ray meets is seen.
-    pub over: Vec<usize>,
+    /// The numbers of its primitives.
+    pub numbers: Range<usize>,
+    /// Those of the others, in their order; the first that a ray meets there is seen.
+    pub over: Vec<Range<usize>>,
 }
 
 impl Contacts {
@@ -79,22 +80,15 @@ impl Contacts {
                 .find(|(_, object)| object.visible && is_on(object))
                 .map(|(index, _)| index);
         }
-        contacts.set_apart();
+        contacts.set_apart(&scene.objects);
         contacts
     }
 
     fn add(&mut self, found: Coincidence) {
-        if found.is_whole {
+        if found.extent == Extent::Whole {
             self.covered.insert(found.later);
-            return;
-        }
-        match self
-            .under
-            .last_mut()
-            .filter(|(later, _)| *later == found.later)
-        {
-            Some((_, earlier)) => earlier.push(found.earlier),
-            None => self.under.push((found.later, vec![found.earlier])),
+        } else {
+            self.shared.push(found);
         }
     }
 
@@ -104,23 +98,15 @@ impl Contacts {
         &self.apart
     }
 
-    /// The ties, given the numbers of objects.
-    pub fn ties(&self, number: impl Fn(&usize) -> Option<usize>) -> Vec<Tie> {
-        let ties = self.under.iter().filter_map(|(later, earlier)| {
-            Some(Tie {
-                number: number(later)?,
-                over: earlier.iter().filter_map(&number).collect(),
-            })
-        });
-        ties.collect()
-    }
-
-    fn set_apart(&mut self) {
-        let under = self.under.iter();
-        let under = under.flat_map(|(later, earlier)| std::iter::once(later).chain(earlier));
-        let lights = self.lights_in.iter().flatten();
-        let eye = self.edge_on.iter().chain(&self.eye_on);
-        let all: BTreeSet<usize> = under.chain(lights).chain(eye).copied().collect();
+    fn set_apart(&mut self, objects: &List<Object>) {
+        let shared = self.shared.iter();
+        let shared = shared.flat_map(|found| [found.later, found.earlier]);
+        // A mesh is told by its numbers where it stands.
+        let is_mesh = |place: &usize| matches!(objects[*place].shape, Shape::Mesh(_));
+        let shared = shared.filter(|place| !is_mesh(place));
+        let lights = self.lights_in.iter().flatten().copied();
+        let eye = self.edge_on.iter().chain(&self.eye_on).copied();
+        let all: BTreeSet<usize> = shared.chain(lights).chain(eye).collect();
         if all.len() <= MOST_APART {
             self.apart = all;
         }

@@ -239,6 +239,7 @@ impl<R: Real> Geometry<R> {
                         centre: Vec3::from_dvec3(known.middle_of(mesh) - centre),
                         mesh: Arc::clone(&known),
                         material,
+                        place: index,
                         first: 0,
                     });
                 }

@@ -48,6 +48,8 @@ mod tips;
 
 mod pack;
 
+mod ties;
+
 mod faces;
 
 mod crossed;

@@ -81,7 +81,7 @@ pub struct Plan<R> {
     pub edge_on: Vec<usize>,
     /// The number of what the camera's rays start on.
     pub eye_on: Option<usize>,
-    /// Primitives in whose surface others lie, which are seen there.
+    /// What others lie in the surface of, which are seen there; sorted by its numbers.
     pub ties: Vec<Tie>,
     /// The largest coordinate of what ends.
     pub extent: R,
@@ -151,7 +151,7 @@ impl<R: Real> Plan<R> {
         let number = |place: &usize| numbers.get(place).copied();
         plan.edge_on = contacts.edge_on.iter().filter_map(number).collect();
         plan.eye_on = contacts.eye_on.as_ref().and_then(number);
-        plan.ties = contacts.ties(number);
+        plan.ties = plan.ties(scene, (request, &contacts), number);
         let occluders = occluders.as_deref().unwrap_or_default();
         let holders = |light: usize| {
             let holders = contacts.lights_in.get(light).into_iter().flatten();

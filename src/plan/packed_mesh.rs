@@ -1,5 +1,6 @@
 //! A mesh, ready to be traced: its triangles relative to its own middle, and the way to them.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
@@ -48,6 +49,8 @@ pub struct MeshInstance<R> {
     pub centre: Vec3<R>,
     /// Index of its material.
     pub material: u32,
+    /// Its place in the scene's list.
+    pub place: usize,
     /// The number of its first triangle, counted from that of the geometry's first primitive.
     pub first: usize,
 }
@@ -157,6 +160,16 @@ pub fn member<R: Real>(triangle: &PackedTriangle<R>) -> Member<R> {
 }
 
 impl<R: Real> MeshInstance<R> {
+    /// The numbers of its triangles, counted from that of the geometry's first primitive.
+    pub fn numbers(&self) -> Range<usize> {
+        self.first..self.first + self.mesh.triangles.len()
+    }
+
+    /// Whether it has an inside: what is against its faces from outside is seen from nowhere.
+    pub fn is_solid(&self) -> bool {
+        self.mesh.is_solid
+    }
+
     /// Whether it has an inside, and a point is not there.
     pub fn is_seen_from_outside(&self, point: Vec3<R>) -> bool {
         let PackedMesh { triangles, bvh, .. } = &*self.mesh;

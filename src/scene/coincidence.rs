@@ -5,25 +5,16 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::list::List;
+use super::mesh_coincidence::mesh_coincidences;
+pub use super::mesh_coincidence::{Coincidence, Extent};
 use super::object::Object;
 use super::shape::{Outline, PlanePiece, Shape};
 
 /// Most objects that are held against each other.
 pub const MOST_COMPARED: usize = 2_000;
 
-/// Two visible objects, by their places in the list, that fill the same surface, in part or wholly.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Coincidence {
-    /// The later one, which is not seen where the earlier one is.
-    pub later: usize,
-    /// The earlier one.
-    pub earlier: usize,
-    /// Whether nothing of the later one is left to be seen.
-    pub is_whole: bool,
-}
-
-/// All of them, sorted; coordinates count from `centre`. Meshes are not looked into, nor are more than
-/// 2,000 objects.
+/// All pairs of visible objects that fill the same surface, sorted; coordinates count from `centre`. More than 2,000 objects are not looked at, nor are the
+/// faces of two large meshes that are in the same place.
 pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     if objects.len() > MOST_COMPARED {
         return Vec::new();
@@ -42,7 +33,7 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
                 found.push(Coincidence {
                     later: index,
                     earlier,
-                    is_whole: true,
+                    extent: Extent::Whole,
                 });
             }
         }
@@ -67,7 +58,10 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
             found.push(Coincidence {
                 later: later.0,
                 earlier: earlier.0,
-                is_whole: earlier.1.outline == Outline::Endless,
+                extent: match earlier.1.outline {
+                    Outline::Endless => Extent::Whole,
+                    Outline::Triangle(_) | Outline::Disc(_) => Extent::Part,
+                },
             });
         }
     };
@@ -90,6 +84,7 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
             }
         }
     }
+    found.extend(mesh_coincidences(objects, centre));
     found.sort_unstable();
     found
 }

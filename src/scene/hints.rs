@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use glam::DVec3;
 
 use super::camera::{Camera, Projection};
-use super::coincidence::{Coincidence, MOST_COMPARED, coincidences};
+use super::coincidence::{Coincidence, Extent, MOST_COMPARED, coincidences};
 use super::direction::unit;
 use super::shape::Shape;
 use super::whole::Scene;
@@ -108,7 +108,9 @@ fn add_coincident(scene: &Scene, add: &mut impl FnMut(String, About, bool)) {
         .objects_bounds()
         .map_or(DVec3::ZERO, |(low, high)| low * 0.5 + high * 0.5);
     let mut last = None;
-    for Coincidence { later, earlier, .. } in coincidences(&scene.objects, centre) {
+    let found = coincidences(&scene.objects, centre).into_iter();
+    for found in found.filter(|found| found.extent != Extent::Standing) {
+        let Coincidence { later, earlier, .. } = found;
         if last.replace(later) == Some(later) {
             continue; // Said already.
         }
@@ -117,6 +119,8 @@ fn add_coincident(scene: &Scene, add: &mut impl FnMut(String, About, bool)) {
         let (name, other) = (&object.name, &other.name);
         let words = if is_twice {
             format!("{name} is in the same place as {other}")
+        } else if found.extent == Extent::Faces {
+            format!("{name} shares faces with {other}, which comes first and is seen there")
         } else {
             format!("{name} lies in {other}, which comes first and is seen there")
         };

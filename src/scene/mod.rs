@@ -26,6 +26,8 @@ mod material;
 
 mod object;
 
+mod mesh_coincidence;
+
 mod coincidence;
 
 mod render;
@@ -67,7 +69,7 @@ pub use animation::{
 pub use aspect::Aspect;
 pub use camera::{Bookmark, Camera, Framing, Projection};
 pub use check::{Problem, check, check_edit};
-pub use coincidence::{Coincidence, coincidences};
+pub use coincidence::{Coincidence, Extent, coincidences};
 pub use differences::differences;
 pub use direction::unit;
 pub use examples::{EXAMPLES, Example};

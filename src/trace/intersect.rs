@@ -7,7 +7,7 @@ use super::paths::{NOTHING, Paths, real};
 use super::scan::{Test, Thicket, scan_lists};
 use super::walk::Stack;
 use crate::plan::{Geometry, Plan, RayOrigin};
-use crate::primitive::{Blur, FAR_CAUTION, Primitive, WithPrimitive};
+use crate::primitive::{Blur, FAR_CAUTION, Primitive};
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
@@ -125,37 +125,9 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             active & !active
         };
         if is_tied {
-            best = self.settled(paths, best);
+            best = self.settled(among, (paths, blur), best, stack);
         }
         (best, doubt)
-    }
-
-    /// The same, but for what lies in the surface of the nearest and is seen there. Which of them is nearer,
-    /// rounding decides; which of them is met, their outlines.
-    #[inline(never)]
-    fn settled(self, paths: &Paths<L>, nearest: Nearest<L>) -> Nearest<L> {
-        L::vectorize(
-            self.token,
-            #[inline(always)]
-            || {
-                let mut settled = nearest;
-                for tie in &self.plan.ties {
-                    let mut open = nearest.number.same(self.splat(tie.number as f64));
-                    for &number in &tie.over {
-                        if !open.any() {
-                            break;
-                        }
-                        let methods = &self.plan.methods;
-                        let t = self.plan.primitives.with(number, Meet { paths, methods });
-                        let met = open & t.less(self.infinity());
-                        settled.t = L::select(met, t, settled.t);
-                        settled.number = L::select(met, self.splat(number as f64), settled.number);
-                        open = open & !met;
-                    }
-                }
-                settled
-            },
-        )
     }
 
     /// The nearest of `best` and what stands in the tree. A function of its own: it is long, and few
@@ -264,21 +236,6 @@ pub struct Blocked<L: SimdFloat> {
     pub wide: L::Mask,
     /// Where it is in doubt whether anything does.
     pub doubt: L::Mask,
-}
-
-/// How far one primitive is.
-struct Meet<'a, L> {
-    paths: &'a Paths<L>,
-    methods: &'a Methods,
-}
-
-impl<L: SimdFloat> WithPrimitive<L::Real> for Meet<'_, L> {
-    type Output = L;
-
-    #[inline(always)]
-    fn run<P: Primitive<L::Real>>(self, primitive: &P) -> L {
-        primitive.meet(&self.paths.rays, self.methods)
-    }
 }
 
 /// Looks for the nearest primitive. Of two at the same distance it is the one with the smaller number:

@@ -30,6 +30,8 @@ mod scan;
 
 mod intersect;
 
+mod settle;
+
 mod columns;
 
 mod footprint;

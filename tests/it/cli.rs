@@ -166,7 +166,7 @@ fn the_camera_can_be_chosen() {
 #[test]
 fn wrong_words_and_wrong_files_exit_with_2() {
     let folder = folder();
-    let cases: [(&[&str], &str); 13] = [
+    let cases: [(&[&str], &str); 14] = [
         (&["render", DEMO], "--output <IMAGE>"),
         (
             &["render", DEMO, "-o", "a.jpg"],
@@ -206,7 +206,10 @@ fn wrong_words_and_wrong_files_exit_with_2() {
         ),
         (&["export", DEMO], "--output <DIR>"),
         (&["check"], "<SCENE>..."),
-        (&["rendr"], "there is no command \"rendr\"; there are render"),
+        (
+            &["rendr"],
+            "there is no command \"rendr\"; there are render",
+        ),
         (
             &["chek", DEMO],
             "there is no command \"chek\"; there are render, export, job, check, convert, plan, chart, stability and referee",

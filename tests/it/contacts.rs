@@ -3,10 +3,11 @@
 
 use glam::DVec3;
 use glint::image::Image;
+use glint::mesh::{SOLIDS, Triangles};
 use glint::plan::RenderRequest;
 use glint::scene::{
-    Accelerator, Camera, ColorPack, Disc, Document, Light, Object, Plane, Precision, Scene, Shape,
-    Sphere, Triangle,
+    Accelerator, Camera, ColorPack, Disc, Document, Light, Mesh, Object, Plane, Precision, Scene,
+    Shape, Sphere, Triangle,
 };
 
 use crate::image_model::{assert_same_but_for_edges, picture};
@@ -155,6 +156,109 @@ fn disc_of(height: f64) -> Shape {
         radius,
     }
     .into()
+}
+
+/// A sheet of so many squares a side in a plane, that many units wide, about its own middle.
+fn sheet(squares: u32, width: f64, (position, rotation): (DVec3, DVec3)) -> Shape {
+    let side = squares + 1;
+    let place = |index: u32| (f64::from(index) / f64::from(squares) - 0.5) * width;
+    let points = (0..side * side).map(|n| DVec3::new(place(n % side), 0.0, place(n / side)));
+    let faces = (0..squares * squares).flat_map(|n| {
+        let corner = n / squares * side + n % squares;
+        let far = corner + side;
+        [[corner, corner + 1, far], [corner + 1, far + 1, far]]
+    });
+    let triangles = Triangles::new(points.collect(), faces.collect()).expect("in range");
+    let mesh = Mesh {
+        position,
+        rotation,
+        ..Mesh::of(triangles)
+    };
+    mesh.into()
+}
+
+/// A box with these half sides about a point, turned.
+fn block(half: DVec3, (position, rotation): (DVec3, DVec3)) -> Shape {
+    let mesh = Mesh {
+        position,
+        rotation,
+        scale: half,
+        ..Mesh::of((SOLIDS[0].make)(2.0))
+    };
+    mesh.into()
+}
+
+#[test]
+fn of_faces_of_meshes_in_other_surfaces_the_first_is_seen() {
+    let all = (SIDE * SIDE) as usize;
+    let seen = |shapes: [Shape; 2], what| blue_and_red(&steady_mesh(&scene(shapes), what));
+    let flat = (DVec3::ZERO, DVec3::ZERO);
+    let (blue, red) = seen([floor(), sheet(7, 4.0, flat)], "a sheet under the floor");
+    assert!(blue == 0 && red > all / 2, "{blue} {red}");
+    let (blue, red) = seen([sheet(7, 4.0, flat), floor()], "a sheet on the floor");
+    assert!(red > all / 20 && blue > all / 2, "{blue} {red}");
+    let alone = blue_and_red(&steady_mesh(&scene([sheet(7, 4.0, flat)]), "a sheet")).1;
+    assert_eq!(red, alone, "all of it is seen");
+
+    let turned = (DVec3::new(0.3, 0.1, -0.2), DVec3::new(11.3, 23.7, 5.1));
+    let (blue, red) = seen(
+        [sheet(7, 4.0, turned), sheet(11, 3.0, turned)],
+        "two sheets",
+    );
+    assert!(blue == 0 && red > all / 20, "{blue} {red}");
+    let (blue, red) = seen(
+        [sheet(11, 3.0, turned), sheet(7, 4.0, turned)],
+        "the other way",
+    );
+    assert!(blue > all / 50 && red > all / 50, "{blue} {red}");
+    let (_, red) = seen([disc_of(0.0), sheet(7, 2.0, flat)], "a sheet under a disc");
+    assert!(red > all / 20);
+
+    // A cross of two boxes that are equally high: the first one's top is whole.
+    let (long, wide) = (DVec3::new(1.7, 0.6, 0.5), DVec3::new(0.5, 0.6, 1.7));
+    let cross = [block(long, turned), block(wide, turned)];
+    let (_, first) = seen(cross.clone(), "a cross");
+    let alone = blue_and_red(&steady_mesh(&scene([cross[0].clone()]), "one arm")).1;
+    assert!(first < alone, "the other arm stands before its side");
+    let [one, other] = cross;
+    assert!(first > seen([other, one], "a cross the other way").0 * 9 / 10);
+}
+
+/// The same picture in both precisions; meshes stand in no list.
+fn steady_mesh(scene: &Scene, what: &str) -> Image {
+    let double = at(scene, Precision::Double);
+    let single = at(scene, Precision::Single);
+    assert_same_but_for_edges(&single, &double, what);
+    double
+}
+
+#[test]
+fn a_solid_that_stands_on_a_floor_is_not_told_of_and_one_in_the_floor_is() {
+    let told = |shapes: [Shape; 2]| {
+        let hints = glint::scene::hints(&scene(shapes)).into_iter();
+        hints
+            .filter(|hint| hint.words.contains("shares faces"))
+            .count()
+    };
+    let stands = |y: f64| block(DVec3::ONE, (DVec3::Y * y, DVec3::ZERO));
+    assert_eq!(told([floor(), stands(1.0)]), 0);
+    assert_eq!(
+        told([floor(), sheet(2, 4.0, (DVec3::ZERO, DVec3::ZERO))]),
+        1
+    );
+    // From below, both are seen in the same place, and so they are from beside a floor that the box hangs under.
+    let mut below = scene([floor(), stands(1.0)]);
+    below.camera.position.y = -4.0;
+    below.camera.look_at.y = 0.5;
+    assert_eq!(blue_and_red(&steady_mesh(&below, "from below")).0, 0);
+    let under = scene([floor(), stands(-1.0)]);
+    assert_eq!(
+        blue_and_red(&steady_mesh(&under, "a box under the floor")).0,
+        0
+    );
+    let under = scene([stands(-1.0), floor()]);
+    let (blue, red) = blue_and_red(&steady_mesh(&under, "a box let into the floor"));
+    assert!(blue > 0 && red > 0, "{blue} {red}");
 }
 
 #[test]

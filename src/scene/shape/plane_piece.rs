@@ -48,6 +48,12 @@ impl PlanePiece {
         }
     }
 
+    /// How far a point may be from the plane and count as on it, if the farthest of its like has coordinates up to
+    /// `farthest` from `centre`; in world units.
+    pub fn height_in(&self, centre: DVec3, farthest: f64) -> f64 {
+        IN_PLANE * farthest.max((self.point - centre).abs().max_element())
+    }
+
     /// Whether both fill some area of the same plane; coordinates count from `centre`.
     pub fn coincides(&self, other: &Self, centre: DVec3) -> bool {
         // The normal of the larger one is the more certain.

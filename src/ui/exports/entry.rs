@@ -2,9 +2,8 @@
 
 use egui::{Image as Picture, TextureHandle, TextureOptions, Ui, vec2};
 
-use super::EXPORT;
 use super::fields::frames;
-use super::order::Order;
+use super::order::{EXPORT, Order};
 use super::progress::show_state;
 use super::video_maker::{VideoMaker, VideoState};
 use crate::editor::Editor;

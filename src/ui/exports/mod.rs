@@ -1,16 +1,16 @@
 //! Exporting the animation: what, where to and how, and how far the exports are.
 
-mod entry;
-
 mod fields;
 
 mod kept;
 
 mod order;
 
+mod video_maker;
+
 mod progress;
 
-mod video_maker;
+mod entry;
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError};
@@ -22,7 +22,7 @@ use self::entry::Entry;
 use self::fields::{Found, Settings, fields, forecast, presets};
 pub use self::kept::KeptSettings;
 use self::kept::Owner;
-use self::order::Order;
+use self::order::{EXPORT, Order};
 use self::progress::seconds_left;
 use super::pictures::Pictures;
 use super::requests::UiRequests;
@@ -32,9 +32,6 @@ use crate::editor::Editor;
 use crate::export::Sequence;
 use crate::ui::hint::Hint as _;
 use crate::worker::run_in_background;
-
-/// What messages about exports are about.
-const EXPORT: &str = "export";
 
 /// Settings on the screen.
 struct Shown {

@@ -11,6 +11,9 @@ use crate::export::Sequence;
 use crate::scene::{Document, Leftover, Recovery, Scene};
 use crate::worker::run_in_background;
 
+/// What messages about exports are about.
+pub const EXPORT: &str = "export";
+
 /// First line of the scene that is kept: what is asked for follows.
 const MARK: &str = "// export: ";
 /// The folder of these files, in that of the program's data.

@@ -1,0 +1,357 @@
+//! Faces of meshes that lie in something else, or that something lies in.
+
+use glam::DVec3;
+
+use super::list::List;
+use super::object::Object;
+use super::shape::{Mesh, Outline, PlanePiece, Shape};
+
+/// Most faces that are held against what is around them, of all pairs of objects.
+const MOST_FACES: usize = 200_000;
+
+/// Most pairs of faces that are: some ten milliseconds.
+const MOST_PAIRS: usize = 2_000_000;
+
+/// Share of its size by which a box is widened: flat ones have no height.
+const LITTLE: f64 = 1e-6;
+
+/// Two visible objects, by their places in the list, that fill the same surface, in part or wholly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Coincidence {
+    /// The later one, which is not seen where the earlier one is.
+    pub later: usize,
+    /// The earlier one.
+    pub earlier: usize,
+    /// How much of the later one that is.
+    pub extent: Extent,
+}
+
+/// How much of an object lies in the surface of another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Extent {
+    /// Nothing of it is left to be seen.
+    Whole,
+    /// Some of what is flat lies in what is flat.
+    Part,
+    /// Some faces of a mesh lie in something, or something lies in them.
+    Faces,
+    /// A mesh stands on an endless plane or hangs below it, and has faces there.
+    Standing,
+}
+
+/// What of a scene's visible meshes lies in something that wears other colours; coordinates count from `centre`.
+pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
+    let visible = objects.iter().enumerate();
+    let mut all: Vec<Placed> = visible
+        .filter(|(_, object)| object.visible)
+        .filter_map(|(index, object)| Placed::of(index, object))
+        .collect();
+    let endless: Vec<_> = all.extract_if(.., |one| one.bounds.is_none()).collect();
+    let mut found = Vec::new();
+    let mut add = |one: &Placed, other: &Placed, extent: Extent| {
+        found.push(Coincidence {
+            later: one.index.max(other.index),
+            earlier: one.index.min(other.index),
+            extent,
+        });
+    };
+    for one in &all {
+        for plane in &endless {
+            if let (Shape::Mesh(mesh), Some(flat)) = (one.shape(), plane.shape().plane_piece())
+                && one.shows_beside(plane)
+                && let Some(extent) = on_plane(mesh, &flat, centre)
+            {
+                add(one, plane, extent);
+            }
+        }
+    }
+    let low = |placed: &Placed| placed.bounds.map_or(0.0, |(low, _)| low.x);
+    all.sort_by(|one, other| low(one).total_cmp(&low(other)));
+    let mut budget = Budget {
+        faces: MOST_FACES,
+        pairs: MOST_PAIRS,
+    };
+    for (place, one) in all.iter().enumerate() {
+        let end = one.bounds.map_or(0.0, |(_, high)| high.x);
+        for other in all[place + 1..]
+            .iter()
+            .take_while(|other| low(other) <= end)
+        {
+            let is_mesh = one.is_mesh() || other.is_mesh();
+            if is_mesh && one.shows_beside(other) && budget.coincide(one, other, centre) {
+                add(one, other, Extent::Faces);
+            }
+        }
+    }
+    found
+}
+
+/// A flat object or a mesh, and the box around it, a little wider than it is; none if it has no end.
+struct Placed<'a> {
+    index: usize,
+    object: &'a Object,
+    bounds: Option<(DVec3, DVec3)>,
+}
+
+impl<'a> Placed<'a> {
+    fn of(index: usize, object: &'a Object) -> Option<Self> {
+        let shape = &object.shape;
+        let is_flat = || shape.plane_piece().is_some();
+        let bounds = match shape.bounds() {
+            None if matches!(shape, Shape::Plane(_)) => None,
+            Some(bounds) if matches!(shape, Shape::Mesh(_)) || is_flat() => Some(widened(bounds)),
+            _ => return None,
+        };
+        Some(Self {
+            index,
+            object,
+            bounds,
+        })
+    }
+
+    fn shape(&self) -> &'a Shape {
+        &self.object.shape
+    }
+
+    fn is_mesh(&self) -> bool {
+        matches!(self.shape(), Shape::Mesh(_))
+    }
+
+    /// Whether it would be seen which of them is in front.
+    fn shows_beside(&self, other: &Self) -> bool {
+        self.object.color_pack != other.object.color_pack
+    }
+
+    /// Its flat pieces in a box, with the boxes around them.
+    fn pieces_in(&self, within: (DVec3, DVec3)) -> Vec<(PlanePiece, (DVec3, DVec3))> {
+        let boxed = |piece: PlanePiece, corners: &[DVec3]| {
+            let low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+            let high = corners
+                .iter()
+                .copied()
+                .fold(DVec3::NEG_INFINITY, DVec3::max);
+            let around = widened((low, high));
+            meet(around, within).then_some((piece, around))
+        };
+        let Shape::Mesh(mesh) = self.shape() else {
+            let piece = self.shape().plane_piece().zip(self.bounds);
+            return piece.into_iter().collect();
+        };
+        let transform = mesh.transform();
+        let faces = mesh.source.triangles().corners();
+        let faces = faces.map(|corners| corners.map(|corner| transform.transform_point3(corner)));
+        let pieces = faces.filter_map(|corners| boxed(face(corners)?, &corners));
+        pieces.collect()
+    }
+}
+
+/// A face of a mesh; none if it has no area.
+fn face(corners: [DVec3; 3]) -> Option<PlanePiece> {
+    let [a, b, c] = corners;
+    Some(PlanePiece {
+        point: a,
+        normal: (b - a).cross(c - a).try_normalize()?,
+        outline: Outline::Triangle(corners),
+    })
+}
+
+fn widened((low, high): (DVec3, DVec3)) -> (DVec3, DVec3) {
+    let little = DVec3::splat(LITTLE * (high - low).max_element());
+    (low - little, high + little)
+}
+
+/// Whether two boxes meet.
+fn meet(one: (DVec3, DVec3), other: (DVec3, DVec3)) -> bool {
+    one.0.cmple(other.1).all() && other.0.cmple(one.1).all()
+}
+
+/// How a mesh lies in an endless plane, if any face of it does.
+fn on_plane(mesh: &Mesh, plane: &PlanePiece, centre: DVec3) -> Option<Extent> {
+    let triangles = mesh.source.triangles();
+    let transform = mesh.transform();
+    let height = |point: DVec3| {
+        plane
+            .normal
+            .dot(transform.transform_point3(point) - plane.point)
+    };
+    let (low, high) = triangles.bounds()?;
+    let corners = (0..8).map(|corner| {
+        let way = [0, 1, 2].map(|axis| f64::from(corner >> axis & 1));
+        transform.transform_point3(low + (high - low) * DVec3::from(way))
+    });
+    let reach = corners.map(|corner| (corner - centre).abs().max_element());
+    let little = plane.height_in(centre, reach.fold(0.0, f64::max));
+    // Half of the box to each side, along the plane's normal.
+    let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
+    let across = (transform.matrix3.transpose() * plane.normal)
+        .abs()
+        .dot(half);
+    if height(middle).abs() > across + little {
+        return None;
+    }
+    let heights: Vec<f64> = triangles
+        .points()
+        .iter()
+        .map(|&point| height(point))
+        .collect();
+    let is_on = |corner: &u32| heights[*corner as usize].abs() <= little;
+    let is_in = |face: &[u32; 3]| face.iter().all(is_on);
+    let faces = triangles.faces().iter().zip(triangles.corners());
+    let mut lying = faces.filter(|(face, _)| is_in(face));
+    lying.find(|(_, corners)| face(*corners).is_some())?;
+    let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
+    let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let is_beside = -little <= lowest || highest <= little;
+    let is_flat = highest - lowest <= 2.0 * little;
+    Some(if is_beside && !is_flat {
+        Extent::Standing
+    } else {
+        Extent::Faces
+    })
+}
+
+/// How much may still be looked at.
+struct Budget {
+    faces: usize,
+    pairs: usize,
+}
+
+impl Budget {
+    /// Whether two objects that end have flat pieces in one plane; false where that is too much to look at.
+    fn coincide(&mut self, one: &Placed, other: &Placed, centre: DVec3) -> bool {
+        let (Some(around), Some(other_around)) = (one.bounds, other.bounds) else {
+            return false;
+        };
+        if !meet(around, other_around) {
+            return false;
+        }
+        let faces = |placed: &Placed| match placed.shape() {
+            Shape::Mesh(mesh) => mesh.source.triangles().faces().len(),
+            _ => 1,
+        };
+        let Some(left) = self.faces.checked_sub(faces(one) + faces(other)) else {
+            return false;
+        };
+        self.faces = left;
+        let within = (around.0.max(other_around.0), around.1.min(other_around.1));
+        let pieces = [one, other].map(|placed| {
+            let mut pieces = placed.pieces_in(within);
+            pieces.sort_by(|a, b| a.1.0.x.total_cmp(&b.1.0.x));
+            pieces
+        });
+        self.any(&pieces[0], &pieces[1], centre) || self.any(&pieces[1], &pieces[0], centre)
+    }
+
+    /// Whether any piece coincides with one of the others that begins behind it along x; both are sorted by that.
+    fn any(
+        &mut self,
+        pieces: &[(PlanePiece, (DVec3, DVec3))],
+        others: &[(PlanePiece, (DVec3, DVec3))],
+        centre: DVec3,
+    ) -> bool {
+        pieces.iter().any(|(piece, around)| {
+            let from = others.partition_point(|(_, other)| other.0.x < around.0.x);
+            let others = others[from..].iter();
+            let mut near = others.take_while(|(_, other)| other.0.x <= around.1.x);
+            near.any(|(other, other_around)| {
+                self.pairs = self.pairs.saturating_sub(1);
+                self.pairs > 0 && meet(*around, *other_around) && piece.coincides(other, centre)
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Triangles;
+    use crate::scene::{Describe as _, Disc, Plane};
+
+    /// A sheet of so many squares a side, that many units wide, whose middle is at `at`, turned by so many degrees.
+    fn sheet(squares: u32, width: f64, at: DVec3, rotation: DVec3) -> Mesh {
+        let side = squares + 1;
+        let place = |index: u32| (f64::from(index) / f64::from(squares) - 0.5) * width;
+        let points = (0..side * side).map(|n| DVec3::new(place(n % side), 0.0, place(n / side)));
+        let faces = (0..squares * squares).flat_map(|n| {
+            let corner = n / squares * side + n % squares;
+            [
+                [corner, corner + 1, corner + side],
+                [corner + 1, corner + side + 1, corner + side],
+            ]
+        });
+        let triangles = Triangles::new(points.collect(), faces.collect()).expect("in range");
+        Mesh {
+            position: at,
+            rotation,
+            ..Mesh::of(triangles)
+        }
+    }
+
+    fn found(one: impl Into<Shape>, other: impl Into<Shape>) -> Option<Extent> {
+        let objects = [
+            Object::new("one", "red", one.into()),
+            Object::new("other", "blue", other.into()),
+        ];
+        let found = mesh_coincidences(&objects.into_iter().collect(), DVec3::ZERO);
+        assert!(found.len() <= 1);
+        found.first().map(|found| {
+            assert_eq!((found.earlier, found.later), (0, 1));
+            found.extent
+        })
+    }
+
+    fn floor() -> Plane {
+        Plane {
+            point: DVec3::ZERO,
+            normal: DVec3::Y,
+        }
+    }
+
+    #[test]
+    fn a_sheet_lies_in_a_floor_and_a_box_stands_on_it() {
+        let flat = sheet(7, 50.0, DVec3::ZERO, DVec3::ZERO);
+        assert_eq!(found(flat.clone(), floor()), Some(Extent::Faces));
+        assert_eq!(found(floor(), flat.clone()), Some(Extent::Faces));
+        let higher = sheet(7, 50.0, DVec3::Y * 1e-3, DVec3::ZERO);
+        assert_eq!(found(higher, floor()), None);
+        let turned = sheet(7, 50.0, DVec3::ZERO, DVec3::X);
+        assert_eq!(found(turned, floor()), None);
+        let cube = |y: f64| Mesh {
+            position: DVec3::Y * y,
+            ..Mesh::of((crate::mesh::SOLIDS[0].make)(2.0))
+        };
+        let half = cube(0.0).bounds().map_or(0.0, |(_, high)| high.y);
+        assert_eq!(found(cube(half), floor()), Some(Extent::Standing));
+        assert_eq!(found(cube(-half), floor()), Some(Extent::Standing));
+        assert_eq!(found(cube(0.3 * half), floor()), None);
+        assert_eq!(found(cube(9.0), floor()), None);
+    }
+
+    #[test]
+    fn sheets_that_share_an_area_coincide_however_they_are_cut_and_turned() {
+        let turned = DVec3::new(11.0, 23.0, 5.0);
+        let at = DVec3::new(1.0, 3.0, 2.0);
+        let sheets =
+            |other: DVec3| found(sheet(7, 50.0, at, turned), sheet(11, 30.0, other, turned));
+        assert_eq!(sheets(at), Some(Extent::Faces));
+        let one = sheet(7, 50.0, at, turned);
+        let (across, along) = (one.turn() * DVec3::Y, one.turn() * DVec3::X);
+        assert_eq!(sheets(at + across * 1e-3), None);
+        assert_eq!(sheets(at + along * 39.9), Some(Extent::Faces));
+        assert_eq!(sheets(at + along * 40.1), None, "beside it");
+        let disc = |center: DVec3| Disc {
+            center,
+            normal: across,
+            radius: 1.0,
+        };
+        assert_eq!(found(disc(at), one.clone()), Some(Extent::Faces));
+        assert_eq!(found(disc(at + across), one), None);
+    }
+
+    #[test]
+    fn what_wears_the_same_colours_is_not_asked_about() {
+        let flat = || sheet(3, 5.0, DVec3::ZERO, DVec3::ZERO);
+        let objects = [flat(), flat()].map(|mesh| Object::new("sheet", "red", mesh));
+        assert!(mesh_coincidences(&objects.into_iter().collect(), DVec3::ZERO).is_empty());
+    }
+}

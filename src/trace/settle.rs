@@ -1,0 +1,160 @@
+//! What is seen where several things fill one surface: which of them is nearer, rounding decides; which of them is
+//! met there, their outlines; and which of these is seen, their order.
+
+use std::ops::Range;
+
+use super::candidates::Among;
+use super::intersect::{Kernel, Nearest};
+use super::paths::{Paths, real};
+use super::scan::Test;
+use super::walk::Stack;
+use crate::primitive::{Blur, Primitive, WithPrimitive};
+use crate::scene::Methods;
+use crate::simd::{Mask as _, Real, SimdFloat};
+
+/// How far apart hits on one surface may be across it, in roundings of single precision: of the coordinates
+/// of what is hit, and of the distance. What counts as one surface is the same in any precision.
+const APART: f64 = 8.0 * f32::UNIT_ROUNDOFF as f64;
+
+/// Up to so many times as far apart they are looked for along the rays: as far as they are at 89 degrees from the
+/// normal.
+const SLANT: f64 = 64.0;
+
+impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
+    /// The nearest, but for what lies in its surface and is seen there.
+    #[inline(never)]
+    pub fn settled(
+        self,
+        among: Among<L::Real>,
+        (paths, blur): (&Paths<L>, Blur<L>),
+        nearest: Nearest<L>,
+        stack: &mut Stack<L::Real>,
+    ) -> Nearest<L> {
+        L::vectorize(
+            self.token,
+            #[inline(always)]
+            || {
+                let mut settled = nearest;
+                let infinity = self.infinity();
+                let mut left = nearest.t.less(infinity).bits();
+                while left != 0 {
+                    let lane = left.trailing_zeros() as usize;
+                    left &= left - 1;
+                    let number = nearest.number.lane(lane).to_f64() as usize;
+                    let Some(tie) = self.plan.tie_of(number) else {
+                        continue;
+                    };
+                    let Range { start, end } = tie.numbers;
+                    let (start, end) = (self.splat(start as f64), self.splat(end as f64));
+                    let here = start.at_most(nearest.number) & nearest.number.less(end);
+                    left &= !here.bits();
+                    let mut test = SettleTest {
+                        methods: &self.plan.methods,
+                        over: &tie.over,
+                        met: nearest,
+                        apart: (nearest.t + nearest.t.like(self.plan.extent))
+                            * nearest.t.like_f64(APART),
+                        here,
+                        found: Nearest {
+                            t: infinity,
+                            number: settled.number,
+                        },
+                        rank: infinity,
+                    };
+                    self.meet_all(&tie.over, paths, &mut test);
+                    if let Some(thicket) = self.thicket(among, (here, blur)) {
+                        thicket.scan(paths, stack, &mut test);
+                    }
+                    let (found, is_found) = (test.found, test.rank.less(infinity));
+                    settled.t = L::select(is_found, found.t, settled.t);
+                    settled.number = L::select(is_found, found.number, settled.number);
+                }
+                settled
+            },
+        )
+    }
+
+    /// Tests those of some objects that stand in no tree.
+    #[inline(always)]
+    fn meet_all(self, over: &[Range<usize>], paths: &Paths<L>, test: &mut SettleTest<L>) {
+        let listed = self.plan.primitives.len();
+        for &Range { start, .. } in over.iter().filter(|numbers| numbers.start < listed) {
+            let meet = Meet {
+                paths,
+                number: start,
+                test: &mut *test,
+            };
+            self.plan.primitives.with(start, meet);
+        }
+    }
+}
+
+/// Looks for the first of some objects that is met where something was.
+struct SettleTest<'a, L: SimdFloat> {
+    methods: &'a Methods,
+    over: &'a [Range<usize>],
+    met: Nearest<L>,
+    /// How far from there it may be across its surface.
+    apart: L,
+    /// Where it is looked for.
+    here: L::Mask,
+    found: Nearest<L>,
+    /// Its place among the objects; infinity while nothing is found.
+    rank: L,
+}
+
+impl<L: SimdFloat> Test<L> for SettleTest<'_, L> {
+    #[inline(always)]
+    fn reach(&self) -> L {
+        let reach = self.met.t + self.apart * self.apart.like_f64(SLANT);
+        L::select(self.here, reach, reach.like_f64(-1.0))
+    }
+
+    #[inline(always)]
+    fn test<P: Primitive<L::Real>>(
+        &mut self,
+        primitive: &P,
+        prepared: &P::Prepared<L>,
+        paths: &Paths<L>,
+        number: usize,
+    ) {
+        let Some(rank) = self
+            .over
+            .iter()
+            .position(|numbers| numbers.contains(&number))
+        else {
+            return;
+        };
+        let t = paths.distance::<false, P>(primitive, prepared, number, self.methods);
+        let met = self.here & t.less(t.like(L::Real::INFINITY));
+        let rank = t.like(real(rank));
+        if !(met & rank.at_most(self.rank)).any() {
+            return;
+        }
+        let normal = primitive.refine(&paths.rays, t).normal;
+        let across = (t - self.met.t).abs() * normal.dot(paths.rays.direction).abs();
+        let is_nearer = rank.less(self.rank) | (rank.same(self.rank) & t.less(self.found.t));
+        let found = met & across.at_most(self.apart) & is_nearer;
+        self.rank = L::select(found, rank, self.rank);
+        self.found.t = L::select(found, t, self.found.t);
+        self.found.number = L::select(found, t.like(real(number)), self.found.number);
+    }
+}
+
+/// A primitive that stands in no tree, tested.
+struct Meet<'a, 'b, L: SimdFloat> {
+    paths: &'a Paths<L>,
+    number: usize,
+    test: &'a mut SettleTest<'b, L>,
+}
+
+impl<L: SimdFloat> WithPrimitive<L::Real> for Meet<'_, '_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<P: Primitive<L::Real>>(self, primitive: &P) {
+        let prepared = P::prepare(self.paths.rays.direction);
+        self.test
+            .test(primitive, &prepared, self.paths, self.number);
+    }
+}
