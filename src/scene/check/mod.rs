@@ -186,7 +186,7 @@ fn check_shape(at: &At, shape: &Shape) -> Check {
                 FieldValue::Point(point) => at.point(*point),
                 FieldValue::Direction(direction) => at.direction(*direction),
                 FieldValue::Length(length) => at.positive(*length),
-                FieldValue::Angles(angles) => at.point(*angles),
+                FieldValue::Angles(angles) => at.angles(*angles),
                 FieldValue::Angle(angle) => at.within(*angle, 0.0, 180.0),
                 FieldValue::Factors(factors) => at.factors(*factors),
             };

@@ -142,15 +142,22 @@ impl<'a> At<'a> {
 
     /// A place in the world.
     pub fn point(&self, value: DVec3) -> Check {
+        self.bounded(value, "must lie within 1e12 of the origin")
+    }
+
+    /// Turns about three axes, in degrees.
+    pub fn angles(&self, value: DVec3) -> Check {
+        self.bounded(value, "must have angles of at most 1e12 degrees")
+    }
+
+    fn bounded(&self, value: DVec3, words: &str) -> Check {
         self.finite(&value.to_array())?;
-        if value.abs().max_element() <= MAX_COORDINATE {
+        let largest = value.abs().max_element();
+        if largest <= MAX_COORDINATE {
             return Ok(());
         }
-        self.refuse(format!(
-            "{} must lie within 1e12 of the origin, found {}",
-            self.name(),
-            format_number(value.abs().max_element())
-        ))
+        let found = format_number(largest);
+        self.refuse(format!("{} {words}, found {found}", self.name()))
     }
 
     /// Factors, none of which makes anything flat.

@@ -1,7 +1,7 @@
 //! The chart itself: dots on logarithmic axes, the front below the best of them.
 
 use egui::{
-    Align2, Color32, FontId, Painter, Pos2, Rangef, Rect, Stroke, TextStyle, Ui, Vec2b, pos2, vec2,
+    Color32, FontId, Painter, Pos2, Rangef, Rect, Stroke, TextStyle, Ui, Vec2, Vec2b, pos2, vec2,
 };
 use egui_plot::{
     AxisHints, HPlacement, HoverPosition, Plot, PlotPoint, PlotPoints, PlotTransform, Points,
@@ -9,7 +9,7 @@ use egui_plot::{
 
 use super::super::theme::{GRID, palette};
 use super::axes::{MOST_DECADES, decades, decibels, plain, power_of_ten, powers};
-use super::labels::place;
+use super::labels::{along, place};
 use super::marks;
 use crate::lab::{Family, front};
 
@@ -191,38 +191,35 @@ impl Chart {
         }
         draw_decades(&painter, transform, Stroke::new(0.5, colors.line));
         let small = TextStyle::Small.resolve(ui.style());
-        let mut taken = Vec::new();
+        let dots: Vec<Pos2> = (0..self.spots.len())
+            .map(|index| on_screen(self.at(index)))
+            .collect();
+        let front = self.front();
+        let stairs = stairs(frame, front.iter().map(|&index| dots[index]));
+        let mut taken: Vec<Rect> = stairs
+            .windows(2)
+            .map(|step| Rect::from_two_pos(step[0], step[1]))
+            .collect();
+        let around = |dot: &Pos2| Rect::from_center_size(*dot, Vec2::splat(2.0 * marks::RADIUS));
+        let beside: Vec<Rect> = dots.iter().map(around).chain(taken.clone()).collect();
         for &(name, level) in &self.levels {
             let y = height(level);
             let dashes = [pos2(frame.left(), y), pos2(frame.right(), y)];
             let line = Stroke::new(1.0, colors.muted);
             painter.extend(egui::Shape::dashed_line(&dashes, line, 6.0, 5.0));
             taken.push(Rect::from_two_pos(dashes[0], dashes[1]));
-            // Below its line, or above where there is no room for that.
-            let (down, anchor) = if y + 2.0 * GRID < frame.bottom() {
-                (2.0, Align2::RIGHT_TOP)
-            } else {
-                (-2.0, Align2::RIGHT_BOTTOM)
-            };
-            let at = pos2(frame.right() - GRID, y + down);
-            taken.push(painter.text(at, anchor, name, small.clone(), colors.muted));
+            let text = painter.layout_no_wrap(name.to_owned(), small.clone(), colors.muted);
+            let within = frame.shrink2(vec2(GRID, 0.0));
+            let place = along(y, text.size(), (within, &beside));
+            painter.galley(place.min, text, colors.muted);
+            taken.push(place);
         }
-        let dots: Vec<Pos2> = (0..self.spots.len())
-            .map(|index| on_screen(self.at(index)))
-            .collect();
         for series in &self.series {
             let line: Vec<Pos2> = series.iter().map(|&index| dots[index]).collect();
             let family = series.first().map(|&index| self.spots[index].family);
             let color = marks::color(ui, family.unwrap_or(Family::Sampling));
             painter.line(line, Stroke::new(0.75, color.gamma_multiply(0.6)));
         }
-        let front = self.front();
-        let stairs = stairs(frame, front.iter().map(|&index| dots[index]));
-        taken.extend(
-            stairs
-                .windows(2)
-                .map(|step| Rect::from_two_pos(step[0], step[1])),
-        );
         painter.line(stairs, Stroke::new(1.5, colors.accent));
         for (index, (spot, at)) in self.spots.iter().zip(&dots).enumerate() {
             let color = marks::color(ui, spot.family);

@@ -1,6 +1,6 @@
 //! Where names stand beside their dots: nowhere over another name or a dot.
 
-use egui::{Pos2, Rect, Vec2, vec2};
+use egui::{Pos2, Rect, Vec2, pos2, vec2};
 
 /// Directions from a dot, the best first.
 const WAYS: [Vec2; 8] = [
@@ -17,6 +17,8 @@ const WAYS: [Vec2; 8] = [
 const STEPS: [f32; 6] = [8.0, 16.0, 28.0, 44.0, 64.0, 90.0];
 /// Free room around a name, in points.
 const GAP: f32 = 2.0;
+/// Steps along a line in which a place for its name is looked for, in points.
+const ALONG: f32 = 8.0;
 
 /// A place for each name of this size beside its dot, in their order; `None` where none is free within
 /// `frame`. None lies over another, over a dot (of `radius`) or over what is `taken`.
@@ -51,6 +53,22 @@ pub fn place(
     places
 }
 
+/// A place for the name of a level, of this size: below its line or above it, as far to the right as nothing that is
+/// `taken` is there; at the right end if there is no such place.
+pub fn along(y: f32, size: Vec2, (frame, taken): (Rect, &[Rect])) -> Rect {
+    let heights = [y + GAP, y - GAP - size.y];
+    let steps = ((frame.width() - size.x) / ALONG).max(0.0) as u32;
+    let tries = (0..=steps).flat_map(|step| {
+        let left = frame.right() - size.x - step as f32 * ALONG;
+        heights.map(|top| Rect::from_min_size(pos2(left, top), size))
+    });
+    let fits = |at: &Rect| frame.contains_rect(*at);
+    let is_free = |at: &Rect| !taken.iter().any(|other| at.expand(GAP).intersects(*other));
+    let found = tries.clone().find(|at| fits(at) && is_free(at));
+    let found = found.or_else(|| tries.clone().find(fits));
+    found.unwrap_or_else(|| Rect::from_min_size(pos2(frame.left(), heights[0]), size))
+}
+
 /// Whether the line from a dot to its name crosses another name.
 fn crosses(dot: Pos2, at: Rect, name: Rect) -> bool {
     tie(dot, at).any(|point| name.contains(point))
@@ -74,7 +92,6 @@ fn beside(dot: Pos2, size: Vec2, way: Vec2, step: f32) -> Rect {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use egui::pos2;
     use proptest::prelude::*;
 
     proptest! {
@@ -93,6 +110,20 @@ mod tests {
                 prop_assert!(at.iter().all(|dot| !one.contains(*dot)));
             }
         }
+    }
+
+    #[test]
+    fn the_name_of_a_level_gives_way_to_what_is_there() {
+        let frame = Rect::from_min_size(Pos2::ZERO, vec2(600.0, 300.0));
+        let size = vec2(100.0, 12.0);
+        let place = |taken: &[Rect]| along(150.0, size, (frame, taken));
+        assert_eq!(place(&[]).right_top(), pos2(600.0, 152.0));
+        let below = Rect::from_min_size(pos2(540.0, 155.0), vec2(8.0, 8.0));
+        assert_eq!(place(&[below]).right_bottom(), pos2(600.0, 148.0));
+        let both = Rect::from_min_size(pos2(540.0, 140.0), vec2(8.0, 20.0));
+        let beside = place(&[both]);
+        assert!(beside.right() < 540.0 && beside.right() > 500.0, "{beside}");
+        assert_eq!(place(&[frame]).right(), 600.0, "nowhere is free");
     }
 
     #[test]

@@ -109,7 +109,8 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
             .accessible_name("More of the timeline")
             .hint("Length, frames per second, playing speed, graph of the speed");
     }
-    if timeline.is_playing {
+    // Beside the shot, where nothing else has keys, the picture stays as it is.
+    if timeline.is_playing && (editor.looks_through() || per_second > 0.0) {
         let text = format!(
             "{per_second:.1} of {:.0} fps",
             animation.frames_per_second * timeline.speed
