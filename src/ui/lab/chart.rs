@@ -201,7 +201,7 @@ impl Chart {
             .map(|step| Rect::from_two_pos(step[0], step[1]))
             .collect();
         let around = |dot: &Pos2| Rect::from_center_size(*dot, Vec2::splat(2.0 * marks::RADIUS));
-        let beside: Vec<Rect> = dots.iter().map(around).chain(taken.clone()).collect();
+        let mut beside: Vec<Rect> = dots.iter().map(around).chain(taken.clone()).collect();
         for &(name, level) in &self.levels {
             let y = height(level);
             let dashes = [pos2(frame.left(), y), pos2(frame.right(), y)];
@@ -210,9 +210,11 @@ impl Chart {
             taken.push(Rect::from_two_pos(dashes[0], dashes[1]));
             let text = painter.layout_no_wrap(name.to_owned(), small.clone(), colors.muted);
             let within = frame.shrink2(vec2(GRID, 0.0));
-            let place = along(y, text.size(), (within, &beside));
-            painter.galley(place.min, text, colors.muted);
-            taken.push(place);
+            if let Some(place) = along(y, text.size(), (within, &beside)) {
+                painter.galley(place.min, text, colors.muted);
+                taken.push(place);
+                beside.push(place);
+            }
         }
         for series in &self.series {
             let line: Vec<Pos2> = series.iter().map(|&index| dots[index]).collect();

@@ -54,19 +54,16 @@ pub fn place(
 }
 
 /// A place for the name of a level, of this size: below its line or above it, as far to the right as nothing that is
-/// `taken` is there; at the right end if there is no such place.
-pub fn along(y: f32, size: Vec2, (frame, taken): (Rect, &[Rect])) -> Rect {
+/// `taken` is there; `None` if there is no such place.
+pub fn along(y: f32, size: Vec2, (frame, taken): (Rect, &[Rect])) -> Option<Rect> {
     let heights = [y + GAP, y - GAP - size.y];
     let steps = ((frame.width() - size.x) / ALONG).max(0.0) as u32;
-    let tries = (0..=steps).flat_map(|step| {
+    let mut tries = (0..=steps).flat_map(|step| {
         let left = frame.right() - size.x - step as f32 * ALONG;
         heights.map(|top| Rect::from_min_size(pos2(left, top), size))
     });
-    let fits = |at: &Rect| frame.contains_rect(*at);
     let is_free = |at: &Rect| !taken.iter().any(|other| at.expand(GAP).intersects(*other));
-    let found = tries.clone().find(|at| fits(at) && is_free(at));
-    let found = found.or_else(|| tries.clone().find(fits));
-    found.unwrap_or_else(|| Rect::from_min_size(pos2(frame.left(), heights[0]), size))
+    tries.find(|at| frame.contains_rect(*at) && is_free(at))
 }
 
 /// Whether the line from a dot to its name crosses another name.
@@ -117,13 +114,14 @@ mod tests {
         let frame = Rect::from_min_size(Pos2::ZERO, vec2(600.0, 300.0));
         let size = vec2(100.0, 12.0);
         let place = |taken: &[Rect]| along(150.0, size, (frame, taken));
+        let place = |taken: &[Rect]| place(taken).expect("room enough");
         assert_eq!(place(&[]).right_top(), pos2(600.0, 152.0));
         let below = Rect::from_min_size(pos2(540.0, 155.0), vec2(8.0, 8.0));
         assert_eq!(place(&[below]).right_bottom(), pos2(600.0, 148.0));
         let both = Rect::from_min_size(pos2(540.0, 140.0), vec2(8.0, 20.0));
         let beside = place(&[both]);
         assert!(beside.right() < 540.0 && beside.right() > 500.0, "{beside}");
-        assert_eq!(place(&[frame]).right(), 600.0, "nowhere is free");
+        assert_eq!(along(150.0, size, (frame, &[frame])), None);
     }
 
     #[test]
