@@ -7,13 +7,16 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::request::{Model, RenderRequest};
-use crate::scene::{Coincidence, Extent, List, Object, Projection, Scene, Shape};
+use crate::scene::{Coincidence, Extent, List, Object, Projection, Scene, Shape, unit};
 
 /// Most touching objects that are kept out of the tree; of more, none is.
 const MOST_APART: usize = 256;
 
 /// Most pairs of an object and a point that are looked at: half a millisecond.
 const MOST_PAIRS: usize = 50_000;
+
+/// The sine of an angle from a normal below which a direction counts as along it.
+const ALONG_NORMAL: f64 = 1e-12;
 
 /// How near to a round surface a point counts as on it, in radii.
 const ON_ROUND: f64 = 1e-11;
@@ -31,7 +34,8 @@ pub struct Contacts {
     pub covered: BTreeSet<usize>,
     /// Objects in whose surface earlier ones lie in part, which are seen there; sorted.
     pub shared: Vec<Coincidence>,
-    /// The flat objects whose planes hold the eye: it sees their edges at most.
+    /// The flat objects whose planes hold the eye, which sees their edges at most, or the whole window that parallel
+    /// rays come from, which start behind them.
     pub edge_on: Places,
     /// The round object whose surface the eye is on.
     pub eye_on: Option<usize>,
@@ -69,10 +73,14 @@ impl Contacts {
                 || are_few && is_on_any(&scene.objects, lights[*light])
         };
         contacts.touching_lights = (0..lights.len()).filter(touches).collect();
+        let eye = scene.camera.position;
         let projection = request.projection_of(&scene.camera);
-        if projection == Projection::Perspective {
-            let eye = scene.camera.position;
-            contacts.edge_on = planes_through(&scene.objects, &[eye]).concat();
+        contacts.edge_on = planes_through(&scene.objects, &[eye]).concat();
+        if projection == Projection::Orthographic {
+            let objects = &scene.objects;
+            let holds_window = |place: &usize| is_across(&objects[*place], scene.camera.look_at);
+            contacts.edge_on.retain(holds_window);
+        } else {
             let looked_at = scene.objects.iter().take(MOST_PAIRS);
             let is_on = |object: &Object| object.shape.height_per_radius(eye) <= ON_ROUND;
             contacts.eye_on = looked_at
@@ -118,6 +126,12 @@ impl Contacts {
 fn is_on_any(objects: &List<Object>, point: DVec3) -> bool {
     let mut visible = objects.iter().filter(|object| object.visible);
     visible.any(|object| object.shape.height_per_radius(point) < NEAR_ROUND)
+}
+
+/// Whether a direction is across a flat object.
+fn is_across(object: &Object, direction: DVec3) -> bool {
+    let piece = object.shape.plane_piece().zip(unit(direction));
+    piece.is_some_and(|(piece, way)| way.cross(piece.normal).length() <= ALONG_NORMAL)
 }
 
 /// For each point the visible flat objects whose planes hold it; none where that would take long.

@@ -77,7 +77,7 @@ pub struct Plan<R> {
     pub in_balls: Vec<u32>,
     /// For each triangle, whether no camera ray needs it; empty where they all may.
     pub camera_culled_faces: Vec<bool>,
-    /// Numbers of primitives whose planes hold the eye: no camera ray needs them.
+    /// Numbers of primitives whose planes hold the eye, or all of where parallel rays start: no camera ray needs them.
     pub edge_on: Vec<usize>,
     /// The number of what the camera's rays start on.
     pub eye_on: Option<usize>,

@@ -377,6 +377,28 @@ fn an_eye_on_a_surface_sees_what_it_looks_at() {
 }
 
 #[test]
+fn parallel_rays_that_start_in_a_surface_go_on_from_there() {
+    let look_at = DVec3::new(-0.2, -1.0, -3.0);
+    let wall = |point: DVec3| {
+        let normal = -look_at;
+        Plane { point, normal }.into()
+    };
+    let mut window = scene([wall(DVec3::ZERO), wall(look_at)]);
+    window.camera = Camera {
+        position: DVec3::ZERO,
+        look_at,
+        projection: glint::scene::Projection::Orthographic,
+        orthographic_height: 20.0,
+        ..window.camera
+    };
+    let (blue, red) = blue_and_red(&steady(&window, "in a wall"));
+    assert_eq!((blue, red), ((SIDE * SIDE) as usize, 0));
+    window.camera.position = DVec3::new(0.1, 0.5, 1.5);
+    let (blue, red) = blue_and_red(&steady(&window, "before a wall"));
+    assert_eq!((blue, red), (0, (SIDE * SIDE) as usize));
+}
+
+#[test]
 fn parallel_rays_from_far_away_need_digits() {
     for away in [1e3, 1e5, 1e7] {
         let wall = Plane {
