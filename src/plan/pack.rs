@@ -83,6 +83,8 @@ pub struct Plan<R> {
     pub eye_on: Option<usize>,
     /// What others lie in the surface of, which are seen there; sorted by its numbers.
     pub ties: Vec<Tie>,
+    /// How far above hits rays start at least, as a share of the coordinates: off what may lie in the same surface.
+    pub clearance: R,
     /// The largest coordinate of what ends.
     pub extent: R,
     /// How far the camera's rays may be beside their place; nothing where nobody asks what that leaves undecided.
@@ -135,6 +137,7 @@ impl<R: Real> Plan<R> {
             edge_on: Vec::new(),
             eye_on: None,
             ties: Vec::new(),
+            clearance: R::ZERO,
             extent: R::from_f64(half),
             blur: Blur::NONE,
         };
@@ -151,7 +154,7 @@ impl<R: Real> Plan<R> {
         let number = |place: &usize| numbers.get(place).copied();
         plan.edge_on = contacts.edge_on.iter().filter_map(number).collect();
         plan.eye_on = contacts.eye_on.as_ref().and_then(number);
-        plan.ties = plan.ties(scene, (request, &contacts), number);
+        plan.tie(scene, (request, &contacts), number);
         let occluders = occluders.as_deref().unwrap_or_default();
         let holders = |light: usize| {
             let holders = contacts.lights_in.get(light).into_iter().flatten();

@@ -1,5 +1,8 @@
 //! Objects that fill the same surface, as the tracer counts them: the earlier one of the list is seen.
 
+use std::collections::HashSet;
+use std::ops::Range;
+
 use super::contacts::{Contacts, Tie};
 use super::pack::Plan;
 use super::packed_mesh::MeshInstance;
@@ -7,31 +10,35 @@ use super::request::RenderRequest;
 use crate::scene::{Coincidence, Extent, Projection, Scene};
 use crate::simd::Real;
 
+/// How far apart surfaces may be that count as one, twice: their own numbers are rounded too. What counts as that is
+/// the same in any precision.
+const CLEARANCE: f64 = 8.0 * f32::UNIT_ROUNDOFF as f64;
+
 impl<R: Real> Plan<R> {
-    /// The ties of a scene, sorted, given the numbers of what stands in no tree.
-    pub fn ties(
-        &self,
+    /// Finds the ties of a scene, given the numbers of what stands in no tree.
+    pub fn tie(
+        &mut self,
         scene: &Scene,
         (request, contacts): (&RenderRequest, &Contacts),
         number: impl Fn(&usize) -> Option<usize>,
-    ) -> Vec<Tie> {
-        let numbers = |place: usize| match self.mesh_at(place) {
-            Some(mesh) => {
-                let (first, inner) = (self.primitives.len(), mesh.numbers());
-                Some(first + inner.start..first + inner.end)
-            }
-            None => number(&place).map(|number| number..number + 1),
-        };
+    ) {
         let is_perspective = request.projection_of(&scene.camera) == Projection::Perspective;
+        let is_met = |found: &&Coincidence| !(is_perspective && self.hides(scene, found));
+        let met: Vec<&Coincidence> = contacts.shared.iter().filter(is_met).collect();
+        // Where all that is in one place looks alike, nobody sees which of it is in front.
+        let pack = |place: usize| &scene.objects[place].color_pack;
+        let look_alike = |found: &Coincidence| pack(found.later) == pack(found.earlier);
+        let unlike = met.iter().filter(|found| !look_alike(found));
+        let unlike: HashSet<usize> = unlike.flat_map(|f| [f.later, f.earlier]).collect();
+        let is_seen =
+            |found: &Coincidence| unlike.contains(&found.later) && unlike.contains(&found.earlier);
         let mut ties: Vec<Tie> = Vec::new();
-        for found in &contacts.shared {
+        for found in met.iter().filter(|found| is_seen(found)) {
+            let numbers = |place| self.numbers_at(place, &number);
             let (later, earlier) = (numbers(found.later), numbers(found.earlier));
             let (Some(later), Some(earlier)) = (later, earlier) else {
                 continue;
             };
-            if is_perspective && self.hides(scene, found) {
-                continue;
-            }
             match ties.last_mut().filter(|tie| tie.numbers == later) {
                 Some(tie) => tie.over.push(earlier),
                 None => ties.push(Tie {
@@ -41,7 +48,23 @@ impl<R: Real> Plan<R> {
             }
         }
         ties.sort_by_key(|tie| tie.numbers.start);
-        ties
+        if !met.is_empty() {
+            self.clearance = R::from_f64(CLEARANCE);
+        }
+        self.ties = ties;
+    }
+
+    /// The numbers of the object at a place in the scene's list.
+    fn numbers_at(
+        &self,
+        place: usize,
+        number: impl Fn(&usize) -> Option<usize>,
+    ) -> Option<Range<usize>> {
+        let Some(mesh) = self.mesh_at(place) else {
+            return number(&place).map(|number| number..number + 1);
+        };
+        let (first, inner) = (self.primitives.len(), mesh.numbers());
+        Some(first + inner.start..first + inner.end)
     }
 
     /// Whether a solid stands between the eye and the faces on which it stands: no ray that comes from the eye

@@ -109,8 +109,16 @@ fn add_coincident(scene: &Scene, add: &mut impl FnMut(String, About, bool)) {
         .map_or(DVec3::ZERO, |(low, high)| low * 0.5 + high * 0.5);
     let mut last = None;
     let found = coincidences(&scene.objects, centre).into_iter();
-    for found in found.filter(|found| found.extent != Extent::Standing) {
-        let Coincidence { later, earlier, .. } = found;
+    for found in found {
+        let Coincidence {
+            later,
+            earlier,
+            extent,
+        } = found;
+        let looks_alike = scene.objects[later].color_pack == scene.objects[earlier].color_pack;
+        if extent == Extent::Standing || (extent == Extent::Faces && looks_alike) {
+            continue; // Nobody sees which of them is in front.
+        }
         if last.replace(later) == Some(later) {
             continue; // Said already.
         }
@@ -119,7 +127,7 @@ fn add_coincident(scene: &Scene, add: &mut impl FnMut(String, About, bool)) {
         let (name, other) = (&object.name, &other.name);
         let words = if is_twice {
             format!("{name} is in the same place as {other}")
-        } else if found.extent == Extent::Faces {
+        } else if extent == Extent::Faces {
             format!("{name} shares faces with {other}, which comes first and is seen there")
         } else {
             format!("{name} lies in {other}, which comes first and is seen there")

@@ -39,14 +39,15 @@ pub enum Extent {
     Standing,
 }
 
-/// What of a scene's visible meshes lies in something that wears other colours; coordinates count from `centre`.
+/// What of a scene's visible meshes lies in something; coordinates count from `centre`.
 pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     let visible = objects.iter().enumerate();
-    let mut all: Vec<Placed> = visible
+    let mut ended: Vec<Placed> = visible
         .filter(|(_, object)| object.visible)
         .filter_map(|(index, object)| Placed::of(index, object))
         .collect();
-    let endless: Vec<_> = all.extract_if(.., |one| one.bounds.is_none()).collect();
+    let endless: Vec<_> = ended.extract_if(.., |one| one.bounds.is_none()).collect();
+    ended.sort_by(|one, other| one.start().total_cmp(&other.start()));
     let mut found = Vec::new();
     let mut add = |one: &Placed, other: &Placed, extent: Extent| {
         found.push(Coincidence {
@@ -55,30 +56,25 @@ pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coinciden
             extent,
         });
     };
-    for one in &all {
+    for one in &ended {
         for plane in &endless {
-            if let (Shape::Mesh(mesh), Some(flat)) = (one.shape(), plane.shape().plane_piece())
-                && one.shows_beside(plane)
+            if let (Shape::Mesh(mesh), Some(flat)) = (one.shape, plane.shape.plane_piece())
                 && let Some(extent) = on_plane(mesh, &flat, centre)
             {
                 add(one, plane, extent);
             }
         }
     }
-    let low = |placed: &Placed| placed.bounds.map_or(0.0, |(low, _)| low.x);
-    all.sort_by(|one, other| low(one).total_cmp(&low(other)));
-    let mut budget = Budget {
+    let mut search = Search {
+        centre,
         faces: MOST_FACES,
         pairs: MOST_PAIRS,
     };
-    for (place, one) in all.iter().enumerate() {
+    for (place, one) in ended.iter().enumerate() {
         let end = one.bounds.map_or(0.0, |(_, high)| high.x);
-        for other in all[place + 1..]
-            .iter()
-            .take_while(|other| low(other) <= end)
-        {
-            let is_mesh = one.is_mesh() || other.is_mesh();
-            if is_mesh && one.shows_beside(other) && budget.coincide(one, other, centre) {
+        let others = ended[place + 1..].iter();
+        for other in others.take_while(|other| other.start() <= end) {
+            if (one.is_mesh() || other.is_mesh()) && search.coincide(one, other) {
                 add(one, other, Extent::Faces);
             }
         }
@@ -89,7 +85,7 @@ pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coinciden
 /// A flat object or a mesh, and the box around it, a little wider than it is; none if it has no end.
 struct Placed<'a> {
     index: usize,
-    object: &'a Object,
+    shape: &'a Shape,
     bounds: Option<(DVec3, DVec3)>,
 }
 
@@ -104,22 +100,18 @@ impl<'a> Placed<'a> {
         };
         Some(Self {
             index,
-            object,
+            shape,
             bounds,
         })
     }
 
-    fn shape(&self) -> &'a Shape {
-        &self.object.shape
-    }
-
     fn is_mesh(&self) -> bool {
-        matches!(self.shape(), Shape::Mesh(_))
+        matches!(self.shape, Shape::Mesh(_))
     }
 
-    /// Whether it would be seen which of them is in front.
-    fn shows_beside(&self, other: &Self) -> bool {
-        self.object.color_pack != other.object.color_pack
+    /// Where it begins along x.
+    fn start(&self) -> f64 {
+        self.bounds.map_or(0.0, |(low, _)| low.x)
     }
 
     /// Its flat pieces in a box, with the boxes around them.
@@ -133,8 +125,8 @@ impl<'a> Placed<'a> {
             let around = widened((low, high));
             meet(around, within).then_some((piece, around))
         };
-        let Shape::Mesh(mesh) = self.shape() else {
-            let piece = self.shape().plane_piece().zip(self.bounds);
+        let Shape::Mesh(mesh) = self.shape else {
+            let piece = self.shape.plane_piece().zip(self.bounds);
             return piece.into_iter().collect();
         };
         let transform = mesh.transform();
@@ -211,21 +203,22 @@ fn on_plane(mesh: &Mesh, plane: &PlanePiece, centre: DVec3) -> Option<Extent> {
 }
 
 /// How much may still be looked at.
-struct Budget {
+struct Search {
+    centre: DVec3,
     faces: usize,
     pairs: usize,
 }
 
-impl Budget {
+impl Search {
     /// Whether two objects that end have flat pieces in one plane; false where that is too much to look at.
-    fn coincide(&mut self, one: &Placed, other: &Placed, centre: DVec3) -> bool {
+    fn coincide(&mut self, one: &Placed, other: &Placed) -> bool {
         let (Some(around), Some(other_around)) = (one.bounds, other.bounds) else {
             return false;
         };
         if !meet(around, other_around) {
             return false;
         }
-        let faces = |placed: &Placed| match placed.shape() {
+        let faces = |placed: &Placed| match placed.shape {
             Shape::Mesh(mesh) => mesh.source.triangles().faces().len(),
             _ => 1,
         };
@@ -239,7 +232,7 @@ impl Budget {
             pieces.sort_by(|a, b| a.1.0.x.total_cmp(&b.1.0.x));
             pieces
         });
-        self.any(&pieces[0], &pieces[1], centre) || self.any(&pieces[1], &pieces[0], centre)
+        self.any(&pieces[0], &pieces[1]) || self.any(&pieces[1], &pieces[0])
     }
 
     /// Whether any piece coincides with one of the others that begins behind it along x; both are sorted by that.
@@ -247,7 +240,6 @@ impl Budget {
         &mut self,
         pieces: &[(PlanePiece, (DVec3, DVec3))],
         others: &[(PlanePiece, (DVec3, DVec3))],
-        centre: DVec3,
     ) -> bool {
         pieces.iter().any(|(piece, around)| {
             let from = others.partition_point(|(_, other)| other.0.x < around.0.x);
@@ -255,7 +247,9 @@ impl Budget {
             let mut near = others.take_while(|(_, other)| other.0.x <= around.1.x);
             near.any(|(other, other_around)| {
                 self.pairs = self.pairs.saturating_sub(1);
-                self.pairs > 0 && meet(*around, *other_around) && piece.coincides(other, centre)
+                self.pairs > 0
+                    && meet(*around, *other_around)
+                    && piece.coincides(other, self.centre)
             })
         })
     }
@@ -346,12 +340,5 @@ mod tests {
         };
         assert_eq!(found(disc(at), one.clone()), Some(Extent::Faces));
         assert_eq!(found(disc(at + across), one), None);
-    }
-
-    #[test]
-    fn what_wears_the_same_colours_is_not_asked_about() {
-        let flat = || sheet(3, 5.0, DVec3::ZERO, DVec3::ZERO);
-        let objects = [flat(), flat()].map(|mesh| Object::new("sheet", "red", mesh));
-        assert!(mesh_coincidences(&objects.into_iter().collect(), DVec3::ZERO).is_empty());
     }
 }

@@ -131,14 +131,11 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             ..
         } = hit.surface;
         let origin = match self.plan.ray_origin {
-            RayOrigin::AtHit if self.plan.ties.is_empty() => point + normal * slack,
-            // Off what may lie in the same surface, whose own numbers are rounded too: what counts as that is the
-            // same in any precision.
-            RayOrigin::AtHit => {
+            RayOrigin::AtHit if self.plan.clearance > L::Real::ZERO => {
                 let reach = point.max_abs() + slack.like(self.plan.extent);
-                let off = reach * slack.like_f64(8.0 * f64::from(f32::UNIT_ROUNDOFF));
-                point + normal * slack.max(off)
+                point + normal * slack.max(reach * slack.like(self.plan.clearance))
             }
+            RayOrigin::AtHit => point + normal * slack,
             RayOrigin::Along(distance) => point + direction * slack.like(distance),
             RayOrigin::Roundings => point + roundings_along(point, normal),
         };
