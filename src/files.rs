@@ -1,7 +1,7 @@
 //! Files that are the old one or the new one, whole: what every room writes with.
 
 use std::fs::{self, File};
-use std::io::{self, Write as _};
+use std::io::{self, Read as _, Write as _};
 use std::path::{Component, Path, PathBuf};
 use std::time::SystemTime;
 
@@ -164,7 +164,35 @@ pub fn remove_leftovers(folder: &Path) {
 /// # Errors
 /// What the system answered.
 pub fn make_folder(path: &Path) -> io::Result<()> {
-    fs::create_dir_all(path)
+    let target = behind_links(path)?;
+    if fs::metadata(&target).is_ok_and(|metadata| !metadata.is_dir()) {
+        return Err(io::Error::other(
+            "there is something of that name that is not a folder",
+        ));
+    }
+    fs::create_dir_all(target)
+}
+
+/// Opens a file to be read. Asked before: a pipe would wait for somebody who writes into it.
+///
+/// # Errors
+/// What the system answered, and where something of that name is no file.
+pub fn open_file(path: &Path) -> io::Result<File> {
+    if !fs::metadata(path)?.is_file() {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        return Err(io::Error::other(format!("{name} is not a file")));
+    }
+    File::open(path)
+}
+
+/// What a file holds.
+///
+/// # Errors
+/// See [`open_file`].
+pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    open_file(path)?.read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// What a text file holds; `None` if it cannot be read.
@@ -259,8 +287,7 @@ impl Stamp {
 
     /// Whether the file holds something else by now. One that is gone holds nothing that could be lost.
     pub fn is_outdated(&self, path: &Path) -> bool {
-        let is_file = fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
-        is_file && fs::read(path).is_ok_and(|bytes| blake3::hash(&bytes) != self.hash)
+        read_file(path).is_ok_and(|bytes| blake3::hash(&bytes) != self.hash)
     }
 }
 

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use super::error::ExportError;
 use super::save::write_text;
 use super::sequence::Sequence;
-use crate::files::{back_up, is_same_file, write_atomic};
+use crate::files::{back_up, is_same_file, read_file, write_atomic};
 use crate::scene::{Document, SceneError};
 
 /// Frames that one task makes, unless the farm says otherwise.
@@ -102,7 +102,7 @@ fn write_scene(
             Document { header, scene }.to_text()?.into_bytes()
         }
     };
-    let is_other = fs::read(path).is_ok_and(|there| there != text);
+    let is_other = read_file(path).is_ok_and(|there| there != text);
     let backup = is_other.then(|| back_up(path)).transpose();
     let backup = backup.map_err(disk)?;
     write_atomic(path, &text).map_err(disk)?;

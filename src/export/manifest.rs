@@ -2,10 +2,12 @@
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{File, OpenOptions};
 use std::io::{self, Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+
+use crate::files::{open_file, read_file};
 
 /// The file's name.
 pub const MANIFEST: &str = "glint-frames.txt";
@@ -36,7 +38,7 @@ impl Manifest {
     /// # Errors
     /// Whatever the system answers, except that the file is not there.
     pub fn read(folder: &Path) -> io::Result<Self> {
-        let text = match fs::read(folder.join(MANIFEST)) {
+        let text = match read_file(&folder.join(MANIFEST)) {
             Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
             Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
             Err(error) => return Err(error),
@@ -73,7 +75,7 @@ fn note(line: &str) -> Option<(String, Note)> {
 /// The hash of a file.
 fn content(path: &Path) -> io::Result<Hash> {
     let mut hasher = blake3::Hasher::new();
-    let mut file = File::open(path)?;
+    let mut file = open_file(path)?;
     let mut part = vec![0; 1 << 18];
     loop {
         match file.read(&mut part)? {

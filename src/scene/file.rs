@@ -1,7 +1,7 @@
 //! The door between scenes and the disk: RON in, RON out, nothing half-done either way.
 
 use std::fmt;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf, absolute};
 
@@ -12,7 +12,7 @@ use super::check::{Problem, check};
 use super::locate::{claimed_version, has_inner_comments, header, locate};
 use super::parse_errors::sentence;
 use super::whole::{Scene, VERSION};
-use crate::files::{Stamp, back_up, time_of, write_atomic};
+use crate::files::{Stamp, back_up, read_file, time_of, write_atomic};
 
 /// The RON text of the demo scene, as embedded in the program.
 pub const DEMO_TEXT: &str = include_str!("../../scenes/demo.ron");
@@ -243,7 +243,9 @@ impl Document {
             path: path.to_owned(),
             source,
         };
-        let loses_comments = fs::read_to_string(path).is_ok_and(|text| has_inner_comments(&text));
+        let there = read_file(path).ok();
+        let there = there.and_then(|bytes| String::from_utf8(bytes).ok());
+        let loses_comments = there.is_some_and(|text| has_inner_comments(&text));
         let backup = loses_comments.then(|| back_up(path)).transpose();
         let backup = backup.map_err(disk)?;
         write_atomic(path, text.as_bytes()).map_err(disk)?;

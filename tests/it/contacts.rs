@@ -224,6 +224,29 @@ fn of_faces_of_meshes_in_other_surfaces_the_first_is_seen() {
     assert!(first > seen([other, one], "a cross the other way").0 * 9 / 10);
 }
 
+#[test]
+fn what_looks_alike_in_one_place_casts_no_shadow_there() {
+    let turned = (DVec3::new(0.3, 0.1, -0.2), DVec3::new(11.3, 23.7, 5.1));
+    let sheet = sheet(7, 4.0, turned);
+    let Shape::Mesh(mesh) = &sheet else {
+        panic!("a mesh");
+    };
+    let normal = mesh.turn() * DVec3::Y;
+    let (center, radius) = (turned.0, 1.5);
+    let disc = Disc {
+        center,
+        normal,
+        radius,
+    };
+    let mut both = scene([sheet, disc.into()]);
+    both.lights = vec![lamp(30.0, 60.0, 40.0), lamp(-50.0, 20.0, 10.0)].into();
+    let mut alone = both.clone();
+    both.objects[1].color_pack = both.objects[0].color_pack.clone();
+    alone.objects.remove(1);
+    let (both, alone) = (steady_mesh(&both, "both"), steady_mesh(&alone, "alone"));
+    assert_same_but_for_edges(&both, &alone, "a disc in a sheet");
+}
+
 /// The same picture in both precisions; meshes stand in no list.
 fn steady_mesh(scene: &Scene, what: &str) -> Image {
     let double = at(scene, Precision::Double);

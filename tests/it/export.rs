@@ -215,6 +215,39 @@ fn asking_what_is_missing_makes_nothing() {
     assert!(!frames.exists());
 }
 
+#[cfg(unix)]
+#[test]
+fn pipes_in_place_of_files_and_folders_are_refused_and_not_waited_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pipe = |path: &Path| {
+        let made = Command::new("mkfifo").arg(path).status();
+        assert!(made.expect("a command of every Unix").success());
+    };
+    let refused = |command: &mut Command, words: &str| {
+        let output = run(command);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(!output.status.success() && said.contains(words), "{said}");
+    };
+    let frames = folder.path().join("frames");
+    done(&mut export(&frames, &["--frames", "1-3"]));
+    fs::remove_file(frames.join("rayTrace2.ppm")).expect("there");
+    pipe(&frames.join("rayTrace2.ppm"));
+    let mut missing = export(&frames, &["--frames", "1-3", "--dry-run"]);
+    assert!(done(&mut missing).contains("1 frame of 3 to make: 2"));
+    fs::remove_file(frames.join("glint-frames.txt")).expect("there");
+    pipe(&frames.join("glint-frames.txt"));
+    let mut again = export(&frames, &["--frames", "1-3"]);
+    refused(&mut again, "glint-frames.txt is not a file");
+
+    let scene = folder.path().join("scene.ron");
+    pipe(&scene);
+    let scene = scene.to_str().expect("plain");
+    let words = ["convert", "scenes/knot.ply", "-o", scene];
+    refused(&mut glint(&words), "that is not a file");
+    let mut into_pipe = export(Path::new(scene), &["--frames", "1"]);
+    refused(&mut into_pipe, "that is not a folder");
+}
+
 #[test]
 fn a_video_that_cannot_be_is_told_before_the_first_frame() {
     let folder = tempfile::tempdir().expect("a folder");
