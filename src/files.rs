@@ -8,7 +8,7 @@ use std::time::SystemTime;
 use tempfile::NamedTempFile;
 
 /// How the names of unfinished files begin.
-const UNFINISHED: &str = ".glint-";
+pub const UNFINISHED: &str = ".glint-";
 
 /// Writes `bytes` to `path` so that a reader finds either the old file or the new one, whole: they
 /// go to a new file beside it, to the disk, and then under the name. Links are followed and the
@@ -151,7 +151,7 @@ pub fn remove_leftovers(folder: &Path) {
             continue;
         }
         // Whoever writes to it has locked it.
-        if let Ok(file) = File::open(entry.path())
+        if let Ok(file) = open_file(&entry.path())
             && file.try_lock().is_ok()
         {
             let _ = fs::remove_file(entry.path());

@@ -1,5 +1,7 @@
 //! Names of frames: `rayTrace%d`, `shot.%05d`.
 
+use crate::files::UNFINISHED;
+
 /// A file name with a place for the number.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pattern {
@@ -41,6 +43,9 @@ impl Pattern {
         };
         if after.contains('%') {
             return wrong("a name has one % only");
+        }
+        if text.starts_with(UNFINISHED) {
+            return wrong("a name that begins with .glint- would be taken for an unfinished file");
         }
         if text.contains(['/', '\\']) || text.chars().any(char::is_control) {
             return wrong("a name has no folders in it");

@@ -229,7 +229,12 @@ fn pipes_in_place_of_files_and_folders_are_refused_and_not_waited_for() {
         assert!(!output.status.success() && said.contains(words), "{said}");
     };
     let frames = folder.path().join("frames");
+    fs::create_dir(&frames).expect("made");
+    pipe(&frames.join(".glint-pipe"));
     done(&mut export(&frames, &["--frames", "1-3"]));
+    // The next export would remove such frames.
+    let mut hidden = export(&frames, &["--name", ".glint-%d"]);
+    refused(&mut hidden, "would be taken for an unfinished file");
     fs::remove_file(frames.join("rayTrace2.ppm")).expect("there");
     pipe(&frames.join("rayTrace2.ppm"));
     let mut missing = export(&frames, &["--frames", "1-3", "--dry-run"]);
