@@ -84,6 +84,7 @@ pub struct Plan<R> {
     /// What others lie in the surface of, which are seen there; sorted by its numbers.
     pub ties: Vec<Tie>,
     /// How far above hits rays start at least, as a share of the coordinates: off what may lie in the same surface.
+    /// What is met so near to a hit is in its surface.
     pub clearance: R,
     /// The largest coordinate of what ends.
     pub extent: R,

@@ -12,10 +12,6 @@ use crate::primitive::{Blur, Primitive, WithPrimitive};
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
-/// How far apart hits on one surface may be across it, in roundings of single precision: of the coordinates
-/// of what is hit, and of the distance. What counts as one surface is the same in any precision.
-const APART: f64 = 8.0 * f32::UNIT_ROUNDOFF as f64;
-
 /// Up to so many times as far apart they are looked for along the rays: as far as they are at 89 degrees from the
 /// normal.
 const SLANT: f64 = 64.0;
@@ -35,7 +31,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             #[inline(always)]
             || {
                 let mut settled = nearest;
-                let infinity = self.infinity();
+                let (infinity, listed) = (self.infinity(), self.plan.primitives.len());
                 let mut left = nearest.t.less(infinity).bits();
                 while left != 0 {
                     let lane = left.trailing_zeros() as usize;
@@ -53,7 +49,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                         over: &tie.over,
                         met: nearest,
                         apart: (nearest.t + nearest.t.like(self.plan.extent))
-                            * nearest.t.like_f64(APART),
+                            * nearest.t.like(self.plan.clearance),
                         here,
                         found: Nearest {
                             t: infinity,
@@ -62,7 +58,9 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                         rank: infinity,
                     };
                     self.meet_all(&tie.over, paths, &mut test);
-                    if let Some(thicket) = self.thicket(among, (here, blur)) {
+                    if tie.over.iter().any(|numbers| listed <= numbers.start)
+                        && let Some(thicket) = self.thicket(among, (here, blur))
+                    {
                         thicket.scan(paths, stack, &mut test);
                     }
                     let (found, is_found) = (test.found, test.rank.less(infinity));
