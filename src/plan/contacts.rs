@@ -15,9 +15,6 @@ const MOST_APART: usize = 256;
 /// Most pairs of an object and a point that are looked at: half a millisecond.
 const MOST_PAIRS: usize = 50_000;
 
-/// The sine of an angle from a normal below which a direction counts as along it.
-const ALONG_NORMAL: f64 = 1e-12;
-
 /// How near to a round surface a point counts as on it, in radii.
 const ON_ROUND: f64 = 1e-11;
 
@@ -77,8 +74,11 @@ impl Contacts {
         let projection = request.projection_of(&scene.camera);
         contacts.edge_on = planes_through(&scene.objects, &[eye]).concat();
         if projection == Projection::Orthographic {
-            let objects = &scene.objects;
-            let holds_window = |place: &usize| is_across(&objects[*place], scene.camera.look_at);
+            let direction = unit(scene.camera.look_at).unwrap_or_default();
+            let holds_window = |place: &usize| {
+                let piece = scene.objects[*place].shape.plane_piece();
+                piece.is_some_and(|piece| piece.is_across(direction))
+            };
             contacts.edge_on.retain(holds_window);
         } else {
             let looked_at = scene.objects.iter().take(MOST_PAIRS);
@@ -126,12 +126,6 @@ impl Contacts {
 fn is_on_any(objects: &List<Object>, point: DVec3) -> bool {
     let mut visible = objects.iter().filter(|object| object.visible);
     visible.any(|object| object.shape.height_per_radius(point) < NEAR_ROUND)
-}
-
-/// Whether a direction is across a flat object.
-fn is_across(object: &Object, direction: DVec3) -> bool {
-    let piece = object.shape.plane_piece().zip(unit(direction));
-    piece.is_some_and(|(piece, way)| way.cross(piece.normal).length() <= ALONG_NORMAL)
 }
 
 /// For each point the visible flat objects whose planes hold it; none where that would take long.

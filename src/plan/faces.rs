@@ -40,16 +40,20 @@ impl<R: Real> Plan<R> {
         }
         let eye = Vec3::from_dvec3(scene.camera.position - self.centre);
         // Where a face is shaded as if it were curved, light comes from beneath it too.
-        let seen: Vec<bool> = geometry
-            .meshes
-            .iter()
-            .map(|mesh| mesh.mesh.smooth.is_empty() && mesh.is_seen_from_outside(eye))
-            .collect();
+        let meshes = geometry.meshes.iter().enumerate();
+        let seen = meshes.map(|(index, mesh)| {
+            let holds_eye = self.unseen_faces.get(index).is_some_and(Option::is_some);
+            mesh.mesh.smooth.is_empty() && !holds_eye && mesh.is_seen_from_outside(eye)
+        });
+        let seen: Vec<bool> = seen.collect();
         for light in &mut self.lights {
+            let mut holding = std::mem::take(&mut light.idle_faces).into_iter();
             let meshes = geometry.meshes.iter().zip(&seen);
             let idle = meshes.map(|(mesh, seen)| {
-                let are_idle = *seen && mesh.is_seen_from_outside(light.position);
-                are_idle.then(|| kept.towards(light.position, mesh))
+                holding.next().flatten().or_else(|| {
+                    let are_idle = *seen && mesh.is_seen_from_outside(light.position);
+                    are_idle.then(|| kept.towards(light.position, mesh))
+                })
             });
             light.idle_faces = idle.collect();
         }

@@ -1,4 +1,4 @@
-//! Faces of meshes that cast no shadow of their own.
+//! Faces of meshes that rays from the eye or to a light can do without.
 
 use std::sync::Arc;
 
@@ -13,8 +13,7 @@ use crate::simd::{Real, Vec3};
 /// Bits of a word.
 const BITS: usize = 64;
 
-/// The faces of a mesh that are turned to a light, and the nodes that hold no others: rays to the light which leave
-/// a closed mesh there have entered it elsewhere.
+/// Some faces of a mesh, and the nodes that hold no others.
 #[derive(Clone, Debug)]
 pub struct IdleFaces {
     faces: Vec<u64>,
@@ -22,11 +21,21 @@ pub struct IdleFaces {
 }
 
 impl IdleFaces {
-    /// Those of a mesh for a light in a place, from the middle of the mesh.
+    /// Those of a mesh that are turned to a light in a place, from the middle of the mesh: rays to the light which
+    /// leave a closed mesh there have entered it elsewhere.
     fn towards<R: Real>(mesh: &PackedMesh<R>, place: Vec3<R>) -> Self {
         let size = place.max_abs() + mesh.bvh.bounds.max_abs();
         let margin = size * R::from_f64(FAR_CAUTION);
-        let is_idle = |face: &PackedTriangle<R>| margin < face.normal.dot(place - face.corners[0]);
+        Self::of(mesh, |face| {
+            margin < face.normal.dot(place - face.corners[0])
+        })
+    }
+
+    /// The faces of a mesh that are idle.
+    pub fn of<R: Real>(
+        mesh: &PackedMesh<R>,
+        is_idle: impl Fn(&PackedTriangle<R>) -> bool + Sync,
+    ) -> Self {
         let word = |faces: &[PackedTriangle<R>]| {
             let bits = faces.iter().enumerate();
             bits.fold(0, |word, (bit, face)| {

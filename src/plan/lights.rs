@@ -17,17 +17,23 @@ use crate::simd::{Real, Vec3};
 pub struct PointLight<R> {
     /// Where it shines from.
     pub position: Vec3<R>,
+    /// The same in the world.
+    pub place: DVec3,
     /// > 0.
     pub intensity: R,
     /// For each triangle, whether another one casts all of its shadow; empty where none is known.
     pub shadow_culled_faces: Vec<bool>,
-    /// For each mesh of the geometry, the faces that cast no shadow which others do not, if some are known.
+    /// For each mesh of the geometry, the faces that hold the light, or cast no shadow which others do not, if some are
+    /// known.
     pub idle_faces: Vec<Option<Arc<IdleFaces>>>,
     /// Numbers of primitives whose planes hold the light: they cast no shadow from it.
     pub holders: Vec<usize>,
-    /// What rounding may have moved its position by, where it may be on a surface: what is no farther from it
-    /// does not stand before it, and what it is no higher above is not lit.
-    pub rounding: Option<R>,
+    /// What rounding may have moved its position by.
+    pub rounding: R,
+    /// Whether it may be in the plane of something: what it is no higher above than that is not lit.
+    pub may_be_level: bool,
+    /// Whether it may be on a surface: what is no farther from it than that does not stand before it.
+    pub may_touch: bool,
 }
 
 /// A light that is farther away than so many times what stands in a tree is rounded by more than its boxes differ.
@@ -51,6 +57,8 @@ pub fn pack_lights<R: Real>(
     (touches, holders): (impl Fn(usize) -> bool, impl Fn(usize) -> Vec<usize>),
 ) -> Vec<PointLight<R>> {
     let all = model == Model::Everything;
+    // Of the planes of a mesh's faces, nobody knows which a light is in.
+    let has_meshes = scene.faces() > 0 && !all;
     let lights = scene.lights.iter().enumerate();
     let shining = lights.filter(|(_, light)| light.visible && (all || light.intensity > 0.0));
     shining
@@ -61,13 +69,17 @@ pub fn pack_lights<R: Real>(
         })
         .map(|(index, light)| {
             let position: Vec3<R> = Vec3::from_dvec3(light.position - centre);
+            let may_touch = touches(index);
             PointLight {
                 position,
+                place: light.position,
                 intensity: R::from_f64(light.intensity),
                 shadow_culled_faces: Vec::new(),
                 idle_faces: Vec::new(),
                 holders: holders(index),
-                rounding: touches(index).then(|| position.max_abs() * roundings()),
+                rounding: position.max_abs() * roundings(),
+                may_be_level: may_touch || has_meshes,
+                may_touch,
             }
         })
         .collect()

@@ -50,6 +50,8 @@ mod pack;
 
 mod ties;
 
+mod holding;
+
 mod faces;
 
 mod crossed;

@@ -9,6 +9,7 @@ use super::balls::{Balls, balls_of};
 use super::contacts::{Contacts, Tie};
 use super::geometry::{Geometry, Kept, is_planted, is_tree, material_number, measure_loose};
 use super::hit_order::HitOrder;
+use super::idle::IdleFaces;
 use super::lights::{PointLight, pack_lights};
 use super::materials::{Material, linear, pack_materials};
 use super::plane_occluders::classify_planes;
@@ -79,6 +80,8 @@ pub struct Plan<R> {
     pub camera_culled_faces: Vec<bool>,
     /// Numbers of primitives whose planes hold the eye, or all of where parallel rays start: no camera ray needs them.
     pub edge_on: Vec<usize>,
+    /// For each mesh of the geometry, the faces that no camera ray needs for the same reason, if there are any.
+    pub unseen_faces: Vec<Option<Arc<IdleFaces>>>,
     /// The number of what the camera's rays start on.
     pub eye_on: Option<usize>,
     /// What others lie in the surface of, which are seen there; sorted by its numbers.
@@ -136,6 +139,7 @@ impl<R: Real> Plan<R> {
             in_balls: Vec::new(),
             camera_culled_faces: Vec::new(),
             edge_on: Vec::new(),
+            unseen_faces: Vec::new(),
             eye_on: None,
             ties: Vec::new(),
             clearance: R::ZERO,
@@ -166,6 +170,7 @@ impl<R: Real> Plan<R> {
                 || plan.is_at_mesh(scene.lights[light].position)
         };
         plan.lights = pack_lights(scene, centre, (occluders, model), (touches, holders));
+        plan.hold(scene, request);
         if matches!(request.sampling, Sampling::Adaptive { .. }) {
             measure_loose(&mut plan.primitives);
             plan.tips = camera.map_or_else(Tips::default, |camera| plan.tips(request, &camera));
@@ -207,13 +212,6 @@ impl<R: Real> Plan<R> {
         let lights = self.lights.iter().map(|light| light.position.max_abs());
         let size = lights.fold(self.extent.max(R::from_f64(eye)), R::max);
         self.blur = Blur::of_size(size);
-    }
-
-    /// Whether a point may be on a mesh.
-    fn is_at_mesh(&self, point: DVec3) -> bool {
-        let point = Vec3::from_dvec3(point - self.centre);
-        let meshes = self.geometry.iter().flat_map(|geometry| &geometry.meshes);
-        meshes.into_iter().any(|mesh| mesh.is_around(point))
     }
 
     /// Takes what stands in a tree, and surrounds it.

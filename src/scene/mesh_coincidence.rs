@@ -116,35 +116,21 @@ impl<'a> Placed<'a> {
 
     /// Its flat pieces in a box, with the boxes around them.
     fn pieces_in(&self, within: (DVec3, DVec3)) -> Vec<(PlanePiece, (DVec3, DVec3))> {
-        let boxed = |piece: PlanePiece, corners: &[DVec3]| {
-            let low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-            let high = corners
-                .iter()
-                .copied()
-                .fold(DVec3::NEG_INFINITY, DVec3::max);
-            let around = widened((low, high));
-            meet(around, within).then_some((piece, around))
-        };
         let Shape::Mesh(mesh) = self.shape else {
             let piece = self.shape.plane_piece().zip(self.bounds);
             return piece.into_iter().collect();
         };
-        let transform = mesh.transform();
-        let faces = mesh.source.triangles().corners();
-        let faces = faces.map(|corners| corners.map(|corner| transform.transform_point3(corner)));
-        let pieces = faces.filter_map(|corners| boxed(face(corners)?, &corners));
-        pieces.collect()
+        let boxed = |piece: PlanePiece| {
+            let Outline::Triangle(corners) = piece.outline else {
+                return None;
+            };
+            let low = corners.into_iter().fold(DVec3::INFINITY, DVec3::min);
+            let high = corners.into_iter().fold(DVec3::NEG_INFINITY, DVec3::max);
+            let around = widened((low, high));
+            meet(around, within).then_some((piece, around))
+        };
+        mesh.pieces().filter_map(boxed).collect()
     }
-}
-
-/// A face of a mesh; none if it has no area.
-fn face(corners: [DVec3; 3]) -> Option<PlanePiece> {
-    let [a, b, c] = corners;
-    Some(PlanePiece {
-        point: a,
-        normal: (b - a).cross(c - a).try_normalize()?,
-        outline: Outline::Triangle(corners),
-    })
 }
 
 fn widened((low, high): (DVec3, DVec3)) -> (DVec3, DVec3) {
@@ -190,7 +176,7 @@ fn on_plane(mesh: &Mesh, plane: &PlanePiece, centre: DVec3) -> Option<Extent> {
     let is_in = |face: &[u32; 3]| face.iter().all(is_on);
     let faces = triangles.faces().iter().zip(triangles.corners());
     let mut lying = faces.filter(|(face, _)| is_in(face));
-    lying.find(|(_, corners)| face(*corners).is_some())?;
+    lying.find(|(_, corners)| PlanePiece::between(*corners).is_some())?;
     let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
     let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let is_beside = -little <= lowest || highest <= little;

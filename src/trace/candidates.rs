@@ -1,9 +1,10 @@
 //! The primitives that are worth testing.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::roots::Roots;
-use crate::plan::{Plan, PointLight};
+use crate::plan::{IdleFaces, Plan, PointLight};
 use crate::primitive::{Extent, KINDS, Kind, Primitive, Rectangle, Visit};
 use crate::simd::{Real, Vec3};
 
@@ -25,6 +26,8 @@ pub struct Among<'a, R> {
     pub roots: &'a Roots<R>,
     /// The light that the rays go to, if they do.
     pub light: Option<&'a PointLight<R>>,
+    /// For each mesh, the faces that are not tested, if there are any.
+    pub idle: &'a [Option<Arc<IdleFaces>>],
 }
 
 /// Direction of a range of pixels.

@@ -1,5 +1,7 @@
 //! One depth of reflection: what its packets can meet, and what they see.
 
+use std::sync::Arc;
+
 use super::beam::{Bounds, beam_around};
 use super::bounce::Bounce;
 use super::bundle::{Shaft, aside};
@@ -16,7 +18,7 @@ use super::stats::Rays;
 use super::thin::widest_spread;
 use super::thresholds::{LARGEST_STRETCH, SLIPPING};
 use super::walk::Stack;
-use crate::plan::{HitOrder, Plan};
+use crate::plan::{HitOrder, IdleFaces, Plan};
 use crate::primitive::{Blur, CAUTION, Kind, Ray, roundings};
 use crate::simd::{Mask as _, Real, SimdFloat};
 
@@ -83,6 +85,15 @@ impl<L: SimdFloat> Bounce<L> {
         }
     }
 
+    /// The faces of meshes that the rays of the packets do without.
+    fn unseen_by<'p>(&self, plan: &'p Plan<L::Real>) -> &'p [Option<Arc<IdleFaces>>] {
+        if self.parents.is_empty() {
+            &plan.unseen_faces
+        } else {
+            &[]
+        }
+    }
+
     /// Finds what the packets meet, and what can cast shadows there. Whether there is anything.
     #[inline(always)]
     pub fn find<const TREE: bool>(
@@ -101,6 +112,7 @@ impl<L: SimdFloat> Bounce<L> {
         let mut bounds = Bounds::new(kernel.token);
         let mut farthest = kernel.splat(0.0);
         let none = Blur::splat(kernel.token, Blur::NONE);
+        let idle = self.unseen_by(plan);
         for index in 0..self.packets.len() {
             let ignored = self.ignored_by(kernel, index);
             let packet = &mut self.packets[index];
@@ -110,6 +122,7 @@ impl<L: SimdFloat> Bounce<L> {
                 candidates: &self.seen,
                 roots: &self.roots,
                 light: None,
+                idle,
             };
             let (active, stack) = (packet.active, &mut scratch.stack);
             let mut uncertainty = self.uncertainties.get_mut(index);

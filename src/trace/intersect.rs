@@ -68,7 +68,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Kernel<'a, L, TREE> {
             geometry,
             first,
             roots: among.roots,
-            light: among.light,
+            idle: among.idle,
             back_from: match self.plan.ray_origin {
                 RayOrigin::AtHit => among.light.and_then(|light| light.apex(geometry)),
                 _ => None,

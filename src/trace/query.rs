@@ -59,6 +59,7 @@ impl SceneQuery {
             candidates: &self.all,
             roots: &Roots::default(),
             light: None,
+            idle: &[],
         };
         let rays = (&paths, Blur::NONE);
         let (nearest, _) = kernel.nearest(among, rays, true, &mut Vec::new());

@@ -1,11 +1,13 @@
 //! Tests of many primitives: those of a list one by one, those of a tree where its boxes are met.
 
+use std::sync::Arc;
+
 use super::bundle::{Beside, Bundle};
 use super::candidates::Candidates;
 use super::paths::Paths;
 use super::roots::Roots;
 use super::walk::{Seek, Stack, walk, walk_beside};
-use crate::plan::{Child, Geometry, IdleFaces, PackedMesh, Plan, PointLight};
+use crate::plan::{Child, Geometry, IdleFaces, PackedMesh, Plan};
 use crate::primitive::{Blur, Kind, Prepared, Primitive, Ray, Visit, WithPrepared};
 use crate::simd::{SimdFloat, Vec3};
 
@@ -105,8 +107,8 @@ pub struct Thicket<'a, L: SimdFloat> {
     pub first: usize,
     /// Where to start; at the roots of the trees, to look beside the rays.
     pub roots: &'a Roots<L::Real>,
-    /// The light that the rays go to, if they do.
-    pub light: Option<&'a PointLight<L::Real>>,
+    /// For each mesh, the faces that are not tested, if there are any.
+    pub idle: &'a [Option<Arc<IdleFaces>>],
     /// The point that boxes are held against the ways from, see [`Bundle::from_point`].
     pub back_from: Option<Vec3<L::Real>>,
     /// Where there is a ray.
@@ -198,7 +200,7 @@ impl<L: SimdFloat, T: Test<L>> Objects<'_, L, T> {
             geometry,
             first,
             roots,
-            light,
+            idle,
             active,
             beside,
             ..
@@ -219,7 +221,7 @@ impl<L: SimdFloat, T: Test<L>> Objects<'_, L, T> {
         let bundle = self.bundle.seen_from(instance.centre);
         let mut faces = Faces {
             mesh: &instance.mesh,
-            idle: light.and_then(|light| light.idle_faces.get(mesh)?.as_deref()),
+            idle: idle.get(mesh).and_then(Option::as_deref),
             first: first + instance.first,
             active,
             paths: &paths,

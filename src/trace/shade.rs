@@ -295,13 +295,14 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let shrink = one / distance;
         let l = to_light * shrink;
         let cosine = hit.surface.normal.dot(l);
-        let lowest = match light.rounding {
-            None => zero,
-            Some(rounding) => part + shrink * shrink.like(rounding),
+        let lowest = if light.may_be_level {
+            part + shrink * shrink.like(light.rounding)
+        } else {
+            zero
         };
         let lit_side = hit.here & lowest.less(cosine);
         // Highlights may end sharply where light comes from the side.
-        if let Some(slant) = point.slant.as_ref().filter(|_| light.rounding.is_none())
+        if let Some(slant) = point.slant.as_ref().filter(|_| !light.may_touch)
             && !matches!(point.coat, Coat::One(surface) if surface.exponent.is_none())
         {
             let grazes = slant.grazes(kernel.plan, (cosine, shrink));
@@ -323,12 +324,11 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         if !candidates.casters.is_empty() || !candidates.thin.is_empty() {
             let paths = kernel.spawn(hit, l);
             let reach = match kernel.plan.ray_origin {
-                RayOrigin::AtHit => match light.rounding {
-                    None => distance,
-                    // What the light is on, within rounding, does not stand before it.
-                    Some(rounding) => distance - distance * part - distance.like(rounding),
-                },
-                RayOrigin::Roundings => distance,
+                // What the light is on, within rounding, does not stand before it.
+                RayOrigin::AtHit if light.may_touch => {
+                    distance - distance * part - distance.like(light.rounding)
+                }
+                RayOrigin::AtHit | RayOrigin::Roundings => distance,
                 RayOrigin::Along(start) => distance - distance.like(start),
             };
             let looks_beside = self.looks_for(&candidates.thin);
@@ -401,13 +401,14 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             candidates: &source.candidates.casters,
             roots: &source.candidates.roots,
             light: Some(light),
+            idle: &light.idle_faces,
         };
         let (onwards, is_lost) = match &point.slant {
             None => (Blur::splat(kernel.token, Blur::NONE), reach.less(reach)),
             Some(slant) => slant.onwards(kernel.plan),
         };
         // What a light is on does not stand before it.
-        let doubt = Doubt::new(onwards, (point.slant.is_some(), light.rounding.is_none()));
+        let doubt = Doubt::new(onwards, (point.slant.is_some(), !light.may_touch));
         let wanted = (reach, facing, thick);
         let blocked = kernel.blocked(among, (paths, doubt), wanted, stack);
         if point.slant.is_some() {

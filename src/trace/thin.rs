@@ -67,6 +67,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             candidates: among,
             roots: &roots,
             light: None,
+            idle: &[],
         };
         let exact = Blur::splat(self.token, Blur::NONE);
         let best = match self.thicket(among, (looking, exact)) {

@@ -12,7 +12,7 @@ use glint::scene::{
 
 use crate::image_model::{assert_same_but_for_edges, picture};
 
-const SIDE: u32 = 160;
+pub const SIDE: u32 = 160;
 
 fn pack(color: [f64; 3]) -> ColorPack {
     ColorPack {
@@ -24,7 +24,7 @@ fn pack(color: [f64; 3]) -> ColorPack {
 }
 
 /// Objects in red and blue by turns, seen from above.
-fn scene(shapes: impl IntoIterator<Item = Shape>) -> Scene {
+pub fn scene(shapes: impl IntoIterator<Item = Shape>) -> Scene {
     let mut scene = Scene::empty();
     scene.packs_mut().clear();
     scene
@@ -53,7 +53,7 @@ fn scene(shapes: impl IntoIterator<Item = Shape>) -> Scene {
     scene
 }
 
-fn lamp(x: f64, y: f64, z: f64) -> Light {
+pub fn lamp(x: f64, y: f64, z: f64) -> Light {
     Light {
         position: DVec3::new(x, y, z),
         intensity: 0.7,
@@ -62,7 +62,7 @@ fn lamp(x: f64, y: f64, z: f64) -> Light {
     }
 }
 
-fn floor() -> Shape {
+pub fn floor() -> Shape {
     let (point, normal) = (DVec3::ZERO, DVec3::Y);
     Plane { point, normal }.into()
 }
@@ -86,7 +86,7 @@ fn ceiling() -> Shape {
 }
 
 /// The picture in a precision, found as the plan likes.
-fn at(scene: &Scene, precision: Precision) -> Image {
+pub fn at(scene: &Scene, precision: Precision) -> Image {
     let wanted = RenderRequest {
         precision,
         ..RenderRequest::sized(SIDE, SIDE)
@@ -114,7 +114,7 @@ fn steady(scene: &Scene, what: &str) -> Image {
 }
 
 /// How many pixels are more blue than red, and the other way round.
-fn blue_and_red(image: &Image) -> (usize, usize) {
+pub fn blue_and_red(image: &Image) -> (usize, usize) {
     let count = |is: fn(&[u8; 4]) -> bool| image.pixels.iter().filter(|pixel| is(pixel)).count();
     (count(|[r, _, b, _]| b > r), count(|[r, _, b, _]| r > b))
 }
@@ -159,7 +159,7 @@ fn disc_of(height: f64) -> Shape {
 }
 
 /// A sheet of so many squares a side in a plane, that many units wide, about its own middle.
-fn sheet(squares: u32, width: f64, (position, rotation): (DVec3, DVec3)) -> Shape {
+pub fn sheet(squares: u32, width: f64, (position, rotation): (DVec3, DVec3)) -> Shape {
     let side = squares + 1;
     let place = |index: u32| (f64::from(index) / f64::from(squares) - 0.5) * width;
     let points = (0..side * side).map(|n| DVec3::new(place(n % side), 0.0, place(n / side)));
@@ -178,7 +178,7 @@ fn sheet(squares: u32, width: f64, (position, rotation): (DVec3, DVec3)) -> Shap
 }
 
 /// A box with these half sides about a point, turned.
-fn block(half: DVec3, (position, rotation): (DVec3, DVec3)) -> Shape {
+pub fn block(half: DVec3, (position, rotation): (DVec3, DVec3)) -> Shape {
     let mesh = Mesh {
         position,
         rotation,
@@ -248,7 +248,7 @@ fn what_looks_alike_in_one_place_casts_no_shadow_there() {
 }
 
 /// The same picture in both precisions; meshes stand in no list.
-fn steady_mesh(scene: &Scene, what: &str) -> Image {
+pub fn steady_mesh(scene: &Scene, what: &str) -> Image {
     let double = at(scene, Precision::Double);
     let single = at(scene, Precision::Single);
     assert_same_but_for_edges(&single, &double, what);

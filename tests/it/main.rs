@@ -17,6 +17,7 @@ mod fuzz;
 mod harness;
 mod image_model;
 mod kept;
+mod mesh_contacts;
 mod meshes;
 mod needs;
 mod numerics;

@@ -9,6 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::describe::{Describe, Field, FieldValue, turned};
 use super::mesh_source::{MeshFiles, MeshSource};
+use super::plane_piece::PlanePiece;
 use crate::mesh::{FARTHEST, Triangles, icosphere};
 use crate::scene::notation;
 
@@ -222,6 +223,14 @@ impl Mesh {
             matrix3: self.turn(),
             translation: self.position,
         }
+    }
+
+    /// Its faces in the world; those without an area are none.
+    pub fn pieces(&self) -> impl Iterator<Item = PlanePiece> {
+        let transform = self.transform();
+        let place = move |corner: DVec3| transform.transform_point3(corner);
+        let corners = self.source.triangles().corners();
+        corners.filter_map(move |corners| PlanePiece::between(corners.map(place)))
     }
 }
 

@@ -28,6 +28,9 @@ pub enum Outline {
 /// moved it by.
 const ON_PLANE: f64 = 1e-12;
 
+/// The sine of an angle from a normal below which a direction counts as along it.
+const ALONG_NORMAL: f64 = 1e-12;
+
 /// Share of the coordinates within which two surfaces count as one: what single precision cannot tell apart.
 const IN_PLANE: f64 = 4.0 / (1 << 24) as f64;
 
@@ -36,6 +39,16 @@ const IN_PLANE: f64 = 4.0 / (1 << 24) as f64;
 const OVER_BORDER: f64 = 1e-6;
 
 impl PlanePiece {
+    /// What is between three corners; none if that has no area.
+    pub fn between(corners: [DVec3; 3]) -> Option<Self> {
+        let [a, b, c] = corners;
+        Some(Self {
+            point: a,
+            normal: (b - a).cross(c - a).try_normalize()?,
+            outline: Outline::Triangle(corners),
+        })
+    }
+
     /// Above zero on the side that the normal points to, below it on the other, zero on the plane, all within
     /// rounding; in world units.
     pub fn height(&self, point: DVec3) -> f64 {
@@ -46,6 +59,11 @@ impl PlanePiece {
         } else {
             height
         }
+    }
+
+    /// Whether a unit direction is across it.
+    pub fn is_across(&self, direction: DVec3) -> bool {
+        direction.cross(self.normal).length() <= ALONG_NORMAL
     }
 
     /// How far a point may be from the plane and count as on it, if the farthest of its like has coordinates up to
@@ -138,12 +156,8 @@ mod tests {
     use super::*;
 
     fn triangle(corners: [[f64; 2]; 3]) -> PlanePiece {
-        let [a, b, c] = corners.map(|[x, z]| DVec3::new(x, 0.0, z));
-        PlanePiece {
-            point: a,
-            normal: (b - a).cross(c - a).normalize(),
-            outline: Outline::Triangle([a, b, c]),
-        }
+        let corners = corners.map(|[x, z]| DVec3::new(x, 0.0, z));
+        PlanePiece::between(corners).expect("an area")
     }
 
     fn disc(x: f64, z: f64, radius: f64) -> PlanePiece {

@@ -1,0 +1,157 @@
+//! Faces of meshes that hold the eye, the window of parallel rays, or a light: rounding would decide on which side of
+//! them it is. Such a face is not seen by the eye and casts no shadow from the light.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::bvh::{Bvh, Child};
+use super::idle::IdleFaces;
+use super::pack::Plan;
+use super::packed_mesh::{MeshInstance, PackedMesh};
+use super::request::{Model, RenderRequest};
+use crate::primitive::{BoundingBox, PackedTriangle};
+use crate::scene::{Mesh, PlanePiece, Projection, Scene, Shape, unit};
+use crate::simd::{Real, Vec3};
+
+/// How high above a face, as a share of the coordinates, single precision may take a point to be that is on it.
+const ON_FACE: f64 = 8.0 * f32::UNIT_ROUNDOFF as f64;
+
+/// Where rays start from, or go to.
+#[derive(Clone, Copy)]
+struct Place {
+    /// In the world.
+    point: DVec3,
+    /// The direction of parallel rays, which come from a window through the point.
+    direction: Option<DVec3>,
+}
+
+impl<R: Real> Plan<R> {
+    /// Finds the faces that hold the eye or a light.
+    pub fn hold(&mut self, scene: &Scene, request: &RenderRequest) {
+        let Some(geometry) = &self.geometry else {
+            return;
+        };
+        if request.model == Model::Everything {
+            return;
+        }
+        let holding = |place: Place| {
+            let meshes = geometry.meshes.iter();
+            meshes
+                .map(|instance| match &scene.objects[instance.place].shape {
+                    Shape::Mesh(mesh) => place.held_by(instance, mesh),
+                    _ => None,
+                })
+                .collect()
+        };
+        let is_parallel = request.projection_of(&scene.camera) == Projection::Orthographic;
+        self.unseen_faces = holding(Place {
+            point: scene.camera.position,
+            direction: unit(scene.camera.look_at).filter(|_| is_parallel),
+        });
+        for light in &mut self.lights {
+            light.idle_faces = holding(Place {
+                point: light.place,
+                direction: None,
+            });
+        }
+    }
+
+    /// Whether a point may be on a mesh.
+    pub fn is_at_mesh(&self, point: DVec3) -> bool {
+        let point = Vec3::from_dvec3(point - self.centre);
+        let meshes = self.geometry.iter().flat_map(|geometry| &geometry.meshes);
+        meshes.into_iter().any(|mesh| mesh.is_around(point))
+    }
+}
+
+impl Place {
+    /// The faces of a mesh that hold it, and those that single precision cannot tell from them; none where no face does.
+    fn held_by<R: Real>(&self, instance: &MeshInstance<R>, mesh: &Mesh) -> Option<Arc<IdleFaces>> {
+        let packed = &*instance.mesh;
+        let near = Near::new(self, packed, mesh);
+        let may_hold = meets_any(
+            &packed.bvh,
+            |bounds| near.meets(bounds),
+            |face| near.is_held(&packed.triangles[face as usize]),
+        );
+        // Only now are all faces worth a look.
+        let is_held = may_hold && mesh.pieces().any(|piece| self.is_in(&piece));
+        is_held.then(|| Arc::new(IdleFaces::of(packed, |face| near.is_held(face))))
+    }
+
+    fn is_in(&self, piece: &PlanePiece) -> bool {
+        piece.height(self.point) == 0.0
+            && self
+                .direction
+                .is_none_or(|direction| piece.is_across(direction))
+    }
+}
+
+/// The same, from the middle of a mesh, and as exactly as its faces are known.
+#[derive(Clone, Copy)]
+struct Near<R> {
+    point: Vec3<R>,
+    direction: Option<Vec3<R>>,
+    slack: R,
+}
+
+impl<R: Real> Near<R> {
+    fn new(place: &Place, packed: &PackedMesh<R>, mesh: &Mesh) -> Self {
+        let point = Vec3::from_dvec3(place.point - packed.middle_of(mesh));
+        let size = point.max_abs() + packed.bvh.bounds.max_abs();
+        Self {
+            point,
+            direction: place.direction.map(Vec3::from_dvec3),
+            slack: size * R::from_f64(ON_FACE),
+        }
+    }
+
+    /// Whether a box may hold it, or meets the window.
+    fn meets(&self, bounds: &BoundingBox<R>) -> bool {
+        let (middle, _) = bounds.ball();
+        let half = bounds.high - middle + Vec3::splat(self.slack);
+        let away = (self.point - middle).to_array();
+        match self.direction {
+            None => away
+                .into_iter()
+                .zip(half.to_array())
+                .all(|(away, half)| away.abs() <= half),
+            Some(direction) => {
+                let across = direction.to_array().map(R::abs);
+                (self.point - middle).dot(direction).abs() <= half.dot(Vec3::from(across))
+            }
+        }
+    }
+
+    fn is_held(&self, face: &PackedTriangle<R>) -> bool {
+        let is_in =
+            |point: Vec3<R>, normal: Vec3<R>| normal.dot(self.point - point).abs() <= self.slack;
+        match self.direction {
+            None => is_in(face.corners[0], face.normal),
+            Some(direction) => face.corners.iter().all(|&corner| is_in(corner, direction)),
+        }
+    }
+}
+
+/// Whether any member is it, of those in boxes that count.
+fn meets_any<R: Real>(
+    bvh: &Bvh<R>,
+    counts: impl Fn(&BoundingBox<R>) -> bool,
+    is_it: impl Fn(u32) -> bool,
+) -> bool {
+    let mut waiting = vec![0];
+    while let Some(node) = waiting
+        .pop()
+        .and_then(|index: u32| bvh.nodes.get(index as usize))
+    {
+        for place in (0..node.count).filter(|&place| counts(&node.bounds(place))) {
+            match node.child(place) {
+                Child::Node(inner) => waiting.push(inner),
+                Child::Member(member) if is_it(member) => return true,
+                Child::Member(_) => {}
+            }
+        }
+    }
+    false
+}

@@ -1,0 +1,105 @@
+//! Eyes, windows of parallel rays and lights on faces of meshes: no speckle, and the same in any precision.
+
+use glam::{DMat3, DVec3};
+use glint::scene::{Camera, Mesh, Precision, Projection, Scene, Shape};
+
+use crate::contacts::{SIDE, at, block, blue_and_red, floor, lamp, scene, sheet, steady_mesh};
+use crate::image_model::assert_same_but_for_edges;
+
+const ALL: usize = (SIDE * SIDE) as usize;
+
+/// Of no sheet that is turned like this, any face has a number of few digits.
+const TURNED: DVec3 = DVec3::new(11.0, 23.0, 5.0);
+const HERE: DVec3 = DVec3::new(0.3, 1.7, 0.2);
+
+fn turn() -> DMat3 {
+    let Shape::Mesh(mesh) = leaning() else {
+        unreachable!("a sheet is a mesh");
+    };
+    Mesh::turn(&mesh)
+}
+
+/// A sheet of 18 faces over the floor.
+fn leaning() -> Shape {
+    sheet(3, 4.0, (HERE, TURNED))
+}
+
+fn with_camera(mut scene: Scene, change: impl FnOnce(&mut Camera)) -> Scene {
+    change(&mut scene.camera);
+    scene
+}
+
+#[test]
+fn an_eye_on_a_face_does_not_see_it() {
+    for (x, z) in [(0.4, 0.1), (-0.3, 0.9), (2.0 / 3.0, 0.1), (0.0, 0.0)] {
+        let above = with_camera(scene([floor(), leaning()]), |camera| {
+            camera.position = HERE + turn() * DVec3::new(x, 0.0, z);
+            camera.look_at = DVec3::new(0.1, -1.0, -0.2);
+        });
+        let (blue, red) = blue_and_red(&steady_mesh(&above, "on a sheet"));
+        assert_eq!(blue, 0, "{x}, {z}: the sheet itself");
+        assert!(red > 0);
+    }
+    // A little above it, it is all that is seen.
+    let above = with_camera(scene([floor(), leaning()]), |camera| {
+        camera.position = HERE + turn() * DVec3::new(0.4, 1e-4, 0.1);
+        camera.look_at = turn() * DVec3::new(0.1, -1.0, -0.2);
+    });
+    let (automatic, double) = (at(&above, Precision::Auto), at(&above, Precision::Double));
+    assert_same_but_for_edges(&automatic, &double, "just above a sheet");
+    let (blue, red) = blue_and_red(&double);
+    assert!(blue > ALL * 9 / 10 && red < ALL / 100, "{blue} {red}");
+}
+
+#[test]
+fn an_eye_on_a_box_sees_its_other_sides_from_within() {
+    let inside = with_camera(
+        scene([floor(), block(DVec3::ONE, (HERE, TURNED))]),
+        |camera| {
+            camera.position = HERE + turn() * DVec3::new(0.3, 1.0, -0.2);
+            camera.look_at = turn() * DVec3::new(0.2, -1.0, 0.1);
+        },
+    );
+    assert_eq!(blue_and_red(&steady_mesh(&inside, "into a box")), (ALL, 0));
+}
+
+#[test]
+fn parallel_rays_go_on_from_the_face_that_their_window_lies_in() {
+    let along = turn() * -DVec3::Y;
+    // The middle of the window need not be on the sheet.
+    for beside in [0.0, 3.0] {
+        let window = with_camera(scene([floor(), leaning()]), |camera| {
+            camera.position = HERE + turn() * DVec3::X * beside;
+            camera.look_at = along;
+            camera.projection = Projection::Orthographic;
+            camera.orthographic_height = 8.0;
+        });
+        let (blue, _) = blue_and_red(&steady_mesh(&window, "in a sheet"));
+        assert_eq!(blue, 0, "{beside}");
+        let before = with_camera(window, |camera| camera.position -= along * 1e-3);
+        let (blue, _) = blue_and_red(&steady_mesh(&before, "before a sheet"));
+        assert!(blue > ALL / 10, "{blue}");
+    }
+}
+
+#[test]
+fn a_face_casts_no_shadow_from_a_light_on_it_and_is_not_lit() {
+    let mut hung = scene([floor(), leaning()]);
+    for (x, z) in [(0.4, 0.1), (2.0 / 3.0, 0.1), (2.5, 0.3)] {
+        let on = HERE + turn() * DVec3::new(x, 0.0, z);
+        hung.lights = [lamp(on.x, on.y, on.z)].into_iter().collect();
+        let what = format!("a lamp at {x}, {z} in a sheet");
+        let lit = steady_mesh(&hung, &what);
+        let automatic = at(&hung, Precision::Auto);
+        assert_same_but_for_edges(&automatic, &lit, &what);
+        // As if the sheet were not there, but for where it is seen.
+        let mut alone = hung.clone();
+        alone.objects.remove(1);
+        let alone = at(&alone, Precision::Double);
+        let is_floor = |pixel: &[u8; 4]| pixel[2] == 0 || pixel[0] > 0;
+        let pairs = lit.pixels.iter().zip(&alone.pixels);
+        let pairs = pairs.filter(|(lit, alone)| is_floor(lit) && is_floor(alone));
+        let differ = pairs.filter(|(lit, alone)| lit[0].abs_diff(alone[0]) > 1);
+        assert_eq!(differ.count(), 0, "{what}");
+    }
+}
