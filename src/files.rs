@@ -7,8 +7,8 @@ use std::time::SystemTime;
 
 use tempfile::NamedTempFile;
 
-/// How the names of unfinished files begin.
-pub const UNFINISHED: &str = ".glint-";
+/// How the names of unfinished files begin, and no others.
+pub const UNFINISHED: &str = ".glint-unfinished-";
 
 /// Writes `bytes` to `path` so that a reader finds either the old file or the new one, whole: they
 /// go to a new file beside it, to the disk, and then under the name. Links are followed and the
@@ -23,11 +23,22 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
     beside.place_durably()
 }
 
-/// Whether a path that a file names leads to its own folder, or to one within it: nothing is read elsewhere, because
-/// the file may come from a stranger.
-pub fn stays_inside(path: &Path) -> bool {
-    path.components()
-        .all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
+/// Whether a path that a file in a folder names leads to that folder, or to one within it, links followed: nothing is
+/// read elsewhere, because the file may come from a stranger.
+pub fn stays_inside(folder: &Path, path: &Path) -> bool {
+    let mut parts = path.components();
+    let is_plain = parts.all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+    let folder = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
+    let leads_there = |real: PathBuf| {
+        let folder = folder.canonicalize();
+        folder.is_ok_and(|folder| real.starts_with(folder))
+    };
+    // What is not there, nobody reads.
+    is_plain && folder.join(path).canonicalize().map_or(true, leads_there)
 }
 
 /// More backups of a file than anybody wants.
@@ -74,17 +85,20 @@ impl NewFile {
     /// A new file for `path`. Links are followed, and the permissions of an existing file kept.
     ///
     /// # Errors
-    /// Whatever the system answers, and where there is no folder for it, or something else of its name.
+    /// Whatever the system answers, and where there is no folder for it, or something else of its name or a file that is
+    /// only to be read.
     pub fn beside(path: &Path) -> io::Result<Self> {
         let target = behind_links(path)?;
         let existing = fs::metadata(&target).ok();
-        if existing
-            .as_ref()
-            .is_some_and(|metadata| !metadata.is_file())
-        {
-            return Err(io::Error::other(
-                "there is something of that name that is not a file",
-            ));
+        if let Some(existing) = &existing {
+            let refused = |why: &str| Err(io::Error::other(why));
+            if !existing.is_file() {
+                return refused("there is something of that name that is not a file");
+            }
+            // It could be replaced all the same: that asks its folder only.
+            if existing.permissions().readonly() {
+                return refused("the file of that name may not be written to");
+            }
         }
         let folder = match target.parent() {
             Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -328,4 +342,28 @@ fn new_file_in(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     builder.tempfile_in(folder)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[cfg(unix)]
+    fn links_that_lead_out_of_a_folder_do_not_stay_inside() {
+        let place = tempfile::tempdir().expect("a folder");
+        let (inside, outside) = (place.path().join("scene"), place.path().join("secret.ply"));
+        fs::create_dir(&inside).expect("made");
+        for file in [&outside, &inside.join("own.ply")] {
+            fs::write(file, "ply").expect("written");
+        }
+        for (name, leads_to) in [("out.ply", &outside), ("in.ply", &inside.join("own.ply"))] {
+            std::os::unix::fs::symlink(leads_to, inside.join(name)).expect("linked");
+        }
+        std::os::unix::fs::symlink(place.path(), inside.join("up")).expect("linked");
+        let stays = |path: &str| stays_inside(&inside, Path::new(path));
+        assert!(stays("own.ply") && stays("./own.ply") && stays("in.ply") && stays("gone.ply"));
+        assert!(!stays("out.ply") && !stays("up/secret.ply") && !stays("../secret.ply"));
+        assert!(!stays(&outside.display().to_string()));
+    }
 }

@@ -1,7 +1,7 @@
 //! `glint export`: an animation as files, taken up where it was left; `glint job`: the same for a
 //! farm.
 
-use std::path::PathBuf;
+use std::path::{PathBuf, absolute};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -110,10 +110,17 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
     if args.dry_run {
         return tell_missing(&sequence);
     }
-    if let Some((path, _)) = video {
-        // It may be in the folder of the frames.
-        sequence.prepare()?;
+    if let Some((path, video)) = video {
+        let remark = video.check(&sequence).map_err(CliError::usage)?;
+        // It may be in the folder of the frames, which need not be there yet.
+        let of_video = path.parent().and_then(|folder| absolute(folder).ok());
+        if of_video.is_some() && of_video == absolute(&sequence.folder).ok() {
+            sequence.prepare()?;
+        }
         Video::check_place(path).map_err(CliError::failed)?;
+        if let Some(remark) = remark {
+            say(&remark);
+        }
     }
     let threads = Threads::new(args.threads.map(usize::from))?;
     let start = Instant::now();

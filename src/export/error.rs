@@ -1,7 +1,7 @@
 //! Why something could not be exported.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::image::FormatError;
 
@@ -31,6 +31,69 @@ pub enum ExportError {
         /// What the system answered.
         source: io::Error,
     },
+}
+
+/// Why there is no video.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum VideoError {
+    /// The ending says no known kind.
+    #[error("{0:?} ends in no known video format; end it in .mp4, .mov, .mkv, .gif or .apng")]
+    Unknown(String),
+    /// There is no ffmpeg.
+    #[error(
+        "ffmpeg is not installed, or not on the PATH; the frames are there, and this makes the video of them:\n{command}\n.gif and .apng need no ffmpeg"
+    )]
+    NoFfmpeg {
+        /// What to type.
+        command: String,
+    },
+    /// It ended with an error.
+    #[error("ffmpeg failed:\n{said}")]
+    Ffmpeg {
+        /// The end of what it said.
+        said: String,
+    },
+    /// The kind of video holds no such frames.
+    #[error("{why}")]
+    Unfit {
+        /// What it holds, and what would do.
+        why: String,
+    },
+    /// A frame could not be read.
+    #[error("cannot read {path}: {source}", path = .path.display())]
+    Frame {
+        /// The frame's file.
+        path: PathBuf,
+        /// What the decoder said.
+        source: image::ImageError,
+    },
+    /// The video could not be written.
+    #[error("cannot write {path}: {why}", path = .path.display())]
+    Disk {
+        /// The video's file.
+        path: PathBuf,
+        /// What the system or the encoder answered.
+        why: String,
+    },
+}
+
+impl VideoError {
+    /// The video could not be written, for this reason.
+    pub fn disk(path: &Path, why: &dyn std::error::Error) -> Self {
+        Self::Disk {
+            path: path.to_owned(),
+            why: why.to_string(),
+        }
+    }
+
+    /// A frame could not be read.
+    pub fn unreadable(path: &Path, source: image::ImageError) -> Self {
+        Self::Frame {
+            path: path.to_owned(),
+            source,
+        }
+    }
 }
 
 /// The end of what another program said, which tells why it failed.

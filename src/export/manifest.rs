@@ -50,6 +50,11 @@ impl Manifest {
         })
     }
 
+    /// Whether the file was written, and something of its name is there.
+    pub fn is_noted(&self, file: &str) -> bool {
+        self.notes.contains_key(file) && self.folder.join(file).exists()
+    }
+
     /// Whether the file is there, whole, as it was written, and shows what it would show now.
     pub fn is_valid(&self, file: &str, fingerprint: &Hash) -> bool {
         let Some(note) = self.notes.get(file) else {

@@ -18,11 +18,17 @@ mod exporting;
 
 mod job;
 
+mod frame_file;
+
+mod animated;
+
+mod ffmpeg;
+
 mod video;
 
 mod povray;
 
-pub use error::ExportError;
+pub use error::{ExportError, VideoError};
 pub use exporting::{ExportStep, Exported, Exporting};
 pub use frames::{Frames, FramesError};
 pub use job::{Job, JobError, write_job};
@@ -31,4 +37,4 @@ pub use pattern::{Pattern, PatternError};
 pub use povray::{ByPovray, PovrayError, by_povray, povray_differences, povray_text};
 pub use save::{free_path, save_image, write_text};
 pub use sequence::{NoSuchFrame, Sequence, SequenceError, fingerprint};
-pub use video::{Video, VideoError};
+pub use video::Video;

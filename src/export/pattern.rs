@@ -45,7 +45,7 @@ impl Pattern {
             return wrong("a name has one % only");
         }
         if text.starts_with(UNFINISHED) {
-            return wrong("a name that begins with .glint- would be taken for an unfinished file");
+            return wrong("such a name would be taken for that of an unfinished file");
         }
         if text.contains(['/', '\\']) || text.chars().any(char::is_control) {
             return wrong("a name has no folders in it");

@@ -158,8 +158,13 @@ impl Sequence {
     /// # Errors
     /// [`ExportError::Unwritable`], for a scene that has no text.
     pub fn is_valid(&self, manifest: &Manifest, frame: u64) -> Result<bool, ExportError> {
+        let file = self.file(frame);
+        // What it shows takes a while to tell.
+        if !manifest.is_noted(&file) {
+            return Ok(false);
+        }
         let fingerprint = fingerprint(&self.shown(frame), self.format)?;
-        Ok(manifest.is_valid(&self.file(frame), &fingerprint))
+        Ok(manifest.is_valid(&file, &fingerprint))
     }
 
     /// Writes a frame: beside its place first, then under its name, then into the notes. It is not

@@ -158,7 +158,7 @@ fn read_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, Fault> {
         )));
     }
     let name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
-    if !stays_inside(Path::new(name.as_ref())) {
+    if !stays_inside(folder, Path::new(name.as_ref())) {
         let name = excerpt(&name, 80);
         return Err(Fault::new(format!(
             "its buffer {name} is not read: it must lie in the folder of the file, or in one within it"

@@ -48,7 +48,7 @@ impl<'a> Libraries<'a> {
 
     /// What is in a file.
     fn text(&self, name: &str) -> Option<String> {
-        if !stays_inside(Path::new(name)) {
+        if !stays_inside(self.folder, Path::new(name)) {
             return None;
         }
         let left = self.left.get();

@@ -28,6 +28,7 @@ const HOMES: &[(&[&str], &[&str])] = &[
             "worker",
             "export/exporting",
             "export/writers",
+            "export/ffmpeg",
             "export/povray",
             "plan/idle",
             "plan/thickness",

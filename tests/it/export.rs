@@ -182,15 +182,17 @@ fn two_exports_into_one_folder_do_not_hurt_each_other() {
 #[test]
 fn what_dead_programs_left_is_removed_and_what_others_write_is_not() {
     let folder = tempfile::tempdir().expect("a folder");
-    let left = folder.path().join(".glint-AbCdEf-rayTrace1.ppm");
-    let written = folder.path().join(".glint-GhIjKl-rayTrace2.ppm");
+    let left = folder.path().join(".glint-unfinished-AbCdEf-rayTrace1.ppm");
+    let written = folder.path().join(".glint-unfinished-GhIjKl-rayTrace2.ppm");
     fs::write(&left, "half a frame").expect("written");
     let other = fs::File::create(&written).expect("made");
     other.lock().expect("locked");
+    let somebodys = ".glint-notes";
+    fs::write(folder.path().join(somebodys), "buy milk").expect("written");
     done(&mut export(folder.path(), &["--frames", "1-2"]));
     let names: Vec<_> = files(folder.path()).into_keys().collect();
-    let kept = ".glint-GhIjKl-rayTrace2.ppm";
-    assert_eq!(names, [kept, "rayTrace1.ppm", "rayTrace2.ppm"]);
+    let kept = ".glint-unfinished-GhIjKl-rayTrace2.ppm";
+    assert_eq!(names, [somebodys, kept, "rayTrace1.ppm", "rayTrace2.ppm"]);
 }
 
 #[test]
@@ -230,11 +232,11 @@ fn pipes_in_place_of_files_and_folders_are_refused_and_not_waited_for() {
     };
     let frames = folder.path().join("frames");
     fs::create_dir(&frames).expect("made");
-    pipe(&frames.join(".glint-pipe"));
+    pipe(&frames.join(".glint-unfinished-pipe"));
     done(&mut export(&frames, &["--frames", "1-3"]));
     // The next export would remove such frames.
-    let mut hidden = export(&frames, &["--name", ".glint-%d"]);
-    refused(&mut hidden, "would be taken for an unfinished file");
+    let mut hidden = export(&frames, &["--name", ".glint-unfinished-%d"]);
+    refused(&mut hidden, "taken for that of an unfinished file");
     fs::remove_file(frames.join("rayTrace2.ppm")).expect("there");
     pipe(&frames.join("rayTrace2.ppm"));
     let mut missing = export(&frames, &["--frames", "1-3", "--dry-run"]);
@@ -267,7 +269,7 @@ fn a_video_that_cannot_be_is_told_before_the_first_frame() {
         !output.status.success() && said.contains("gone does not exist"),
         "{said}"
     );
-    assert!(files(&frames).is_empty());
+    assert!(!frames.exists());
     let inside = frames.join("x.gif");
     let inside = inside.to_str().expect("a plain name");
     done(&mut export(
@@ -275,6 +277,57 @@ fn a_video_that_cannot_be_is_told_before_the_first_frame() {
         &["--frames", "1-3", "--video", inside],
     ));
     assert!(files(&frames).contains_key("x.gif"));
+}
+
+/// The flight at another rate and size, and its first frames.
+fn at_rate(folder: &Path, fps: &str, size: (u32, u32), words: &[&str]) -> Command {
+    let text = fs::read_to_string(FLIGHT).expect("readable");
+    let rate = format!("frames_per_second: {fps}");
+    let text = text.replace("frames_per_second: 14", &rate);
+    assert!(text.contains(&rate));
+    let scene = folder.join("rated.ron");
+    fs::write(&scene, text).expect("written");
+    let frames = folder.join("frames");
+    let (scene, frames) = (
+        scene.to_str().expect("plain"),
+        frames.to_str().expect("plain"),
+    );
+    let mut command = glint(&["export", scene, "-o", frames]);
+    let (width, height) = (size.0.to_string(), size.1.to_string());
+    command
+        .args(["--width", &width, "--height", &height])
+        .args(words);
+    command
+}
+
+#[test]
+fn what_no_video_can_show_is_told_and_what_it_shows_otherwise_as_well() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let video = |name: &str| folder.path().join(name).to_str().expect("plain").to_owned();
+    let words = ["--frames", "1", "--video", &video("a.mp4")];
+    let output = run(&mut at_rate(folder.path(), "14", (1, 8), &words));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("at least 2 × 2 pixels"), "{said}");
+    assert!(!folder.path().join("frames").exists());
+    // Frames that are too short for a GIF's clock are left out, but never all of them.
+    for (fps, frames, told, shown) in [
+        ("120", "1-8", "leaves out 4 of 8", 4),
+        ("240", "1-2", "leaves out 1 of 2", 1),
+        ("50", "1-8", "", 8),
+    ] {
+        let gif = video("fast.gif");
+        let words = ["--frames", frames, "--video", &gif];
+        let said = done(&mut at_rate(folder.path(), fps, (8, 8), &words));
+        assert!(
+            said.contains(told) && told.is_empty() != said.contains("leaves out"),
+            "{said}"
+        );
+        let file = std::io::BufReader::new(fs::File::open(&gif).expect("there"));
+        let decoder = image::codecs::gif::GifDecoder::new(file).expect("a GIF");
+        let frames = decoder.into_frames().collect_frames().expect("frames");
+        assert_eq!(frames.len(), shown, "{fps}");
+    }
 }
 
 #[test]
@@ -562,22 +615,80 @@ fn ffmpeg_makes_videos_of_all_frames() {
         let said = done(probe.args(["-of", "csv=p=0", path]));
         assert_eq!(said.trim(), "14/1,28", "{name}");
     }
-    // What it says when it fails is passed on, and no half video is left.
-    let failing = folder.path().join("ffmpeg");
-    fs::write(&failing, "#!/bin/sh\necho no such codec >&2\nexit 3\n").expect("written");
-    done(Command::new("chmod").arg("+x").arg(&failing));
+    // Byte by byte the same every time.
+    let path = |name: &str| folder.path().join(name).to_str().expect("plain").to_owned();
+    for name in ["a.mp4", "b.mov", "c.mkv"] {
+        let first = fs::read(folder.path().join(name)).expect("there");
+        done(&mut export(
+            &frames,
+            &["--frames", "1-28", "--video", &path(name)],
+        ));
+        assert!(
+            fs::read(folder.path().join(name)).expect("there") == first,
+            "{name}"
+        );
+    }
+    // H.264 has even sides.
+    let odd = ["--frames", "1-2", "--video", &path("odd.mp4")];
+    let said = done(&mut at_rate(folder.path(), "14", (31, 17), &odd));
+    assert!(said.contains("it shows 30 × 16 pixels"), "{said}");
+}
+
+/// Programs of that name that do not do what they should.
+#[test]
+#[cfg(unix)]
+fn what_ffmpeg_says_is_heard_and_what_it_does_not_write_takes_no_ones_place() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let folder = tempfile::tempdir().expect("a folder");
     let video = folder.path().join("d.mp4");
     let path = video.to_str().expect("plain");
-    let mut command = export(&frames, &["--frames", "1-28", "--video", path]);
-    let output = run(command.env("PATH", folder.path()));
+    let shell_words = "/usr/bin:/bin";
+    for (script, sentence) in [
+        (
+            "echo no such codec >&2\nexit 3",
+            "ffmpeg failed:\nno such codec",
+        ),
+        ("cat >/dev/null\nexit 0", "it wrote nothing"),
+        ("exit 0", "it ended before it had all frames"),
+        // More than a pipe holds, before it takes frames that are more than a pipe holds as well.
+        ("seq 100000 >&2\ncat >/dev/null\nexit 3", "99999\n100000"),
+    ] {
+        let program = folder.path().join("ffmpeg");
+        fs::write(&program, format!("#!/bin/sh\n{script}\n")).expect("written");
+        fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).expect("ours");
+        fs::write(&video, "older").expect("written");
+        let words = ["--frames", "1-28", "--video", path];
+        let mut command = at_rate(folder.path(), "14", (64, 64), &words);
+        let search = format!("{}:{shell_words}", folder.path().display());
+        let output = run(command.env("PATH", search));
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{script}");
+        assert!(said.contains(sentence), "{script}: {said}");
+        assert_eq!(
+            fs::read_to_string(&video).expect("there"),
+            "older",
+            "{script}"
+        );
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn what_may_only_be_read_is_not_replaced() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let folder = tempfile::tempdir().expect("a folder");
+    let picture = folder.path().join("kept.png");
+    fs::write(&picture, "a photograph").expect("written");
+    fs::set_permissions(&picture, fs::Permissions::from_mode(0o444)).expect("ours");
+    let path = picture.to_str().expect("plain");
+    let output = run(&mut glint(&["render", FLIGHT, "--width", "8", "-o", path]));
     let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(1));
-    assert!(said.contains("ffmpeg failed:\nno such codec"), "{said}");
+    assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(
-        files(folder.path())
-            .keys()
-            .all(|name| !name.contains("d.mp4"))
+        said.contains("kept.png") && said.contains("may not be written to"),
+        "{said}"
     );
+    assert_eq!(fs::read_to_string(&picture).expect("there"), "a photograph");
 }
 
 #[test]

@@ -68,7 +68,7 @@ impl MeshSource {
             None => Err(format!(
                 "cannot read {path}: the scene has no folder before it is saved"
             )),
-            Some(_) if !stays_inside(Path::new(path)) => Err(format!(
+            Some(folder) if !stays_inside(folder, Path::new(path)) => Err(format!(
                 "{path} is not read: a mesh file must lie in the folder of the scene, or in one within it"
             )),
             Some(folder) => {

@@ -7,7 +7,9 @@ use egui::{Align2, ComboBox, DragValue, TextEdit, Ui};
 use serde::{Deserialize, Serialize};
 
 use crate::editor::Editor;
-use crate::export::{Frames, FramesError, Pattern, PatternError, Sequence, SequenceError, Video};
+use crate::export::{
+    Frames, FramesError, Pattern, PatternError, Sequence, SequenceError, Video, VideoError,
+};
 use crate::image::Format;
 use crate::scene::{Animation, MAX_SIDE, Method as _, Problem, Sampling, Scene};
 use crate::ui::commands::Command;
@@ -183,8 +185,11 @@ impl Settings {
             return Err(SettingsError::NoFolder);
         }
         let folder = PathBuf::from(self.folder.trim());
-        let sequence = Sequence::new(Arc::new(scene), Some(frames), pattern, self.format, folder);
-        Ok(sequence?)
+        let sequence = Sequence::new(Arc::new(scene), Some(frames), pattern, self.format, folder)?;
+        if let Some((_, video)) = self.video(&sequence) {
+            video.check(&sequence)?;
+        }
+        Ok(sequence)
     }
 
     /// The video that is to follow the frames.
@@ -212,6 +217,9 @@ pub enum SettingsError {
     /// The animation is shorter.
     #[error(transparent)]
     Sequence(#[from] SequenceError),
+    /// The video holds no such frames.
+    #[error(transparent)]
+    Video(#[from] VideoError),
     /// There is nowhere to write to.
     #[error("choose a folder for the frames")]
     NoFolder,
@@ -364,9 +372,12 @@ pub fn forecast(
 ) -> String {
     let pixels = f64::from(settings.width) * f64::from(settings.height);
     let total = sequence.frames.count();
-    let video = settings.video(sequence).map_or(String::new(), |(path, _)| {
+    let video = settings.video(sequence);
+    let video = video.map_or(String::new(), |(path, video)| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        format!(", then {name}")
+        let remark = video.check(sequence).ok().flatten();
+        let remark = remark.map_or(String::new(), |remark| format!("; {remark}"));
+        format!(", then {name}{remark}")
     });
     let (missing, what) = match found {
         None => (

@@ -1,0 +1,192 @@
+//! GIF and APNG, made here.
+
+use std::fs::File;
+use std::io::{BufWriter, Write as _};
+use std::path::Path;
+
+use image::codecs::gif::{GifEncoder, Repeat};
+use image::{Delay, Frame};
+
+use super::error::VideoError;
+use super::frame_file::read;
+use super::sequence::Sequence;
+
+/// Pixels of a frame that the colours of a GIF are learnt from: of so many more, one of so many is looked at, but of
+/// no more than ten.
+const GIF_PIXELS: u32 = 100_000;
+
+/// Hundredths of a second that a GIF shows a frame at least.
+const SHORTEST: u32 = 2;
+
+/// The longest seconds that a GIF shows a frame.
+pub const LONGEST_IN_GIF: f64 = 655.35;
+
+/// The longest seconds that an APNG shows a frame.
+pub const LONGEST_IN_APNG: f64 = 65_535.0;
+
+/// Writes a GIF into a file that is to be that of this path.
+///
+/// # Errors
+/// [`VideoError`].
+pub fn gif(
+    sequence: &Sequence,
+    (file, path): (&File, &Path),
+    done: &mut impl FnMut(usize),
+) -> Result<(), VideoError> {
+    let mut file = BufWriter::new(file);
+    let (width, height) = sequence.size();
+    let speed = (width.saturating_mul(height) / GIF_PIXELS).clamp(1, 10);
+    let mut encoder = GifEncoder::new_with_speed(&mut file, speed.cast_signed());
+    let wrong = |error: image::ImageError| VideoError::disk(path, &error);
+    encoder.set_repeat(Repeat::Infinite).map_err(wrong)?;
+    let ends = clock_ends(sequence.frames_per_second(), sequence.frames.count());
+    let mut start = 0;
+    for ((index, frame), end) in sequence.frames.iter().enumerate().zip(ends) {
+        if end > start {
+            let image = read(&sequence.path(frame))?;
+            let delay = Delay::from_numer_denom_ms((end - start) * 10, 1);
+            let frame = Frame::from_parts(image, 0, 0, delay);
+            encoder.encode_frame(frame).map_err(wrong)?;
+            start = end;
+        }
+        done(index + 1);
+    }
+    // It writes its end when it is dropped, and cannot tell then that the disk is full.
+    drop(encoder);
+    file.flush().map_err(|error| VideoError::disk(path, &error))
+}
+
+/// How many frames of so many a GIF leaves out.
+pub fn left_out(frames_per_second: f64, count: usize) -> usize {
+    let mut start = 0;
+    let ends = clock_ends(frames_per_second, count);
+    let is_out = |end: &u32| std::mem::replace(&mut start, *end) == *end;
+    ends.filter(is_out).count()
+}
+
+/// When the frames of a GIF end, in hundredths of a second, its clock: as many pass in a second as shall. Where
+/// a frame would be shown for less than two, which players take for ten, it ends when the one before does: it
+/// is left out, but for the last one, which is shown for two.
+fn clock_ends(frames_per_second: f64, count: usize) -> impl Iterator<Item = u32> {
+    let mut last = 0;
+    (1..=count).map(move |shown| {
+        let end = (shown as f64 * 100.0 / frames_per_second).round() as u32;
+        if end >= last + SHORTEST {
+            last = end;
+        } else if shown == count {
+            last += SHORTEST;
+        }
+        last
+    })
+}
+
+/// The fraction of two short whole numbers that is nearest to a number above 0: the last convergent of its
+/// continued fraction that they can hold (Hardy and Wright, "An introduction to the theory of numbers", ch. 10).
+fn nearest_fraction(number: f64) -> (u16, u16) {
+    let (mut before, mut best) = ((0.0, 1.0), (1.0, 0.0));
+    let mut rest = number;
+    for _ in 0..32 {
+        let whole = rest.floor();
+        let next = (whole * best.0 + before.0, whole * best.1 + before.1);
+        if next.0.max(next.1) > f64::from(u16::MAX) {
+            break;
+        }
+        (before, best) = (best, next);
+        // What is left is rounding.
+        if (best.0 / best.1 - number).abs() < 1e-12 * number {
+            break;
+        }
+        rest = 1.0 / (rest - whole);
+    }
+    (best.0 as u16, (best.1 as u16).max(1))
+}
+
+/// Writes an animated PNG into a file that is to be that of this path.
+///
+/// # Errors
+/// [`VideoError`].
+pub fn apng(
+    sequence: &Sequence,
+    (file, path): (&File, &Path),
+    done: &mut impl FnMut(usize),
+) -> Result<(), VideoError> {
+    let (width, height) = sequence.size();
+    let wrong = |error: png::EncodingError| VideoError::disk(path, &error);
+    let mut file = BufWriter::new(file);
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    let count = u32::try_from(sequence.frames.count()).unwrap_or(u32::MAX);
+    encoder.set_animated(count, 0).map_err(wrong)?;
+    let (part, whole) = nearest_fraction(1.0 / sequence.frames_per_second());
+    encoder.set_frame_delay(part, whole).map_err(wrong)?;
+    let mut writer = encoder.write_header().map_err(wrong)?;
+    for (index, frame) in sequence.frames.iter().enumerate() {
+        let image = image::DynamicImage::from(read(&sequence.path(frame))?).to_rgb8();
+        writer.write_image_data(&image).map_err(wrong)?;
+        done(index + 1);
+    }
+    writer.finish().map_err(wrong)?;
+    file.flush().map_err(|error| VideoError::disk(path, &error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gif_keeps_time_and_leaves_out_what_is_too_short() {
+        let rates = [
+            1.0,
+            14.0,
+            14.0 / 3.0,
+            23.976,
+            24.0,
+            30.0,
+            50.0,
+            60.0,
+            120.0,
+            240.0,
+        ];
+        for (fps, count) in rates
+            .iter()
+            .flat_map(|&fps| [1, 2, 3, 1000].map(|count| (fps, count)))
+        {
+            let ends: Vec<u32> = clock_ends(fps, count).collect();
+            let exact = count as f64 * 100.0 / fps;
+            let last = f64::from(*ends.last().expect("some"));
+            assert!((last - exact).abs() <= 2.0, "{fps}: {last} of {exact}");
+            assert!(last >= 2.0, "{fps}: {count} frames are no time");
+            let mut shown = ends.clone();
+            shown.dedup();
+            shown.retain(|end| *end > 0);
+            let longest = (100.0 / fps).ceil() as u32;
+            let mut start = 0;
+            for end in shown {
+                assert!((2..=longest.max(3)).contains(&(end - start)), "{fps}");
+                start = end;
+            }
+        }
+        assert_eq!(
+            [50.0, 100.0, 120.0].map(|fps| left_out(fps, 600)),
+            [0, 300, 350]
+        );
+    }
+
+    #[test]
+    fn a_frame_of_an_apng_is_shown_for_a_fraction_that_is_exact_where_it_can_be() {
+        for (fps, expected) in [
+            (14.0, (1, 14)),
+            (14.0 / 3.0, (3, 14)),
+            (24_000.0 / 1001.0, (1001, 24_000)),
+            (240.0, (1, 240)),
+            (0.01, (100, 1)),
+        ] {
+            assert_eq!(nearest_fraction(1.0 / fps), expected, "{fps}");
+        }
+        let (part, whole) = nearest_fraction(1.0 / 23.976);
+        let off = f64::from(part) / f64::from(whole) * 23.976 - 1.0;
+        assert!(off.abs() < 1e-8, "{off}");
+    }
+}

@@ -1,0 +1,135 @@
+//! Videos by ffmpeg.
+
+use std::borrow::Cow;
+use std::fs;
+use std::io::{self, Read as _, Write as _};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::thread;
+
+use super::error::{VideoError, last_lines};
+use super::frame_file::as_ppm;
+use super::sequence::Sequence;
+use crate::image::Format;
+
+/// Has ffmpeg make a video in a file that is to be that of a path, with these words about the codec.
+///
+/// # Errors
+/// [`VideoError`].
+pub fn by_ffmpeg(
+    sequence: &Sequence,
+    (unfinished, path): (&Path, &Path),
+    codec: &[&str],
+    done: impl FnMut(usize),
+) -> Result<(), VideoError> {
+    let wrong = |error: io::Error| VideoError::disk(path, &error);
+    let mut ffmpeg = match start(sequence, unfinished, codec) {
+        Ok(ffmpeg) => ffmpeg,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            let command = command(sequence, path, codec);
+            return Err(VideoError::NoFfmpeg { command });
+        }
+        Err(error) => return Err(wrong(error)),
+    };
+    // All that it says is heard while it is fed: it stops for whoever does not listen.
+    let stderr = ffmpeg.stderr.take();
+    let listener = thread::spawn(move || {
+        let mut said = Vec::new();
+        // What was heard before an error is all there is.
+        let _ = stderr.map(|mut stderr| stderr.read_to_end(&mut said));
+        said
+    });
+    let fed = feed(sequence, &mut ffmpeg, done);
+    if fed.is_err() {
+        let _ = ffmpeg.kill();
+    }
+    let status = ffmpeg.wait().map_err(wrong)?;
+    let said = listener.join().unwrap_or_default();
+    let has_all = fed?;
+    let is_written = || fs::metadata(unfinished).is_ok_and(|file| file.len() > 0);
+    let why = if status.code().is_none() {
+        format!("it was killed ({status})\n")
+    } else if !status.success() {
+        String::new()
+    } else if !has_all {
+        "it ended before it had all frames\n".to_owned()
+    } else if !is_written() {
+        "it wrote nothing\n".to_owned()
+    } else {
+        return Ok(());
+    };
+    let said = format!("{why}{}", last_lines(&said));
+    Err(VideoError::Ffmpeg { said })
+}
+
+fn start(sequence: &Sequence, unfinished: &Path, codec: &[&str]) -> io::Result<Child> {
+    let fps = sequence.frames_per_second().to_string();
+    let frames = match sequence.format {
+        Format::Png => "png",
+        Format::Ppm | Format::Exr => "ppm",
+    };
+    let quiet = ["-hide_banner", "-loglevel", "error", "-y"];
+    Command::new("ffmpeg")
+        .args(quiet)
+        .args(["-f", "image2pipe", "-c:v", frames, "-framerate", &fps])
+        .args(["-i", "-"])
+        .args(codec)
+        .arg(unfinished)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+}
+
+/// Gives it the frames. Whether it took all of them: it hangs up when it fails.
+fn feed(
+    sequence: &Sequence,
+    ffmpeg: &mut Child,
+    mut done: impl FnMut(usize),
+) -> Result<bool, VideoError> {
+    let Some(mut pipe) = ffmpeg.stdin.take() else {
+        return Ok(false);
+    };
+    for (index, frame) in sequence.frames.iter().enumerate() {
+        let file = sequence.path(frame);
+        let bytes = match sequence.format {
+            // No pipe tells where one of these ends.
+            Format::Exr => as_ppm(&file)?,
+            Format::Png | Format::Ppm => {
+                fs::read(&file).map_err(|error| VideoError::unreadable(&file, error.into()))?
+            }
+        };
+        if pipe.write_all(&bytes).is_err() {
+            return Ok(false);
+        }
+        done(index + 1);
+    }
+    Ok(true)
+}
+
+/// What one would type to make the video by hand.
+fn command(sequence: &Sequence, path: &Path, codec: &[&str]) -> String {
+    let fps = sequence.frames_per_second();
+    let codec: Vec<String> = codec.iter().map(|word| quoted(word)).collect();
+    let (codec, output) = (codec.join(" "), quoted(&path.display().to_string()));
+    let first = sequence.frames.iter().next().unwrap_or(1);
+    let in_a_row = first..first + sequence.frames.count() as u64;
+    if sequence.frames.iter().eq(in_a_row) {
+        // To ffmpeg, all of the path is a pattern.
+        let folder = sequence.folder.display().to_string().replace('%', "%%");
+        let names = format!("{}.{}", sequence.pattern.text(), sequence.format.ending());
+        let input = quoted(&Path::new(&folder).join(names).display().to_string());
+        return format!(
+            "ffmpeg -framerate {fps} -start_number {first} -i {input} {codec} {output}"
+        );
+    }
+    let files = sequence.frames.iter();
+    let files = files.map(|frame| quoted(&sequence.path(frame).display().to_string()));
+    let files = files.collect::<Vec<String>>().join(" ");
+    format!("cat {files} | ffmpeg -f image2pipe -framerate {fps} -i - {codec} {output}")
+}
+
+/// As a shell needs it. No path has a zero byte in it, which is all that cannot be quoted.
+fn quoted(word: &str) -> String {
+    shlex::try_quote(word).map_or_else(|_| word.to_owned(), Cow::into_owned)
+}
