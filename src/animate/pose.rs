@@ -74,13 +74,25 @@ fn value_at(keys: &[Key<Value>], time: f64) -> Option<Value> {
     })
 }
 
-/// The keys that a smooth segment is shaped by, and its place among them.
+/// The keys that a smooth segment is shaped by, and its place among them: those around it, and one more on each side
+/// that shapes the ways to them, which is at another place than they are. Of a long run, these are few.
 fn run_around(keys: &[Key<Value>], segment: usize) -> (&[Key<Value>], usize) {
-    let is_smooth = |key: &Key<Value>| key.interpolation == Interpolation::Smooth;
-    let before = keys[..segment].iter().rev();
-    let start = segment - before.take_while(|key| is_smooth(key)).count();
-    let after = keys[segment..keys.len() - 1].iter();
-    let end = segment + after.take_while(|key| is_smooth(key)).count();
+    let is_smooth = |key: usize| keys[key].interpolation == Interpolation::Smooth;
+    let is_place_of = |key: usize, other: usize| keys[key].value == keys[other].value;
+    let mut start = segment;
+    while start > 0
+        && is_smooth(start - 1)
+        && (start + 1 >= segment || is_place_of(start, start + 1))
+    {
+        start -= 1;
+    }
+    let mut end = segment + 1;
+    while end + 1 < keys.len()
+        && is_smooth(end)
+        && (end <= segment + 2 || is_place_of(end, end - 1))
+    {
+        end += 1;
+    }
     (&keys[start..=end], segment - start)
 }
 
@@ -120,5 +132,73 @@ pub fn motion_between(from: &Camera, to: &Camera) -> CameraChange {
     CameraChange {
         distance: (to.position - from.position).length(),
         turn: angle(a.z_axis, b.z_axis).to_degrees().max(roll.abs()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Few places, so that keys stay where they are for a while, and smooth segments with others between them.
+    fn any_keys() -> impl Strategy<Value = Vec<Key<Value>>> {
+        let key = (0.1..2.0_f64, 0..3_i32, 0..2_i32, prop::bool::weighted(0.9));
+        prop::collection::vec(key, 2..30).prop_map(|keys| {
+            let mut time = 0.0;
+            let keys = keys.into_iter().map(|(step, x, y, is_smooth)| {
+                time += step;
+                let place = DVec3::new(f64::from(x), f64::from(y), 0.5);
+                Key {
+                    interpolation: if is_smooth {
+                        Interpolation::Smooth
+                    } else {
+                        Interpolation::Linear
+                    },
+                    ..Key::new(time, Value::Point(place))
+                }
+            });
+            keys.collect()
+        })
+    }
+
+    /// The whole run that a segment is in.
+    fn run(keys: &[Key<Value>], segment: usize) -> (&[Key<Value>], usize) {
+        let is_smooth = |key: &Key<Value>| key.interpolation == Interpolation::Smooth;
+        let before = keys[..segment].iter().rev();
+        let start = segment - before.take_while(|key| is_smooth(key)).count();
+        let after = keys[segment..keys.len() - 1].iter();
+        let end = segment + after.take_while(|key| is_smooth(key)).count();
+        (&keys[start..=end], segment - start)
+    }
+
+    proptest! {
+        #[test]
+        fn a_segment_is_shaped_as_if_all_keys_of_its_run_were_looked_at(keys in any_keys()) {
+            let lengths = keys.iter().map(|key| Key::new(key.time, Value::Number(number(key.value))));
+            let numbers: Vec<_> = lengths.zip(&keys).map(|(number, key)| Key {
+                interpolation: key.interpolation,
+                ..number
+            }).collect();
+            for segment in 0..keys.len() - 1 {
+                if keys[segment].interpolation != Interpolation::Smooth {
+                    continue;
+                }
+                let time = keys[segment].time * 0.7 + keys[segment + 1].time * 0.3;
+                let along = (time - keys[segment].time) / (keys[segment + 1].time - keys[segment].time);
+                let (whole, place) = run(&keys, segment);
+                let times: Vec<f64> = whole.iter().map(|key| key.time).collect();
+                let values = whole.iter().map(|key| number(key.value)).collect();
+                let expected = Curve::new(times.clone(), values, Closing::Open).at(place, along);
+                prop_assert_eq!(value_at(&numbers, time), Some(Value::Number(expected)));
+                let points: Vec<DVec3> = whole.iter().map(|key| point(key.value)).collect();
+                let route = ArcLengthSpline::new(&points, Closing::Open);
+                let pace = Curve::new(times, route.reached().to_vec(), Closing::Open);
+                let expected = route.at(pace.at(place, along)).unwrap_or(points[place]);
+                let Some(Value::Point(found)) = value_at(&keys, time) else {
+                    return Err(TestCaseError::fail("no point"));
+                };
+                prop_assert!(found.distance(expected) < 1e-12, "{found} {expected}");
+            }
+        }
     }
 }
