@@ -10,15 +10,20 @@ pub use super::mesh_coincidence::{Coincidence, Extent};
 use super::object::Object;
 use super::shape::{Outline, PlanePiece, Shape};
 
-/// Most objects that are held against each other.
-pub const MOST_COMPARED: usize = 2_000;
+/// Most objects that are looked at: some ten milliseconds.
+const MOST_OBJECTS: usize = 200_000;
 
-/// All pairs of visible objects that fill the same surface, sorted; coordinates count from `centre`. More than 2,000 objects are not looked at, nor are the
-/// faces of two large meshes that are in the same place.
+/// Most pairs of flat objects that are held against each other: as long.
+const MOST_COMPARED: usize = 2_000_000;
+
+/// All pairs of visible objects that fill the same surface, sorted; coordinates count from `centre`. Where there are
+/// hundreds of thousands of objects, none is looked at; of thousands of flat ones in the same place, or faces of large
+/// meshes, some may be missed.
 pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
-    if objects.len() > MOST_COMPARED {
+    if objects.len() > MOST_OBJECTS {
         return Vec::new();
     }
+    let mut left = MOST_COMPARED;
     let visible = objects.iter().enumerate();
     let visible = visible.filter(|(_, object)| object.visible);
     let mut found = Vec::new();
@@ -66,11 +71,10 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
         }
     };
     for (place, (index, flat)) in endless.iter().enumerate() {
-        for (other, other_flat) in &endless[..place] {
-            add((*index, flat), (*other, other_flat));
-        }
-        for piece in &pieces {
-            add((*index, flat), (piece.index, &piece.flat));
+        let others = endless[..place].iter().map(|(other, flat)| (*other, flat));
+        let others = others.chain(pieces.iter().map(|piece| (piece.index, &piece.flat)));
+        for other in others.take_while(|_| counts_down(&mut left)) {
+            add((*index, flat), other);
         }
     }
     pieces.sort_by(|a, b| a.bounds.0.x.total_cmp(&b.bounds.0.x));
@@ -78,7 +82,8 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     for (place, one) in pieces.iter().enumerate() {
         let others = pieces[place + 1..].iter();
         let end = one.bounds.1.x + little;
-        for other in others.take_while(|other| other.bounds.0.x <= end) {
+        let near = others.take_while(|other| other.bounds.0.x <= end);
+        for other in near.take_while(|_| counts_down(&mut left)) {
             if one.meets(other) {
                 add((one.index, &one.flat), (other.index, &other.flat));
             }
@@ -87,6 +92,13 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     found.extend(mesh_coincidences(objects, centre));
     found.sort_unstable();
     found
+}
+
+/// One less, if there is any.
+fn counts_down(left: &mut usize) -> bool {
+    let is_left = *left > 0;
+    *left = left.saturating_sub(1);
+    is_left
 }
 
 /// A flat object that ends.

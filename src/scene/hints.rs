@@ -5,10 +5,13 @@ use std::collections::HashSet;
 use glam::DVec3;
 
 use super::camera::{Camera, Projection};
-use super::coincidence::{Coincidence, Extent, MOST_COMPARED, coincidences};
+use super::coincidence::{Coincidence, Extent, coincidences};
 use super::direction::unit;
 use super::shape::Shape;
 use super::whole::Scene;
+
+/// Most objects that lights are held against.
+const MOST_LIT: usize = 2_000;
 
 /// How near to a surface a light counts as on it, as a share of the distance that matters.
 const ON: f64 = 1e-9;
@@ -69,7 +72,7 @@ pub fn hints(scene: &Scene) -> Vec<Hint> {
             add(words, About::Object(index), false);
         }
     }
-    let is_small = scene.objects.len() <= MOST_COMPARED;
+    let is_small = scene.objects.len() <= MOST_LIT;
     for (index, light) in scene.lights.iter().enumerate().filter(|_| is_small) {
         let lit = || visible().filter(|_| light.visible && light.intensity > 0.0);
         for (_, object) in lit() {
