@@ -3,6 +3,7 @@
 
 use std::collections::BTreeSet;
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::DVec3;
 
@@ -12,8 +13,8 @@ use crate::scene::{Coincidence, Extent, List, Object, Projection, Scene, Shape, 
 /// Most touching objects that are kept out of the tree; of more, none is.
 const MOST_APART: usize = 256;
 
-/// Most pairs of an object and a point that are looked at: half a millisecond.
-const MOST_PAIRS: usize = 50_000;
+/// Most pairs of an object and a light that are looked at: ten milliseconds, where either has changed.
+const MOST_PAIRS: usize = 1_000_000;
 
 /// How near to a round surface a point counts as on it, in radii.
 const ON_ROUND: f64 = 1e-11;
@@ -36,11 +37,34 @@ pub struct Contacts {
     pub edge_on: Places,
     /// The round object whose surface the eye is on.
     pub eye_on: Option<usize>,
-    /// For each light of the scene, the flat objects whose planes hold it: they cast no shadow from it.
-    pub lights_in: Vec<Places>,
-    /// The lights of the scene that may be on the surface of an object that is no mesh.
-    pub touching_lights: Places,
+    /// Where the lights are.
+    pub lights: Arc<LightContacts>,
     apart: BTreeSet<usize>,
+}
+
+/// What lights touch.
+#[derive(Clone, Debug, Default)]
+pub struct LightContacts {
+    /// For each light of the scene, the flat objects whose planes hold it: they cast no shadow from it.
+    pub held_by: Vec<Places>,
+    /// The lights of the scene that may be on the surface of an object that is no mesh.
+    pub touching: Places,
+}
+
+impl LightContacts {
+    /// What touches lights in these places; nothing where that would take long.
+    pub fn new(objects: &List<Object>, lights: &[DVec3]) -> Self {
+        if objects.len() * lights.len() > MOST_PAIRS {
+            return Self::default();
+        }
+        let held_by = planes_through(objects, lights);
+        let touches =
+            |light: &usize| !held_by[*light].is_empty() || is_on_any(objects, lights[*light]);
+        Self {
+            touching: (0..lights.len()).filter(touches).collect(),
+            held_by,
+        }
+    }
 }
 
 /// An object in whose surface others lie.
@@ -54,42 +78,45 @@ pub struct Tie {
 
 impl Contacts {
     /// What touches in a picture of a scene; coordinates count from `centre`.
-    pub fn new(scene: &Scene, request: &RenderRequest, found: &[Coincidence]) -> Self {
+    pub fn new(
+        scene: &Scene,
+        request: &RenderRequest,
+        (found, lights): (&[Coincidence], Arc<LightContacts>),
+    ) -> Self {
         if request.model == Model::Everything {
             return Self::default();
         }
-        let mut contacts = Self::default();
+        let mut contacts = Self {
+            lights,
+            ..Self::default()
+        };
         for one in found {
             contacts.add(*one);
         }
-        let lights: Vec<_> = scene.lights.iter().map(|light| light.position).collect();
-        contacts.lights_in = planes_through(&scene.objects, &lights);
-        let are_few = scene.objects.len() * lights.len() <= MOST_PAIRS;
-        let touches = |light: &usize| {
-            !contacts.lights_in[*light].is_empty()
-                || are_few && is_on_any(&scene.objects, lights[*light])
-        };
-        contacts.touching_lights = (0..lights.len()).filter(touches).collect();
-        let eye = scene.camera.position;
-        let projection = request.projection_of(&scene.camera);
-        contacts.edge_on = planes_through(&scene.objects, &[eye]).concat();
-        if projection == Projection::Orthographic {
-            let direction = unit(scene.camera.look_at).unwrap_or_default();
-            let holds_window = |place: &usize| {
-                let piece = scene.objects[*place].shape.plane_piece();
-                piece.is_some_and(|piece| piece.is_across(direction))
-            };
-            contacts.edge_on.retain(holds_window);
-        } else {
-            let looked_at = scene.objects.iter().take(MOST_PAIRS);
-            let is_on = |object: &Object| object.shape.height_per_radius(eye) <= ON_ROUND;
-            contacts.eye_on = looked_at
-                .enumerate()
-                .find(|(_, object)| object.visible && is_on(object))
-                .map(|(index, _)| index);
-        }
+        let is_parallel = request.projection_of(&scene.camera) == Projection::Orthographic;
+        contacts.find_eye(scene, is_parallel);
         contacts.set_apart(&scene.objects);
         contacts
+    }
+
+    /// Finds what the eye is on: there may be many objects, which are gone through once.
+    fn find_eye(&mut self, scene: &Scene, is_parallel: bool) {
+        let eye = scene.camera.position;
+        let direction = unit(scene.camera.look_at).unwrap_or_default();
+        let objects = scene.objects.iter().enumerate();
+        for (index, Object { shape, .. }) in objects.filter(|(_, object)| object.visible) {
+            if let Some(piece) = shape.plane_piece() {
+                let holds_eye = piece.height(eye) == 0.0;
+                if holds_eye && (!is_parallel || piece.is_across(direction)) {
+                    self.edge_on.push(index);
+                }
+            } else if !is_parallel
+                && self.eye_on.is_none()
+                && shape.height_per_radius(eye) <= ON_ROUND
+            {
+                self.eye_on = Some(index);
+            }
+        }
     }
 
     fn add(&mut self, found: Coincidence) {
@@ -112,7 +139,7 @@ impl Contacts {
         // A mesh is told by its numbers where it stands.
         let is_mesh = |place: &usize| matches!(objects[*place].shape, Shape::Mesh(_));
         let shared = shared.filter(|place| !is_mesh(place));
-        let lights = self.lights_in.iter().flatten().copied();
+        let lights = self.lights.held_by.iter().flatten().copied();
         let eye = self.edge_on.iter().chain(&self.eye_on).copied();
         let all: BTreeSet<usize> = shared.chain(lights).chain(eye).collect();
         if all.len() <= MOST_APART {
@@ -128,12 +155,9 @@ fn is_on_any(objects: &List<Object>, point: DVec3) -> bool {
     visible.any(|object| object.shape.height_per_radius(point) < NEAR_ROUND)
 }
 
-/// For each point the visible flat objects whose planes hold it; none where that would take long.
+/// For each point the visible flat objects whose planes hold it.
 fn planes_through(objects: &List<Object>, points: &[DVec3]) -> Vec<Places> {
     let mut through = vec![Places::new(); points.len()];
-    if objects.len() * points.len() > MOST_PAIRS {
-        return through;
-    }
     for (index, object) in objects.iter().enumerate() {
         let Some(piece) = object.shape.plane_piece().filter(|_| object.visible) else {
             continue;

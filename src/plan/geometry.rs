@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::bvh::{Bvh, Member};
+use super::contacts::LightContacts;
 use super::idle::KeptIdle;
 use super::packed_mesh::{MeshInstance, PackedMesh, measure, member};
 use super::parts::things;
@@ -60,6 +61,7 @@ pub struct Geometry<R> {
 pub struct Kept<R> {
     last: Option<(Source, Arc<Geometry<R>>)>,
     coincidences: Option<(List<Object>, DVec3, Arc<[Coincidence]>)>,
+    light_contacts: Option<(List<Object>, Vec<DVec3>, Arc<LightContacts>)>,
     /// Meshes of other pictures.
     others: Vec<Arc<PackedMesh<R>>>,
     idle: KeptIdle<R>,
@@ -133,6 +135,21 @@ impl<R: Real> Kept<R> {
         }
         let found: Arc<[Coincidence]> = coincidences(objects, centre).into();
         self.coincidences = Some((objects.clone(), centre, Arc::clone(&found)));
+        found
+    }
+
+    /// What the lights of a scene touch; the last of it, if nothing has changed.
+    pub fn light_contacts(&mut self, scene: &Scene) -> Arc<LightContacts> {
+        let lights = scene.lights.iter().map(|light| light.position);
+        if let Some((objects, places, found)) = &self.light_contacts
+            && objects.is_same(&scene.objects)
+            && lights.clone().eq(places.iter().copied())
+        {
+            return Arc::clone(found);
+        }
+        let places: Vec<DVec3> = lights.collect();
+        let found = Arc::new(LightContacts::new(&scene.objects, &places));
+        self.light_contacts = Some((scene.objects.clone(), places, Arc::clone(&found)));
         found
     }
 

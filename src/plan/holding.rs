@@ -140,6 +140,9 @@ fn meets_any<R: Real>(
     counts: impl Fn(&BoundingBox<R>) -> bool,
     is_it: impl Fn(u32) -> bool,
 ) -> bool {
+    if !counts(&bvh.bounds) {
+        return false; // Most are far away, and there may be many.
+    }
     let mut waiting = vec![0];
     while let Some(node) = waiting
         .pop()

@@ -22,6 +22,8 @@ mod idle;
 
 mod request;
 
+mod contacts;
+
 mod geometry;
 
 mod precision;
@@ -29,8 +31,6 @@ mod precision;
 mod materials;
 
 mod plane_occluders;
-
-mod contacts;
 
 mod lights;
 

@@ -147,7 +147,7 @@ impl<R: Real> Plan<R> {
             blur: Blur::NONE,
         };
         let found = kept.coincidences(&scene.objects, centre);
-        let contacts = Contacts::new(scene, request, &found);
+        let contacts = Contacts::new(scene, request, (&found, kept.light_contacts(scene)));
         let camera = projector(scene, request);
         let projector = camera.as_ref().filter(|_| may_cull);
         if is_tree(scene, request, may_cull) {
@@ -162,11 +162,11 @@ impl<R: Real> Plan<R> {
         plan.tie(scene, (request, &contacts), number);
         let occluders = occluders.as_deref().unwrap_or_default();
         let holders = |light: usize| {
-            let holders = contacts.lights_in.get(light).into_iter().flatten();
+            let holders = contacts.lights.held_by.get(light).into_iter().flatten();
             holders.filter_map(number).collect()
         };
         let touches = |light: usize| {
-            contacts.touching_lights.contains(&light)
+            contacts.lights.touching.contains(&light)
                 || plan.is_at_mesh(scene.lights[light].position)
         };
         plan.lights = pack_lights(scene, centre, (occluders, model), (touches, holders));
