@@ -12,9 +12,9 @@ use super::action::CliAction;
 use super::error::{CliError, say};
 use super::goal::{error, time};
 use super::scene::read_scene;
+use super::target::{check_text, picture_format};
 use crate::export::write_text;
 use crate::files::processor;
-use crate::image::Format;
 use crate::lab::{
     Growth, PictureLook, Study, capitalised, cheapest_within, closest_within, csv, scaling,
     scaling_csv, table,
@@ -93,7 +93,8 @@ impl ChartArgs {
 /// [`CliError`]: a scene that is none, a picture in no known format, or a file that cannot be written.
 pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
     // A name that cannot be written is known before the first ray.
-    args.png.as_deref().map(Format::of_path).transpose()?;
+    picture_format(args.png.as_deref())?;
+    check_text(args.csv.as_deref())?;
     let threads = Threads::new(args.threads.map(usize::from))?;
     if args.growth {
         return grow(args, &threads);

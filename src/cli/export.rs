@@ -12,7 +12,7 @@ use super::error::{CliError, say};
 use super::render::sized;
 use super::scene::missing_meshes;
 use crate::export::{ExportError, ExportStep, Exported, Exporting};
-use crate::export::{Frames, Pattern, Sequence, Video, write_job};
+use crate::export::{Frames, Pattern, Sequence, Video, check_place, write_job};
 use crate::image::Format;
 use crate::scene::{Document, MAX_SIDE, Method as _, Sampling, Scene};
 use crate::trace::{RenderControl, Threads};
@@ -117,7 +117,7 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
         if of_video.is_some() && of_video == absolute(&sequence.folder).ok() {
             sequence.prepare()?;
         }
-        Video::check_place(path).map_err(CliError::failed)?;
+        check_place(path)?;
         if let Some(remark) = remark {
             say(&remark);
         }

@@ -5,6 +5,8 @@ mod error;
 
 mod scene;
 
+mod target;
+
 mod action;
 
 mod goal;
@@ -32,6 +34,7 @@ mod desktop;
 mod fallback;
 
 use std::ffi::OsString;
+use std::io::{IsTerminal as _, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -41,8 +44,9 @@ pub use action::CliAction;
 use error::WRONG;
 pub use error::{CliError, finish, say};
 pub use fallback::picture_instead_of_window;
+use target::picture_format;
 
-use crate::image::Format;
+use crate::scene::{Document, Scene};
 
 #[derive(Debug, Parser)]
 #[command(
@@ -118,12 +122,18 @@ fn run_words(words: Vec<OsString>) -> CliAction {
         Ok(words) => words,
         Err(error) => {
             // Help and version are "errors" of exit code 0 that go to stdout.
-            let _ = error.print();
-            return CliAction::Done(if error.use_stderr() {
-                WRONG.into()
+            if error.use_stderr() {
+                let _ = error.print();
+                return CliAction::Done(WRONG.into());
+            }
+            let text = error.render();
+            let text = if stdout().is_terminal() {
+                text.ansi().to_string()
             } else {
-                ExitCode::SUCCESS
-            });
+                text.to_string()
+            };
+            say(text.trim_end());
+            return done(Ok(()));
         }
     };
     let result = match &words.command {
@@ -152,16 +162,35 @@ impl CliArgs {
             return Ok(CliAction::TimeStart { scene: self.scene });
         }
         // A name that cannot be written is known before the window opens.
-        self.screenshot
-            .as_deref()
-            .map(Format::of_path)
-            .transpose()?;
+        picture_format(self.screenshot.as_deref())?;
+        if self.screenshot.is_some() {
+            self.check_shown()?;
+        }
         Ok(CliAction::Editor {
             scene: self.scene,
             screenshot: self.screenshot,
             exports: self.exports,
             select: self.select,
         })
+    }
+}
+
+impl CliArgs {
+    /// Whether the scene that a screenshot shall show is one, and has what is selected in it: nobody reads in the window
+    /// that it is not so.
+    fn check_shown(&self) -> Result<(), CliError> {
+        let shown = self.scene.as_deref().map(Document::load).transpose()?;
+        let shown = shown.map_or_else(Scene::demo, |shown| shown.scene);
+        let lights = shown.lights.iter().map(|light| &light.name);
+        let names: Vec<_> = lights
+            .chain(shown.objects.iter().map(|object| &object.name))
+            .collect();
+        match self.select.iter().find(|name| !names.contains(name)) {
+            None => Ok(()),
+            Some(name) => Err(CliError::usage(format!(
+                "there is no object and no light named {name:?} to be selected"
+            ))),
+        }
     }
 }
 

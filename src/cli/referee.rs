@@ -7,8 +7,9 @@ use clap::Args;
 use super::error::{CliError, say};
 use super::render::sized;
 use super::scene::read_scene;
+use super::target::picture_format;
 use crate::export::{by_povray, povray_differences, save_image};
-use crate::image::{Film, Format, Image, render};
+use crate::image::{Film, Image, render};
 use crate::plan::RenderRequest;
 use crate::scene::Sampling;
 use crate::trace::{RenderControl, Threads};
@@ -39,7 +40,7 @@ pub struct RefereeArgs {
 /// # Errors
 /// [`CliError`]: a scene that is none, no POV-Ray, or a picture that cannot be written.
 pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
-    args.output.as_deref().map(Format::of_path).transpose()?;
+    picture_format(args.output.as_deref())?;
     let mut scene = read_scene(&args.scene)?;
     let size = &mut scene.render;
     let own = (size.width, size.height);

@@ -15,6 +15,7 @@ use super::error::{CliError, say};
 use super::goal::{error, time};
 use super::scene::read_scene;
 use super::settings::SettingArgs;
+use super::target::picture_format;
 use crate::animate::{CameraPath, shot};
 use crate::export::{NoSuchFrame, save_image};
 use crate::image::{Film, Format, RenderCost};
@@ -116,7 +117,7 @@ fn lanes(word: &str) -> Result<Level, String> {
 /// [`CliError`]: a scene that is none, a frame that it does not have, or a picture that cannot be written.
 pub fn run(args: &RenderArgs) -> Result<(), CliError> {
     // A name that cannot be written is known before the first ray.
-    let format = args.output.as_deref().map(Format::of_path).transpose()?;
+    let format = picture_format(args.output.as_deref())?;
     let mut scene = read_scene(&args.scene)?;
     let threads = Threads::new(args.threads.map(usize::from))?;
     if let Some(frame) = args.frame {

@@ -7,8 +7,8 @@ use clap::Args;
 
 use super::action::CliAction;
 use super::error::{CliError, say};
+use super::target::{check_text, picture_format};
 use crate::export::write_text;
-use crate::image::Format;
 use crate::lab::stability::{cells_csv, maps, summary};
 
 #[derive(Debug, Args)]
@@ -30,7 +30,8 @@ pub struct StabilityArgs {
 /// [`CliError`]: a picture in no known format, or a file that cannot be written.
 pub fn run(args: &StabilityArgs) -> Result<Option<CliAction>, CliError> {
     // A name that cannot be written is known before the first ray.
-    args.png.as_deref().map(Format::of_path).transpose()?;
+    picture_format(args.png.as_deref())?;
+    check_text(args.csv.as_deref())?;
     let maps = maps(args.effort.get());
     say(summary(&maps).trim_end());
     if let Some(path) = &args.csv {

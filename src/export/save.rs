@@ -4,7 +4,7 @@ use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::error::ExportError;
-use crate::files::{NewFile, write_atomic};
+use crate::files::{NewFile, remove_leftovers, write_atomic};
 use crate::image::{Film, Format};
 
 /// Writes a picture in the format of the file's ending, whole or not at all.
@@ -27,6 +27,22 @@ pub fn save_image(film: &Film, path: &Path) -> Result<(), ExportError> {
     file.flush().map_err(disk)?;
     drop(file);
     beside.place_durably().map_err(disk)
+}
+
+/// Whether a file could be written here: asked before what is to be in it is made. What killed programs have left
+/// beside it goes.
+///
+/// # Errors
+/// [`ExportError::Disk`].
+pub fn check_place(path: &Path) -> Result<(), ExportError> {
+    let beside = NewFile::beside(path).map_err(|source| ExportError::Disk {
+        path: path.to_owned(),
+        source,
+    })?;
+    if let Some(folder) = beside.path().parent() {
+        remove_leftovers(folder);
+    }
+    Ok(())
 }
 
 /// Writes a text file, whole or not at all.

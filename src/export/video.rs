@@ -6,7 +6,7 @@ use super::animated::{LONGEST_IN_APNG, LONGEST_IN_GIF, apng, gif, left_out};
 use super::error::VideoError;
 use super::ffmpeg::by_ffmpeg;
 use super::sequence::Sequence;
-use crate::files::{NewFile, remove_leftovers};
+use crate::files::NewFile;
 
 /// How a video is encoded; its ending says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -137,18 +137,6 @@ impl Video {
             }),
             _ => Ok(None),
         }
-    }
-
-    /// Whether there could be a video at this path: asked before its frames are made.
-    ///
-    /// # Errors
-    /// [`VideoError::Disk`].
-    pub fn check_place(path: &Path) -> Result<(), VideoError> {
-        let beside = NewFile::beside(path).map_err(|error| VideoError::disk(path, &error))?;
-        if let Some(folder) = beside.path().parent() {
-            remove_leftovers(folder);
-        }
-        Ok(())
     }
 }
 

@@ -173,7 +173,7 @@ impl Document {
         let scene: Scene = options().from_str(text).map_err(|error| {
             let start = error.span.start;
             let at = offset_of(text, start.line, start.col);
-            let sentence = sentence(&error.code, MAX_DEPTH);
+            let sentence = sentence(&error.code, text.split_at(at), MAX_DEPTH);
             let is_end = text[at..].trim().is_empty() && error.code != ron::Error::Eof;
             let ends = if is_end { "the file ends here; " } else { "" };
             refuse(name, text, at, format!("{ends}{sentence}"))

@@ -2,9 +2,19 @@
 
 use ron::Error;
 
-/// The sentence for a parser's error, without a full stop. `max_depth` is the parser's limit.
-pub fn sentence(error: &Error, max_depth: usize) -> String {
+/// The sentence for a parser's error, without a full stop, given the text up to there and from there on. `max_depth` is
+/// the parser's limit.
+pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) -> String {
     match error {
+        // It has taken what is before the point for a whole number, and wonders about the rest.
+        Error::ExpectedComma
+            if before.ends_with(|c: char| c.is_ascii_digit()) && after.starts_with('.') =>
+        {
+            "expected a whole number".to_owned()
+        }
+        Error::ExpectedIdentifier if after.starts_with('"') => {
+            "expected a name without quotation marks".to_owned()
+        }
         Error::Message(message) => message.clone(),
         Error::Eof => "the file ends in the middle of the scene".to_owned(),
         Error::ExceededRecursionLimit => format!("brackets are nested more than {max_depth} deep"),

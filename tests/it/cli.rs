@@ -166,7 +166,7 @@ fn the_camera_can_be_chosen() {
 #[test]
 fn wrong_words_and_wrong_files_exit_with_2() {
     let folder = folder();
-    let cases: [(&[&str], &str); 14] = [
+    let cases: [(&[&str], &str); 16] = [
         (&["render", DEMO], "--output <IMAGE>"),
         (
             &["render", DEMO, "-o", "a.jpg"],
@@ -204,6 +204,14 @@ fn wrong_words_and_wrong_files_exit_with_2() {
             &["render", "missing.ron", "-o", "a.png"],
             "cannot read missing.ron",
         ),
+        (
+            &["missing.ron", "--screenshot", "a.png"],
+            "cannot read missing.ron",
+        ),
+        (
+            &["--screenshot", "a.png", "--select", "Sphere 7"],
+            "no object and no light named \"Sphere 7\"",
+        ),
         (&["export", DEMO], "--output <DIR>"),
         (&["check"], "<SCENE>..."),
         (
@@ -231,23 +239,24 @@ fn wrong_words_and_wrong_files_exit_with_2() {
 
 #[test]
 fn failed_work_exits_with_1_and_names_the_file() {
-    let run = glint(
-        folder().path(),
-        &[
-            "render",
-            DEMO,
-            "-o",
-            "no/such/folder/a.png",
-            "--width",
-            "16",
-        ],
-    );
-    assert_eq!(run.status.code(), Some(1));
-    assert!(
-        text(&run.stderr).starts_with("error: cannot write no/such/folder/a.png: "),
-        "{}",
-        text(&run.stderr)
-    );
+    // What takes minutes is not begun.
+    let cases: [&[&str]; 6] = [
+        &["render", DEMO, "--width", "16384", "-o"],
+        &["chart", DEMO, "--png"],
+        &["chart", DEMO, "--csv"],
+        &["stability", "--effort", "1000", "--csv"],
+        &["stability", "--effort", "1000", "--png"],
+        &["--screenshot"],
+    ];
+    for words in cases {
+        let path = "no/such/folder/a.png";
+        let run = glint(folder().path(), &[words, &[path]].concat());
+        assert_eq!(run.status.code(), Some(1), "{words:?}");
+        let said = text(&run.stderr);
+        let expected =
+            format!("error: cannot write {path}: the folder no/such/folder does not exist");
+        assert!(said.starts_with(&expected), "{words:?}: {said}");
+    }
 }
 
 #[test]
@@ -476,7 +485,12 @@ fn results_that_cannot_be_written_are_a_failure() {
     let Ok(full) = std::fs::File::options().write(true).open("/dev/full") else {
         return; // Not every system has a device that is always full.
     };
-    for words in [["plan", DEMO], ["check", DEMO]] {
+    for words in [
+        &["plan", DEMO][..],
+        &["check", DEMO],
+        &["--help"],
+        &["--version"],
+    ] {
         let output = Command::new(env!("CARGO_BIN_EXE_glint"))
             .args(words)
             .stdout(full.try_clone().expect("a second one"))

@@ -13,9 +13,17 @@ pub fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
+/// What has more digits before the point is written with an exponent, and so is what has more zeros behind it.
+const MOST_DIGITS: f64 = 1e17;
+
 /// The shortest text that reads back as `value`, without `.0` on whole numbers.
 pub fn format_number(value: f64) -> String {
-    format!("{value}")
+    let size = value.abs();
+    if size >= MOST_DIGITS || (size > 0.0 && size < MOST_DIGITS.recip()) {
+        format!("{value:e}")
+    } else {
+        format!("{value}")
+    }
 }
 
 /// Reads `1, 2, 3`, `(1, 2, 3)` or `1 2 3`; `None` if that is not three finite numbers.
