@@ -51,15 +51,15 @@ pub fn corner_normals<R: Real>(
     normals.collect()
 }
 
-/// How far points of the faces are lifted at most onto the surface that they stand for, see
-/// [`crate::primitive::Curved::bend`].
+/// How far points of the faces are lifted at most onto the surface that they stand for, whichever side of it is seen,
+/// see [`crate::primitive::Curved::bend`].
 pub fn largest_lift<R: Real>(triangles: &[PackedTriangle<R>], smooth: &[CornerNormals<R>]) -> R {
     let faces = triangles.iter().zip(smooth);
     let lifts = faces.flat_map(|(triangle, smooth)| {
         let corners = triangle.corners.into_iter().zip(smooth.normals);
         corners.flat_map(|(corner, normal)| {
             let others = triangle.corners.into_iter();
-            others.map(move |other| normal.dot(corner - other))
+            others.map(move |other| normal.dot(corner - other).abs())
         })
     });
     lifts.fold(R::ZERO, R::max)
@@ -115,5 +115,56 @@ impl Around {
     fn of_corner(&self, corner: u32) -> &[(u32, u8)] {
         let corner = corner as usize;
         &self.faces[self.firsts[corner] as usize..self.firsts[corner + 1] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::primitive::{Curved, Primitive as _, Ray};
+
+    #[test]
+    fn nothing_is_lifted_farther_than_told_whichever_side_is_seen() {
+        // Two faces of a roof.
+        let [left, right] = [DVec3::NEG_X, DVec3::X].map(|side| side - DVec3::Y);
+        let (front, back) = (DVec3::Z, DVec3::NEG_Z);
+        let faces = [[front, back, left], [back, front, right]];
+        let triangles: Vec<_> = faces
+            .into_iter()
+            .filter_map(PackedTriangle::<f64>::of_mesh)
+            .collect();
+        let smooth = corner_normals(&triangles, 120.0);
+        let most = largest_lift(&triangles, &smooth);
+        let mut farthest = [0.0_f64; 2];
+        for (triangle, smooth) in triangles.iter().zip(&smooth) {
+            let curved = Curved {
+                corners: triangle.corners,
+                normals: smooth.normals,
+                curvature: smooth.curvature,
+            };
+            let [a, b, c] = triangle.corners;
+            let middle = (a + b + c) * (1.0 / 3.0);
+            for (farthest, side) in farthest.iter_mut().zip([1.0, -1.0]) {
+                let direction = triangle.normal * side;
+                let origin = middle - direction;
+                let flat = triangle.refine(&Ray { origin, direction }, 1.0);
+                let bent = curved.bend(&flat, direction);
+                *farthest = farthest.max((bent.point - flat.point).length());
+            }
+        }
+        // From one side it is a roof, and lifted; from the other it is a valley.
+        assert!(farthest[0].max(farthest[1]) > 0.1, "{farthest:?}");
+        assert!(farthest[0].max(farthest[1]) <= most, "{farthest:?} {most}");
+        assert!(farthest[0].min(farthest[1]) < 1e-9, "{farthest:?}");
+        let turned = triangles.iter().map(|triangle| {
+            let mut turned = *triangle;
+            turned.turn();
+            turned
+        });
+        let turned: Vec<_> = turned.collect();
+        let other = largest_lift(&turned, &corner_normals(&turned, 120.0));
+        assert!((other - most).abs() < 1e-12, "{other} {most}");
     }
 }
