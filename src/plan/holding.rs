@@ -1,6 +1,7 @@
 //! Faces of meshes that hold the eye, the window of parallel rays, or a light: rounding would decide on which side of
 //! them it is. Such a face is not seen by the eye and casts no shadow from the light.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -66,18 +67,31 @@ impl<R: Real> Plan<R> {
 }
 
 impl Place {
-    /// The faces of a mesh that hold it, and those that single precision cannot tell from them; none where no face does.
+    /// The faces of a mesh that hold it; none where no face does.
     fn held_by<R: Real>(&self, instance: &MeshInstance<R>, mesh: &Mesh) -> Option<Arc<IdleFaces>> {
         let packed = &*instance.mesh;
         let near = Near::new(self, packed, mesh);
         let may_hold = meets_any(
             &packed.bvh,
             |bounds| near.meets(bounds),
-            |face| near.is_held(&packed.triangles[face as usize]),
+            |face| near.may_be_held(&packed.triangles[face as usize]),
         );
-        // Only now are all faces worth a look.
-        let is_held = may_hold && mesh.pieces().any(|piece| self.is_in(&piece));
-        is_held.then(|| Arc::new(IdleFaces::of(packed, |face| near.is_held(face))))
+        if !may_hold {
+            return None; // Only now are all faces worth a look.
+        }
+        let transform = mesh.transform();
+        let in_world = |corner| transform.transform_point3(corner);
+        let faces = mesh.source.triangles().corners();
+        let holding = faces.filter(|corners| {
+            let piece = PlanePiece::between(corners.map(in_world));
+            piece.is_some_and(|piece| self.is_in(&piece))
+        });
+        // What is near is not on it: rounding may decide there, and is told where it does.
+        let holding: HashSet<_> = holding
+            .map(|corners| sorted(corners.map(|corner| packed.place(corner))))
+            .collect();
+        let is_held = |face: &PackedTriangle<R>| holding.contains(&sorted(face.corners));
+        (!holding.is_empty()).then(|| Arc::new(IdleFaces::of(packed, is_held)))
     }
 
     fn is_in(&self, piece: &PlanePiece) -> bool {
@@ -124,7 +138,7 @@ impl<R: Real> Near<R> {
         }
     }
 
-    fn is_held(&self, face: &PackedTriangle<R>) -> bool {
+    fn may_be_held(&self, face: &PackedTriangle<R>) -> bool {
         let is_in =
             |point: Vec3<R>, normal: Vec3<R>| normal.dot(self.point - point).abs() <= self.slack;
         match self.direction {
@@ -132,6 +146,14 @@ impl<R: Real> Near<R> {
             Some(direction) => face.corners.iter().all(|&corner| is_in(corner, direction)),
         }
     }
+}
+
+/// The corners of a face, bit by bit, whichever way it is wound and whichever comes first.
+fn sorted<R: Real>(corners: [Vec3<R>; 3]) -> [[u64; 3]; 3] {
+    let bits = |corner: Vec3<R>| corner.to_array().map(|part| part.to_f64().to_bits());
+    let mut corners = corners.map(bits);
+    corners.sort_unstable();
+    corners
 }
 
 /// Whether any member is it, of those in boxes that count.

@@ -28,7 +28,7 @@ pub struct PointLight<R> {
     pub idle_faces: Vec<Option<Arc<IdleFaces>>>,
     /// Numbers of primitives whose planes hold the light: they cast no shadow from it.
     pub holders: Vec<usize>,
-    /// What rounding may have moved its position by.
+    /// What rounding may have moved its position by, in the scene file as well.
     pub rounding: R,
     /// Whether it may be in the plane of something: what it is no higher above than that is not lit.
     pub may_be_level: bool,
@@ -70,6 +70,7 @@ pub fn pack_lights<R: Real>(
         .map(|(index, light)| {
             let position: Vec3<R> = Vec3::from_dvec3(light.position - centre);
             let may_touch = touches(index);
+            let in_world = light.position.abs().max_element() * roundings::<f64>();
             PointLight {
                 position,
                 place: light.position,
@@ -77,7 +78,7 @@ pub fn pack_lights<R: Real>(
                 shadow_culled_faces: Vec::new(),
                 idle_faces: Vec::new(),
                 holders: holders(index),
-                rounding: position.max_abs() * roundings(),
+                rounding: position.max_abs() * roundings() + R::from_f64(in_world),
                 may_be_level: may_touch || has_meshes,
                 may_touch,
             }

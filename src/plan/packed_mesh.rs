@@ -123,6 +123,11 @@ impl<R: Real> PackedMesh<R> {
             && self.smooth_degrees == mesh.smooth
     }
 
+    /// Where a point of its source is, from its middle: exactly where corners of its triangles are.
+    pub fn place(&self, point: DVec3) -> Vec3<R> {
+        Vec3::from_dvec3(self.turn * point - self.middle)
+    }
+
     /// Where its middle is in the world, if it is that of `mesh`.
     pub fn middle_of(&self, mesh: &Mesh) -> DVec3 {
         mesh.position + self.middle

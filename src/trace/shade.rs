@@ -301,12 +301,13 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             zero
         };
         let lit_side = hit.here & lowest.less(cosine);
-        // Highlights may end sharply where light comes from the side.
-        if let Some(slant) = point.slant.as_ref().filter(|_| !light.may_touch)
-            && !matches!(point.coat, Coat::One(surface) if surface.exponent.is_none())
-        {
-            let grazes = slant.grazes(kernel.plan, (cosine, shrink));
-            arriving.doubt = arriving.doubt | hit.here & grazes;
+        if let Some(slant) = point.slant.as_ref().filter(|_| !light.may_touch) {
+            let mut doubt = cosine.abs().at_most(lowest);
+            // Highlights may end sharply where light comes from the side.
+            if !matches!(point.coat, Coat::One(surface) if surface.exponent.is_none()) {
+                doubt = doubt | slant.grazes(kernel.plan, (cosine, shrink));
+            }
+            arriving.doubt = arriving.doubt | hit.here & doubt;
         }
         let facing = if kernel.plan.shadows_behind {
             hit.here

@@ -1,6 +1,8 @@
 //! Eyes, windows of parallel rays and lights on faces of meshes: no speckle, and the same in any precision.
 
 use glam::{DMat3, DVec3};
+use glint::image::Image;
+use glint::mesh::Triangles;
 use glint::scene::{Camera, Mesh, Precision, Projection, Scene, Shape};
 
 use crate::contacts::{SIDE, at, block, blue_and_red, floor, lamp, scene, sheet, steady_mesh};
@@ -102,4 +104,56 @@ fn a_face_casts_no_shadow_from_a_light_on_it_and_is_not_lit() {
         let differ = pairs.filter(|(lit, alone)| lit[0].abs_diff(alone[0]) > 1);
         assert_eq!(differ.count(), 0, "{what}");
     }
+}
+
+#[test]
+fn a_light_in_the_plane_of_a_face_does_not_light_it_wherever_that_is() {
+    for offset in [0.0, 1e4, 1e5, 1e6] {
+        let there = HERE + DVec3::new(offset, -offset, 0.3 * offset);
+        let mut lit = with_camera(scene([sheet(3, 4.0, (there, TURNED))]), |camera| {
+            camera.position = there + turn() * DVec3::new(0.5, 4.0, 1.0);
+            camera.look_at = turn() * DVec3::new(-0.1, -1.0, -0.2);
+        });
+        // Beside it, so that it is not in its box.
+        let on = there + turn() * DVec3::new(2.5, 0.0, 0.3);
+        lit.lights = [lamp(on.x, on.y, on.z)].into_iter().collect();
+        let what = format!("a lamp beside a sheet {offset} away");
+        let double = at(&lit, Precision::Double);
+        let automatic = at(&lit, Precision::Auto);
+        assert_same_but_for_edges(&automatic, &double, &what);
+        lit.lights = glint::scene::List::new();
+        let dark = at(&lit, Precision::Double);
+        assert_same_but_for_edges(&double, &dark, &what);
+    }
+}
+
+#[test]
+fn a_light_a_little_above_a_large_face_lights_it() {
+    let ground = sheet(1, 8000.0, (DVec3::ZERO, DVec3::ZERO));
+    let mut near = with_camera(scene([ground]), |camera| {
+        camera.position = DVec3::new(1000.0, 0.02, 700.0);
+        camera.look_at = DVec3::new(0.01, -1.0, 0.02);
+    });
+    near.lights = [lamp(1000.0, 1e-3, 700.0)].into_iter().collect();
+    let (automatic, double) = (at(&near, Precision::Auto), at(&near, Precision::Double));
+    assert_same_but_for_edges(&automatic, &double, "a lamp just above the ground");
+    let bright = |image: &Image| image.pixels.iter().map(|pixel| pixel[0]).max();
+    near.lights = glint::scene::List::new();
+    assert!(bright(&at(&near, Precision::Double)) < bright(&double));
+}
+
+#[test]
+fn what_is_just_above_an_eye_on_a_face_is_seen() {
+    let corners = |height: f64| {
+        [(-1.0, -1.0), (1.0, -1.0), (0.0, 1.0)].map(|(x, z)| DVec3::new(x * 1e3, height, z * 1e3))
+    };
+    let points = [corners(0.0), corners(1e-4)].concat();
+    let layers = Triangles::new(points, vec![[0, 1, 2], [3, 4, 5]]).expect("in range");
+    let under = with_camera(scene([floor(), Mesh::of(layers).into()]), |camera| {
+        camera.position = DVec3::new(3.0, 0.0, 5.0);
+        camera.look_at = DVec3::new(0.1, 1.0, 0.2);
+    });
+    let (automatic, double) = (at(&under, Precision::Auto), at(&under, Precision::Double));
+    assert_eq!(blue_and_red(&double), (ALL, 0));
+    assert_same_but_for_edges(&automatic, &double, "under a roof");
 }
