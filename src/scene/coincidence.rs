@@ -13,8 +13,9 @@ use super::shape::{Outline, PlanePiece, Shape};
 /// Most objects that are looked at: some ten milliseconds.
 const MOST_OBJECTS: usize = 200_000;
 
-/// Most pairs of flat objects that are held against each other: as long.
-const MOST_COMPARED: usize = 2_000_000;
+/// Most pairs of flat objects whose boxes are held against each other, and most of those that meet which are: as long.
+const MOST_PAIRS: usize = 4_000_000;
+const MOST_COMPARED: usize = 200_000;
 
 /// All pairs of visible objects that fill the same surface, sorted; coordinates count from `centre`. Where there are
 /// hundreds of thousands of objects, none is looked at; of thousands of flat ones in the same place, or faces of large
@@ -23,7 +24,7 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     if objects.len() > MOST_OBJECTS {
         return Vec::new();
     }
-    let mut left = MOST_COMPARED;
+    let (mut left, mut pairs) = (MOST_COMPARED, MOST_PAIRS);
     let visible = objects.iter().enumerate();
     let visible = visible.filter(|(_, object)| object.visible);
     let mut found = Vec::new();
@@ -83,8 +84,8 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
         let others = pieces[place + 1..].iter();
         let end = one.bounds.1.x + little;
         let near = others.take_while(|other| other.bounds.0.x <= end);
-        for other in near.take_while(|_| counts_down(&mut left)) {
-            if one.meets(other) {
+        for other in near.take_while(|_| counts_down(&mut pairs)) {
+            if one.meets(other) && counts_down(&mut left) {
                 add((one.index, &one.flat), (other.index, &other.flat));
             }
         }
