@@ -78,6 +78,9 @@ pub enum VideoError {
     },
 }
 
+/// Most bytes of what another program said that are told.
+const MOST_SAID: usize = 4000;
+
 impl VideoError {
     /// The video could not be written, for this reason.
     pub fn disk(path: &Path, why: &dyn std::error::Error) -> Self {
@@ -96,9 +99,13 @@ impl VideoError {
     }
 }
 
-/// The end of what another program said, which tells why it failed.
+/// The end of what another program said, which tells why it failed. What would move a terminal's cursor is left out.
 pub fn last_lines(said: &[u8]) -> String {
-    let said = String::from_utf8_lossy(said);
-    let lines: Vec<&str> = said.lines().collect();
+    let end = &said[said.len().saturating_sub(MOST_SAID)..];
+    let said = String::from_utf8_lossy(end);
+    let lines: Vec<String> = said
+        .lines()
+        .map(|line| line.replace(char::is_control, " "))
+        .collect();
     lines[lines.len().saturating_sub(12)..].join("\n")
 }

@@ -29,7 +29,10 @@ pub fn by_ffmpeg(
             let command = command(sequence, path, codec);
             return Err(VideoError::NoFfmpeg { command });
         }
-        Err(error) => return Err(wrong(error)),
+        Err(error) => {
+            let said = format!("it cannot be started: {error}");
+            return Err(VideoError::Ffmpeg { said });
+        }
     };
     // All that it says is heard while it is fed: it stops for whoever does not listen.
     let stderr = ffmpeg.stderr.take();

@@ -1,5 +1,6 @@
 //! Frames that are read to become a video.
 
+use std::io::Cursor;
 use std::path::Path;
 
 use image::{DynamicImage, ImageReader, ImageResult, RgbaImage};
@@ -18,10 +19,10 @@ pub fn as_ppm(path: &Path) -> Result<Vec<u8>, VideoError> {
         height: frame.height() as usize,
         pixels: frame.pixels().map(|pixel| pixel.0).collect(),
     };
-    let mut bytes = Vec::new();
+    let mut bytes = Cursor::new(Vec::new());
     let encoded = image.encode(Format::Ppm, &mut bytes);
     encoded.map_err(|source| VideoError::unreadable(path, source))?;
-    Ok(bytes)
+    Ok(bytes.into_inner())
 }
 
 /// A frame of 8 bits, of whatever format.

@@ -1,13 +1,13 @@
 //! An animation as files: which, where, and what each of them shows.
 
-use std::io::{self, Write as _};
+use std::io::{self, Cursor, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
 use super::error::ExportError;
 use super::frames::{Frames, FramesError};
-use super::manifest::{Hash, Manifest, add_note};
+use super::manifest::{Hash, MANIFEST, Manifest, add_note};
 use super::pattern::Pattern;
 use crate::animate::{CameraPath, shot};
 use crate::files::{NewFile, make_folder, remove_leftovers};
@@ -150,7 +150,8 @@ impl Sequence {
     /// # Errors
     /// [`ExportError::Disk`].
     pub fn manifest(&self) -> Result<Manifest, ExportError> {
-        Manifest::read(&self.folder).map_err(|source| disk(&self.folder, source))
+        let wrong = |source| disk(&self.folder.join(MANIFEST), source);
+        Manifest::read(&self.folder).map_err(wrong)
     }
 
     /// Whether a frame is there, whole, and shows what it would show now.
@@ -180,12 +181,13 @@ impl Sequence {
         time: Duration,
     ) -> Result<(), ExportError> {
         let path = self.path(frame);
-        let mut bytes = Vec::new();
+        let mut bytes = Cursor::new(Vec::new());
         let encoded = film.encode(self.format, &mut bytes);
         encoded.map_err(|source| ExportError::Encode {
             path: path.clone(),
             source,
         })?;
+        let bytes = bytes.into_inner();
         let beside = NewFile::beside(&path);
         let written = beside.and_then(|beside| {
             beside.as_file().write_all(&bytes)?;

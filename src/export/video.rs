@@ -118,8 +118,8 @@ impl Video {
             ))
         };
         match self {
-            Self::H264 if width.min(height) < 2 => unfit(format!(
-                "an .mp4 is at least 2 × 2 pixels large, not {width} × {height}; .gif, .apng and .mkv are as large as the frames"
+            Self::H264 | Self::Lossless if width.min(height) < 2 => unfit(format!(
+                "an .mp4 or .mkv is at least 2 × 2 pixels large, not {width} × {height}; .gif, .apng and .mov are as large as the frames"
             )),
             Self::H264 if width % 2 + height % 2 > 0 => {
                 let [width, height] = [width, height].map(|side| side / 2 * 2);

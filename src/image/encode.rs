@@ -1,6 +1,6 @@
 //! Pictures as files: PNG, binary PPM and EXR.
 
-use std::io::{self, Cursor, Write};
+use std::io::{self, Seek, Write};
 use std::path::Path;
 
 use image::codecs::openexr::OpenExrEncoder;
@@ -70,19 +70,11 @@ impl LinearImage {
     ///
     /// # Errors
     /// What the encoder says, or the system.
-    pub fn encode(&self, file: &mut impl Write) -> Result<(), ImageError> {
-        let channels = self.pixels.iter().flatten();
-        let bytes: Vec<u8> = channels.flat_map(|channel| channel.to_ne_bytes()).collect();
-        // The encoder goes back to where it has been.
-        let mut exr = Cursor::new(Vec::new());
+    pub fn encode(&self, file: &mut (impl Write + Seek)) -> Result<(), ImageError> {
+        // As they are: a large picture is gigabytes.
+        let bytes = bytemuck::cast_slice(&self.pixels);
         let (width, height) = (short(self.width), short(self.height));
-        OpenExrEncoder::new(&mut exr).write_image(
-            &bytes,
-            width,
-            height,
-            ExtendedColorType::Rgb32F,
-        )?;
-        Ok(file.write_all(exr.get_ref())?)
+        OpenExrEncoder::new(file).write_image(bytes, width, height, ExtendedColorType::Rgb32F)
     }
 }
 
@@ -96,7 +88,7 @@ impl Image {
     ///
     /// # Errors
     /// What the encoder says, or the system.
-    pub fn encode(&self, format: Format, file: &mut impl Write) -> Result<(), ImageError> {
+    pub fn encode(&self, format: Format, file: &mut (impl Write + Seek)) -> Result<(), ImageError> {
         match format {
             Format::Png => self.write_png(file).map_err(io::Error::from)?,
             Format::Ppm => {
@@ -135,6 +127,8 @@ impl Image {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Cursor;
+
     use super::*;
 
     #[test]
@@ -143,9 +137,11 @@ mod tests {
         image.pixels.fill([0, 0, 0, 255]);
         image.pixels[4] = [1, 2, 250, 255];
         for format in Format::ALL {
-            let mut bytes = Vec::new();
+            let mut bytes = Cursor::new(Vec::new());
             image.encode(format, &mut bytes).expect("encodes");
-            let back = image::load_from_memory(&bytes).expect("decodes").to_rgba8();
+            let back = image::load_from_memory(bytes.get_ref())
+                .expect("decodes")
+                .to_rgba8();
             assert_eq!(back.into_raw(), image.pixels.concat());
         }
     }

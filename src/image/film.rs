@@ -1,7 +1,7 @@
 //! What a picture is traced onto before it becomes a file: as precise as the file can be.
 
 use std::borrow::Cow;
-use std::io::Write;
+use std::io::{Seek, Write};
 
 use image::ImageError;
 
@@ -80,7 +80,7 @@ impl Film {
     ///
     /// # Errors
     /// What the encoder says, or the system.
-    pub fn encode(&self, format: Format, file: &mut impl Write) -> Result<(), ImageError> {
+    pub fn encode(&self, format: Format, file: &mut (impl Write + Seek)) -> Result<(), ImageError> {
         match (self, format) {
             (Self::Linear(image), Format::Exr) => image.encode(file),
             _ => self.levels().encode(format, file),
@@ -90,6 +90,8 @@ impl Film {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Cursor;
+
     use super::*;
 
     #[test]
@@ -110,9 +112,9 @@ mod tests {
         let is_between = |channel: &&f32| (**channel * 255.0).fract() != 0.0;
         let between = light.pixels.iter().flatten().filter(is_between).count();
         assert!(between > 100, "{between}");
-        let mut bytes = Vec::new();
+        let mut bytes = Cursor::new(Vec::new());
         films[1].encode(Format::Exr, &mut bytes).expect("encodes");
-        let back = image::load_from_memory(&bytes).expect("decodes");
+        let back = image::load_from_memory(bytes.get_ref()).expect("decodes");
         assert_eq!(back.to_rgb32f().into_raw(), light.pixels.concat());
     }
 }

@@ -304,12 +304,14 @@ fn at_rate(folder: &Path, fps: &str, size: (u32, u32), words: &[&str]) -> Comman
 fn what_no_video_can_show_is_told_and_what_it_shows_otherwise_as_well() {
     let folder = tempfile::tempdir().expect("a folder");
     let video = |name: &str| folder.path().join(name).to_str().expect("plain").to_owned();
-    let words = ["--frames", "1", "--video", &video("a.mp4")];
-    let output = run(&mut at_rate(folder.path(), "14", (1, 8), &words));
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("at least 2 × 2 pixels"), "{said}");
-    assert!(!folder.path().join("frames").exists());
+    for name in ["a.mp4", "a.mkv"] {
+        let words = ["--frames", "1", "--video", &video(name)];
+        let output = run(&mut at_rate(folder.path(), "14", (1, 8), &words));
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains("at least 2 × 2 pixels"), "{said}");
+        assert!(!folder.path().join("frames").exists());
+    }
     // Frames that are too short for a GIF's clock are left out, but never all of them.
     for (fps, frames, told, shown) in [
         ("120", "1-8", "leaves out 4 of 8", 4),
@@ -650,6 +652,7 @@ fn what_ffmpeg_says_is_heard_and_what_it_does_not_write_takes_no_ones_place() {
         ),
         ("cat >/dev/null\nexit 0", "it wrote nothing"),
         ("exit 0", "it ended before it had all frames"),
+        ("printf 'a\\033[2Jb' >&2\nexit 3", "ffmpeg failed:\na [2Jb"),
         // More than a pipe holds, before it takes frames that are more than a pipe holds as well.
         ("seq 100000 >&2\ncat >/dev/null\nexit 3", "99999\n100000"),
     ] {
