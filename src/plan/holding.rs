@@ -55,14 +55,8 @@ impl<R: Real> Plan<R> {
                 point: light.place,
                 direction: None,
             });
+            light.may_touch |= light.idle_faces.iter().any(Option::is_some);
         }
-    }
-
-    /// Whether a point may be on a mesh.
-    pub fn is_at_mesh(&self, point: DVec3) -> bool {
-        let point = Vec3::from_dvec3(point - self.centre);
-        let meshes = self.geometry.iter().flat_map(|geometry| &geometry.meshes);
-        meshes.into_iter().any(|mesh| mesh.is_around(point))
     }
 }
 

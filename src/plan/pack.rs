@@ -165,10 +165,7 @@ impl<R: Real> Plan<R> {
             let holders = contacts.lights.held_by.get(light).into_iter().flatten();
             holders.filter_map(number).collect()
         };
-        let touches = |light: usize| {
-            contacts.lights.touching.contains(&light)
-                || plan.is_at_mesh(scene.lights[light].position)
-        };
+        let touches = |light: usize| contacts.lights.touching.contains(&light);
         plan.lights = pack_lights(scene, centre, (occluders, model), (touches, holders));
         plan.hold(scene, request);
         if matches!(request.sampling, Sampling::Adaptive { .. }) {

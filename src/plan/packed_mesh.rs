@@ -181,15 +181,6 @@ impl<R: Real> MeshInstance<R> {
         self.mesh.is_solid && is_outside(triangles, bvh, point - self.centre)
     }
 
-    /// Whether a point is in the box around it, or on it.
-    pub fn is_around(&self, point: Vec3<R>) -> bool {
-        let BoundingBox { low, high } = self.member().bounds;
-        let within = |low: R, at: R, high: R| low <= at && at <= high;
-        within(low.x, point.x, high.x)
-            && within(low.y, point.y, high.y)
-            && within(low.z, point.z, high.z)
-    }
-
     /// The mesh as a member of the tree over all objects.
     pub fn member(&self) -> Member<R> {
         let BoundingBox { low, high } = self.mesh.bvh.bounds;
