@@ -173,9 +173,7 @@ impl CliArgs {
             select: self.select,
         })
     }
-}
 
-impl CliArgs {
     /// Whether the scene that a screenshot shall show is one, and has what is selected in it: nobody reads in the window
     /// that it is not so.
     fn check_shown(&self) -> Result<(), CliError> {
