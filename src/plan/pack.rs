@@ -204,11 +204,8 @@ impl<R: Real> Plan<R> {
     }
 
     /// From now on it is.
-    pub fn doubt(&mut self, scene: &Scene) {
-        let eye = (scene.camera.position - self.centre).abs().max_element();
-        let lights = self.lights.iter().map(|light| light.position.max_abs());
-        let size = lights.fold(self.extent.max(R::from_f64(eye)), R::max);
-        self.blur = Blur::of_size(size);
+    pub fn doubt(&mut self) {
+        self.blur = Blur::of_size(self.view.farthest_start());
     }
 
     /// Takes what stands in a tree, and surrounds it.

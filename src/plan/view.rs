@@ -55,6 +55,12 @@ impl<R: Real> View<R> {
         }
     }
 
+    /// The largest coordinate, at most, of where rays start.
+    pub fn farthest_start(&self) -> R {
+        let (half_width, half_height) = self.half;
+        self.origin.max_abs() + self.footprint.0 * (half_width + half_height)
+    }
+
     /// How wide a pixel is at the eye, and how much wider at distance 1, at most.
     pub fn footprint(&self) -> (R, R) {
         self.footprint

@@ -109,13 +109,13 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
         let bound = aside * (radius + radius + aside);
         let passes_rim = (off.dot(off) - radius * radius).abs().at_most(bound);
         let is_open = passes_rim | speed.abs().at_most(blur.spread);
-        let is_open = comes_near & (is_open | height.abs().at_most(blur.start));
+        let is_open = comes_near & (is_open | height.abs().at_most(blur.at(radius)));
         let distance = self.intersect(rays, &(), methods);
         if !(wanted & is_open).any() {
             return Some((distance, infinity));
         }
         let around = BoundingBox::around_ball(self.center, self.radius);
-        let entry = around.entry(rays, blur.at(b.abs()));
+        let entry = around.entry(rays, width);
         Some((distance, L::select(is_open, entry, infinity)))
     }
 
@@ -129,6 +129,7 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
             normal,
             curvature: t.like(R::ZERO),
             slack: t.like(R::ZERO),
+            size: point.max_abs() + t.like(self.radius),
         }
     }
 

@@ -40,6 +40,9 @@ pub struct SurfacePoint<L: SimdFloat> {
     /// number even where there is none: the compiler multiplies with it in either case, and what it
     /// would find in its place may be a number so small that the processor stumbles over it.
     pub slack: L,
+    /// The largest number, about, that the point was worked out from: a coordinate, or a measure of the primitive. It
+    /// is a few roundings of that off, however near it is.
+    pub size: L,
 }
 
 /// How close rays come to a primitive.

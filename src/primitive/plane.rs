@@ -105,6 +105,7 @@ impl<R: Real> Primitive<R> for PackedPlane<R> {
             normal,
             curvature: t.like(R::ZERO),
             slack: t.like(R::ZERO),
+            size: point.max_abs(),
         }
     }
 

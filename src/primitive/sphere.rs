@@ -55,6 +55,7 @@ impl<L: SimdFloat> Round<L> {
             normal,
             curvature,
             slack: t.like(L::Real::ZERO),
+            size: center.max_abs() + radius,
         }
     }
 }
@@ -135,7 +136,9 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
         let radius = x.x.like(self.radius);
         let (b, inside) = perpendicular(x, rays.direction, radius);
         let square_of = |width: L| width * (radius + radius + width);
-        let bound = square_of(blur.at(b.abs()));
+        // Its middle is no farther from where rays start that come near it.
+        let width = blur.at(b.abs() + radius);
+        let bound = square_of(width);
         let passes_by = inside.less(-bound);
         if !(wanted & !passes_by).any() {
             return None;
@@ -143,12 +146,12 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
         let half_chord = inside.sqrt();
         let distance = first_ahead(b - half_chord, b + half_chord);
         let grazes = inside.abs().at_most(bound);
-        let starts_on_it = (b * b - inside).abs().at_most(square_of(blur.start)) & !passes_by;
+        let starts_on_it = (b * b - inside).abs().at_most(square_of(blur.at(radius))) & !passes_by;
         if !(wanted & (grazes | starts_on_it)).any() {
             return Some((distance, infinity));
         }
         let around = BoundingBox::around_ball(self.center, self.radius);
-        let entry = around.entry(rays, blur.at(b.abs()));
+        let entry = around.entry(rays, width);
         let from = L::select(grazes, entry, infinity);
         Some((distance, L::select(starts_on_it, zero, from)))
     }

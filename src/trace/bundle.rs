@@ -69,7 +69,7 @@ impl<L: SimdFloat> Bundle<L> {
     pub fn new(rays: &Ray<L>, blur: &Blur<L>, active: L::Mask, reach: L::Real) -> Self {
         let like = rays.origin.x;
         let size = rays.origin.max_abs() + like.like(reach);
-        let slack = size * like.like(roundings()) + aside(blur, size);
+        let slack = size * like.like(roundings()) + aside(blur, like.like(L::Real::ZERO), size);
         Self::between(rays.origin, slack, rays.direction, active)
     }
 
@@ -83,11 +83,21 @@ impl<L: SimdFloat> Bundle<L> {
         reach: L::Real,
     ) -> Self {
         let origin = rays.origin.like(point);
-        let size = rays.origin.max_abs() + origin.x.like(reach + point.max_abs());
+        let ways = rays.origin - origin;
+        let far = origin.x.like(reach + point.max_abs());
+        // Nothing is farther from the point than this; where rays start that come from farther away, they are off by
+        // more than they are here.
+        let deepest = far * far.like_f64(LONGEST);
+        let size = (rays.origin.max_abs() + far).min(deepest + deepest);
         // A ray passes the point as far off as its start and its direction are rounded.
         let rounded = size * size.like_f64(ROUNDED_TWICE) * size.like(roundings());
-        let slack = rounded + aside(blur, size);
-        Self::between(origin, slack, rays.origin - origin, active)
+        let from = if L::Real::IS_FILTERED {
+            (ways.length() - deepest).max(far.like(L::Real::ZERO))
+        } else {
+            far.like(L::Real::ZERO)
+        };
+        let slack = rounded + aside(blur, from, size);
+        Self::between(origin, slack, ways, active)
     }
 
     #[inline(always)]
@@ -382,12 +392,13 @@ impl<R: Real> Axis<R> {
     }
 }
 
-/// How far beside rays boxes are met, where no coordinate is larger than this.
+/// How far beside rays boxes are met that are no nearer than `from`, where no coordinate is larger than this.
 #[inline(always)]
-pub fn aside<L: SimdFloat>(blur: &Blur<L>, size: L) -> L {
+pub fn aside<L: SimdFloat>(blur: &Blur<L>, from: L, size: L) -> L {
     if L::Real::IS_FILTERED {
         // As far as doubts go, along the longest way through the scene.
-        blur.at(size * size.like_f64(LONGEST)) * size.like_f64(1.0 + CAUTION)
+        let longest = from + size * size.like_f64(LONGEST);
+        blur.between(from, longest) * size.like_f64(1.0 + CAUTION)
     } else {
         size.like(L::Real::ZERO)
     }

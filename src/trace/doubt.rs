@@ -120,26 +120,18 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
     }
 }
 
-/// The smallest cosine between rays and a surface's normal at which hits are told.
-const LEAST_COSINE: f64 = 2.5e-4;
-/// The same for mirrored rays, which are farther off: the more so, the more that is looked for around hits costs.
-const LEAST_MIRRORED: f64 = 4e-3;
+/// The smallest cosine between rays and a surface's normal at which hits are told: the smaller it is, the more is
+/// looked for around hits, and the larger, the more is traced again.
+const LEAST_COSINE: f64 = 4e-3;
 /// How much farther off at distance 1 mirrored rays may be.
 const WIDEST: f64 = 1e-3;
 /// Rays that bring back no more than this are not doubted, nor is what they see in mirrors: less than a step of 8 bits.
 const FAINTEST: f64 = 1.0 / 400.0;
 
-/// How far off along a surface hits may be at most that are told, where rays are no farther off than this.
-pub fn farthest_off<R: Real>(off: R, is_first: bool) -> R {
-    off * R::from_f64(1.0 / least_cosine(is_first))
-}
-
-fn least_cosine(is_first: bool) -> f64 {
-    if is_first {
-        LEAST_COSINE
-    } else {
-        LEAST_MIRRORED
-    }
+/// How far off along a surface hits may be at most that are told, where rays are no farther off than this, and nothing is
+/// larger than `size`.
+pub fn farthest_off<R: Real>(off: R, size: R) -> R {
+    (off + Blur::of_size(size).start) * R::from_f64(1.0 / LEAST_COSINE)
 }
 
 /// What is known of how right the rays of a packet are.
@@ -195,10 +187,7 @@ pub fn widest_blur<L: SimdFloat>(
         start = start.max(blur.start);
         spread = spread.max(blur.spread);
     }
-    Blur {
-        start: start.greatest(),
-        spread: spread.greatest(),
-    }
+    Blur::spreading(start.greatest(), spread.greatest())
 }
 
 /// How rays have met a surface, and with it how far along it their hits may be off. Worked out where it is asked for:
@@ -213,8 +202,8 @@ pub struct Slant<L: SimdFloat> {
     pub cosine: L,
     /// Of the surface.
     pub curvature: L,
-    /// Whether they came from the camera.
-    pub is_first: bool,
+    /// What the hits were worked out from, see [`crate::primitive::SurfacePoint::size`].
+    pub size: L,
 }
 
 impl<L: SimdFloat> Slant<L> {
@@ -223,46 +212,39 @@ impl<L: SimdFloat> Slant<L> {
     #[inline(always)]
     fn off(&self) -> (L, L::Mask) {
         let cosine = self.cosine.abs();
-        let least = cosine.like_f64(least_cosine(self.is_first));
-        (self.blur.at(self.t) / cosine, cosine.less(least))
+        let least = cosine.like_f64(LEAST_COSINE);
+        let aside = self.blur.at(self.t) + Blur::of_sizes(self.size).start;
+        (aside / cosine, cosine.less(least))
     }
 
     /// Where light, whose angle from the normal has this cosine, may come from either side of the surface; given one over
     /// its distance.
     #[inline(always)]
-    pub fn grazes(&self, plan: &Plan<L::Real>, (cosine, per_length): (L, L)) -> L::Mask {
+    pub fn grazes(&self, (cosine, per_length): (L, L)) -> L::Mask {
         let (off, _) = self.off();
         let turn = off * (self.curvature + per_length);
-        let own = cosine.like(plan.blur.spread);
-        let rounded = own + per_length * cosine.like(plan.blur.start);
+        let own = Blur::of_sizes(self.size);
+        let rounded = own.spread + per_length * own.start;
         cosine.abs().at_most(turn + rounded)
     }
 
-    /// How far rays that go on to a light may be off, and where nothing can be told of them.
+    /// How far rays that go on to a light, which is so far away, may be off, and where nothing can be told of them.
     #[inline(always)]
-    pub fn onwards(&self, plan: &Plan<L::Real>) -> (Blur<L>, L::Mask) {
+    pub fn onwards(&self, distance: L) -> (Blur<L>, L::Mask) {
         let (off, is_lost) = self.off();
-        let own = Blur::splat(off.token(), plan.blur);
-        let start = L::select(is_lost, own.start, off + own.start);
-        (Blur { start, ..own }, is_lost)
+        let own = Blur::of_sizes(self.size);
+        let off = L::select(is_lost, own.start, off);
+        (own.towards(off, distance), is_lost)
     }
 
     /// Notes what is known of the rays that a mirror sends on, where there are some, which bring back so much of what
     /// they see. Where they are too far off for anything to be told, all of it is in doubt.
     #[inline(always)]
-    pub fn mirror(
-        &self,
-        plan: &Plan<L::Real>,
-        (active, share): (L::Mask, L),
-        own: &mut Uncertainty<L>,
-    ) {
+    pub fn mirror(&self, (active, share): (L::Mask, L), own: &mut Uncertainty<L>) {
         let (off, is_lost) = self.off();
         let weight = own.weight * share;
         let turn = off * self.curvature;
-        let blur = Blur {
-            start: off + off.like(plan.blur.start),
-            spread: self.blur.spread + turn + turn + off.like(plan.blur.spread),
-        };
+        let blur = Blur::of_sizes(self.size).onwards(off, self.blur.spread + turn + turn);
         let is_told = blur.spread.less(off.like_f64(WIDEST)) & !is_lost;
         let counts = off.like_f64(FAINTEST).less(weight) & active;
         let none = Blur::splat(off.token(), Blur::NONE);

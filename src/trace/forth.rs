@@ -147,10 +147,15 @@ impl<L: SimdFloat> Bounce<L> {
             lift = geometry.lift * L::Real::from_f64(1.0 + CAUTION);
             ball.radius += lift.to_f64();
         }
-        // Hits may be off.
+        // Hits may be off, on what is large most of all.
         let farthest = farthest.greatest();
-        let off = widest_blur(kernel.token, &self.uncertainties).at(farthest);
-        let off = farthest_off(off, self.parents.is_empty());
+        let off = if self.uncertainties.is_empty() {
+            L::Real::ZERO
+        } else {
+            let blur = widest_blur(kernel.token, &self.uncertainties);
+            let around = bounds.around().max_abs();
+            farthest_off(blur.at(farthest), around + plan.extent + plan.extent)
+        };
         ball.radius += off.to_f64();
         if plan.screen.is_some() {
             // Room for what passes beside the rays to the lights, closer than a pixel.
@@ -189,8 +194,12 @@ impl<L: SimdFloat> Bounce<L> {
         }
         let (origins, directions) = (origins.around(), directions.around());
         let size = origins.max_abs() + geometry.bvh.bounds.max_abs();
-        let slack =
-            size * roundings() + aside(&widest_blur(kernel.token, &self.uncertainties), size);
+        let slack = size * roundings()
+            + aside(
+                &widest_blur(kernel.token, &self.uncertainties),
+                L::Real::ZERO,
+                size,
+            );
         let shaft = Shaft::of(&origins.widened(slack), &directions);
         let infinity = L::Real::INFINITY;
         self.seen.has_geometry = self

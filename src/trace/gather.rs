@@ -80,7 +80,7 @@ pub struct Gathered<R> {
     /// A corner, or the middle.
     place: Columns<R>,
     normal: Columns<R>,
-    /// Whether it is in a mesh; or the radius, and one over it.
+    /// Whether it is in a mesh, and its longest edge; or the radius, and one over it.
     measures: [[R; MAX_LANES]; 2],
     /// What is needed of faces that are shaded as if they were curved, if they are.
     curved: Option<CurvedColumns<R>>,
@@ -131,6 +131,7 @@ impl<R: Real> Gathered<R> {
         self.place.set(lane, triangle.corners[0]);
         self.normal.set(lane, triangle.normal);
         self.measures[0][lane] = if triangle.in_mesh { R::ONE } else { R::ZERO };
+        self.measures[1][lane] = triangle.longest;
     }
 
     /// Where there is something.
@@ -179,6 +180,7 @@ impl<R: Real> Gathered<R> {
                     corner: place,
                     normal: self.normal.load::<L>(token),
                     in_mesh: first,
+                    longest: second,
                 };
                 match mesh {
                     None => flat.refine(rays, t),
@@ -207,6 +209,7 @@ impl<R: Real> Gathered<R> {
         // Back in the world's coordinates it is rounded once more, and again where the next ray sets out.
         let world = (point.max_abs() + centre.max_abs()) * t.like(R::UNIT_ROUNDOFF);
         surface.slack = surface.slack + (world + world);
+        surface.size = surface.size + point.max_abs();
         if let Some(curved) = &self.curved {
             surface = curved.load(t.token()).bend(&surface, rays.direction);
         }

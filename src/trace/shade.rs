@@ -196,7 +196,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             t: packet.near.t,
             cosine: along,
             curvature: hit.surface.curvature,
-            is_first: self.is_first,
+            size: hit.surface.size,
         });
         let footprint = edge.as_ref().map(|edge| {
             let cosine = hit.surface.normal.dot(view);
@@ -259,7 +259,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let direction = point.view - normal * (along + along);
         if let (Some(slant), Some(own)) = (&point.slant, uncertainty) {
             let share = filter.x.max(filter.y).max(filter.z);
-            slant.mirror(self.kernel.plan, (active, share), own);
+            slant.mirror((active, share), own);
         }
         Mirrored {
             active,
@@ -305,7 +305,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             let mut doubt = cosine.abs().at_most(lowest);
             // Highlights may end sharply where light comes from the side.
             if !matches!(point.coat, Coat::One(surface) if surface.exponent.is_none()) {
-                doubt = doubt | slant.grazes(kernel.plan, (cosine, shrink));
+                doubt = doubt | slant.grazes((cosine, shrink));
             }
             arriving.doubt = arriving.doubt | hit.here & doubt;
         }
@@ -406,7 +406,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         };
         let (onwards, is_lost) = match &point.slant {
             None => (Blur::splat(kernel.token, Blur::NONE), reach.less(reach)),
-            Some(slant) => slant.onwards(kernel.plan),
+            Some(slant) => slant.onwards(reach),
         };
         // What a light is on does not stand before it.
         let doubt = Doubt::new(onwards, (point.slant.is_some(), !light.may_touch));

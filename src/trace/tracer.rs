@@ -87,7 +87,7 @@ impl Tracer {
             (PlanOf::Double(in_double()), None)
         } else if is_filtered(scene, request) {
             let (mut plan, exact) = rayon::join(in_single, in_double);
-            plan.doubt(scene);
+            plan.doubt();
             (PlanOf::Single(plan), Some(Exact::new(exact, level)))
         } else {
             (PlanOf::Single(in_single()), None)

@@ -6,7 +6,7 @@ use glint::image::{Image, render};
 use glint::mesh::{SOLIDS, Triangles};
 use glint::plan::RenderRequest;
 use glint::scene::{
-    Accelerator, Camera, List, Mesh, Object, Plane, Precision, Sampling, Scene, check,
+    Accelerator, Camera, List, Mesh, Object, Plane, Precision, Sampling, Scene, Sphere, check,
 };
 use glint::simd::Level;
 use glint::trace::{Rays, RenderControl};
@@ -144,16 +144,37 @@ fn ring(tube: f64) -> Triangles {
 
 #[test]
 fn the_filtered_picture_is_that_of_double_precision() {
-    let kinds: [fn(u64) -> Scene; 4] = [
+    let kinds: [fn(u64) -> Scene; 5] = [
         random::scene,
         |seed| mirroring(random::with_discs(seed)),
         |seed| mirroring(with_solids(seed)),
         |seed| mirroring(rings(seed)),
+        |seed| mirroring(far_and_wide(seed)),
     ];
     let alone = kinds.map(|kind| wrong((0..SCENES).map(kind)));
     // Single precision alone errs.
     println!("single precision alone: {alone:?} pixels");
     assert!(alone[3] > 3, "{alone:?}");
+}
+
+/// The same where the floor ends at the horizon, far behind everything else, and a sky is around it.
+fn far_and_wide(seed: u64) -> Scene {
+    let mut scene = rings(seed);
+    let Camera {
+        position, look_at, ..
+    } = scene.camera;
+    // Less and less from above.
+    let height = position.y / (1.0 + seed as f64);
+    scene.camera.position.y = height;
+    scene.camera.look_at.y = look_at.y / (1.0 + seed as f64);
+    if seed.is_multiple_of(2) {
+        let sky = Sphere {
+            center: position * 0.5,
+            radius: 4e3 * (1.0 + seed as f64),
+        };
+        scene.objects.push(Object::new("Sky", "pack 3", sky));
+    }
+    scene
 }
 
 #[test]
@@ -233,6 +254,15 @@ fn few_objects_need_no_filter_and_little_of_a_mesh_is_traced_again() {
     let mut rings = rings(1);
     let of_rings = share(&rings);
     assert!(of_rings > 0.0 && of_rings < 0.02, "{of_rings}");
+    // A wide sky and a wide floor, on which light falls from the same places, leave nothing more in doubt.
+    let mut wide = rings.clone();
+    let sky = Sphere {
+        center: DVec3::ZERO,
+        radius: 1e5,
+    };
+    wide.objects.push(Object::new("Sky", "pack 3", sky));
+    let under_sky = share(&wide);
+    assert!(under_sky < 0.02, "{under_sky}");
     // What is hidden is not filtered for.
     for object in rings.objects.iter_mut() {
         object.visible = object.faces() == 0;

@@ -103,6 +103,7 @@ fn fails(ball: &PackedMesh<f32>, number: u64, height: f64, is_lifted: bool) -> O
         normal: face.normal,
         curvature: 0.0,
         slack: SLACK,
+        size: 1.0,
     };
     let curved = Curved {
         corners: face.corners,

@@ -53,6 +53,7 @@ impl<L: SimdFloat> Curved<L> {
             normal: kept_out(normal, face, direction),
             curvature: self.curvature,
             slack: zero,
+            size: flat.size,
         }
     }
 }

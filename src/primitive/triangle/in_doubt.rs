@@ -37,7 +37,10 @@ pub fn watertight_in_doubt<L: SimdFloat>(
     let t = shear.distance(corners, edges);
     let inside = zero.at_most(low) | high.at_most(zero);
     let distance = L::select(inside & zero.less(t), t, infinity);
-    let starts_on_it = is_met & t.abs().at_most(blur.start);
+    // Of rays that run along it, a little height decides over a long way.
+    let normal = ray.origin.like(triangle.normal);
+    let height = t * normal.dot(ray.direction);
+    let starts_on_it = is_met & height.abs().at_most(blur.at(longest));
     let from = L::select(starts_on_it, zero, infinity);
     let passes_edge = wanted & !is_missed & !is_met;
     if !passes_edge.any() {

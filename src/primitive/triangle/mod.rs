@@ -35,6 +35,8 @@ pub struct Flat<L: SimdFloat> {
     pub normal: Vec3<L>,
     /// 1 where it shares a corner with another triangle, else 0.
     pub in_mesh: L,
+    /// The length of its longest edge.
+    pub longest: L,
 }
 
 impl<L: SimdFloat> Flat<L> {
@@ -59,6 +61,7 @@ impl<L: SimdFloat> Flat<L> {
             normal,
             curvature: t.like(L::Real::ZERO),
             slack,
+            size: point.max_abs() + self.longest,
         }
     }
 }
@@ -156,6 +159,7 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
             corner: rays.origin.like(self.corners[0]),
             normal: rays.origin.like(self.normal),
             in_mesh: t.like(in_mesh),
+            longest: t.like(self.longest),
         };
         flat.refine(rays, t)
     }
