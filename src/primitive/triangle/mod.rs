@@ -353,6 +353,30 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_little_height_is_in_doubt_over_a_long_way() {
+        let corner = |x: f32, y: f32| Vec3::new(x, y, 0.0);
+        let [a, b, c] =
+            [(-100.0, -100.0), (100.0, -100.0), (0.0, 100.0)].map(|(x, y)| corner(x, y));
+        let t = PackedTriangle {
+            longest: (c - a).length(),
+            ..triangle(a, b, c)
+        };
+        // It is met 0.01 away, by a ray that starts a few roundings of the corners above it, and 10 away.
+        for (height, is_open) in [(1e-5, true), (1e-2, false)] {
+            let ray = Ray {
+                origin: Vec3::new(0.0, 0.0, height),
+                direction: Vec3::new(1.0, 0.0, -1e-3),
+            };
+            let blur = Blur::of_size(1.0_f32);
+            let shear = PackedTriangle::prepare(ray.direction);
+            let found = t.intersect_in_doubt(&ray, &shear, &Methods::default(), (&blur, true));
+            let (distance, from) = found.expect("it is met");
+            assert!((distance - height * 1e3).abs() < height, "{distance}");
+            assert_eq!(from == 0.0, is_open, "{height}: {from}");
+        }
+    }
+
     proptest! {
         #[test]
         fn the_formulas_agree_away_from_edges(corners in prop::array::uniform3(prop::array::uniform3(-1.0..1.0_f32)),
