@@ -91,11 +91,7 @@ impl<L: SimdFloat> Bundle<L> {
         let size = (rays.origin.max_abs() + far).min(deepest + deepest);
         // A ray passes the point as far off as its start and its direction are rounded.
         let rounded = size * size.like_f64(ROUNDED_TWICE) * size.like(roundings());
-        let from = if L::Real::IS_FILTERED {
-            (ways.length() - deepest).max(far.like(L::Real::ZERO))
-        } else {
-            far.like(L::Real::ZERO)
-        };
+        let from = (ways.length() - deepest).max(far.like(L::Real::ZERO));
         let slack = rounded + aside(blur, from, size);
         Self::between(origin, slack, ways, active)
     }

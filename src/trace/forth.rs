@@ -194,12 +194,8 @@ impl<L: SimdFloat> Bounce<L> {
         }
         let (origins, directions) = (origins.around(), directions.around());
         let size = origins.max_abs() + geometry.bvh.bounds.max_abs();
-        let slack = size * roundings()
-            + aside(
-                &widest_blur(kernel.token, &self.uncertainties),
-                L::Real::ZERO,
-                size,
-            );
+        let blur = widest_blur(kernel.token, &self.uncertainties);
+        let slack = size * roundings() + aside(&blur, L::Real::ZERO, size);
         let shaft = Shaft::of(&origins.widened(slack), &directions);
         let infinity = L::Real::INFINITY;
         self.seen.has_geometry = self

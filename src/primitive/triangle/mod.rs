@@ -355,9 +355,8 @@ mod tests {
 
     #[test]
     fn a_little_height_is_in_doubt_over_a_long_way() {
-        let corner = |x: f32, y: f32| Vec3::new(x, y, 0.0);
-        let [a, b, c] =
-            [(-100.0, -100.0), (100.0, -100.0), (0.0, 100.0)].map(|(x, y)| corner(x, y));
+        let corners = [(-100.0, -100.0), (100.0, -100.0), (0.0, 100.0)];
+        let [a, b, c] = corners.map(|(x, y)| Vec3::new(x, y, 0.0));
         let t = PackedTriangle {
             longest: (c - a).length(),
             ..triangle(a, b, c)
