@@ -74,6 +74,8 @@ mod crossing;
 
 mod coverage;
 
+mod crowd;
+
 mod refinement;
 
 mod sampler;

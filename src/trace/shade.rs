@@ -83,6 +83,11 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let kernel = self.kernel;
         let mut uncertainty = uncertainty.filter(|_| is_filtered::<L, TREE>());
         let mut mirrored: Option<Mirrored<L>> = None;
+        // What is in doubt is traced again: nothing more need be known of it.
+        let told = match &uncertainty {
+            Some(own) => packet.active & !own.doubt,
+            None => packet.active,
+        };
         if let Some(edge) = edge.as_mut().filter(|_| self.looks_for(self.thin)) {
             let paths = Paths {
                 rays: packet.rays,
@@ -90,7 +95,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             };
             let gaze = Gaze {
                 paths: &paths,
-                active: packet.active,
+                active: told,
                 cone: edge.cone,
                 spread: edge.cone.spread,
                 reach: packet.near.t,
@@ -100,15 +105,19 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
 
         // Each primitive that was hit, for all rays that have hit it or others of its kind.
         let nothing = kernel.splat(NOTHING);
-        let mut left = (nothing.less(packet.near.number) & packet.active).bits();
+        let mut left = (nothing.less(packet.near.number) & told).bits();
         while left != 0 {
             let mut hit = kernel.refine(&packet.rays, &packet.near, left, parts);
             left &= !hit.here.bits();
             let instead = self.instead(packet, &hit);
-            let Some(coat) = self.coat(packet, &mut hit, instead, parts) else {
+            let Some(coat) = self.coat(packet, &mut hit, (instead, told), parts) else {
                 continue;
             };
-            let point = self.shading_point(packet, hit, coat, (&edge, &uncertainty));
+            let mut point = self.shading_point(packet, hit, coat, (&edge, &uncertainty));
+            if let Some(own) = uncertainty.as_deref_mut() {
+                self.doubt_mirrors(&point, own);
+                point.hit.here = point.hit.here & !own.doubt;
+            }
             if instead.is_none() {
                 let mut arriving = Arriving {
                     matte: kernel.splat(0.0),
@@ -140,7 +149,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             if self.may_mirror
                 && let Some(mirrors) = self.mirrors(&point)
             {
-                let onwards = self.mirror(&point, mirrors, uncertainty.as_deref_mut());
+                let onwards = self.mirror(&point, mirrors);
                 mirrored = Some(onwards.joined(mirrored));
             }
         }
@@ -149,7 +158,10 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             let met = nothing.less(packet.near.number);
             packet.color = Vec3::select(met, packet.color, dark);
         }
-        mirrored
+        if let (Some(mirrored), Some(own)) = (&mut mirrored, uncertainty) {
+            mirrored.active = mirrored.active & !own.doubt;
+        }
+        mirrored.filter(|mirrored| mirrored.active.any())
     }
 
     /// What is shown in place of the light that a surface gives off; `None` where that is shown.
@@ -218,7 +230,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         &'a self,
         packet: &mut Packet<L>,
         hit: &mut Hit<L>,
-        instead: Option<Vec3<L>>,
+        (instead, told): (Option<Vec3<L>>, L::Mask),
         parts: &'a mut Parts<L>,
     ) -> Option<Coat<'a, L>> {
         let materials = &self.kernel.plan.materials[..];
@@ -228,7 +240,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         }
         let material = &materials[hit.material as usize];
         let color = instead.unwrap_or(Vec3::broadcast(self.kernel.token, material.base));
-        hit.here = hit.here & packet.active;
+        hit.here = hit.here & told;
         packet.color = Vec3::select(hit.here, color, packet.color);
         material.surface.as_ref().map(Coat::One)
     }
@@ -245,22 +257,25 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         }
     }
 
-    /// r = d - 2(d·n)n, the direction of perfect reflection; Whitted, "An improved illumination model
-    /// for shaded display", CACM 23(6), 1980.
+    /// Notes what is known of the rays that mirrors will send on.
     #[inline(always)]
-    fn mirror(
-        &self,
-        point: &ShadingPoint<L>,
-        (active, filter): (L::Mask, Vec3<L>),
-        uncertainty: Option<&mut Uncertainty<L>>,
-    ) -> Mirrored<L> {
-        let normal = point.hit.surface.normal;
-        let along = point.view.dot(normal);
-        let direction = point.view - normal * (along + along);
-        if let (Some(slant), Some(own)) = (&point.slant, uncertainty) {
+    fn doubt_mirrors(&self, point: &ShadingPoint<L>, own: &mut Uncertainty<L>) {
+        if self.may_mirror
+            && let Some(slant) = &point.slant
+            && let Some((active, filter)) = self.mirrors(point)
+        {
             let share = filter.x.max(filter.y).max(filter.z);
             slant.mirror((active, share), own);
         }
+    }
+
+    /// r = d - 2(d·n)n, the direction of perfect reflection; Whitted, "An improved illumination model
+    /// for shaded display", CACM 23(6), 1980.
+    #[inline(always)]
+    fn mirror(&self, point: &ShadingPoint<L>, (active, filter): (L::Mask, Vec3<L>)) -> Mirrored<L> {
+        let normal = point.hit.surface.normal;
+        let along = point.view.dot(normal);
+        let direction = point.view - normal * (along + along);
         Mirrored {
             active,
             filter,
