@@ -79,7 +79,8 @@ fn print_row(name: &str, scene: &Scene) {
             grid.milliseconds,
         )
     });
-    let (plain, equal) = (grids[0].1, time_of_equal(&grids, off.rmse));
+    let [(_, plain), .., (_, finest)] = grids;
+    let equal = time_of_equal(&grids, off.rmse);
     println!(
         "{name:<24} {plain:>8.1} {:>8.1} {:>7.1} {:>7.1} {:>6.1} {:>7.1} {:>9} {:>7}",
         clean.milliseconds,
@@ -87,12 +88,9 @@ fn print_row(name: &str, scene: &Scene) {
         clean.rays.camera as f64 / f64::from(SIDE * SIDE),
         off.psnr(),
         off.max * 255.0,
+        equal.map_or_else(|| format!("> {finest:.0}"), |equal| format!("{equal:.0}")),
         equal.map_or_else(
-            || format!("> {:.0}", grids[8].1),
-            |equal| format!("{equal:.0}")
-        ),
-        equal.map_or_else(
-            || format!("< {:.2}", clean.milliseconds / grids[8].1),
+            || format!("< {:.2}", clean.milliseconds / finest),
             |equal| format!("{:.2}", clean.milliseconds / equal)
         ),
     );

@@ -161,11 +161,6 @@ impl<R: Real> Limits<R> {
         (FINEST >> (self.depth + 1)) as u16
     }
 
-    /// How many of the smallest cells a pixel has.
-    pub fn most_cells(self) -> usize {
-        4 << (2 * self.depth)
-    }
-
     /// The contrast above which a cell is subdivided whose corners see the same.
     pub fn contrast_of_same(self, side: f64) -> R {
         self.at(R::from_f64(side)).contrast(true)

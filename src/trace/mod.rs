@@ -74,8 +74,6 @@ mod crossing;
 
 mod coverage;
 
-mod crowd;
-
 mod refinement;
 
 mod sampler;

@@ -2,7 +2,6 @@
 //! compiled once for each precision, and not for every width of vectors.
 
 use super::coverage::{CrossedCell, Found};
-use super::crowd::Crowd;
 use super::lattice::{Cell, Inside, Lattice, Limits};
 use super::samples::{Samples, Traced};
 use super::tile::{Tile, TileColors};
@@ -11,7 +10,7 @@ use crate::simd::Real;
 
 /// The cells of a tile whose inside is not known. Where their corners say that one edge crosses them, [`CrossedCell`]
 /// takes a third of the samples of quarters, and where they show one thing whose colour changes evenly,
-/// [`Lattice::accumulate_even`] takes one. Pixels in which too much meets are a [`Crowd`].
+/// [`Lattice::accumulate_even`] takes one.
 #[derive(Debug)]
 pub struct Refinement<R> {
     lattice: Lattice<R>,
@@ -22,8 +21,6 @@ pub struct Refinement<R> {
     even: Vec<(Cell, u32)>,
     /// Which pixels of a tile are among those that were added.
     listed: Vec<bool>,
-    /// Pixels whose cells are not looked at any more.
-    pub crowd: Crowd<R>,
 }
 
 impl<R: Real> Refinement<R> {
@@ -36,7 +33,6 @@ impl<R: Real> Refinement<R> {
             crossed: Vec::new(),
             even: Vec::new(),
             listed: Vec::new(),
-            crowd: Crowd::new(),
         }
     }
 
@@ -147,23 +143,8 @@ impl<R: Real> Refinement<R> {
                 None => split.push(cell.unwatched()),
             }
         }
-        self.set_crowd_apart(limits);
         self.sort(limits, colors);
         self.subdivide();
-    }
-
-    /// Leaves pixels to the crowd, all of whose quarters are known now.
-    fn set_crowd_apart(&mut self, limits: Limits<R>) {
-        let mut kept = 0;
-        for first in (0..self.cells.len()).step_by(4) {
-            let quarters = first..first + 4;
-            let cells = &self.cells[quarters.clone()];
-            if !self.crowd.takes(cells, &self.lattice, limits) {
-                self.cells.copy_within(quarters, kept);
-                kept += 4;
-            }
-        }
-        self.cells.truncate(kept);
     }
 
     /// Adds the colours of the cells that are known by their corners, and puts the others where they belong: those that

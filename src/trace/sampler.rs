@@ -155,11 +155,6 @@ impl<L: SimdFloat> Sampler<L> {
             self.look(engine, seen, tile, Edges::Signed);
             self.refinement.settle(limits, colors);
         }
-        while self.refinement.crowd.want(tile, &mut self.samples) {
-            self.samples.pad(L::WIDTH);
-            engine.trace(&self.samples, seen, Edges::Signed, &mut self.traced);
-            self.refinement.crowd.take(&self.traced, colors);
-        }
     }
 
     /// Traces what is wanted and not there yet.

@@ -39,6 +39,3 @@ pub const NEAR: f64 = 0.75;
 /// How far what is even may be from it, in parts of the range of the corners' colours: the middle of a cell from their
 /// mean, which an edge between two colours puts a quarter away at least; and colours of one face from each other.
 pub const UNEVEN: f64 = 0.125;
-/// Standard error of a channel up to which the mean of samples is known: three times as much is about what nobody sees in
-/// one pixel.
-pub const CROWD_ERROR: f64 = 3.0 / 255.0;
