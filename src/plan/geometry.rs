@@ -216,7 +216,11 @@ fn is_space(bounds: &[(DVec3, DVec3)]) -> bool {
     let high = bounds
         .iter()
         .fold(DVec3::NEG_INFINITY, |high, one| high.max(one.1));
-    let sizes = bounds.iter().map(|(low, high)| (high - low).max_element());
+    let sizes = bounds.iter().map(|(low, high)| {
+        let [x, y, z] = (*high - *low).to_array();
+        // The second of three: poles are no larger than they are wide.
+        x.min(y).max(x.max(y).min(z))
+    });
     let mean = sizes.sum::<f64>() / bounds.len() as f64;
     (high - low).min_element() > DEEPEST_FIELD * mean
 }

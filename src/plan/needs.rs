@@ -66,7 +66,7 @@ fn precision(scene: &Scene, request: &RenderRequest) -> Need {
     match request.precision {
         Precision::Single => need(rule, "single precision", "it was asked for", "nothing more"),
         Precision::Double => need(rule, double, "it was asked for", "nothing"),
-        Precision::Auto if needs_double(scene, request.projection_of(&scene.camera)) => need(
+        Precision::Auto if needs_double(scene, request) => need(
             rule,
             double,
             "something is too far, too small or too close for single precision",

@@ -137,7 +137,12 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
     /// which is 1 on an ellipse and changes by at most 1/B per length, (f - 1)·B is no more than the
     /// distance from it, and neither is the distance from the circle of radius r.
     #[inline(always)]
-    fn approach<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, (): &()) -> Approach<L> {
+    fn approach<L: SimdFloat<Real = R>>(
+        &self,
+        rays: &Ray<L>,
+        (): &(),
+        _matters: impl FnOnce(&Approach<L>) -> bool,
+    ) -> Option<Approach<L>> {
         let normal = rays.origin.like(self.normal);
         let x = rays.origin - rays.origin.like(self.center);
         let radius = x.x.like(self.radius);
@@ -155,12 +160,12 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
         let long = square - short;
         let by_ellipse = (short + long * cosine * cosine).sqrt() - radius * cosine.abs();
         let by_circle = square.sqrt() - radius;
-        Approach {
+        Some(Approach {
             from: along - radius,
             to: along + radius,
             distance: by_ellipse.max(by_circle),
             size: (radius + radius) * cosine.abs(),
-        }
+        })
     }
 }
 
@@ -209,7 +214,7 @@ mod tests {
             let across = normal.cross(along);
             let ray = Ray::<f64> { origin: Vec3::from_dvec3(eye * 3.0), direction: Vec3::from_dvec3(direction) };
             let target = disc(normal, 0.6);
-            let approach = target.approach(&ray, &());
+            let approach = target.approach(&ray, &(), |_| true).expect("asked for");
             let point = (along * angle.cos() + across * angle.sin()) * (0.6 * share.sqrt());
             let off = point - eye * 3.0;
             let beside = (off - direction * off.dot(direction)).length();
@@ -242,7 +247,10 @@ mod tests {
                 radius: 1.0,
                 material: 0,
             };
-            let distance = disc.approach(&ray, &()).distance;
+            let distance = disc
+                .approach(&ray, &(), |_| true)
+                .expect("asked for")
+                .distance;
             assert!(distance <= 1e-3, "{distance} outside, tilted by {tilt}");
         }
     }

@@ -135,12 +135,14 @@ pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
     /// The hits at `t`, drawn onto the surface.
     fn refine<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, t: L) -> SurfacePoint<L>;
 
-    /// How close rays come to it.
+    /// How close rays come to it; `None` if `matters` says that this does not, of the same with a distance that may be
+    /// too short.
     fn approach<L: SimdFloat<Real = R>>(
         &self,
         rays: &Ray<L>,
         prepared: &Self::Prepared<L>,
-    ) -> Approach<L>;
+        matters: impl FnOnce(&Approach<L>) -> bool,
+    ) -> Option<Approach<L>>;
 
     /// How far behind the end of rays it may begin and still be close to them, where a pixel is so wide.
     #[inline(always)]

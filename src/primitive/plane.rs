@@ -109,16 +109,15 @@ impl<R: Real> Primitive<R> for PackedPlane<R> {
         }
     }
 
-    /// A plane is never thin: its infinite size rules it out.
+    /// A plane is never thin.
     #[inline(always)]
-    fn approach<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, (): &()) -> Approach<L> {
-        let nowhere = rays.origin.x.like(R::INFINITY);
-        Approach {
-            from: nowhere,
-            to: nowhere,
-            distance: nowhere,
-            size: nowhere,
-        }
+    fn approach<L: SimdFloat<Real = R>>(
+        &self,
+        _rays: &Ray<L>,
+        (): &(),
+        _matters: impl FnOnce(&Approach<L>) -> bool,
+    ) -> Option<Approach<L>> {
+        None
     }
 }
 

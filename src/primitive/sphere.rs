@@ -179,16 +179,21 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
     }
 
     #[inline(always)]
-    fn approach<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, (): &()) -> Approach<L> {
+    fn approach<L: SimdFloat<Real = R>>(
+        &self,
+        rays: &Ray<L>,
+        (): &(),
+        _matters: impl FnOnce(&Approach<L>) -> bool,
+    ) -> Option<Approach<L>> {
         let x = rays.origin - rays.origin.like(self.center);
         let along = -rays.direction.dot(x);
         let distance = (x + rays.direction * along).length();
-        Approach {
+        Some(Approach {
             from: along,
             to: along,
             distance: distance - along.like(self.radius),
             size: along.like(self.thickness()),
-        }
+        })
     }
 
     /// A ball begins before its middle.

@@ -25,10 +25,12 @@ pub trait Test<L: SimdFloat> {
     }
 
     /// Tests a mesh that is no larger than a few pixels as the ball around it, for the rays that see it so
-    /// small. Where any other ray is, if there is one: its faces are tested there and nowhere else.
+    /// small: where a pixel is no wider than `widest`. Where any other ray is, if there is one: its faces are tested there
+    /// and nowhere else.
     fn test_ball(
         &mut self,
         _mesh: &PackedMesh<L::Real>,
+        _widest: L::Real,
         _paths: &Paths<L>,
         active: L::Mask,
     ) -> Option<L::Mask> {
@@ -165,12 +167,12 @@ impl<L: SimdFloat, T: Test<L>> Seek<L> for Objects<'_, L, T> {
     }
 
     #[inline(always)]
-    fn meet(&mut self, member: u32, stack: &mut Stack<L::Real>) {
+    fn meet(&mut self, member: u32, width: L::Real, stack: &mut Stack<L::Real>) {
         let (geometry, index) = (self.thicket.geometry, member as usize);
         let number = self.thicket.first + index;
         let primitives = &geometry.primitives;
         if let Some(mesh) = index.checked_sub(primitives.len()) {
-            return self.meet_mesh(mesh, stack);
+            return self.meet_mesh((mesh, width), stack);
         }
         let mut tested = Tested {
             paths: self.paths,
@@ -195,7 +197,7 @@ impl<L: SimdFloat, T: Test<L>> Seek<L> for Objects<'_, L, T> {
 impl<L: SimdFloat, T: Test<L>> Objects<'_, L, T> {
     /// Looks into a mesh, from its own middle.
     #[inline(always)]
-    fn meet_mesh(&mut self, mesh: usize, stack: &mut Stack<L::Real>) {
+    fn meet_mesh(&mut self, (mesh, width): (usize, L::Real), stack: &mut Stack<L::Real>) {
         let Thicket {
             geometry,
             first,
@@ -215,7 +217,7 @@ impl<L: SimdFloat, T: Test<L>> Objects<'_, L, T> {
             ignored: self.paths.ignored,
         };
         let bvh = &instance.mesh.bvh;
-        let Some(active) = self.test.test_ball(&instance.mesh, &paths, *active) else {
+        let Some(active) = self.test.test_ball(&instance.mesh, width, &paths, *active) else {
             return;
         };
         let bundle = self.bundle.seen_from(instance.centre);
@@ -266,7 +268,7 @@ impl<L: SimdFloat, T: Test<L>> Seek<L> for Faces<'_, L, T> {
     }
 
     #[inline(always)]
-    fn meet(&mut self, member: u32, _stack: &mut Stack<L::Real>) {
+    fn meet(&mut self, member: u32, _width: L::Real, _stack: &mut Stack<L::Real>) {
         let (index, prepared) = (member as usize, &self.prepared.triangles);
         let (triangle, number) = (&self.mesh.triangles[index], self.first + index);
         self.test.test(triangle, prepared, self.paths, number);

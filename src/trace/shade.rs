@@ -358,19 +358,19 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             if let Some((edge, footprint)) = beside {
                 // What is in the shadow of something wide is not seen to be in that of something thin as well.
                 let open = facing & !blocked.wide;
+                // The shadow of a light that nobody sees is not seen either.
+                let brightness = point.coat.brightness(kernel.plan, zero);
+                let brightest = brightness * zero.like(light.intensity);
+                let visible = kernel.splat(EDGE_CONTRAST).less(cosine * brightest);
                 let gaze = Gaze {
                     paths: &paths,
-                    active: open,
+                    active: open & visible,
                     cone: footprint.shadow(),
                     spread: footprint.spread(),
                     reach,
                 };
                 let near = kernel.thin_distance(&candidates.thin, &gaze, stack);
-                // The shadow of a light that nobody sees is not seen either.
-                let brightness = point.coat.brightness(kernel.plan, zero);
-                let brightest = brightness * zero.like(light.intensity);
-                let visible = kernel.splat(EDGE_CONTRAST).less(cosine * brightest);
-                edge.near = L::select(open & visible, near.min(edge.near), edge.near);
+                edge.near = near.min(edge.near);
             }
             lit = lit & !blocked.anywhere;
             if !lit.any() {

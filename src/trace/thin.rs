@@ -155,6 +155,18 @@ impl<L: SimdFloat> ThinTest<'_, L> {
         }
     }
 
+    /// Where a primitive counts that rays approach like this, and how wide a pixel is there.
+    #[inline(always)]
+    fn counts<P: Primitive<L::Real>>(&self, primitive: &P, approach: &Approach<L>) -> (L::Mask, L) {
+        let Gaze { cone, reach, .. } = self.gaze;
+        let Approach { from, to, size, .. } = *approach;
+        let width = cone.width_at(to);
+        let is_before = from.less(*reach + primitive.margin(width));
+        let is_ahead = to.like(L::Real::ZERO).less(to);
+        let thin = size.less(width * to.like_f64(SLIPPING)) & is_ahead & is_before;
+        (thin & self.counted & self.open, width)
+    }
+
     /// Notes a ball that is so far beside the rays, where it counts.
     #[inline(always)]
     fn note(&mut self, ball: &Passed<L>, counts: L::Mask, beside: L) {
@@ -173,6 +185,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
     fn test_ball(
         &mut self,
         mesh: &PackedMesh<L::Real>,
+        widest: L::Real,
         paths: &Paths<L>,
         active: L::Mask,
     ) -> Option<L::Mask> {
@@ -180,6 +193,9 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         // With so many faces in a pixel, they are too many to look at one by one.
         let faces = L::Real::from_f64(mesh.triangles.len() as f64 / CROWDED);
         let small = faces.sqrt().max(L::Real::from_f64(SMALL));
+        if widest * small <= radius + radius {
+            return Some(active);
+        }
         let ball = self.passed(center, radius, paths);
         let is_small = (ball.radius + ball.radius).less(ball.width * ball.width.like(small));
         // The box reaches farther than the mesh: rays in its corners pass by.
@@ -247,23 +263,22 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         paths: &Paths<L>,
         number: usize,
     ) {
-        let Gaze { cone, reach, .. } = self.gaze;
-        let Approach {
-            from,
-            to,
-            distance,
-            size,
-        } = primitive.approach(&paths.rays, prepared);
-        let (slipping, zero) = (to.like_f64(SLIPPING), to.like(L::Real::ZERO));
-        let width = cone.width_at(to);
-        let is_before = from.less(*reach + primitive.margin(width));
-        let mut thin = size.less(width * slipping) & zero.less(to) & is_before;
+        let approach = primitive.approach(
+            &paths.rays,
+            prepared,
+            // Farther away than a pixel, nobody asks how far.
+            #[inline(always)]
+            |rough| {
+                let (counts, width) = self.counts(primitive, rough);
+                (counts & self.gaze.active & rough.distance.less(width)).any()
+            },
+        );
+        let Some(approach) = approach else { return };
+        let (mut counts, width) = self.counts(primitive, &approach);
         // A curved surface surrounds the rays that start on it.
         if P::IS_CURVED {
-            thin = thin & !paths.ignored.is(number);
+            counts = counts & !paths.ignored.is(number);
         }
-        self.best = self
-            .best
-            .min(pixels(thin & self.counted & self.open, distance, width));
+        self.best = self.best.min(pixels(counts, approach.distance, width));
     }
 }

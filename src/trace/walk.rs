@@ -30,8 +30,8 @@ pub trait Seek<L: SimdFloat> {
     fn is_idle(&self, _child: Child) -> bool {
         false
     }
-    /// Looks at a member.
-    fn meet(&mut self, member: u32, stack: &mut Stack<L::Real>);
+    /// Looks at a member, where a pixel is so wide at most if what is beside the rays is looked for.
+    fn meet(&mut self, member: u32, width: L::Real, stack: &mut Stack<L::Real>);
     /// Looks at a box, of which the ball around it and the thickness of what is in it are given, for the rays that
     /// see it as one thing: those, and all that are not active, bit by bit.
     fn settle(&mut self, _ball: (Vec3<L::Real>, L::Real), _thickness: L::Real) -> u64 {
@@ -85,7 +85,7 @@ pub fn walk<L: SimdFloat>(
                 continue;
             }
             match child {
-                Child::Member(member) => seek.meet(member, stack),
+                Child::Member(member) => seek.meet(member, L::Real::ZERO, stack),
                 Child::Node(inner) => {
                     let near = nears[place as usize];
                     let waiting = Waiting {
@@ -159,7 +159,7 @@ pub fn walk_beside<L: SimdFloat>(
                 continue;
             }
             match node.child(place as usize) {
-                Child::Member(member) => seek.meet(member, stack),
+                Child::Member(member) => seek.meet(member, width, stack),
                 Child::Node(inner) => {
                     let mut settled = settled;
                     let ball = node.bounds(place as usize).ball();

@@ -166,11 +166,26 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
 
     /// From the nearest corner to the farthest; the distance inside is zero.
     #[inline(always)]
-    fn approach<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, shear: &Shear<L>) -> Approach<L> {
+    fn approach<L: SimdFloat<Real = R>>(
+        &self,
+        rays: &Ray<L>,
+        shear: &Shear<L>,
+        matters: impl FnOnce(&Approach<L>) -> bool,
+    ) -> Option<Approach<L>> {
         let [a, b, c] = self.corners;
         let a = shear.apply(rays.origin.like(a) - rays.origin);
         let b = shear.apply(rays.origin.like(b) - rays.origin);
         let c = shear.apply(rays.origin.like(c) - rays.origin);
+        let (t, u, v) = (a[2] * shear.z, b[2] * shear.z, c[2] * shear.z);
+        let rough = Approach {
+            from: t.min(u).min(v),
+            to: t.max(u).max(v),
+            distance: shear.least_beside([a, b, c]),
+            size: t.like(self.thickness),
+        };
+        if !matters(&rough) {
+            return None;
+        }
         let (ab, bc, ca) = (
             shear.edge_beside(a, b),
             shear.edge_beside(b, c),
@@ -181,13 +196,10 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
         let turns = (ab.0.min(bc.0).min(ca.0), ab.0.max(bc.0).max(ca.0));
         let inside = zero.less(turns.0) | turns.1.less(zero);
         let nearest = ab.1.min(bc.1).min(ca.1).max(zero).sqrt();
-        let (t, u, v) = (a[2] * shear.z, b[2] * shear.z, c[2] * shear.z);
-        Approach {
-            from: t.min(u).min(v),
-            to: t.max(u).max(v),
+        Some(Approach {
             distance: L::select(inside, zero, nearest),
-            size: zero.like(self.thickness),
-        }
+            ..rough
+        })
     }
 }
 

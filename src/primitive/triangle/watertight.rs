@@ -4,6 +4,9 @@ use super::packed::PackedTriangle;
 use crate::primitive::ray::Ray;
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
+/// How much nearer to a ray something can be than the sheared plane shows it: a little less than 1/√3.
+const LEAST_ACROSS: f64 = 0.577;
+
 /// What the watertight test needs of a ray, computed once: the axis along which the direction is
 /// largest, turned to z, and the shear that lays the ray on it.
 #[derive(Clone, Copy, Debug)]
@@ -94,6 +97,14 @@ impl<L: SimdFloat> Shear<L> {
         let along = (x_near * self.x + y_near * self.y) / self.z;
         let square = x_near * x_near + y_near * y_near - along * along;
         (from[0] * y - from[1] * x, square)
+    }
+
+    /// How far the triangle of sheared corners is from the ray, at least: as far as a box around it is from the axis.
+    #[inline(always)]
+    pub fn least_beside(&self, [a, b, c]: [[L; 3]; 3]) -> L {
+        let x = a[0].min(b[0]).min(c[0]).max(-a[0].max(b[0]).max(c[0]));
+        let y = a[1].min(b[1]).min(c[1]).max(-a[1].max(b[1]).max(c[1]));
+        x.max(y) * self.x.like_f64(LEAST_ACROSS)
     }
 
     /// How far the plane of sheared corners is, which edges turn around the ray like this. All three zero is a triangle
