@@ -13,8 +13,8 @@ const MAX_DISTANCE_PER_RADIUS: f64 = 5e3;
 /// Largest ratio of the scene's extent to its smallest feature in single precision: edges are then off by a thousandth
 /// of the feature, a tenth of a pixel where that is a hundred of them large.
 const MAX_EXTENT_PER_FEATURE: f64 = 1e4;
-/// How many times as small features may be where what rounding may decide is traced again: of 300 random scenes that had
-/// doubled for this alone, with features down to a millionth, no pixel is off.
+/// How many times as small features may be where what rounding may decide is traced again: of 400 random scenes with
+/// features down to a millionth this lets 119 into single precision, and no pixel of them is off.
 const SMALLER_WHEN_FILTERED: f64 = 100.0;
 /// Smallest extent of a scene in single precision, in which squares of much smaller numbers are nothing.
 const MIN_EXTENT: f64 = 1e-12;

@@ -4,7 +4,8 @@ use super::packed::PackedTriangle;
 use crate::primitive::ray::Ray;
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
-/// How much nearer to a ray something can be than the sheared plane shows it: a little less than 1/√3.
+/// How much nearer to a ray something can be than the sheared plane shows it, which is no more oblique than the diagonal
+/// of a cube: a little less than 1/√3.
 const LEAST_ACROSS: f64 = 0.577;
 
 /// What the watertight test needs of a ray, computed once: the axis along which the direction is
