@@ -6,20 +6,27 @@ use super::idle::KeptIdle;
 use super::pack::Plan;
 use super::request::RenderRequest;
 use super::solids::Solids;
+use crate::primitive::Spared;
 use crate::scene::{Projection, Scene};
 use crate::simd::{Real, Vec3};
 
 impl<R: Real> Plan<R> {
     /// Finds the faces of solids that camera rays, and shadow rays to each light, can do without.
     pub fn drop_far_faces(&mut self, scene: &Scene, request: &RenderRequest, centre: DVec3) {
-        let triangles = self.primitives.triangles.iter();
-        let solids = Solids::among(triangles.map(|t| t.corners.map(Vec3::to_dvec3)).collect());
+        let triangles = &self.primitives.triangles;
+        let solids = Solids::among(triangles);
+        let turned_away = |point: DVec3| {
+            let away = triangles.iter().zip(solids.turned_away(point));
+            // Single precision may close what is open.
+            away.map(|(face, is_away)| is_away && face.spared == Spared::Far)
+                .collect()
+        };
         let projection = request.projection_of(&scene.camera);
         if projection == Projection::Perspective {
-            self.camera_culled_faces = solids.turned_away(scene.camera.position - centre);
+            self.camera_culled_faces = turned_away(scene.camera.position - centre);
         }
         for light in &mut self.lights {
-            light.shadow_culled_faces = solids.turned_away(light.position.to_dvec3());
+            light.shadow_culled_faces = turned_away(light.position.to_dvec3());
         }
     }
 

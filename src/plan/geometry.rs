@@ -11,6 +11,7 @@ use super::idle::KeptIdle;
 use super::packed_mesh::{MeshInstance, PackedMesh, measure, member};
 use super::parts::things;
 use super::request::RenderRequest;
+use super::solids::faces_of_solids;
 use crate::primitive::{
     BoundingBox, KINDS, Kind, Packing, Primitive, Primitives, Visit, count_corner_users,
     number_corners,
@@ -238,6 +239,7 @@ impl<R: Real> Geometry<R> {
         let packing = Packing {
             centre,
             corner_users: &count_corner_users(scene),
+            faces_of_solids: &faces_of_solids(scene),
             projector: None,
         };
         for (index, object) in scene.objects.iter().enumerate() {
@@ -358,6 +360,9 @@ pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>) {
     let mut bvh = Bvh::new(triangles.len(), |number| member(&triangles[number]));
     let parts = measure(triangles, &corners, &mut bvh).parts;
     primitives.things = things(&parts);
+    for (triangle, thing) in primitives.triangles.iter_mut().zip(&primitives.things) {
+        triangle.has_tips = thing.is_none();
+    }
 }
 
 /// The place of a pack among the materials.

@@ -24,6 +24,8 @@ mod request;
 
 mod contacts;
 
+mod solids;
+
 mod geometry;
 
 mod precision;
@@ -36,15 +38,11 @@ mod lights;
 
 mod ray_origin;
 
-mod solids;
-
 mod view;
 
 mod show;
 
 mod hit_order;
-
-mod tips;
 
 mod pack;
 
@@ -73,5 +71,4 @@ pub use precision::{is_double, is_filtered};
 pub use ray_origin::RayOrigin;
 pub use request::{Model, Region, RenderRequest};
 pub use show::Show;
-pub use tips::{Tip, Tips};
 pub use view::View;

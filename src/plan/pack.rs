@@ -16,7 +16,7 @@ use super::plane_occluders::classify_planes;
 use super::ray_origin::{RayOrigin, ray_origin};
 use super::request::{Model, RenderRequest};
 use super::show::Show;
-use super::tips::Tips;
+use super::solids::faces_of_solids;
 use super::view::View;
 use crate::primitive::{
     Blur, BoundingBox, CAUTION, KINDS, Packed, Packing, Primitives, Projector, Rectangle,
@@ -70,8 +70,6 @@ pub struct Plan<R> {
     /// Where each primitive that ends is in the picture, kind by kind; `None` where formulas are in use
     /// whose failures must not be hidden.
     pub screen: Option<[Vec<Rectangle>; KINDS]>,
-    /// What the corners of pixels may miss of triangles; none without smoothing that looks there first.
-    pub tips: Tips,
     /// Balls around the `primitives` that end.
     pub balls: Balls<R>,
     /// Their numbers.
@@ -134,7 +132,6 @@ impl<R: Real> Plan<R> {
             planes_cast: occluders.is_none(),
             shadows_behind: model == Model::Everything,
             screen: may_cull.then(Default::default),
-            tips: Tips::default(),
             balls: Balls::default(),
             in_balls: Vec::new(),
             camera_culled_faces: Vec::new(),
@@ -170,7 +167,6 @@ impl<R: Real> Plan<R> {
         plan.hold(scene, request);
         if matches!(request.sampling, Sampling::Adaptive { .. }) {
             measure_loose(&mut plan.primitives);
-            plan.tips = camera.map_or_else(Tips::default, |camera| plan.tips(request, &camera));
         }
         if may_cull {
             plan.bound();
@@ -182,20 +178,6 @@ impl<R: Real> Plan<R> {
         }
         kept.idle().end();
         plan
-    }
-
-    /// The sharp corners of triangles that are no part of something larger.
-    fn tips(&self, request: &RenderRequest, projector: &Projector) -> Tips {
-        let in_tree = self.geometry.iter().map(|geometry| &geometry.primitives);
-        let lists = [&self.primitives].into_iter().chain(in_tree);
-        let corners = lists
-            .flat_map(Primitives::single_triangles)
-            .map(|triangle| {
-                triangle
-                    .corners
-                    .map(|corner| corner.to_dvec3() + self.centre)
-            });
-        Tips::of(corners, request, projector)
     }
 
     /// Whether what rounding may decide is told.
@@ -234,14 +216,15 @@ impl<R: Real> Plan<R> {
     ) -> HashMap<usize, usize> {
         // Beside a tree there are triangles only where they touch something.
         let has_triangles = self.geometry.is_none() || !contacts.apart().is_empty();
-        let corner_users = if has_triangles {
-            count_corner_users(scene)
+        let (corner_users, faces_of_solids) = if has_triangles {
+            (count_corner_users(scene), faces_of_solids(scene))
         } else {
-            HashMap::new()
+            Default::default()
         };
         let packing = Packing {
             centre: self.centre,
             corner_users: &corner_users,
+            faces_of_solids: &faces_of_solids,
             projector,
         };
         if scene.light_visualization {

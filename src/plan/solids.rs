@@ -1,12 +1,14 @@
 //! Closed convex solids made of triangles: seen from outside, the faces that are turned away are
 //! behind others, and need no test.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
 use super::parts::parts;
-use crate::primitive::{Corner, corner};
+use crate::primitive::{Corner, PackedTriangle, corner};
+use crate::scene::{Scene, Shape};
+use crate::simd::{Real, Vec3};
 
 /// Most faces of a solid: its corners are held against each of its faces.
 const MOST_FACES: usize = 256;
@@ -24,7 +26,12 @@ pub struct Solids {
 
 impl Solids {
     /// Finds the closed convex solids among the triangles.
-    pub fn among(triangles: Vec<[DVec3; 3]>) -> Self {
+    pub fn among<R: Real>(triangles: &[PackedTriangle<R>]) -> Self {
+        let corners = triangles.iter().map(|t| t.corners.map(Vec3::to_dvec3));
+        Self::made_of(corners.collect())
+    }
+
+    fn made_of(triangles: Vec<[DVec3; 3]>) -> Self {
         let mut solids = connected(&triangles);
         solids.retain(|faces| {
             faces.len() <= MOST_FACES
@@ -53,6 +60,18 @@ impl Solids {
         }
         is_away
     }
+}
+
+/// The corners of the faces of all solids that are made of the visible triangles of a scene.
+pub fn faces_of_solids(scene: &Scene) -> HashSet<[Corner; 3]> {
+    let visible = scene.objects.iter().filter(|object| object.visible);
+    let triangles = visible.filter_map(|object| match &object.shape {
+        Shape::Triangle(triangle) => Some(triangle.corners()),
+        _ => None,
+    });
+    let Solids { triangles, solids } = Solids::made_of(triangles.collect());
+    let faces = solids.into_iter().flatten();
+    faces.map(|face| triangles[face].map(corner)).collect()
 }
 
 /// Unit normal outwards, distance from the origin along it, and what counts as on the face.
@@ -127,7 +146,7 @@ mod tests {
     }
 
     fn away(triangles: Vec<[DVec3; 3]>, point: DVec3) -> usize {
-        let away = Solids::among(triangles).turned_away(point);
+        let away = Solids::made_of(triangles).turned_away(point);
         away.into_iter().filter(|away| *away).count()
     }
 

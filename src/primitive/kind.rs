@@ -1,7 +1,7 @@
 //! What every kind of primitive can do. Kernels are generic over it, so that each scan is compiled for
 //! its kind.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt::Debug;
 
 use glam::DVec3;
@@ -23,6 +23,8 @@ pub struct Packing<'a> {
     pub centre: DVec3,
     /// How many visible triangles meet at each corner.
     pub corner_users: &'a HashMap<Corner, usize>,
+    /// The corners of the visible triangles that are faces of closed convex solids.
+    pub faces_of_solids: &'a HashSet<[Corner; 3]>,
     /// Where things are in the picture; `None` if nothing may be left out.
     pub projector: Option<&'a Projector>,
 }
@@ -48,9 +50,9 @@ pub struct SurfacePoint<L: SimdFloat> {
 /// How close rays come to a primitive.
 #[derive(Clone, Copy, Debug)]
 pub struct Approach<L> {
-    /// Where along the rays it begins.
+    /// From where along the rays on it may be so close.
     pub from: L,
-    /// Where along the rays it ends.
+    /// Up to where.
     pub to: L,
     /// How far from the rays it is, in scene units; not above 0 inside.
     pub distance: L,
@@ -90,8 +92,15 @@ pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
     /// than a pixel.
     fn thickness(&self) -> R;
 
-    /// How thick it is as what light of these directions is blocked by. Faces of solids that are turned to a light may have
-    /// been left out before it: those count for nothing.
+    /// Where it is the far side of a solid for who looks along these directions, and may have been left out; `None` if it
+    /// never is.
+    #[inline(always)]
+    fn is_far<L: SimdFloat<Real = R>>(&self, _sight: Vec3<L>) -> Option<L::Mask> {
+        None
+    }
+
+    /// How thick it is as what light of these directions is blocked by: nothing where it may have been left out before the
+    /// light.
     #[inline(always)]
     fn breadth<L: SimdFloat<Real = R>>(&self, directions: Vec3<L>) -> L {
         directions.x.like(self.thickness())

@@ -177,13 +177,6 @@ impl<R: Real> Primitives<R> {
         thing.map_or(number, |thing| first + thing as usize)
     }
 
-    /// The triangles that are things by themselves.
-    pub fn single_triangles(&self) -> impl Iterator<Item = &PackedTriangle<R>> {
-        let things = self.things.iter().copied().chain(std::iter::repeat(None));
-        let triangles = self.triangles.iter().zip(things);
-        triangles.filter_map(|(triangle, thing)| thing.is_none().then_some(triangle))
-    }
-
     /// How many there are.
     pub fn len(&self) -> usize {
         self.counts().iter().sum()

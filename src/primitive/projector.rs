@@ -97,13 +97,6 @@ impl Projector {
         }
     }
 
-    /// Where the corners of a triangle are, in pixels from the left and upper edge of the picture; `None` unless all
-    /// are ahead of the eye.
-    pub fn places(&self, corners: [DVec3; 3]) -> Option<[[f64; 2]; 3]> {
-        let place = |[x, y]: [f64; 2]| [self.half.0 + x * self.scale, self.half.1 - y * self.scale];
-        self.flat(corners).map(|flat| flat.map(place))
-    }
-
     /// The corners of a triangle on the image plane: right and up of its middle.
     fn flat(&self, corners: [DVec3; 3]) -> Option<[[f64; 2]; 3]> {
         let seen = corners.map(|corner| self.seen(corner));

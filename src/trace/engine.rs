@@ -10,7 +10,7 @@ use super::intersect::Kernel;
 use super::outcome::clamped;
 use super::samples::{Edges, Samples, Traced};
 use super::stats::Rays;
-use crate::plan::{Show, Tips};
+use crate::plan::Show;
 use crate::simd::{Real, SimdFloat, Vec3};
 
 /// What an engine works with, and the next one for the same plan may as well.
@@ -85,11 +85,6 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
     /// The proof that the processor has the lanes.
     pub fn token(&self) -> L::Token {
         self.kernel.token
-    }
-
-    /// What the corners of pixels may miss of triangles.
-    pub fn tips(&self) -> &'a Tips {
-        &self.kernel.plan.tips
     }
 
     /// Whether what is traced is for nothing.

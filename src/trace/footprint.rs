@@ -8,7 +8,7 @@ use crate::simd::{Real, SimdFloat};
 pub struct RayCone<L> {
     /// Scene units.
     pub width: L,
-    /// Scene units per scene unit.
+    /// Scene units per scene unit; below 0 where it narrows.
     pub spread: L,
 }
 
@@ -28,6 +28,15 @@ impl<L: SimdFloat> RayCone<L> {
     #[inline(always)]
     pub fn width_at(&self, t: L) -> L {
         self.width + self.spread * t
+    }
+
+    /// The cone that narrows nowhere.
+    #[inline(always)]
+    pub fn widening(&self) -> Self {
+        Self {
+            spread: self.spread.max(self.width.like(L::Real::ZERO)),
+            ..*self
+        }
     }
 }
 
@@ -54,12 +63,12 @@ impl<L: SimdFloat> Footprint<L> {
         }
     }
 
-    /// The cone of the rays that go on from the surface to a light: no wider there than here.
+    /// The cone of the rays that go on from the surface to a light at this distance: it narrows to nothing there.
     #[inline(always)]
-    pub fn shadow(&self) -> RayCone<L> {
+    pub fn shadow(&self, distance: L) -> RayCone<L> {
         RayCone {
             width: self.length,
-            spread: self.length.like(L::Real::ZERO),
+            spread: -self.length / distance,
         }
     }
 

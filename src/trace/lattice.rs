@@ -1,18 +1,15 @@
 //! The samples of a tile that its pixels share, and when a cell between them is subdivided.
 
-use std::ops::Range;
-
 use super::points::Points;
 use super::samples::{Samples, THING, Traced};
 use super::thresholds::{EDGE_ERROR, FINEST, NEAR, UNEVEN};
 use super::tile::{Tile, TileColors};
-use crate::plan::{Tip, Tips};
 use crate::scene::MAX_HALVINGS;
 use crate::simd::{Real, SimdFloat};
 
-/// Cells of this side are still divided where a triangle is narrow: what passes between the samples of smaller ones
-/// covers less of the pixel than a level of 255.
-const SMALLEST_AT_TIP: u16 = (FINEST / 4) as u16;
+/// In smaller cells than these whose corners see different things, nothing thin is looked for: an edge is known better
+/// where it crosses larger ones.
+const SLIPPED: u16 = (FINEST / 4) as u16;
 
 /// Between things there may be a gap, whatever their colours; in smaller cells than these, it is not looked for.
 const HIDING: u16 = (FINEST / 8) as u16;
@@ -42,8 +39,6 @@ impl<R: Real> Sample<R> {
 pub struct Lattice<R> {
     /// The points that have a sample or are wanted.
     points: Points,
-    /// What corners may miss, in steps of the grid from the corner of the tile.
-    tips: Vec<Tip>,
     /// In order of their points.
     samples: Vec<Sample<R>>,
 }
@@ -184,7 +179,6 @@ impl<R: Real> Lattice<R> {
     pub fn new() -> Self {
         Self {
             points: Points::new(),
-            tips: Vec::new(),
             samples: Vec::new(),
         }
     }
@@ -254,50 +248,7 @@ impl<R: Real> Lattice<R> {
         let [a, b, c, d] = self.corners(cell);
         let (a, b, c, d) = (a.values[3], b.values[3], c.values[3], d.values[3]);
         let least = a.min(b).min(c.min(d));
-        let is_thin = cell.is_watched && least < R::from_f64(NEAR * cell.width());
-        is_thin || (SMALLEST_AT_TIP <= cell.side && self.meets_tip(cell))
-    }
-
-    /// Takes those of the tips that are in a tile: the pixels in which triangles are narrow, their columns and row, are
-    /// given to `add`; some come more than once.
-    pub fn start_tips(
-        &mut self,
-        tips: &Tips,
-        tile: &Tile,
-        mut add: impl FnMut(Range<usize>, usize),
-    ) {
-        let corner = [tile.columns.start, tile.rows.start].map(|start| start as f64);
-        let side = FINEST as f64;
-        let pixels = |(from, to): (f64, f64), end: usize| {
-            let number = |at: f64| (at / side).max(0.0) as usize;
-            number(from)..(number(to) + 1).min(end)
-        };
-        let meets = |(from, to): (f64, f64), pixels: &Range<usize>| {
-            from <= pixels.end as f64 && pixels.start as f64 <= to
-        };
-        self.tips.clear();
-        for tip in tips.in_rows(&tile.rows) {
-            let [columns, rows] = tip.extent();
-            if !meets(columns, &tile.columns) || !meets(rows, &tile.rows) {
-                continue;
-            }
-            let tip = tip.seen_from(corner, side);
-            for row in pixels(tip.extent()[1], tile.rows.len()) {
-                let top = row as f64 * side;
-                if let Some(columns) = tip.columns_in((top, top + side)) {
-                    add(pixels(columns, tile.width()), row);
-                }
-            }
-            self.tips.push(tip);
-        }
-    }
-
-    /// Whether a triangle is narrow in a cell.
-    #[inline(always)]
-    fn meets_tip(&self, cell: &Cell) -> bool {
-        let at = [cell.x, cell.y].map(f64::from);
-        let mut tips = self.tips.iter();
-        tips.any(|tip| tip.meets(at, cell.side.into()))
+        cell.is_watched && least < R::from_f64(NEAR * cell.width())
     }
 
     /// What must be known of a cell.
@@ -306,12 +257,13 @@ impl<R: Real> Lattice<R> {
         if cell.side <= limits.least_side() {
             return Inside::Known;
         }
-        if self.is_near(cell) {
-            return Inside::Anything;
-        }
         let [a, b, c, d] = self.corners(cell);
         let differing =
             (a.signature ^ b.signature) | (a.signature ^ c.signature) | (a.signature ^ d.signature);
+        let is_one = differing == 0;
+        if (is_one || SLIPPED <= cell.side) && self.is_near(cell) {
+            return Inside::Anything;
+        }
         let mut ranges = [R::ZERO; 4];
         for (index, span) in ranges.iter_mut().enumerate() {
             let (a, b) = (a.values[index], b.values[index]);
@@ -319,7 +271,6 @@ impl<R: Real> Lattice<R> {
             *span = range(a, b, c, d);
         }
         let contrast = ranges[0] + ranges[1] + ranges[2];
-        let is_one = differing == 0;
         let limit = limits.at(R::from_f64(cell.width())).contrast(is_one);
         let may_hide = differing & THING != 0 && HIDING <= cell.side;
         match (limit < contrast || may_hide, is_one) {

@@ -5,7 +5,6 @@ use super::coverage::{CrossedCell, Found};
 use super::lattice::{Cell, Inside, Lattice, Limits};
 use super::samples::{Samples, Traced};
 use super::tile::{Tile, TileColors};
-use crate::plan::Tips;
 use crate::simd::Real;
 
 /// The cells of a tile whose inside is not known. Where their corners say that one edge crosses them, [`CrossedCell`]
@@ -19,8 +18,6 @@ pub struct Refinement<R> {
     crossed: Vec<CrossedCell<R>>,
     /// Cells that may be even, and the samples in their middles.
     even: Vec<(Cell, u32)>,
-    /// Which pixels of a tile are among those that were added.
-    listed: Vec<bool>,
 }
 
 impl<R: Real> Refinement<R> {
@@ -32,7 +29,6 @@ impl<R: Real> Refinement<R> {
             split: Vec::new(),
             crossed: Vec::new(),
             even: Vec::new(),
-            listed: Vec::new(),
         }
     }
 
@@ -48,28 +44,6 @@ impl<R: Real> Refinement<R> {
     #[inline(always)]
     pub fn add(&mut self, column: usize, row: usize) {
         self.split.push(Cell::pixel(column, row));
-    }
-
-    /// Adds the pixels in which triangles are narrow.
-    #[inline(never)]
-    pub fn add_tips(&mut self, tips: &Tips, tile: &Tile) {
-        let (width, split, listed) = (tile.width(), &mut self.split, &mut self.listed);
-        listed.clear();
-        self.lattice.start_tips(tips, tile, |columns, row| {
-            if listed.is_empty() {
-                listed.resize(width * tile.rows.len(), false);
-                for pixel in &*split {
-                    listed[pixel.pixel_in(width)] = true;
-                }
-            }
-            for column in columns {
-                let is_listed = &mut listed[row * width + column];
-                if !*is_listed {
-                    split.push(Cell::pixel(column, row));
-                }
-                *is_listed = true;
-            }
-        });
     }
 
     /// Starts with the pixels that were added, whose colours become nothing, and with what was seen at the corners of

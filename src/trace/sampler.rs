@@ -144,7 +144,6 @@ impl<L: SimdFloat> Sampler<L> {
         let rows = tile.rows.start..tile.rows.end + 1;
         self.trace(engine, seen, (columns, rows), ((0.0, 0.0), Edges::Near));
         self.judge(engine.token(), tile, limits, colors);
-        self.refinement.add_tips(engine.tips(), tile);
         if !self.refinement.start(tile, &self.traced, limits, colors) {
             return;
         }

@@ -99,6 +99,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 cone: edge.cone,
                 spread: edge.cone.spread,
                 reach: packet.near.t,
+                is_to_light: false,
             };
             edge.near = kernel.thin_distance(self.thin, &gaze, stack);
         }
@@ -365,9 +366,10 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 let gaze = Gaze {
                     paths: &paths,
                     active: open & visible,
-                    cone: footprint.shadow(),
+                    cone: footprint.shadow(distance),
                     spread: footprint.spread(),
                     reach,
+                    is_to_light: true,
                 };
                 let near = kernel.thin_distance(&candidates.thin, &gaze, stack);
                 edge.near = near.min(edge.near);

@@ -34,6 +34,8 @@ pub struct Gaze<'a, L: SimdFloat> {
     pub spread: L,
     /// How far they go.
     pub reach: L,
+    /// Whether they go to a light: then it is who looks.
+    pub is_to_light: bool,
 }
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
@@ -56,6 +58,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             gaze,
             best: self.infinity(),
             counted,
+            cone: gaze.cone,
             settled: 0,
             open: counted,
         };
@@ -90,7 +93,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             self.token,
             #[inline(always)]
             || {
-                let (active, cone) = (thicket.active, gaze.cone);
+                let (active, cone) = (thicket.active, gaze.cone.widening());
                 let zero = self.splat(0.0);
                 let beside = Beside {
                     width: L::select(active, cone.width, zero).greatest(),
@@ -107,6 +110,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     gaze,
                     best,
                     counted: active | !active,
+                    cone: gaze.cone,
                     settled: 0,
                     open: active | !active,
                 };
@@ -124,6 +128,9 @@ struct ThinTest<'a, L: SimdFloat> {
     best: L,
     /// For which rays what is tested counts, if it is of a mesh.
     counted: L::Mask,
+    /// How wide a pixel is around what is looked at as one thing. Around faces of a mesh it does not narrow towards a light:
+    /// ever more would have to be told apart, for ever less of a shadow.
+    cone: RayCone<L>,
     /// The rays that have seen a box around what is tested as one thing, bit by bit, and for which it counts.
     settled: u64,
     open: L::Mask,
@@ -151,7 +158,7 @@ impl<L: SimdFloat> ThinTest<'_, L> {
             along,
             off,
             radius: off.like(radius),
-            width: self.gaze.cone.width_at(along.max(off.like(L::Real::ZERO))),
+            width: self.cone.width_at(along.max(off.like(L::Real::ZERO))),
         }
     }
 
@@ -160,10 +167,10 @@ impl<L: SimdFloat> ThinTest<'_, L> {
     fn counts<P: Primitive<L::Real>>(&self, primitive: &P, approach: &Approach<L>) -> (L::Mask, L) {
         let Gaze { cone, reach, .. } = self.gaze;
         let Approach { from, to, size, .. } = *approach;
-        let width = cone.width_at(to);
+        let zero = to.like(L::Real::ZERO);
+        let width = cone.width_at(to).max(cone.width_at(from.max(zero)));
         let is_before = from.less(*reach + primitive.margin(width));
-        let is_ahead = to.like(L::Real::ZERO).less(to);
-        let thin = size.less(width * to.like_f64(SLIPPING)) & is_ahead & is_before;
+        let thin = size.less(width * to.like_f64(SLIPPING)) & zero.less(to) & is_before;
         (thin & self.counted & self.open, width)
     }
 
@@ -194,6 +201,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         let faces = L::Real::from_f64(mesh.triangles.len() as f64 / CROWDED);
         let small = faces.sqrt().max(L::Real::from_f64(SMALL));
         if widest * small <= radius + radius {
+            self.cone = self.gaze.cone.widening();
             return Some(active);
         }
         let ball = self.passed(center, radius, paths);
@@ -211,6 +219,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
             return None;
         }
         self.counted = !is_small;
+        self.cone = self.gaze.cone.widening();
         Some(others)
     }
 
@@ -248,6 +257,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
     #[inline(always)]
     fn leave_mesh(&mut self) {
         self.counted = self.counted | !self.counted;
+        self.cone = self.gaze.cone;
     }
 
     #[inline(always)]
@@ -263,6 +273,13 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         paths: &Paths<L>,
         number: usize,
     ) {
+        let direction = paths.rays.direction;
+        let is_to_light = self.gaze.is_to_light;
+        let far = primitive.is_far(if is_to_light { -direction } else { direction });
+        let active = far.map_or(self.gaze.active, |far| self.gaze.active & !far);
+        if !active.any() {
+            return;
+        }
         let approach = primitive.approach(
             &paths.rays,
             prepared,
@@ -270,11 +287,14 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
             #[inline(always)]
             |rough| {
                 let (counts, width) = self.counts(primitive, rough);
-                (counts & self.gaze.active & rough.distance.less(width)).any()
+                (counts & active & rough.distance.less(width)).any()
             },
         );
         let Some(approach) = approach else { return };
         let (mut counts, width) = self.counts(primitive, &approach);
+        if let Some(far) = far {
+            counts = counts & !far;
+        }
         // A curved surface surrounds the rays that start on it.
         if P::IS_CURVED {
             counts = counts & !paths.ignored.is(number);

@@ -17,7 +17,7 @@ impl Dice {
         low + (high - low) * share(mixed(self.0))
     }
 
-    fn vector(&mut self, low: f64, high: f64) -> DVec3 {
+    pub fn vector(&mut self, low: f64, high: f64) -> DVec3 {
         DVec3::new(
             self.real(low, high),
             self.real(low, high),

@@ -12,8 +12,8 @@ mod in_doubt;
 
 pub use curved::{CornerNormals, Curved};
 use in_doubt::watertight_in_doubt;
-pub use packed::{PackedTriangle, corner, count_corner_users, number_corners};
-use watertight::{Shear, watertight};
+pub use packed::{PackedTriangle, Spared, corner, count_corner_users, number_corners};
+use watertight::{Passing, Shear, watertight};
 
 use glam::DVec3;
 
@@ -25,6 +25,10 @@ use super::projector::{Projector, Rectangle};
 use super::ray::Ray;
 use crate::scene::{Methods, Triangle, TriangleMethod};
 use crate::simd::{Real, SimdFloat, Vec3};
+
+/// How many times as wide a triangle counts at its tips as it is: what is narrow all along is looked for up to 2 pixels,
+/// of tips 1.1 are enough, with a third fewer rays for them.
+const WIDER_AT_TIPS: f64 = 2.0 / 1.1;
 
 /// What is needed of a triangle where it is hit, for each ray of its own triangle.
 #[derive(Clone, Copy, Debug)]
@@ -82,6 +86,12 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
             normal: Vec3::from_dvec3(normal),
             in_mesh: [a, b, c].iter().any(is_shared),
             thickness: R::from_f64(description.thickness()),
+            has_tips: true,
+            spared: if packing.faces_of_solids.contains(&[a, b, c].map(corner)) {
+                Spared::Far
+            } else {
+                Spared::Nothing
+            },
             longest: R::from_f64(description.longest_side()),
             material,
         })
@@ -104,14 +114,30 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
     }
 
     fn thickness(&self) -> R {
-        self.thickness
+        if self.has_tips {
+            R::ZERO
+        } else {
+            self.thickness
+        }
+    }
+
+    #[inline(always)]
+    fn is_far<L: SimdFloat<Real = R>>(&self, sight: Vec3<L>) -> Option<L::Mask> {
+        let zero = sight.x.like(R::ZERO);
+        let along = || sight.dot(sight.like(self.normal));
+        (self.spared == Spared::Far).then(|| zero.less(along()))
     }
 
     #[inline(always)]
     fn breadth<L: SimdFloat<Real = R>>(&self, directions: Vec3<L>) -> L {
         let zero = directions.x.like(R::ZERO);
-        let is_left = zero.less(directions.dot(directions.like(self.normal)));
-        L::select(is_left, zero, zero.like(self.thickness))
+        let thickness = zero.like(self.thickness);
+        let is_left = match self.spared {
+            Spared::Nothing => return thickness,
+            Spared::Lit => zero.less(directions.dot(directions.like(self.normal))),
+            Spared::Far => directions.dot(directions.like(self.normal)).less(zero),
+        };
+        L::select(is_left, zero, thickness)
     }
 
     fn reach(&self) -> (Vec3<R>, R) {
@@ -164,7 +190,7 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
         flat.refine(rays, t)
     }
 
-    /// From the nearest corner to the farthest; the distance inside is zero.
+    /// The distance inside is zero.
     #[inline(always)]
     fn approach<L: SimdFloat<Real = R>>(
         &self,
@@ -181,24 +207,29 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
             from: t.min(u).min(v),
             to: t.max(u).max(v),
             distance: shear.least_beside([a, b, c]),
-            size: t.like(self.thickness),
+            size: t.like(Primitive::thickness(self)),
         };
         if !matters(&rough) {
             return None;
         }
-        let (ab, bc, ca) = (
-            shear.edge_beside(a, b),
-            shear.edge_beside(b, c),
-            shear.edge_beside(c, a),
-        );
+        let Passing {
+            inside,
+            nearest,
+            second,
+            at,
+        } = shear.passing([a, b, c]);
         let zero = shear.x.like(R::ZERO);
-        // Inside, all edges turn the same way around the ray.
-        let turns = (ab.0.min(bc.0).min(ca.0), ab.0.max(bc.0).max(ca.0));
-        let inside = zero.less(turns.0) | turns.1.less(zero);
-        let nearest = ab.1.min(bc.1).min(ca.1).max(zero).sqrt();
+        let mut size = zero.like(self.thickness);
+        if self.has_tips {
+            // Beside one edge it is about as wide as the next is farther away.
+            let width = second - nearest;
+            size = size.min(width * zero.like_f64(WIDER_AT_TIPS));
+        }
         Some(Approach {
+            from: at,
+            to: at,
             distance: L::select(inside, zero, nearest),
-            ..rough
+            size,
         })
     }
 }
@@ -228,6 +259,8 @@ mod tests {
             normal: Vec3::from_dvec3(normal),
             in_mesh: true,
             thickness: 1.0,
+            has_tips: false,
+            spared: Spared::Lit,
             longest: 1.0,
             material: 0,
         }

@@ -9,6 +9,17 @@ use crate::primitive::kind::Corner;
 use crate::scene::{Scene, Shape, Triangle};
 use crate::simd::{Real, Vec3};
 
+/// What a face of a solid may be left out of, where the others hide and shade the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spared {
+    /// Nothing.
+    Nothing,
+    /// What casts shadows from lights that it is turned to.
+    Lit,
+    /// What is seen by eyes, and casts shadows from lights, that it is turned away from.
+    Far,
+}
+
 /// A flat triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct PackedTriangle<R> {
@@ -21,6 +32,10 @@ pub struct PackedTriangle<R> {
     pub in_mesh: bool,
     /// Its smallest altitude.
     pub thickness: R,
+    /// Whether its corners may slip between samples, however large it is: that of a mesh goes on behind them.
+    pub has_tips: bool,
+    /// What it may be left out of.
+    pub spared: Spared,
     /// The length of its longest edge.
     pub longest: R,
     /// Index of its material.
@@ -38,6 +53,8 @@ impl<R: Real> PackedTriangle<R> {
             normal: Vec3::from_dvec3(normal),
             in_mesh: true,
             thickness: R::from_f64(triangle.thickness()),
+            has_tips: false,
+            spared: Spared::Lit,
             longest: R::from_f64(triangle.longest_side()),
             material: 0,
         })

@@ -31,6 +31,19 @@ enum MajorAxis {
     Z,
 }
 
+/// How rays pass a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Passing<L: SimdFloat> {
+    /// Whether they go through it.
+    pub inside: L::Mask,
+    /// How far its nearest edge is from them, ahead of their start.
+    pub nearest: L,
+    /// How far the next one is.
+    pub second: L,
+    /// Where along them the nearest is nearest.
+    pub at: L,
+}
+
 impl<L: SimdFloat> Shear<L> {
     /// The shear of a direction (not zero).
     #[inline(always)]
@@ -85,10 +98,10 @@ impl<L: SimdFloat> Shear<L> {
         L::select(self.is_x, x, L::select(self.is_y, y, z))
     }
 
-    /// Which way an edge between two sheared corners turns around the ray, and the square of its
-    /// distance from the ray.
+    /// Which way an edge between two sheared corners turns around the ray, the square of its distance from the ray, and
+    /// where along the ray that is. Behind its start, nothing is near.
     #[inline(always)]
-    pub fn edge_beside(&self, from: [L; 3], to: [L; 3]) -> (L, L) {
+    fn edge_beside(&self, from: [L; 3], to: [L; 3]) -> (L, L, L) {
         let (zero, one) = (self.x.like(L::Real::ZERO), self.x.like(L::Real::ONE));
         let (x, y) = (to[0] - from[0], to[1] - from[1]);
         let share = -(from[0] * x + from[1] * y) / (x * x + y * y);
@@ -96,8 +109,36 @@ impl<L: SimdFloat> Shear<L> {
         let (x_near, y_near) = (from[0] + x * share, from[1] + y * share);
         // The sheared plane is not across the ray: without the part along it.
         let along = (x_near * self.x + y_near * self.y) / self.z;
-        let square = x_near * x_near + y_near * y_near - along * along;
-        (from[0] * y - from[1] * x, square)
+        let square = (x_near * x_near + y_near * y_near - along * along).max(zero);
+        let at = (from[2] + (to[2] - from[2]) * share) * self.z;
+        let square = L::select(zero.less(at), square, zero.like(L::Real::INFINITY));
+        (from[0] * y - from[1] * x, square, at)
+    }
+
+    /// How the ray passes the triangle of sheared corners.
+    #[inline(always)]
+    pub fn passing(&self, [a, b, c]: [[L; 3]; 3]) -> Passing<L> {
+        let edges = [
+            self.edge_beside(a, b),
+            self.edge_beside(b, c),
+            self.edge_beside(c, a),
+        ];
+        let zero = self.x.like(L::Real::ZERO);
+        let (mut least, mut nearest, mut at) = edges[0];
+        let (mut most, mut second) = (least, zero.like(L::Real::INFINITY));
+        for (turn, square, place) in [edges[1], edges[2]] {
+            (least, most) = (least.min(turn), most.max(turn));
+            at = L::select(square.less(nearest), place, at);
+            second = second.min(nearest.max(square));
+            nearest = nearest.min(square);
+        }
+        Passing {
+            // All edges turn the same way around it.
+            inside: zero.less(least) | most.less(zero),
+            nearest: nearest.sqrt(),
+            second: second.sqrt(),
+            at,
+        }
     }
 
     /// How far the triangle of sheared corners is from the ray, at least: as far as a box around it is from the axis.
