@@ -213,7 +213,11 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
             .width
             .like(L::Real::ZERO)
             .less(ball.along + ball.radius);
-        self.note(&ball, is_small & is_before & is_ahead & self.open, beside);
+        // Those that do not come so close to the box look into it only since others do.
+        let entry = mesh.bvh.bounds.entry(&paths.rays, ball.width);
+        let is_close = entry.less(self.gaze.reach + ball.width);
+        let counts = is_small & is_before & is_ahead & is_close & self.open;
+        self.note(&ball, counts, beside);
         let others = active & !is_small;
         if !others.any() {
             return None;

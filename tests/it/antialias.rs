@@ -181,30 +181,9 @@ fn tips_of_triangles_do_not_slip_through() {
     );
 }
 
-/// Triangles of any form over a floor that mirrors them, and takes their shadows from two lights.
-fn shards() -> Scene {
-    let mut scene = Scene::demo();
-    scene.objects.retain(|object| object.name == "Plane");
-    let dice = &mut random::Dice(3);
-    for n in 0..40 {
-        let middle = DVec3::new(
-            dice.real(-80.0, 80.0),
-            dice.real(5.0, 105.0),
-            dice.real(-80.0, 80.0),
-        );
-        let [a, b, c] = [(); 3].map(|()| middle + dice.vector(-12.0, 12.0));
-        let shape = Triangle { a, b, c };
-        let name = format!("Shard {n}");
-        scene.objects.push(Object::new(name, "sphere 1", shape));
-    }
-    scene.camera.position = DVec3::new(0.0, 70.0, 170.0);
-    scene.camera.look_at = DVec3::new(0.0, -0.25, -1.0);
-    scene
-}
-
 #[test]
 fn tips_do_not_slip_through_in_shadows_and_mirrors_either() {
-    let got = quality(&shards(), &picture(Sampling::ADAPTIVE));
+    let got = quality(&random::shards(), &picture(Sampling::ADAPTIVE));
     assert!(
         got.psnr >= EIGHT_BITS && got.visible <= 4 && got.worst <= 2.0 * INVISIBLE,
         "{got:?}"

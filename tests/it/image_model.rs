@@ -63,6 +63,7 @@ fn any_lanes_give_the_same_bytes() {
         random::scene(1),
         random::scene(2),
         random::scene(6),
+        random::shards(),
     ] {
         let precisions = [Precision::Single, Precision::Double];
         for (precision, sampling) in precisions

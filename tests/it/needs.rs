@@ -80,7 +80,9 @@ fn what_is_culled_is_not_missed() {
     }
     let scenes = (0..10).map(random::scene);
     let scenes = scenes.chain((0..6).map(random::with_discs));
-    let scenes = scenes.chain(random::published()).chain([many]);
+    let scenes = scenes
+        .chain(random::published())
+        .chain([many, random::shards()]);
     for (index, scene) in scenes.enumerate() {
         for sampling in [Sampling::Centres, Sampling::Grid(2), Sampling::ADAPTIVE] {
             let traced = |model| {

@@ -17,7 +17,7 @@ impl Dice {
         low + (high - low) * share(mixed(self.0))
     }
 
-    pub fn vector(&mut self, low: f64, high: f64) -> DVec3 {
+    fn vector(&mut self, low: f64, high: f64) -> DVec3 {
         DVec3::new(
             self.real(low, high),
             self.real(low, high),
@@ -70,6 +70,27 @@ pub fn published() -> [Scene; 2] {
     second.camera.look_at = DVec3::new(-0.25, -0.70, -0.67);
     second.camera.up = DVec3::new(-0.25, 0.71, -0.65);
     [first, second]
+}
+
+/// Triangles of any form over a floor that mirrors them, and takes their shadows from two lights.
+pub fn shards() -> Scene {
+    let mut scene = Scene::demo();
+    scene.objects.retain(|object| object.name == "Plane");
+    let dice = &mut Dice(3);
+    for n in 0..40 {
+        let middle = DVec3::new(
+            dice.real(-80.0, 80.0),
+            dice.real(5.0, 105.0),
+            dice.real(-80.0, 80.0),
+        );
+        let [a, b, c] = [(); 3].map(|()| middle + dice.vector(-12.0, 12.0));
+        let shape = Triangle { a, b, c };
+        let name = format!("Shard {n}");
+        scene.objects.push(Object::new(name, "sphere 1", shape));
+    }
+    scene.camera.position = DVec3::new(0.0, 70.0, 170.0);
+    scene.camera.look_at = DVec3::new(0.0, -0.25, -1.0);
+    scene
 }
 
 /// The scene of this seed with discs in it: some lie, some lean, two are mirrors.
