@@ -213,10 +213,12 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
             .width
             .like(L::Real::ZERO)
             .less(ball.along + ball.radius);
-        // Those that do not come so close to the box look into it only since others do.
+        // Those for which it is not so thin, or that do not come so close to the box, look into it only since others do.
+        let thickness = ball.width.like(mesh.bvh.thinnest);
+        let is_thin = thickness.less(ball.width * ball.width.like_f64(SLIPPING));
         let entry = mesh.bvh.bounds.entry(&paths.rays, ball.width);
         let is_close = entry.less(self.gaze.reach + ball.width);
-        let counts = is_small & is_before & is_ahead & is_close & self.open;
+        let counts = is_small & is_thin & is_before & is_ahead & is_close & self.open;
         self.note(&ball, counts, beside);
         let others = active & !is_small;
         if !others.any() {
