@@ -145,8 +145,8 @@ impl<R: Real> Plan<R> {
         };
         let found = kept.coincidences(&scene.objects, centre);
         let contacts = Contacts::new(scene, request, (&found, kept.light_contacts(scene)));
-        let camera = projector(scene, request);
-        let projector = camera.as_ref().filter(|_| may_cull);
+        let projector = projector(scene, request).filter(|_| may_cull);
+        let projector = projector.as_ref();
         if is_tree(scene, request, may_cull) {
             let geometry = kept.geometry(scene, (centre, contacts.apart()), request.sampling);
             plan.hit_order = HitOrder::of(geometry.members(), request);

@@ -53,15 +53,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         if !looking.any() {
             return self.infinity();
         }
-        let counted = gaze.active | !gaze.active;
-        let mut test = ThinTest {
-            gaze,
-            best: self.infinity(),
-            counted,
-            cone: gaze.cone,
-            settled: 0,
-            open: counted,
-        };
+        let mut test = ThinTest::new(gaze, self.infinity());
         scan_lists(self.plan, among, gaze.paths, &mut test);
         let best = test.best;
         // Their starts leave out what is beside the rays.
@@ -106,14 +98,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     is_boxed: true,
                     ..*thicket
                 };
-                let mut test = ThinTest {
-                    gaze,
-                    best,
-                    counted: active | !active,
-                    cone: gaze.cone,
-                    settled: 0,
-                    open: active | !active,
-                };
+                let mut test = ThinTest::new(gaze, best);
                 thicket.scan(gaze.paths, stack, &mut test);
                 test.best
             },
@@ -148,7 +133,21 @@ struct Passed<L> {
     width: L,
 }
 
-impl<L: SimdFloat> ThinTest<'_, L> {
+impl<'a, L: SimdFloat> ThinTest<'a, L> {
+    /// Looks for what is nearer than `best`.
+    #[inline(always)]
+    fn new(gaze: &'a Gaze<'a, L>, best: L) -> Self {
+        let all = gaze.active | !gaze.active;
+        Self {
+            gaze,
+            best,
+            counted: all,
+            cone: gaze.cone,
+            settled: 0,
+            open: all,
+        }
+    }
+
     #[inline(always)]
     fn passed(&self, center: Vec3<L::Real>, radius: L::Real, paths: &Paths<L>) -> Passed<L> {
         let x = paths.rays.origin - paths.rays.origin.like(center);
@@ -297,10 +296,8 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
             },
         );
         let Some(approach) = approach else { return };
-        let (mut counts, width) = self.counts(primitive, &approach);
-        if let Some(far) = far {
-            counts = counts & !far;
-        }
+        let (counts, width) = self.counts(primitive, &approach);
+        let mut counts = counts & active;
         // A curved surface surrounds the rays that start on it.
         if P::IS_CURVED {
             counts = counts & !paths.ignored.is(number);
