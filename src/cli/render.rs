@@ -17,7 +17,7 @@ use super::scene::read_scene;
 use super::settings::SettingArgs;
 use super::target::picture_format;
 use crate::animate::{CameraPath, shot};
-use crate::export::{NoSuchFrame, save_image};
+use crate::export::{NoSuchFrame, save_picture};
 use crate::image::{Film, Format, RenderCost};
 use crate::lab::{Choice, Goal, choose};
 use crate::plan::{Planner, RenderRequest};
@@ -88,8 +88,8 @@ struct Stats {
     #[serde(skip_serializing_if = "Option::is_none")]
     chosen: Option<Chosen>,
     threads: usize,
-    width: usize,
-    height: usize,
+    width: u32,
+    height: u32,
 }
 
 #[derive(Serialize)]
@@ -131,13 +131,20 @@ pub fn run(args: &RenderArgs) -> Result<(), CliError> {
     request.sampling = choice.map_or(request.sampling, |choice| choice.sampling);
     let count = threads.count();
     let film = Film::new(format.unwrap_or(Format::Ppm));
-    let traced = trace(scene, (request, film), threads, args.repeat.get());
-    let (film, costs) =
-        traced.ok_or_else(|| CliError::failed("the trace ended without a picture"))?;
-    if let Some(path) = &args.output {
-        save_image(&film, path)?;
-    }
-    let stats = stats((&film, choice), &costs, count);
+    let total = request.pixels() * args.repeat.get() as u64;
+    let (repeat, output) = (args.repeat.get(), args.output.clone());
+    let traced = with_bar(total, move |control| {
+        threads.run(|| {
+            trace(
+                &scene,
+                (&request, film),
+                (repeat, output.as_deref()),
+                control,
+            )
+        })
+    });
+    let costs = traced.ok_or_else(|| CliError::failed("the trace ended without a picture"))??;
+    let stats = stats((&request, choice), &costs, count);
     match (&args.output, args.stats) {
         (_, true) => say(&serde_json::to_string(&stats)?),
         (Some(path), false) => say(&summary(path, &stats)),
@@ -230,34 +237,44 @@ fn in_proportion(side: u32, numerator: u32, denominator: u32) -> u32 {
     u32::try_from(exact).unwrap_or(MAX_SIDE).clamp(1, MAX_SIDE)
 }
 
-/// Traces `repeat` times, with a bar on a terminal if it takes a while.
+/// Traces so many times, the last time into a file if one is given.
 fn trace(
-    scene: Scene,
-    (request, mut film): (RenderRequest, Film),
-    threads: Threads,
-    repeat: usize,
-) -> Option<(Film, Vec<RenderCost>)> {
+    scene: &Scene,
+    (request, mut film): (&RenderRequest, Film),
+    (repeat, output): (usize, Option<&Path>),
+    control: &RenderControl,
+) -> Result<Vec<RenderCost>, CliError> {
+    let stopped = |_| CliError::failed("the trace ended without a picture");
+    let mut costs = Vec::new();
+    // They are all the same, and may be large.
+    let mut planner = Planner::default();
+    for left in (0..repeat).rev() {
+        let mut drawing = film.draw(&mut planner, (scene, request), control);
+        drawing.start().map_err(stopped)?;
+        match output.filter(|_| left == 0) {
+            Some(path) => save_picture(path, |format, file| drawing.encode(format, file))?,
+            None => drawing.finish().map_err(stopped)?,
+        }
+        costs.push(drawing.cost());
+    }
+    Ok(costs)
+}
+
+/// Does work that takes so many pixels, with a bar on a terminal if it takes a while; `None` if it has panicked.
+fn with_bar<T: Send + 'static>(
+    total: u64,
+    work: impl FnOnce(&RenderControl) -> T + Send + 'static,
+) -> Option<T> {
     let control = Arc::new(RenderControl::default());
-    let total = request.pixels() * repeat as u64;
     let result = run_in_background("glint-render", {
         let control = Arc::clone(&control);
-        move || {
-            let mut costs = Vec::new();
-            // They are all the same, and may be large.
-            let mut planner = Planner::default();
-            for _ in 0..repeat {
-                let traced = || film.expose(&mut planner, &scene, &request, &control);
-                let cost = threads.run(traced)?;
-                costs.push(cost);
-            }
-            Some((film, costs))
-        }
+        move || work(&control)
     });
     let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {eta} left");
     let mut bar = None;
     loop {
         match result.recv_timeout(PROGRESS_TICK) {
-            Ok(traced) => return traced,
+            Ok(done) => return Some(done),
             Err(RecvTimeoutError::Disconnected) => return None,
             Err(RecvTimeoutError::Timeout) => {
                 // Draws to stderr, and only where that is a terminal.
@@ -272,8 +289,11 @@ fn trace(
     }
 }
 
-fn stats((film, choice): (&Film, Option<Choice>), costs: &[RenderCost], threads: usize) -> Stats {
-    let (width, height) = film.size();
+fn stats(
+    (request, choice): (&RenderRequest, Option<Choice>),
+    costs: &[RenderCost],
+    threads: usize,
+) -> Stats {
     let mut millis: Vec<f64> = costs
         .iter()
         .map(|cost| cost.time.as_secs_f64() * 1e3)
@@ -297,8 +317,8 @@ fn stats((film, choice): (&Film, Option<Choice>), costs: &[RenderCost], threads:
             is_met: choice.is_met,
         }),
         threads,
-        width,
-        height,
+        width: request.width,
+        height: request.height,
     }
 }
 
@@ -310,7 +330,7 @@ fn summary(path: &Path, stats: &Stats) -> String {
         ..
     } = stats;
     let rays = stats.rays.total();
-    let per_pixel = rays as f64 / (width * height) as f64;
+    let per_pixel = rays as f64 / (f64::from(*width) * f64::from(*height));
     format!(
         "{}: {width}×{height}, {trace_ms:.1} ms, {per_pixel:.2} rays/px",
         path.display()

@@ -1,7 +1,10 @@
 //! Single pictures on disk.
 
+use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
+
+use image::ImageError;
 
 use super::error::ExportError;
 use crate::files::{NewFile, remove_leftovers, write_atomic};
@@ -12,6 +15,17 @@ use crate::image::{Film, Format};
 /// # Errors
 /// [`ExportError`]; a file that was at `path` is then untouched.
 pub fn save_image(film: &Film, path: &Path) -> Result<(), ExportError> {
+    save_picture(path, |format, file| film.encode(format, file))
+}
+
+/// Writes what `encode` makes for the format of the file's ending, whole or not at all.
+///
+/// # Errors
+/// [`ExportError`]; a file that was at `path` is then untouched.
+pub fn save_picture<T>(
+    path: &Path,
+    encode: impl FnOnce(Format, &mut BufWriter<&File>) -> Result<T, ImageError>,
+) -> Result<T, ExportError> {
     let format = Format::of_path(path)?;
     let disk = |source| ExportError::Disk {
         path: path.to_owned(),
@@ -19,14 +33,14 @@ pub fn save_image(film: &Film, path: &Path) -> Result<(), ExportError> {
     };
     let beside = NewFile::beside(path).map_err(disk)?;
     let mut file = BufWriter::new(beside.as_file());
-    let encoded = film.encode(format, &mut file);
-    encoded.map_err(|source| ExportError::Encode {
+    let encoded = encode(format, &mut file).map_err(|source| ExportError::Encode {
         path: path.to_owned(),
         source,
     })?;
     file.flush().map_err(disk)?;
     drop(file);
-    beside.place_durably().map_err(disk)
+    beside.place_durably().map_err(disk)?;
+    Ok(encoded)
 }
 
 /// Whether a file could be written here: asked before what is to be in it is made. What killed programs have left

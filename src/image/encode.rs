@@ -2,12 +2,16 @@
 
 use std::io::{self, Seek, Write};
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
-use image::codecs::openexr::OpenExrEncoder;
-use image::{ExtendedColorType, ImageEncoder as _, ImageError};
+use exr::image::write::WritableImage as _;
+use exr::image::{Image as ExrImage, SpecificChannels};
+use exr::math::Vec2;
+use image::ImageError;
 use serde::{Deserialize, Serialize};
 
-use super::buffer::{Image, LinearImage};
+use super::buffer::{Image, LinearImage, LinearRgb};
+use super::rows::{Rows, unwanted};
 
 /// A file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -65,22 +69,101 @@ impl Format {
     }
 }
 
-impl LinearImage {
-    /// The bytes of an EXR file.
-    ///
-    /// # Errors
-    /// What the encoder says, or the system.
-    pub fn encode(&self, file: &mut (impl Write + Seek)) -> Result<(), ImageError> {
-        // As they are: a large picture is gigabytes.
-        let bytes = bytemuck::cast_slice(&self.pixels);
-        let (width, height) = (short(self.width), short(self.height));
-        OpenExrEncoder::new(file).write_image(bytes, width, height, ExtendedColorType::Rgb32F)
+/// Writes light as an EXR file.
+///
+/// # Errors
+/// What the encoder says, or the system; [`io::ErrorKind::Interrupted`] once nobody wants the picture any more.
+pub fn write_light(
+    rows: &mut (impl Rows<LinearRgb> + Send),
+    file: &mut (impl Write + Seek),
+) -> Result<(), ImageError> {
+    let size = rows.size();
+    // The encoder asks for pixels from one thread only, but does not promise it.
+    let rows = Mutex::new((rows, true));
+    let pixel = |Vec2(column, row): Vec2<usize>| {
+        let (rows, is_wanted) = &mut *rows.lock().unwrap_or_else(PoisonError::into_inner);
+        let pixels = if *is_wanted { rows.row(row) } else { None };
+        *is_wanted = pixels.is_some();
+        let [red, green, blue] = pixels.map_or([0.0; 3], |pixels| pixels[column]);
+        (red, green, blue)
+    };
+    let image = ExrImage::from_channels(size, SpecificChannels::rgb(pixel));
+    let written = image.write().to_buffered(file);
+    drop(image);
+    let (_, is_wanted) = rows.into_inner().unwrap_or_else(PoisonError::into_inner);
+    match written {
+        _ if !is_wanted => Err(unwanted().into()),
+        Ok(()) => Ok(()),
+        Err(exr::error::Error::Io(error)) => Err(error.into()),
+        Err(error) => Err(io::Error::other(error).into()),
     }
+}
+
+/// Writes levels as a PNG or PPM file, without alpha.
+///
+/// # Errors
+/// What the encoder says, or the system; [`io::ErrorKind::Interrupted`] once nobody wants the picture any more.
+pub fn write_levels(
+    rows: &mut impl Rows<[u8; 4]>,
+    is_packed: bool,
+    file: &mut impl Write,
+) -> Result<(), ImageError> {
+    if is_packed {
+        write_png(rows, file).map_err(|error| match error {
+            png::EncodingError::IoError(error) => error,
+            other => io::Error::other(other),
+        })?;
+    } else {
+        let (width, height) = rows.size();
+        write!(file, "P6\n{width} {height} 255\n")?;
+        write_rows(rows, file)?;
+    }
+    Ok(())
+}
+
+/// Fast rather than small, as pictures are written while the next one is traced.
+fn write_png(
+    rows: &mut impl Rows<[u8; 4]>,
+    file: &mut impl Write,
+) -> Result<(), png::EncodingError> {
+    let (width, height) = rows.size();
+    let mut encoder = png::Encoder::new(file, short(width), short(height));
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_filter(png::Filter::Adaptive);
+    let mut writer = encoder.write_header()?;
+    let mut stream = writer.stream_writer()?;
+    write_rows(rows, &mut stream)?;
+    stream.finish()?;
+    writer.finish()
+}
+
+fn write_rows(rows: &mut impl Rows<[u8; 4]>, file: &mut impl Write) -> io::Result<()> {
+    let (width, height) = rows.size();
+    let mut bytes = Vec::with_capacity(width * 3);
+    for row in 0..height {
+        let pixels = rows.row(row).ok_or_else(unwanted)?;
+        bytes.clear();
+        bytes.extend(pixels.iter().flat_map(|&[r, g, b, _]| [r, g, b]));
+        file.write_all(&bytes)?;
+    }
+    Ok(())
 }
 
 /// Sides are far below what is cut off here.
 fn short(side: usize) -> u32 {
     u32::try_from(side).unwrap_or(u32::MAX)
+}
+
+impl LinearImage {
+    /// Writes it as an EXR file.
+    ///
+    /// # Errors
+    /// What the encoder says, or the system.
+    pub fn encode(&self, file: &mut (impl Write + Seek)) -> Result<(), ImageError> {
+        write_light(&mut &*self, file)
+    }
 }
 
 impl Image {
@@ -90,38 +173,9 @@ impl Image {
     /// What the encoder says, or the system.
     pub fn encode(&self, format: Format, file: &mut (impl Write + Seek)) -> Result<(), ImageError> {
         match format {
-            Format::Png => self.write_png(file).map_err(io::Error::from)?,
-            Format::Ppm => {
-                write!(file, "P6\n{} {} 255\n", self.width, self.height)?;
-                self.write_rows(file)?;
-            }
-            Format::Exr => self.to_linear().encode(file)?,
+            Format::Png | Format::Ppm => write_levels(&mut &*self, format == Format::Png, file),
+            Format::Exr => self.to_linear().encode(file),
         }
-        Ok(())
-    }
-
-    /// Fast rather than small, as pictures are written while the next one is traced.
-    fn write_png(&self, file: &mut impl Write) -> Result<(), png::EncodingError> {
-        let mut encoder = png::Encoder::new(file, short(self.width), short(self.height));
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_compression(png::Compression::Fast);
-        encoder.set_filter(png::Filter::Adaptive);
-        let mut writer = encoder.write_header()?;
-        let mut rows = writer.stream_writer()?;
-        self.write_rows(&mut rows)?;
-        rows.finish()?;
-        writer.finish()
-    }
-
-    fn write_rows(&self, file: &mut impl Write) -> io::Result<()> {
-        let mut row = Vec::with_capacity(self.width * 3);
-        for pixels in self.pixels.chunks(self.width.max(1)) {
-            row.clear();
-            row.extend(pixels.iter().flat_map(|&[r, g, b, _]| [r, g, b]));
-            file.write_all(&row)?;
-        }
-        Ok(())
     }
 }
 

@@ -8,6 +8,7 @@ use image::ImageError;
 use super::buffer::{Image, LinearImage};
 use super::encode::Format;
 use super::render::{RenderCost, render_into, render_light_into};
+use super::strips::{Drawing, Strips};
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::Scene;
 use crate::trace::RenderControl;
@@ -41,6 +42,24 @@ impl Film {
         match self {
             Self::Levels(image) => render_into(image, planner, scene, request, control),
             Self::Linear(image) => render_light_into(image, planner, scene, request, control),
+        }
+    }
+
+    /// Begins a picture that is traced strip by strip while it is written, in the memory of the film: what that shows
+    /// afterwards means nothing.
+    pub fn draw<'a>(
+        &'a mut self,
+        planner: &mut Planner,
+        picture: (&Scene, &RenderRequest),
+        control: &'a RenderControl,
+    ) -> Drawing<'a> {
+        match self {
+            Self::Levels(image) => {
+                Drawing::Levels(Strips::new(&mut image.pixels, planner, picture, control))
+            }
+            Self::Linear(image) => {
+                Drawing::Linear(Strips::new(&mut image.pixels, planner, picture, control))
+            }
         }
     }
 

@@ -2,9 +2,13 @@
 
 mod buffer;
 
+mod rows;
+
 mod encode;
 
 mod render;
+
+mod strips;
 
 mod histogram;
 
@@ -18,3 +22,4 @@ pub use film::Film;
 pub use histogram::Histogram;
 pub use object_map::{ObjectMap, ObjectMapper, Thing};
 pub use render::{RenderCost, render, render_into, render_light_into};
+pub use strips::{Drawing, Strips};

@@ -1,0 +1,243 @@
+//! Pictures that are traced while they are written: as large as the disk has room for, not the memory.
+
+use std::io::{self, Seek, Write};
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
+use image::ImageError;
+
+use super::buffer::LinearRgb;
+use super::encode::{Format, write_levels, write_light};
+use super::render::RenderCost;
+use super::rows::{Rows, unwanted};
+use crate::plan::{Planner, RenderRequest};
+use crate::scene::Scene;
+use crate::trace::{Pixel, Rays, RenderControl, Tracer};
+
+/// Pixels of a strip, at most: 16 MB of levels, or 48 of light. Smaller pictures are one strip.
+const STRIP: usize = 1 << 22;
+/// Strips have a multiple of so many rows: an EXR file is written in squares with this side, and a square is asked for
+/// row by row.
+const SQUARE: usize = 64;
+
+/// A picture that is traced when its rows are asked for, of which no more than a strip is there.
+#[derive(Debug)]
+pub struct Strips<'a, P> {
+    tracer: Tracer,
+    control: &'a RenderControl,
+    /// How many rows are traced at once.
+    step: usize,
+    /// The pixels that are there.
+    strip: &'a mut Vec<P>,
+    /// The rows that they are of.
+    rows: Range<usize>,
+    time: Duration,
+    rays: Rays,
+}
+
+impl<'a, P: Pixel + Copy + Default> Strips<'a, P> {
+    /// Plans a picture, to be traced into this memory until `control` says stop.
+    pub fn new(
+        strip: &'a mut Vec<P>,
+        planner: &mut Planner,
+        (scene, request): (&Scene, &RenderRequest),
+        control: &'a RenderControl,
+    ) -> Self {
+        let start = Instant::now();
+        let tracer = Tracer::planned(scene, request, planner);
+        let step = STRIP / tracer.width().max(1) / SQUARE * SQUARE;
+        Self {
+            step: step.clamp(SQUARE, tracer.height().max(SQUARE)),
+            tracer,
+            control,
+            strip,
+            rows: 0..0,
+            time: start.elapsed(),
+            rays: Rays::default(),
+        }
+    }
+
+    /// Traces the next strip, if there is one.
+    fn go_on(&mut self) -> io::Result<()> {
+        if self.rows.end < self.tracer.height() {
+            self.trace(self.rows.end).ok_or_else(unwanted)?;
+        }
+        Ok(())
+    }
+
+    /// Traces what comes after the rows that are there.
+    fn finish(&mut self) -> io::Result<()> {
+        while self.rows.end < self.tracer.height() {
+            self.go_on()?;
+        }
+        Ok(())
+    }
+
+    /// What it has cost, without what was done with it.
+    fn cost(self) -> RenderCost {
+        RenderCost {
+            time: self.time,
+            rays: self.rays,
+            lanes: self.tracer.lanes(),
+        }
+    }
+
+    fn trace(&mut self, row: usize) -> Option<()> {
+        let start = Instant::now();
+        let first = row / self.step * self.step;
+        let rows = first..(first + self.step).min(self.tracer.height());
+        self.strip
+            .resize(rows.len() * self.tracer.width(), P::default());
+        self.rays += self.tracer.rows(self.strip, first, self.control)?;
+        self.rows = rows;
+        self.time += start.elapsed();
+        Some(())
+    }
+}
+
+/// A picture that is traced strip by strip for a file.
+#[derive(Debug)]
+pub enum Drawing<'a> {
+    /// For formats of 8 bits.
+    Levels(Strips<'a, [u8; 4]>),
+    /// For those that hold the light itself.
+    Linear(Strips<'a, LinearRgb>),
+}
+
+impl Drawing<'_> {
+    /// Traces the first strip: a picture that is no larger is there before its file is begun, which who is killed
+    /// meanwhile would leave.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::Interrupted`] if `control` said stop.
+    pub fn start(&mut self) -> io::Result<()> {
+        match self {
+            Self::Levels(strips) => strips.go_on(),
+            Self::Linear(strips) => strips.go_on(),
+        }
+    }
+
+    /// Traces what is left, for nobody.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::Interrupted`] if `control` said stop.
+    pub fn finish(&mut self) -> io::Result<()> {
+        match self {
+            Self::Levels(strips) => strips.finish(),
+            Self::Linear(strips) => strips.finish(),
+        }
+    }
+
+    /// Traces what is left while all of it is written, in the format that the film is for.
+    ///
+    /// # Errors
+    /// What the encoder says, or the system; [`io::ErrorKind::Interrupted`] if `control` said stop.
+    pub fn encode(
+        &mut self,
+        format: Format,
+        file: &mut (impl Write + Seek),
+    ) -> Result<(), ImageError> {
+        match self {
+            Self::Levels(strips) => write_levels(strips, format == Format::Png, file),
+            Self::Linear(strips) => write_light(strips, file),
+        }
+    }
+
+    /// What it has cost to trace, without the writing.
+    pub fn cost(self) -> RenderCost {
+        match self {
+            Self::Levels(strips) => strips.cost(),
+            Self::Linear(strips) => strips.cost(),
+        }
+    }
+}
+
+impl<P: Pixel + Copy + Default> Rows<P> for Strips<'_, P> {
+    fn size(&self) -> (usize, usize) {
+        (self.tracer.width(), self.tracer.height())
+    }
+
+    fn row(&mut self, row: usize) -> Option<&[P]> {
+        if !self.rows.contains(&row) {
+            self.trace(row)?;
+        }
+        let first = (row - self.rows.start) * self.tracer.width();
+        self.strip.get(first..first + self.tracer.width())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use super::*;
+    use crate::image::Film;
+    use crate::scene::Sampling;
+
+    #[test]
+    fn a_file_of_strips_is_that_of_the_whole_picture() {
+        let (scene, control) = (Scene::demo(), RenderControl::default());
+        let request = RenderRequest {
+            sampling: Sampling::Grid(2),
+            ..RenderRequest::sized(70, 150)
+        };
+        let mut planner = Planner::default();
+        for format in Format::ALL {
+            let mut film = Film::new(format);
+            film.expose(&mut planner, &scene, &request, &control)
+                .expect("not stopped");
+            let [mut whole, mut strips] = [(); 2].map(|()| Cursor::new(Vec::new()));
+            film.encode(format, &mut whole).expect("encodes");
+            let mut film = Film::new(format);
+            let mut drawing = film.draw(&mut planner, (&scene, &request), &control);
+            match &mut drawing {
+                Drawing::Levels(strips) => strips.step = SQUARE,
+                Drawing::Linear(strips) => strips.step = SQUARE,
+            }
+            drawing.start().expect("not stopped");
+            drawing.encode(format, &mut strips).expect("encodes");
+            let rays = drawing.cost().rays.camera;
+            assert_eq!(rays, 70 * 150 * 4, "{format:?}: every row is traced once");
+            assert!(strips == whole, "{format:?}");
+        }
+    }
+
+    #[test]
+    fn a_large_picture_is_no_more_than_a_strip_in_memory() {
+        let control = RenderControl::default();
+        for (width, height) in [(16_384, 16_384), (16_384, 1), (1, 16_384), (2048, 2048)] {
+            let request = RenderRequest::sized(width, height);
+            let mut pixels: Vec<LinearRgb> = Vec::new();
+            let picture = (&Scene::demo(), &request);
+            let strips = Strips::new(&mut pixels, &mut Planner::default(), picture, &control);
+            assert!(strips.step * width as usize <= STRIP.max(SQUARE * width as usize));
+            let is_whole = strips.step >= height as usize;
+            assert!(
+                is_whole || strips.step.is_multiple_of(SQUARE),
+                "{}",
+                strips.step
+            );
+            assert_eq!(is_whole, width < 16_384 || height == 1);
+        }
+    }
+
+    #[test]
+    fn a_picture_that_nobody_wants_any_more_becomes_no_file() {
+        let (scene, control) = (Scene::demo(), RenderControl::default());
+        let request = RenderRequest::sized(40, 30);
+        control
+            .stop
+            .store(true, std::sync::atomic::Ordering::Relaxed);
+        for format in Format::ALL {
+            let mut film = Film::new(format);
+            let mut drawing = film.draw(&mut Planner::default(), (&scene, &request), &control);
+            let error = drawing.encode(format, &mut Cursor::new(Vec::new()));
+            match error.expect_err("stopped") {
+                ImageError::IoError(error) => {
+                    assert_eq!(error.kind(), io::ErrorKind::Interrupted, "{format:?}");
+                }
+                other => panic!("{format:?}: {other}"),
+            }
+        }
+    }
+}
