@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::geometry::{Kept, LARGEST_LIST, MOST_LISTED_TRIANGLES, SMALLEST_TREE};
 use super::materials::Material;
 use super::pack::Plan;
-use super::precision::{is_filtered, needs_double};
+use super::precision::{is_filtered, is_too_much_twice, needs_double};
 use super::request::RenderRequest;
 use crate::scene::{Object, Precision, Sampling, Scene, Shape};
 use crate::simd::Exponent;
@@ -71,6 +71,12 @@ fn precision(scene: &Scene, request: &RenderRequest) -> Need {
             double,
             "something is too far, too small or too close for single precision",
             "nothing: the picture would show the rounding",
+        ),
+        Precision::Auto if is_too_much_twice(scene, request) => need(
+            rule,
+            double,
+            "there is too much to keep all of it in both, to trace again where rounding may decide",
+            "room: both take half as much again, and no less time",
         ),
         Precision::Auto => need(
             rule,

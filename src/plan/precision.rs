@@ -51,7 +51,8 @@ const ASKEW: DVec3 = DVec3::new(0.79, 0.53, 0.31);
 const MAX_NUMBER: usize = 1 << 24;
 
 /// Most primitives that are planned in both precisions: so many take 200 MB then, instead of 100, and a fifth longer to
-/// open.
+/// open. A million faces, of which few are met by rays that have met their neighbours, take as long in double precision
+/// alone, and two thirds of the room.
 const MOST_FILTERED: usize = 300_000;
 /// Up to so many objects have so few edges that rounding shows on none of them: of 1,000 random scenes at 200 × 200
 /// pixels, not one pixel is off by more than a step, where 3 of 10 such scenes with meshes have some.
@@ -60,7 +61,7 @@ const FEWEST_FILTERED: usize = 32;
 /// Whether a picture is traced in double precision.
 pub fn is_double(scene: &Scene, request: &RenderRequest) -> bool {
     let is_needed = || match request.precision {
-        Precision::Auto => needs_double(scene, request),
+        Precision::Auto => needs_double(scene, request) || is_too_much_twice(scene, request),
         Precision::Single => false,
         Precision::Double => true,
     };
@@ -69,14 +70,29 @@ pub fn is_double(scene: &Scene, request: &RenderRequest) -> bool {
 
 /// Whether what rounding may decide in a picture in single precision is traced again in double precision.
 pub fn is_filtered(scene: &Scene, request: &RenderRequest) -> bool {
+    is_rounding_seen(scene, request) && primitives(scene) <= MOST_FILTERED
+}
+
+/// Whether there is so much in a scene that all of it is traced in double precision, rather than what rounding may decide.
+pub fn is_too_much_twice(scene: &Scene, request: &RenderRequest) -> bool {
+    is_rounding_seen(scene, request) && primitives(scene) > MOST_FILTERED
+}
+
+/// Whether rounding to single precision is seen on edges, where nothing is done about it.
+fn is_rounding_seen(scene: &Scene, request: &RenderRequest) -> bool {
     let visible = || scene.objects.iter().filter(|object| object.visible);
-    let faces: usize = visible().map(Object::faces).sum();
-    let is_worth_it = faces > 0 || visible().count() > FEWEST_FILTERED;
+    let has_many_edges =
+        visible().count() > FEWEST_FILTERED || visible().any(|object| object.faces() > 0);
     request.precision == Precision::Auto
         && matches!(request.model, Model::Needed | Model::Unculled)
         && request.methods.is_tight()
-        && is_worth_it
-        && visible().count() + faces <= MOST_FILTERED
+        && has_many_edges
+}
+
+/// How many objects and faces are visible.
+fn primitives(scene: &Scene) -> usize {
+    let visible = scene.objects.iter().filter(|object| object.visible);
+    visible.map(|object| object.faces() + 1).sum()
 }
 
 /// Whether there are more things than single precision can number.
@@ -223,7 +239,8 @@ fn is_far_in_parallel(scene: &Scene) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Plane, Sphere, Triangle};
+    use crate::mesh::Triangles;
+    use crate::scene::{Mesh, Plane, Sphere, Triangle};
 
     fn is_needed(scene: &Scene) -> bool {
         needs_double(scene, &RenderRequest::sized(64, 64))
@@ -335,6 +352,28 @@ mod tests {
         };
         assert!(!is_needed_with(2, 0.1) && is_needed_with(2, 0.01));
         assert!(!is_needed_with(40, 0.01) && is_needed_with(40, 1e-4));
+    }
+
+    #[test]
+    fn what_is_too_much_to_keep_in_both_is_traced_in_double_precision() {
+        let of_faces = |faces: usize| {
+            let points = [DVec3::ZERO, DVec3::X, DVec3::Y];
+            let faces = vec![[0, 1, 2]; faces];
+            let triangles = Triangles::new(points.to_vec(), faces).expect("a mesh");
+            let mut scene = Scene::demo();
+            scene.objects = List::default();
+            scene
+                .objects
+                .push(Object::new("Mesh", "plane", Mesh::of(triangles)));
+            scene
+        };
+        for (faces, expected) in [(MOST_FILTERED - 1, false), (MOST_FILTERED, true)] {
+            let (scene, mut request) = (of_faces(faces), RenderRequest::sized(64, 64));
+            assert_eq!(is_double(&scene, &request), expected, "{faces}");
+            assert_eq!(is_filtered(&scene, &request), !expected, "{faces}");
+            request.precision = Precision::Single;
+            assert!(!is_double(&scene, &request) && !is_filtered(&scene, &request));
+        }
     }
 
     #[test]
