@@ -53,17 +53,17 @@ impl<R: Real> Beam<R> {
         })
     }
 
-    /// The same rays with what is beside them: within this distance at their start, and so much
-    /// more for each step that they go.
+    /// The same rays with what is beside them: within this distance at their start, and so much more for each step that
+    /// they go; `None` where some of that may be behind all starts.
     #[must_use]
-    pub fn widened(self, by: R, spread: R) -> Self {
+    pub fn widened(self, by: R, spread: R) -> Option<Self> {
         // sin(a + b) ≤ sin a + b, cos(a + b) ≥ cos a - b.
-        Self {
+        (spread < self.cosine).then(|| Self {
             spread: self.spread + by,
             sine: (self.sine + spread).min(R::ONE),
-            cosine: (self.cosine - spread).max(R::ZERO),
+            cosine: self.cosine - spread,
             ..self
-        }
+        })
     }
 
     /// How far a point within this distance of `center` is from where the rays start, at most.

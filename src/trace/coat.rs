@@ -18,9 +18,8 @@ impl<L: SimdFloat> Coat<'_, L> {
     #[inline(always)]
     pub fn highlight(&self, normal: Vec3<L>, half: Vec3<L>) -> Option<L> {
         match self {
-            Self::One(surface) => surface
-                .exponent
-                .map(|exponent| exponent.highlight(normal, half)),
+            // No closure: it may be compiled by itself, without vectors.
+            Self::One(surface) => Some(surface.exponent?.highlight(normal, half)),
             Self::Several(parts) => Some(parts.highlight(normal, half)),
         }
     }

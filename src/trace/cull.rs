@@ -121,13 +121,14 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         } = between;
         roots.forget();
         let from = light.position.to_dvec3();
-        let Some(beam) = Beam::to_ball(from, ball) else {
+        let beside = footprint.unwrap_or(L::Real::ZERO);
+        let beam = Beam::to_ball(from, ball);
+        let Some(beam) = beam.and_then(|beam| beam.widened(beside, L::Real::ZERO)) else {
             *casters = Candidates::all_casting(plan, light);
             thin.keep_slipping(casters, plan, footprint);
             *is_umbra = false;
             return;
         };
-        let beam = beam.widened(footprint.unwrap_or(L::Real::ZERO), L::Real::ZERO);
         beam.gather::<L>(self.token, &plan.balls, &mut scratch.met);
         let omit = Omit::MarkersAndFaces(&light.shadow_culled_faces);
         casters.sort_by_kind(plan, &scratch.met, omit);

@@ -99,7 +99,10 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
         let infinity = self.blur.start.like(L::Real::INFINITY);
         if LISTED && paths.ignored.shared() == Some(number) {
             // Where they start on it, they are known not to meet it.
-            return P::IS_CURVED.then(|| (primitive.exit(&paths.rays), infinity));
+            if !P::IS_CURVED {
+                return None;
+            }
+            return Some((primitive.exit(&paths.rays), infinity));
         }
         let blur = (&self.blur, wanted);
         let found = primitive.intersect_in_doubt(&paths.rays, prepared, methods, blur);

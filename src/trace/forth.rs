@@ -15,7 +15,6 @@ use super::paths::{IgnoredPrimitive, Paths, real};
 use super::samples::{Edges, Samples};
 use super::shade::Shader;
 use super::stats::Rays;
-use super::thin::widest_spread;
 use super::thresholds::{LARGEST_STRETCH, SLIPPING};
 use super::walk::Stack;
 use crate::plan::{HitOrder, IdleFaces, Plan};
@@ -163,9 +162,11 @@ impl<L: SimdFloat> Bounce<L> {
         ball.radius += off.to_f64();
         if plan.screen.is_some() {
             // Room for what passes beside the rays to the lights, closer than a pixel.
-            let footprint = self
-                .looks_beside()
-                .then(|| self.widest(kernel) * L::Real::from_f64(LARGEST_STRETCH));
+            let footprint = if self.looks_beside() {
+                Some(self.widest(kernel) * L::Real::from_f64(LARGEST_STRETCH))
+            } else {
+                None
+            };
             for (between, light) in self.lights.iter_mut().zip(&plan.lights) {
                 kernel.keep_between(between, light, (&ball, footprint), scratch);
             }
@@ -293,40 +294,44 @@ impl<L: SimdFloat> Bounce<L> {
             .packets
             .iter()
             .map(|packet| (packet.active, packet.rays));
+        let blur = widest_blur(kernel.token, &self.uncertainties);
         let beam = if plan.screen.is_some() {
             beam_around(kernel.token, rays)
         } else {
             None
         };
-        let Some(mut beam) = beam else {
+        let Some(beam) = beam.and_then(|beam| beam.widened(blur.start, blur.spread)) else {
             self.seen = Candidates::all(plan);
             self.thin.clone_from(&self.seen);
             return;
         };
+        let start_plane = self.start_plane(plan);
+        if !self.looks_beside() {
+            return kernel.keep_met(&mut self.seen, &beam, start_plane, scratch);
+        }
         let (mut width, mut spread) = (kernel.splat(0.0), kernel.splat(0.0));
-        let mut narrowest = kernel.infinity();
         for (edge, packet) in self.edges.iter().zip(&self.packets) {
             width = L::select(packet.active, width.max(edge.cone.width), width);
             spread = L::select(packet.active, spread.max(edge.cone.spread), spread);
-            narrowest = L::select(packet.active, narrowest.min(edge.cone.spread), narrowest);
         }
         let (width, spread) = (width.greatest(), spread.greatest());
-        if self.looks_beside() && widest_spread(plan) < narrowest.least() {
-            self.edges_are = Edges::Signed;
-        }
-        if self.looks_beside() {
-            // Room for what passes beside the rays, closer than a pixel.
-            beam = beam.widened(width, spread);
-        }
-        let blur = widest_blur(kernel.token, &self.uncertainties);
-        beam = beam.widened(blur.start, blur.spread);
-        let start_plane = self.start_plane(plan);
-        kernel.keep_met(&mut self.seen, &beam, start_plane, scratch);
-        if self.looks_beside() {
-            let slipping = L::Real::from_f64(SLIPPING);
-            self.thin.keep_narrow(&self.seen, plan, |center, radius| {
-                (width + spread * beam.distance(center, radius)) * slipping
-            });
+        // Room for what passes beside the rays, closer than a pixel.
+        let wide = beam.widened(width, spread);
+        kernel.keep_met(
+            &mut self.seen,
+            wide.as_ref().unwrap_or(&beam),
+            start_plane,
+            scratch,
+        );
+        let slipping = |center, radius| {
+            let width = width + spread * beam.distance(center, radius);
+            width * L::Real::from_f64(SLIPPING)
+        };
+        if wide.is_some() {
+            self.thin.keep_narrow(&self.seen, plan, slipping);
+        } else {
+            self.thin
+                .keep_narrow(&Candidates::all(plan), plan, slipping);
         }
     }
 

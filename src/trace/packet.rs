@@ -81,7 +81,7 @@ pub fn list_doubtful<L: SimdFloat>(
     places.clear();
     for (index, (packet, own)) in packets.iter().zip(uncertainties).enumerate() {
         let first = index * L::WIDTH;
-        let mut left = (own.doubt & packet.active).bits();
+        let mut left = own.doubt.bits() & packet.active.bits();
         while left != 0 {
             let place = first + left.trailing_zeros() as usize;
             places.push(order.get(place).map_or(place as u32, |&sample| sample));

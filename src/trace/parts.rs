@@ -81,7 +81,10 @@ impl<L: SimdFloat> Parts<L> {
                     let base = instead.unwrap_or(color.like(*base));
                     *color = Vec3::select(here, base, *color);
                     let Some(surface) = surface else { continue };
-                    lit = Some(lit.map_or(here, |lit| lit | here));
+                    lit = match lit {
+                        Some(lit) => Some(lit | here),
+                        None => Some(here),
+                    };
                     let Some(exponent) = surface.exponent else {
                         continue;
                     };

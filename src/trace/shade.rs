@@ -170,8 +170,8 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
     fn instead(&self, packet: &Packet<L>, hit: &Hit<L>) -> Option<Vec3<L>> {
         let kernel = self.kernel;
         match kernel.plan.show {
-            Show::Light | Show::Shadows(_) | Show::Cost | Show::Again => None,
-            Show::Mirrors => self.is_first.then(|| Vec3::splat(kernel.splat(0.0))),
+            Show::Mirrors if self.is_first => Some(Vec3::splat(kernel.splat(0.0))),
+            Show::Light | Show::Shadows(_) | Show::Mirrors | Show::Cost | Show::Again => None,
             Show::Normals => {
                 let normal = hit.surface.normal;
                 let half = kernel.splat(0.5);
@@ -204,17 +204,24 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let along = normal.dot(view);
         let away = self.kernel.splat(0.0).less(along);
         hit.surface.normal = Vec3::select(away, -normal, normal);
-        let slant = uncertainty.as_ref().map(|own| Slant {
-            blur: own.blur,
-            t: packet.near.t,
-            cosine: along,
-            curvature: hit.surface.curvature,
-            size: hit.surface.size,
-        });
-        let footprint = edge.as_ref().map(|edge| {
-            let cosine = hit.surface.normal.dot(view);
-            Footprint::new(edge.cone, packet.near.t, cosine, hit.surface.curvature)
-        });
+        let slant = match uncertainty {
+            Some(own) => Some(Slant {
+                blur: own.blur,
+                t: packet.near.t,
+                cosine: along,
+                curvature: hit.surface.curvature,
+                size: hit.surface.size,
+            }),
+            None => None,
+        };
+        let footprint = match edge {
+            Some(edge) => {
+                let cosine = hit.surface.normal.dot(view);
+                let (cone, t) = (edge.cone, packet.near.t);
+                Some(Footprint::new(cone, t, cosine, hit.surface.curvature))
+            }
+            None => None,
+        };
         ShadingPoint {
             hit,
             coat,
@@ -350,7 +357,10 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             };
             let looks_beside = self.looks_for(&candidates.thin);
             let beside = edge.as_mut().filter(|_| looks_beside);
-            let thick = beside.as_ref().map(|(_, footprint)| footprint.slipping());
+            let mut thick = None;
+            if let Some((_, footprint)) = &beside {
+                thick = Some(footprint.slipping());
+            }
             if candidates.is_umbra && thick.is_none() {
                 return;
             }

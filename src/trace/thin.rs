@@ -11,14 +11,9 @@ use super::roots::Roots;
 use super::scan::{Test, Thicket, scan_lists};
 use super::thresholds::{CROWDED, LARGEST_SPREAD, NEAR, ONE_THING, SLIPPING, SMALL};
 use super::walk::Stack;
-use crate::plan::{PackedMesh, Plan};
+use crate::plan::PackedMesh;
 use crate::primitive::{Approach, Blur, Primitive};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
-
-/// How fast a pixel may widen along rays that look for what is thin, scene units per scene unit.
-pub fn widest_spread<R: Real>(plan: &Plan<R>) -> R {
-    plan.view.spread() * R::from_f64(LARGEST_SPREAD)
-}
 
 /// Rays that look beside themselves.
 #[derive(Clone, Copy, Debug)]
@@ -29,8 +24,8 @@ pub struct Gaze<'a, L: SimdFloat> {
     pub active: L::Mask,
     /// How wide a pixel is along them.
     pub cone: RayCone<L>,
-    /// How much it widens along rays that are mirrored there; those are not let look for which that is
-    /// more than [`LARGEST_SPREAD`].
+    /// How much it widens along rays that are mirrored there: those for which that is more than [`LARGEST_SPREAD`] do not
+    /// look into meshes.
     pub spread: L,
     /// How far they go.
     pub reach: L,
@@ -48,14 +43,9 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         gaze: &Gaze<L>,
         stack: &mut Stack<L::Real>,
     ) -> L {
-        let widest = gaze.spread.like(widest_spread(self.plan));
-        let looking = gaze.active & gaze.spread.at_most(widest);
-        if !looking.any() {
-            return self.infinity();
-        }
-        let mut test = ThinTest::new(gaze, self.infinity());
+        let mut test = ThinTest::new(gaze, true, self.infinity());
         scan_lists(self.plan, among, gaze.paths, &mut test);
-        let best = test.best;
+        let mut best = test.best;
         // Their starts leave out what is beside the rays.
         let roots = Roots::default();
         let among = Among {
@@ -65,19 +55,26 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             idle: &[],
         };
         let exact = Blur::splat(self.token, Blur::NONE);
-        let best = match self.thicket(among, (looking, exact)) {
-            Some(thicket) => self.thin_in(&thicket, gaze, best, stack),
-            None => best,
-        };
-        L::select(looking, best, self.infinity())
+        let widest = self.plan.view.spread() * L::Real::from_f64(LARGEST_SPREAD);
+        let is_narrow = gaze.spread.at_most(self.splat(0.0).like(widest));
+        // Apart from each other: boxes are as wide as the widest pixel.
+        for (looking, enters) in [(is_narrow, true), (!is_narrow, false)] {
+            let looking = gaze.active & looking;
+            if looking.any()
+                && let Some(thicket) = self.thicket(among, (looking, exact))
+            {
+                best = self.thin_in(&thicket, (gaze, enters), best, stack);
+            }
+        }
+        L::select(gaze.active, best, self.infinity())
     }
 
-    /// The nearest of `best` and what stands in the tree.
+    /// The nearest of `best` and what stands in the tree, in meshes as well if that is entered.
     #[inline(never)]
     fn thin_in(
         self,
         thicket: &Thicket<L>,
-        gaze: &Gaze<L>,
+        (gaze, enters): (&Gaze<L>, bool),
         best: L,
         stack: &mut Stack<L::Real>,
     ) -> L {
@@ -98,9 +95,10 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     is_boxed: true,
                     ..*thicket
                 };
-                let mut test = ThinTest::new(gaze, best);
+                let gaze = Gaze { active, ..*gaze };
+                let mut test = ThinTest::new(&gaze, enters, best);
                 thicket.scan(gaze.paths, stack, &mut test);
-                test.best
+                L::select(active, test.best, best)
             },
         )
     }
@@ -111,6 +109,8 @@ struct ThinTest<'a, L: SimdFloat> {
     gaze: &'a Gaze<'a, L>,
     /// How many pixels away it is.
     best: L,
+    /// Whether the rays look into meshes, and not only at small ones as a whole.
+    enters: bool,
     /// For which rays what is tested counts, if it is of a mesh.
     counted: L::Mask,
     /// How wide a pixel is around what is looked at as one thing. Around faces of a mesh it does not narrow towards a light:
@@ -136,11 +136,12 @@ struct Passed<L> {
 impl<'a, L: SimdFloat> ThinTest<'a, L> {
     /// Looks for what is nearer than `best`.
     #[inline(always)]
-    fn new(gaze: &'a Gaze<'a, L>, best: L) -> Self {
+    fn new(gaze: &'a Gaze<'a, L>, enters: bool, best: L) -> Self {
         let all = gaze.active | !gaze.active;
         Self {
             gaze,
             best,
+            enters,
             counted: all,
             cone: gaze.cone,
             settled: 0,
@@ -201,7 +202,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         let small = faces.sqrt().max(L::Real::from_f64(SMALL));
         if widest * small <= radius + radius {
             self.cone = self.gaze.cone.widening();
-            return Some(active);
+            return if self.enters { Some(active) } else { None };
         }
         let ball = self.passed(center, radius, paths);
         let is_small = (ball.radius + ball.radius).less(ball.width * ball.width.like(small));
@@ -220,7 +221,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         let counts = is_small & is_thin & is_before & is_ahead & is_close & self.open;
         self.note(&ball, counts, beside);
         let others = active & !is_small;
-        if !others.any() {
+        if !self.enters || !others.any() {
             return None;
         }
         self.counted = !is_small;
@@ -281,7 +282,10 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         let direction = paths.rays.direction;
         let is_to_light = self.gaze.is_to_light;
         let far = primitive.is_far(if is_to_light { -direction } else { direction });
-        let active = far.map_or(self.gaze.active, |far| self.gaze.active & !far);
+        let active = match far {
+            Some(far) => self.gaze.active & !far,
+            None => self.gaze.active,
+        };
         if !active.any() {
             return;
         }

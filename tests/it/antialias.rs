@@ -7,7 +7,9 @@ use glint::image::LinearRgb;
 use glint::lab::{difference, trace_light};
 use glint::mesh::Triangles;
 use glint::plan::RenderRequest;
-use glint::scene::{Disc, List, Mesh, Object, Precision, Sampling, Scene, Shape, Sphere, Triangle};
+use glint::scene::{
+    Disc, EXAMPLES, List, Mesh, Object, Precision, Sampling, Scene, Shape, Sphere, Triangle,
+};
 use glint::trace::{Rays, RenderControl, Tracer};
 
 use crate::random;
@@ -270,6 +272,21 @@ fn the_rims_of_discs_are_clean() {
     assert!(
         jagged.psnr < EIGHT_BITS,
         "the measure has no power: {jagged:?}"
+    );
+}
+
+#[test]
+fn what_is_small_in_strongly_curved_mirrors_is_seen() {
+    let example = EXAMPLES.iter().find(|example| example.name == "mirrors");
+    let scene = example.expect("the balls").document().scene;
+    let request = RenderRequest {
+        sampling: Sampling::ADAPTIVE,
+        ..RenderRequest::sized(SIDE / 2, SIDE / 2)
+    };
+    let got = quality(&scene, &request);
+    assert!(
+        got.psnr >= EIGHT_BITS && got.visible <= 1 && got.worst <= 1.5 * INVISIBLE,
+        "{got:?}"
     );
 }
 

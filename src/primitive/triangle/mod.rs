@@ -124,8 +124,10 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
     #[inline(always)]
     fn is_far<L: SimdFloat<Real = R>>(&self, sight: Vec3<L>) -> Option<L::Mask> {
         let zero = sight.x.like(R::ZERO);
-        let along = || sight.dot(sight.like(self.normal));
-        (self.spared == Spared::Far).then(|| zero.less(along()))
+        match self.spared {
+            Spared::Far => Some(zero.less(sight.dot(sight.like(self.normal)))),
+            _ => None,
+        }
     }
 
     #[inline(always)]
