@@ -2,7 +2,7 @@
 
 use super::points::Points;
 use super::samples::{Samples, THING, Traced};
-use super::thresholds::{EDGE_ERROR, FINEST, NEAR, UNEVEN};
+use super::thresholds::{EDGE_ERROR, FINEST, NEAR, TWISTED, UNEVEN};
 use super::tile::{Tile, TileColors};
 use crate::scene::MAX_HALVINGS;
 use crate::simd::{Real, SimdFloat};
@@ -287,7 +287,7 @@ impl<R: Real> Lattice<R> {
     }
 
     /// Adds the colour of a cell whose corners see the same to its pixel, if its middle does too and has nearly their
-    /// mean colour: then it changes evenly between them.
+    /// mean colour, and no corner stands out: then it changes evenly between them.
     pub fn accumulate_even(
         &self,
         (cell, middle): (&Cell, u32),
@@ -297,20 +297,23 @@ impl<R: Real> Lattice<R> {
         let [a, b, c, d] = self.corners(cell);
         let middle = self.sample(middle);
         let quarter = R::from_f64(0.25);
-        let (mut ranges, mut offs, mut means) = ([R::ZERO; 4], [R::ZERO; 4], [R::ZERO; 4]);
+        let [mut ranges, mut twists, mut offs, mut means] = [[R::ZERO; 4]; 4];
         for index in 0..4 {
             let (a, b) = (a.values[index], b.values[index]);
             let (c, d) = (c.values[index], d.values[index]);
             let mean = ((a + b) + (c + d)) * quarter;
             ranges[index] = range(a, b, c, d);
+            twists[index] = ((a + d) - (b + c)).abs();
             offs[index] = (middle.values[index] - mean).abs();
             // Exact for polynomials of degree 2.
             means[index] = mean + (middle.values[index] - mean) * R::from_f64(2.0 / 3.0);
         }
-        let [contrast, off] = [ranges, offs].map(|[red, green, blue, _]| red + green + blue);
+        let [contrast, twist, off] =
+            [ranges, twists, offs].map(|[red, green, blue, _]| red + green + blue);
         let limit = limits.contrast_of_same(cell.width());
-        let is_even =
-            middle.signature == a.signature && off <= limit.min(contrast * R::from_f64(UNEVEN));
+        let is_even = middle.signature == a.signature
+            && off <= limit.min(contrast * R::from_f64(UNEVEN))
+            && twist <= contrast * R::from_f64(TWISTED);
         if is_even {
             cell.add_color(means, colors);
         }
@@ -357,5 +360,51 @@ impl<R: Real> Lattice<R> {
             quarter(left, centre, [before, inside, c, below]),
             quarter(middle, centre, [inside, behind, below, d]),
         ]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::samples::Edges;
+    use super::*;
+    use crate::scene::Sampling;
+
+    /// Whether a pixel with these levels at its corners and in its middle is taken to change evenly.
+    fn is_even(corners: [f64; 4], middle: f64) -> bool {
+        let Sampling::Adaptive { contrast, depth } = Sampling::ADAPTIVE else {
+            unreachable!("it is adaptive")
+        };
+        let traced = |levels: &[f64]| {
+            let mut traced = Traced::default();
+            traced.resize(levels.len(), levels.len(), Edges::Signed);
+            traced.red.copy_from_slice(levels);
+            traced.green.fill(0.0);
+            traced.blue.fill(0.0);
+            traced.near.fill(f64::INFINITY);
+            traced.signature.fill(5);
+            traced
+        };
+        let tile = Tile {
+            columns: 0..1,
+            rows: 0..1,
+        };
+        let (mut lattice, mut pixel) = (Lattice::new(), [Cell::pixel(0, 0)]);
+        lattice.start(&tile, &traced(&corners), &mut pixel);
+        let [pixel] = pixel;
+        let at = lattice.want_middle(&pixel);
+        lattice.take_results(&traced(&[middle]));
+        let mut colors = TileColors::default();
+        colors.clear(1, 1);
+        lattice.accumulate_even((&pixel, at), Limits::new(contrast, depth), &mut colors)
+    }
+
+    #[test]
+    fn a_corner_that_stands_out_is_no_even_change_however_the_middle_is() {
+        assert!(is_even([0.2, 0.3, 0.2, 0.3], 0.25));
+        assert!(is_even([0.2, 0.3, 0.3, 0.4], 0.31));
+        assert!(!is_even([0.2, 0.3, 0.2, 0.3], 0.3), "bent");
+        // By chance the middle has the mean colour.
+        assert!(!is_even([0.2, 0.2, 0.2, 0.4], 0.25), "a highlight");
+        assert!(!is_even([0.2, 0.4, 0.4, 0.2], 0.3), "a saddle");
     }
 }

@@ -40,3 +40,6 @@ pub const NEAR: f64 = 0.75;
 /// How far what is even may be from it, in parts of the range of the corners' colours: the middle of a cell from their
 /// mean, which an edge between two colours puts a quarter away at least; and colours of one face from each other.
 pub const UNEVEN: f64 = 0.125;
+/// How much the corners of what is even may stand out, in parts of the range of their colours: the sums of opposite ones
+/// are the same where colours change evenly, and differ by the whole range where one of them shows something else.
+pub const TWISTED: f64 = 0.25;
