@@ -22,10 +22,10 @@ pub fn save_image(film: &Film, path: &Path) -> Result<(), ExportError> {
 ///
 /// # Errors
 /// [`ExportError`]; a file that was at `path` is then untouched.
-pub fn save_picture<T>(
+pub fn save_picture(
     path: &Path,
-    encode: impl FnOnce(Format, &mut BufWriter<&File>) -> Result<T, ImageError>,
-) -> Result<T, ExportError> {
+    encode: impl FnOnce(Format, &mut BufWriter<&File>) -> Result<(), ImageError>,
+) -> Result<(), ExportError> {
     let format = Format::of_path(path)?;
     let disk = |source| ExportError::Disk {
         path: path.to_owned(),
@@ -33,14 +33,13 @@ pub fn save_picture<T>(
     };
     let beside = NewFile::beside(path).map_err(disk)?;
     let mut file = BufWriter::new(beside.as_file());
-    let encoded = encode(format, &mut file).map_err(|source| ExportError::Encode {
+    encode(format, &mut file).map_err(|source| ExportError::Encode {
         path: path.to_owned(),
         source,
     })?;
     file.flush().map_err(disk)?;
     drop(file);
-    beside.place_durably().map_err(disk)?;
-    Ok(encoded)
+    beside.place_durably().map_err(disk)
 }
 
 /// Whether a file could be written here: asked before what is to be in it is made. What killed programs have left
