@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::io;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 
@@ -10,8 +11,8 @@ use super::error::ExportError;
 use super::manifest::{Hash, Manifest};
 use super::sequence::{Sequence, fingerprint};
 use super::writers::{WriteJob, WriteResult, Writers};
-use crate::image::{Film, Image, RenderCost};
-use crate::plan::Planner;
+use crate::image::{Film, Format, Image, RenderCost};
+use crate::plan::{Planner, RenderRequest};
 use crate::scene::Scene;
 use crate::trace::{RenderControl, Threads};
 
@@ -23,8 +24,11 @@ const THREADS_PER_FRAME: usize = 8;
 /// bounded, however large they are and however many threads there are.
 const MOST_PIXELS: usize = 1 << 26;
 
+/// Frames with more pixels than this are traced strip by strip while they are written.
+const LARGE: u64 = 1 << 24;
+
 /// Height of the small picture of a frame, in pixels.
-const SMALL: usize = 64;
+const SMALL: u32 = 64;
 
 /// What has been done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -57,6 +61,19 @@ struct Due {
     fingerprint: Hash,
     film: Film,
     planner: Planner,
+}
+
+/// What a large picture shows, in small.
+fn small_picture(planner: &mut Planner, shown: &Scene, request: &RenderRequest) -> Option<Image> {
+    let step = request.height.div_ceil(SMALL).max(1);
+    let small = RenderRequest {
+        width: request.width.div_ceil(step),
+        height: request.height.div_ceil(step),
+        ..*request
+    };
+    let mut film = Film::new(Format::Ppm);
+    film.expose(planner, shown, &small, &RenderControl::default())?;
+    Some(film.into_levels())
 }
 
 /// A sequence that is being exported.
@@ -150,6 +167,10 @@ impl Exporting {
             return Ok(ExportStep::Done);
         }
         let due = self.next_due()?;
+        if self.is_large() {
+            let mut steps = due.into_iter().map(|due| self.draw(due, control));
+            return steps.next().unwrap_or(Ok(ExportStep::Going));
+        }
         let trace = |mut due: Due| {
             let request = self.sequence.request(&due.shown);
             let cost = due
@@ -176,6 +197,39 @@ impl Exporting {
         Ok(ExportStep::Stopped)
     }
 
+    /// Whether a frame is too large to be in memory as a whole.
+    fn is_large(&self) -> bool {
+        let (width, height) = self.sequence.size();
+        LARGE < u64::from(width) * u64::from(height)
+    }
+
+    /// Traces a large frame while it is written.
+    fn draw(&mut self, mut due: Due, control: &RenderControl) -> Result<ExportStep, ExportError> {
+        let sequence = Arc::clone(&self.sequence);
+        let request = sequence.request(&due.shown);
+        let written = sequence.write(due.frame, &due.fingerprint, |file| {
+            let picture = (&*due.shown, &request);
+            let mut drawing = due.film.draw(&mut due.planner, picture, control);
+            drawing.encode(sequence.format, file)?;
+            Ok(drawing.cost().time)
+        });
+        let step = match written {
+            Ok(()) => {
+                self.done.written += 1;
+                self.last = small_picture(&mut due.planner, &due.shown, &request).map(Arc::new);
+                ExportStep::Going
+            }
+            Err(_) if control.stop.load(Ordering::Relaxed) => {
+                self.left.push_front(due.frame);
+                ExportStep::Stopped
+            }
+            Err(error) => return Err(error),
+        };
+        self.planner = due.planner;
+        self.spare.push(due.film);
+        Ok(step)
+    }
+
     /// How many frames of this size may be under way beside each other, for one reason or another.
     fn at_once(&self, wanted: usize) -> usize {
         let (width, height) = self.sequence.size();
@@ -187,7 +241,7 @@ impl Exporting {
     fn next_due(&mut self) -> Result<Vec<Due>, ExportError> {
         // The others share what the first one has planned.
         let is_first = self.last.is_none();
-        let wanted = if self.is_side_by_side && !is_first {
+        let wanted = if self.is_side_by_side && !is_first && !self.is_large() {
             Threads::current() / THREADS_PER_FRAME
         } else {
             1
@@ -220,7 +274,7 @@ impl Exporting {
     /// Sends a frame on its way to the disk.
     fn write(&mut self, due: Due, cost: &RenderCost) -> Result<(), ExportError> {
         self.planner = due.planner;
-        let step = due.film.size().1.div_ceil(SMALL).max(1);
+        let step = due.film.size().1.div_ceil(SMALL as usize).max(1);
         self.last = Some(Arc::new(due.film.decimated(step)));
         let count = self.at_once(Threads::current());
         let writers = match self.writers.take() {

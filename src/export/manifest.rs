@@ -78,7 +78,10 @@ fn note(line: &str) -> Option<(String, Note)> {
 }
 
 /// The hash of a file.
-fn content(path: &Path) -> io::Result<Hash> {
+///
+/// # Errors
+/// Whatever the system answers.
+pub fn content(path: &Path) -> io::Result<Hash> {
     let mut hasher = blake3::Hasher::new();
     let mut file = open_file(path)?;
     let mut part = vec![0; 1 << 18];
@@ -90,7 +93,7 @@ fn content(path: &Path) -> io::Result<Hash> {
     }
 }
 
-/// Adds a line about a file. Lines are added whole, so that several programs may write frames into
+/// Adds a line about a file with this hash. Lines are added whole, so that several programs may write frames into
 /// one folder.
 ///
 /// # Errors
@@ -98,15 +101,14 @@ fn content(path: &Path) -> io::Result<Hash> {
 pub fn add_note(
     folder: &Path,
     file: &str,
-    bytes: &[u8],
+    content: &Hash,
     fingerprint: &Hash,
     time: Duration,
 ) -> io::Result<()> {
     let (mut manifest, mut line) = open(&folder.join(MANIFEST))?;
     let _ = writeln!(
         line,
-        "{file}\t{}\t{fingerprint}\t{:.3}",
-        blake3::hash(bytes),
+        "{file}\t{content}\t{fingerprint}\t{:.3}",
         time.as_secs_f64() * 1e3
     );
     manifest.write_all(line.as_bytes())

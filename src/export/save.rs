@@ -1,7 +1,7 @@
 //! Single pictures on disk.
 
 use std::fs::File;
-use std::io::{BufWriter, Write as _};
+use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
 use image::ImageError;
@@ -9,6 +9,9 @@ use image::ImageError;
 use super::error::ExportError;
 use crate::files::{NewFile, remove_leftovers, write_atomic};
 use crate::image::{Film, Format};
+
+/// Bytes of a file that go to the system at once.
+const BUFFER: usize = 1 << 18;
 
 /// Writes a picture in the format of the file's ending, whole or not at all.
 ///
@@ -27,19 +30,30 @@ pub fn save_picture(
     encode: impl FnOnce(Format, &mut BufWriter<&File>) -> Result<(), ImageError>,
 ) -> Result<(), ExportError> {
     let format = Format::of_path(path)?;
-    let disk = |source| ExportError::Disk {
-        path: path.to_owned(),
-        source,
-    };
-    let beside = NewFile::beside(path).map_err(disk)?;
-    let mut file = BufWriter::new(beside.as_file());
-    encode(format, &mut file).map_err(|source| ExportError::Encode {
-        path: path.to_owned(),
-        source,
+    let beside = write_beside(path, |file| encode(format, file))?;
+    beside.place_durably().map_err(|source| disk(path, source))
+}
+
+/// Writes what `encode` makes beside its place.
+///
+/// # Errors
+/// [`ExportError`].
+pub fn write_beside(
+    path: &Path,
+    encode: impl FnOnce(&mut BufWriter<&File>) -> Result<(), ImageError>,
+) -> Result<NewFile, ExportError> {
+    let beside = NewFile::beside(path).map_err(|source| disk(path, source))?;
+    let mut file = BufWriter::with_capacity(BUFFER, beside.as_file());
+    encode(&mut file).map_err(|error| match error {
+        ImageError::IoError(source) => disk(path, source),
+        source => ExportError::Encode {
+            path: path.to_owned(),
+            source,
+        },
     })?;
-    file.flush().map_err(disk)?;
+    file.flush().map_err(|source| disk(path, source))?;
     drop(file);
-    beside.place_durably().map_err(disk)
+    Ok(beside)
 }
 
 /// Whether a file could be written here: asked before what is to be in it is made. What killed programs have left
@@ -48,10 +62,7 @@ pub fn save_picture(
 /// # Errors
 /// [`ExportError::Disk`].
 pub fn check_place(path: &Path) -> Result<(), ExportError> {
-    let beside = NewFile::beside(path).map_err(|source| ExportError::Disk {
-        path: path.to_owned(),
-        source,
-    })?;
+    let beside = NewFile::beside(path).map_err(|source| disk(path, source))?;
     if let Some(folder) = beside.path().parent() {
         remove_leftovers(folder);
     }
@@ -63,10 +74,15 @@ pub fn check_place(path: &Path) -> Result<(), ExportError> {
 /// # Errors
 /// [`ExportError::Disk`]; a file that was at `path` is then untouched.
 pub fn write_text(path: &Path, text: &str) -> Result<(), ExportError> {
-    write_atomic(path, text.as_bytes()).map_err(|source| ExportError::Disk {
+    write_atomic(path, text.as_bytes()).map_err(|source| disk(path, source))
+}
+
+/// What the system has answered.
+pub fn disk(path: &Path, source: io::Error) -> ExportError {
+    ExportError::Disk {
         path: path.to_owned(),
         source,
-    })
+    }
 }
 
 /// `wanted`, or the first of `NAME-2`, `NAME-3`, … that no file has yet.

@@ -1,17 +1,21 @@
 //! An animation as files: which, where, and what each of them shows.
 
-use std::io::{self, Cursor, Write as _};
-use std::path::{Path, PathBuf};
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
+use image::ImageError;
+
 use super::error::ExportError;
 use super::frames::{Frames, FramesError};
-use super::manifest::{Hash, MANIFEST, Manifest, add_note};
+use super::manifest::{Hash, MANIFEST, Manifest, add_note, content};
 use super::pattern::Pattern;
+use super::save::{disk, write_beside};
 use crate::animate::{CameraPath, shot};
-use crate::files::{NewFile, make_folder, remove_leftovers};
-use crate::image::{Film, Format};
+use crate::files::{make_folder, remove_leftovers};
+use crate::image::Format;
 use crate::plan::RenderRequest;
 use crate::scene::{Method as _, Scene};
 
@@ -168,41 +172,29 @@ impl Sequence {
         Ok(manifest.is_valid(&file, &fingerprint))
     }
 
-    /// Writes a frame: beside its place first, then under its name, then into the notes. It is not
-    /// forced to the disk, which would cost more than tracing it: after a power cut its hash tells.
+    /// Writes a frame: what `encode` makes, which says how long it took to trace, goes beside its place first, then under
+    /// its name, then into the notes. It is not forced to the disk, which would cost more than tracing it: after a power
+    /// cut its hash tells.
     ///
     /// # Errors
     /// [`ExportError`]; a file that was there is then untouched.
     pub fn write(
         &self,
         frame: u64,
-        film: &Film,
         fingerprint: &Hash,
-        time: Duration,
+        encode: impl FnOnce(&mut BufWriter<&File>) -> Result<Duration, ImageError>,
     ) -> Result<(), ExportError> {
         let path = self.path(frame);
-        let mut bytes = Cursor::new(Vec::new());
-        let encoded = film.encode(self.format, &mut bytes);
-        encoded.map_err(|source| ExportError::Encode {
-            path: path.clone(),
-            source,
+        let mut time = Duration::ZERO;
+        let beside = write_beside(&path, |file| {
+            time = encode(file)?;
+            Ok(())
         })?;
-        let bytes = bytes.into_inner();
-        let beside = NewFile::beside(&path);
-        let written = beside.and_then(|beside| {
-            beside.as_file().write_all(&bytes)?;
-            beside.place()
-        });
-        written.map_err(|source| disk(&path, source))?;
-        add_note(&self.folder, &self.file(frame), &bytes, fingerprint, time)
+        let content = content(beside.path());
+        let placed = content.and_then(|content| beside.place().map(|()| content));
+        let content = placed.map_err(|source| disk(&path, source))?;
+        add_note(&self.folder, &self.file(frame), &content, fingerprint, time)
             .map_err(|source| disk(&self.folder, source))
-    }
-}
-
-fn disk(path: &Path, source: io::Error) -> ExportError {
-    ExportError::Disk {
-        path: path.to_owned(),
-        source,
     }
 }
 

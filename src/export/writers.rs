@@ -82,7 +82,9 @@ fn write_all(sequence: &Sequence, jobs: &Mutex<Receiver<WriteJob>>, results: &Se
         jobs.recv().ok()
     };
     while let Some(job) = next() {
-        let written = sequence.write(job.frame, &job.film, &job.fingerprint, job.time);
+        let written = sequence.write(job.frame, &job.fingerprint, |file| {
+            job.film.encode(sequence.format, file).map(|()| job.time)
+        });
         let is_over = written.is_err();
         let film = job.film;
         if results.send(WriteResult { written, film }).is_err() || is_over {

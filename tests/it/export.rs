@@ -14,8 +14,8 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use glint::export::{ExportStep, Exporting};
 use glint::export::{Frames, Pattern, Sequence};
-use glint::image::Format;
-use glint::scene::{Document, Scene};
+use glint::image::{Format, Image, render};
+use glint::scene::{Document, Sampling, Scene};
 use glint::trace::{RenderControl, Threads};
 use glint::ui::Ask;
 use glint::worker::Worker;
@@ -57,6 +57,12 @@ fn done(command: &mut Command) -> String {
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
     String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// Its levels without alpha.
+fn rgb(image: &Image) -> Vec<u8> {
+    let pixels = image.pixels.iter();
+    pixels.flat_map(|pixel| pixel[..3].to_vec()).collect()
 }
 
 /// The files of a folder but the notes, whose times differ.
@@ -445,6 +451,42 @@ fn a_folder_that_vanishes_is_told() {
         !frames.exists(),
         "it is not made again behind the user's back"
     );
+}
+
+#[test]
+fn a_frame_too_large_for_the_memory_is_the_whole_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
+    (scene.render.width, scene.render.height) = (8200, 2100);
+    scene.render.antialias = Sampling::Grid(1);
+    let scene = Arc::new(scene);
+    let begin = || {
+        let numbers = Some(Frames::parse("7").expect("a frame"));
+        let (pattern, format) = (Pattern::default(), Format::Ppm);
+        let place = folder.path().to_owned();
+        let sequence = Sequence::new(Arc::clone(&scene), numbers, pattern, format, place);
+        Exporting::new(sequence.expect("a frame")).expect("a folder")
+    };
+    let mut exporting = begin().side_by_side();
+    let control = RenderControl::default();
+    control.stop.store(true, Ordering::Relaxed);
+    assert!(matches!(exporting.step(&control), ExportStep::Stopped));
+    assert!(files(folder.path()).is_empty(), "it is begun again");
+    let control = RenderControl::default();
+    assert!(matches!(exporting.step(&control), ExportStep::Going));
+    let last = exporting.last().expect("what it shows, in small");
+    assert_eq!((last.width, last.height), (249, 64));
+    assert!(matches!(exporting.step(&control), ExportStep::Done));
+    assert_eq!(exporting.finish().expect("written").written, 1);
+
+    let mut again = begin();
+    while !matches!(again.step(&control), ExportStep::Done) {}
+    assert_eq!(again.finish().expect("there").kept, 1, "its hash is noted");
+    let shown = again.sequence().shown(7);
+    let request = again.sequence().request(&shown);
+    let (whole, _) = render(&shown, &request, &control).expect("not stopped");
+    let (name, bytes) = files(folder.path()).pop_first().expect("a file");
+    assert!(bytes.ends_with(&rgb(&whole)), "{name}");
 }
 
 #[test]
