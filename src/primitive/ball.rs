@@ -58,10 +58,11 @@ impl Ball {
     pub fn hides(&self, light: DVec3, ball: &Self) -> bool {
         let towards = self.center - light;
         let length = towards.length();
-        let sine = self.radius * (1.0 - CAUTION) / length;
-        if sine >= 1.0 {
+        // A light on it shines into it: what is in there is not behind it.
+        if length <= self.radius * (1.0 + CAUTION) {
             return false;
         }
+        let sine = self.radius * (1.0 - CAUTION) / length;
         let axis = towards * (1.0 / length);
         let q = ball.center - light;
         let along = q.dot(axis);
@@ -120,5 +121,9 @@ mod tests {
         let sphere = at(5.0, 0.0, 2.0);
         assert!(sphere.hides(DVec3::ZERO, &at(10.0, 0.5, 1.0)));
         assert!(!sphere.hides(DVec3::ZERO, &at(10.0, 3.5, 1.0)));
+        for place in [3.0, 3.0 + 1e-9, 3.0 - 1e-9, 3.001] {
+            let light = DVec3::new(place, 0.0, 0.0);
+            assert!(!sphere.hides(light, &at(6.8, 0.0, 0.1)), "inside of it");
+        }
     }
 }
