@@ -9,6 +9,7 @@ use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 
 use super::error::ExportError;
 use super::manifest::{Hash, Manifest};
+use super::save::disk;
 use super::sequence::{Sequence, fingerprint};
 use super::writers::{WriteJob, WriteResult, Writers};
 use crate::image::{Film, Format, Image, RenderCost};
@@ -168,8 +169,10 @@ impl Exporting {
         }
         let due = self.next_due()?;
         if self.is_large() {
-            let mut steps = due.into_iter().map(|due| self.draw(due, control));
-            return steps.next().unwrap_or(Ok(ExportStep::Going));
+            return match due.into_iter().next() {
+                Some(due) => self.draw(due, control),
+                None => Ok(ExportStep::Going),
+            };
         }
         let trace = |mut due: Due| {
             let request = self.sequence.request(&due.shown);
@@ -309,10 +312,8 @@ impl Exporting {
         }
         all?;
         if self.on_the_way > 0 {
-            return Err(ExportError::Disk {
-                path: self.sequence.folder.clone(),
-                source: io::Error::other("a thread that writes stopped with a fault of its own"),
-            });
+            let fault = io::Error::other("a thread that writes stopped with a fault of its own");
+            return Err(disk(&self.sequence.folder, fault));
         }
         Ok(self.done)
     }

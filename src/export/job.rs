@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::error::ExportError;
-use super::save::write_text;
+use super::save::{disk, write_text};
 use super::sequence::Sequence;
 use crate::files::{back_up, is_same_file, read_file, write_atomic};
 use crate::scene::{Document, SceneError};
@@ -90,10 +90,7 @@ fn write_scene(
     file: Option<&Path>,
     path: &Path,
 ) -> Result<Option<PathBuf>, JobError> {
-    let disk = |source| ExportError::Disk {
-        path: path.to_owned(),
-        source,
-    };
+    let disk = |source| disk(path, source);
     let text = match file {
         Some(file) if is_same_file(file, path) => return Ok(None),
         Some(file) => fs::read(file).map_err(disk)?,

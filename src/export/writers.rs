@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use super::error::ExportError;
 use super::manifest::Hash;
+use super::save::disk;
 use super::sequence::Sequence;
 use crate::image::Film;
 
@@ -50,10 +51,7 @@ impl Writers {
             std::thread::Builder::new()
                 .name(format!("glint-writer-{index}"))
                 .spawn(move || write_all(&sequence, &to_write, &to_return))
-                .map_err(|source| ExportError::Disk {
-                    path: folder,
-                    source,
-                })?;
+                .map_err(|source| disk(&folder, source))?;
         }
         Ok(Self { jobs, results })
     }
