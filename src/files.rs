@@ -26,8 +26,16 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// Whether a path that a file in a folder names leads to that folder, or to one within it, links followed: nothing is
 /// read elsewhere, because the file may come from a stranger.
 pub fn stays_inside(folder: &Path, path: &Path) -> bool {
-    let mut parts = path.components();
-    let is_plain = parts.all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+    let (mut parts, mut depth) = (path.components(), 0_usize);
+    let is_within = parts.all(|part| match part {
+        Component::Normal(_) => {
+            depth += 1;
+            true
+        }
+        Component::ParentDir => depth.checked_sub(1).map(|up| depth = up).is_some(),
+        Component::CurDir => true,
+        Component::RootDir | Component::Prefix(_) => false,
+    });
     let folder = if folder.as_os_str().is_empty() {
         Path::new(".")
     } else {
@@ -38,7 +46,7 @@ pub fn stays_inside(folder: &Path, path: &Path) -> bool {
         folder.is_ok_and(|folder| real.starts_with(folder))
     };
     // What is not there, nobody reads.
-    is_plain && folder.join(path).canonicalize().map_or(true, leads_there)
+    is_within && folder.join(path).canonicalize().map_or(true, leads_there)
 }
 
 /// More backups of a file than anybody wants.
@@ -89,7 +97,12 @@ impl NewFile {
     /// only to be read.
     pub fn beside(path: &Path) -> io::Result<Self> {
         let target = behind_links(path)?;
-        let existing = fs::metadata(&target).ok();
+        let existing = match fs::metadata(&target) {
+            Ok(existing) => Some(existing),
+            // Said of a name that is too long, before anything is made for it.
+            Err(error) if error.kind() == io::ErrorKind::InvalidFilename => return Err(error),
+            Err(_) => None,
+        };
         if let Some(existing) = &existing {
             let refused = |why: &str| Err(io::Error::other(why));
             if !existing.is_file() {
@@ -332,8 +345,8 @@ fn locked_file_in(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
 
 fn new_file_in(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
     // Encoders know the format by the ending.
-    let name = target.file_name().unwrap_or_default().to_string_lossy();
-    let ending = format!("-{name}");
+    let ending = target.extension().unwrap_or_default().to_string_lossy();
+    let ending = format!(".{ending}");
     let mut builder = tempfile::Builder::new();
     builder.prefix(UNFINISHED).suffix(&ending);
     #[cfg(unix)]
@@ -363,6 +376,7 @@ mod tests {
         std::os::unix::fs::symlink(place.path(), inside.join("up")).expect("linked");
         let stays = |path: &str| stays_inside(&inside, Path::new(path));
         assert!(stays("own.ply") && stays("./own.ply") && stays("in.ply") && stays("gone.ply"));
+        assert!(stays("new/../own.ply") && !stays("new/../../scene/own.ply"));
         assert!(!stays("out.ply") && !stays("up/secret.ply") && !stays("../secret.ply"));
         assert!(!stays(&outside.display().to_string()));
     }

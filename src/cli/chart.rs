@@ -9,6 +9,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::action::CliAction;
+use super::args::{ThreadsArgs, whole};
 use super::error::{CliError, say};
 use super::goal::{error, time};
 use super::scene::read_scene;
@@ -43,7 +44,7 @@ pub struct ChartArgs {
     #[arg(long, requires = "scenes", conflicts_with_all = ["growth", "within", "budget", "povray"])]
     cores: bool,
     /// Longer side of the pictures that are compared, in pixels
-    #[arg(long, default_value = "256", value_parser = clap::value_parser!(u32).range(8..=2048))]
+    #[arg(long, default_value = "256", value_parser = whole::<8, 2048>)]
     side: u32,
     /// Write all figures to this file
     #[arg(long, value_name = "FILE")]
@@ -66,9 +67,8 @@ pub struct ChartArgs {
     /// Put POV-Ray, an independent engine, among the ways, where it is installed
     #[arg(long)]
     povray: bool,
-    /// Tracing threads [default: one per core]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    threads: ThreadsArgs,
 }
 
 /// Colours of a picture.
@@ -95,7 +95,7 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
     // A name that cannot be written is known before the first ray.
     picture_format(args.png.as_deref())?;
     check_text(args.csv.as_deref())?;
-    let threads = Threads::new(args.threads.map(usize::from))?;
+    let threads = args.threads.start()?;
     if args.growth {
         return grow(args, &threads);
     }

@@ -3,19 +3,22 @@
 
 use std::path::{PathBuf, absolute};
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::args::{SizeArgs, ThreadsArgs};
 use super::error::{CliError, say};
-use super::render::sized;
 use super::scene::missing_meshes;
 use crate::export::{ExportError, ExportStep, Exported, Exporting};
 use crate::export::{Frames, Pattern, Sequence, Video, check_place, write_job};
 use crate::image::Format;
-use crate::scene::{Document, MAX_SIDE, Method as _, Sampling, Scene};
+use crate::scene::{Document, Method as _, Sampling, Scene};
 use crate::trace::{RenderControl, Threads};
+
+/// Time between two looks of the progress bar.
+const TICK: Duration = Duration::from_millis(100);
 
 /// What is exported, for a folder and for a job.
 #[derive(Debug, Args)]
@@ -31,12 +34,8 @@ struct What {
     /// Format of the frames: ppm, png or exr (linear light)
     #[arg(long, default_value = "ppm", value_parser = format_of)]
     format: Format,
-    /// Width in pixels; alone, it keeps the scene's aspect
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SIDE)))]
-    width: Option<u32>,
-    /// Height in pixels; alone, it keeps the scene's aspect
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SIDE)))]
-    height: Option<u32>,
+    #[command(flatten)]
+    size: SizeArgs,
     #[arg(long, value_name = "METHOD", value_parser = Sampling::parse, help = antialias_help())]
     antialias: Option<Sampling>,
 }
@@ -56,9 +55,8 @@ pub struct ExportArgs {
     /// A video to make of the frames: .mp4, .mov and .mkv by ffmpeg, .gif and .apng without it
     #[arg(long, value_name = "FILE")]
     video: Option<PathBuf>,
-    /// Tracing threads [default: one per core]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    threads: ThreadsArgs,
     /// Only say which frames would be made, and how many
     #[arg(long)]
     dry_run: bool,
@@ -89,8 +87,7 @@ impl What {
             return Err(CliError::failed(sentence));
         }
         let render = &mut scene.render;
-        (render.width, render.height) =
-            sized((render.width, render.height), (self.width, self.height));
+        (render.width, render.height) = self.size.of((render.width, render.height));
         render.antialias = self.antialias.unwrap_or(render.antialias);
         let (frames, name) = (self.frames.clone(), self.name.clone());
         Sequence::new(Arc::new(scene), frames, name, self.format, folder)
@@ -107,22 +104,25 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
     let video = video.map(|path| Video::of_path(path).map(|video| (path, video)));
     let video = video.transpose().map_err(CliError::usage)?;
     let sequence = args.what.sequence(args.output.clone())?;
-    if args.dry_run {
-        return tell_missing(&sequence);
-    }
     if let Some((path, video)) = video {
         let remark = video.check(&sequence).map_err(CliError::usage)?;
         // It may be in the folder of the frames, which need not be there yet.
         let of_video = path.parent().and_then(|folder| absolute(folder).ok());
-        if of_video.is_some() && of_video == absolute(&sequence.folder).ok() {
+        let is_with_frames = of_video.is_some() && of_video == absolute(&sequence.folder).ok();
+        if is_with_frames && !args.dry_run {
             sequence.prepare()?;
         }
-        check_place(path)?;
+        if !is_with_frames || sequence.folder.exists() {
+            check_place(path)?;
+        }
         if let Some(remark) = remark {
             say(&remark);
         }
     }
-    let threads = Threads::new(args.threads.map(usize::from))?;
+    if args.dry_run {
+        return tell_missing(&sequence);
+    }
+    let threads = args.threads.start()?;
     let start = Instant::now();
     let reporter = ProgressReporter::new(&sequence, args.openjd);
     let done = export(sequence.clone(), &threads, &reporter)?;
@@ -132,7 +132,7 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
         let bar = bar(
             &sequence,
             args.openjd,
-            "{bar:32} {pos}/{len} frames encoded",
+            "{spinner} {bar:32} {pos}/{len} frames encoded",
         );
         let made = video.make(&sequence, path, |frames| bar.set_position(frames as u64));
         bar.finish_and_clear();
@@ -193,10 +193,13 @@ fn bar(sequence: &Sequence, is_openjd: bool, style: &str) -> ProgressBar {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(sequence.frames.count() as u64);
-    match ProgressStyle::with_template(style) {
+    let bar = match ProgressStyle::with_template(style) {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
-    }
+    };
+    // The first frame may take a while.
+    bar.enable_steady_tick(TICK);
+    bar
 }
 
 /// Tells how far it is: a bar on a terminal, or lines for a runner.
@@ -207,13 +210,19 @@ struct ProgressReporter {
 
 impl ProgressReporter {
     fn new(sequence: &Sequence, is_openjd: bool) -> Self {
-        let style = "{bar:32} {pos}/{len} frames  {per_sec}  {eta} left";
-        let bar = bar(sequence, is_openjd, style);
+        // How long the others take nobody knows before the first.
+        let bar = bar(sequence, is_openjd, "{spinner} {bar:32} {pos}/{len} frames");
         Self { bar, is_openjd }
     }
 
     fn tell(&self, done: Exported) {
         let so_far = done.kept + done.written;
+        if self.bar.position() == 0 && so_far > 0 {
+            let style = "{spinner} {bar:32} {pos}/{len} frames  {per_sec}  {eta} left";
+            if let Ok(style) = ProgressStyle::with_template(style) {
+                self.bar.set_style(style);
+            }
+        }
         self.bar.set_position(so_far as u64);
         if self.is_openjd {
             let share = so_far as f64 * 100.0 / done.total.max(1) as f64;

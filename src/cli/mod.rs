@@ -3,6 +3,8 @@
 
 mod error;
 
+mod args;
+
 mod scene;
 
 mod target;

@@ -4,15 +4,15 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::args::{SizeArgs, ThreadsArgs};
 use super::error::{CliError, say};
-use super::render::sized;
 use super::scene::read_scene;
 use super::target::picture_format;
 use crate::export::{by_povray, povray_differences, save_image};
 use crate::image::{Film, Image, render};
 use crate::plan::RenderRequest;
 use crate::scene::Sampling;
-use crate::trace::{RenderControl, Threads};
+use crate::trace::RenderControl;
 
 /// How many times brighter differences are in their picture.
 const ENLARGED: u16 = 64;
@@ -21,18 +21,13 @@ const ENLARGED: u16 = 64;
 pub struct RefereeArgs {
     /// The scene file (RON)
     scene: PathBuf,
-    /// Width in pixels; alone, it keeps the scene's aspect
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=16384))]
-    width: Option<u32>,
-    /// Height in pixels; alone, it keeps the scene's aspect
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=16384))]
-    height: Option<u32>,
+    #[command(flatten)]
+    size: SizeArgs,
     /// Write the differences, 64 times enlarged, to this picture (PNG or PPM)
     #[arg(short, long, value_name = "IMAGE")]
     output: Option<PathBuf>,
-    /// Tracing threads, of both [default: one per core]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    threads: ThreadsArgs,
 }
 
 /// Draws the scene twice, one ray through the middle of each pixel, and says how far the pictures differ.
@@ -44,9 +39,9 @@ pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
     let mut scene = read_scene(&args.scene)?;
     let size = &mut scene.render;
     let own = (size.width, size.height);
-    (size.width, size.height) = sized(own, (args.width, args.height));
+    (size.width, size.height) = args.size.of(own);
     size.antialias = Sampling::Centres;
-    let threads = Threads::new(args.threads.map(usize::from))?;
+    let threads = args.threads.start()?;
     let theirs =
         by_povray(&scene, threads.count(), &RenderControl::default()).map_err(CliError::failed)?;
     let request = RenderRequest::still(&scene);

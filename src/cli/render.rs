@@ -1,6 +1,5 @@
 //! `glint render`: a scene file in, a picture file out.
 
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -11,6 +10,7 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
+use super::args::{SizeArgs, ThreadsArgs, whole};
 use super::error::{CliError, say};
 use super::goal::{error, time};
 use super::scene::read_scene;
@@ -21,13 +21,16 @@ use crate::export::{NoSuchFrame, save_picture};
 use crate::image::{Film, Format, RenderCost};
 use crate::lab::{Choice, Goal, choose};
 use crate::plan::{Planner, RenderRequest};
-use crate::scene::{Aspect, MAX_SIDE, Method as _, Projection, Scene};
+use crate::scene::{Aspect, Method as _, Projection, Scene};
 use crate::simd::Level;
 use crate::trace::{Rays, RenderControl, Threads};
 use crate::worker::run_in_background;
 
 /// Time after which a running render is worth a progress bar, and between its updates.
 const PROGRESS_TICK: Duration = Duration::from_millis(100);
+
+/// More repetitions than anybody waits for.
+const MAX_REPEATS: u32 = 1_000_000;
 
 #[derive(Debug, Args)]
 pub struct RenderArgs {
@@ -36,12 +39,8 @@ pub struct RenderArgs {
     /// The picture to write; ends in .png, .ppm or .exr (linear light)
     #[arg(short, long, value_name = "IMAGE", required_unless_present = "stats")]
     output: Option<PathBuf>,
-    /// Width in pixels; alone, it keeps the scene's aspect
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SIDE)))]
-    width: Option<u32>,
-    /// Height in pixels; alone, it keeps the scene's aspect
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SIDE)))]
-    height: Option<u32>,
+    #[command(flatten)]
+    size: SizeArgs,
     /// Projection in place of the scene's own
     #[arg(long)]
     camera: Option<CameraArg>,
@@ -61,12 +60,11 @@ pub struct RenderArgs {
     frame: Option<u64>,
     #[arg(long, value_name = "ASPECT", value_parser = aspect, help = aspect_help())]
     show: Option<Aspect>,
-    /// Tracing threads [default: one per core]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    threads: ThreadsArgs,
     /// Trace so many times; the statistics take the median
-    #[arg(long, default_value = "1")]
-    repeat: NonZeroUsize,
+    #[arg(long, default_value = "1", value_parser = whole::<1, MAX_REPEATS>)]
+    repeat: u32,
     /// Print one JSON object about the trace on stdout
     #[arg(long)]
     stats: bool,
@@ -119,7 +117,7 @@ pub fn run(args: &RenderArgs) -> Result<(), CliError> {
     // A name that cannot be written is known before the first ray.
     let format = picture_format(args.output.as_deref())?;
     let mut scene = read_scene(&args.scene)?;
-    let threads = Threads::new(args.threads.map(usize::from))?;
+    let threads = args.threads.start()?;
     if let Some(frame) = args.frame {
         let place = |sentence| CliError::usage(format!("{}: {sentence}", args.scene.display()));
         scene = at_frame(scene, frame).map_err(place)?;
@@ -131,8 +129,8 @@ pub fn run(args: &RenderArgs) -> Result<(), CliError> {
     request.sampling = choice.map_or(request.sampling, |choice| choice.sampling);
     let count = threads.count();
     let film = Film::new(format.unwrap_or(Format::Ppm));
-    let total = request.pixels() * args.repeat.get() as u64;
-    let (repeat, output) = (args.repeat.get(), args.output.clone());
+    let total = request.pixels() * u64::from(args.repeat);
+    let (repeat, output) = (args.repeat, args.output.clone());
     let traced = with_bar(total, move |control| {
         threads.run(|| {
             trace(
@@ -207,7 +205,7 @@ impl RenderArgs {
 
     fn request(&self, scene: &Scene) -> RenderRequest {
         let own = (scene.render.width, scene.render.height);
-        let (width, height) = sized(own, (self.width, self.height));
+        let (width, height) = self.size.of(own);
         RenderRequest {
             projection: self.camera.map(|word| match word {
                 CameraArg::Perspective => Projection::Perspective,
@@ -220,28 +218,11 @@ impl RenderArgs {
     }
 }
 
-/// The asked-for size; one side alone keeps the aspect of the scene's `own`.
-pub fn sized(own: (u32, u32), asked: (Option<u32>, Option<u32>)) -> (u32, u32) {
-    match asked {
-        (None, None) => own,
-        (Some(width), Some(height)) => (width, height),
-        (Some(width), None) => (width, in_proportion(width, own.1, own.0)),
-        (None, Some(height)) => (in_proportion(height, own.0, own.1), height),
-    }
-}
-
-/// `side · numerator / denominator`, rounded, within the sizes that exist.
-fn in_proportion(side: u32, numerator: u32, denominator: u32) -> u32 {
-    let exact = (u64::from(side) * u64::from(numerator) + u64::from(denominator) / 2)
-        / u64::from(denominator);
-    u32::try_from(exact).unwrap_or(MAX_SIDE).clamp(1, MAX_SIDE)
-}
-
 /// Traces so many times, the last time into a file if one is given.
 fn trace(
     scene: &Scene,
     (request, mut film): (&RenderRequest, Film),
-    (repeat, output): (usize, Option<&Path>),
+    (repeat, output): (u32, Option<&Path>),
     control: &RenderControl,
 ) -> Result<Vec<RenderCost>, CliError> {
     let stopped = |_| CliError::failed("the trace ended without a picture");

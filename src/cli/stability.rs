@@ -1,15 +1,19 @@
 //! `glint stability`: where formulas break.
 
-use std::num::NonZeroU32;
 use std::path::PathBuf;
 
 use clap::Args;
 
 use super::action::CliAction;
+use super::args::whole;
+
 use super::error::{CliError, say};
 use super::target::{check_text, picture_format};
 use crate::export::write_text;
 use crate::lab::stability::{cells_csv, maps, summary};
+
+/// More effort than anybody waits for.
+const MAX_EFFORT: u32 = 1_000_000;
 
 #[derive(Debug, Args)]
 pub struct StabilityArgs {
@@ -20,8 +24,8 @@ pub struct StabilityArgs {
     #[arg(long, value_name = "IMAGE")]
     png: Option<PathBuf>,
     /// Try so many times more rays than for a first look
-    #[arg(long, default_value = "1")]
-    effort: NonZeroU32,
+    #[arg(long, default_value = "1", value_parser = whole::<1, MAX_EFFORT>)]
+    effort: u32,
 }
 
 /// Tries, prints the summary, and writes what was asked for. The picture is left to whoever can draw.
@@ -32,7 +36,7 @@ pub fn run(args: &StabilityArgs) -> Result<Option<CliAction>, CliError> {
     // A name that cannot be written is known before the first ray.
     picture_format(args.png.as_deref())?;
     check_text(args.csv.as_deref())?;
-    let maps = maps(args.effort.get());
+    let maps = maps(args.effort);
     say(summary(&maps).trim_end());
     if let Some(path) = &args.csv {
         write_text(path, &cells_csv(&maps)?)?;

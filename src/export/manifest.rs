@@ -38,9 +38,15 @@ impl Manifest {
     /// # Errors
     /// Whatever the system answers, except that the file is not there.
     pub fn read(folder: &Path) -> io::Result<Self> {
-        let text = match read_file(&folder.join(MANIFEST)) {
+        let path = folder.join(MANIFEST);
+        let text = match read_file(&path) {
             Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                if path.is_symlink() {
+                    return Err(io::Error::other("it is a link that leads nowhere"));
+                }
+                String::new()
+            }
             Err(error) => return Err(error),
         };
         let notes = text.split_inclusive('\n').filter_map(note);

@@ -194,7 +194,7 @@ impl Sequence {
         let placed = content.and_then(|content| beside.place().map(|()| content));
         let content = placed.map_err(|source| disk(&path, source))?;
         add_note(&self.folder, &self.file(frame), &content, fingerprint, time)
-            .map_err(|source| disk(&self.folder, source))
+            .map_err(|source| disk(&self.folder.join(MANIFEST), source))
     }
 }
 

@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 
 use super::notation;
 
-/// Largest Phong exponent; the highlight is then a few ten-thousandths of a degree wide.
-pub const MAX_EXPONENT: f64 = 1e7;
+/// Largest Phong exponent; the highlight is then a few thousandths of a degree wide.
+pub const MAX_EXPONENT: f64 = 1e9;
 
 /// A material: colours are 0–255 per channel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

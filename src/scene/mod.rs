@@ -78,7 +78,7 @@ pub use hints::{About, Hint, hints};
 pub use join::MOST_SEPARATE;
 pub use list::List;
 pub use locate::{PathStep, names_field};
-pub use material::ColorPack;
+pub use material::{ColorPack, MAX_EXPONENT};
 pub use methods::{
     Accelerator, HighlightMethod, MAX_GRID, MAX_HALVINGS, Method, MethodInfo, Methods, Precision,
     RayOffset, Sampling, SphereMethod, TriangleMethod, UnknownMethod,

@@ -12,7 +12,7 @@ use super::notation;
 pub const MAX_SIDE: u32 = 16_384;
 
 /// Deepest chain of reflections that a scene may ask for.
-pub const MAX_REFLECTIONS: u32 = 32;
+pub const MAX_REFLECTIONS: u32 = 64;
 
 /// How the picture is made. What it is traced with is written to the file only where it differs from
 /// the default, which is what the scene needs.

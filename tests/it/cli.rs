@@ -166,7 +166,7 @@ fn the_camera_can_be_chosen() {
 #[test]
 fn wrong_words_and_wrong_files_exit_with_2() {
     let folder = folder();
-    let cases: [(&[&str], &str); 16] = [
+    let cases: [(&[&str], &str); 18] = [
         (&["render", DEMO], "--output <IMAGE>"),
         (
             &["render", DEMO, "-o", "a.jpg"],
@@ -174,7 +174,15 @@ fn wrong_words_and_wrong_files_exit_with_2() {
         ),
         (
             &["render", DEMO, "-o", "a.png", "--width", "0"],
-            "0 is not in 1..=16384",
+            "expected a whole number from 1 to 16384",
+        ),
+        (
+            &["render", DEMO, "-o", "a.png", "--height", "1e3"],
+            "expected a whole number from 1 to 16384",
+        ),
+        (
+            &["render", DEMO, "--stats", "--repeat", "0"],
+            "expected a whole number from 1 to 1000000",
         ),
         (
             &["render", DEMO, "-o", "a.png", "--antialias", "contrast"],

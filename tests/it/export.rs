@@ -216,6 +216,50 @@ fn asking_what_is_missing_makes_nothing() {
     let said = done(&mut export(&frames, &["--frames", "1-3", "--dry-run"]));
     assert!(said.contains("3 frames of 3 to make"), "{said}");
     assert!(!frames.exists());
+    let video = |path: &Path| {
+        let mut asking = export(&frames, &["--frames", "1-3", "--dry-run", "--video"]);
+        run(asking.arg(path))
+    };
+    assert!(video(&frames.join("flight.gif")).status.success());
+    assert!(!frames.exists());
+    let output = video(&folder.path().join("gone/flight.gif"));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        !output.status.success() && said.contains("gone does not exist"),
+        "{said}"
+    );
+}
+
+#[test]
+fn names_that_no_system_takes_are_told_and_others_are_taken() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let frames = folder.path().join("frames");
+    for (length, is_fine) in [(240, true), (300, false)] {
+        let name = format!("{}%d", "a".repeat(length));
+        let output = run(&mut export(&frames, &["--frames", "1", "--name", &name]));
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.success(), is_fine, "{said}");
+        assert!(
+            is_fine || said.contains("a1.ppm: File name too long"),
+            "{said}"
+        );
+        assert!(!said.contains("unfinished"), "{said}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn notes_that_are_a_link_to_nowhere_are_told_before_the_first_frame() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let notes = folder.path().join("glint-frames.txt");
+    std::os::unix::fs::symlink("gone", &notes).expect("linked");
+    let output = run(&mut export(folder.path(), &["--frames", "1"]));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        said.contains("glint-frames.txt: it is a link that leads nowhere"),
+        "{said}"
+    );
+    assert!(!folder.path().join("rayTrace1.ppm").exists());
 }
 
 #[cfg(unix)]

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::title::title_field;
 use crate::editor::{Edit, Item, Selection};
 use crate::scene::{
-    self, ColorPack, FieldValue, Light, LightObj, MOST_SEPARATE, Object, Scene, Shape,
+    self, ColorPack, FieldValue, Light, LightObj, MAX_EXPONENT, MOST_SEPARATE, Object, Scene, Shape,
 };
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
@@ -255,7 +255,7 @@ pub fn pack(ui: &mut Ui, index: usize, before: &ColorPack, out: &mut UiRequests)
             hint: "Phong exponent: sharpness of the highlight. 0 is flat, 16 soft, 1000 a pinpoint",
             unit: "",
             default: 16.0,
-            range: 0.0..=1e7,
+            range: 0.0..=MAX_EXPONENT,
             speed: None,
         },
         &mut pack.phong_exponent,

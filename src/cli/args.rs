@@ -1,0 +1,82 @@
+//! Arguments that several commands take.
+
+use clap::Args;
+
+use crate::scene::MAX_SIDE;
+use crate::trace::{PoolError, Threads};
+
+/// More threads than any machine has cores for.
+const MAX_THREADS: u32 = 256;
+
+/// How large a picture is to be.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct SizeArgs {
+    /// Width in pixels; alone, it keeps the scene's aspect
+    #[arg(long, value_parser = whole::<1, MAX_SIDE>)]
+    width: Option<u32>,
+    /// Height in pixels; alone, it keeps the scene's aspect
+    #[arg(long, value_parser = whole::<1, MAX_SIDE>)]
+    height: Option<u32>,
+}
+
+/// How many threads trace.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct ThreadsArgs {
+    /// Tracing threads [default: one per core]
+    #[arg(long, value_parser = whole::<1, MAX_THREADS>)]
+    threads: Option<u32>,
+}
+
+impl SizeArgs {
+    /// Width and height; one side alone keeps the aspect of the scene's `own`.
+    pub fn of(self, own: (u32, u32)) -> (u32, u32) {
+        match (self.width, self.height) {
+            (None, None) => own,
+            (Some(width), Some(height)) => (width, height),
+            (Some(width), None) => (width, in_proportion(width, own.1, own.0)),
+            (None, Some(height)) => (in_proportion(height, own.0, own.1), height),
+        }
+    }
+}
+
+impl ThreadsArgs {
+    /// Starts them.
+    ///
+    /// # Errors
+    /// [`PoolError`], where the system has none left.
+    pub fn start(self) -> Result<Threads, PoolError> {
+        Threads::new(self.threads.map(|threads| threads as usize))
+    }
+}
+
+/// A whole number from `LEAST` to `MOST`.
+///
+/// # Errors
+/// A sentence that says so, for any other word.
+pub fn whole<const LEAST: u32, const MOST: u32>(word: &str) -> Result<u32, String> {
+    let number = word.parse().ok();
+    number
+        .filter(|number| (LEAST..=MOST).contains(number))
+        .ok_or_else(|| format!("expected a whole number from {LEAST} to {MOST}"))
+}
+
+/// `side · numerator / denominator`, rounded, within the sizes that exist.
+fn in_proportion(side: u32, numerator: u32, denominator: u32) -> u32 {
+    let exact = (u64::from(side) * u64::from(numerator) + u64::from(denominator) / 2)
+        / u64::from(denominator);
+    u32::try_from(exact).unwrap_or(MAX_SIDE).clamp(1, MAX_SIDE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_whole_and_within_what_there_is() {
+        assert_eq!(whole::<1, 256>("256"), Ok(256));
+        for wrong in ["", "0", "257", "1e1", "1.0", "-1", " 2", "99999999999"] {
+            let said = whole::<1, 256>(wrong).expect_err(wrong);
+            assert_eq!(said, "expected a whole number from 1 to 256");
+        }
+    }
+}
