@@ -29,6 +29,8 @@
 
 // The blank lines keep the formatter from sorting what is in order of dependence.
 
+pub mod words;
+
 pub mod files;
 
 pub mod mesh;

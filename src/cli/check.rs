@@ -8,6 +8,7 @@ use clap::Args;
 use super::error::{WRONG, report_error, say};
 use super::scene::missing_meshes;
 use crate::scene::{Document, Scene};
+use crate::words::counted;
 
 #[derive(Debug, Args)]
 pub struct CheckArgs {
@@ -42,9 +43,8 @@ pub fn run(args: &CheckArgs) -> ExitCode {
 }
 
 fn contents(scene: &Scene) -> String {
-    let count = |n: usize, one: &str| format!("{n} {one}{}", if n == 1 { "" } else { "s" });
-    let objects = count(scene.objects.len(), "object");
-    let lights = count(scene.lights.len(), "light");
-    let packs = count(scene.color_packs.len(), "color pack");
+    let objects = counted(scene.objects.len(), "object");
+    let lights = counted(scene.lights.len(), "light");
+    let packs = counted(scene.color_packs.len(), "color pack");
     format!("{objects}, {lights}, {packs}")
 }

@@ -16,6 +16,7 @@ use crate::export::{Frames, Pattern, Sequence, Video, check_place, write_job};
 use crate::image::Format;
 use crate::scene::{Document, Method as _, Sampling, Scene};
 use crate::trace::{RenderControl, Threads};
+use crate::words::counted;
 
 /// Time between two looks of the progress bar.
 const TICK: Duration = Duration::from_millis(100);
@@ -142,16 +143,11 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
     say(&format!(
         "{}: {} written, {} there already, {seconds:.1} s, {:.1} frames/s",
         args.output.display(),
-        counted(done.written),
+        counted(done.written, "frame"),
         done.kept,
         done.total as f64 / seconds
     ));
     Ok(())
-}
-
-fn counted(frames: usize) -> String {
-    let s = if frames == 1 { "" } else { "s" };
-    format!("{frames} frame{s}")
 }
 
 fn tell_missing(sequence: &Sequence) -> Result<(), CliError> {
@@ -161,7 +157,7 @@ fn tell_missing(sequence: &Sequence) -> Result<(), CliError> {
     let set = Frames::parse(&frames.join(",")).map_or(String::new(), |set| format!(": {set}"));
     say(&format!(
         "{} of {total} to make{set}",
-        counted(missing.len())
+        counted(missing.len(), "frame")
     ));
     Ok(())
 }
@@ -254,7 +250,7 @@ pub fn run_job(args: &JobArgs) -> Result<(), CliError> {
     let (file, path) = (&args.what.scene, &args.output);
     let job = write_job(&Document::load(file)?, Some(file), &sequence, path);
     let job = job.map_err(CliError::failed)?;
-    let frames = counted(sequence.frames.count());
+    let frames = counted(sequence.frames.count(), "frame");
     say(&format!("{}: a job of {frames}", path.display()));
     if let Some(backup) = job.backup {
         let (scene, backup) = (job.scene.display(), backup.display());

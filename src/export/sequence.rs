@@ -18,6 +18,7 @@ use crate::files::{make_folder, remove_leftovers};
 use crate::image::Format;
 use crate::plan::RenderRequest;
 use crate::scene::{Method as _, Scene};
+use crate::words::counted;
 
 /// What is exported, and where to.
 #[derive(Clone, Debug)]
@@ -36,7 +37,7 @@ pub struct Sequence {
 
 /// A frame behind the last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no frame {frame}: the animation has {count} frame{}", if *count == 1 { "" } else { "s" })]
+#[error("there is no frame {frame}: the animation has {}", counted(*count, "frame"))]
 pub struct NoSuchFrame {
     /// What was asked for.
     pub frame: u64,

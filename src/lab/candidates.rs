@@ -5,6 +5,7 @@ use crate::scene::{
     HighlightMethod, MAX_REFLECTIONS, Method, Precision, RayOffset, Render, Sampling, Scene,
     Setting, SphereMethod, TriangleMethod, VisitSetting,
 };
+use crate::words::counted;
 
 /// What a way of tracing differs in from the plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -137,12 +138,12 @@ pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
     }
     let limit = scene.render.reflection_limit;
     if limit > 0 {
-        change(bounces(limit - 1), Family::Sampling, &|render| {
+        change(counted(limit - 1, "bounce"), Family::Sampling, &|render| {
             render.reflection_limit = limit - 1;
         });
     }
     if limit < MAX_REFLECTIONS {
-        change(bounces(limit + 1), Family::Sampling, &|render| {
+        change(counted(limit + 1, "bounce"), Family::Sampling, &|render| {
             render.reflection_limit = limit + 1;
         });
     }
@@ -187,10 +188,6 @@ pub fn povray(scene: &Scene, width: u32, height: u32) -> Candidate {
         model: Model::Needed,
         upscale: 1,
     }
-}
-
-fn bounces(limit: u32) -> String {
-    format!("{limit} bounce{}", if limit == 1 { "" } else { "s" })
 }
 
 /// Settings that differ from these in one formula, with their names.
@@ -274,7 +271,7 @@ impl Candidate {
         let mut ids = Ids(Vec::new());
         self.render.clone().visit_settings(&mut ids);
         let mut words = ids.0;
-        words.push(bounces(self.render.reflection_limit));
+        words.push(counted(self.render.reflection_limit, "bounce"));
         match self.model {
             Model::Everything => words.push("nothing left out".to_owned()),
             Model::Unculled => words.push("every primitive tested for every ray".to_owned()),

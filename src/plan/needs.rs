@@ -11,6 +11,7 @@ use super::precision::{is_filtered, is_too_much_twice, needs_double};
 use super::request::RenderRequest;
 use crate::scene::{Object, Precision, Sampling, Scene, Shape};
 use crate::simd::Exponent;
+use crate::words::counted;
 
 /// The rule for how primitives are found.
 pub const ACCELERATOR: &str = "accelerator";
@@ -54,10 +55,6 @@ fn need(rule: &'static str, what: impl Into<String>, why: impl Into<String>, sav
         why: why.into(),
         saves: saves.to_owned(),
     }
-}
-
-fn count(number: usize, one: &str) -> String {
-    format!("{number} {one}{}", if number == 1 { "" } else { "s" })
 }
 
 fn precision(scene: &Scene, request: &RenderRequest) -> Need {
@@ -116,10 +113,10 @@ fn reflections(scene: &Scene, plan: &Plan<f64>) -> Need {
     } else {
         need(
             rule,
-            format!("reflected rays, up to {}", count(limit as usize, "bounce")),
+            format!("reflected rays, up to {}", counted(limit, "bounce")),
             format!(
                 "{} reflect{}",
-                count(mirrors, "visible object"),
+                counted(mirrors, "visible object"),
                 if mirrors == 1 { "s" } else { "" }
             ),
             "one ray per hit serves all lights",
@@ -138,7 +135,7 @@ fn shadows(scene: &Scene, plan: &Plan<f64>) -> Need {
         "shadows",
         format!(
             "shadow rays to {used} of {}, from surfaces that face them",
-            count(all, "light")
+            counted(all, "light")
         ),
         why,
         "the shadow rays of surfaces that face away",
@@ -162,12 +159,12 @@ fn planes(plan: &Plan<f64>) -> Need {
             } else {
                 FAILING
             };
-            let what = format!("{} tested for shadows", count(number, "plane"));
+            let what = format!("{} tested for shadows", counted(number, "plane"));
             need(rule, what, why, "nothing")
         }
         (number, false) => need(
             rule,
-            format!("{} never tested for shadows", count(number, "plane")),
+            format!("{} never tested for shadows", counted(number, "plane")),
             "everything the camera can reach is on its side of every plane",
             "a test per plane and shadow ray",
         ),
@@ -183,7 +180,10 @@ fn markers(scene: &Scene, plan: &Plan<f64>) -> Need {
         .filter(|light| light.marker.is_some())
         .count();
     if drawn > 0 {
-        let what = format!("{} drawn, in no shadow test", count(drawn, "light marker"));
+        let what = format!(
+            "{} drawn, in no shadow test",
+            counted(drawn, "light marker")
+        );
         need(
             rule,
             what,
@@ -191,7 +191,7 @@ fn markers(scene: &Scene, plan: &Plan<f64>) -> Need {
             "a test per marker and shadow ray",
         )
     } else if made > 0 {
-        let what = format!("{} left out", count(made, "light marker"));
+        let what = format!("{} left out", counted(made, "light marker"));
         need(
             rule,
             what,
@@ -212,7 +212,7 @@ fn hidden(scene: &Scene) -> Need {
     if hidden == 0 {
         need("hidden", "every object", "none is hidden", "nothing")
     } else {
-        let what = format!("{} left out", count(hidden, "object"));
+        let what = format!("{} left out", counted(hidden, "object"));
         need(
             "hidden",
             what,
@@ -238,14 +238,14 @@ fn faces(plan: &Plan<f64>) -> Need {
         } else {
             FAILING
         };
-        let what = format!("both sides of {}", count(all, "triangle"));
+        let what = format!("both sides of {}", counted(all, "triangle"));
         return need(rule, what, why, "nothing");
     }
     need(
         rule,
         format!(
             "{unseen} of {} left out for the camera, {idle} for the lights",
-            count(all, "triangle")
+            counted(all, "triangle")
         ),
         "they are the far sides of closed convex solids",
         "a test per triangle and ray",
@@ -258,7 +258,7 @@ fn accelerator(plan: &Plan<f64>, faces: usize) -> Need {
     if plan.screen.is_none() {
         return need(rule, "every primitive for every ray", FAILING, "nothing");
     }
-    let what = count(bounded, "bounded primitive");
+    let what = counted(bounded, "bounded primitive");
     if plan.geometry.is_some() {
         need(
             rule,

@@ -106,6 +106,12 @@ pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
         directions.x.like(self.thickness())
     }
 
+    /// Whether it has an outline of its own, beside which nothing of the same thing goes on.
+    #[inline(always)]
+    fn has_outline(&self) -> bool {
+        !Self::IS_ENDLESS
+    }
+
     /// A point of it, and how far from there it reaches.
     fn reach(&self) -> (Vec3<R>, R);
 

@@ -108,6 +108,7 @@ impl<L: SimdFloat> Bounce<L> {
             let parent = mirrored.parents[index].packet;
             let own = &mut self.edges[parent];
             own.near = L::select(active, edge.near.min(own.near), own.near);
+            own.mirrored_shadows = L::select(active, edge.shadows, own.mirrored_shadows);
             let active = active.bits();
             let theirs = &mirrored.signatures[index];
             for (lane, own) in self.signatures[parent].iter_mut().enumerate() {

@@ -114,6 +114,18 @@ impl Candidates {
         !self.has_geometry && self.lists.iter().all(Vec::is_empty)
     }
 
+    /// Whether two of them may have outlines of their own, see [`Primitive::has_outline`].
+    pub fn are_several<R: Real>(&self, plan: &Plan<R>) -> bool {
+        let all = &plan.primitives.triangles;
+        let triangles = self.of(Kind::Triangle).iter();
+        let loose = triangles.filter(|&&index| all[index as usize].has_outline());
+        let round = self.of(Kind::Sphere).len() + self.of(Kind::Disc).len();
+        // Meshes have none.
+        let in_tree = plan.geometry.as_ref().filter(|_| self.has_geometry);
+        in_tree.is_some_and(|geometry| !geometry.primitives.is_empty())
+            || 1 < round + loose.take(2).count()
+    }
+
     /// Becomes those of `from` that can be seen in these columns (or rows).
     pub fn keep_seen<R: Real>(
         &mut self,

@@ -248,6 +248,7 @@ impl<L: SimdFloat> Bounce<L> {
         (stack, rays): (&mut Stack<L::Real>, &mut Rays),
     ) {
         let looks_beside = self.looks_beside();
+        let has_gaps = looks_beside && kernel.may_leave_gaps(&self.lights);
         for index in 0..self.packets.len() {
             let ignored = self.ignored_by(kernel, index);
             let shader = Shader {
@@ -257,6 +258,7 @@ impl<L: SimdFloat> Bounce<L> {
                 looks_beside,
                 thin: &self.thin,
                 lights: &self.lights,
+                gaps: has_gaps.then_some(&self.lights),
             };
             let notes = (self.edges.get_mut(index), self.uncertainties.get_mut(index));
             let packet = &mut self.packets[index];

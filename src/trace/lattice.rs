@@ -2,6 +2,7 @@
 
 use super::points::Points;
 use super::samples::{Samples, THING, Traced};
+use super::shadows::may_leave_gap;
 use super::thresholds::{EDGE_ERROR, FINEST, NEAR, TWISTED, UNEVEN};
 use super::tile::{Tile, TileColors};
 use crate::scene::MAX_HALVINGS;
@@ -21,6 +22,8 @@ pub struct Sample<R> {
     pub values: [R; 4],
     /// Equal where the same is seen.
     pub signature: u32,
+    /// The shadows that end near there, see [`super::shadows`].
+    pub shadows: u32,
 }
 
 impl<R: Real> Sample<R> {
@@ -30,6 +33,7 @@ impl<R: Real> Sample<R> {
         Self {
             values: [red[index], green[index], blue[index], traced.near[index]],
             signature: traced.signature[index],
+            shadows: traced.shadows[index],
         }
     }
 }
@@ -262,6 +266,9 @@ impl<R: Real> Lattice<R> {
             (a.signature ^ b.signature) | (a.signature ^ c.signature) | (a.signature ^ d.signature);
         let is_one = differing == 0;
         if (is_one || SLIPPED <= cell.side) && self.is_near(cell) {
+            return Inside::Anything;
+        }
+        if is_one && may_leave_gap([a.shadows, b.shadows, c.shadows, d.shadows]) {
             return Inside::Anything;
         }
         let mut ranges = [R::ZERO; 4];

@@ -14,6 +14,8 @@ mod tile;
 
 mod samples;
 
+mod shadows;
+
 mod bundle;
 
 mod roots;
@@ -55,6 +57,8 @@ mod order;
 mod outcome;
 
 mod cull;
+
+mod gaps;
 
 mod mirrored;
 

@@ -2,8 +2,9 @@
 
 use super::packet::{EdgeInfo, Packet};
 use super::samples::{THING, Traced};
+use super::shadows::joined as joined_shadows;
 use crate::plan::Plan;
-use crate::simd::{MAX_LANES, Real, SimdFloat, Vec3};
+use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
 
 /// For each ray of a packet what it has hit and which lights shine on it, as one number.
 #[inline(always)]
@@ -75,6 +76,19 @@ fn thing_of<R: Real>(plan: &Plan<R>, number: usize) -> usize {
     in_tree.unwrap_or_else(|| plan.primitives.thing_of(number))
 }
 
+/// Writes which shadows each ray of a packet has found to end near it. Most have found none.
+#[inline(always)]
+fn shadows_of<L: SimdFloat>(edge: &EdgeInfo<L>, shadows: &mut [u32]) {
+    shadows.fill(0);
+    let (direct, mirrored) = (edge.shadows, edge.mirrored_shadows);
+    let mut left = direct.like(L::Real::ZERO).less(direct + mirrored).bits();
+    while left != 0 {
+        let lane = left.trailing_zeros() as usize;
+        left &= left - 1;
+        shadows[lane] = joined_shadows(direct.lane(lane).nearest(), mirrored.lane(lane).nearest());
+    }
+}
+
 /// Writes the colours and edges of all rays, packet by packet.
 #[inline(always)]
 pub fn store<L: SimdFloat>(
@@ -93,7 +107,9 @@ pub fn store<L: SimdFloat>(
     for (index, (edge, signatures)) in edges.iter().zip(signatures).enumerate() {
         let first = index * L::WIDTH;
         edge.near.store(&mut traced.near[first..]);
-        traced.signature[first..first + L::WIDTH].copy_from_slice(&signatures[..L::WIDTH]);
+        let lanes = first..first + L::WIDTH;
+        traced.signature[lanes.clone()].copy_from_slice(&signatures[..L::WIDTH]);
+        shadows_of(edge, &mut traced.shadows[lanes]);
     }
 }
 

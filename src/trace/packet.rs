@@ -40,6 +40,10 @@ pub struct EdgeInfo<L> {
     pub lit: L,
     /// How many pixels away the next thing is that may slip between samples; infinity for none.
     pub near: L,
+    /// Which shadows what was hit is in that end near it, see [`super::shadows`].
+    pub shadows: L,
+    /// The same for what is seen in its mirror.
+    pub mirrored_shadows: L,
 }
 
 impl<L: SimdFloat> Packet<L> {
@@ -66,6 +70,8 @@ impl<L: SimdFloat> EdgeInfo<L> {
             cone,
             lit: cone.width.like(L::Real::ZERO),
             near: cone.width.like(L::Real::INFINITY),
+            shadows: cone.width.like(L::Real::ZERO),
+            mirrored_shadows: cone.width.like(L::Real::ZERO),
         }
     }
 }

@@ -7,6 +7,7 @@ use super::engine::Engine;
 use super::lattice::{Limits, range};
 use super::refinement::Refinement;
 use super::samples::{Edges, Samples, THING, Traced};
+use super::shadows::may_leave_gap;
 use super::thresholds::NEAR;
 use super::tile::{Tile, TileColors};
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
@@ -191,6 +192,7 @@ impl<L: SimdFloat> Sampler<L> {
         self.refinement.clear();
         let quarter = L::splat(token, L::Real::from_f64(0.25));
         let reach = quarter.like_f64(NEAR);
+        let has_shadows = self.traced.shadows.iter().any(|&shadows| shadows != 0);
         for first in (0..length).step_by(L::WIDTH) {
             let mut contrast = quarter.like(L::Real::ZERO);
             for (means, traced) in colors.channels.iter_mut().zip(self.traced.channels()) {
@@ -209,6 +211,19 @@ impl<L: SimdFloat> Sampler<L> {
                 } else {
                     -L::Real::ONE
                 };
+            }
+            if has_shadows {
+                let dark = |from: usize| &self.traced.shadows[from..from + L::WIDTH];
+                let (a, b) = (dark(first), dark(first + 1));
+                let (c, d) = (dark(first + stride), dark(first + stride + 1));
+                for lane in 0..L::WIDTH {
+                    let may_shine = may_leave_gap([a[lane], b[lane], c[lane], d[lane]]);
+                    limit[lane] = if may_shine {
+                        -L::Real::ONE
+                    } else {
+                        limit[lane]
+                    };
+                }
             }
             let [a, b, c, d] = corners_at::<L>(token, &self.traced.near, first, stride);
             let is_near = a.min(b).min(c.min(d)).less(reach);

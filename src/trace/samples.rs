@@ -43,6 +43,8 @@ pub struct Traced<R> {
     pub signature: Vec<u32>,
     /// How many pixels away the next thing is that may slip between samples. Only with edges.
     pub near: Vec<R>,
+    /// Which shadows it is in that end near it, see [`super::shadows`]. Only with edges.
+    pub shadows: Vec<u32>,
 }
 
 /// The bits of signatures that tell things apart which are seen directly; the others also tell which lights shine on
@@ -150,6 +152,7 @@ impl<R: Real> Traced<R> {
             sort(to, from, order);
         }
         sort(&mut self.signature, &other.signature, order);
+        sort(&mut self.shadows, &other.shadows, order);
     }
 
     /// Red, green and blue.
@@ -175,6 +178,9 @@ impl<R: Real> Traced<R> {
             for (&place, &signature) in places.iter().zip(&seen.signature) {
                 self.signature[place as usize] = signature;
             }
+            for (&place, &shadows) in places.iter().zip(&seen.shadows) {
+                self.shadows[place as usize] = shadows;
+            }
         }
     }
 
@@ -198,6 +204,7 @@ impl<R: Real> Traced<R> {
         self.blue.fill(color.z);
         self.near.fill(R::INFINITY);
         self.signature.fill(0);
+        self.shadows.fill(0);
     }
 
     /// Makes room for so many samples, `length` with those that fill the last packet up.
@@ -209,6 +216,7 @@ impl<R: Real> Traced<R> {
         let noted = if edges == Edges::Ignored { 0 } else { length };
         self.near.resize(noted, R::ZERO);
         self.signature.resize(noted, 0);
+        self.shadows.resize(noted, 0);
     }
 
     /// Makes room for packets that begin at any sample; what is seen there means nothing.
@@ -224,5 +232,6 @@ impl<R: Real> Traced<R> {
             column.resize(length, R::ZERO);
         }
         self.signature.resize(length, 0);
+        self.shadows.resize(length, 0);
     }
 }

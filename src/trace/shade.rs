@@ -18,7 +18,7 @@ use super::surface::Hit;
 use super::thin::Gaze;
 use super::thresholds::EDGE_CONTRAST;
 use super::walk::Stack;
-use crate::plan::{PointLight, RayOrigin, Show};
+use crate::plan::{PointLight, Show};
 use crate::primitive::{Blur, roundings};
 use crate::simd::{Mask as _, SimdFloat, Vec3};
 
@@ -39,6 +39,8 @@ pub struct Shader<'a, L: SimdFloat, const TREE: bool> {
     pub thin: &'a Candidates,
     /// What can stand before each light.
     pub lights: &'a [LightCandidates<L::Real>],
+    /// The same, if one may shine between the shadows of two of them, and somebody looks for that.
+    pub gaps: Option<&'a [LightCandidates<L::Real>]>,
 }
 
 /// What is noted of a packet, where it is.
@@ -136,6 +138,14 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 }
                 if let Some(uncertainty) = &mut uncertainty {
                     uncertainty.doubt = uncertainty.doubt | arriving.doubt;
+                }
+                if let (Some(lights), Some(edge)) = (self.gaps, &mut edge)
+                    && let Some(footprint) = point.footprint
+                {
+                    let (hit, lit) = (point.hit, edge.lit);
+                    let brightness = point.coat.brightness(kernel.plan, kernel.splat(0.0));
+                    let seen = (&hit, &footprint, brightness);
+                    edge.shadows = edge.shadows + kernel.shadows_at(lights, seen, lit, stack);
                 }
                 match point.coat {
                     Coat::One(surface) => {
@@ -347,14 +357,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let mut lit = lit_side;
         if !candidates.casters.is_empty() || !candidates.thin.is_empty() {
             let paths = kernel.spawn(hit, l);
-            let reach = match kernel.plan.ray_origin {
-                // What the light is on, within rounding, does not stand before it.
-                RayOrigin::AtHit if light.may_touch => {
-                    distance - distance * part - distance.like(light.rounding)
-                }
-                RayOrigin::AtHit | RayOrigin::Roundings => distance,
-                RayOrigin::Along(start) => distance - distance.like(start),
-            };
+            let reach = kernel.reach_to(light, distance);
             let looks_beside = self.looks_for(&candidates.thin);
             let beside = edge.as_mut().filter(|_| looks_beside);
             let mut thick = None;

@@ -4,8 +4,8 @@ use super::gather::{Gathered, Piece};
 use super::intersect::{Kernel, Nearest};
 use super::parts::Parts;
 use super::paths::{IgnoredPrimitive, Paths};
-use crate::plan::RayOrigin;
-use crate::primitive::{Primitive, Ray, SurfacePoint, WithPrimitive};
+use crate::plan::{PointLight, RayOrigin};
+use crate::primitive::{Primitive, Ray, SurfacePoint, WithPrimitive, roundings};
 use crate::simd::{Real, SimdFloat, Vec3};
 
 /// Hits on one primitive, or on several of a kind.
@@ -143,6 +143,20 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         let ignored = hit.own.only_if(is_at_hit);
         let rays = Ray { origin, direction };
         Paths { rays, ignored }
+    }
+
+    /// How far from the start of such paths something stands before a light that is at a distance from the hits.
+    #[inline(always)]
+    pub fn reach_to(self, light: &PointLight<L::Real>, distance: L) -> L {
+        match self.plan.ray_origin {
+            // What the light is on, within rounding, does not stand before it.
+            RayOrigin::AtHit if light.may_touch => {
+                let part = distance.like(roundings());
+                distance - distance * part - distance.like(light.rounding)
+            }
+            RayOrigin::AtHit | RayOrigin::Roundings => distance,
+            RayOrigin::Along(start) => distance - distance.like(start),
+        }
     }
 }
 

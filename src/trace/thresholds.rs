@@ -4,6 +4,9 @@ use crate::scene::MAX_HALVINGS;
 
 /// Widest thing, in pixels, that may slip between samples.
 pub const SLIPPING: f64 = 2.0;
+/// How far inside of the outline of what casts a shadow, in pixels, all of a pixel is in it: a little more than its
+/// diagonal.
+pub const HIDDEN: f64 = 1.5;
 /// What is in a box that is less than so many pixels large is looked at as one thing. The ball around it then ends
 /// within the pixel beside the rays in which boxes are looked for at all: what a ray finds does not depend on how
 /// far the others of its packet look.

@@ -8,6 +8,7 @@ use super::requests::UiRequests;
 use super::theme::{GRID, ROW, palette};
 use crate::editor::{Edit, Editor, Item, Selection};
 use crate::scene::{About, Hint, Scene, hints};
+use crate::words::counted;
 
 /// Width of the list in points.
 const WIDTH: f32 = 420.0;
@@ -58,7 +59,7 @@ impl SceneCheck {
         if count == 0 {
             return;
         }
-        let words = format!("{count} hint{}", if count == 1 { "" } else { "s" });
+        let words = counted(count, "hint");
         let color = palette(ui.ctx()).accent;
         let button = egui::Button::new((
             icons::text(icons::INFO).color(color),

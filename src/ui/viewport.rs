@@ -14,6 +14,7 @@ use super::upload::{changes, piece, whole};
 use crate::image::Image;
 use crate::plan::Region;
 use crate::scene::{Sampling, Scene};
+use crate::words::counted;
 use crate::worker::Frame;
 
 /// Each picture pixel is a square of screen pixels; a larger picture is averaged, not picked from.
@@ -225,14 +226,12 @@ pub fn describe(frame: &Frame, scene: &Arc<Scene>) -> String {
         Sampling::Centres => "",
         Sampling::Grid(_) | Sampling::Adaptive { .. } => " · smooth",
     };
-    let bounces = scene.render.reflection_limit;
-    let objects = scene.objects.len();
+    let bounces = counted(scene.render.reflection_limit, "bounce");
+    let objects = counted(scene.objects.len(), "object");
     format!(
-        "{size}{edges} · {:.1} ms · {per_pixel:.1} rays/px · {} · {bounces} bounce{} · {objects} object{}",
+        "{size}{edges} · {:.1} ms · {per_pixel:.1} rays/px · {} · {bounces} · {objects}",
         frame.cost.time.as_secs_f64() * 1e3,
         frame.cost.lanes,
-        if bounces == 1 { "" } else { "s" },
-        if objects == 1 { "" } else { "s" },
     )
 }
 

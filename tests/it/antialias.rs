@@ -8,7 +8,8 @@ use glint::lab::{difference, trace_light};
 use glint::mesh::Triangles;
 use glint::plan::RenderRequest;
 use glint::scene::{
-    Disc, EXAMPLES, List, Mesh, Object, Precision, Sampling, Scene, Shape, Sphere, Triangle,
+    Disc, Document, EXAMPLES, List, Mesh, Object, Precision, Sampling, Scene, Shape, Sphere,
+    Triangle,
 };
 use glint::trace::{Rays, RenderControl, Tracer};
 
@@ -273,6 +274,39 @@ fn the_rims_of_discs_are_clean() {
         jagged.psnr < EIGHT_BITS,
         "the measure has no power: {jagged:?}"
     );
+}
+
+/// Shadows of two balls that nearly touch, from above: between them the light is narrower than a pixel. Looked at the
+/// other way, a mirror shows the same.
+const WEDGES: &str = r#"Scene(version: 1, light_visualization: false,
+    color_packs: {
+        "floor": ColorPack(ambient: (60, 60, 60), diffuse: (220, 220, 220), phong_exponent: 0),
+        "mirror": ColorPack(ambient: (0, 0, 0), diffuse: (0, 0, 0), specular: (255, 255, 255), reflective: true),
+    },
+    camera: Camera(position: (0, 100, -30), look_at: (0, -1, 0), up: (0, 0, -1), projection: Orthographic, orthographic_height: 36),
+    objects: [
+        Object(name: "Left", color_pack: "floor", shape: Sphere(center: (-10.02, 30, 0), radius: 10)),
+        Object(name: "Right", color_pack: "floor", shape: Sphere(center: (10.02, 30, 0), radius: 10)),
+        Object(name: "Floor", color_pack: "floor", shape: Plane(point: (0, 0, 0), normal: (0, 1, 0))),
+        Object(name: "Mirror", color_pack: "mirror", shape: Disc(center: (0, 150, -30), normal: (0, -1, 0), radius: 60)),
+    ],
+    lights: [Light(name: "Sun", position: (0, 3000, 3000), intensity: 0.9)])"#;
+
+#[test]
+fn light_between_two_shadows_is_seen() {
+    for look_at in [-DVec3::Y, DVec3::Y] {
+        let mut scene = Document::from_text(WEDGES).expect("a scene").scene;
+        scene.camera.look_at = look_at;
+        let request = RenderRequest {
+            sampling: Sampling::ADAPTIVE,
+            ..RenderRequest::sized(65, 65)
+        };
+        let got = quality(&scene, &request);
+        assert!(
+            got.psnr >= 55.0 && got.worst <= INVISIBLE && got.rays < 4.0,
+            "looking to {look_at}: {got:?}"
+        );
+    }
 }
 
 #[test]

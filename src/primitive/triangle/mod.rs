@@ -130,6 +130,10 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
         }
     }
 
+    fn has_outline(&self) -> bool {
+        self.has_tips && !self.in_mesh
+    }
+
     #[inline(always)]
     fn breadth<L: SimdFloat<Real = R>>(&self, directions: Vec3<L>) -> L {
         let zero = directions.x.like(R::ZERO);
@@ -192,7 +196,6 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
         flat.refine(rays, t)
     }
 
-    /// The distance inside is zero.
     #[inline(always)]
     fn approach<L: SimdFloat<Real = R>>(
         &self,
@@ -230,7 +233,7 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
         Some(Approach {
             from: at,
             to: at,
-            distance: L::select(inside, zero, nearest),
+            distance: L::select(inside, -nearest, nearest),
             size,
         })
     }
@@ -251,21 +254,7 @@ mod tests {
     }
 
     fn triangle(a: Vec3<f32>, b: Vec3<f32>, c: Vec3<f32>) -> PackedTriangle<f32> {
-        let normal = (c - a)
-            .to_dvec3()
-            .cross((b - a).to_dvec3())
-            .try_normalize()
-            .expect("has area");
-        PackedTriangle {
-            corners: [a, b, c],
-            normal: Vec3::from_dvec3(normal),
-            in_mesh: true,
-            thickness: 1.0,
-            has_tips: false,
-            spared: Spared::Lit,
-            longest: 1.0,
-            material: 0,
-        }
+        PackedTriangle::of_mesh([a, b, c].map(Vec3::to_dvec3)).expect("has area")
     }
 
     /// A closed ball of triangles around the origin: an octahedron, each face split `depth` times

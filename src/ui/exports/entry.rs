@@ -2,7 +2,6 @@
 
 use egui::{Image as Picture, TextureHandle, TextureOptions, Ui, vec2};
 
-use super::fields::frames;
 use super::order::{EXPORT, Order};
 use super::progress::show_state;
 use super::video_maker::{VideoMaker, VideoState};
@@ -11,6 +10,7 @@ use crate::export::Sequence;
 use crate::ui::pictures::Pictures;
 use crate::ui::theme::THUMB;
 use crate::ui::upload::whole;
+use crate::words::counted;
 use crate::worker::ExportState;
 
 /// An export that was ordered.
@@ -83,7 +83,7 @@ impl Entry {
         };
         match state.ended.as_ref()? {
             Ok(()) => {
-                let (total, folder) = (frames(state.done.total), state.folder.display());
+                let (total, folder) = (counted(state.done.total, "frame"), state.folder.display());
                 editor.notify(format!("{total} in {folder}"));
                 match &mut self.video {
                     Some(video) => video.make(),

@@ -18,6 +18,7 @@ use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::status::in_words;
 use crate::ui::theme::ROW;
+use crate::words::counted;
 
 /// Frames that are to be made, and how many of them replace files.
 pub type Found = Result<(usize, usize), String>;
@@ -357,12 +358,6 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
     ui.end_row();
 }
 
-/// So many frames, in words.
-pub fn frames(count: usize) -> String {
-    let s = if count == 1 { "" } else { "s" };
-    format!("{count} frame{s}")
-}
-
 /// What will happen: frames, time, room on the disk.
 pub fn forecast(
     settings: &Settings,
@@ -382,10 +377,10 @@ pub fn forecast(
     let (missing, what) = match found {
         None => (
             total,
-            format!("{}, looking into the folder…", frames(total)),
+            format!("{}, looking into the folder…", counted(total, "frame")),
         ),
         Some(Err(error)) => (total, error.clone()),
-        Some(Ok((0, _))) => return format!("all {} are there{video}", frames(total)),
+        Some(Ok((0, _))) => return format!("all {} are there{video}", counted(total, "frame")),
         Some(Ok((missing, replaced))) => {
             let there = total - missing;
             let stay = match there {
@@ -396,7 +391,7 @@ pub fn forecast(
                 0 => String::new(),
                 replaced => format!(", {replaced} replace older files"),
             };
-            let frames = frames(*missing);
+            let frames = counted(*missing, "frame");
             (*missing, format!("{frames} to make{stay}{replace}"))
         }
     };

@@ -2,12 +2,13 @@
 
 use egui::{ProgressBar, RichText, Ui};
 
-use super::fields::{FIELDS, frames};
+use super::fields::FIELDS;
 use super::video_maker::{VideoMaker, VideoState};
 use crate::ui::hint::Hint as _;
 use crate::ui::pictures::Pictures;
 use crate::ui::status::in_words;
 use crate::ui::theme::palette;
+use crate::words::counted;
 use crate::worker::ExportState;
 
 /// How long an export will still take; `None` before its first frame, and while it waits.
@@ -27,9 +28,9 @@ fn progress(state: &ExportState, video: Option<&VideoMaker>) -> (f64, String) {
     let text = match (&state.ended, video) {
         (Some(Ok(())), Some(video)) => return video_progress(video),
         (Some(Ok(())), None) if state.done.written == 0 => {
-            format!("{}, all there already", frames(done))
+            format!("{}, all there already", counted(done, "frame"))
         }
-        (Some(Ok(())), None) => format!("{}, {busy:.1} s", frames(done)),
+        (Some(Ok(())), None) => format!("{}, {busy:.1} s", counted(done, "frame")),
         (Some(Err(_)), _) => format!("{done} of {total}, failed"),
         (None, _) if state.is_paused => format!("{done} of {total}, paused"),
         (None, _) => match seconds_left(state).map(in_words) {
@@ -48,13 +49,13 @@ fn video_progress(video: &VideoMaker) -> (f64, String) {
     let total = video.frames();
     let name = video.path.file_name().unwrap_or_default().to_string_lossy();
     match &video.state {
-        VideoState::Waiting => (0.0, frames(total)),
+        VideoState::Waiting => (0.0, counted(total, "frame")),
         VideoState::Making(done) => {
             let share = *done as f64 / total.max(1) as f64;
             (share, format!("{name}: {done} of {total}"))
         }
-        VideoState::Made => (1.0, format!("{} and {name}", frames(total))),
-        VideoState::Failed(_) => (1.0, format!("{}, but no video", frames(total))),
+        VideoState::Made => (1.0, format!("{} and {name}", counted(total, "frame"))),
+        VideoState::Failed(_) => (1.0, format!("{}, but no video", counted(total, "frame"))),
     }
 }
 

@@ -9,6 +9,7 @@ use crate::editor::Editor;
 use crate::scene::{Animation, Camera, Interpolation, Key};
 use crate::ui::hint::Hint as _;
 use crate::ui::theme::{GRAPH, palette};
+use crate::words::counted;
 
 /// Most places that are looked at; a longer flight is looked at in larger steps.
 const MOST: u64 = 4000;
@@ -63,7 +64,7 @@ impl Graph {
                     ui.small(egui::RichText::new(format!("speed ≤ {fastest:.1}/s")).color(colors.curve));
                     ui.small(egui::RichText::new(format!("turn ≤ {sharpest:.0}°/s")).color(colors.muted));
                     if rough > 0 {
-                        let text = egui::RichText::new(format!("{rough} jump{}", if rough == 1 { "" } else { "s" })).color(colors.accent);
+                        let text = egui::RichText::new(counted(rough, "jump")).color(colors.accent);
                         ui.small(text).hint("Frames where speed or turn changes abruptly, or turns by more than 120° a second");
                     }
                 });

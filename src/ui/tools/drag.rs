@@ -15,6 +15,7 @@ use crate::scene::Shape;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
 use crate::ui::viewport::Place;
+use crate::words::counted;
 
 /// How far away something is that nothing is known of, in world units.
 const SOMEWHERE: f64 = 100.0;
@@ -226,8 +227,7 @@ fn show_frame(view: &View, part: Rect, (at, count): (Pos2, usize)) {
     let fill = colors.accent.gamma_multiply(0.15);
     let line = Stroke::new(1.0, colors.accent);
     view.painter.rect(part, 0, fill, line, StrokeKind::Inside);
-    let plural = if count == 1 { "" } else { "s" };
-    label(&view.painter, at, &format!("{count} item{plural}"));
+    label(&view.painter, at, &counted(count, "item"));
 }
 
 /// Takes digits up. Whether Enter was pressed after some.

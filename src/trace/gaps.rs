@@ -1,0 +1,190 @@
+//! Which shadows hits are in that end near them: between two of those there may be light.
+
+use super::candidates::Among;
+use super::cull::LightCandidates;
+use super::footprint::Footprint;
+use super::intersect::Kernel;
+use super::paths::Paths;
+use super::scan::{Test, scan_lists};
+use super::shadows::{mark_of, weight_of};
+use super::surface::Hit;
+use super::thresholds::{EDGE_CONTRAST, HIDDEN, SLIPPING};
+use super::walk::Stack;
+use crate::primitive::{Blur, Primitive};
+use crate::scene::Methods;
+use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
+
+impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
+    /// Whether some light may leave gaps between the shadows of two of its casters.
+    #[inline(always)]
+    pub fn may_leave_gaps(self, lights: &[LightCandidates<L::Real>]) -> bool {
+        let mut lights = lights.iter().enumerate();
+        lights.any(|(light, candidates)| {
+            weight_of(light).is_some() && candidates.casters.are_several(self.plan)
+        })
+    }
+
+    /// The marks of casters, see [`super::shadows`], in whose shadows hits of this brightness are; `lit` tells which
+    /// lights shine there. Tiles leave out different casters, and the marks are the same in all of them.
+    ///
+    /// Apart: few packets need it, and the others are quicker without.
+    #[inline(never)]
+    pub fn shadows_at(
+        self,
+        lights: &[LightCandidates<L::Real>],
+        (hit, footprint, brightness): (&Hit<L>, &Footprint<L>, L),
+        lit: L,
+        stack: &mut Stack<L::Real>,
+    ) -> L {
+        L::vectorize(
+            self.token,
+            #[inline(always)]
+            || {
+                let mut shadows = self.splat(0.0);
+                for (index, candidates) in lights.iter().enumerate() {
+                    let Some(weight) = weight_of(index) else {
+                        break;
+                    };
+                    if !candidates.casters.are_several(self.plan) {
+                        continue;
+                    }
+                    let light = &self.plan.lights[index];
+                    let to_light = hit.surface.point.like(light.position) - hit.surface.point;
+                    let distance = to_light.length();
+                    let direction = to_light * (self.splat(1.0) / distance);
+                    // The shadow of a light that nobody sees is not seen either.
+                    let seen = hit.surface.normal.dot(direction)
+                        * brightness
+                        * distance.like(light.intensity);
+                    let dark =
+                        hit.here & self.splat(EDGE_CONTRAST).less(seen) & !self.is_lit(lit, index);
+                    if !dark.any() {
+                        continue;
+                    }
+                    let paths = self.spawn(hit, direction);
+                    let among = Among {
+                        candidates: &candidates.casters,
+                        roots: &candidates.roots,
+                        light: None,
+                        idle: &light.idle_faces,
+                    };
+                    let test = DepthTest {
+                        methods: &self.plan.methods,
+                        distance: self.reach_to(light, distance),
+                        slipping: footprint.slipping(),
+                        free: dark,
+                        deepest: self.splat(0.0),
+                        caster: self.splat(0.0),
+                    };
+                    let caster = self.deepest(among, &paths, test, stack);
+                    shadows = shadows + caster * self.splat(weight);
+                }
+                shadows
+            },
+        )
+    }
+
+    /// Where a light shines, by the sum of their bits.
+    #[inline(always)]
+    fn is_lit(self, lit: L, light: usize) -> L::Mask {
+        let mut sums = [L::Real::ZERO; MAX_LANES];
+        lit.store(&mut sums);
+        for sum in &mut sums[..L::WIDTH] {
+            *sum = L::Real::from_f64(f64::from(sum.nearest() >> light & 1));
+        }
+        self.splat(0.0).less(L::load(self.token, &sums))
+    }
+
+    /// The mark of the caster that paths are deepest behind; 0 where one hides all of a pixel, or there is none.
+    #[inline(always)]
+    fn deepest(
+        self,
+        among: Among<L::Real>,
+        paths: &Paths<L>,
+        mut test: DepthTest<L>,
+        stack: &mut Stack<L::Real>,
+    ) -> L {
+        scan_lists(self.plan, among.candidates, paths, &mut test);
+        let exact = Blur::splat(self.token, Blur::NONE);
+        if test.free.any()
+            && let Some(thicket) = self.thicket(among, (test.free, exact))
+        {
+            thicket.scan(paths, stack, &mut test);
+        }
+        L::select(test.free, test.caster, self.splat(0.0))
+    }
+}
+
+/// Looks for the caster that ways are deepest behind.
+struct DepthTest<'a, L: SimdFloat> {
+    methods: &'a Methods,
+    /// How far the ways go.
+    distance: L,
+    /// What is no wider casts no shadow of these.
+    slipping: L,
+    /// Where nothing was met yet that hides all of a pixel.
+    free: L::Mask,
+    /// How far inside of an outline the ways are, and the mark of what that is of.
+    deepest: L,
+    caster: L,
+}
+
+impl<L: SimdFloat> Test<L> for DepthTest<'_, L> {
+    #[inline(always)]
+    fn reach(&self) -> L {
+        L::select(self.free, self.distance, self.distance.like_f64(-1.0))
+    }
+
+    #[inline(always)]
+    fn is_done(&self) -> bool {
+        !self.free.any()
+    }
+
+    #[inline(always)]
+    fn test<P: Primitive<L::Real>>(
+        &mut self,
+        primitive: &P,
+        prepared: &P::Prepared<L>,
+        paths: &Paths<L>,
+        number: usize,
+    ) {
+        let t = paths.distance::<false, P>(primitive, prepared, number, self.methods);
+        let is_met = self.free & t.less(self.distance);
+        if !is_met.any() {
+            return;
+        }
+        let is_wide = is_met & self.slipping.less(primitive.breadth(paths.rays.direction));
+        let Some(depth) = depth(primitive, prepared, paths) else {
+            self.free = self.free & !is_wide;
+            return;
+        };
+        let own = depth.like_f64(mark_of(number));
+        let is_first = self.caster.less(depth.like(L::Real::ONE));
+        let is_equal = depth.same(self.deepest) & own.less(self.caster);
+        let deeper = is_wide & (is_first | self.deepest.less(depth) | is_equal);
+        self.deepest = L::select(deeper, depth, self.deepest);
+        self.caster = L::select(deeper, own, self.caster);
+        let hidden = self.slipping * depth.like_f64(HIDDEN / SLIPPING);
+        self.free = self.free & !(is_wide & hidden.less(depth));
+    }
+}
+
+/// How far inside of the outline of a primitive paths are that meet it, in scene units; `None` for one without an
+/// outline of its own.
+#[inline(always)]
+fn depth<L: SimdFloat, P: Primitive<L::Real>>(
+    primitive: &P,
+    prepared: &P::Prepared<L>,
+    paths: &Paths<L>,
+) -> Option<L> {
+    if !primitive.has_outline() {
+        return None;
+    }
+    let approach = primitive.approach(
+        &paths.rays,
+        prepared,
+        #[inline(always)]
+        |_| true,
+    )?;
+    Some(-approach.distance)
+}

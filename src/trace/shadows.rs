@@ -1,0 +1,103 @@
+//! Which shadows samples are in that end near them: between two of them a pixel may be lit whose corners are all dark.
+//!
+//! A sample notes for each light the caster that it is deepest behind, as a few bits; nothing if that hides all of a
+//! pixel, or if the light shines. Where all corners of a cell are behind one caster or behind what hides it all, so
+//! is its inside: casters with outlines of their own are convex.
+
+/// Lights that are told apart: the first of the scene.
+const LIGHTS: usize = 3;
+/// Bits that tell casters apart. Those of all lights together are exact in any real type.
+const BITS: u32 = 5;
+/// Bits of what is seen directly; above them are those of what is seen in a mirror.
+const DIRECT: u32 = LIGHTS as u32 * BITS;
+
+/// What tells a caster from others, by its number: from 1 on.
+#[inline(always)]
+pub fn mark_of(number: usize) -> f64 {
+    (number % ((1 << BITS) - 1) + 1) as f64
+}
+
+/// What the mark of a caster before a light is multiplied by; `None` for lights that are not told apart.
+#[inline(always)]
+pub fn weight_of(light: usize) -> Option<f64> {
+    (light < LIGHTS).then(|| f64::from(1_u32 << (light as u32 * BITS)))
+}
+
+/// The shadows of a sample: sums of weighted marks, of what is seen directly and of what is seen in its mirror.
+#[inline(always)]
+pub fn joined(direct: u32, mirrored: u32) -> u32 {
+    direct | mirrored << DIRECT
+}
+
+/// Whether some light may shine into a cell between the shadows at its corners: all of them end near there, and they
+/// are not all the same.
+#[inline(always)]
+pub fn may_leave_gap([a, b, c, d]: [u32; 4]) -> bool {
+    let differing = (a ^ b) | (a ^ c) | (a ^ d);
+    noted(a) & noted(b) & noted(c) & noted(d) & noted(differing) != 0
+}
+
+/// The highest bit of each mark that is not zero.
+#[inline(always)]
+fn noted(shadows: u32) -> u32 {
+    const HIGHEST: u32 = {
+        let (mut bits, mut mark) = (0, 0);
+        while mark < 2 * LIGHTS {
+            bits |= 1 << (mark as u32 * BITS + BITS - 1);
+            mark += 1;
+        }
+        bits
+    };
+    const OTHERS: u32 = HIGHEST - (HIGHEST >> (BITS - 1));
+    (((shadows & OTHERS) + OTHERS) | shadows) & HIGHEST
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The shadows of a sample behind such casters of the first lights, none where there is none.
+    fn behind(direct: &[Option<usize>], mirrored: &[Option<usize>]) -> u32 {
+        let sum = |casters: &[Option<usize>]| {
+            let marks = casters.iter().enumerate();
+            let marks = marks.map(|(light, caster)| {
+                caster.map_or(0.0, mark_of) * weight_of(light).expect("few lights")
+            });
+            marks.sum::<f64>() as f32 as u32
+        };
+        joined(sum(direct), sum(mirrored))
+    }
+
+    #[test]
+    fn gaps_are_between_different_shadows_of_one_light() {
+        let last = Some(30);
+        for light in 0..LIGHTS {
+            let of = |caster: Option<usize>| {
+                let mut casters = [None; LIGHTS];
+                casters[light] = caster;
+                casters
+            };
+            for in_mirror in [false, true] {
+                let at = |casters: [Option<usize>; 4]| {
+                    casters.map(|caster| {
+                        if in_mirror {
+                            behind(&[last, None, last], &of(caster))
+                        } else {
+                            behind(&of(caster), &[])
+                        }
+                    })
+                };
+                assert!(may_leave_gap(at([Some(0), Some(1), Some(0), Some(0)])));
+                assert!(may_leave_gap(at([last, last, last, Some(29)])));
+                assert!(!may_leave_gap(at([Some(0); 4])));
+                assert!(!may_leave_gap(at([last; 4])));
+                assert!(!may_leave_gap(at([None; 4])));
+                assert!(!may_leave_gap(at([Some(0), None, Some(1), Some(2)])), "lit");
+            }
+        }
+        // Each of two lights shines at some corner.
+        let (one, other) = (behind(&[Some(1), None], &[]), behind(&[None, Some(1)], &[]));
+        assert!(!may_leave_gap([one, other, one, other]));
+        assert!(weight_of(LIGHTS).is_none());
+    }
+}
