@@ -26,15 +26,15 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// Whether a path that a file in a folder names leads to that folder, or to one within it, links followed: nothing is
 /// read elsewhere, because the file may come from a stranger.
 pub fn stays_inside(folder: &Path, path: &Path) -> bool {
-    let (mut parts, mut depth) = (path.components(), 0_usize);
-    let is_within = parts.all(|part| match part {
-        Component::Normal(_) => {
-            depth += 1;
-            true
-        }
-        Component::ParentDir => depth.checked_sub(1).map(|up| depth = up).is_some(),
-        Component::CurDir => true,
-        Component::RootDir | Component::Prefix(_) => false,
+    let mut depth = 0;
+    let is_within = path.components().all(|part| {
+        depth += match part {
+            Component::Normal(_) => 1,
+            Component::CurDir => 0,
+            Component::ParentDir => -1,
+            Component::RootDir | Component::Prefix(_) => return false,
+        };
+        0 <= depth
     });
     let folder = if folder.as_os_str().is_empty() {
         Path::new(".")

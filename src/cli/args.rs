@@ -8,6 +8,9 @@ use crate::trace::{PoolError, Threads};
 /// More threads than any machine has cores for.
 const MAX_THREADS: u32 = 256;
 
+/// More repetitions than anybody waits for.
+pub const MAX_TIMES: u32 = 1_000_000;
+
 /// How large a picture is to be.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct SizeArgs {

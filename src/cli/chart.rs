@@ -6,10 +6,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 
 use super::action::CliAction;
 use super::args::{ThreadsArgs, whole};
+use super::bar::{SHARE, progress_bar};
 use super::error::{CliError, say};
 use super::goal::{error, time};
 use super::scene::read_scene;
@@ -155,7 +155,7 @@ fn grow(args: &ChartArgs, threads: &Threads) -> Result<Option<CliAction>, CliErr
     if args.povray {
         growth = growth.with_povray();
     }
-    let bar = progress_bar();
+    let bar = progress_bar(BAR, SHARE);
     while threads.run(|| growth.step()) {
         bar.set_position((growth.progress() * BAR as f64) as u64);
     }
@@ -211,18 +211,8 @@ fn share(args: &ChartArgs, scenes: &[(&PathBuf, Scene)]) -> Result<Option<CliAct
     }))
 }
 
-/// Draws to stderr, and only where that is a terminal.
-fn progress_bar() -> ProgressBar {
-    let bar = ProgressBar::new(BAR);
-    let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {eta} left");
-    if let Ok(style) = style {
-        bar.set_style(style);
-    }
-    bar
-}
-
 fn measure(study: &mut Study, threads: &Threads) {
-    let bar = progress_bar();
+    let bar = progress_bar(BAR, SHARE);
     let control = RenderControl::default();
     while threads.run(|| study.step(&control)) {
         bar.set_position((study.progress() * BAR as f64) as u64);

@@ -3,12 +3,13 @@
 
 use std::path::{PathBuf, absolute};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
 use super::args::{SizeArgs, ThreadsArgs};
+use super::bar::{TICK, progress_bar, restyle};
 use super::error::{CliError, say};
 use super::scene::missing_meshes;
 use crate::export::{ExportError, ExportStep, Exported, Exporting};
@@ -17,9 +18,6 @@ use crate::image::Format;
 use crate::scene::{Document, Method as _, Sampling, Scene};
 use crate::trace::{RenderControl, Threads};
 use crate::words::counted;
-
-/// Time between two looks of the progress bar.
-const TICK: Duration = Duration::from_millis(100);
 
 /// What is exported, for a folder and for a job.
 #[derive(Debug, Args)]
@@ -188,11 +186,7 @@ fn bar(sequence: &Sequence, is_openjd: bool, style: &str) -> ProgressBar {
     if is_openjd {
         return ProgressBar::hidden();
     }
-    let bar = ProgressBar::new(sequence.frames.count() as u64);
-    let bar = match ProgressStyle::with_template(style) {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    };
+    let bar = progress_bar(sequence.frames.count() as u64, style);
     // The first frame may take a while.
     bar.enable_steady_tick(TICK);
     bar
@@ -215,9 +209,7 @@ impl ProgressReporter {
         let so_far = done.kept + done.written;
         if self.bar.position() == 0 && so_far > 0 {
             let style = "{spinner} {bar:32} {pos}/{len} frames  {per_sec}  {eta} left";
-            if let Ok(style) = ProgressStyle::with_template(style) {
-                self.bar.set_style(style);
-            }
+            restyle(&self.bar, style);
         }
         self.bar.set_position(so_far as u64);
         if self.is_openjd {

@@ -5,6 +5,8 @@ mod error;
 
 mod args;
 
+mod bar;
+
 mod scene;
 
 mod target;

@@ -7,10 +7,10 @@ use std::sync::mpsc::RecvTimeoutError;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
-use super::args::{SizeArgs, ThreadsArgs, whole};
+use super::args::{MAX_TIMES, SizeArgs, ThreadsArgs, whole};
+use super::bar::{SHARE, TICK, progress_bar};
 use super::error::{CliError, say};
 use super::goal::{error, time};
 use super::scene::read_scene;
@@ -25,12 +25,6 @@ use crate::scene::{Aspect, Method as _, Projection, Scene};
 use crate::simd::Level;
 use crate::trace::{Rays, RenderControl, Threads};
 use crate::worker::run_in_background;
-
-/// Time after which a running render is worth a progress bar, and between its updates.
-const PROGRESS_TICK: Duration = Duration::from_millis(100);
-
-/// More repetitions than anybody waits for.
-const MAX_REPEATS: u32 = 1_000_000;
 
 #[derive(Debug, Args)]
 pub struct RenderArgs {
@@ -63,7 +57,7 @@ pub struct RenderArgs {
     #[command(flatten)]
     threads: ThreadsArgs,
     /// Trace so many times; the statistics take the median
-    #[arg(long, default_value = "1", value_parser = whole::<1, MAX_REPEATS>)]
+    #[arg(long, default_value = "1", value_parser = whole::<1, MAX_TIMES>)]
     repeat: u32,
     /// Print one JSON object about the trace on stdout
     #[arg(long)]
@@ -251,19 +245,13 @@ fn with_bar<T: Send + 'static>(
         let control = Arc::clone(&control);
         move || work(&control)
     });
-    let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {eta} left");
     let mut bar = None;
     loop {
-        match result.recv_timeout(PROGRESS_TICK) {
+        match result.recv_timeout(TICK) {
             Ok(done) => return Some(done),
             Err(RecvTimeoutError::Disconnected) => return None,
             Err(RecvTimeoutError::Timeout) => {
-                // Draws to stderr, and only where that is a terminal.
-                let bar = bar.get_or_insert_with(|| {
-                    let bar = ProgressBar::new(total);
-                    style.iter().cloned().for_each(|style| bar.set_style(style));
-                    bar
-                });
+                let bar = bar.get_or_insert_with(|| progress_bar(total, SHARE));
                 bar.set_position(control.pixels.load(Ordering::Relaxed));
             }
         }

@@ -5,15 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::action::CliAction;
-use super::args::whole;
-
+use super::args::{MAX_TIMES, whole};
 use super::error::{CliError, say};
 use super::target::{check_text, picture_format};
 use crate::export::write_text;
 use crate::lab::stability::{cells_csv, maps, summary};
-
-/// More effort than anybody waits for.
-const MAX_EFFORT: u32 = 1_000_000;
 
 #[derive(Debug, Args)]
 pub struct StabilityArgs {
@@ -24,7 +20,7 @@ pub struct StabilityArgs {
     #[arg(long, value_name = "IMAGE")]
     png: Option<PathBuf>,
     /// Try so many times more rays than for a first look
-    #[arg(long, default_value = "1", value_parser = whole::<1, MAX_EFFORT>)]
+    #[arg(long, default_value = "1", value_parser = whole::<1, MAX_TIMES>)]
     effort: u32,
 }
 
