@@ -289,7 +289,7 @@ mod tests {
             samples.push(x, y);
         }
         samples.pad(1);
-        let mut pixel = [Cell::pixel(0, 0)];
+        let mut pixel = [Cell::pixel(0, 0, false)];
         lattice.start(&PIXEL, &see(&samples, &is_white), &mut pixel);
         let mut colors = TileColors::default();
         colors.clear(1, 1);

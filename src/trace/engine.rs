@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::bounce::Bounce;
 use super::candidates::Candidates;
 use super::cull::Scratch;
+use super::faces::note_faces;
 use super::intersect::Kernel;
 use super::outcome::clamped;
 use super::samples::{Edges, Samples, Traced};
@@ -107,6 +108,13 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
             || self.trace_vectorized(samples, seen, edges, traced),
         );
         let is_anything_seen = !seen.is_empty() && !self.is_stopped();
+        // Empty in most scenes, and small where it is not: beside the kernel, which is quicker without.
+        traced.faces.clear();
+        if TREE && edges == Edges::Near && is_anything_seen {
+            let bounce = &self.work.bounces[0];
+            let packets = (&bounce.packets[..], &bounce.order.samples[..]);
+            note_faces(self.kernel.plan, packets, traced);
+        }
         if let Some(reference) = self.reference.filter(|_| is_anything_seen) {
             self.repeat(reference, samples, edges, traced);
         }

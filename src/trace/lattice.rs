@@ -58,18 +58,21 @@ pub struct Cell {
     pub side: u16,
     /// Whether its corners know what may slip between them, or samples beside them did.
     is_watched: bool,
+    /// Whether it may show a face of a mesh that no corner is on.
+    may_hide_face: bool,
     /// The samples at its corners: upper left and right, lower left and right.
     pub corners: [u32; 4],
 }
 
 impl Cell {
     /// A pixel of a tile, whose samples [`Lattice::start`] finds.
-    pub fn pixel(column: usize, row: usize) -> Self {
+    pub fn pixel(column: usize, row: usize, may_hide_face: bool) -> Self {
         Self {
             x: (column * FINEST) as u16,
             y: (row * FINEST) as u16,
             side: FINEST as u16,
             is_watched: true,
+            may_hide_face,
             corners: [0; 4],
         }
     }
@@ -268,7 +271,8 @@ impl<R: Real> Lattice<R> {
         if (is_one || SLIPPED <= cell.side) && self.is_near(cell) {
             return Inside::Anything;
         }
-        if is_one && may_leave_gap([a.shadows, b.shadows, c.shadows, d.shadows]) {
+        let shadows = [a.shadows, b.shadows, c.shadows, d.shadows];
+        if is_one && (cell.may_hide_face || may_leave_gap(shadows)) {
             return Inside::Anything;
         }
         let mut ranges = [R::ZERO; 4];
@@ -359,6 +363,7 @@ impl<R: Real> Lattice<R> {
             y,
             side: half,
             is_watched: cell.is_watched,
+            may_hide_face: false,
             corners,
         };
         cells.extend([
@@ -395,7 +400,7 @@ mod tests {
             columns: 0..1,
             rows: 0..1,
         };
-        let (mut lattice, mut pixel) = (Lattice::new(), [Cell::pixel(0, 0)]);
+        let (mut lattice, mut pixel) = (Lattice::new(), [Cell::pixel(0, 0, false)]);
         lattice.start(&tile, &traced(&corners), &mut pixel);
         let [pixel] = pixel;
         let at = lattice.want_middle(&pixel);

@@ -64,6 +64,8 @@ mod mirrored;
 
 mod shade;
 
+mod faces;
+
 mod bounce;
 
 mod forth;

@@ -40,10 +40,10 @@ impl<R: Real> Refinement<R> {
         self.even.clear();
     }
 
-    /// Adds a pixel of a tile.
+    /// Adds a pixel of a tile, and whether it may show a face of a mesh that no corner is on.
     #[inline(always)]
-    pub fn add(&mut self, column: usize, row: usize) {
-        self.split.push(Cell::pixel(column, row));
+    pub fn add(&mut self, column: usize, row: usize, may_hide_face: bool) {
+        self.split.push(Cell::pixel(column, row, may_hide_face));
     }
 
     /// Starts with the pixels that were added, whose colours become nothing, and with what was seen at the corners of

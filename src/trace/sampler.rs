@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::candidates::Candidates;
 use super::engine::Engine;
+use super::faces::may_hide_face;
 use super::lattice::{Limits, range};
 use super::refinement::Refinement;
 use super::samples::{Edges, Samples, THING, Traced};
@@ -192,6 +193,7 @@ impl<L: SimdFloat> Sampler<L> {
         self.refinement.clear();
         let quarter = L::splat(token, L::Real::from_f64(0.25));
         let reach = quarter.like_f64(NEAR);
+        let has_faces = !self.traced.faces.is_empty();
         let has_shadows = self.traced.shadows.iter().any(|&shadows| shadows != 0);
         for first in (0..length).step_by(L::WIDTH) {
             let mut contrast = quarter.like(L::Real::ZERO);
@@ -229,14 +231,21 @@ impl<L: SimdFloat> Sampler<L> {
             let is_near = a.min(b).min(c.min(d)).less(reach);
             let wanting = is_near | L::load(token, &limit).less(contrast);
             let mut left = wanting.bits();
+            let hiding = if has_faces {
+                hiding_at(&self.traced.faces, (first, stride), L::WIDTH)
+            } else {
+                0
+            };
+            left |= hiding;
             while left != 0 {
-                let index = first + left.trailing_zeros() as usize;
+                let lane = left.trailing_zeros() as usize;
+                let index = first + lane;
                 left &= left - 1;
                 let (column, row) = (index % stride, index / stride);
                 if column == width || row >= tile.rows.len() {
                     continue;
                 }
-                self.refinement.add(column, row);
+                self.refinement.add(column, row, hiding >> lane & 1 == 1);
             }
         }
     }
@@ -253,4 +262,20 @@ fn corners_at<L: SimdFloat>(
     let at = |from: usize| L::load(token, &traced[from..]);
     let below = first + stride;
     [at(first), at(first + 1), at(below), at(below + 1)]
+}
+
+/// Which cells, of so many from one on, may show a face of a mesh that no corner is on.
+fn hiding_at(faces: &[u32], (first, stride): (usize, usize), count: usize) -> u64 {
+    let mut hiding = 0;
+    for cell in 0..count {
+        let (above, below) = (first + cell, first + stride + cell);
+        let corners = [
+            faces[above],
+            faces[above + 1],
+            faces[below],
+            faces[below + 1],
+        ];
+        hiding |= u64::from(may_hide_face(corners)) << cell;
+    }
+    hiding
 }

@@ -45,6 +45,8 @@ pub struct Traced<R> {
     pub near: Vec<R>,
     /// Which shadows it is in that end near it, see [`super::shadows`]. Only with edges.
     pub shadows: Vec<u32>,
+    /// Which flat face it is on, see [`super::faces`]; empty in scenes without. Only with [`Edges::Near`].
+    pub faces: Vec<u32>,
 }
 
 /// The bits of signatures that tell things apart which are seen directly; the others also tell which lights shine on
@@ -153,6 +155,7 @@ impl<R: Real> Traced<R> {
         }
         sort(&mut self.signature, &other.signature, order);
         sort(&mut self.shadows, &other.shadows, order);
+        sort(&mut self.faces, &other.faces, order);
     }
 
     /// Red, green and blue.
@@ -180,6 +183,9 @@ impl<R: Real> Traced<R> {
             }
             for (&place, &shadows) in places.iter().zip(&seen.shadows) {
                 self.shadows[place as usize] = shadows;
+            }
+            for (&place, &face) in places.iter().zip(&seen.faces) {
+                self.faces[place as usize] = face;
             }
         }
     }
@@ -233,5 +239,8 @@ impl<R: Real> Traced<R> {
         }
         self.signature.resize(length, 0);
         self.shadows.resize(length, 0);
+        if !self.faces.is_empty() {
+            self.faces.resize(length, 0);
+        }
     }
 }

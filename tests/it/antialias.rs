@@ -309,6 +309,34 @@ fn light_between_two_shadows_is_seen() {
     }
 }
 
+/// A fan of faces from above: two dark ones of one colour, and between them a bright one, narrower than a pixel nearly
+/// all the way, which lies between the corners of pixels.
+const FAN: &str = r#"Scene(version: 1, light_visualization: false,
+    color_packs: {
+        "paper": ColorPack(ambient: (20, 20, 20), diffuse: (220, 200, 180), specular: (0, 0, 0)),
+    },
+    camera: Camera(position: (0, 100, 0), look_at: (0, -1, 0), up: (0, 0, -1), projection: Orthographic, orthographic_height: 8),
+    objects: [
+        Object(name: "Fan", color_pack: "paper", shape: Mesh(
+            points: [(0, 0, 0), (5, -6, 5), (0.12, 5, 5), (-0.12, 5, 5), (-5, -6, 5), (-5, 0, -5), (5, 0, -5)],
+            faces: [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5), (0, 5, 6), (0, 6, 1)])),
+    ],
+    lights: [Light(name: "Sun", position: (0, 3000, 0), intensity: 0.9)])"#;
+
+#[test]
+fn a_face_between_two_others_is_seen() {
+    let scene = Document::from_text(FAN).expect("a scene").scene;
+    let request = RenderRequest {
+        sampling: Sampling::ADAPTIVE,
+        ..RenderRequest::sized(65, 65)
+    };
+    let got = quality(&scene, &request);
+    assert!(
+        got.psnr >= EIGHT_BITS && got.worst <= INVISIBLE && got.rays < 5.0,
+        "{got:?}"
+    );
+}
+
 #[test]
 fn what_strongly_curved_mirrors_show_and_highlights_in_corners_of_pixels_are_seen() {
     for name in ["mirrors", "sunflower"] {
