@@ -360,8 +360,9 @@ pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>) {
     let mut bvh = Bvh::new(triangles.len(), |number| member(&triangles[number]));
     let parts = measure(triangles, &corners, &mut bvh).parts;
     primitives.things = things(&parts);
-    for (triangle, thing) in primitives.triangles.iter_mut().zip(&primitives.things) {
-        triangle.has_tips = thing.is_none();
+    for (index, triangle) in primitives.triangles.iter_mut().enumerate() {
+        let thing = primitives.things.get(index).copied().flatten();
+        triangle.has_tips |= thing.is_none();
     }
 }
 

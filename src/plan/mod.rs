@@ -12,6 +12,8 @@ mod cast;
 
 mod parts;
 
+mod tips;
+
 mod thickness;
 
 mod smooth;

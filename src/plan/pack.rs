@@ -23,7 +23,8 @@ use crate::primitive::{
     count_corner_users,
 };
 use crate::scene::{
-    Accelerator, Camera, LightObj, Methods, Object, Sampling, Scene, Shape, Sphere, SphereMethod,
+    Accelerator, Camera, Frame, LightObj, Methods, Object, Sampling, Scene, Shape, Sphere,
+    SphereMethod,
 };
 use crate::simd::{Real, Vec3};
 
@@ -88,6 +89,8 @@ pub struct Plan<R> {
     /// What is met so near to a hit is in its surface.
     pub clearance: R,
     /// The largest coordinate of what ends.
+    pub farthest: R,
+    /// The same without what is much farther away than most, see [`Frame`].
     pub extent: R,
     /// How far the camera's rays may be beside their place; nothing where nobody asks what that leaves undecided.
     pub blur: Blur<R>,
@@ -102,13 +105,15 @@ const SMOOTH_MARGIN: f64 = 4.0;
 impl<R: Real> Plan<R> {
     /// Packs what `request` of `scene` can show. The scene must pass [`crate::scene::check`].
     pub fn new(scene: &Scene, request: &RenderRequest, kept: &mut Kept<R>) -> Self {
-        let bounds = scene.objects_bounds();
-        let centre = match bounds {
-            _ if request.model == Model::Unrebased => DVec3::ZERO,
-            Some((low, high)) => low * 0.5 + high * 0.5,
-            None => scene.camera.position,
+        let frame = Frame::of(scene).unwrap_or(Frame {
+            centre: scene.camera.position,
+            farthest: 0.0,
+            extent: 0.0,
+        });
+        let centre = match request.model {
+            Model::Unrebased => DVec3::ZERO,
+            _ => frame.centre,
         };
-        let half = bounds.map_or(0.0, |(low, high)| (high * 0.5 - low * 0.5).max_element());
         let (occluders, model) = (classify_planes(scene, request), request.model);
         // The classic formula hits spheres where they are not: that must show.
         let is_whole = matches!(model, Model::Unculled | Model::Everything);
@@ -140,7 +145,8 @@ impl<R: Real> Plan<R> {
             eye_on: None,
             ties: Vec::new(),
             clearance: R::ZERO,
-            extent: R::from_f64(half),
+            farthest: R::from_f64(frame.farthest),
+            extent: R::from_f64(frame.extent),
             blur: Blur::NONE,
         };
         let found = kept.coincidences(&scene.objects, centre);

@@ -11,7 +11,7 @@ use super::parts::{first_of_parts, volume};
 use super::smooth::{corner_normals, largest_lift};
 use super::thickness::{Measures, measures};
 use crate::mesh::Triangles;
-use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle};
+use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle, Primitive};
 use crate::scene::Mesh;
 use crate::simd::{Real, Vec3};
 
@@ -142,8 +142,10 @@ pub fn measure<R: Real>(
     bvh: &mut Bvh<R>,
 ) -> Measures<R> {
     let measures = measures(triangles, faces, bvh);
-    for (triangle, &thickness) in triangles.iter_mut().zip(&measures.thicknesses) {
+    let measured = measures.thicknesses.iter().zip(&measures.tips);
+    for (triangle, (&thickness, &has_tips)) in triangles.iter_mut().zip(measured) {
         triangle.thickness = triangle.thickness.max(thickness);
+        triangle.has_tips = has_tips;
     }
     bvh.refit(|number| member(&triangles[number]));
     measures
@@ -160,7 +162,7 @@ fn reach<R: Real>(triangles: &[PackedTriangle<R>], from: Vec3<R>) -> R {
 pub fn member<R: Real>(triangle: &PackedTriangle<R>) -> Member<R> {
     Member {
         bounds: BoundingBox::around(&triangle.corners),
-        thickness: triangle.thickness,
+        thickness: Primitive::thickness(triangle),
     }
 }
 

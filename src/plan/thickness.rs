@@ -7,6 +7,7 @@ use rayon::slice::ParallelSliceMut as _;
 use super::bvh::{Bvh, Child};
 use super::cast::cast;
 use super::parts::{inside_out, parts_along_edges};
+use super::tips::tips;
 use crate::primitive::PackedTriangle;
 use crate::simd::{Real, Vec3};
 
@@ -49,6 +50,7 @@ pub fn measures<R: Real>(
         *thickness = thickness.min(width);
     }
     Measures {
+        tips: tips(triangles, points, &borders.faces),
         thicknesses,
         is_closed: borders.is_closed(),
         parts,
@@ -74,6 +76,8 @@ type Edge = (u32, u32, u32);
 pub struct Measures<R> {
     /// For each triangle how thick the mesh is there, at least.
     pub thicknesses: Vec<R>,
+    /// For each triangle whether it ends in something narrower, see [`tips`].
+    pub tips: Vec<bool>,
     /// Whether every edge is passed once in each direction: it has an inside.
     pub is_closed: bool,
     /// For each triangle the part that it is connected with, along edges and in one material.

@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::camera::{Camera, Projection};
 use super::coincidence::{Coincidence, Extent, coincidences};
 use super::direction::unit;
+use super::frame::Frame;
 use super::shape::Shape;
 use super::whole::Scene;
 
@@ -55,9 +56,7 @@ pub fn hints(scene: &Scene) -> Vec<Hint> {
             is_twice,
         });
     };
-    let extent = scene
-        .objects_bounds()
-        .map_or(1.0, |(low, high)| (high - low).length());
+    let extent = Frame::of(scene).map_or(1.0, |frame| 2.0 * frame.extent);
     let visible = scene.objects.iter().enumerate();
     let visible = || visible.clone().filter(|(_, object)| object.visible);
     let eye = scene.camera.position;
@@ -107,9 +106,7 @@ fn worn(scene: &Scene) -> HashSet<&String> {
 
 /// Visible objects that fill the same surface.
 fn add_coincident(scene: &Scene, add: &mut impl FnMut(String, About, bool)) {
-    let centre = scene
-        .objects_bounds()
-        .map_or(DVec3::ZERO, |(low, high)| low * 0.5 + high * 0.5);
+    let centre = Frame::of(scene).map_or(DVec3::ZERO, |frame| frame.centre);
     let mut last = None;
     let found = coincidences(&scene.objects, centre).into_iter();
     for found in found {

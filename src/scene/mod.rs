@@ -38,6 +38,8 @@ mod keys;
 
 mod whole;
 
+mod frame;
+
 mod differences;
 
 mod aspect;
@@ -74,6 +76,7 @@ pub use differences::differences;
 pub use direction::unit;
 pub use examples::{EXAMPLES, Example};
 pub use file::{DEMO_TEXT, Document, SceneError, read_text};
+pub use frame::Frame;
 pub use hints::{About, Hint, hints};
 pub use join::MOST_SEPARATE;
 pub use list::List;

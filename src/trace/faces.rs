@@ -58,8 +58,7 @@ fn mark_at<R: Real>(geometry: &Geometry<R>, number: f64) -> u32 {
             let loose = &geometry.primitives;
             // Planes stand in no tree: spheres are first.
             let triangle = index.checked_sub(loose.spheres.len());
-            let triangle = triangle.and_then(|triangle| loose.triangles.get(triangle));
-            triangle.filter(|triangle| !triangle.has_tips)
+            triangle.and_then(|triangle| loose.triangles.get(triangle))
         }
     };
     face.map_or(0, |face| mark_of(face.corners))

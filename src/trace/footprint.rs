@@ -1,6 +1,6 @@
 //! How large a pixel is: along rays, and on what they meet.
 
-use super::thresholds::{GRAZING, HIGHLIGHT_REACH, SLIPPING};
+use super::thresholds::{GRAZING, HIDDEN, HIGHLIGHT_REACH, SLIPPING};
 use crate::simd::{Real, SimdFloat};
 
 /// How wide a pixel is along rays: where they start, and how much wider at distance 1.
@@ -76,6 +76,12 @@ impl<L: SimdFloat> Footprint<L> {
     #[inline(always)]
     pub fn slipping(&self) -> L {
         self.length * self.length.like_f64(SLIPPING)
+    }
+
+    /// How far inside of a shadow all of a pixel is in it.
+    #[inline(always)]
+    pub fn hidden(&self) -> L {
+        self.length * self.length.like_f64(HIDDEN)
     }
 
     /// How much wider a pixel becomes along the rays that come here.

@@ -157,7 +157,7 @@ impl<L: SimdFloat> Bounce<L> {
         } else {
             let blur = widest_blur(kernel.token, &self.uncertainties);
             let around = bounds.around().max_abs();
-            farthest_off(blur.at(farthest), around + plan.extent + plan.extent)
+            farthest_off(blur.at(farthest), around + plan.farthest + plan.farthest)
         };
         ball.radius += off.to_f64();
         if plan.screen.is_some() {

@@ -8,7 +8,7 @@ use super::paths::Paths;
 use super::scan::{Test, scan_lists};
 use super::shadows::{mark_of, weight_of};
 use super::surface::Hit;
-use super::thresholds::{EDGE_CONTRAST, HIDDEN, SLIPPING};
+use super::thresholds::EDGE_CONTRAST;
 use super::walk::Stack;
 use crate::primitive::{Blur, Primitive};
 use crate::scene::Methods;
@@ -71,7 +71,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     let test = DepthTest {
                         methods: &self.plan.methods,
                         distance: self.reach_to(light, distance),
-                        slipping: footprint.slipping(),
+                        deep: footprint.hidden(),
                         free: dark,
                         deepest: self.splat(0.0),
                         caster: self.splat(0.0),
@@ -120,8 +120,8 @@ struct DepthTest<'a, L: SimdFloat> {
     methods: &'a Methods,
     /// How far the ways go.
     distance: L,
-    /// What is no wider casts no shadow of these.
-    slipping: L,
+    /// What is deeper inside of an outline hides all of a pixel.
+    deep: L,
     /// Where nothing was met yet that hides all of a pixel.
     free: L::Mask,
     /// How far inside of an outline the ways are, and the mark of what that is of.
@@ -153,19 +153,17 @@ impl<L: SimdFloat> Test<L> for DepthTest<'_, L> {
         if !is_met.any() {
             return;
         }
-        let is_wide = is_met & self.slipping.less(primitive.breadth(paths.rays.direction));
         let Some(depth) = depth(primitive, prepared, paths) else {
-            self.free = self.free & !is_wide;
+            self.free = self.free & !is_met;
             return;
         };
         let own = depth.like_f64(mark_of(number));
         let is_first = self.caster.less(depth.like(L::Real::ONE));
         let is_equal = depth.same(self.deepest) & own.less(self.caster);
-        let deeper = is_wide & (is_first | self.deepest.less(depth) | is_equal);
+        let deeper = is_met & (is_first | self.deepest.less(depth) | is_equal);
         self.deepest = L::select(deeper, depth, self.deepest);
         self.caster = L::select(deeper, own, self.caster);
-        let hidden = self.slipping * depth.like_f64(HIDDEN / SLIPPING);
-        self.free = self.free & !(is_wide & hidden.less(depth));
+        self.free = self.free & !(is_met & self.deep.less(depth));
     }
 }
 

@@ -337,6 +337,37 @@ fn a_face_between_two_others_is_seen() {
     );
 }
 
+/// Meshes that are narrower than they are thick: a card from its side, and the point of a spike; and their shadows.
+const NARROW: &str = r#"Scene(version: 1, light_visualization: false,
+    color_packs: {
+        "paper": ColorPack(ambient: (20, 20, 20), diffuse: (220, 200, 180), specular: (0, 0, 0)),
+        "floor": ColorPack(ambient: (60, 60, 60), diffuse: (120, 130, 140), specular: (0, 0, 0)),
+    },
+    camera: Camera(position: (0, 100, 0), look_at: (0, -1, 0), up: (0, 0, -1), projection: Orthographic, orthographic_height: 8),
+    objects: [
+        Object(name: "Card from the side", color_pack: "paper", shape: Mesh(
+            points: [(-3, 0, 0.03), (3, 0, 0.05), (3, -5, 0.12), (-3, -5, 0.1)], faces: [(0, 1, 2), (0, 2, 3)])),
+        Object(name: "Spike", color_pack: "paper", shape: Mesh(
+            points: [(3.4, 0, -2.9), (-3.4, 0, -3.2), (-3.4, 0.3, -2.9), (-3.4, 0, -2.6), (-3.4, -0.3, -2.9)],
+            faces: [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 1), (1, 3, 2), (1, 4, 3)])),
+        Object(name: "Floor", color_pack: "floor", shape: Plane(point: (0, -6, 0), normal: (0, 1, 0))),
+    ],
+    lights: [Light(name: "Sun", position: (200, 3000, -600), intensity: 0.9)])"#;
+
+#[test]
+fn the_sides_and_tips_of_meshes_are_seen_and_cast_shadows() {
+    let scene = Document::from_text(NARROW).expect("a scene").scene;
+    let request = RenderRequest {
+        sampling: Sampling::ADAPTIVE,
+        ..RenderRequest::sized(65, 65)
+    };
+    let got = quality(&scene, &request);
+    assert!(
+        got.psnr >= 52.0 && got.worst <= INVISIBLE && got.rays < 15.0,
+        "{got:?}"
+    );
+}
+
 #[test]
 fn what_strongly_curved_mirrors_show_and_highlights_in_corners_of_pixels_are_seen() {
     for name in ["mirrors", "sunflower"] {

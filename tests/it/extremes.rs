@@ -5,10 +5,11 @@ use std::collections::HashSet;
 
 use glam::DVec3;
 use glint::image::{Image, render};
+use glint::mesh::SOLIDS;
 use glint::plan::RenderRequest;
 use glint::scene::{
-    Accelerator, Camera, ColorPack, Light, List, MAX_REFLECTIONS, MAX_SIDE, Object, Plane,
-    Sampling, Scene, Shape, Sphere, Triangle, check,
+    Accelerator, Camera, ColorPack, Light, List, MAX_REFLECTIONS, MAX_SIDE, Mesh, Object, Plane,
+    Sampling, Scene, Shape, Sphere, Triangle, check, hints,
 };
 use glint::trace::{RenderControl, Threads};
 
@@ -18,6 +19,13 @@ use crate::scalar::assert_agreed;
 fn drawn(scene: &Scene, request: &RenderRequest) -> Image {
     let traced = render(scene, request, &RenderControl::default());
     traced.expect("not stopped").0
+}
+
+/// How many pixels of two pictures differ by more than one level.
+fn differing(one: &Image, other: &Image) -> usize {
+    let pairs = one.pixels.iter().zip(&other.pixels);
+    let is_off = |(a, b): &(&[u8; 4], &[u8; 4])| (0..3).any(|c| a[c].abs_diff(b[c]) > 1);
+    pairs.filter(is_off).count()
 }
 
 /// The demo so many times as large, and elsewhere.
@@ -46,6 +54,38 @@ fn demo(scale: f64, by: DVec3) -> Scene {
 }
 
 #[test]
+fn something_very_far_away_changes_nothing_else() {
+    let mut scene = Scene::demo();
+    let solid = SOLIDS.iter().find(|solid| solid.name == "Torus");
+    let torus = Mesh {
+        position: DVec3::new(140.0, 40.0, -60.0),
+        ..Mesh::of((solid.expect("there is one").make)(15.0))
+    };
+    scene
+        .objects
+        .push(Object::new("Torus", "tetrahedron", torus));
+    let request = RenderRequest::sized(200, 150);
+    let known = drawn(&scene, &request);
+    for place in [
+        DVec3::X * 1e9,
+        DVec3::new(3e7, 1e8, 2e9),
+        DVec3::splat(-1e11),
+    ] {
+        let mut scene = scene.clone();
+        let far = Sphere {
+            center: place,
+            radius: 20.0,
+        };
+        scene.objects.push(Object::new("Far", "sphere 2", far));
+        let off = differing(&known, &drawn(&scene, &request));
+        assert!(off <= 3, "{off} pixels with a ball at {place}");
+        // What is said of it is that it is small, at most.
+        let said = hints(&scene).len();
+        assert!(said <= 1 + hints(&Scene::demo()).len(), "{said} hints");
+    }
+}
+
+#[test]
 fn a_scene_of_any_size_anywhere_shows_the_same() {
     let request = RenderRequest::sized(200, 150);
     let known = drawn(&demo(1.0, DVec3::ZERO), &request);
@@ -63,9 +103,7 @@ fn a_scene_of_any_size_anywhere_shows_the_same() {
         let scene = demo(scale, far * away);
         assert_eq!(check(&scene), Ok(()));
         let other = drawn(&scene, &request);
-        let pairs = known.pixels.iter().zip(&other.pixels);
-        let differ = pairs.filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 1));
-        let differ = differ.count();
+        let differ = differing(&known, &other);
         assert!(
             differ * 500 <= known.pixels.len(),
             "{scale:e} times as large, {away:e} away: {differ} pixels"

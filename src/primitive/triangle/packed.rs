@@ -32,7 +32,7 @@ pub struct PackedTriangle<R> {
     pub in_mesh: bool,
     /// Its smallest altitude.
     pub thickness: R,
-    /// Whether its corners may slip between samples, however large it is: that of a mesh goes on behind them.
+    /// Whether its corners may slip between samples, however large it is: most of a mesh go on behind them.
     pub has_tips: bool,
     /// What it may be left out of.
     pub spared: Spared,
