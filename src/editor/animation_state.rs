@@ -9,6 +9,8 @@ use crate::scene::{Camera, Key, Owners, Scene, Take, Target};
 
 /// The finest tolerance of the slider, in pixels.
 const FINEST: f64 = 0.05;
+/// Keys that are more pixels off a recording were moved by hand: nobody asks for as rough ones.
+const FARTHEST: f64 = 100.0;
 /// Flights that were made of recordings are known, so many of them.
 const MOST_MADE: usize = 16;
 
@@ -93,6 +95,8 @@ impl AnimationState {
         self.timeline.is_edited = made.is_none() && !self.made.is_empty();
         if let Some((tolerance, _)) = made {
             self.timeline.tolerance = *tolerance;
+        } else if off > FARTHEST && self.made.is_empty() {
+            self.timeline.is_edited = true;
         } else if off.is_finite() && self.made.is_empty() {
             // As the slider shows it: a hundredth more or less is no wish of the user's.
             self.timeline.tolerance = (off.max(FINEST) * 100.0).ceil() / 100.0;

@@ -413,6 +413,9 @@ impl Editor {
 
     pub(super) fn select(&mut self, selected: Selected, selection: Selection) {
         (self.selected, self.selection) = (selected, selection);
+        if selection != Selection::Keys {
+            self.animation_state.deselect_keys();
+        }
     }
 
     pub(super) fn set_scene(&mut self, scene: Arc<Scene>) {

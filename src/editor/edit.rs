@@ -179,6 +179,7 @@ impl Edit {
             Self::Separate(index) => format!("Separate {}", name(Item::object(*index))),
             Self::AddLight(_) => "Add Light".to_owned(),
             Self::AddPack => "Add ColorPack".to_owned(),
+            Self::Rename(item, to) if to.is_empty() => format!("Rename {}", name(*item)),
             Self::Rename(item, to) => format!("Rename {} to {to}", name(*item)),
             Self::Duplicate(item) => format!("Duplicate {}", name(*item)),
             Self::Delete(item) => format!("Delete {}", name(*item)),

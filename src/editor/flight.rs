@@ -9,7 +9,7 @@ use super::edit::Edit;
 use super::selection::{Selected, Selection};
 use super::timeline::{MEASURED_AT, Recording, Time};
 use crate::animate::{Seen, Worst, resampled, simplify};
-use crate::scene::{Animation, Camera, Key, MAX_SECONDS, Take};
+use crate::scene::{Animation, Camera, Key, MAX_SECONDS, Sample, Take};
 
 /// Keys that a recording becomes, at first, and for each second: about as many as a hand can edit.
 const FEW: (f64, f64) = (8.0, 2.5);
@@ -171,6 +171,12 @@ impl Editor {
     fn stop_recording(&mut self, take: &Take) {
         if take.samples.len() < 2 {
             return self.notify("Nothing was recorded".to_owned());
+        }
+        let first = take.samples[0];
+        let is_there =
+            |sample: &Sample| Sample(first.0, sample.1, sample.2, sample.3, sample.4) == first;
+        if take.lenses.len() < 2 && take.samples.iter().all(is_there) {
+            return self.notify("The camera did not move: nothing was recorded".to_owned());
         }
         let (take, stepped) = resampled(take);
         if stepped * MOSTLY > take.samples.len() {

@@ -174,6 +174,9 @@ impl App {
             Some(size) => self.still.show(ui, place, &mut self.pictures, size),
             None => self.pictures.screen.show(ui, place),
         };
+        if self.editor.mode == Mode::Live {
+            self.still.leave();
+        }
         if self.layout.histogram {
             self.levels.show(ui, place.rect);
         }

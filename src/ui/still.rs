@@ -34,6 +34,11 @@ impl Still {
         self.magnifier.factor = u32::from(!is_actual);
     }
 
+    /// Shows all of the next picture.
+    pub fn leave(&mut self) {
+        self.magnifier = Magnifier::default();
+    }
+
     /// What the picture is called on itself.
     pub fn name(&self, is_part: bool) -> String {
         match (is_part, self.magnifier.factor) {

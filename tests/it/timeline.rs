@@ -9,7 +9,7 @@ use egui::{Event, Key, Modifiers, Pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 use glint::animate::{CameraPath, Preset, shot};
-use glint::editor::{Action, Edit, Editor, Repeat, Time};
+use glint::editor::{Action, Edit, Editor, Repeat, Selection, Time};
 use glint::image::render;
 use glint::plan::RenderRequest;
 use glint::scene::{
@@ -153,8 +153,10 @@ fn no_recorded_flight_is_lost_while_it_becomes_keys() {
     let record = |editor: &mut Editor| {
         editor.apply(Action::Time(Time::Record));
         for tenth in 0..20 {
-            let seconds = f64::from(tenth) / 10.0;
-            editor.apply(Action::Time(Time::Sample(seconds)));
+            let mut camera = editor.scene().camera.clone();
+            camera.position.x += 1.0;
+            editor.apply(Action::Edit(Edit::Camera(camera, "move")));
+            editor.apply(Action::Time(Time::Sample(f64::from(tenth) / 10.0)));
         }
         editor.apply(Action::Time(Time::Stop));
     };
@@ -166,6 +168,20 @@ fn no_recorded_flight_is_lost_while_it_becomes_keys() {
     survey_flight(&mut editor);
     assert!(!editor.is_making_keys());
     assert_eq!(editor.scene().animation.take, Some(take));
+}
+
+#[test]
+fn a_recording_without_a_movement_leaves_the_flight_as_it_is() {
+    let mut editor = Editor::demo();
+    editor.recover(unsaved(Document::load(FLIGHT.as_ref()).expect("a scene")));
+    let before = editor.scene().animation.clone();
+    editor.apply(Action::Time(Time::Record));
+    for tenth in 0..20 {
+        editor.apply(Action::Time(Time::Sample(f64::from(tenth) / 10.0)));
+    }
+    editor.apply(Action::Time(Time::Stop));
+    assert!(!editor.is_making_keys());
+    assert_eq!(editor.scene().animation, before);
 }
 
 #[test]
@@ -232,6 +248,9 @@ fn keys_made_anew_keep_the_time_that_the_flight_was_given() {
         "known as soon as it is opened: {said:?}"
     );
     let before = editor.scene().clone();
+    editor.apply(Action::Time(Time::SelectKeys([3].into())));
+    editor.apply(Action::Select(Selection::Camera));
+    assert!(editor.timeline().selected.is_empty(), "something else is");
     editor.apply(Action::Time(Time::SelectKeys([3].into())));
     editor.apply(Action::Time(Time::Simplify(5.0)));
     assert!(editor.scene().animation.keys.len() < before.animation.keys.len());

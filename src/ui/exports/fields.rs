@@ -389,6 +389,7 @@ pub fn forecast(
             };
             let replace = match replaced {
                 0 => String::new(),
+                1 => ", 1 replaces an older file".to_owned(),
                 replaced => format!(", {replaced} replace older files"),
             };
             let frames = counted(*missing, "frame");

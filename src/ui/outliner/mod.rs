@@ -306,7 +306,7 @@ impl Outliner {
     }
 }
 
-/// Selects an item: with Ctrl besides the others, with Shift all from the last one on.
+/// Selects an item: with Ctrl besides the others, with Shift all from the last one on, if that is in the same list.
 fn select_clicked(ui: &Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
     let modifiers = ui.input(|input| input.modifiers);
     let selected = editor.selected();
@@ -326,6 +326,10 @@ fn select_clicked(ui: &Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
                     .filter(|other| *other != item)
                     .chain([item]),
             )
+        }
+        None if modifiers.shift => {
+            let others = selected.items().iter().copied();
+            Selected::all(others.filter(|other| *other != item).chain([item]))
         }
         None if modifiers.command => selected.toggled(item),
         None => Selected::all([item]),

@@ -231,7 +231,7 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     );
     ui.label(RichText::new(text).monospace());
     if let Some(worst) = editor.timeline().worst {
-        let text = format!("deviation {:.1} px at {:.1} s", worst.off, worst.time);
+        let text = format!("· deviation {:.1} px at {:.1} s", worst.off, worst.time);
         ui.label(RichText::new(text).monospace())
             .hint("How far the picture of the keys is off that of the recording at most, at 1024², and when");
     }

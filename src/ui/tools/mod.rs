@@ -332,7 +332,12 @@ pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
     let (low, high) = around.filter(|_| only_selected).or(all)?;
     // A light without a marker is a point: some of what is around it is to be seen.
     let size = all.map_or(0.0, |(low, high)| (high - low).length());
-    let least = DVec3::splat(if size > 0.0 { size * LEAST_FRAMED } else { 1.0 });
+    let least = match (low != high, size > 0.0) {
+        (true, _) => 0.0,
+        (false, true) => size * LEAST_FRAMED,
+        (false, false) => 1.0,
+    };
+    let least = DVec3::splat(least);
     let middle = low * 0.5 + high * 0.5;
     let bounds = (low.min(middle - least), high.max(middle + least));
     let aspect = f64::from(scene.render.width) / f64::from(scene.render.height);

@@ -118,6 +118,12 @@ fn things_are_deleted_with_the_packs_that_they_wear() {
     harness.press(Modifiers::NONE, Key::Delete);
     let scene = harness.scene();
     assert!(scene.objects.len() == 8 && !scene.color_packs.contains_key("sphere 1"));
+    // Shift adds what is in another list.
+    harness.click("Light 1");
+    let shifted = harness.window.get_by_label("Sphere 2");
+    shifted.click_modifiers(Modifiers::SHIFT);
+    harness.settle();
+    assert_eq!(harness.editor().selected().items().len(), 2);
     harness.click("sphere 2");
     with_control(&mut harness, "tetrahedron");
     let packs = harness.scene().color_packs.len();

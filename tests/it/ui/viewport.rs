@@ -263,6 +263,14 @@ fn the_still_picture_is_enlarged_moved_and_traced_in_part() {
     harness.window.get_by_label("Leave High-res picture 1:1");
     turn(&mut harness, 1.0);
     harness.window.get_by_label("Leave High-res picture 2:1");
+    // Another picture is seen as a whole.
+    harness.press(Modifiers::NONE, Key::Escape);
+    harness.press(Modifiers::NONE, Key::H);
+    harness.picture();
+    harness.window.get_by_label("Leave High-res picture");
+    turn(&mut harness, 1.0);
+    turn(&mut harness, 1.0);
+    harness.window.get_by_label("Leave High-res picture 2:1");
     turn(&mut harness, -1.0);
     turn(&mut harness, -1.0);
     harness.window.get_by_label("Leave High-res picture");
