@@ -56,7 +56,8 @@ pub fn hints(scene: &Scene) -> Vec<Hint> {
             is_twice,
         });
     };
-    let extent = Frame::of(scene).map_or(1.0, |frame| 2.0 * frame.extent);
+    let frame = Frame::of(scene);
+    let extent = frame.map_or(1.0, |frame| 2.0 * frame.extent);
     let visible = scene.objects.iter().enumerate();
     let visible = || visible.clone().filter(|(_, object)| object.visible);
     let eye = scene.camera.position;
@@ -92,7 +93,8 @@ pub fn hints(scene: &Scene) -> Vec<Hint> {
             add(words, About::Pack(index), false);
         }
     }
-    add_coincident(scene, &mut add);
+    let centre = frame.map_or(DVec3::ZERO, |frame| frame.centre);
+    add_coincident(scene, centre, &mut add);
     hints
 }
 
@@ -104,9 +106,8 @@ fn worn(scene: &Scene) -> HashSet<&String> {
     objects.chain(markers).collect()
 }
 
-/// Visible objects that fill the same surface.
-fn add_coincident(scene: &Scene, add: &mut impl FnMut(String, About, bool)) {
-    let centre = Frame::of(scene).map_or(DVec3::ZERO, |frame| frame.centre);
+/// Visible objects that fill the same surface; coordinates count from `centre`.
+fn add_coincident(scene: &Scene, centre: DVec3, add: &mut impl FnMut(String, About, bool)) {
     let mut last = None;
     let found = coincidences(&scene.objects, centre).into_iter();
     for found in found {

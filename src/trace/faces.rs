@@ -2,8 +2,10 @@
 //! them, which no sample has seen.
 
 use super::packet::Packet;
+use super::paths::NOTHING;
 use super::samples::Traced;
 use crate::plan::{Geometry, Plan};
+use crate::primitive::{Kind, PackedTriangle};
 use crate::simd::{MAX_LANES, Real, SimdFloat, Vec3};
 
 /// The bits of a mark that are of one corner.
@@ -18,25 +20,21 @@ pub fn note_faces<L: SimdFloat>(
     (packets, order): (&[Packet<L>], &[u32]),
     traced: &mut Traced<L::Real>,
 ) {
-    let Some((geometry, first)) = plan.numbered_geometry() else {
-        return;
-    };
-    let mut meshes = geometry.meshes.iter();
-    let is_loose = !geometry.primitives.things.is_empty();
-    if !is_loose && meshes.all(|mesh| !mesh.mesh.smooth.is_empty()) {
+    if !has_faces(plan) {
         return;
     }
     traced.faces.resize(traced.red.len(), 0);
     let mut numbers = [L::Real::ZERO; MAX_LANES];
     // Those of rays beside each other are often the same.
-    let (mut last, mut mark) = (-1.0, 0);
+    let (mut last, mut mark) = (NOTHING, 0);
     for (index, packet) in packets.iter().enumerate() {
         packet.near.number.store(&mut numbers);
         for (lane, number) in numbers[..L::WIDTH].iter().enumerate() {
             let number = number.to_f64();
             if number != last {
                 last = number;
-                mark = mark_at(geometry, number - first as f64);
+                let face = (number != NOTHING).then(|| face_of(plan, number as usize));
+                mark = face.flatten().map_or(0, |face| mark_of(face.corners));
             }
             let place = index * L::WIDTH + lane;
             let sample = order.get(place).map_or(place, |&sample| sample as usize);
@@ -45,23 +43,30 @@ pub fn note_faces<L: SimdFloat>(
     }
 }
 
-/// The mark of the flat face of this number, counted from the geometry's first primitive; 0 where there is none.
-fn mark_at<R: Real>(geometry: &Geometry<R>, number: f64) -> u32 {
-    if number < 0.0 {
-        return 0;
-    }
-    let index = number as usize;
-    let face = match geometry.mesh_of(index) {
-        Some(mesh) if mesh.mesh.smooth.is_empty() => mesh.mesh.triangles.get(index - mesh.first),
-        Some(_) => None,
-        None => {
-            let loose = &geometry.primitives;
-            // Planes stand in no tree: spheres are first.
-            let triangle = index.checked_sub(loose.spheres.len());
-            triangle.and_then(|triangle| loose.triangles.get(triangle))
-        }
+/// Whether there are faces between which others may be hidden.
+fn has_faces<R: Real>(plan: &Plan<R>) -> bool {
+    let in_geometry = |geometry: &Geometry<R>| {
+        let mut meshes = geometry.meshes.iter();
+        !geometry.primitives.things.is_empty() || meshes.any(|mesh| mesh.mesh.smooth.is_empty())
     };
-    face.map_or(0, |face| mark_of(face.corners))
+    !plan.primitives.things.is_empty() || plan.geometry.as_deref().is_some_and(in_geometry)
+}
+
+/// The flat face of this number, if it is one.
+fn face_of<R: Real>(plan: &Plan<R>, number: usize) -> Option<&PackedTriangle<R>> {
+    let (loose, index) = match plan.numbered_geometry() {
+        Some((geometry, first)) if first <= number => {
+            let index = number - first;
+            if let Some(mesh) = geometry.mesh_of(index) {
+                let triangle = mesh.mesh.triangles.get(index - mesh.first);
+                return triangle.filter(|_| mesh.mesh.smooth.is_empty());
+            }
+            (&geometry.primitives, index)
+        }
+        _ => (&plan.primitives, number),
+    };
+    let first = loose.firsts()[Kind::Triangle as usize];
+    loose.triangles.get(index.checked_sub(first)?)
 }
 
 /// What tells a face from others, and its neighbours from those: a few bits of each corner, never 0.
