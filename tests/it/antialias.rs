@@ -70,6 +70,15 @@ fn picture(sampling: Sampling) -> RenderRequest {
     }
 }
 
+/// That of a picture with clean edges, so many pixels high and wide.
+fn quality_of_clean_edges(scene: &Scene, side: u32) -> Quality {
+    let request = RenderRequest {
+        sampling: Sampling::ADAPTIVE,
+        ..RenderRequest::sized(side, side)
+    };
+    quality(scene, &request)
+}
+
 #[test]
 fn the_demo_has_clean_edges_for_few_rays() {
     for scene in random::published() {
@@ -297,11 +306,7 @@ fn light_between_two_shadows_is_seen() {
     for look_at in [-DVec3::Y, DVec3::Y] {
         let mut scene = Document::from_text(WEDGES).expect("a scene").scene;
         scene.camera.look_at = look_at;
-        let request = RenderRequest {
-            sampling: Sampling::ADAPTIVE,
-            ..RenderRequest::sized(65, 65)
-        };
-        let got = quality(&scene, &request);
+        let got = quality_of_clean_edges(&scene, 65);
         assert!(
             got.psnr >= 55.0 && got.worst <= INVISIBLE && got.rays < 4.0,
             "looking to {look_at}: {got:?}"
@@ -326,11 +331,7 @@ const FAN: &str = r#"Scene(version: 1, light_visualization: false,
 #[test]
 fn a_face_between_two_others_is_seen() {
     let scene = Document::from_text(FAN).expect("a scene").scene;
-    let request = RenderRequest {
-        sampling: Sampling::ADAPTIVE,
-        ..RenderRequest::sized(65, 65)
-    };
-    let got = quality(&scene, &request);
+    let got = quality_of_clean_edges(&scene, 65);
     assert!(
         got.psnr >= EIGHT_BITS && got.worst <= INVISIBLE && got.rays < 5.0,
         "{got:?}"
@@ -357,11 +358,7 @@ const NARROW: &str = r#"Scene(version: 1, light_visualization: false,
 #[test]
 fn the_sides_and_tips_of_meshes_are_seen_and_cast_shadows() {
     let scene = Document::from_text(NARROW).expect("a scene").scene;
-    let request = RenderRequest {
-        sampling: Sampling::ADAPTIVE,
-        ..RenderRequest::sized(65, 65)
-    };
-    let got = quality(&scene, &request);
+    let got = quality_of_clean_edges(&scene, 65);
     assert!(
         got.psnr >= 52.0 && got.worst <= INVISIBLE && got.rays < 15.0,
         "{got:?}"
@@ -373,11 +370,7 @@ fn what_strongly_curved_mirrors_show_and_highlights_in_corners_of_pixels_are_see
     for name in ["mirrors", "sunflower"] {
         let example = EXAMPLES.iter().find(|example| example.name == name);
         let scene = example.expect("an example").document().scene;
-        let request = RenderRequest {
-            sampling: Sampling::ADAPTIVE,
-            ..RenderRequest::sized(SIDE / 2, SIDE / 2)
-        };
-        let got = quality(&scene, &request);
+        let got = quality_of_clean_edges(&scene, SIDE / 2);
         assert!(
             got.psnr >= EIGHT_BITS && got.worst <= INVISIBLE,
             "{name}: {got:?}"
