@@ -170,3 +170,59 @@ fn planes_through(objects: &List<Object>, points: &[DVec3]) -> Vec<Places> {
     }
     through
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Plan;
+    use super::super::geometry::Kept;
+    use super::*;
+    use crate::primitive::Kind;
+    use crate::scene::{Accelerator, Sampling, Triangle};
+
+    #[test]
+    fn triangles_are_measured_alike_in_lists_and_in_trees_where_some_stand_apart() {
+        // A narrow sheet that rises behind its first half, and a light on the ground.
+        let mut scene = Scene::demo();
+        scene.objects = List::new();
+        scene.lights[0].position = DVec3::new(-40.0, 0.0, -99.0);
+        let at = |x: u32, z: u32| {
+            DVec3::new(x.into(), x.saturating_sub(20).into(), f64::from(z) - 100.0)
+        };
+        for (x, z) in (0..40).flat_map(|x| [(x, 0), (x, 1)]) {
+            let [a, b, c, d] = [at(x, z), at(x, z + 1), at(x + 1, z + 1), at(x + 1, z)];
+            for piece in [Triangle { a, b, c }, Triangle { a, b: c, c: d }] {
+                let name = format!("Piece {}", scene.objects.len());
+                scene.objects.push(Object::new(name, "plane", piece));
+            }
+        }
+        let measured = |accelerator| {
+            let request = RenderRequest {
+                accelerator,
+                sampling: Sampling::ADAPTIVE,
+                ..RenderRequest::sized(64, 64)
+            };
+            let plan = Plan::<f64>::new(&scene, &request, &mut Kept::default());
+            let in_tree = plan.geometry.iter().map(|geometry| &geometry.primitives);
+            let all = in_tree.chain([&plan.primitives]);
+            let mut found: Vec<_> = all
+                .flat_map(|primitives| {
+                    let first = primitives.firsts()[Kind::Triangle as usize];
+                    let triangles = primitives.triangles.iter().enumerate();
+                    triangles.map(move |(index, of)| {
+                        let thing = primitives.thing_of(first + index) - first;
+                        let thing = primitives.triangles[thing].corners;
+                        format!(
+                            "{:?} {} {} {thing:?}",
+                            of.corners, of.thickness, of.has_tips
+                        )
+                    })
+                })
+                .collect();
+            found.sort();
+            (plan.geometry.is_some(), found)
+        };
+        let (list, tree) = (measured(Accelerator::List), measured(Accelerator::Bvh));
+        assert_eq!((list.0, tree.0, list.1.len()), (false, true, 160));
+        assert_eq!(list.1, tree.1);
+    }
+}

@@ -276,7 +276,7 @@ impl<R: Real> Geometry<R> {
             instance.first = first;
             first += instance.mesh.triangles.len();
         }
-        measure_loose(&mut primitives);
+        measure_loose(&mut primitives, &BTreeSet::new());
         let mut members = Members(Vec::with_capacity(primitives.len()));
         primitives.visit(&mut members);
         members.0.extend(meshes.iter().map(MeshInstance::member));
@@ -354,16 +354,28 @@ pub fn is_planted(object: &Object) -> bool {
 }
 
 /// Measures how thick what loose triangles make is, where they hang together, and finds what of them is one thing.
-pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>) {
-    let triangles = &mut primitives.triangles;
-    let corners = number_corners(triangles);
-    let mut bvh = Bvh::new(triangles.len(), |number| member(&triangles[number]));
-    let parts = measure(triangles, &corners, &mut bvh).parts;
-    primitives.things = things(&parts);
-    for (index, triangle) in primitives.triangles.iter_mut().enumerate() {
-        let thing = primitives.things.get(index).copied().flatten();
-        triangle.has_tips |= thing.is_none();
+/// Primitives of the numbers `apart` are measured by themselves: where there is a tree, the others stand in it.
+pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>, apart: &BTreeSet<usize>) {
+    let first = primitives.firsts()[Kind::Triangle as usize];
+    let places = 0..primitives.triangles.len();
+    let is_apart = |place: &usize| apart.contains(&(first + place));
+    let (apart, others): (Vec<usize>, Vec<usize>) = places.clone().partition(is_apart);
+    let mut found = vec![None; places.len()];
+    for group in [others, apart] {
+        let mut triangles: Vec<_> = group.iter().map(|&at| primitives.triangles[at]).collect();
+        let corners = number_corners(&triangles);
+        let mut bvh = Bvh::new(triangles.len(), |number| member(&triangles[number]));
+        let parts = measure(&mut triangles, &corners, &mut bvh).parts;
+        let things = things(&parts);
+        for (index, (&place, mut triangle)) in group.iter().zip(triangles).enumerate() {
+            let thing = things.get(index).copied().flatten();
+            triangle.has_tips |= thing.is_none();
+            primitives.triangles[place] = triangle;
+            found[place] = thing.map(|first| group[first as usize] as u32);
+        }
     }
+    let has_things = found.iter().any(Option::is_some);
+    primitives.things = if has_things { found } else { Vec::new() };
 }
 
 /// The place of a pack among the materials.

@@ -172,7 +172,7 @@ impl<R: Real> Plan<R> {
         plan.lights = pack_lights(scene, centre, (occluders, model), (touches, holders));
         plan.hold(scene, request);
         if matches!(request.sampling, Sampling::Adaptive { .. }) {
-            measure_loose(&mut plan.primitives);
+            measure_loose(&mut plan.primitives, &numbers.values().copied().collect());
         }
         if may_cull {
             plan.bound();

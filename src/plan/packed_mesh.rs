@@ -23,6 +23,8 @@ pub struct PackedMesh<R> {
     pub triangles: Vec<PackedTriangle<R>>,
     /// Their normals where they are shaded as one curved surface; none if they are flat.
     pub smooth: Vec<CornerNormals<R>>,
+    /// Whether some of them look flat.
+    pub has_flat: bool,
     /// How far above them rays that go on from there may start.
     pub lift: R,
     /// The way to them.
@@ -96,7 +98,9 @@ impl<R: Real> PackedMesh<R> {
         } else {
             Vec::new()
         };
+        let has_flat = smooth.is_empty() || smooth.iter().any(CornerNormals::are_alike);
         Self {
+            has_flat,
             lift: largest_lift(&triangles, &smooth),
             reach: reach(&triangles, bvh.bounds.ball().0),
             smooth,

@@ -1,6 +1,8 @@
 //! Which flat faces samples are on. Where two beside each other are on faces that share no edge, others lie between
-//! them, which no sample has seen.
+//! them, which no sample has seen; and where one is on a face that looks away from a light, and the other in shadow on
+//! one that does not, there may be light between them.
 
+use super::gather::Piece;
 use super::packet::Packet;
 use super::paths::NOTHING;
 use super::samples::Traced;
@@ -10,11 +12,13 @@ use crate::simd::{MAX_LANES, Real, SimdFloat, Vec3};
 
 /// The bits of a mark that are of one corner.
 const BITS: u32 = 10;
-const CORNER: u32 = (1 << BITS) - 1;
+const CORNER: u64 = (1 << BITS) - 1;
+/// How many lights a mark tells of.
+const LIGHTS: usize = 32;
 
 /// Notes the marks of the flat faces that packets have met, of meshes or of many triangles that hang together: 0 for
 /// everything else, and nothing in scenes without. `order` says which sample each ray is, if they are in another order.
-/// Smooth meshes do not show their faces.
+/// Of smooth surfaces one does not see the faces.
 pub fn note_faces<L: SimdFloat>(
     plan: &Plan<L::Real>,
     (packets, order): (&[Packet<L>], &[u32]),
@@ -34,7 +38,10 @@ pub fn note_faces<L: SimdFloat>(
             if number != last {
                 last = number;
                 let face = (number != NOTHING).then(|| face_of(plan, number as usize));
-                mark = face.flatten().map_or(0, |face| mark_of(face.corners));
+                mark = face.flatten().map_or(0, |face| {
+                    let dark = dark_sides(plan, face, packet.rays.direction.lane(lane));
+                    u64::from(dark) << (u64::BITS - u32::BITS) | mark_of(face.0.corners)
+                });
             }
             let place = index * L::WIDTH + lane;
             let sample = order.get(place).map_or(place, |&sample| sample as usize);
@@ -47,31 +54,40 @@ pub fn note_faces<L: SimdFloat>(
 fn has_faces<R: Real>(plan: &Plan<R>) -> bool {
     let in_geometry = |geometry: &Geometry<R>| {
         let mut meshes = geometry.meshes.iter();
-        !geometry.primitives.things.is_empty() || meshes.any(|mesh| mesh.mesh.smooth.is_empty())
+        !geometry.primitives.things.is_empty() || meshes.any(|mesh| mesh.mesh.has_flat)
     };
     !plan.primitives.things.is_empty() || plan.geometry.as_deref().is_some_and(in_geometry)
 }
 
+/// A flat face, and the point that its corners count from.
+type Face<'a, R> = (&'a PackedTriangle<R>, Vec3<R>);
+
 /// The flat face of this number, if it is one.
-fn face_of<R: Real>(plan: &Plan<R>, number: usize) -> Option<&PackedTriangle<R>> {
-    let (loose, index) = match plan.numbered_geometry() {
-        Some((geometry, first)) if first <= number => {
-            let index = number - first;
-            if let Some(mesh) = geometry.mesh_of(index) {
-                let triangle = mesh.mesh.triangles.get(index - mesh.first);
-                return triangle.filter(|_| mesh.mesh.smooth.is_empty());
-            }
-            (&geometry.primitives, index)
+fn face_of<R: Real>(plan: &Plan<R>, number: usize) -> Option<Face<'_, R>> {
+    match plan.numbered_geometry() {
+        Some((geometry, first)) if first <= number => Piece::of(geometry, number - first)?.flat(),
+        _ => {
+            let first = plan.primitives.firsts()[Kind::Triangle as usize];
+            let triangle = plan.primitives.triangles.get(number.checked_sub(first)?)?;
+            Some((triangle, Vec3::splat(R::ZERO)))
         }
-        _ => (&plan.primitives, number),
-    };
-    let first = loose.firsts()[Kind::Triangle as usize];
-    loose.triangles.get(index.checked_sub(first)?)
+    }
+}
+
+/// Which of the first lights are behind a face that is seen in a direction.
+fn dark_sides<R: Real>(plan: &Plan<R>, (face, origin): Face<R>, direction: Vec3<R>) -> u32 {
+    let place = face.corners[0] + origin;
+    let is_front = direction.dot(face.normal) < R::ZERO;
+    let lights = plan.lights.iter().take(LIGHTS).enumerate();
+    lights.fold(0, |dark, (number, light)| {
+        let height = (light.position - place).dot(face.normal);
+        dark | u32::from(is_front != (R::ZERO < height)) << number
+    })
 }
 
 /// What tells a face from others, and its neighbours from those: a few bits of each corner, never 0.
-fn mark_of<R: Real>(corners: [Vec3<R>; 3]) -> u32 {
-    let [a, b, c] = corners.map(bits_of);
+fn mark_of<R: Real>(corners: [Vec3<R>; 3]) -> u64 {
+    let [a, b, c] = corners.map(bits_of).map(u64::from);
     a << (2 * BITS) | b << BITS | c
 }
 
@@ -86,22 +102,23 @@ fn bits_of<R: Real>(corner: Vec3<R>) -> u32 {
     (bits >> (32 - BITS)).max(1)
 }
 
-/// Whether a face may lie between the samples at the corners of a cell that none of them is on: upper left and right,
-/// lower left and right.
+/// Whether there may be a face, or light, between the samples at the corners of a cell that none of them has seen:
+/// upper left and right, lower left and right.
 #[inline(always)]
-pub fn may_hide_face([a, b, c, d]: [u32; 4]) -> bool {
+pub fn may_hide_face([a, b, c, d]: [u64; 4]) -> bool {
     a != b && !are_neighbours(a, b)
         || a != c && !are_neighbours(a, c)
         || b != d && !are_neighbours(b, d)
         || c != d && !are_neighbours(c, d)
 }
 
-/// Whether two different faces share an edge, or one of them is none.
-fn are_neighbours(a: u32, b: u32) -> bool {
-    let corners = |mark: u32| [mark & CORNER, mark >> BITS & CORNER, mark >> (2 * BITS)];
+/// Whether two different faces share an edge and look at the same lights, or one of them is none.
+fn are_neighbours(a: u64, b: u64) -> bool {
+    let corners = |mark: u64| [mark, mark >> BITS, mark >> (2 * BITS)].map(|bits| bits & CORNER);
+    let dark = |mark: u64| mark >> (u64::BITS - u32::BITS);
     let others = corners(b);
     let shared = corners(a).into_iter().filter(|own| others.contains(own));
-    a == 0 || b == 0 || shared.count() >= 2
+    a == 0 || b == 0 || (shared.count() >= 2 && dark(a) == dark(b))
 }
 
 #[cfg(test)]
@@ -135,6 +152,10 @@ mod tests {
                 assert!(may_hide_face(around), "{around:x?}");
             }
         }
+        // A light behind one of two neighbours, and not behind the other.
+        let dark = fan(1) | 1 << u32::BITS;
+        assert!(may_hide_face([fan(0), dark, fan(0), dark]));
+        assert!(!may_hide_face([fan(0) | 1 << u32::BITS, dark, 0, dark]));
         let single = [at(0.0, 0.0), at(0.1, 0.2), at(0.3, 0.7)]
             .map(|corner| Vec3::<f32>::from_dvec3(corner.to_dvec3()));
         let double = [hub, at(0.1, 0.2), at(0.3, 0.7)];

@@ -7,7 +7,7 @@ use crate::plan::{Geometry, MeshInstance};
 use crate::primitive::{
     CornerNormals, Flat, PackedSphere, PackedTriangle, Ray, Round, SurfacePoint,
 };
-use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
+use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
 
 /// A primitive in a tree, and what it must have in common with others to be lit with them.
 pub struct Piece<'a, R> {
@@ -55,6 +55,17 @@ impl<'a, R: Real> Piece<'a, R> {
             material,
             mesh: None,
         })
+    }
+
+    /// The triangle, if it looks as flat as it is, and the point that its corners count from.
+    pub fn flat(&self) -> Option<(&'a PackedTriangle<R>, Vec3<R>)> {
+        let triangle = match self.form {
+            Form::Flat(triangle) => triangle,
+            Form::Curved(triangle, normals) if normals.are_alike() => triangle,
+            Form::Curved(..) | Form::Round(_) => return None,
+        };
+        let origin = self.mesh.map(|mesh| mesh.centre);
+        Some((triangle, origin.unwrap_or(Vec3::splat(R::ZERO))))
     }
 
     /// Whether it is lit in the same way.

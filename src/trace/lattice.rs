@@ -272,7 +272,7 @@ impl<R: Real> Lattice<R> {
             return Inside::Anything;
         }
         let shadows = [a.shadows, b.shadows, c.shadows, d.shadows];
-        if is_one && (cell.may_hide_face || may_leave_gap(shadows)) {
+        if cell.may_hide_face || (is_one && may_leave_gap(shadows)) {
             return Inside::Anything;
         }
         let mut ranges = [R::ZERO; 4];

@@ -265,7 +265,7 @@ fn corners_at<L: SimdFloat>(
 }
 
 /// Which cells, of so many from one on, may show a face of a mesh that no corner is on.
-fn hiding_at(faces: &[u32], (first, stride): (usize, usize), count: usize) -> u64 {
+fn hiding_at(faces: &[u64], (first, stride): (usize, usize), count: usize) -> u64 {
     let mut hiding = 0;
     for cell in 0..count {
         let (above, below) = (first + cell, first + stride + cell);

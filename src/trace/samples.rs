@@ -46,7 +46,7 @@ pub struct Traced<R> {
     /// Which shadows it is in that end near it, see [`super::shadows`]. Only with edges.
     pub shadows: Vec<u32>,
     /// Which flat face it is on, see [`super::faces`]; empty in scenes without. Only with [`Edges::Near`].
-    pub faces: Vec<u32>,
+    pub faces: Vec<u64>,
 }
 
 /// The bits of signatures that tell things apart which are seen directly; the others also tell which lights shine on

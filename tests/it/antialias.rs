@@ -338,6 +338,42 @@ fn a_face_between_two_others_is_seen() {
     );
 }
 
+/// Folded paper from above, and a light so low that of each fold only a strip near its ridge, half a pixel wide, is not
+/// in the shadow of the one before: beside it are a face that looks away from the light, and a shadow of its colour.
+fn folds(smooth: f64) -> Scene {
+    let column = |column: u32| {
+        let (x, y) = (f64::from(column) - 5.0, f64::from(column % 2) - 1.0);
+        [DVec3::new(x - 0.2, y, -5.0), DVec3::new(x + 0.2, y, 5.0)]
+    };
+    let fold = |column: u32| {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|point| 2 * column + point);
+        [[a, b, d], [a, d, c]]
+    };
+    let points = (0..11).flat_map(column).collect();
+    let faces = (0..10).flat_map(fold).collect();
+    let paper = Mesh {
+        smooth,
+        ..Mesh::of(Triangles::new(points, faces).expect("a mesh"))
+    };
+    let mut scene = Document::from_text(FAN).expect("a scene").scene;
+    scene.objects = List::new();
+    scene.objects.push(Object::new("Paper", "paper", paper));
+    scene.lights[0].position = DVec3::new(-3000.0, 100.0, 40.0);
+    scene
+}
+
+#[test]
+fn light_between_a_dark_side_and_a_shadow_is_seen() {
+    // Whether the folds are sharp because all edges are, or because they are sharper than 30°.
+    for smooth in [0.0, 30.0] {
+        let got = quality_of_clean_edges(&folds(smooth), 65);
+        assert!(
+            got.psnr >= 55.0 && got.worst <= INVISIBLE && got.rays < 16.0,
+            "smooth: {smooth}: {got:?}"
+        );
+    }
+}
+
 /// Meshes that are narrower than they are thick: a card from its side, and the point of a spike; and their shadows.
 const NARROW: &str = r#"Scene(version: 1, light_visualization: false,
     color_packs: {

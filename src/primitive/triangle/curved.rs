@@ -6,6 +6,9 @@ use crate::simd::{Real, SimdFloat, Vec3};
 /// Cosine to which a mirrored ray is lifted that would go into the face.
 const LEAST_COSINE: f64 = 0.01;
 
+/// How far the ends of unit normals may be apart that are the same, in any precision.
+const ALIKE: f64 = 1e-5;
+
 /// The normals of a face that is shaded as if it were curved.
 #[derive(Clone, Copy, Debug)]
 pub struct CornerNormals<R> {
@@ -13,6 +16,14 @@ pub struct CornerNormals<R> {
     pub normals: [Vec3<R>; 3],
     /// One over the smallest radius of curvature along its edges.
     pub curvature: R,
+}
+
+impl<R: Real> CornerNormals<R> {
+    /// Whether they are the same but for rounding: the face looks as flat as it is.
+    pub fn are_alike(&self) -> bool {
+        let [a, b, c] = self.normals;
+        (a - b).length().max((a - c).length()) < R::from_f64(ALIKE)
+    }
 }
 
 /// What is needed of such a face where it is hit, for each ray of its own face.
