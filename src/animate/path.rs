@@ -7,6 +7,9 @@ use glam::DVec3;
 use super::{ArcLengthSpline, Closing, Curve};
 use crate::scene::{Camera, Easing, Interpolation, Key, Orientation};
 
+/// How near to the axis of an orbit a place counts as on it, as a share of how far the other is.
+const ON_AXIS: f64 = 1e-9;
+
 /// Keys, ready to be asked for the camera at any time.
 #[derive(Clone, Debug)]
 pub struct CameraPath {
@@ -188,14 +191,20 @@ pub(super) fn eased(easing: Easing, along: f64) -> f64 {
 }
 
 /// The place at a share of an arc around the vertical axis through `around`: angle, radius and
-/// height change evenly, the angle the shorter way.
+/// height change evenly, the angle the shorter way. From the axis, and to it, the way is straight.
 pub(super) fn orbit(around: DVec3, from: DVec3, to: DVec3, along: f64) -> DVec3 {
     let (start, end) = (from - around, to - around);
     let angle = |v: DVec3| v.z.atan2(v.x);
-    let turn = shorter(angle(end) - angle(start));
     let (near, far) = (start.x.hypot(start.z), end.x.hypot(end.z));
+    // A place on the axis has no angle but that of rounding.
+    let is_on_axis = near.min(far) <= ON_AXIS * near.max(far);
+    let (first, turn) = if is_on_axis {
+        (angle(if near < far { end } else { start }), 0.0)
+    } else {
+        (angle(start), shorter(angle(end) - angle(start)))
+    };
     let radius = near + (far - near) * along;
-    let (sine, cosine) = (angle(start) + turn * along).sin_cos();
+    let (sine, cosine) = (first + turn * along).sin_cos();
     let height = start.y + (end.y - start.y) * along;
     around + DVec3::new(radius * cosine, height, radius * sine)
 }

@@ -154,6 +154,27 @@ fn a_turntable_is_a_circle_that_looks_at_its_middle() {
 }
 
 #[test]
+fn an_orbit_from_or_to_its_axis_turns_nowhere() {
+    let around = DVec3::new(1.0, 2.0, 3.0);
+    // What is meant to be on the axis is so but for rounding.
+    for beside in [0.0, 1e-15] {
+        let top = around + DVec3::new(beside, 5.0, -beside);
+        for turn in 0..16 {
+            let (sine, cosine) = (f64::from(turn) * 0.4).sin_cos();
+            let side = around + DVec3::new(5.0 * cosine, 0.0, 5.0 * sine);
+            for (from, to) in [(side, top), (top, side)] {
+                for step in 0..=10 {
+                    let place = path::orbit(around, from, to, f64::from(step) / 10.0) - around;
+                    let ahead = place.x * cosine + place.z * sine;
+                    let across = place.x * sine - place.z * cosine;
+                    assert!(ahead > -1e-9 && across.abs() < 1e-9, "{turn}: {place}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn every_preset_starts_where_the_camera_is_and_looks_at_the_target() {
     let target = DVec3::new(1.0, 2.0, 3.0);
     for preset in Preset::ALL {
