@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf, absolute};
 
 use clap::Args;
 
-use super::error::{CliError, say};
+use super::error::{CliError, report_warning, say};
 use super::scene::read_scene;
 use crate::export::{povray_text, write_text};
 use crate::scene::{Document, Scene, check};
+use crate::words::counted;
 
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
@@ -57,7 +58,11 @@ fn write_povray(args: &ConvertArgs) -> Result<(), CliError> {
 fn write_scene(args: &ConvertArgs) -> Result<(), CliError> {
     let input = absolute(&args.input).map_err(CliError::usage)?;
     let output = absolute(&args.output).map_err(CliError::usage)?;
-    let scene = Scene::of_mesh_file(&input, output.parent()).map_err(CliError::usage)?;
+    let read = Scene::of_mesh_file(&input, output.parent());
+    let (scene, notes) = read.map_err(CliError::usage)?;
+    for note in notes {
+        report_warning(&format!("{}: {note}", args.input.display()));
+    }
     check(&scene).map_err(|problem| {
         CliError::failed(format!("{}: {}", input.display(), problem.sentence))
     })?;
@@ -68,10 +73,11 @@ fn write_scene(args: &ConvertArgs) -> Result<(), CliError> {
         scene,
     };
     document.save(&output).map_err(CliError::failed)?;
-    let parts = if objects == 1 { "object" } else { "objects" };
     say(&format!(
-        "{}: {objects} {parts}, {faces} triangles",
-        args.output.display()
+        "{}: {}, {}",
+        args.output.display(),
+        counted(objects, "object"),
+        counted(faces, "triangle")
     ));
     Ok(())
 }

@@ -118,6 +118,10 @@ fn run_words(words: Vec<OsString>) -> CliAction {
         CliAction::Done(result.map_or_else(|error| error.report(), |()| ExitCode::SUCCESS))
     };
     if let Some(name) = unknown_command(&words) {
+        if Path::new(&name).is_file() {
+            let sentence = format!("the window opens one scene: leave out what follows {name:?}");
+            return done(Err(CliError::usage(sentence)));
+        }
         return done(Err(CliError::usage(format!(
             "there is no command {name:?}; there are render, export, job, check, convert, plan, chart, stability and referee, and `glint SCENE` opens the editor"
         ))));

@@ -13,7 +13,7 @@ use gltf::{Document, Glb, Material, Node, Semantic};
 use super::error::Fault;
 use super::gltf_buffers::Buffers;
 use super::limits::{check_faces, check_groups, check_points};
-use super::part::{Part, PartColors};
+use super::part::{COLORS_OF_POINTS, MeshFile, Part, PartColors};
 use super::triangles::Triangles;
 
 /// Most objects and lists in the JSON: each can cost hundreds of bytes.
@@ -28,15 +28,11 @@ const GEOMETRY_EXTENSIONS: [&str; 4] = [
     "EXT_meshopt_compression",
 ];
 
-/// Reads the primitives of the default scene, or of the first if none is said to be.
-pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<Vec<Part>, Fault> {
+/// Reads the primitives of the default scene, or of the first if none is said to be, or of all nodes if there is none.
+pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, Fault> {
     let (json, chunk) = split(bytes)?;
     let document = document_of(&json)?;
     let buffers = Buffers::load(&document, chunk.as_deref(), folder)?;
-    let scene = document.default_scene();
-    let Some(scene) = scene.or_else(|| document.scenes().next()) else {
-        return Ok(Vec::new());
-    };
     let mut walk = Walk {
         buffers,
         stem,
@@ -46,7 +42,8 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<Vec<Part>,
         faces: 0,
     };
     let mut visited = vec![false; document.nodes().len()];
-    let mut stack: Vec<_> = scene.nodes().map(|node| (node, DMat4::IDENTITY)).collect();
+    let roots = roots(&document).into_iter();
+    let mut stack: Vec<_> = roots.map(|node| (node, DMat4::IDENTITY)).collect();
     // The first node is on top.
     stack.reverse();
     while let Some((node, outer)) = stack.pop() {
@@ -63,7 +60,50 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<Vec<Part>,
         stack.extend(node.children().map(|child| (child, transform)));
         stack[start..].reverse();
     }
-    Ok(walk.parts)
+    Ok(MeshFile {
+        parts: walk.parts,
+        notes: notes(&document),
+    })
+}
+
+/// The nodes that are in no other one, of the scene that is shown.
+fn roots(document: &Document) -> Vec<Node<'_>> {
+    let scene = document.default_scene();
+    if let Some(scene) = scene.or_else(|| document.scenes().next()) {
+        return scene.nodes().collect();
+    }
+    let mut is_child = vec![false; document.nodes().len()];
+    for child in document.nodes().flat_map(|node| node.children()) {
+        is_child[child.index()] = true;
+    }
+    let nodes = document.nodes();
+    nodes.filter(|node| !is_child[node.index()]).collect()
+}
+
+/// What of a file is not read.
+fn notes(document: &Document) -> Vec<String> {
+    let primitives = || document.meshes().flat_map(|mesh| mesh.primitives());
+    let has_colors = |one: Primitive| one.get(&Semantic::Colors(0)).is_some();
+    [
+        (primitives().any(has_colors), COLORS_OF_POINTS),
+        (
+            document.skins().len() > 0,
+            "its skins are left out: what they bend stands where its node is",
+        ),
+        (
+            primitives().any(|one| one.morph_targets().len() > 0),
+            "its morph targets are left out",
+        ),
+        (document.cameras().len() > 0, "its cameras are left out"),
+        (
+            document.animations().len() > 0,
+            "its animations are left out",
+        ),
+    ]
+    .into_iter()
+    .filter(|(is_there, _)| *is_there)
+    .map(|(_, note)| note.to_owned())
+    .collect()
 }
 
 type Chunks<'a> = (Cow<'a, [u8]>, Option<Cow<'a, [u8]>>);
@@ -102,7 +142,7 @@ fn document_of(json: &[u8]) -> Result<Document, Fault> {
     let is_needed = |name: &String| GEOMETRY_EXTENSIONS.contains(&name.as_str());
     if let Some(name) = root.extensions_required.iter().find(|name| is_needed(name)) {
         return Err(Fault::new(format!(
-            "its triangles are packed with {name}, which is not read"
+            "its triangles need {name}, which is not read"
         )));
     }
     root.extensions_required.clear();

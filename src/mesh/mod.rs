@@ -37,7 +37,7 @@ mod gltf_scene;
 use std::path::Path;
 
 pub use error::MeshError;
-pub use part::{Part, PartColors};
+pub use part::{MeshFile, Part, PartColors};
 pub use solids::{SOLIDS, Solid, icosphere};
 pub use triangles::{FARTHEST, Triangles, place_key};
 
@@ -68,11 +68,11 @@ pub fn is_mesh_file(path: &Path) -> bool {
     MeshFormat::of_path(path).is_some()
 }
 
-/// Reads the parts of a mesh file that have triangles, of which there is at least one.
+/// Reads the parts of a mesh file that have triangles.
 ///
 /// # Errors
 /// [`MeshError`]: which file, where in it, and what is wrong. Nothing is half-read.
-pub fn read_parts(path: &Path) -> Result<Vec<Part>, MeshError> {
+pub fn read_mesh_file(path: &Path) -> Result<MeshFile, MeshError> {
     let Some(format) = MeshFormat::of_path(path) else {
         return Err(MeshError::UnknownFormat {
             path: path.to_owned(),
@@ -87,14 +87,14 @@ pub fn read_parts(path: &Path) -> Result<Vec<Part>, MeshError> {
         MeshFormat::Ply => ply::read(&bytes, &stem),
         MeshFormat::Gltf => gltf_scene::read(&bytes, folder, &stem),
     };
-    let mut parts = read.map_err(|fault| fault.of(path))?;
-    parts.retain(|part| !part.triangles.faces().is_empty());
-    if parts.is_empty() {
+    let mut file = read.map_err(|fault| fault.of(path))?;
+    file.parts.retain(|part| !part.triangles.faces().is_empty());
+    if file.parts.is_empty() {
         return Err(MeshError::Empty {
             path: path.to_owned(),
         });
     }
-    Ok(parts)
+    Ok(file)
 }
 
 /// Reads a PLY file that is part of the program.
@@ -103,8 +103,8 @@ pub fn read_parts(path: &Path) -> Result<Vec<Part>, MeshError> {
 /// [`MeshError`]: where in it what is wrong.
 pub fn read_ply(bytes: &[u8]) -> Result<Triangles, MeshError> {
     let path = Path::new("the program's own mesh");
-    let parts = ply::read(bytes, "").map_err(|fault| fault.of(path))?;
-    let triangles = parts.into_iter().next().map(|part| part.triangles);
+    let file = ply::read(bytes, "").map_err(|fault| fault.of(path))?;
+    let triangles = file.parts.into_iter().next().map(|part| part.triangles);
     Ok(triangles.unwrap_or_default())
 }
 
@@ -113,8 +113,8 @@ pub fn read_ply(bytes: &[u8]) -> Result<Triangles, MeshError> {
 /// # Errors
 /// [`MeshError`]: which file, where in it, and what is wrong.
 pub fn read_triangles(path: &Path) -> Result<Triangles, MeshError> {
-    let mut parts = read_parts(path)?;
-    match parts.as_mut_slice() {
+    let mut file = read_mesh_file(path)?;
+    match file.parts.as_mut_slice() {
         [only] => Ok(std::mem::take(&mut only.triangles)),
         several => Triangles::join(several.iter().map(|part| &part.triangles))
             .map_err(|fault| fault.of(path)),

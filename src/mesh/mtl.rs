@@ -1,34 +1,80 @@
 //! Colours of OBJ files.
 
 use std::borrow::Cow;
-use std::cell::Cell;
-use std::path::Path;
+use std::cell::{Cell, RefCell};
+use std::collections::HashSet;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use tobj::{LoadError, MTLLoadResult, Material};
 
+use super::error::excerpt;
 use super::limits::read_at_most;
 use super::part::PartColors;
 use crate::files::stays_inside;
 
 /// Most bytes of the material files of one OBJ file: room for thousands of materials.
 const MAX_BYTES: u64 = 4 << 20;
+/// Most characters of a file's name in a sentence.
+const LONGEST_NAME: usize = 80;
 
 /// Reads the material files that one OBJ file names.
 pub(super) struct Libraries<'a> {
     folder: &'a Path,
     /// A file that is named a million times is read until these are used up.
     left: Cell<u64>,
+    /// The materials that were read.
+    names: RefCell<HashSet<String>>,
+    /// The first file that was named and could not be read.
+    missing: RefCell<Option<String>>,
 }
 
 impl<'a> Libraries<'a> {
     /// Material files are looked for in the folder of the OBJ file.
     pub(super) fn new(folder: &'a Path) -> Self {
-        let left = Cell::new(MAX_BYTES);
-        Self { folder, left }
+        Self {
+            folder,
+            left: Cell::new(MAX_BYTES),
+            names: RefCell::default(),
+            missing: RefCell::default(),
+        }
+    }
+
+    /// What is to be said about files that could not be read.
+    pub(super) fn note(&self) -> Option<String> {
+        let missing = self.missing.take()?;
+        let name = excerpt(&missing, LONGEST_NAME);
+        Some(format!(
+            "its colours are missing: there is no readable file {name} beside it"
+        ))
+    }
+
+    /// A line that names a material, without a remark behind the name: there may be a `#` in it.
+    pub(super) fn known_name<'t>(&self, line: &'t str) -> &'t str {
+        let name = |line: &'t str| Some(line.split_once([' ', '\t'])?.1.trim());
+        let names = self.names.borrow();
+        let is_known = |line: &'t str| name(line).is_some_and(|name| names.contains(name));
+        let without = line.split_once('#').map(|(before, _)| before.trim_end());
+        match without {
+            Some(without) if !is_known(line) && is_known(without) => without,
+            _ => line,
+        }
     }
 
     /// Reads one. One that is not there or not in the folder, or cannot be read, only means that there are no colours.
     pub(super) fn load(&self, name: &Path) -> MTLLoadResult {
+        let loaded = self.load_known(name);
+        if let Ok((materials, _)) = &loaded {
+            let names = materials.iter().map(|material| material.name.clone());
+            self.names.borrow_mut().extend(names);
+        } else {
+            let mut missing = self.missing.borrow_mut();
+            missing.get_or_insert_with(|| name.to_string_lossy().into_owned());
+        }
+        loaded
+    }
+
+    fn load_known(&self, name: &Path) -> MTLLoadResult {
         // Exporters on Windows write its separators.
         let name = name.to_string_lossy().replace('\\', "/");
         let text = match self.text(&name) {
@@ -52,11 +98,27 @@ impl<'a> Libraries<'a> {
             return None;
         }
         let left = self.left.get();
-        let bytes = read_at_most(&self.folder.join(name), left).ok()??;
+        let bytes = read_at_most(&self.place(name), left).ok()??;
         // An empty file costs something too.
         self.left
             .set(left.saturating_sub(bytes.len() as u64 + 1024));
         Some(String::from_utf8_lossy(&bytes).into_owned())
+    }
+}
+
+impl Libraries<'_> {
+    /// Where a file is: also where its name is written with other capitals, which Windows does not tell apart.
+    fn place(&self, name: &str) -> PathBuf {
+        let place = self.folder.join(name);
+        if place.exists() {
+            return place;
+        }
+        let folder = place.parent().unwrap_or(self.folder);
+        let wanted = place.file_name().unwrap_or_default();
+        let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+        let mut names = entries.map(|entry| entry.file_name());
+        let same = names.find(|name| name.eq_ignore_ascii_case(wanted));
+        same.map_or(place.clone(), |same| folder.join(same))
     }
 }
 

@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use glam::DVec3;
+use indexmap::IndexMap;
 use tobj::{LoadOptions, Model};
 
 use super::error::Fault;
 use super::mtl::{Libraries, colors_of};
 use super::obj_fault::find_fault;
 use super::obj_lines::ObjLines;
-use super::part::Part;
+use super::part::{COLORS_OF_POINTS, MeshFile, Part};
 use super::polygon::mend_fan;
 use super::triangles::Triangles;
 
@@ -25,13 +26,13 @@ const OPTIONS: LoadOptions = LoadOptions {
 /// What `tobj` calls faces before the first group.
 const UNNAMED: &str = "unnamed_object";
 
-/// Reads the groups and objects of an OBJ file.
-pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<Vec<Part>, Fault> {
+/// Reads the groups and objects of an OBJ file. Of each, what has one material is a part.
+pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, Fault> {
     // Names may be in any encoding; everything else is ASCII.
     let text = String::from_utf8_lossy(bytes);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-    let mut lines = ObjLines::new(text);
     let libraries = Libraries::new(folder);
+    let mut lines = ObjLines::new(text, &libraries);
     let loaded = tobj::load_obj_buf(&mut lines, &OPTIONS, |name| libraries.load(name));
     let (models, materials) = match (lines.fault, loaded) {
         (Some(fault), _) => return Err(fault),
@@ -39,24 +40,46 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<Vec<Part>,
         (None, Err(error)) => return Err(find_fault(text, &error.to_string())),
     };
     let materials = materials.unwrap_or_default();
-    models
-        .into_iter()
-        .map(|model| {
-            let material = model.mesh.material_id.and_then(|id| materials.get(id));
-            let colors = material.and_then(colors_of);
-            let triangles = triangles_of(&model)
-                .map_err(|_| find_fault(text, "a point is not where numbers can be"))?;
-            let name = match model.name.as_str() {
-                "" | UNNAMED => stem.to_owned(),
-                _ => model.name,
-            };
-            Ok(Part {
-                name,
-                colors,
-                triangles,
-            })
+    let mut pieces: IndexMap<_, Vec<Model>> = IndexMap::new();
+    let mut polygons = 0;
+    for model in models {
+        let group = lines.starts.partition_point(|&start| start <= polygons);
+        polygons += polygons_of(&model);
+        let own = pieces.entry((group, model.mesh.material_id)).or_default();
+        own.push(model);
+    }
+    let parts = pieces.into_iter().map(|((_, material), models)| {
+        let name = match models[0].name.as_str() {
+            "" | UNNAMED => stem.to_owned(),
+            name => name.to_owned(),
+        };
+        let material = material.and_then(|id| materials.get(id));
+        let triangles: Result<Vec<_>, _> = models.iter().map(triangles_of).collect();
+        let triangles = triangles.and_then(|pieces| match <[_; 1]>::try_from(pieces) {
+            Ok([only]) => Ok(only),
+            Err(several) => Triangles::join(several.iter()),
+        });
+        let triangles =
+            triangles.map_err(|_| find_fault(text, "a point is not where numbers can be"))?;
+        Ok(Part {
+            name,
+            colors: material.and_then(colors_of),
+            triangles,
         })
-        .collect()
+    });
+    let parts = parts.collect::<Result<Vec<_>, Fault>>()?;
+    let has_lost = lines.has_colors && parts.iter().any(|part| part.colors.is_none());
+    let colors = has_lost.then(|| COLORS_OF_POINTS.to_owned());
+    let notes = libraries.note().into_iter().chain(colors).collect();
+    Ok(MeshFile { parts, notes })
+}
+
+fn polygons_of(model: &Model) -> usize {
+    match model.mesh.face_arities.len() {
+        // Where all faces are triangles, there are no numbers of corners.
+        0 => model.mesh.indices.len() / 3,
+        count => count,
+    }
 }
 
 fn triangles_of(model: &Model) -> Result<Triangles, Fault> {

@@ -9,6 +9,7 @@ use std::io::{self, BufRead, Read};
 
 use super::error::Fault;
 use super::limits::{check_faces, check_groups, check_points};
+use super::mtl::Libraries;
 
 /// What a line says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +17,7 @@ enum Kind {
     Point,
     Face,
     Group,
+    Material,
     Library,
     Other,
 }
@@ -27,7 +29,7 @@ impl Kind {
             Some("f") => Self::Face,
             Some("o" | "g") => Self::Group,
             // One without a name is an error to `tobj` and nothing to a person.
-            Some("usemtl") if line.len() > "usemtl".len() => Self::Group,
+            Some("usemtl") if line.len() > "usemtl".len() => Self::Material,
             Some("mtllib") => Self::Library,
             _ => Self::Other,
         }
@@ -49,12 +51,19 @@ pub(super) struct ObjLines<'a> {
     faces: usize,
     points: usize,
     groups: usize,
+    /// The material files that have been read on the way.
+    libraries: &'a Libraries<'a>,
+    /// For each line that begins a group or an object, how many polygons are before it.
+    pub(super) starts: Vec<usize>,
+    polygons: usize,
+    /// Whether a point has a colour.
+    pub(super) has_colors: bool,
     /// Why there are no more lines although the text goes on.
     pub(super) fault: Option<Fault>,
 }
 
 impl<'a> ObjLines<'a> {
-    pub(super) fn new(text: &'a str) -> Self {
+    pub(super) fn new(text: &'a str, libraries: &'a Libraries<'a>) -> Self {
         Self {
             rest: text,
             piece: b"",
@@ -65,6 +74,10 @@ impl<'a> ObjLines<'a> {
             faces: 0,
             points: 0,
             groups: 0,
+            libraries,
+            starts: Vec::new(),
+            polygons: 0,
+            has_colors: false,
             fault: None,
         }
     }
@@ -92,7 +105,13 @@ impl<'a> ObjLines<'a> {
             };
             self.going_on = goes_on.then_some(kind);
             let line = match kind {
-                Kind::Point if begun.is_none() && !goes_on => three_numbers(line),
+                Kind::Point if begun.is_none() && !goes_on => {
+                    let point = three_numbers(line);
+                    let behind = line[point.len()..].split_ascii_whitespace();
+                    self.has_colors |= 3 <= behind.count();
+                    point
+                }
+                Kind::Material => self.libraries.known_name(line),
                 // Names may have it in them.
                 Kind::Face => line.split('#').next().unwrap_or_default(),
                 _ => line,
@@ -106,7 +125,7 @@ impl<'a> ObjLines<'a> {
             if line.is_empty() {
                 return Ok(behind);
             }
-            if matches!(kind, Kind::Group | Kind::Library)
+            if matches!(kind, Kind::Group | Kind::Material | Kind::Library)
                 && let Some((word, name)) = line.split_once('\t')
                 && !word.contains(' ')
             {
@@ -132,12 +151,17 @@ impl<'a> ObjLines<'a> {
                 check_faces(self.faces + self.corners.saturating_sub(3))?;
                 if !goes_on {
                     self.faces += self.corners.saturating_sub(3);
+                    // Of fewer corners are points and lines.
+                    self.polygons += usize::from(3 < self.corners);
                     self.corners = 0;
                 }
                 Ok(())
             }
-            Kind::Group => {
+            Kind::Group | Kind::Material => {
                 self.groups += 1;
+                if kind == Kind::Group {
+                    self.starts.push(self.polygons);
+                }
                 check_groups(self.groups)
             }
             Kind::Library | Kind::Other => Ok(()),
@@ -188,13 +212,17 @@ impl Read for ObjLines<'_> {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
 
     #[test]
     fn names_stand_behind_a_space_and_remarks_go() {
         let text = "mtllib\t\ta b.mtl\nusemtl\tred\nf 1 2 3 # all\nusemtl blue\tsky\n";
         let mut read = String::new();
-        ObjLines::new(text).read_to_string(&mut read).expect("text");
+        ObjLines::new(text, &Libraries::new(Path::new("")))
+            .read_to_string(&mut read)
+            .expect("text");
         let expected = "mtllib a b.mtl\nusemtl red\nf 1 2 3 \nusemtl blue\tsky\n";
         assert_eq!(read, expected);
     }
@@ -203,7 +231,9 @@ mod tests {
     fn only_what_matters_is_left() {
         let text = "# a cube\r\nv 1 2\t3 0.5 0.5 0.5\nvt 1 1\n  f 1/1 \\\r\n 2 3\n\nl 1 2 \\\n3\nusemtl\n\tg a b\\\nf 1 2";
         let mut read = String::new();
-        ObjLines::new(text).read_to_string(&mut read).expect("text");
+        ObjLines::new(text, &Libraries::new(Path::new("")))
+            .read_to_string(&mut read)
+            .expect("text");
         assert_eq!(read, "v 1 2\t3\nf 1/1  2 3\ng a b\\\nf 1 2\n");
     }
 }

@@ -2,6 +2,32 @@
 
 use super::triangles::Triangles;
 
+/// What was read of a mesh file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshFile {
+    /// The parts that have triangles, of which there is at least one.
+    pub parts: Vec<Part>,
+    /// What of it is missing or was left out, each a part of a sentence; empty if nothing is.
+    pub notes: Vec<String>,
+}
+
+impl MeshFile {
+    /// One part without colours, and nothing left out.
+    pub(super) fn of_one(name: String, triangles: Triangles) -> Self {
+        let colors = None;
+        let parts = vec![Part {
+            name,
+            colors,
+            triangles,
+        }];
+        let notes = Vec::new();
+        Self { parts, notes }
+    }
+}
+
+/// The note that points have colours, which scenes do not have.
+pub(super) const COLORS_OF_POINTS: &str = "colours of points or faces are left out";
+
 /// A group or object of an OBJ file, a primitive of a glTF file; STL and PLY files are one part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {

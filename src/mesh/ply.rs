@@ -11,7 +11,7 @@ use ply_rs_bw::ply::{ElementDef, Encoding, Header, PropertyType};
 
 use super::error::Fault;
 use super::limits::{check_faces, check_points};
-use super::part::Part;
+use super::part::{COLORS_OF_POINTS, MeshFile};
 use super::ply_element::{Element, is_corners, least_bytes};
 use super::polygon::mend_fan;
 use super::triangles::{Triangles, out_of_range};
@@ -20,7 +20,7 @@ use super::triangles::{Triangles, out_of_range};
 const MAX_HEADER: usize = 1 << 20;
 
 /// Reads a PLY file; polygons become triangles.
-pub(super) fn read(bytes: &[u8], stem: &str) -> Result<Vec<Part>, Fault> {
+pub(super) fn read(bytes: &[u8], stem: &str) -> Result<MeshFile, Fault> {
     let parser = Parser::<Element>::new();
     // Comments may be in any encoding, and the crate wants UTF-8.
     let to_ascii = |&byte: &u8| if byte.is_ascii() { byte } else { b'?' };
@@ -45,11 +45,19 @@ pub(super) fn read(bytes: &[u8], stem: &str) -> Result<Vec<Part>, Fault> {
         mend_fan(&mut faces[fan], |corner| points[corner as usize]);
     }
     let triangles = Triangles::weld(points.len(), |index| points[index], faces.into_iter())?;
-    Ok(vec![Part {
-        name: stem.to_owned(),
-        colors: None,
-        triangles,
-    }])
+    let mut file = MeshFile::of_one(stem.to_owned(), triangles);
+    if has_colors(&header) {
+        file.notes.push(COLORS_OF_POINTS.to_owned());
+    }
+    Ok(file)
+}
+
+/// Whether points or faces have colours.
+fn has_colors(header: &Header) -> bool {
+    let elements = ["vertex", "face"].map(|name| header.elements.get(name));
+    let is_color = |name: &String| matches!(name.as_str(), "red" | "diffuse_red");
+    let mut elements = elements.into_iter().flatten();
+    elements.any(|element| element.properties.iter().any(|(name, _)| is_color(name)))
 }
 
 fn header_fault(error: &ParseError, bytes: &[u8]) -> Fault {

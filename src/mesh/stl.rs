@@ -5,7 +5,7 @@ use mesh_loader::Scene;
 
 use super::error::Fault;
 use super::limits::{check_faces, check_points};
-use super::part::Part;
+use super::part::MeshFile;
 use super::triangles::Triangles;
 
 /// Bytes before the first triangle of a binary file: 80 of any content, and how many there are.
@@ -18,7 +18,7 @@ const WORD: &[u8] = b"solid";
 const SHORTEST: usize = 80;
 
 /// Reads an STL file; several solids are one part.
-pub(super) fn read(mut bytes: Vec<u8>, stem: &str) -> Result<Vec<Part>, Fault> {
+pub(super) fn read(mut bytes: Vec<u8>, stem: &str) -> Result<MeshFile, Fault> {
     let is_text = is_text(&bytes);
     let (name, loaded) = if is_text {
         (prepare_text(&mut bytes)?, load_text(&bytes))
@@ -41,11 +41,8 @@ pub(super) fn read(mut bytes: Vec<u8>, stem: &str) -> Result<Vec<Part>, Fault> {
         |index| DVec3::from_array(points[index].map(f64::from)),
         (0..points.len() as u32 / 3).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]),
     )?;
-    Ok(vec![Part {
-        name: name.unwrap_or_else(|| stem.to_owned()),
-        colors: None,
-        triangles,
-    }])
+    let name = name.unwrap_or_else(|| stem.to_owned());
+    Ok(MeshFile::of_one(name, triangles))
 }
 
 /// Whether this is the text form. The header of a binary file may begin with the same word.

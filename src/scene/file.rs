@@ -13,6 +13,7 @@ use super::locate::{claimed_version, has_inner_comments, header, locate};
 use super::parse_errors::sentence;
 use super::whole::{Scene, VERSION};
 use crate::files::{Stamp, back_up, read_file, time_of, write_atomic};
+use crate::mesh::is_mesh_file;
 
 /// The RON text of the demo scene, as embedded in the program.
 pub const DEMO_TEXT: &str = include_str!("../../scenes/demo.ron");
@@ -40,6 +41,12 @@ pub enum SceneError {
     /// The text is not a valid scene.
     #[error("{0}")]
     Refused(Refusal),
+    /// The file has the name of a mesh file: nothing was read.
+    #[error("{path} is no scene but a mesh file: `glint convert {path} -o NAME.ron` makes a scene of it, and Import mesh in the File menu of the window adds it to one", path = .path.display())]
+    Mesh {
+        /// The file.
+        path: PathBuf,
+    },
     /// The file is larger than any scene: nothing was read.
     #[error("{path}: a scene file has at most {limit} bytes, this one has {found}", path = .path.display())]
     TooLarge {
@@ -132,6 +139,10 @@ impl Document {
     /// # Errors
     /// See [`Self::load`].
     pub fn load_stamped(path: &Path) -> Result<(Self, Stamp), SceneError> {
+        if is_mesh_file(path) {
+            let path = path.to_owned();
+            return Err(SceneError::Mesh { path });
+        }
         // Of before: what is written while it is read counts as new.
         let modified = time_of(path);
         let bytes = read_bounded(path)?;

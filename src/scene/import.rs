@@ -12,7 +12,7 @@ use super::material::{ColorPack, MAX_EXPONENT};
 use super::object::{Light, LightObj, Object};
 use super::shape::{Mesh, MeshFiles, MeshSource, Shape};
 use super::whole::Scene;
-use crate::mesh::{MeshError, Part, PartColors, read_parts};
+use crate::mesh::{MeshError, Part, PartColors, read_mesh_file};
 
 /// Packs that parts of one file have been given, by the names that they asked for.
 type PacksOfParts = HashMap<String, Vec<(ColorPack, String)>>;
@@ -22,15 +22,20 @@ const PLAIN: &str = "mesh";
 
 impl Scene {
     /// A scene of a mesh file, seen whole and lit from two sides. A file of one part that lies in
-    /// `folder`, where the scene is to be saved, is referred to; all else is taken in.
+    /// `folder`, where the scene is to be saved, is referred to; all else is taken in. Beside it what
+    /// [`MeshFile::notes`](crate::mesh::MeshFile::notes) says.
     ///
     /// # Errors
     /// [`MeshError`]: which file, where in it, and what is wrong.
-    pub fn of_mesh_file(path: &Path, folder: Option<&Path>) -> Result<Self, MeshError> {
+    pub fn of_mesh_file(
+        path: &Path,
+        folder: Option<&Path>,
+    ) -> Result<(Self, Vec<String>), MeshError> {
         let mut scene = Self::empty();
         scene.packs_mut().clear();
         scene.lights = List::new();
-        scene.add_parts(read_parts(path)?);
+        let file = read_mesh_file(path)?;
+        scene.add_parts(file.parts);
         let near = folder.and_then(|folder| path.strip_prefix(folder).ok());
         if let (Some(near), 1) = (near.and_then(Path::to_str), scene.objects.len())
             && let Some(object) = scene.objects.get_mut(0)
@@ -53,7 +58,7 @@ impl Scene {
             }
         }
         scene.frame_and_light();
-        Ok(scene)
+        Ok((scene, file.notes))
     }
 
     /// Adds parts as objects behind the last, with their colours as packs. Gives the index of the first.
@@ -205,7 +210,7 @@ mod tests {
         let path = folder.path().join("m.obj");
         std::fs::write(&path, OBJ).expect("written");
         std::fs::write(folder.path().join("m.mtl"), MTL).expect("written");
-        let scene = Scene::of_mesh_file(&path, Some(folder.path())).expect("read");
+        let (scene, _) = Scene::of_mesh_file(&path, Some(folder.path())).expect("read");
         assert_eq!(check(&scene), Ok(()));
         let names: Vec<_> = scene.objects.iter().map(|o| o.name.as_str()).collect();
         assert_eq!(names, ["left", "left 2"]);
@@ -232,7 +237,7 @@ mod tests {
         let mut scene = Scene::demo();
         let other = ColorPack::default();
         scene.packs_mut().insert("red".to_owned(), other);
-        let first = scene.add_parts(read_parts(&path).expect("read"));
+        let first = scene.add_parts(read_mesh_file(&path).expect("read").parts);
         let packs = [0, 1].map(|part| scene.objects[first + part].color_pack.as_str());
         assert_eq!(packs, ["red 2", "red 2"]);
     }
@@ -269,7 +274,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("m.obj");
         std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
-        let scene = Scene::of_mesh_file(&path, Some(folder.path())).expect("read");
+        let (scene, _) = Scene::of_mesh_file(&path, Some(folder.path())).expect("read");
         let document = Document {
             header: String::new(),
             scene,

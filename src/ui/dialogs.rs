@@ -1,7 +1,7 @@
 //! Asking for a path: the desktop's own dialog, on a thread of its own, or a prompt in the window
 //! where the desktop offers none.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::Receiver;
 
 use egui::Context;
@@ -61,6 +61,13 @@ impl Ask {
             Some(_) => path,
             None => path.with_extension(self.endings()[0]),
         }
+    }
+
+    /// Whether a file of this name can be what is asked for: pictures and tables are written as their endings say.
+    pub fn takes(&self, path: &Path) -> bool {
+        let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+        !matches!(self, Self::SaveImage | Self::ExportPath)
+            || self.endings().iter().any(|known| ending == *known)
     }
 
     /// The endings that files of this kind have; the first is added where there is none.

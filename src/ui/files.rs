@@ -183,9 +183,10 @@ impl Files {
         match answer.try_recv() {
             Ok(Some(path)) => {
                 let full = wish.ask.with_ending(path.clone());
-                if wish.ask.writes() && full != path && full.exists() {
-                    // The desktop asked about another name than the one that would be replaced.
-                    self.prompt(wish, &full);
+                let is_unasked = wish.ask.writes() && full != path && full.exists();
+                if is_unasked || !wish.ask.takes(&full) {
+                    // The desktop asked about another name than the one that would be replaced, or knows no endings.
+                    self.prompt(wish, &full, "Path");
                     return None;
                 }
                 return self.answered(ctx, editor, wish, full);
@@ -199,15 +200,19 @@ impl Files {
             }
             Ok(None) | Err(TryRecvError::Disconnected) if since.elapsed() < NO_DIALOG => {
                 let suggested = self.folders.suggest(editor, &wish.ask);
-                self.prompt(wish, &suggested);
+                self.prompt(
+                    wish,
+                    &suggested,
+                    "Path (this desktop offers no file dialog)",
+                );
             }
             Ok(None) | Err(TryRecvError::Disconnected) => {}
         }
         None
     }
 
-    fn prompt(&mut self, wish: PathRequest, suggested: &Path) {
-        let prompt = PathPrompt::new(wish.ask.clone(), suggested);
+    fn prompt(&mut self, wish: PathRequest, suggested: &Path, label: &'static str) {
+        let prompt = PathPrompt::new(wish.ask.clone(), suggested, label);
         self.question = Some(Question::Path(wish, prompt));
     }
 
@@ -385,8 +390,8 @@ impl Files {
                 self.start(ctx, editor, Next::Open(reading.path));
             }
             Read::Scene(document) => self.opened(editor, &reading.path, *document),
-            Read::Parts(Ok(parts)) => imported(editor, &reading.path, parts),
-            Read::Parts(Err(error)) => {
+            Read::Mesh(Ok(file)) => imported(editor, &reading.path, file),
+            Read::Mesh(Err(error)) => {
                 editor.report_error_in(Ask::ImportMesh.title(), error.to_string());
             }
             Read::Nothing => {

@@ -9,8 +9,9 @@ use crate::editor::{Action, Edit, Editor, Item, Selected, free_group_name};
 use crate::export::{Job, Pattern, Sequence, povray_text, write_job, write_text};
 use crate::files::is_same_file;
 use crate::image::Format;
-use crate::mesh::Part;
+use crate::mesh::MeshFile;
 use crate::scene::{Animation, read_text};
+use crate::words::counted;
 
 /// The keys of a file take the place of the camera's.
 pub fn import_path(editor: &mut Editor, path: &Path) {
@@ -122,7 +123,8 @@ fn is_table(path: &Path) -> bool {
 }
 
 /// The parts of a mesh file become objects.
-pub fn imported(editor: &mut Editor, path: &Path, parts: Vec<Part>) {
+pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
+    let MeshFile { parts, notes } = file;
     let count: usize = parts.iter().map(|part| part.triangles.faces().len()).sum();
     let (first, last) = (
         editor.scene().objects.len(),
@@ -143,7 +145,10 @@ pub fn imported(editor: &mut Editor, path: &Path, parts: Vec<Part>) {
     let parts = Selected::all((first..last).map(Item::object));
     editor.apply(Action::SelectItems(parts));
     let path = path.display();
+    let count = counted(count, "triangle");
+    let notes = notes.iter().map(|note| format!("; {note}"));
+    let notes: String = notes.collect();
     editor.notify(format!(
-        "{count} triangles from {path}; F brings them into the picture"
+        "{count} from {path}; F brings them into the picture{notes}"
     ));
 }

@@ -86,6 +86,7 @@ pub fn ask_to_leave(ctx: &Context, going: &str) -> Answer {
 /// A path that is being typed.
 pub struct PathPrompt {
     ask: Ask,
+    label: &'static str,
     text: String,
     is_new: bool,
     /// Why a folder could not be made.
@@ -93,10 +94,11 @@ pub struct PathPrompt {
 }
 
 impl PathPrompt {
-    /// Starts from a path that is likely meant.
-    pub fn new(ask: Ask, suggested: &Path) -> Self {
+    /// Starts from a path that is likely meant, with a label before it.
+    pub fn new(ask: Ask, suggested: &Path, label: &'static str) -> Self {
         Self {
             ask,
+            label,
             text: suggested.display().to_string(),
             is_new: true,
             problem: None,
@@ -118,7 +120,7 @@ impl PathPrompt {
         question(ctx, ("path prompt", 480.0, Answer::Open), |ui, answer| {
             ui.heading(self.ask.title());
             ui.add_space(GRID);
-            let label = ui.weak("Path (this desktop offers no file dialog)");
+            let label = ui.weak(self.label);
             let field = TextEdit::singleline(&mut self.text).desired_width(f32::INFINITY);
             let field = ui.add(field).labelled_by(label.id);
             if field.changed() {
@@ -185,6 +187,13 @@ impl PathPrompt {
             let words = format!("There is no folder {}", folder.display());
             return Some(Warning {
                 words,
+                is_possible: false,
+            });
+        }
+        if !self.ask.takes(&path) {
+            let endings = self.ask.endings().join(", .");
+            return Some(Warning {
+                words: format!("Its name has to end in one of these: .{endings}"),
                 is_possible: false,
             });
         }

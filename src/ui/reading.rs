@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use crate::editor::Editor;
 use crate::files::Stamp;
-use crate::mesh::{MeshError, Part, read_parts};
+use crate::mesh::{MeshError, MeshFile, read_mesh_file};
 use crate::scene::{Document, Scene, SceneError};
 use crate::worker::run_in_background;
 
@@ -16,7 +16,7 @@ pub enum Read {
     /// A scene file with its meshes, which takes the place of the document.
     Scene(Box<Result<(Document, Stamp), SceneError>>),
     /// A mesh file, whose parts become objects.
-    Parts(Result<Vec<Part>, MeshError>),
+    Mesh(Result<MeshFile, MeshError>),
     /// Nothing: the reader stopped.
     Nothing,
 }
@@ -41,7 +41,7 @@ impl Reading {
 
     /// Begins to read a mesh file.
     pub fn parts(editor: &Editor, path: &Path) -> Self {
-        Self::start(editor, path, |path| Read::Parts(read_parts(&path)))
+        Self::start(editor, path, |path| Read::Mesh(read_mesh_file(&path)))
     }
 
     fn start(editor: &Editor, path: &Path, read: fn(PathBuf) -> Read) -> Self {

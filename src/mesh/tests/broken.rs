@@ -5,11 +5,11 @@ use std::path::Path;
 use super::solid::{
     binary_ply, binary_stl, embedded_gltf, glb, gltf_json, ply_header, text_ply, text_stl,
 };
-use super::{MeshError, Sample, error_of, read_parts};
+use super::{MeshError, Sample, error_of, read_mesh_file};
 
 #[test]
 fn files_that_are_not_there_or_not_meshes() {
-    let error = read_parts(Path::new("/nowhere/m.obj")).expect_err("an error");
+    let error = read_mesh_file(Path::new("/nowhere/m.obj")).expect_err("an error");
     assert!(matches!(error, MeshError::Disk { .. }), "{error}");
     assert!(
         error
@@ -23,7 +23,7 @@ fn files_that_are_not_there_or_not_meshes() {
     );
     let folder = sample.folder.path().join("m.stl");
     std::fs::create_dir(&folder).expect("a folder");
-    let error = read_parts(&folder).expect_err("an error").to_string();
+    let error = read_mesh_file(&folder).expect_err("an error").to_string();
     assert!(error.ends_with("this is not a file"), "{error}");
 }
 

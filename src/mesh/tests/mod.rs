@@ -34,7 +34,11 @@ impl Sample {
     }
 
     fn parts(&self) -> Vec<Part> {
-        read_parts(&self.path).expect("a mesh")
+        read_mesh_file(&self.path).expect("a mesh").parts
+    }
+
+    fn notes(&self) -> Vec<String> {
+        read_mesh_file(&self.path).expect("a mesh").notes
     }
 
     fn triangles(&self) -> Triangles {
@@ -43,7 +47,9 @@ impl Sample {
 
     /// The error, with the file's name only in place of its path.
     fn error(&self) -> String {
-        let error = read_parts(&self.path).expect_err("an error").to_string();
+        let error = read_mesh_file(&self.path)
+            .expect_err("an error")
+            .to_string();
         let folder = format!("{}/", self.folder.path().display());
         assert!(error.contains(&folder), "{error}");
         error.replace(&folder, "")

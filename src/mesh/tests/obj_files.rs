@@ -148,3 +148,52 @@ fn colours_are_found_as_other_programs_write_them() {
         far.error()
     );
 }
+
+#[test]
+fn what_has_one_material_is_one_part_of_its_group() {
+    let sample = Sample::new(
+        "m.obj",
+        format!(
+            "mtllib m.mtl\n{SQUARE}usemtl red\nf 1 2 3\nusemtl blue\nf 2 3 4\nusemtl red\nf 1 3 4\ng a\nf 1 2 4\nusemtl blue\nl 1 2\nf 2 1 4\ng a\nf 2 1 3\nusemtl red\nf 1 2 3 4\nusemtl blue\nf 4 3 2\n"
+        ),
+    );
+    sample.beside("m.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
+    let parts = sample.parts().into_iter().map(|part| {
+        let color = part.colors.map_or(String::new(), |colors| colors.name);
+        let faces = part.triangles.faces().len();
+        (part.name, color, faces)
+    });
+    let parts: Vec<_> = parts.collect();
+    let part = |name: &str, color: &str, faces| (name.to_owned(), color.to_owned(), faces);
+    let expected = [
+        part("m", "red", 2),
+        part("m", "blue", 1),
+        part("a", "red", 1),
+        part("a", "blue", 1),
+        part("a", "blue", 2),
+        part("a", "red", 2),
+    ];
+    assert_eq!(parts, expected);
+    assert!(sample.notes().is_empty());
+}
+
+#[test]
+fn colours_that_are_not_found_are_told_and_those_that_can_be_are_found() {
+    let text = format!(
+        "mtllib Some.MTL\n{SQUARE}usemtl red # and blue\nf 1 2 3\ng b\nusemtl Material #25\nf 2 3 4\n"
+    );
+    let sample = Sample::new("m.obj", &text);
+    let missing = "its colours are missing: there is no readable file Some.MTL beside it";
+    assert_eq!(sample.notes(), [missing]);
+    sample.beside(
+        "some.mtl",
+        "newmtl red\nKd 1 0 0\nnewmtl Material #25\nKd 0 0 1\n",
+    );
+    let colors = sample.parts().into_iter().filter_map(|part| part.colors);
+    let colors: Vec<_> = colors.map(|colors| colors.diffuse).collect();
+    assert_eq!(colors, [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]);
+    assert!(sample.notes().is_empty());
+    let painted = "v 0 0 0 1 0 0\nv 1 0 0 1 1 0\nv 0 1 0 1 0 0\nf 1 2 3\n";
+    let notes = Sample::new("m.obj", painted).notes();
+    assert_eq!(notes, ["colours of points or faces are left out"]);
+}

@@ -68,6 +68,38 @@ fn extensions_about_looks_do_not_matter() {
     assert_eq!(with("KHR_materials_unlit").triangles().faces().len(), 20);
     assert_eq!(
         with("KHR_draco_mesh_compression").error(),
-        "m.gltf: its triangles are packed with KHR_draco_mesh_compression, which is not read"
+        "m.gltf: its triangles need KHR_draco_mesh_compression, which is not read"
     );
+}
+
+#[test]
+fn without_a_scene_all_nodes_are_shown() {
+    let json = embedded_gltf("");
+    let expected = Sample::new("m.gltf", &json).triangles();
+    let (start, rest) = json.split_once("\"scenes\":[").expect("a scene");
+    let (_, rest) = rest.split_once("]}],").expect("its nodes");
+    let without = format!("{start}{rest}").replace("\"scene\":0,", "");
+    assert_eq!(Sample::new("m.gltf", without).triangles(), expected);
+}
+
+#[test]
+fn what_is_left_out_of_a_file_is_told() {
+    let json = embedded_gltf("");
+    assert!(Sample::new("m.gltf", &json).notes().is_empty());
+    let with = json.replacen(
+        '{',
+        r#"{"cameras":[{"type":"orthographic","orthographic":{"xmag":1,"ymag":1,"zfar":2,"znear":1}}],"#,
+        1,
+    );
+    assert_eq!(
+        Sample::new("m.gltf", with).notes(),
+        ["its cameras are left out"]
+    );
+    let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    let notes = Sample::new(
+        "m.ply",
+        format!("{header}0 0 0 9\n1 0 0 9\n0 1 0 9\n3 0 1 2\n"),
+    )
+    .notes();
+    assert_eq!(notes, ["colours of points or faces are left out"]);
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::solid::{all, embedded_gltf, gltf_bytes, gltf_json, icosahedron};
-use super::{Sample, is_mesh_file, read_parts};
+use super::{Sample, is_mesh_file, read_mesh_file};
 
 #[test]
 fn every_format_gives_the_same_mesh() {
@@ -106,7 +106,7 @@ fn nothing_beside_the_folder_is_read() {
     let absolute = outside.path.display();
     for name in ["../b.bin".to_owned(), absolute.to_string()] {
         let path = place("m.gltf", gltf_json("", &format!(r#","uri":"{name}""#)));
-        let error = read_parts(&path).expect_err("refused").to_string();
+        let error = read_mesh_file(&path).expect_err("refused").to_string();
         assert!(
             error.contains("must lie in the folder of the file"),
             "{error}"
@@ -114,7 +114,7 @@ fn nothing_beside_the_folder_is_read() {
     }
     for name in ["../c.mtl", "..\\c.mtl"] {
         let text = format!("mtllib {name}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
-        let parts = read_parts(&place("m.obj", text)).expect("a mesh");
+        let parts = read_mesh_file(&place("m.obj", text)).expect("a mesh").parts;
         assert_eq!(parts[0].colors, None, "{name}");
     }
 }

@@ -80,6 +80,26 @@ fn the_still_picture_is_written_to_a_file() {
 }
 
 #[test]
+fn a_picture_in_an_unknown_format_is_asked_about_again() {
+    let answers =
+        |folder: &std::path::Path| vec![(Ask::SaveImage, Some(folder.join("picture.jpg")))];
+    let mut harness = EditorHarness::with(answers, None);
+    harness.press(Modifiers::COMMAND, Key::E);
+    harness
+        .window
+        .get_by_label("Its name has to end in one of these: .png, .ppm, .exr");
+    let folder = harness.folder.path().to_owned();
+    let path = folder.join("picture.PNG");
+    harness.type_name("Path", path.to_str().expect("plain"));
+    let start = Instant::now();
+    while !path.exists() && start.elapsed() < Duration::from_secs(30) {
+        harness.window.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(path.exists() && !folder.join("picture.jpg").exists());
+}
+
+#[test]
 fn unsaved_changes_are_asked_about() {
     let mut harness = EditorHarness::with(
         |folder| vec![(Ask::SaveScene, Some(folder.join("kept.ron")))],
