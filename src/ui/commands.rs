@@ -43,6 +43,8 @@ pub enum Command {
     RequestPaste,
     /// Add what a text from the clipboard describes.
     Paste(String),
+    /// Select all of what is selected: objects and lights, or keys of the camera.
+    SelectAll,
     /// Select all objects that wear the pack of the selected one.
     SelectSamePack,
     /// List the selected objects as a group.
@@ -225,7 +227,7 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     StopRecording [plain(Key::T)] "Stop recording and make keys",
     Play [plain(Key::G)] "Play or pause",
     AddKey [plain(Key::K)] "Set a key at the playhead",
-    SelectKeys [ctrl(Key::A)] "Select all keys",
+    SelectAll [ctrl(Key::A)] "Select all objects and lights, or all keys",
     LookThrough [plain(Key::C)] "Look through the shot camera, or at it",
     PreviousKey [plain(Key::OpenBracket)] "Previous key",
     NextKey [plain(Key::CloseBracket)] "Next key",
@@ -241,6 +243,7 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
 /// The commands that have no key.
 pub const KEYLESS: &[(Command, &str)] = &[
     (Command::Live, "Live view"),
+    (Command::SelectKeys, "Select all keys"),
     (Command::ActualSize, "High-res picture at actual size"),
     (Command::ImportMesh, "Import a mesh"),
     (Command::ExportJob, "Export a job for a render farm"),

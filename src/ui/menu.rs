@@ -116,6 +116,7 @@ fn edit_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         entry(ui, text, command, enabled, out);
     }
     entry(ui, "Paste", Command::RequestPaste, true, out);
+    entry(ui, "Select all", Command::SelectAll, true, out);
     let can_merge = is_enabled(&Command::MergePacks, editor);
     entry(ui, "Merge equal packs", Command::MergePacks, can_merge, out);
 }

@@ -186,9 +186,6 @@ impl App {
         if !is_still && self.layout.flight {
             self.overlay.show(ui, &self.editor, place.rect, out);
         }
-        if !is_still && self.layout.shot {
-            self.thumbs.show_shot(ui, &self.editor, place.rect);
-        }
         let aspect = self.layout.aspect;
         if !is_still && aspect != Aspect::All && badge(ui, place, aspect.name()) {
             self.layout.aspect = Aspect::All;
@@ -219,6 +216,9 @@ impl App {
             let picture = (place, &response);
             self.tools
                 .show(ui, &self.editor, picture, (wheel, is_busy), out);
+        }
+        if !is_still && self.layout.shot {
+            self.thumbs.show_shot(ui, &self.editor, place.rect);
         }
         (place, response)
     }

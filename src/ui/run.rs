@@ -79,6 +79,14 @@ impl App {
                 self.lab.is_open = false;
                 None
             }
+            Command::SelectAll if means_keys(&self.editor) => {
+                return self.run(ctx, Command::SelectKeys);
+            }
+            Command::SelectAll => {
+                let all = Action::SelectItems(everything(self.editor.scene()));
+                self.editor.apply(all);
+                None
+            }
             Command::FrameAll if self.timeline.is_hovered(ctx.cumulative_frame_nr()) => {
                 self.timeline.fit();
                 None
@@ -309,6 +317,18 @@ fn toggle_visible(editor: &mut Editor) {
     let edits: Vec<Edit> = edits.collect();
     let label = format!("{field} {} items", edits.len());
     editor.apply(Action::Edit(Edit::Each(edits, label)));
+}
+
+/// Whether all that could be selected are keys: there are some, and no object or light is selected.
+fn means_keys(editor: &Editor) -> bool {
+    let is_thing = matches!(editor.selection, Selection::Item(_));
+    !is_thing && !editor.scene().animation.keys.is_empty()
+}
+
+/// All objects and lights.
+fn everything(scene: &Scene) -> Selected {
+    let lights = (0..scene.lights.len()).map(Item::light);
+    Selected::all(lights.chain((0..scene.objects.len()).map(Item::object)))
 }
 
 /// The places of the selected objects.

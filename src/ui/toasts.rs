@@ -12,7 +12,7 @@ const PER_LETTER: f64 = 0.06;
 /// Width of a message in points: the excerpt of a refused file fits in.
 const WIDTH: f32 = 560.0;
 /// Most messages on screen; older ones make room.
-const MOST: usize = 5;
+const MOST: usize = 3;
 
 /// The messages on screen.
 #[derive(Debug, Default)]

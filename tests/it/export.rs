@@ -882,6 +882,31 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
 }
 
 #[test]
+fn an_export_that_failed_says_why_and_can_be_taken_up() {
+    let text = fs::read_to_string(FLIGHT).expect("readable");
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let folder = harness.folder.path().join("frames");
+    fs::write(&folder, "no folder").expect("written");
+    harness.press(CTRL.plus(Modifiers::SHIFT), Key::E);
+    harness.type_name("folder", folder.to_str().expect("plain"));
+    harness.type_name("frames", "1-2");
+    harness.type_into("export width", "16");
+    harness.click("Start export");
+    finish(&mut harness);
+    // Once in the message, once in the list.
+    let why = harness
+        .window
+        .query_all_by_label_contains("is not a folder");
+    assert_eq!(why.count(), 2);
+    assert!(harness.window.query_by_label("Interrupted").is_none());
+    fs::remove_file(&folder).expect("removed");
+    harness.click("Resume");
+    finish(&mut harness);
+    assert_eq!(files(&folder).len(), 2);
+    assert!(harness.window.query_by_label("Resume").is_none());
+}
+
+#[test]
 fn the_size_of_frames_keeps_the_shape_of_the_picture_until_it_is_freed() {
     let wide = fs::read_to_string("scenes/mirrors.ron").expect("readable");
     let mut harness = EditorHarness::with(|_| Vec::new(), Some(&wide));

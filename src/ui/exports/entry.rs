@@ -70,8 +70,9 @@ impl Entry {
                     self.end();
                 }
                 VideoState::Failed(error) => {
+                    let error = error.clone();
                     editor.report_error_in(EXPORT, error.clone());
-                    return self.order.take();
+                    return self.order.take().map(|order| order.failed(error));
                 }
                 VideoState::Waiting | VideoState::Making(_) => {}
             }
@@ -95,7 +96,8 @@ impl Entry {
                 let on =
                     "what is done stays, and Resume in the window of exports goes on from there";
                 editor.report_error_in(EXPORT, format!("{error}; {on}"));
-                self.order.take()
+                let why = error.clone();
+                self.order.take().map(|order| order.failed(why))
             }
         }
     }

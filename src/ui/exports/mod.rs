@@ -110,7 +110,11 @@ impl Exports {
         for entry in &mut self.entries {
             let state = states.iter().find(|state| state.id == entry.id);
             let was_over = entry.is_over();
-            self.interrupted.extend(entry.update(state, editor));
+            if let Some(left) = entry.update(state, editor) {
+                // It is listed with what can be taken up.
+                pictures.forget_export(entry.id);
+                self.interrupted.push(left);
+            }
             self.ended += usize::from(entry.is_over() && !was_over);
         }
         let is_listed = |entry: &Entry| states.iter().any(|state| state.id == entry.id);
@@ -256,8 +260,9 @@ impl Exports {
             }
             Err(error) => {
                 // A folder that is not there now may be there later.
-                self.interrupted.push(order);
-                editor.report_error_in(EXPORT, error.to_string());
+                let why = error.to_string();
+                editor.report_error_in(EXPORT, why.clone());
+                self.interrupted.push(order.failed(why));
             }
         }
     }
@@ -314,8 +319,11 @@ impl Exports {
         for (index, order) in self.interrupted.iter().enumerate() {
             ui.separator();
             ui.label(&order.name).hint(&order.settings.folder);
+            match &order.why {
+                Some(why) => ui.colored_label(palette(ui.ctx()).error, why),
+                None => ui.weak("Interrupted"),
+            };
             ui.horizontal(|ui| {
-                ui.weak("Interrupted");
                 let resume = ui
                     .button("Resume")
                     .hint("With the scene as it was then; what is done stays");

@@ -25,6 +25,8 @@ pub struct Order {
     pub name: String,
     /// What is asked for.
     pub settings: Settings,
+    /// Why it ended without being finished, if the program lived on.
+    pub why: Option<String>,
     /// The scene as it was then.
     pub scene: Arc<Scene>,
     /// Where it is kept; nowhere, if the system gives no place.
@@ -59,6 +61,7 @@ impl Order {
         Self {
             name: settings.describe(&editor.title()),
             settings,
+            why: None,
             scene: Arc::clone(editor.scene()),
             place,
             writing,
@@ -99,6 +102,7 @@ impl Order {
         Ok(Self {
             name: settings.describe(&title),
             settings,
+            why: None,
             scene: Arc::new(document.scene),
             place: kept.map(|()| Arc::new(place)),
             writing: None,
@@ -111,6 +115,14 @@ impl Order {
     /// [`SettingsError`], if the program has learnt since that they mean nothing.
     pub fn sequence(&self) -> Result<Sequence, SettingsError> {
         self.settings.sequence(&self.scene)
+    }
+
+    /// The same, with why it was not finished.
+    pub fn failed(self, why: String) -> Self {
+        Self {
+            why: Some(why),
+            ..self
+        }
     }
 
     /// There is nothing left to take up.

@@ -310,29 +310,18 @@ impl Outliner {
 fn select_clicked(ui: &Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
     let modifiers = ui.input(|input| input.modifiers);
     let selected = editor.selected();
-    let last = selected.items().last();
-    let last = last.filter(|last| last.kind == item.kind && modifiers.shift);
-    let selected = match last {
-        Some(last) => {
-            let (from, to) = (last.index.min(item.index), last.index.max(item.index));
-            let between = (from..=to).map(|index| Item {
-                kind: item.kind,
-                index,
-            });
-            let others = selected.items().iter().copied();
-            Selected::all(
-                others
-                    .chain(between)
-                    .filter(|other| *other != item)
-                    .chain([item]),
-            )
-        }
-        None if modifiers.shift => {
-            let others = selected.items().iter().copied();
-            Selected::all(others.filter(|other| *other != item).chain([item]))
-        }
-        None if modifiers.command => selected.toggled(item),
-        None => Selected::all([item]),
+    let selected = if modifiers.shift {
+        let items = selected.items();
+        let last = items.last().filter(|last| last.kind == item.kind);
+        let from = last.map_or(item.index, |last| last.index);
+        let between = from.min(item.index)..=from.max(item.index);
+        let between = between.map(|index| Item { index, ..item });
+        let others = items.iter().copied().chain(between);
+        Selected::all(others.filter(|other| *other != item).chain([item]))
+    } else if modifiers.command {
+        selected.toggled(item)
+    } else {
+        Selected::all([item])
     };
     out.actions.push(Action::SelectItems(selected));
 }

@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable as _;
 use glint::editor::Mode;
 use glint::scene::{Document, Key as SceneKey, Scene};
 
-use crate::harness::EditorHarness;
+use crate::harness::{CTRL, EditorHarness};
 
 /// A window on a demo whose camera moves at ten frames a second, with keys at these times.
 fn window(times: &[f64]) -> EditorHarness {
@@ -171,4 +171,28 @@ fn the_window_of_exports_follows_the_scene() {
     harness.click("Key 2");
     harness.type_into("time", "3");
     harness.window.get_by_label_contains("31 frames");
+}
+
+#[test]
+fn all_that_is_selected_is_all_things_or_all_keys() {
+    let mut harness = window(&[0.0, 1.0, 2.0]);
+    let selected = |harness: &EditorHarness| {
+        let editor = harness.editor();
+        let keys = editor.timeline().selected.len();
+        (editor.selected().items().len(), keys)
+    };
+    harness.press(CTRL, Key::A);
+    assert_eq!(selected(&harness), (0, 3));
+    harness.click("Plane");
+    harness.press(CTRL, Key::A);
+    assert_eq!(selected(&harness), (11, 0));
+    harness.press(CTRL, Key::H);
+    let scene = harness.scene();
+    assert!(!scene.objects.iter().any(|object| object.visible));
+    assert!(!scene.lights.iter().any(|light| light.visible));
+
+    // Without keys, all things are meant whatever is selected.
+    let mut harness = window(&[]);
+    harness.press(CTRL, Key::A);
+    assert_eq!(selected(&harness), (11, 0));
 }
