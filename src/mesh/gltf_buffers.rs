@@ -7,6 +7,7 @@ use base64::engine::DecodePaddingMode;
 use base64::engine::general_purpose::{GeneralPurpose, GeneralPurposeConfig};
 use gltf::accessor::{DataType, Dimensions};
 use gltf::buffer::Source;
+use gltf::buffer::View;
 use gltf::{Accessor, Document};
 
 use super::error::{Fault, excerpt};
@@ -28,7 +29,12 @@ pub(super) struct Buffers<'a> {
     chunk: Option<&'a [u8]>,
     /// Nothing for the buffer that is the chunk.
     loaded: Vec<Option<Vec<u8>>>,
+    /// Whether positions may be whole numbers.
+    is_quantized: bool,
 }
+
+/// The extension by which positions are whole numbers.
+const QUANTIZED: &str = "KHR_mesh_quantization";
 
 impl<'a> Buffers<'a> {
     /// Reads the buffers that are not in the file, too: they lie in `folder`.
@@ -52,26 +58,54 @@ impl<'a> Buffers<'a> {
             }
             loaded.push(bytes);
         }
-        Ok(Self { chunk, loaded })
+        let mut extensions = document.extensions_used();
+        Ok(Self {
+            chunk,
+            loaded,
+            is_quantized: extensions.any(|name| name == QUANTIZED),
+        })
     }
 
-    /// Three floats for each point.
+    /// Three numbers for each point.
     pub(super) fn positions(&self, accessor: &Accessor) -> Result<Vec<[f32; 3]>, Fault> {
-        let (kind, dimensions) = (accessor.data_type(), accessor.dimensions());
-        if (kind, dimensions) != (DataType::F32, Dimensions::Vec3) {
+        let is_float = accessor.data_type() == DataType::F32;
+        if accessor.dimensions() != Dimensions::Vec3 || !(is_float || self.is_quantized) {
             let number = accessor.index();
             return Err(Fault::new(format!(
                 "accessor {number} holds positions that are not three floats each"
             )));
         }
-        let items = self.items(accessor)?;
-        let float = |item: &[u8], at: usize| {
-            let bytes = item.get(at..).and_then(<[u8]>::first_chunk);
-            bytes.map_or(f32::NAN, |bytes| f32::from_le_bytes(*bytes))
+        let mut points = self.numbers(accessor)?;
+        let Some(sparse) = accessor.sparse() else {
+            return Ok(points);
         };
-        Ok(items
-            .map(|item| [0, 4, 8].map(|at| float(item, at)))
-            .collect())
+        let (places, values) = (sparse.indices(), sparse.values());
+        let size = places.index_type().size();
+        let slots = (places.offset(), size, sparse.count());
+        let places = self.slices(&places.view(), slots, accessor.index())?;
+        let slots = (values.offset(), accessor.size(), sparse.count());
+        let values = self.slices(&values.view(), slots, accessor.index())?;
+        for (place, value) in places.zip(values) {
+            let place = whole(place) as usize;
+            let Some(point) = points.get_mut(place) else {
+                let number = accessor.index();
+                return Err(Fault::new(format!(
+                    "accessor {number} replaces point {place}, which is not there"
+                )));
+            };
+            *point = components(value, accessor);
+        }
+        Ok(points)
+    }
+
+    /// So many numbers for each item, without those that a sparse accessor replaces. The caller knows that there are so
+    /// many.
+    pub(super) fn numbers<const N: usize>(
+        &self,
+        accessor: &Accessor,
+    ) -> Result<Vec<[f32; N]>, Fault> {
+        let items = self.items(accessor)?;
+        Ok(items.map(|item| components(item, accessor)).collect())
     }
 
     /// Whole numbers of one to four bytes.
@@ -86,27 +120,36 @@ impl<'a> Buffers<'a> {
                 "accessor {number} holds indices that are not whole numbers"
             )));
         }
-        let number = |item: &[u8]| {
-            let mut bytes = [0; 4];
-            for (byte, &from) in bytes.iter_mut().zip(item) {
-                *byte = from;
-            }
-            u32::from_le_bytes(bytes)
-        };
-        Ok(self.items(accessor)?.map(number).collect())
+        if accessor.sparse().is_some() {
+            let number = accessor.index();
+            return Err(Fault::new(format!(
+                "accessor {number} holds indices and is sparse, which is not read"
+            )));
+        }
+        Ok(self.items(accessor)?.map(whole).collect())
     }
 
     /// The bytes of each item. The crate's own iterator panics on some of what is refused here.
-    fn items(&self, accessor: &Accessor) -> Result<impl Iterator<Item = &[u8]>, Fault> {
+    fn items<'s>(
+        &'s self,
+        accessor: &Accessor,
+    ) -> Result<impl Iterator<Item = &'s [u8]> + use<'s, 'a>, Fault> {
         let number = accessor.index();
-        let refuse = |why: &str| Err(Fault::new(format!("accessor {number} {why}")));
-        if accessor.sparse().is_some() {
-            return refuse("is sparse, which is not read");
-        }
-        let (size, count) = (accessor.size(), accessor.count());
         let Some(view) = accessor.view() else {
-            return refuse("has no bytes");
+            return Err(Fault::new(format!("accessor {number} has no bytes")));
         };
+        let slots = (accessor.offset(), accessor.size(), accessor.count());
+        self.slices(&view, slots, number)
+    }
+
+    /// So many items of a size, from an offset into a view on, for the accessor of a number.
+    fn slices<'s>(
+        &'s self,
+        view: &View,
+        (offset, size, count): (usize, usize, usize),
+        number: usize,
+    ) -> Result<impl Iterator<Item = &'s [u8]> + use<'s, 'a>, Fault> {
+        let refuse = |why: &str| Err(Fault::new(format!("accessor {number} {why}")));
         let stride = view.stride().unwrap_or(size);
         if stride < size {
             return refuse("has items that overlap");
@@ -125,7 +168,7 @@ impl<'a> Buffers<'a> {
         };
         let bytes = bytes
             .zip(length)
-            .and_then(|(bytes, length)| slice(bytes, accessor.offset(), length));
+            .and_then(|(bytes, length)| slice(bytes, offset, length));
         let Some(bytes) = bytes else {
             let why = format!(
                 "promises {count} items of {size} bytes, which are more than its buffer holds"
@@ -136,6 +179,45 @@ impl<'a> Buffers<'a> {
             .chunks(stride.max(1))
             .filter_map(move |item| item.get(..size)))
     }
+}
+
+/// A whole number of up to four bytes.
+fn whole(item: &[u8]) -> u32 {
+    let mut bytes = [0; 4];
+    for (byte, &from) in bytes.iter_mut().zip(item) {
+        *byte = from;
+    }
+    u32::from_le_bytes(bytes)
+}
+
+/// The numbers of an item, of which those that are not there are not numbers. Normalized ones stand for −1 to 1.
+fn components<const N: usize>(item: &[u8], accessor: &Accessor) -> [f32; N] {
+    let (kind, is_share) = (accessor.data_type(), accessor.normalized());
+    let size = kind.size();
+    let share = |number: f32, most: f32| {
+        if is_share {
+            (number / most).max(-1.0)
+        } else {
+            number
+        }
+    };
+    std::array::from_fn(|index| {
+        let bytes = item.get(index * size..).unwrap_or_default();
+        let Some(bytes) = bytes.get(..size) else {
+            return f32::NAN;
+        };
+        let number = whole(bytes);
+        let [low, high, ..] = number.to_le_bytes();
+        let pair = [low, high];
+        match kind {
+            DataType::I8 => share(f32::from(i8::from_le_bytes([low])), 127.0),
+            DataType::U8 => share(f32::from(low), 255.0),
+            DataType::I16 => share(f32::from(i16::from_le_bytes(pair)), 32767.0),
+            DataType::U16 => share(f32::from(u16::from_le_bytes(pair)), 65535.0),
+            DataType::U32 => number as f32,
+            DataType::F32 => f32::from_bits(number),
+        }
+    })
 }
 
 fn slice(bytes: &[u8], start: usize, length: usize) -> Option<&[u8]> {

@@ -12,6 +12,7 @@ use gltf::{Document, Glb, Material, Node, Semantic};
 
 use super::error::Fault;
 use super::gltf_buffers::Buffers;
+use super::gltf_skin::Placing;
 use super::limits::{check_faces, check_groups, check_points};
 use super::part::{COLORS_OF_POINTS, MeshFile, Part, PartColors};
 use super::triangles::Triangles;
@@ -21,10 +22,9 @@ const MAX_OBJECTS: usize = 1_000_000;
 /// How often points are gone through, on average, where many parts share one list.
 const MOST_SCANS: usize = 100;
 /// Extensions without which the triangles cannot be read.
-const GEOMETRY_EXTENSIONS: [&str; 4] = [
+const GEOMETRY_EXTENSIONS: [&str; 3] = [
     "EXT_mesh_gpu_instancing",
     "KHR_draco_mesh_compression",
-    "KHR_mesh_quantization",
     "EXT_meshopt_compression",
 ];
 
@@ -42,6 +42,8 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
         faces: 0,
     };
     let mut visited = vec![false; document.nodes().len()];
+    let mut places = vec![DMat4::IDENTITY; document.nodes().len()];
+    let mut shown = Vec::new();
     let roots = roots(&document).into_iter();
     let mut stack: Vec<_> = roots.map(|node| (node, DMat4::IDENTITY)).collect();
     // The first node is on top.
@@ -55,10 +57,14 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
             )));
         }
         let transform = outer * matrix_of(&node);
-        walk.add(&node, transform)?;
+        places[index] = transform;
         let start = stack.len();
         stack.extend(node.children().map(|child| (child, transform)));
         stack[start..].reverse();
+        shown.push(node);
+    }
+    for node in &shown {
+        walk.add(node, &places)?;
     }
     Ok(MeshFile {
         parts: walk.parts,
@@ -86,10 +92,6 @@ fn notes(document: &Document) -> Vec<String> {
     let has_colors = |one: Primitive| one.get(&Semantic::Colors(0)).is_some();
     [
         (primitives().any(has_colors), COLORS_OF_POINTS),
-        (
-            document.skins().len() > 0,
-            "its skins are left out: what they bend stands where its node is",
-        ),
         (
             primitives().any(|one| one.morph_targets().len() > 0),
             "its morph targets are left out",
@@ -219,9 +221,18 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    fn add(&mut self, node: &Node, transform: DMat4) -> Result<(), Fault> {
+    fn add(&mut self, node: &Node, places: &[DMat4]) -> Result<(), Fault> {
         let Some(mesh) = node.mesh() else {
             return Ok(());
+        };
+        let placing = match node.skin() {
+            Some(skin) => {
+                // Many nodes may have the same skin.
+                self.scanned = self.scanned.saturating_add(skin.joints().count());
+                check_points(self.scanned / MOST_SCANS)?;
+                Placing::of_skin(&skin, places, &self.buffers)?
+            }
+            None => Placing::Whole(places[node.index()]),
         };
         let name = node.name().or(mesh.name()).unwrap_or(self.stem);
         for primitive in mesh.primitives() {
@@ -232,7 +243,7 @@ impl Walk<'_> {
             ) {
                 continue;
             }
-            let triangles = self.triangles(&primitive, mode, transform)?;
+            let triangles = self.triangles(&primitive, mode, &placing)?;
             check_groups(self.parts.len() + 1)?;
             self.parts.push(Part {
                 name: name.to_owned(),
@@ -247,7 +258,7 @@ impl Walk<'_> {
         &mut self,
         primitive: &Primitive,
         mode: Mode,
-        transform: DMat4,
+        placing: &Placing,
     ) -> Result<Triangles, Fault> {
         let Some(accessor) = primitive.get(&Semantic::Positions) else {
             return Ok(Triangles::default());
@@ -273,15 +284,15 @@ impl Walk<'_> {
         };
         let mut faces = triangles_of(&corners, mode);
         // A mirror turns faces, and turns them back where there are two.
-        if transform.determinant() < 0.0 {
+        if placing.is_mirror() {
             for [_, b, c] in &mut faces {
                 std::mem::swap(b, c);
             }
         }
+        let hung = placing.hung(primitive, &self.buffers)?;
         let place = |index: usize| {
             let point = Vec3::from(points[index]).as_dvec3();
-            // Not projected: the last row of a node's matrix is 0 0 0 1.
-            transform.transform_point3(point)
+            placing.place(point, index, hung.as_ref())
         };
         Triangles::weld(points.len(), place, faces.into_iter())
     }

@@ -32,6 +32,8 @@ mod stl;
 
 mod gltf_buffers;
 
+mod gltf_skin;
+
 mod gltf_scene;
 
 use std::path::Path;

@@ -1,5 +1,9 @@
 //! What is particular about STL, PLY and glTF files.
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use glam::DVec3;
+
 use super::Sample;
 use super::solid::{binary_stl, embedded_gltf, text_stl};
 
@@ -102,4 +106,101 @@ fn what_is_left_out_of_a_file_is_told() {
     )
     .notes();
     assert_eq!(notes, ["colours of points or faces are left out"]);
+}
+
+/// The corners of a glTF triangle: of these bytes, with these accessors and views (the positions first), extensions and
+/// nodes, of which the first shows it.
+fn corners(
+    bytes: &[u8],
+    accessors: &str,
+    views: &[(usize, usize)],
+    attributes: &str,
+    more: &str,
+) -> Vec<DVec3> {
+    let views = views.iter().map(|(start, length)| {
+        format!(r#"{{"buffer":0,"byteOffset":{start},"byteLength":{length}}}"#)
+    });
+    let views = views.collect::<Vec<_>>().join(",");
+    let (text, length) = (STANDARD.encode(bytes), bytes.len());
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"accessors":[{accessors}],"bufferViews":[{views}],
+"buffers":[{{"byteLength":{length},"uri":"data:application/octet-stream;base64,{text}"}}],
+"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0{attributes}}}}}]}}],{more}}}"#
+    );
+    let triangles = Sample::new("m.gltf", json).triangles();
+    let mut corners = triangles.points().to_vec();
+    corners.sort_by(|a, b| a.to_array().partial_cmp(&b.to_array()).expect("numbers"));
+    corners
+}
+
+fn bytes_of(numbers: &[f32]) -> Vec<u8> {
+    numbers.iter().flat_map(|x| x.to_le_bytes()).collect()
+}
+
+const TRIANGLE: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+const FLOATS: &str = r#"{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3""#;
+const ALONE: &str = r#""nodes":[{"mesh":0}]"#;
+
+#[test]
+fn positions_may_be_quantized_or_replaced_one_by_one() {
+    let quantized = |kind: u32, bytes: &[u8]| {
+        let accessor = format!(
+            r#"{{"bufferView":0,"componentType":{kind},"normalized":true,"count":3,"type":"VEC3"}}"#
+        );
+        let more = r#""extensionsUsed":["KHR_mesh_quantization"],"extensionsRequired":["KHR_mesh_quantization"],"nodes":[{"mesh":0,"scale":[2,2,2]}]"#;
+        corners(bytes, &accessor, &[(0, bytes.len())], "", more)
+    };
+    let expected = [DVec3::ZERO, DVec3::Y * 2.0, DVec3::new(2.0, -2.0, 0.0)];
+    let small = [0_i8, 0, 0, 127, -128, 0, 0, 127, 0].map(|n| n.to_le_bytes()[0]);
+    assert_eq!(quantized(5120, &small), expected);
+    let large = [0_i16, 0, 0, 32767, -32768, 0, 0, 32767, 0].map(i16::to_le_bytes);
+    assert_eq!(quantized(5122, large.as_flattened()), expected);
+
+    let bytes = [
+        bytes_of(&TRIANGLE),
+        vec![2, 0, 0, 0],
+        bytes_of(&[0.0, 5.0, 7.0]),
+    ]
+    .concat();
+    let sparse = r#","sparse":{"count":1,"indices":{"bufferView":1,"componentType":5121},"values":{"bufferView":2}}}"#;
+    let replaced = corners(
+        &bytes,
+        &format!("{FLOATS}{sparse}"),
+        &[(0, 36), (36, 1), (40, 12)],
+        "",
+        ALONE,
+    );
+    assert_eq!(replaced, [DVec3::ZERO, DVec3::new(0.0, 5.0, 7.0), DVec3::X]);
+}
+
+#[test]
+fn skins_put_points_where_their_joints_are() {
+    // The first point hangs on one joint, the second on the other, the third on both.
+    let joints = [[0, 1, 0, 0], [1, 0, 0, 0], [0, 1, 0, 0]].concat();
+    let weights = [[255, 0, 0, 0], [255, 0, 0, 0], [100, 100, 0, 0]].concat();
+    let mut bind = [glam::Mat4::IDENTITY; 2];
+    bind[1] = glam::Mat4::from_translation(glam::Vec3::Z);
+    let bind = bind.map(|matrix| matrix.to_cols_array()).concat();
+    let bytes = [bytes_of(&TRIANGLE), joints, weights, bytes_of(&bind)].concat();
+    let accessors = format!(
+        r#"{FLOATS}}},{{"bufferView":1,"componentType":5121,"count":3,"type":"VEC4"}},
+{{"bufferView":2,"componentType":5121,"normalized":true,"count":3,"type":"VEC4"}},
+{{"bufferView":3,"componentType":5126,"count":2,"type":"MAT4"}}"#
+    );
+    // Where the mesh itself is does not matter.
+    let more = r#""skins":[{"joints":[1,2],"inverseBindMatrices":3}],
+"nodes":[{"mesh":0,"skin":0,"translation":[50,0,0]},{"translation":[10,0,0],"children":[2]},{"translation":[0,20,0]}]"#;
+    let found = corners(
+        &bytes,
+        &accessors,
+        &[(0, 36), (36, 12), (48, 12), (60, 128)],
+        r#","JOINTS_0":1,"WEIGHTS_0":2"#,
+        more,
+    );
+    let expected = [
+        DVec3::new(10.0, 0.0, 0.0),
+        DVec3::new(10.0, 11.0, 0.5),
+        DVec3::new(11.0, 20.0, 1.0),
+    ];
+    assert_eq!(found, expected);
 }

@@ -1,0 +1,114 @@
+//! Where a skin puts the points of a glTF mesh: each between the places where the joints that it hangs on put it.
+
+use glam::{DMat4, DVec3};
+use gltf::accessor::{DataType, Dimensions};
+use gltf::mesh::Primitive;
+use gltf::{Semantic, Skin};
+
+use super::error::Fault;
+use super::gltf_buffers::Buffers;
+
+/// How a node's mesh becomes part of the scene.
+pub(super) enum Placing {
+    /// As a whole.
+    Whole(DMat4),
+    /// By the joints of a skin, whatever the node's own place is.
+    Joints(Vec<DMat4>),
+}
+
+/// The joints of a skin and their shares, for each point of a primitive.
+pub(super) struct Hung {
+    joints: Vec<[f32; 4]>,
+    weights: Vec<[f32; 4]>,
+}
+
+impl Placing {
+    /// That of a skin, where `places` is what each node is put by.
+    pub(super) fn of_skin(skin: &Skin, places: &[DMat4], buffers: &Buffers) -> Result<Self, Fault> {
+        let unbound = match skin.inverse_bind_matrices() {
+            None => Vec::new(),
+            Some(accessor) => {
+                let kind = (DataType::F32, Dimensions::Mat4);
+                if (accessor.data_type(), accessor.dimensions()) != kind {
+                    let number = accessor.index();
+                    return Err(Fault::new(format!(
+                        "accessor {number} holds matrices of a skin that are not sixteen floats each"
+                    )));
+                }
+                buffers.numbers::<16>(&accessor)?
+            }
+        };
+        let joints = skin.joints().enumerate().map(|(number, joint)| {
+            let place = places
+                .get(joint.index())
+                .copied()
+                .unwrap_or(DMat4::IDENTITY);
+            match unbound.get(number) {
+                Some(matrix) => place * DMat4::from_cols_array(&matrix.map(f64::from)),
+                None => place,
+            }
+        });
+        Ok(Self::Joints(joints.collect()))
+    }
+
+    /// Whether it turns what is outside in.
+    pub(super) fn is_mirror(&self) -> bool {
+        let first = match self {
+            Self::Whole(matrix) => Some(matrix),
+            Self::Joints(joints) => joints.first(),
+        };
+        first.is_some_and(|matrix| matrix.determinant() < 0.0)
+    }
+
+    /// What a primitive hangs on, if that matters.
+    pub(super) fn hung(
+        &self,
+        primitive: &Primitive,
+        buffers: &Buffers,
+    ) -> Result<Option<Hung>, Fault> {
+        let joints = primitive.get(&Semantic::Joints(0));
+        let weights = primitive.get(&Semantic::Weights(0));
+        let (Self::Joints(_), Some(joints), Some(weights)) = (self, joints, weights) else {
+            return Ok(None);
+        };
+        for accessor in [&joints, &weights] {
+            if accessor.dimensions() != Dimensions::Vec4 {
+                let number = accessor.index();
+                return Err(Fault::new(format!(
+                    "accessor {number} does not hold four joints or shares of a skin for each point"
+                )));
+            }
+        }
+        Ok(Some(Hung {
+            joints: buffers.numbers(&joints)?,
+            weights: buffers.numbers(&weights)?,
+        }))
+    }
+
+    /// Where a point of a primitive is; the last row of matrices is 0 0 0 1.
+    pub(super) fn place(&self, point: DVec3, index: usize, hung: Option<&Hung>) -> DVec3 {
+        let joints = match self {
+            Self::Whole(matrix) => return matrix.transform_point3(point),
+            Self::Joints(joints) => joints,
+        };
+        let shares =
+            hung.and_then(|hung| Some((hung.joints.get(index)?, hung.weights.get(index)?)));
+        let (mut sum, mut total) = (DVec3::ZERO, 0.0);
+        if let Some((numbers, weights)) = shares {
+            for (&number, &weight) in numbers.iter().zip(weights) {
+                // Whole numbers in a few bytes are exact in single precision.
+                if let Some(joint) = joints.get(number as usize) {
+                    sum += joint.transform_point3(point) * f64::from(weight);
+                    total += f64::from(weight);
+                }
+            }
+        }
+        if total > 0.0 {
+            sum / total
+        } else {
+            joints
+                .first()
+                .map_or(point, |joint| joint.transform_point3(point))
+        }
+    }
+}
