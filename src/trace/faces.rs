@@ -112,13 +112,23 @@ pub fn may_hide_face([a, b, c, d]: [u64; 4]) -> bool {
         || c != d && !are_neighbours(c, d)
 }
 
+/// Whether there may be light between them alone: two beside each other are on faces of which one looks away from it.
+pub fn may_hide_light([a, b, c, d]: [u64; 4]) -> bool {
+    let differ = |a: u64, b: u64| a != 0 && b != 0 && dark(a) != dark(b);
+    differ(a, b) || differ(a, c) || differ(b, d) || differ(c, d)
+}
+
 /// Whether two different faces share an edge and look at the same lights, or one of them is none.
 fn are_neighbours(a: u64, b: u64) -> bool {
     let corners = |mark: u64| [mark, mark >> BITS, mark >> (2 * BITS)].map(|bits| bits & CORNER);
-    let dark = |mark: u64| mark >> (u64::BITS - u32::BITS);
     let others = corners(b);
     let shared = corners(a).into_iter().filter(|own| others.contains(own));
     a == 0 || b == 0 || (shared.count() >= 2 && dark(a) == dark(b))
+}
+
+/// The lights behind the face of a mark.
+fn dark(mark: u64) -> u64 {
+    mark >> (u64::BITS - u32::BITS)
 }
 
 #[cfg(test)]
@@ -155,7 +165,13 @@ mod tests {
         // A light behind one of two neighbours, and not behind the other.
         let dark = fan(1) | 1 << u32::BITS;
         assert!(may_hide_face([fan(0), dark, fan(0), dark]));
-        assert!(!may_hide_face([fan(0) | 1 << u32::BITS, dark, 0, dark]));
+        assert!(may_hide_light([fan(0), dark, fan(0), dark]));
+        for alike in [
+            [fan(0) | 1 << u32::BITS, dark, 0, dark],
+            [fan(0), fan(1), 0, fan(1)],
+        ] {
+            assert!(!may_hide_face(alike) && !may_hide_light(alike));
+        }
         let single = [at(0.0, 0.0), at(0.1, 0.2), at(0.3, 0.7)]
             .map(|corner| Vec3::<f32>::from_dvec3(corner.to_dvec3()));
         let double = [hub, at(0.1, 0.2), at(0.3, 0.7)];

@@ -1,5 +1,6 @@
 //! The samples of a tile that its pixels share, and when a cell between them is subdivided.
 
+use super::faces::may_hide_light;
 use super::points::Points;
 use super::samples::{Samples, THING, Traced};
 use super::shadows::may_leave_gap;
@@ -45,6 +46,8 @@ pub struct Lattice<R> {
     points: Points,
     /// In order of their points.
     samples: Vec<Sample<R>>,
+    /// The faces that the first of them are on, see [`super::faces`], in scenes with some.
+    faces: Vec<u64>,
 }
 
 /// A square between samples: its upper left corner on the finest grid, its side, and its samples.
@@ -58,7 +61,7 @@ pub struct Cell {
     pub side: u16,
     /// Whether its corners know what may slip between them, or samples beside them did.
     is_watched: bool,
-    /// Whether it may show a face of a mesh that no corner is on.
+    /// Whether it may show a face of a mesh that no corner is on, or light between two of them.
     may_hide_face: bool,
     /// The samples at its corners: upper left and right, lower left and right.
     pub corners: [u32; 4],
@@ -187,6 +190,7 @@ impl<R: Real> Lattice<R> {
         Self {
             points: Points::new(),
             samples: Vec::new(),
+            faces: Vec::new(),
         }
     }
 
@@ -195,6 +199,7 @@ impl<R: Real> Lattice<R> {
     pub fn start(&mut self, tile: &Tile, corners: &Traced<R>, pixels: &mut [Cell]) {
         self.points.clear();
         self.samples.clear();
+        self.faces.clear();
         for pixel in pixels {
             let (left, top) = (pixel.x, pixel.y);
             let (right, bottom) = (left + pixel.side, top + pixel.side);
@@ -205,6 +210,7 @@ impl<R: Real> Lattice<R> {
                     let (column, row) = (x as usize / FINEST, y as usize / FINEST);
                     let number = row * (tile.width() + 1) + column;
                     self.samples.push(Sample::of(corners, number));
+                    self.faces.extend(corners.faces.get(number));
                 }
             }
         }
@@ -233,6 +239,18 @@ impl<R: Real> Lattice<R> {
     pub fn take_results(&mut self, traced: &Traced<R>) {
         let new = (0..traced.count).map(|index| Sample::of(traced, index));
         self.samples.extend(new);
+        let faces = traced.faces.iter().take(traced.count);
+        self.faces.extend(faces);
+    }
+
+    /// Notes of cells whose corners are among the first samples, or those that were taken next, whether there may be
+    /// light between them that no corner has seen, where all see the same.
+    pub fn note_hidden_light(&self, cells: &mut [Cell]) {
+        for cell in cells {
+            let [a, b, c, d] = self.corners(cell).map(|sample| sample.signature);
+            let faces = cell.corners.map(|corner| self.faces[corner as usize]);
+            cell.may_hide_face = a == b && a == c && a == d && may_hide_light(faces);
+        }
     }
 
     /// A sample by its index.

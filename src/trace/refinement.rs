@@ -93,6 +93,10 @@ impl<R: Real> Refinement<R> {
     #[inline(never)]
     pub fn take_results(&mut self, traced: &Traced<R>) {
         self.lattice.take_results(traced);
+        // Of the quarters of pixels alone.
+        if !traced.faces.is_empty() {
+            self.lattice.note_hidden_light(&mut self.cells);
+        }
     }
 
     /// Adds the colours of the cells that are known well enough, and notes what is to be done with the others.
