@@ -80,6 +80,13 @@ impl<'a> Buffers<'a> {
             return Ok(points);
         };
         let (places, values) = (sparse.indices(), sparse.values());
+        if sparse.count() > points.len() {
+            let (number, count) = (accessor.index(), sparse.count());
+            return Err(Fault::new(format!(
+                "accessor {number} replaces {count} of {} points",
+                points.len()
+            )));
+        }
         let size = places.index_type().size();
         let slots = (places.offset(), size, sparse.count());
         let places = self.slices(&places.view(), slots, accessor.index())?;

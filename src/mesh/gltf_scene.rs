@@ -228,7 +228,9 @@ impl Walk<'_> {
         let placing = match node.skin() {
             Some(skin) => {
                 // Many nodes may have the same skin.
-                self.scanned = self.scanned.saturating_add(skin.joints().count());
+                let matrices = skin.inverse_bind_matrices().map_or(0, |all| all.count());
+                let joints = skin.joints().count();
+                self.scanned = self.scanned.saturating_add(joints.max(matrices));
                 check_points(self.scanned / MOST_SCANS)?;
                 Placing::of_skin(&skin, places, &self.buffers)?
             }
@@ -289,7 +291,7 @@ impl Walk<'_> {
                 std::mem::swap(b, c);
             }
         }
-        let hung = placing.hung(primitive, &self.buffers)?;
+        let hung = placing.hung(primitive, points.len(), &self.buffers)?;
         let place = |index: usize| {
             let point = Vec3::from(points[index]).as_dvec3();
             placing.place(point, index, hung.as_ref())

@@ -60,10 +60,11 @@ impl Placing {
         first.is_some_and(|matrix| matrix.determinant() < 0.0)
     }
 
-    /// What a primitive hangs on, if that matters.
+    /// What a primitive of so many points hangs on, if that matters.
     pub(super) fn hung(
         &self,
         primitive: &Primitive,
+        points: usize,
         buffers: &Buffers,
     ) -> Result<Option<Hung>, Fault> {
         let joints = primitive.get(&Semantic::Joints(0));
@@ -72,7 +73,7 @@ impl Placing {
             return Ok(None);
         };
         for accessor in [&joints, &weights] {
-            if accessor.dimensions() != Dimensions::Vec4 {
+            if accessor.dimensions() != Dimensions::Vec4 || accessor.count() != points {
                 let number = accessor.index();
                 return Err(Fault::new(format!(
                     "accessor {number} does not hold four joints or shares of a skin for each point"

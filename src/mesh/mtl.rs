@@ -94,11 +94,11 @@ impl<'a> Libraries<'a> {
 
     /// What is in a file.
     fn text(&self, name: &str) -> Option<String> {
-        if !stays_inside(self.folder, Path::new(name)) {
-            return None;
-        }
+        let is_allowed = |name: &Path| stays_inside(self.folder, name);
+        let name = Some(Path::new(name)).filter(|name| is_allowed(name))?;
+        let name = Some(self.spelled(name)).filter(|name| is_allowed(name))?;
         let left = self.left.get();
-        let bytes = read_at_most(&self.place(name), left).ok()??;
+        let bytes = read_at_most(&self.folder.join(name), left).ok()??;
         // An empty file costs something too.
         self.left
             .set(left.saturating_sub(bytes.len() as u64 + 1024));
@@ -107,18 +107,19 @@ impl<'a> Libraries<'a> {
 }
 
 impl Libraries<'_> {
-    /// Where a file is: also where its name is written with other capitals, which Windows does not tell apart.
-    fn place(&self, name: &str) -> PathBuf {
+    /// The name of a file as the disk has it: exporters on Windows do not tell capitals from other letters.
+    fn spelled(&self, name: &Path) -> PathBuf {
         let place = self.folder.join(name);
-        if place.exists() {
-            return place;
+        // A file that is named a million times is not looked for as often.
+        if place.exists() || self.missing.borrow().is_some() {
+            return name.to_owned();
         }
         let folder = place.parent().unwrap_or(self.folder);
         let wanted = place.file_name().unwrap_or_default();
         let entries = fs::read_dir(folder).into_iter().flatten().flatten();
         let mut names = entries.map(|entry| entry.file_name());
         let same = names.find(|name| name.eq_ignore_ascii_case(wanted));
-        same.map_or(place.clone(), |same| folder.join(same))
+        same.map_or(name.to_owned(), |same| name.with_file_name(same))
     }
 }
 

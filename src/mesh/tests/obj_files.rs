@@ -193,6 +193,15 @@ fn colours_that_are_not_found_are_told_and_those_that_can_be_are_found() {
     let colors: Vec<_> = colors.map(|colors| colors.diffuse).collect();
     assert_eq!(colors, [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]);
     assert!(sample.notes().is_empty());
+    // What leads out of the folder is not followed, whatever its capitals.
+    #[cfg(unix)]
+    {
+        let outside = Sample::new("some.mtl", "newmtl red\nKd 0 1 0\n");
+        let inside = Sample::new("m.obj", &text);
+        let link = inside.path.with_file_name("some.mtl");
+        std::os::unix::fs::symlink(&outside.path, link).expect("a link");
+        assert_eq!(inside.notes(), [missing]);
+    }
     let painted = "v 0 0 0 1 0 0\nv 1 0 0 1 1 0\nv 0 1 0 1 0 0\nf 1 2 3\n";
     let notes = Sample::new("m.obj", painted).notes();
     assert_eq!(notes, ["colours of points or faces are left out"]);
