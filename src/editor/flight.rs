@@ -10,6 +10,7 @@ use super::selection::{Selected, Selection};
 use super::timeline::{MEASURED_AT, Recording, Time};
 use crate::animate::{Seen, Worst, resampled, simplify};
 use crate::scene::{Animation, Camera, Key, MAX_SECONDS, Sample, Take};
+use crate::words::counted;
 
 /// Keys that a recording becomes, at first, and for each second: about as many as a hand can edit.
 const FEW: (f64, f64) = (8.0, 2.5);
@@ -201,7 +202,11 @@ impl Editor {
             self.animation_state.timeline.tolerance = coarser.min(COARSEST);
             keys = self.simplified(&take);
         }
-        let said = keys.len();
+        let said = counted(keys.len(), "key");
+        let replaced = match self.scene.animation.keys.len() {
+            0 => String::new(),
+            old => format!(" in place of the {old} before, which Undo brings back"),
+        };
         let timeline = &self.animation_state.timeline;
         let worst = timeline.worst.map_or(0.0, |worst| worst.off);
         let jumps = match timeline.jumps {
@@ -225,7 +230,7 @@ impl Editor {
         self.animation_state.timeline.stays_outside = false;
         self.show_time();
         self.notify(format!(
-            "{count} samples became {said} keys, never more than {worst:.1} px off at 1024²{jumps}"
+            "{count} samples became {said}{replaced}, never more than {worst:.1} px off at 1024²{jumps}"
         ));
     }
 

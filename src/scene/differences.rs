@@ -32,13 +32,23 @@ pub fn differences(scene: &Scene, other: &Scene) -> Vec<String> {
     let parts = [
         ("the camera", scene.camera != other.camera),
         ("the animation", scene.animation != other.animation),
+        ("the background", scene.background != other.background),
+        (
+            "the ambient intensity",
+            scene.ambient_intensity != other.ambient_intensity,
+        ),
+        (
+            "whether lights are shown",
+            scene.light_visualization != other.light_visualization,
+        ),
+        ("bookmarks", scene.bookmarks != other.bookmarks),
         ("picture settings", scene.render != other.render),
     ];
     for (part, _) in parts.iter().filter(|(_, is_other)| *is_other) {
         lines.push(format!("{part} changed"));
     }
     if lines.is_empty() && scene != other {
-        lines.push("the surroundings or the order changed".to_owned());
+        lines.push("the order changed".to_owned());
     }
     lines
 }
@@ -96,11 +106,20 @@ mod tests {
         assert_eq!(lines[1], "1 light added: Lamp");
         assert!(lines[2].starts_with("1 light removed: "));
         assert_eq!(lines[3], "the camera changed");
+        // Also beside other differences.
         let mut dimmed = scene.clone();
         dimmed.ambient_intensity *= 0.5;
-        assert_eq!(
-            differences(&scene, &dimmed),
-            ["the surroundings or the order changed"]
-        );
+        dimmed.background.x += 1.0;
+        dimmed.render.width += 1;
+        let lines = [
+            "picture settings changed",
+            "the background changed",
+            "the ambient intensity changed",
+        ];
+        let mut found = differences(&scene, &dimmed);
+        found.sort_unstable();
+        let mut expected = lines.map(str::to_owned);
+        expected.sort_unstable();
+        assert_eq!(found, expected);
     }
 }

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use egui::{Button, Context, DragValue, MenuBar, Theme, Ui};
+use egui::containers::menu::{MenuConfig, SubMenuButton};
+use egui::{Button, Context, DragValue, MenuBar, PopupCloseBehavior, Theme, Ui};
 
 use super::add::add_menu;
 use super::commands::{Command, is_enabled};
@@ -140,7 +141,7 @@ fn view_menu(
 ) {
     mode_entries(ui, editor, out);
     ui.separator();
-    let projection = editor.scene().camera.projection;
+    let projection = editor.shown().camera.projection;
     for (kind, command) in [
         (Projection::Perspective, Command::Perspective),
         (Projection::Orthographic, Command::Orthographic),
@@ -182,17 +183,19 @@ fn view_menu(
     for (part, name) in Part::OVER_PICTURE {
         switch(ui, layout.part(part), name);
     }
-    ui.horizontal(|ui| {
-        ui.label("Flying speed");
-        let speed = DragValue::new(&mut layout.fly_speed)
-            .range(SLOWEST..=FASTEST)
-            .speed(0.02)
-            .max_decimals(2)
-            .suffix("×");
-        ui.add(speed)
-            .accessible_name("flying speed")
-            .hint("The wheel changes it while the camera flies or looks around");
-    });
+    let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    SubMenuButton::new("Flying speed")
+        .config(stays)
+        .ui(ui, |ui| {
+            let speed = DragValue::new(&mut layout.fly_speed)
+                .range(SLOWEST..=FASTEST)
+                .speed(0.02)
+                .max_decimals(2)
+                .suffix("×");
+            ui.add(speed)
+                .accessible_name("flying speed")
+                .hint("The wheel changes it while the camera flies or looks around");
+        });
     ui.separator();
     theme_choice(ui);
 }
@@ -341,7 +344,7 @@ fn switches(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
             Command::MarkersOn
         });
     }
-    let is_perspective = scene.camera.projection == Projection::Perspective;
+    let is_perspective = editor.shown().camera.projection == Projection::Perspective;
     let name = if is_perspective {
         "Perspective"
     } else {

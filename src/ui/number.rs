@@ -87,7 +87,10 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
             pasted.set(Some(whole));
             return Some(whole.x);
         }
-        text.trim().parse().ok()
+        let text = text.trim();
+        // Half of the world writes a comma before decimals.
+        let number = text.parse().ok();
+        number.or_else(|| text.replacen(',', ".", 1).parse().ok())
     };
     // Three in a row have less room.
     let most = if pasted.is_some() { NARROW } else { WIDE };

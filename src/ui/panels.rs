@@ -141,7 +141,8 @@ impl App {
             let per_second = self.pictures.per_second();
             let panel = Panel::bottom(self.timeline_panel());
             let panel = if self.editor.scene().animation.is_still() {
-                panel.exact_size(3.0 * ROW)
+                let has_take = self.editor.scene().animation.take.is_some();
+                panel.exact_size(if has_take { 4.5 * ROW } else { 3.0 * ROW })
             } else {
                 let panel = panel.resizable(true);
                 panel.default_size(TIMELINE).size_range(64.0..=600.0)

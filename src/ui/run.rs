@@ -68,6 +68,7 @@ impl App {
                 self.paste(&text);
                 None
             }
+            Command::Delete if self.delete_value() => None,
             // The two share the room below the picture.
             Command::Lab => {
                 self.lab.is_open = !self.lab.is_open;
@@ -79,7 +80,7 @@ impl App {
                 self.lab.is_open = false;
                 None
             }
-            Command::SelectAll if means_keys(&self.editor) => {
+            Command::SelectAll if self.means_keys(ctx) => {
                 return self.run(ctx, Command::SelectKeys);
             }
             Command::SelectAll => {
@@ -125,6 +126,24 @@ impl App {
             }
         };
         self.act_on(ctx, outcome);
+    }
+
+    /// Whether all keys are meant where all is to be selected: some are, or the pointer is over the line of time.
+    fn means_keys(&self, ctx: &Context) -> bool {
+        let is_over = self.timeline.is_hovered(ctx.cumulative_frame_nr());
+        let has_keys = !self.editor.scene().animation.keys.is_empty();
+        has_keys && (is_over || self.editor.selection == Selection::Keys)
+    }
+
+    /// Deletes the key of a value that was clicked. Whether one was.
+    fn delete_value(&mut self) -> bool {
+        let animation = &self.editor.scene().animation;
+        let Some(without) = self.timeline.without_value(animation) else {
+            return false;
+        };
+        let edit = Edit::animation(without, "Delete key");
+        self.editor.apply(Action::Edit(edit));
+        true
     }
 
     /// Puts what is selected on the clipboard. Whether it is there.
@@ -317,12 +336,6 @@ fn toggle_visible(editor: &mut Editor) {
     let edits: Vec<Edit> = edits.collect();
     let label = format!("{field} {} items", edits.len());
     editor.apply(Action::Edit(Edit::Each(edits, label)));
-}
-
-/// Whether all that could be selected are keys: there are some, and no object or light is selected.
-fn means_keys(editor: &Editor) -> bool {
-    let is_thing = matches!(editor.selection, Selection::Item(_));
-    !is_thing && !editor.scene().animation.keys.is_empty()
 }
 
 /// All objects and lights.

@@ -68,6 +68,12 @@ fn place_of(harness: &EditorHarness, name: &str) -> Pos2 {
     widget.rect().center()
 }
 
+fn hover_over_line(harness: &mut EditorHarness) {
+    let line = place_of(harness, "Playhead");
+    harness.window.hover_at(line);
+    harness.settle();
+}
+
 /// Drags from a place by so much, in several moves, with keys held.
 fn drag(harness: &mut EditorHarness, from: Pos2, by: egui::Vec2, modifiers: Modifiers) {
     let moved = |part: u16| from + by * f32::from(part) / 6.0;
@@ -485,6 +491,26 @@ fn what_has_keys_is_keyed_by_changing_it() {
 }
 
 #[test]
+fn delete_is_meant_for_the_key_of_a_value_that_was_clicked_last() {
+    let mut harness = animation(&[(0.0, 0.0), (2.0, 0.0)]);
+    harness.click("Light 1");
+    harness.click("key intensity");
+    harness.press(Modifiers::NONE, Key::End);
+    harness.type_into("intensity", "0.8");
+    let track = harness.scene().animation.tracks[0].target.name();
+    harness.click(&format!("{track} key 2"));
+    harness.press(Modifiers::NONE, Key::Delete);
+    assert_eq!(harness.scene().animation.tracks[0].keys.len(), 1);
+    assert_eq!(harness.scene().lights.len(), 2);
+    // What is clicked then is meant again.
+    harness.click(&format!("{track} key 1"));
+    harness.click("Light 1");
+    harness.press(Modifiers::NONE, Key::Delete);
+    assert_eq!(harness.scene().lights.len(), 1);
+    assert!(harness.scene().animation.tracks.is_empty());
+}
+
+#[test]
 fn an_object_with_keys_moves_and_its_corners_do_not_drift() {
     let mut editor = Editor::demo();
     let mut scene = Scene::demo();
@@ -541,6 +567,7 @@ fn ready_made_flights_and_other_timings_are_one_step_each() {
     assert_eq!(times(&harness), [0.0, 3.0, 6.0, 9.0, 12.0]);
     assert_eq!(harness.editor().undo_label(), Some("Stretch"));
     harness.press(Modifiers::COMMAND, Key::Z);
+    hover_over_line(&mut harness);
     harness.press(CTRL, Key::A);
     assert_eq!(harness.editor().timeline().selected.len(), 5);
     harness.press(Modifiers::COMMAND, Key::Z);
@@ -683,6 +710,7 @@ fn a_pace_for_several_keys_leaves_their_ways() {
     animation.keys[1].interpolation = Interpolation::Hold;
     let ways: Vec<Interpolation> = animation.keys.iter().map(|key| key.interpolation).collect();
     let mut harness = EditorHarness::on(scene);
+    hover_over_line(&mut harness);
     harness.press(CTRL, Key::A);
     harness
         .window

@@ -385,6 +385,7 @@ pub fn forecast(
             let there = total - missing;
             let stay = match there {
                 0 => String::new(),
+                1 => ", 1 is there and stays".to_owned(),
                 there => format!(", {there} are there and stay"),
             };
             let replace = match replaced {

@@ -53,6 +53,8 @@ pub struct Exports {
     /// What is asked for.
     shown: Option<Shown>,
     kept: KeptSettings,
+    /// What was asked for last while a document was open, which may be saved under another name since.
+    last: Option<(u64, Settings)>,
     /// What was ordered and is listed.
     entries: Vec<Entry>,
     /// What ended without being finished.
@@ -174,6 +176,7 @@ impl Exports {
         if !self.is_open
             && let Some(shown) = self.shown.take()
         {
+            self.last = Some((shown.document, shown.settings.clone()));
             self.kept.keep(shown.owner, shown.settings);
         }
     }
@@ -181,7 +184,10 @@ impl Exports {
     /// The settings that were put away, for the scene as it is now.
     fn settings(&self, editor: &Editor) -> Settings {
         let (fresh, owner) = (Settings::of(editor), Owner::of(editor));
-        match self.kept.of(&owner) {
+        let last = self.last.as_ref();
+        let last = last.filter(|(document, _)| *document == editor.documents());
+        let kept = self.kept.of(&owner);
+        match kept.or(last.map(|(_, settings)| settings)) {
             Some(kept) => kept.for_scene(fresh),
             None => fresh,
         }

@@ -20,7 +20,7 @@ use self::graph::Graph;
 pub use self::overlay::Overlay;
 use self::scale::Scale;
 pub use self::thumbs::Thumbs;
-use self::tracks_area::Drag;
+use self::tracks_area::{Drag, ValueKey};
 pub use self::transport::{actions, clock};
 use super::commands::Command;
 use super::requests::UiRequests;
@@ -51,6 +51,8 @@ pub struct TimelinePanel {
     /// The frame of the window in which it was shown last.
     frame: u64,
     drag: Option<Drag>,
+    /// The key of a value that was clicked.
+    value: Option<ValueKey>,
     graph: Graph,
 }
 
@@ -65,6 +67,7 @@ impl Default for TimelinePanel {
             hovered_in: 0,
             frame: 0,
             drag: None,
+            value: None,
             graph: Graph::default(),
         }
     }
@@ -132,7 +135,8 @@ impl TimelinePanel {
                 thumbs.show(ui, &scale, animation);
                 tracks_area::keys(ui, &scale, editor, &mut self.drag, out);
             }
-            tracks_area::tracks(ui, &scale, editor, &mut self.drag, out);
+            let (drag, value) = (&mut self.drag, &mut self.value);
+            tracks_area::tracks(ui, &scale, editor, (drag, value), out);
             if self.shows_graph && animation.keys.len() > 1 {
                 self.graph.show(ui, &scale, editor);
             }
@@ -151,6 +155,13 @@ impl TimelinePanel {
         self.drag.is_some()
     }
 
+    /// The animation without the key of a value that was clicked, if one was and is still there.
+    pub fn without_value(&self, animation: &Animation) -> Option<Animation> {
+        let (target, index) = self.value.as_ref().filter(|_| self.is_open)?;
+        let without = animation.without_value(target, *index);
+        (without != *animation).then_some(without)
+    }
+
     /// Whether the pointer is over the line, in this frame of the window.
     pub fn is_hovered(&self, frame: u64) -> bool {
         self.hovered_in == frame && self.is_open
@@ -159,7 +170,7 @@ impl TimelinePanel {
     /// Ctrl and the wheel show less or more of the line, the middle button moves it.
     fn zoom(&mut self, ui: &Ui, (scale, area): (&Scale, Rect), end: f64) {
         let at = ui.input(|input| input.pointer.hover_pos());
-        let at = at.filter(|at| area.contains(*at) && ui.ui_contains_pointer());
+        let at = at.filter(|_| ui.rect_contains_pointer(area));
         let Some(at) = at else { return };
         self.hovered_in = self.frame;
         let (factor, moved, is_middle) = ui.input(|input| {

@@ -136,7 +136,7 @@ impl Thumbs {
         let font = egui::FontId::proportional(11.0);
         let at = place.left_top() + vec2(GRID / 2.0, 2.0);
         ui.painter()
-            .text(at, egui::Align2::LEFT_TOP, "Shot", font, colors.accent);
+            .text(at, egui::Align2::LEFT_TOP, "Shot", font, colors.on_picture);
     }
 }
 

@@ -306,15 +306,22 @@ fn menu(ui: &mut Ui, index: usize, editor: &Editor, out: &mut UiRequests) {
     }
 }
 
-/// The keys of lights, objects and the ambience, one track for each value.
+/// A key of a value: its track, and its place in it.
+pub type ValueKey = (Target, usize);
+
+/// The keys of lights, objects and the ambience, one track for each value; the one that was clicked last is chosen until
+/// something else is pressed.
 pub fn tracks(
     ui: &mut Ui,
     scale: &Scale,
     editor: &Editor,
-    drag: &mut Option<Drag>,
+    (drag, chosen): (&mut Option<Drag>, &mut Option<ValueKey>),
     out: &mut UiRequests,
 ) {
     let animation = &editor.scene().animation;
+    if ui.input(|input| input.pointer.any_pressed()) {
+        *chosen = None;
+    }
     let colors = palette(ui.ctx());
     for track in &animation.tracks {
         let (rect, _) = band(ui, scale, Sense::hover());
@@ -328,14 +335,16 @@ pub fn tracks(
             let response = ui.interact(near, id, Sense::click_and_drag());
             let name = format!("{} key {}", track.target.name(), index + 1);
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-            let fill = if response.hovered() {
-                colors.text
-            } else {
-                colors.curve
+            let own = (track.target.clone(), index);
+            let fill = match (chosen.as_ref() == Some(&own), response.hovered()) {
+                (true, _) => colors.accent,
+                (false, true) => colors.text,
+                (false, false) => colors.curve,
             };
             diamond(ui, at, fill, key.interpolation == Interpolation::Hold);
             if response.clicked() {
                 out.time(Time::Seek(key.time));
+                *chosen = Some(own);
             }
             if response.drag_started() {
                 out.actions.push(Action::BeginGesture);
@@ -349,7 +358,7 @@ pub fn tracks(
             }
             response.context_menu(|ui| value_menu(ui, animation, &track.target, index, out));
             response.hint(format!(
-                "{name}: {:.3} s, {}\nDrag to move, Ctrl-drag to copy",
+                "{name}: {:.3} s, {}\nDrag to move, Ctrl-drag to copy, Delete after a click",
                 key.time,
                 key.interpolation.name()
             ));

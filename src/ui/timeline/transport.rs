@@ -14,6 +14,7 @@ use crate::ui::icons;
 use crate::ui::number::is_cancelled;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
+use crate::words::counted;
 
 /// Width of a window in which everything has its place, in points.
 const WIDE: f32 = 1040.0;
@@ -225,12 +226,13 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
     // Behind what is dragged, which must not move.
     let text = format!(
-        "{} samples → {} keys",
+        "{} samples → {}",
         take.samples.len(),
-        animation.keys.len()
+        counted(animation.keys.len(), "key")
     );
     ui.label(RichText::new(text).monospace());
-    if let Some(worst) = editor.timeline().worst {
+    let worst = editor.timeline().worst;
+    if let Some(worst) = worst.filter(|worst| worst.off.is_finite()) {
         let text = format!("· deviation {:.1} px at {:.1} s", worst.off, worst.time);
         ui.label(RichText::new(text).monospace())
             .hint("How far the picture of the keys is off that of the recording at most, at 1024², and when");

@@ -181,6 +181,9 @@ fn all_that_is_selected_is_all_things_or_all_keys() {
         let keys = editor.timeline().selected.len();
         (editor.selected().items().len(), keys)
     };
+    let above = on_ruler(&harness, 1.5);
+    harness.window.hover_at(above);
+    harness.settle();
     harness.press(CTRL, Key::A);
     assert_eq!(selected(&harness), (0, 3));
     harness.click("Plane");
@@ -191,8 +194,29 @@ fn all_that_is_selected_is_all_things_or_all_keys() {
     assert!(!scene.objects.iter().any(|object| object.visible));
     assert!(!scene.lights.iter().any(|light| light.visible));
 
-    // Without keys, all things are meant whatever is selected.
+    // Without keys there are things alone.
     let mut harness = window(&[]);
     harness.press(CTRL, Key::A);
     assert_eq!(selected(&harness), (11, 0));
+}
+
+#[test]
+fn the_line_of_time_zooms_where_the_pointer_is() {
+    let mut harness = window(&[0.0, 1.0, 2.0]);
+    let apart = |harness: &EditorHarness| {
+        let left = |key: &str| {
+            let key = harness.window.get_by_role_and_label(Role::Button, key);
+            key.rect().center().x
+        };
+        left("Key 3") - left("Key 2")
+    };
+    let (before, at) = (apart(&harness), on_ruler(&harness, 1.5));
+    harness.window.hover_at(at);
+    harness.settle();
+    harness.window.event(egui::Event::Zoom(1.5));
+    harness.settle();
+    let zoomed = apart(&harness) / before;
+    assert!((zoomed - 1.5).abs() < 0.05, "{zoomed}");
+    harness.press(Modifiers::NONE, Key::Home);
+    assert!((apart(&harness) - before).abs() < 1.0, "all of it again");
 }
