@@ -13,6 +13,8 @@ use crate::simd::{MAX_LANES, Real, SimdFloat, Vec3};
 /// The bits of a mark that are of one corner.
 const BITS: u32 = 10;
 const CORNER: u64 = (1 << BITS) - 1;
+/// Sine of the angle with a face below which a light is not seen on it.
+const GRAZING: f64 = 1e-3;
 /// How many lights a mark tells of.
 const LIGHTS: usize = 32;
 
@@ -74,14 +76,18 @@ fn face_of<R: Real>(plan: &Plan<R>, number: usize) -> Option<Face<'_, R>> {
     }
 }
 
-/// Which of the first lights are behind a face that is seen in a direction.
+/// Which of the first lights are behind a face that is seen in a direction, or so low before it that one does not see
+/// their light: in any precision the same, also where a light is in the plane of a face.
 fn dark_sides<R: Real>(plan: &Plan<R>, (face, origin): Face<R>, direction: Vec3<R>) -> u32 {
     let place = face.corners[0] + origin;
     let is_front = direction.dot(face.normal) < R::ZERO;
     let lights = plan.lights.iter().take(LIGHTS).enumerate();
     lights.fold(0, |dark, (number, light)| {
-        let height = (light.position - place).dot(face.normal);
-        dark | u32::from(is_front != (R::ZERO < height)) << number
+        let way = light.position - place;
+        let height = way.dot(face.normal);
+        let height = if is_front { height } else { -height };
+        let is_lit = way.length() * R::from_f64(GRAZING) < height;
+        dark | u32::from(!is_lit) << number
     })
 }
 
