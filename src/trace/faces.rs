@@ -111,17 +111,23 @@ fn bits_of<R: Real>(corner: Vec3<R>) -> u32 {
 /// Whether there may be a face, or light, between the samples at the corners of a cell that none of them has seen:
 /// upper left and right, lower left and right.
 #[inline(always)]
-pub fn may_hide_face([a, b, c, d]: [u64; 4]) -> bool {
-    a != b && !are_neighbours(a, b)
-        || a != c && !are_neighbours(a, c)
-        || b != d && !are_neighbours(b, d)
-        || c != d && !are_neighbours(c, d)
+pub fn may_hide_face(corners: [u64; 4]) -> bool {
+    any_beside(corners, |one, other| {
+        one != other && !are_neighbours(one, other)
+    })
 }
 
 /// Whether there may be light between them alone: two beside each other are on faces of which one looks away from it.
-pub fn may_hide_light([a, b, c, d]: [u64; 4]) -> bool {
-    let differ = |a: u64, b: u64| a != 0 && b != 0 && dark(a) != dark(b);
-    differ(a, b) || differ(a, c) || differ(b, d) || differ(c, d)
+pub fn may_hide_light(corners: [u64; 4]) -> bool {
+    any_beside(corners, |one, other| {
+        one != 0 && other != 0 && dark(one) != dark(other)
+    })
+}
+
+/// Whether this is so of two corners of a cell that are beside each other.
+#[inline(always)]
+fn any_beside([a, b, c, d]: [u64; 4], is_so: impl Fn(u64, u64) -> bool) -> bool {
+    is_so(a, b) || is_so(a, c) || is_so(b, d) || is_so(c, d)
 }
 
 /// Whether two different faces share an edge and look at the same lights, or one of them is none.

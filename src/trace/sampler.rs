@@ -264,7 +264,7 @@ fn corners_at<L: SimdFloat>(
     [at(first), at(first + 1), at(below), at(below + 1)]
 }
 
-/// Which cells, of so many from one on, may show a face of a mesh that no corner is on.
+/// Which cells, of so many from one on, may show a face of a mesh, or light between two, that no corner has seen.
 fn hiding_at(faces: &[u64], (first, stride): (usize, usize), count: usize) -> u64 {
     let mut hiding = 0;
     for cell in 0..count {

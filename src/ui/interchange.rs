@@ -50,15 +50,8 @@ pub fn import_path(editor: &mut Editor, path: &Path) {
     }
 }
 
-/// The keys of the camera, as CSV or RON by the ending of the file.
+/// The keys of the camera, as CSV or RON by the ending of the file, which [`Ask::takes`] has looked at.
 pub fn export_path(editor: &mut Editor, path: &Path) {
-    let is_text = path
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("ron"));
-    if !is_table(path) && !is_text {
-        let why = format!("{}: end it in .csv or .ron", path.display());
-        return editor.report_error_in(Ask::ExportPath.title(), why);
-    }
     let keys = &editor.scene().animation.keys;
     let text = if is_table(path) {
         Ok(to_table(keys.iter().map(|key| (key.time, &key.value))))

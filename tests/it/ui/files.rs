@@ -69,11 +69,7 @@ fn the_still_picture_is_written_to_a_file() {
     let mut harness = EditorHarness::with(answers, None);
     harness.press(Modifiers::COMMAND, Key::E);
     let path = harness.folder.path().join("picture.png");
-    let start = Instant::now();
-    while !path.exists() && start.elapsed() < Duration::from_secs(30) {
-        harness.window.step();
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait_for(&mut harness, |_| path.exists());
     harness.settle();
     let saved = image::open(path).expect("a picture").to_rgba8();
     assert_eq!(saved.into_raw(), harness.picture().pixels.concat());
@@ -91,11 +87,7 @@ fn a_picture_in_an_unknown_format_is_asked_about_again() {
     let folder = harness.folder.path().to_owned();
     let path = folder.join("picture.PNG");
     harness.type_name("Path", path.to_str().expect("plain"));
-    let start = Instant::now();
-    while !path.exists() && start.elapsed() < Duration::from_secs(30) {
-        harness.window.step();
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait_for(&mut harness, |_| path.exists());
     assert!(path.exists() && !folder.join("picture.jpg").exists());
 }
 
