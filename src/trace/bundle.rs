@@ -1,5 +1,6 @@
 //! The rays of a packet as one: boxes that no ray of it can meet are left out, sixteen at a time.
 
+use super::thresholds::SLIPPING;
 use crate::plan::{GROUP, Node};
 use crate::primitive::{Blur, BoundingBox, CAUTION, Ray, inverse, roundings};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
@@ -54,6 +55,16 @@ pub struct Beside<R> {
 }
 
 impl<R: Real> Beside<R> {
+    /// What may slip between samples, where pixels are so wide.
+    #[inline(always)]
+    pub fn slipping(width: R, spread: R) -> Self {
+        Self {
+            width,
+            spread,
+            thickest: R::from_f64(SLIPPING),
+        }
+    }
+
     /// How far something may be from where rays start that go as far as `reach`, where a pixel is so wide.
     #[inline(always)]
     pub fn end<L: SimdFloat<Real = R>>(&self, reach: L, width: L) -> L {

@@ -4,10 +4,11 @@
 use glam::DVec3;
 
 use super::beam::Beam;
-use super::bundle::Shaft;
+use super::bundle::{Beside, Shaft};
 use super::candidates::{Candidates, Omit};
 use super::intersect::Kernel;
 use super::roots::Roots;
+use super::slip::may_slip;
 use super::thresholds::SLIPPING;
 use super::tile::Tile;
 use super::walk::Stack;
@@ -151,14 +152,15 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
 }
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
-    /// Finds where shadow rays from these hits to a light can start to look into the trees. Without the
-    /// rule that starts them at the hits, they start anywhere.
+    /// Finds where shadow rays from these hits to a light can start to look into the trees, and whether something thin
+    /// may slip between samples there, with pixels as wide as the footprint. Without the rule that starts them at the
+    /// hits, they start anywhere.
     #[inline(always)]
     pub fn enter_towards(
         self,
         between: &mut LightCandidates<L::Real>,
         light: &PointLight<L::Real>,
-        hits: &BoundingBox<L::Real>,
+        (hits, footprint): (&BoundingBox<L::Real>, Option<L::Real>),
     ) {
         let plan = self.plan;
         let Some((geometry, _)) = self.geometry() else {
@@ -189,6 +191,10 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         };
         let end = L::Real::ONE + caution;
         between.casters.has_geometry = between.roots.narrow::<L>(self.token, geometry, &shaft, end);
+        if let Some(width) = footprint.filter(|_| between.thin.has_geometry) {
+            let beside = Beside::slipping(width, L::Real::ZERO);
+            between.thin.has_geometry = may_slip::<L>(self.token, geometry, &shaft, &beside);
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::beam::{Bounds, beam_around};
 use super::bounce::Bounce;
-use super::bundle::{Shaft, aside};
+use super::bundle::{Beside, Shaft, aside};
 use super::candidates::{Among, Candidates};
 use super::cull::Scratch;
 use super::doubt::{Uncertainty, farthest_off, is_filtered, widest_blur};
@@ -14,6 +14,7 @@ use super::packet::{EdgeInfo, Packet, ReflectionParent};
 use super::paths::{IgnoredPrimitive, Paths, real};
 use super::samples::{Edges, Samples};
 use super::shade::Shader;
+use super::slip::may_slip;
 use super::stats::Rays;
 use super::thresholds::{LARGEST_STRETCH, SLIPPING};
 use super::walk::Stack;
@@ -174,7 +175,7 @@ impl<L: SimdFloat> Bounce<L> {
                 // A ray that has come far is off by a few roundings of its length.
                 let hits = bounds.around().widened(farthest * roundings() + lift + off);
                 for (between, light) in self.lights.iter_mut().zip(&plan.lights) {
-                    kernel.enter_towards(between, light, &hits);
+                    kernel.enter_towards(between, light, (&hits, footprint));
                 }
             }
         }
@@ -186,7 +187,7 @@ impl<L: SimdFloat> Bounce<L> {
         self.packets.len() >= FEWEST_NARROWED
     }
 
-    /// Finds where the packets can start to look into the trees.
+    /// Finds where the packets can start to look into the trees, and whether something thin may slip between them there.
     #[inline(always)]
     fn enter<const TREE: bool>(&mut self, kernel: Kernel<L, TREE>) {
         self.roots.forget();
@@ -211,6 +212,11 @@ impl<L: SimdFloat> Bounce<L> {
         self.seen.has_geometry = self
             .roots
             .narrow::<L>(kernel.token, geometry, &shaft, infinity);
+        if self.thin.has_geometry {
+            let (width, spread) = self.widest_cone(kernel);
+            let beside = Beside::slipping(width, spread);
+            self.thin.has_geometry = may_slip::<L>(kernel.token, geometry, &shaft, &beside);
+        }
     }
 
     /// Finds what rays from the camera can meet, or just miss, between samples; nothing without
@@ -224,6 +230,18 @@ impl<L: SimdFloat> Bounce<L> {
                 plan.view.width_at(center, radius) * slipping
             });
         }
+    }
+
+    /// How wide a pixel is along the rays at most: where they start, and how much more at distance 1; zero without
+    /// edges.
+    #[inline(always)]
+    fn widest_cone<const TREE: bool>(&self, kernel: Kernel<L, TREE>) -> (L::Real, L::Real) {
+        let (mut width, mut spread) = (kernel.splat(0.0), kernel.splat(0.0));
+        for (edge, packet) in self.edges.iter().zip(&self.packets) {
+            width = L::select(packet.active, width.max(edge.cone.width), width);
+            spread = L::select(packet.active, spread.max(edge.cone.spread), spread);
+        }
+        (width.greatest(), spread.greatest())
     }
 
     /// The widest pixel at what was hit; zero without edges.
@@ -311,12 +329,7 @@ impl<L: SimdFloat> Bounce<L> {
         if !self.looks_beside() {
             return kernel.keep_met(&mut self.seen, &beam, start_plane, scratch);
         }
-        let (mut width, mut spread) = (kernel.splat(0.0), kernel.splat(0.0));
-        for (edge, packet) in self.edges.iter().zip(&self.packets) {
-            width = L::select(packet.active, width.max(edge.cone.width), width);
-            spread = L::select(packet.active, spread.max(edge.cone.spread), spread);
-        }
-        let (width, spread) = (width.greatest(), spread.greatest());
+        let (width, spread) = self.widest_cone(kernel);
         // Room for what passes beside the rays, closer than a pixel.
         let wide = beam.widened(width, spread);
         kernel.keep_met(

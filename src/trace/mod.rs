@@ -20,6 +20,8 @@ mod bundle;
 
 mod roots;
 
+mod slip;
+
 mod candidates;
 
 mod walk;

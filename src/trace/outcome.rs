@@ -1,6 +1,7 @@
 //! What packets have found out, sample by sample.
 
 use super::packet::{EdgeInfo, Packet};
+use super::paths::NOTHING;
 use super::samples::{THING, Traced};
 use super::shadows::joined as joined_shadows;
 use crate::plan::Plan;
@@ -25,8 +26,13 @@ pub fn signatures_of<L: SimdFloat>(
             signatures[lane] = signature_of(object, lit[lane]);
         }
     } else {
+        // Those of rays beside each other are often the same.
+        let (mut last, mut object) = (L::Real::from_f64(NOTHING), 0);
         for lane in 0..L::WIDTH {
-            signatures[lane] = signature_of(object_of(plan, numbers[lane]), lit[lane]);
+            if numbers[lane] != last {
+                (last, object) = (numbers[lane], object_of(plan, numbers[lane]));
+            }
+            signatures[lane] = signature_of(object, lit[lane]);
         }
     }
     signatures

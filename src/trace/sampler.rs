@@ -266,15 +266,16 @@ fn corners_at<L: SimdFloat>(
 
 /// Which cells, of so many from one on, may show a face of a mesh, or light between two, that no corner has seen.
 fn hiding_at(faces: &[u64], (first, stride): (usize, usize), count: usize) -> u64 {
+    let above = &faces[first..=first + count];
+    let below = &faces[first + stride..=first + stride + count];
+    // Most are on one face: in step.
+    let differing = |row: &[u64]| row.iter().fold(0, |all, face| all | (face ^ above[0]));
+    if differing(above) | differing(below) == 0 {
+        return 0;
+    }
     let mut hiding = 0;
     for cell in 0..count {
-        let (above, below) = (first + cell, first + stride + cell);
-        let corners = [
-            faces[above],
-            faces[above + 1],
-            faces[below],
-            faces[below + 1],
-        ];
+        let corners = [above[cell], above[cell + 1], below[cell], below[cell + 1]];
         hiding |= u64::from(may_hide_face(corners)) << cell;
     }
     hiding

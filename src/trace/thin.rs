@@ -9,7 +9,8 @@ use super::intersect::Kernel;
 use super::paths::Paths;
 use super::roots::Roots;
 use super::scan::{Test, Thicket, scan_lists};
-use super::thresholds::{CROWDED, LARGEST_SPREAD, NEAR, ONE_THING, SLIPPING, SMALL};
+use super::slip::least_pixels;
+use super::thresholds::{LARGEST_SPREAD, NEAR, ONE_THING, SLIPPING};
 use super::walk::Stack;
 use crate::plan::PackedMesh;
 use crate::primitive::{Approach, Blur, Primitive};
@@ -84,11 +85,10 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             || {
                 let (active, cone) = (thicket.active, gaze.cone.widening());
                 let zero = self.splat(0.0);
-                let beside = Beside {
-                    width: L::select(active, cone.width, zero).greatest(),
-                    spread: L::select(active, cone.spread, zero).greatest(),
-                    thickest: L::Real::from_f64(SLIPPING),
-                };
+                let beside = Beside::slipping(
+                    L::select(active, cone.width, zero).greatest(),
+                    L::select(active, cone.spread, zero).greatest(),
+                );
                 let thicket = Thicket {
                     beside,
                     // What is narrow is found in the same way with and without boxes.
@@ -197,9 +197,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         active: L::Mask,
     ) -> Option<L::Mask> {
         let (center, radius) = mesh.bvh.bounds.ball();
-        // With so many faces in a pixel, they are too many to look at one by one.
-        let faces = L::Real::from_f64(mesh.triangles.len() as f64 / CROWDED);
-        let small = faces.sqrt().max(L::Real::from_f64(SMALL));
+        let small = least_pixels(mesh);
         if widest * small <= radius + radius {
             self.cone = self.gaze.cone.widening();
             return if self.enters { Some(active) } else { None };

@@ -1,0 +1,156 @@
+//! Whether something thin in the trees may slip between the samples of a tile at all: most tiles are spared to look for
+//! it ray by ray.
+
+use super::bundle::{Beside, Shaft};
+use super::thresholds::{CROWDED, SMALL};
+use crate::plan::{Bvh, Child, GROUP, Geometry, PackedMesh};
+use crate::simd::{Real, SimdFloat};
+
+/// Nodes that are looked at; where that is not enough, something thin may be there.
+const MOST_NODES: u32 = 32;
+
+/// A mesh that is fewer pixels large than this may slip between samples as a whole: with so many faces in a pixel, they
+/// are too many to look at one by one.
+#[inline(always)]
+pub fn least_pixels<R: Real>(mesh: &PackedMesh<R>) -> R {
+    let faces = R::from_f64(mesh.triangles.len() as f64 / CROWDED);
+    faces.sqrt().max(R::from_f64(SMALL))
+}
+
+/// Whether rays of a shaft may come close to something thin in the trees, wherever along their way.
+#[inline(never)]
+pub fn may_slip<L: SimdFloat>(
+    token: L::Token,
+    geometry: &Geometry<L::Real>,
+    shaft: &Shaft<L::Real>,
+    beside: &Beside<L::Real>,
+) -> bool {
+    L::vectorize(
+        token,
+        #[inline(always)]
+        || {
+            let mut left = MOST_NODES;
+            let look = (shaft, beside, &mut left);
+            is_close::<L>(
+                token,
+                &geometry.bvh,
+                look,
+                #[inline(always)]
+                |member, width, left| {
+                    let first = geometry.primitives.len();
+                    let Some(mesh) = (member as usize).checked_sub(first) else {
+                        return true;
+                    };
+                    let instance = &geometry.meshes[mesh];
+                    let (_, radius) = instance.mesh.bvh.bounds.ball();
+                    if radius + radius < width * least_pixels(&instance.mesh) {
+                        return true;
+                    }
+                    let look = (&shaft.seen_from(instance.centre), beside, left);
+                    is_close::<L>(
+                        token,
+                        &instance.mesh.bvh,
+                        look,
+                        #[inline(always)]
+                        |_, _, _| true,
+                    )
+                },
+            )
+        },
+    )
+}
+
+/// Whether the rays may come close to a thin member of a tree for which `is_so`, given how wide a pixel is there at
+/// most, and how many nodes are left to look at.
+#[inline(always)]
+fn is_close<L: SimdFloat>(
+    token: L::Token,
+    bvh: &Bvh<L::Real>,
+    (shaft, beside, left): (&Shaft<L::Real>, &Beside<L::Real>, &mut u32),
+    is_so: impl Fn(u32, L::Real, &mut u32) -> bool,
+) -> bool {
+    let mut waiting = [0; MOST_NODES as usize];
+    let mut count = 1;
+    while 0 < count {
+        count -= 1;
+        let Some(node) = bvh.nodes.get(waiting[count] as usize) else {
+            return false;
+        };
+        if *left == 0 {
+            return true;
+        }
+        *left -= 1;
+        let mut widths = [L::Real::ZERO; GROUP];
+        let mut bits = shaft.grazes::<L>(token, node, L::Real::INFINITY, beside, &mut widths);
+        while bits != 0 {
+            let place = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            match node.child(place) {
+                Child::Member(member) if is_so(member, widths[place], left) => return true,
+                Child::Member(_) => {}
+                Child::Node(_) if count == waiting.len() => return true,
+                Child::Node(inner) => {
+                    waiting[count] = inner;
+                    count += 1;
+                }
+            }
+        }
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::mesh::SOLIDS;
+    use crate::plan::{Kept, Plan, RenderRequest};
+    use crate::primitive::BoundingBox;
+    use crate::scene::{Mesh, Object, Scene, Shape};
+    use crate::simd::Vec3;
+
+    #[test]
+    fn something_thin_is_looked_for_where_rays_come_close_to_it() {
+        let solid = |name: &str, x: f64, thickness: f64| {
+            let solid = SOLIDS.iter().find(|solid| solid.name == name);
+            let mesh = Mesh {
+                position: DVec3::new(x, 0.0, 0.0),
+                scale: DVec3::new(thickness, 1.0, thickness),
+                ..Mesh::of((solid.expect("there is").make)(20.0))
+            };
+            Object {
+                name: format!("{name} at {x}"),
+                shape: Shape::Mesh(mesh),
+                ..Scene::demo().objects[0].clone()
+            }
+        };
+        let mut scene = Scene::demo();
+        scene.objects = [
+            solid("Icosphere", 0.0, 1.0),
+            solid("Cylinder", 100.0, 0.01),
+            solid("Icosphere", 200.0, 1.0),
+        ]
+        .into_iter()
+        .collect();
+        let request = RenderRequest::sized(1, 1);
+        let plan: Plan<f64> = Plan::new(&scene, &request, &mut Kept::default());
+        let geometry = plan.geometry.as_deref().expect("meshes");
+        let is_close = |x: f64, width: f64| {
+            // Along all axes, so that all of them have something in common.
+            let way = DVec3::new(0.3, 0.3, -1.0);
+            let start = DVec3::new(x, 0.0, 0.0) - way * 300.0 - plan.centre;
+            let origins = BoundingBox::around(&[Vec3::from_dvec3(start)]).widened(4.0);
+            let ways = BoundingBox::around(&[Vec3::from_dvec3(way)]).widened(0.01);
+            let beside = Beside::slipping(width, 0.0);
+            may_slip::<f64>((), geometry, &Shaft::of(&origins, &ways), &beside)
+        };
+        // The cylinder is 0.2 thick: as wide as two pixels and a little more, or less.
+        for (x, is_thin) in [(0.0, false), (100.0, true), (200.0, false)] {
+            assert_eq!(is_close(x, 0.11), is_thin, "at {x}");
+            assert!(!is_close(x, 0.05), "at {x}");
+            // As a whole, each is smaller than a few pixels.
+            assert!(is_close(x, 11.0), "at {x}");
+        }
+    }
+}
