@@ -246,11 +246,10 @@ fn is_down(ctx: &Context, flight: &FlightKey) -> bool {
         .is_some_and(|key| ctx.input(|input| input.key_down(key)))
 }
 
-/// Flying speed in world units per second.
+/// Flying speed in world units per second: of what is to be seen, however far away its lights are.
 fn speed(scene: &Scene) -> f64 {
-    let extent = scene
-        .bounds()
-        .map_or(0.0, |(low, high)| (high - low).length());
+    let bounds = scene.objects_bounds().or_else(|| scene.bounds());
+    let extent = bounds.map_or(0.0, |(low, high)| (high - low).length());
     if extent > 0.0 {
         extent * EXTENTS_PER_SECOND
     } else {

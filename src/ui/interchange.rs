@@ -38,7 +38,7 @@ pub fn import_path(editor: &mut Editor, path: &Path) {
             };
             let edit = Edit::animation(animation, "Import path");
             if is_made(editor, edit) {
-                editor.notify(format!("{count} keys from {}", path.display()));
+                editor.notify(format!("{} from {}", counted(count, "key"), path.display()));
             }
         }
         Err(error) => {

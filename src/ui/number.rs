@@ -89,8 +89,10 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
         }
         let text = text.trim();
         // Half of the world writes a comma before decimals.
-        let number = text.parse().ok();
-        number.or_else(|| text.replacen(',', ".", 1).parse().ok())
+        let number: Option<f64> = text.parse().ok();
+        let number = number.or_else(|| text.replacen(',', ".", 1).parse().ok());
+        // A length below zero is a slip, and not a wish for the shortest.
+        number.filter(|number| *field.range.start() <= 0.0 || 0.0 < *number)
     };
     // Three in a row have less room.
     let most = if pasted.is_some() { NARROW } else { WIDE };

@@ -9,7 +9,7 @@ use super::app::App;
 use super::commands::{Command, is_enabled};
 use super::dialogs::Ask;
 use super::timeline::actions;
-use super::tools::{axis_camera, framing_camera};
+use super::tools::{axis_camera, framing_camera, projected_camera};
 use super::wishes::{FileOutcome, Next};
 use crate::editor::{
     Action, Edit, Editor, Item, Kind, Mode, Selected, Selection, Time, excerpt, free_bookmark_name,
@@ -437,9 +437,6 @@ fn seen_along(editor: &Editor, direction: DVec3) -> Action {
 }
 
 fn projected(editor: &Editor, projection: Projection) -> Action {
-    let camera = crate::scene::Camera {
-        projection,
-        ..editor.shown().camera.clone()
-    };
+    let camera = projected_camera(editor, projection);
     Action::Edit(Edit::Camera(camera, "projection"))
 }

@@ -37,6 +37,10 @@ pub trait Describe: Clone + Debug + PartialEq + Sized {
     #[must_use]
     fn turned(&self, about: DVec3, by: DQuat) -> Self;
 
+    /// The same, so many times (> 0) as large and as far from a point.
+    #[must_use]
+    fn scaled(&self, about: DVec3, by: f64) -> Self;
+
     /// A point of it and its smallest measure in world units; `None` for what has none.
     fn feature(&self) -> Option<(DVec3, f64)>;
 
@@ -55,6 +59,11 @@ pub trait Describe: Clone + Debug + PartialEq + Sized {
 /// Where a point is when it is turned about another one.
 pub fn turned(point: DVec3, about: DVec3, by: DQuat) -> DVec3 {
     about + by * (point - about)
+}
+
+/// Where a point is when it is so many times as far from another one.
+pub fn scaled(point: DVec3, about: DVec3, by: f64) -> DVec3 {
+    about + (point - about) * by
 }
 
 /// One property of a primitive.

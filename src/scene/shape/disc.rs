@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Field, FieldValue, turned};
+use super::describe::{Describe, Field, FieldValue, scaled, turned};
 use super::plane_piece::{Outline, PlanePiece};
 use crate::scene::direction::unit;
 use crate::scene::notation;
@@ -75,6 +75,14 @@ impl Describe for Disc {
         Self {
             center: turned(self.center, about, by),
             normal: by * self.normal,
+            ..*self
+        }
+    }
+
+    fn scaled(&self, about: DVec3, by: f64) -> Self {
+        Self {
+            center: scaled(self.center, about, by),
+            radius: self.radius * by,
             ..*self
         }
     }

@@ -126,6 +126,12 @@ macro_rules! shapes {
                 match self { $(Self::$kind(shape) => Self::$kind(shape.turned(about, by))),* }
             }
 
+            /// The same shape, so many times (> 0) as large and as far from a point.
+            #[must_use]
+            pub fn scaled(&self, about: DVec3, by: f64) -> Self {
+                match self { $(Self::$kind(shape) => Self::$kind(shape.scaled(about, by))),* }
+            }
+
             /// A point of it and its smallest measure, see [`Describe::feature`].
             pub fn feature(&self) -> Option<(DVec3, f64)> {
                 match self { $(Self::$kind(shape) => shape.feature()),* }
@@ -156,4 +162,30 @@ shapes! {
     Triangle: "A flat triangle.",
     Disc: "A flat disc.",
     Mesh: "Many triangles."
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_scaled_is_as_many_times_as_large_and_as_far_away() {
+        let (about, by) = (DVec3::new(3.0, -2.0, 1.0), 2.5);
+        for shape in Shape::examples(DVec3::new(10.0, 20.0, 30.0), 4.0) {
+            let scaled = shape.scaled(about, by);
+            let place = about + (shape.position() - about) * by;
+            assert!((scaled.position() - place).length() < 1e-12, "{scaled:?}");
+            let (Some((low, high)), Some((less, more))) = (shape.bounds(), scaled.bounds()) else {
+                continue;
+            };
+            for (before, after) in [(low, less), (high, more)] {
+                let wanted = about + (before - about) * by;
+                assert!(
+                    (after - wanted).length() < 1e-9,
+                    "{}: {after}",
+                    shape.kind()
+                );
+            }
+        }
+    }
 }

@@ -7,7 +7,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::describe::{Describe, Field, FieldValue, turned};
+use super::describe::{Describe, Field, FieldValue, scaled, turned};
 use super::mesh_source::{MeshFiles, MeshSource};
 use super::plane_piece::PlanePiece;
 use crate::mesh::{FARTHEST, Triangles, icosphere};
@@ -325,6 +325,14 @@ impl Describe for Mesh {
         Self {
             position: turned(self.position, about, by),
             rotation: angles_of(by * self.orientation(), self.rotation),
+            ..self.clone()
+        }
+    }
+
+    fn scaled(&self, about: DVec3, by: f64) -> Self {
+        Self {
+            position: scaled(self.position, about, by),
+            scale: self.scale * by,
             ..self.clone()
         }
     }

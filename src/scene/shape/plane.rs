@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Field, FieldValue, turned};
+use super::describe::{Describe, Field, FieldValue, scaled, turned};
 use super::plane_piece::{Outline, PlanePiece};
 use crate::scene::direction::unit;
 use crate::scene::notation;
@@ -62,6 +62,13 @@ impl Describe for Plane {
         Self {
             point: turned(self.point, about, by),
             normal: by * self.normal,
+        }
+    }
+
+    fn scaled(&self, about: DVec3, by: f64) -> Self {
+        Self {
+            point: scaled(self.point, about, by),
+            ..*self
         }
     }
 

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Field, FieldValue, turned};
+use super::describe::{Describe, Field, FieldValue, scaled, turned};
 use crate::scene::notation;
 
 /// A ball.
@@ -61,6 +61,13 @@ impl Describe for Sphere {
         Self {
             center: turned(self.center, about, by),
             ..*self
+        }
+    }
+
+    fn scaled(&self, about: DVec3, by: f64) -> Self {
+        Self {
+            center: scaled(self.center, about, by),
+            radius: self.radius * by,
         }
     }
 

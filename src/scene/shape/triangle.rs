@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Field, FieldValue, turned};
+use super::describe::{Describe, Field, FieldValue, scaled, turned};
 use super::plane_piece::{Outline, PlanePiece};
 use crate::scene::direction::unit;
 use crate::scene::notation;
@@ -101,6 +101,14 @@ impl Describe for Triangle {
             a: turned(self.a, about, by),
             b: turned(self.b, about, by),
             c: turned(self.c, about, by),
+        }
+    }
+
+    fn scaled(&self, about: DVec3, by: f64) -> Self {
+        Self {
+            a: scaled(self.a, about, by),
+            b: scaled(self.b, about, by),
+            c: scaled(self.c, about, by),
         }
     }
 

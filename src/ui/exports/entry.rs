@@ -109,12 +109,27 @@ impl Entry {
         }
     }
 
-    /// Draws its row.
-    pub fn show(&mut self, ui: &mut Ui, state: &ExportState, pictures: &Pictures) {
-        ui.horizontal(|ui| {
+    /// Draws its row; opens its folder if that is asked for.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        state: &ExportState,
+        pictures: &Pictures,
+        editor: &mut Editor,
+    ) {
+        let row = ui.horizontal(|ui| {
             self.show_thumb(ui, state);
-            ui.vertical(|ui| show_state(ui, &self.name, state, self.video.as_ref(), pictures));
+            let video = self.video.as_ref();
+            let shown = ui.vertical(|ui| show_state(ui, &self.name, state, video, pictures));
+            shown.inner
         });
+        let is_asked = row.inner;
+        let beside = self.video.as_ref().and_then(|video| video.path.parent());
+        let folder = beside.unwrap_or(&state.folder);
+        if is_asked && let Err(error) = open::that_detached(folder) {
+            let folder = folder.display();
+            editor.report_error_in(EXPORT, format!("{folder} could not be opened: {error}"));
+        }
     }
 
     fn show_thumb(&mut self, ui: &mut Ui, state: &ExportState) {

@@ -169,7 +169,7 @@ impl Exports {
             .default_pos(egui::pos2(280.0, 60.0))
             .show(ctx, |ui| {
                 self.show_settings(ui, editor, pictures, out);
-                self.show_list(ui, pictures);
+                self.show_list(ui, editor, pictures);
                 self.show_interrupted(ui, editor, pictures);
             });
         self.is_open = is_open && self.is_open;
@@ -308,12 +308,12 @@ impl Exports {
         }));
     }
 
-    fn show_list(&mut self, ui: &mut Ui, pictures: &Pictures) {
+    fn show_list(&mut self, ui: &mut Ui, editor: &mut Editor, pictures: &Pictures) {
         let states = pictures.exports();
         for entry in &mut self.entries {
             if let Some(state) = states.iter().find(|state| state.id == entry.id) {
                 ui.separator();
-                entry.show(ui, state, pictures);
+                entry.show(ui, state, pictures, editor);
             }
         }
     }

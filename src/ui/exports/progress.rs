@@ -59,17 +59,18 @@ fn video_progress(video: &VideoMaker) -> (f64, String) {
     }
 }
 
-/// Draws how far an export is, and its buttons; what it waits for does not count as its time.
+/// Draws how far an export is, and its buttons; what it waits for does not count as its time. Whether its folder shall
+/// be opened.
 pub fn show_state(
     ui: &mut Ui,
     name: &str,
     state: &ExportState,
     video: Option<&VideoMaker>,
     pictures: &Pictures,
-) {
+) -> bool {
     let place = video.map_or(&state.folder, |video| &video.path);
     ui.label(name).hint(place.display().to_string());
-    ui.horizontal(|ui| {
+    let row = ui.horizontal(|ui| {
         let (share, text) = progress(state, video);
         let bar = ProgressBar::new(share as f32).desired_width(FIELDS - 120.0);
         ui.add(bar.text(RichText::new(text).small().color(palette(ui.ctx()).text)));
@@ -78,7 +79,7 @@ pub fn show_state(
             if !is_making && ui.button("Remove").clicked() {
                 pictures.forget_export(state.id);
             }
-            return;
+            return ui.button("Open folder").clicked();
         }
         let word = if state.is_paused { "Resume" } else { "Pause" };
         if ui.button(word).clicked() {
@@ -90,5 +91,7 @@ pub fn show_state(
         if cancel.clicked() {
             pictures.forget_export(state.id);
         }
+        false
     });
+    row.inner
 }

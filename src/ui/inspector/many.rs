@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::items;
 use super::title::title;
-use crate::editor::{Edit, Editor, Item, Kind};
+use crate::editor::{Action, Edit, Editor, Item, Kind};
 use crate::scene::{FieldValue, Light, Object, Scene, Shape};
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
@@ -24,7 +24,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     if !different.is_empty() {
         ui.weak(format!("Not the same for all: {}", different.join(", ")));
     }
-    ui.weak("A change is made to all that have the property.");
+    ui.weak("A change is made to all that have the property. A position that is dragged moves them together.");
     let objects = of_kind(selected, Kind::Object);
     let is_joinable = |index: &usize| {
         let object = scene.objects.get(*index);
@@ -51,10 +51,15 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         }
         Kind::Pack => {}
     }
+    let is_dragged = ui.input(|input| input.pointer.any_down());
     for action in own.actions {
         out.actions.push(match action {
-            crate::editor::Action::Edit(edit) => {
-                crate::editor::Action::Edit(for_all(scene, selected, edit))
+            Action::Edit(edit) => {
+                let moved = moved_by(scene, &edit).filter(|_| is_dragged);
+                Action::Edit(match moved {
+                    Some(by) => move_all(scene, selected, by),
+                    None => for_all(scene, selected, edit),
+                })
             }
             other => other,
         });
@@ -70,6 +75,38 @@ fn of_kind(items: &[Item], kind: Kind) -> Vec<usize> {
         .collect();
     places.sort_unstable();
     places
+}
+
+/// By how much a change moves something, if it does nothing else.
+fn moved_by(scene: &Scene, edit: &Edit) -> Option<DVec3> {
+    let (by, is_all) = match edit {
+        Edit::Object(index, new, _) => {
+            let old = &scene.objects.get(*index)?.shape;
+            let by = new.shape.position() - old.position();
+            (by, old.moved(by) == new.shape)
+        }
+        Edit::Light(index, new, _) => (new.position - scene.lights.get(*index)?.position, true),
+        _ => return None,
+    };
+    (is_all && by != DVec3::ZERO).then_some(by)
+}
+
+/// Moves everything that is selected.
+fn move_all(scene: &Scene, selected: &[Item], by: DVec3) -> Edit {
+    let edits = selected.iter().filter_map(|item| match item.kind {
+        Kind::Object => {
+            let mut object = scene.objects.get(item.index)?.clone();
+            object.shape = object.shape.moved(by);
+            Some(Edit::object(item.index, object, "position"))
+        }
+        Kind::Light => {
+            let mut light = scene.lights.get(item.index)?.clone();
+            light.position += by;
+            Some(Edit::Light(item.index, light, "position"))
+        }
+        Kind::Pack => None,
+    });
+    Edit::Each(edits.collect(), format!("Move {} items", selected.len()))
 }
 
 /// The same change for everything that is selected.

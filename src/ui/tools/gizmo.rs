@@ -1,5 +1,5 @@
 //! Handles at what is selected: arrows and squares to move it, rings to turn it and to change its radius,
-//! dots for corners.
+//! a knob for the size of what has no radius, dots for corners.
 
 use std::f64::consts::TAU;
 
@@ -19,6 +19,10 @@ const GAP: f64 = 0.16;
 const SQUARE: (f64, f64) = (0.3, 0.5);
 /// Radius of the rings that turn, in lengths.
 pub const RING: f64 = 1.2;
+/// Where the knob for the size is, in lengths: its stem begins at the rings.
+const KNOB: (f32, f32) = (RING as f32, 1.5);
+/// Half of the side of the knob, in points.
+const KNOB_REACH: f32 = 5.0;
 /// How near to a handle the pointer must be, in points.
 const REACH: f32 = 7.0;
 /// Length of the head of an arrow, in points.
@@ -41,6 +45,8 @@ pub enum Handle {
     Free,
     /// Changes the radius.
     Radius,
+    /// Changes the size of what has no radius, or of several things, around the middle.
+    Size,
     /// Moves a corner of a triangle in the plane of the camera.
     Corner(usize),
     /// Turns what a plane or a disc faces.
@@ -74,7 +80,7 @@ impl Drawn {
             // Dots come before the lines that end in them.
             (Handle::Free | Handle::Corner(_), Some(dot)) => ((*dot - at).length() - 2.0).max(0.0),
             // So do the heads of arrows, which lie over what runs through them.
-            (Handle::Along(_), _) => {
+            (Handle::Along(_) | Handle::Size, _) => {
                 let head = self
                     .line
                     .last()
@@ -189,8 +195,25 @@ fn handles(lens: &Lens, selected: &Selected, scene: &Scene) -> Vec<Drawn> {
             add(Handle::Turn(axis), Some(line), true);
         }
     }
+    if only.as_ref().is_none_or(has_size) {
+        let way = vec2(
+            std::f32::consts::FRAC_1_SQRT_2,
+            -std::f32::consts::FRAC_1_SQRT_2,
+        );
+        let (from, to) = KNOB;
+        let line = vec![
+            place + way * from * LENGTH as f32,
+            place + way * to * LENGTH as f32,
+        ];
+        add(Handle::Size, Some(line), false);
+    }
     add(Handle::Free, Some(vec![place]), false);
     drawn
+}
+
+/// Whether a single thing has a size that is no radius.
+fn has_size(subject: &Subject) -> bool {
+    matches!(subject.shape(), Some(Shape::Mesh(_) | Shape::Triangle(_)))
 }
 
 /// Whether there is something to turn about the middle of a single thing; several are turned around each other.
@@ -294,6 +317,14 @@ fn draw(painter: &Painter, (handle, line, is_closed): (Handle, &[Pos2], bool), s
                 painter.line_segment([*from, *to], stroke);
             }
             arrow_head(painter, *from, *to, stroke.color, halo.color);
+        }
+        (Handle::Size, [from, to]) => {
+            for stroke in [halo, stroke] {
+                painter.line_segment([*from, *to], stroke);
+            }
+            let knob = egui::Rect::from_center_size(*to, egui::Vec2::splat(KNOB_REACH * 2.0));
+            let edge = Stroke::new(1.0, halo.color);
+            painter.rect(knob, 1, stroke.color, edge, StrokeKind::Outside);
         }
         (_, points) => {
             // Thin lines one by one: corners of a line that turns back would be spikes.

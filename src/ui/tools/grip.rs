@@ -67,7 +67,7 @@ impl Grip {
     pub fn takes_numbers(&self) -> bool {
         matches!(
             self.handle,
-            Handle::Along(_) | Handle::Radius | Handle::Turn(_)
+            Handle::Along(_) | Handle::Radius | Handle::Size | Handle::Turn(_)
         )
     }
 
@@ -89,7 +89,7 @@ impl Grip {
             }
             Handle::Free | Handle::Normal => lens.on_plane(at, held, lens.forward()),
             Handle::Corner(corner) => lens.on_plane(at, self.corner(corner)?, lens.forward()),
-            Handle::Radius => Some(held),
+            Handle::Radius | Handle::Size => Some(held),
         }
     }
 
@@ -146,6 +146,11 @@ impl Grip {
                     .flatten();
                 Some((edit, format!("radius {}", plain(radius))))
             }
+            Handle::Size => {
+                let times = typed.map_or_else(|| self.times(lens, pull), Some)?;
+                let edit = (times > 0.0).then(|| self.scale_all(times)).flatten();
+                Some((edit, format!("× {}", plain(times))))
+            }
             Handle::Corner(corner) => {
                 let to = self.pointed_at(lens, pull.at)?;
                 let to = DVec3::new(round(to.x), round(to.y), round(to.z));
@@ -174,6 +179,22 @@ impl Grip {
     fn move_all(&self, by: DVec3) -> Option<Edit> {
         let edits = self.before.iter().map(|subject| subject.moved(by));
         together(edits.collect(), "Move")
+    }
+
+    fn scale_all(&self, times: f64) -> Option<Edit> {
+        let edits = self
+            .before
+            .iter()
+            .map(|subject| subject.scaled(self.middle, times));
+        together(edits.collect(), "Resize")
+    }
+
+    /// How many times as far from the middle a place on the screen is as where it was grabbed.
+    fn times(&self, lens: &Lens, pull: Pull) -> Option<f64> {
+        let middle = lens.place(self.middle)?;
+        let times = (pull.at - middle).length() / (self.from.0 - middle).length().max(1.0);
+        let parts = if pull.snaps { 10.0 } else { 100.0 };
+        Some((f64::from(times) * parts).round().max(1.0) / parts)
     }
 
     /// How far the ray through a place passes from the middle; on a disc, where it meets it.

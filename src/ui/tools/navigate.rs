@@ -12,6 +12,8 @@ const ORBIT: f64 = 0.008;
 const DOLLY: f64 = 0.003;
 /// Room around what is framed.
 const ROOM: f64 = 1.15;
+/// How many times as large or small as before another projection may show something.
+const MUCH: f64 = 3.0;
 
 /// The turn of an orbit, to the right and upwards, of a movement of the mouse: what is circled follows it.
 pub fn turn(moved: Vec2) -> (f64, f64) {
@@ -76,6 +78,29 @@ pub fn along(camera: &Camera, about: DVec3, direction: DVec3) -> Camera {
     }
 }
 
+/// The camera with another projection. Where that would show what is as far away as a point much larger or smaller than
+/// before, it is as large as before; a little is what somebody has chosen.
+pub fn projected(camera: &Camera, about: Option<DVec3>, projection: Projection) -> Camera {
+    let mut next = Camera {
+        projection,
+        ..camera.clone()
+    };
+    let forward = camera.look_at.normalize_or_zero();
+    let depth = about.map(|about| (about - camera.position).dot(forward));
+    let Some(depth) = depth.filter(|depth| 0.0 < *depth && projection != camera.projection) else {
+        return next;
+    };
+    let as_far = camera.orthographic_height * camera.projection_distance;
+    if (as_far / depth).ln().abs() < MUCH.ln() {
+        return next;
+    }
+    match projection {
+        Projection::Orthographic => next.orthographic_height = depth / camera.projection_distance,
+        Projection::Perspective => next.position += forward * (depth - as_far),
+    }
+    next
+}
+
 /// The box around everything that ends, or around where endless planes are known to be.
 pub fn surroundings(scene: &Scene) -> Option<(DVec3, DVec3)> {
     scene.objects_bounds().or_else(|| scene.bounds())
@@ -96,6 +121,38 @@ mod tests {
             projection,
             ..Camera::default()
         })
+    }
+
+    #[test]
+    fn another_projection_shows_what_is_in_the_middle_about_as_large() {
+        for camera in cameras() {
+            let other = match camera.projection {
+                Projection::Perspective => Projection::Orthographic,
+                Projection::Orthographic => Projection::Perspective,
+            };
+            let forward = camera.look_at.normalize();
+            let at = |depth: f64| camera.position + forward * depth + camera.up * 7.0;
+            // As large in both.
+            let usual = camera.orthographic_height * camera.projection_distance;
+            for depth in [0.5 * usual, 2.0 * usual, -1.0] {
+                let seen = projected(&camera, Some(at(depth)), other);
+                let only = Camera {
+                    projection: other,
+                    ..camera.clone()
+                };
+                assert_eq!(seen, only, "{depth}");
+            }
+            for depth in [0.01 * usual, 10.0 * usual] {
+                let seen = projected(&camera, Some(at(depth)), other);
+                let unit = |camera: &Camera| lens(camera).unit_at(at(depth));
+                assert_eq!(
+                    projected(&camera, Some(at(depth)), camera.projection),
+                    camera
+                );
+                let (before, after) = (unit(&camera), unit(&seen));
+                assert!((before - after).abs() < 1e-9 * before, "{before} {after}");
+            }
+        }
     }
 
     #[test]

@@ -88,6 +88,21 @@ impl Subject {
         }
     }
 
+    /// The change that makes it so many times as large, and as far from a point.
+    pub fn scaled(&self, about: DVec3, by: f64) -> Edit {
+        match self {
+            Self::Object(_, object) => self.reshaped(object.shape.scaled(about, by), "size"),
+            Self::Light(index, light) => {
+                let mut light = light.clone();
+                light.position = about + (light.position - about) * by;
+                if let Some(marker) = &mut light.marker {
+                    marker.radius *= by;
+                }
+                Edit::Light(*index, light, "size")
+            }
+        }
+    }
+
     /// The change that gives it a radius, if it has one.
     pub fn with_radius(&self, radius: f64) -> Option<Edit> {
         match self {

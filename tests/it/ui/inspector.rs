@@ -3,10 +3,12 @@
 use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers};
+use egui::{Event, Key, Modifiers, PointerButton, vec2};
 use egui_kittest::kittest::Queryable as _;
+use glam::DVec3;
 use glint::scene::{Sampling, Scene, Shape, Sphere};
 
+use super::tools::{center, click, drop_at, place, pull};
 use crate::harness::{CTRL, EditorHarness, radius};
 
 #[test]
@@ -230,4 +232,58 @@ fn escape_gives_a_typed_vector_up() {
     harness.settle();
     harness.press(Modifiers::NONE, Key::Escape);
     assert_eq!(harness.scene().objects[0], before);
+}
+
+/// Selects both balls; where they are, from the first to the second.
+fn both_balls(harness: &mut EditorHarness) -> [DVec3; 2] {
+    let centers = [0, 1].map(|ball| center(harness.scene(), ball));
+    let places = centers.map(|point| place(harness, point));
+    click(harness, places[0], Modifiers::NONE);
+    click(harness, places[1], Modifiers::SHIFT);
+    assert_eq!(harness.editor().selected().items().len(), 2);
+    centers
+}
+
+#[test]
+fn a_knob_resizes_several_around_their_middle() {
+    let mut harness = EditorHarness::new();
+    let [one, other] = both_balls(&mut harness);
+    let middle = place(&harness, (one + other) / 2.0);
+    let arm = vec2(1.0, -1.0).normalized() * 76.0 * 1.5;
+    let (primary, none) = (PointerButton::Primary, Modifiers::NONE);
+    pull(
+        &mut harness,
+        middle + arm,
+        middle + arm * 1.5,
+        primary,
+        none,
+    );
+    drop_at(&mut harness, middle + arm * 1.5, primary, none);
+    assert_eq!(harness.editor().undo_label(), Some("Resize 2 items"));
+    let radii = [0, 1].map(|ball| radius(harness.scene(), ball));
+    assert_eq!(radii, [75.0, 30.0]);
+    let [now, then] = [0, 1].map(|ball| center(harness.scene(), ball));
+    assert!(((now - then) - (one - other) * 1.5).length() < 1e-9);
+    assert!(((now + then) - (one + other)).length() < 1e-9);
+}
+
+#[test]
+fn of_several_a_dragged_position_moves_all_and_a_typed_one_is_for_all() {
+    let mut harness = EditorHarness::new();
+    let [one, other] = both_balls(&mut harness);
+    harness.drag("center x", 40.0);
+    let [now, then] = [0, 1].map(|ball| center(harness.scene(), ball));
+    assert!(now.x > one.x + 1.0, "{now}");
+    assert!((now - one - (then - other)).length() < 1e-9, "{now} {then}");
+    harness.press(CTRL, Key::Z);
+    harness.type_into("center y", "70");
+    let [now, then] = [0, 1].map(|ball| center(harness.scene(), ball));
+    assert_eq!((now.y, then.y), (70.0, 70.0));
+    assert_eq!((now.x, then.x), (one.x, other.x));
+    // No length is below zero.
+    harness.type_into("radius", "-5");
+    assert_eq!(
+        [0, 1].map(|ball| radius(harness.scene(), ball)),
+        [50.0, 20.0]
+    );
 }

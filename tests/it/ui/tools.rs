@@ -41,7 +41,7 @@ pub fn hover(harness: &mut EditorHarness, at: Pos2) {
     harness.window.step();
 }
 
-fn click(harness: &mut EditorHarness, at: Pos2, modifiers: Modifiers) {
+pub fn click(harness: &mut EditorHarness, at: Pos2, modifiers: Modifiers) {
     // Two clicks are not to be one double-click.
     (0..60).for_each(|_| harness.window.step());
     hover(harness, at);
