@@ -354,7 +354,12 @@ fn new_file_in(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
         use std::os::unix::fs::PermissionsExt as _;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(folder)
+    builder.tempfile_in(folder).map_err(|error| {
+        // It ends with the path of a file that nobody has asked for.
+        let words = error.to_string();
+        let why = words.split(" at path ").next().unwrap_or(&words);
+        io::Error::new(error.kind(), why.to_owned())
+    })
 }
 
 #[cfg(test)]

@@ -259,6 +259,7 @@ impl Editor {
     /// # Errors
     /// Why it could not be written; the document then still counts as changed.
     pub fn save(&mut self, path: &Path) -> Result<(), SceneError> {
+        let gone = self.scene.gone_mesh_files().join(", ");
         let (backup, stamp) = self.document().save_stamped(path)?;
         self.path = Some(absolute(path));
         self.stamp = Some(stamp);
@@ -271,7 +272,11 @@ impl Editor {
                 backup.display()
             )
         });
-        self.notify(format!("Saved {}{kept}", path.display()));
+        let gone = match &gone[..] {
+            "" => String::new(),
+            gone => format!("; {gone} is gone, so its triangles are in the scene file now"),
+        };
+        self.notify(format!("Saved {}{kept}{gone}", path.display()));
         Ok(())
     }
 

@@ -144,13 +144,19 @@ impl Scene {
             .iter()
             .filter(|other| other.name != object.name);
         let mut names = Names::new(others.map(|other| other.name.as_str()));
-        let pieces: Vec<Object> = world_corners(mesh)
-            .map(|[a, b, c]| Object {
+        // Slivers without an area are seen nowhere, and would be no triangles.
+        let triangles = world_corners(mesh).map(|[a, b, c]| Shape::from(Triangle { a, b, c }));
+        let pieces: Vec<Object> = triangles
+            .filter(|triangle| triangle.problem().is_none())
+            .map(|triangle| Object {
                 name: names.take(&object.name),
-                shape: Triangle { a, b, c }.into(),
+                shape: triangle,
                 ..object.clone()
             })
             .collect();
+        if pieces.is_empty() {
+            return false;
+        }
         let before = self.objects.iter().take(index).cloned();
         let after = self.objects.iter().skip(index + 1).cloned();
         self.objects = before.chain(pieces).chain(after).collect::<List<_>>();
@@ -205,6 +211,23 @@ mod tests {
         };
         assert_eq!(shapes(&scene), shapes(&demo));
         assert!(demo.connected_triangles(0).is_empty(), "a sphere");
+    }
+
+    #[test]
+    fn slivers_without_an_area_are_left_out() {
+        let points = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X * 2.0];
+        let faces = vec![[0, 1, 2], [0, 1, 3]];
+        let triangles = Triangles::new(points.to_vec(), faces).expect("a mesh");
+        let mut scene = Scene::demo();
+        scene.objects = [Object {
+            shape: Shape::Mesh(Mesh::of(triangles)),
+            ..scene.objects[0].clone()
+        }]
+        .into_iter()
+        .collect();
+        assert!(scene.separate(0));
+        assert_eq!(scene.objects.len(), 1);
+        assert_eq!(check(&scene), Ok(()));
     }
 
     #[test]

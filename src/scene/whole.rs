@@ -165,10 +165,22 @@ impl Scene {
         });
     }
 
-    /// The same scene for a file in another folder: meshes that lie elsewhere are taken in.
+    /// The same scene for a file in this folder: meshes that lie elsewhere, or whose files are gone, are taken in.
     #[must_use]
     pub fn taken_to(&self, folder: &Path) -> Self {
         self.with_sources(|source| source.taken_to(folder))
+    }
+
+    /// The files of meshes that were read, and are not there any more.
+    pub fn gone_mesh_files(&self) -> Vec<&str> {
+        let sources = self
+            .objects
+            .iter()
+            .filter_map(|object| match &object.shape {
+                Shape::Mesh(mesh) => mesh.source.gone_file(),
+                _ => None,
+            });
+        sources.collect()
     }
 
     /// The same scene with the triangles of all meshes: it needs no other files.

@@ -14,6 +14,7 @@ use super::histogram::Levels;
 use super::inspector::Quality;
 use super::lab::Lab;
 use super::layout::Layout;
+use super::number::dragged;
 use super::outliner::Outliner;
 use super::pictures::Pictures;
 use super::requests::UiRequests;
@@ -333,6 +334,9 @@ impl eframe::App for App {
         }
         let picture = self.show_panels(ui, &mut out);
         let ctx = ui.ctx().clone();
+        if dragged(&ctx) == Some(true) {
+            out.actions.push(Action::CancelGesture);
+        }
         self.exports
             .show(&ctx, &mut self.editor, &self.pictures, &mut out);
         if self.files.is_asking() {
@@ -378,6 +382,7 @@ impl eframe::App for App {
             || egui::Popup::is_any_open(&ctx)
             || self.files.is_asking()
             || self.finder.is_open
+            || dragged(&ctx).is_some()
             || self.tools.is_dragging()
             || self.timeline.is_dragging();
         let messages = std::mem::take(&mut self.editor.messages);

@@ -227,7 +227,7 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     StopRecording [plain(Key::T)] "Stop recording and make keys",
     Play [plain(Key::G)] "Play or pause",
     AddKey [plain(Key::K)] "Set a key at the playhead",
-    SelectAll [ctrl(Key::A)] "Select all objects and lights; over the timeline, all keys",
+    SelectAll [ctrl(Key::A)] "Select all objects and lights; over the timeline, all keys of the camera",
     LookThrough [plain(Key::C)] "Look through the shot camera, or at it",
     PreviousKey [plain(Key::OpenBracket)] "Previous key",
     NextKey [plain(Key::CloseBracket)] "Next key",

@@ -11,7 +11,7 @@ use egui::{Context, Ui};
 use super::dialogs::{Ask, Dialogs};
 use super::folders::Folders;
 use super::interchange::{export_job, export_path, export_povray, import_path, imported};
-use super::outside::{Theirs, Watch};
+use super::outside::{OUTSIDE, Theirs, Watch};
 use super::prompts::{Answer, PathPrompt, ask_about_changes, ask_to_leave, ask_to_quit};
 use super::reading::{Read, Reading};
 use super::wishes::{FileOutcome, Next, PathRequest};
@@ -299,15 +299,20 @@ impl Files {
         let Some(path) = editor.path().map(Path::to_owned) else {
             return;
         };
-        if !self.watch.is_news(&path) || !editor.is_changed_outside() {
+        let (is_news, broken) = (self.watch.is_news(&path), self.watch.take_broken());
+        if let Some(why) = broken.filter(|_| !is_news) {
+            editor.report_error_in(OUTSIDE, why);
+        }
+        if !is_news || !editor.is_changed_outside() {
             return;
         }
         // What cannot be read may be half written: when more is, the next look tells, or the next save.
         let theirs = match Document::load_stamped(&path) {
             Ok(theirs) => theirs,
             Err(SceneError::Disk { .. }) => return self.watch.look_again(),
-            Err(_) => return,
+            Err(error) => return self.watch.note_broken(error.to_string()),
         };
+        editor.begin(OUTSIDE);
         if editor.is_dirty() && theirs.0.scene != **editor.scene() {
             let theirs = Theirs::new(editor, Ok(theirs));
             self.question = Some(Question::Outside(Box::new(theirs), None));

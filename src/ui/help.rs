@@ -1,6 +1,6 @@
 //! Help → Shortcuts: every key, from the tables that drive the window.
 
-use egui::{Context, Grid, RichText, ScrollArea, Ui, Vec2, Window, vec2};
+use egui::{Context, Grid, Label, RichText, ScrollArea, Ui, Vec2, Window, vec2};
 
 use super::commands::{SHORTCUTS, name_of};
 use super::flight_keys::{FLIGHT, MOUSE};
@@ -8,6 +8,8 @@ use super::theme::{GRID, palette};
 
 /// Room that all of it takes, in points.
 const SIZE: Vec2 = vec2(1180.0, 640.0);
+/// Width of what is said about a key, at most, in points.
+const WIDEST: f32 = 225.0;
 /// Width in which commands and the keys of hands have room side by side, in points.
 const TWO_COLUMNS: f32 = 845.0;
 
@@ -38,32 +40,45 @@ fn lists(ui: &mut Ui, width: f32) {
         (keys.join(", "), shortcut.what)
     });
     let mut commands: Vec<_> = commands.collect();
+    let gap = 2.0 * GRID;
     if width < TWO_COLUMNS {
         list(ui, "Commands", commands);
-        ui.add_space(2.0 * GRID);
-        flying_and_mouse(ui);
-        return;
+        ui.add_space(gap);
+        flying(ui);
+        ui.add_space(gap);
+        return mouse(ui);
     }
-    let rest = if width < SIZE.x {
-        Vec::new()
-    } else {
-        commands.split_off(commands.len().div_ceil(2))
-    };
     ui.horizontal_top(|ui| {
-        list(ui, "Commands", commands);
-        ui.add_space(2.0 * GRID);
-        if !rest.is_empty() {
-            list(ui, "More commands", rest);
-            ui.add_space(2.0 * GRID);
+        if width < SIZE.x {
+            list(ui, "Commands", commands);
+            ui.add_space(gap);
+            ui.vertical(|ui| {
+                flying(ui);
+                ui.add_space(gap);
+                mouse(ui);
+            });
+            return;
         }
-        ui.vertical(flying_and_mouse);
+        // About as high as each other.
+        let rest = commands.split_off(commands.len() * 3 / 5);
+        list(ui, "Commands", commands);
+        ui.add_space(gap);
+        ui.vertical(|ui| {
+            list(ui, "More commands", rest);
+            ui.add_space(gap);
+            flying(ui);
+        });
+        ui.add_space(gap);
+        mouse(ui);
     });
 }
 
-fn flying_and_mouse(ui: &mut Ui) {
+fn flying(ui: &mut Ui) {
     let flight = FLIGHT.iter().map(|key| (key.name().to_owned(), key.what));
     list(ui, "Flying (hold)", flight.collect());
-    ui.add_space(2.0 * GRID);
+}
+
+fn mouse(ui: &mut Ui) {
     let mouse = MOUSE.iter().map(|(name, what)| ((*name).to_owned(), *what));
     list(ui, "Mouse", mouse.collect());
 }
@@ -75,6 +90,7 @@ fn list(ui: &mut Ui, title: &str, keys: Vec<(String, &str)>) {
         Grid::new(title)
             .num_columns(2)
             .spacing([GRID, GRID / 4.0])
+            .max_col_width(WIDEST)
             .show(ui, |ui| {
                 for (key, what) in keys {
                     ui.label(
@@ -82,7 +98,7 @@ fn list(ui: &mut Ui, title: &str, keys: Vec<(String, &str)>) {
                             .monospace()
                             .color(palette(ui.ctx()).accent),
                     );
-                    ui.label(what);
+                    ui.add(Label::new(what).wrap());
                     ui.end_row();
                 }
             });

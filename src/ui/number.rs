@@ -3,7 +3,10 @@
 use std::cell::Cell;
 use std::ops::RangeInclusive;
 
-use egui::{Align, Atom, Color32, DragValue, Key, Layout, Response, RichText, Ui, vec2};
+use egui::{
+    Align, Atom, Color32, Context, DragValue, Id, Key, Layout, Modifiers, Response, RichText, Ui,
+    vec2,
+};
 use glam::DVec3;
 
 use super::hint::Hint as _;
@@ -30,6 +33,44 @@ pub struct Field {
     pub range: RangeInclusive<f64>,
     /// Change per point of dragging; `None` follows the value's size.
     pub speed: Option<f64>,
+}
+
+/// The number that was dragged last.
+#[derive(Clone, Copy)]
+struct LastDrag {
+    number: Id,
+    /// The frame of the window.
+    frame: u64,
+    is_given_up: bool,
+}
+
+fn last_drag_id() -> Id {
+    Id::unique("number that was dragged last")
+}
+
+/// Notes whether a number is dragged, and whether that is given up with Escape, at which egui lets go of it.
+fn is_given_up(ui: &Ui, response: &Response) -> bool {
+    let frame = ui.cumulative_frame_nr();
+    let last = ui.data(|data| data.get_temp::<LastDrag>(last_drag_id()));
+    let is_own = |last: LastDrag| last.number == response.id && last.frame + 1 == frame;
+    let is_let_go = !response.dragged() && last.is_some_and(is_own);
+    let is_given_up =
+        is_let_go && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
+    if response.dragged() || is_given_up {
+        let drag = LastDrag {
+            number: response.id,
+            frame,
+            is_given_up,
+        };
+        ui.data_mut(|data| data.insert_temp(last_drag_id(), drag));
+    }
+    is_given_up
+}
+
+/// Whether a number is dragged in this frame, and then whether that was given up: what it has done is to be undone.
+pub fn dragged(ctx: &Context) -> Option<bool> {
+    let last: LastDrag = ctx.data(|data| data.get_temp(last_drag_id()))?;
+    (last.frame == ctx.cumulative_frame_nr()).then_some(last.is_given_up)
 }
 
 /// A number without bounds, for positions.
@@ -64,6 +105,8 @@ pub struct Number<'a> {
     pub name: &'a str,
     /// Width in points.
     pub width: f32,
+    /// The largest of the numbers beside it: what it is dragged as fast as, where it is smaller.
+    pub size: f64,
     /// Where three numbers go that are typed at once: a whole vector.
     pub pasted: Option<&'a Cell<Option<DVec3>>>,
     /// The letter and the colour of the axis that it is along.
@@ -76,10 +119,11 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
         field,
         name,
         width,
+        size,
         pasted,
         axis,
     } = *number;
-    let by_size = || (value.abs() * 0.01).max(0.01);
+    let by_size = || (value.abs().max(size) * 0.01).max(0.01);
     let speed = field.speed.unwrap_or_else(by_size);
     let parser = |text: &str| {
         let text = text.trim().trim_end_matches(field.unit);
@@ -121,6 +165,9 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
         ui.add(widget.min_size(size)).accessible_name(name)
     });
     let response = response.inner;
+    if is_given_up(ui, &response) {
+        return;
+    }
     // Formatting rounds what is shown; only a change by hand may reach the scene.
     let is_cancelled = is_cancelled(ui, &response);
     if let Some(pasted) = pasted.filter(|_| is_cancelled) {

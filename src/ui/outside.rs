@@ -11,6 +11,8 @@ use crate::editor::Editor;
 use crate::files::{Stamp, time_of};
 use crate::scene::{Document, SceneError, differences};
 
+/// What messages are about that tell of it.
+pub const OUTSIDE: &str = "Changed outside";
 /// How often the open file is looked at.
 const RHYTHM: Duration = Duration::from_secs(1);
 /// Most lines of differences that are shown.
@@ -22,6 +24,8 @@ pub struct Watch {
     looked: Option<Instant>,
     /// When it was written last, as far as is known.
     found: Option<(PathBuf, SystemTime)>,
+    /// Why it could not be read: told if it is still so at the next look, since it may be half written.
+    broken: Option<String>,
     /// The state of the editor that was left as it was: the file is not brought up again before the next save.
     left: Option<u64>,
 }
@@ -49,9 +53,19 @@ impl Watch {
         is_news
     }
 
-    /// What was found could not be read: it may be so next time.
+    /// What was found is not there, or out of reach: it may be so next time.
     pub fn look_again(&mut self) {
         self.found = None;
+    }
+
+    /// What was found could not be read, for this reason.
+    pub fn note_broken(&mut self, why: String) {
+        self.broken = Some(why);
+    }
+
+    /// Why what was found before could not be read, once.
+    pub fn take_broken(&mut self) -> Option<String> {
+        self.broken.take()
     }
 
     /// Says nothing more of the file as it is, until the document is saved or another one is open.

@@ -58,6 +58,7 @@ impl<'u> Rows<'u> {
                     field,
                     name: field.name,
                     width: ui.available_width(),
+                    size: 0.0,
                     pasted: None,
                     axis: None,
                 };
@@ -82,12 +83,14 @@ impl<'u> Rows<'u> {
                 ("z", &mut value.z),
             ];
             let colors = palette(ui.ctx()).axis_letters;
+            let size = before.abs().max_element();
             for ((axis, part), color) in parts.into_iter().zip(colors) {
                 let name = format!("{} {axis}", field.name);
                 let number = Number {
                     field,
                     name: &name,
                     width,
+                    size,
                     pasted: Some(&pasted),
                     axis: Some((axis, color)),
                 };
@@ -136,6 +139,7 @@ impl<'u> Rows<'u> {
                     field: &field,
                     name: &name,
                     width,
+                    size: 0.0,
                     pasted: Some(&pasted),
                     axis: None,
                 };

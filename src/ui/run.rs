@@ -293,7 +293,7 @@ impl App {
             self.why.close();
         } else if self.exports.is_open {
             self.exports.is_open = false;
-        } else if self.layout.aspect != Aspect::All {
+        } else if self.layout.aspect != Aspect::All && self.editor.mode != Mode::HighRes {
             self.layout.aspect = Aspect::All;
         } else if self.outliner.clear_filter() || self.lab.leave() {
             // Everything is listed, or the live view is back.

@@ -72,8 +72,10 @@ impl Exports {
     /// data.
     pub fn new(folder: Option<PathBuf>, kept: KeptSettings, editor: &mut Editor) -> Self {
         let interrupted = folder.as_deref().map_or(Vec::new(), Order::left_in);
-        if let Some(order) = interrupted.first() {
-            let more = match interrupted.len() {
+        // What failed has said so.
+        let news = || interrupted.iter().filter(|order| order.why.is_none());
+        if let Some(order) = news().next() {
+            let more = match news().count() {
                 1 => String::new(),
                 more => format!(" and {} more", more - 1),
             };

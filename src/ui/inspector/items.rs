@@ -13,6 +13,7 @@ use crate::ui::hint::Hint as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, coordinate, fraction};
+use crate::words::counted;
 
 /// A light and its marker.
 pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut UiRequests) {
@@ -174,7 +175,7 @@ fn mesh_tools(
         }
         Shape::Mesh(mesh) => {
             let faces = mesh.source.triangles().faces().len();
-            rows.ui.weak(format!("{faces} triangles"));
+            rows.ui.weak(counted(faces, "triangle"));
             if let Some(problem) = mesh.source.problem() {
                 rows.ui.label(problem);
             }

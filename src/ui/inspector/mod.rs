@@ -6,6 +6,8 @@ mod camera;
 
 mod items;
 
+mod alike;
+
 mod many;
 
 mod keys;

@@ -147,9 +147,9 @@ impl Grip {
                 Some((edit, format!("radius {}", plain(radius))))
             }
             Handle::Size => {
+                let typed = typed.filter(|times| *times > 0.0);
                 let times = typed.map_or_else(|| self.times(lens, pull), Some)?;
-                let edit = (times > 0.0).then(|| self.scale_all(times)).flatten();
-                Some((edit, format!("× {}", plain(times))))
+                Some((self.scale_all(times), format!("× {}", plain(times))))
             }
             Handle::Corner(corner) => {
                 let to = self.pointed_at(lens, pull.at)?;

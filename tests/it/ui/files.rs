@@ -247,6 +247,25 @@ fn wait_for(harness: &mut EditorHarness, is_there: impl Fn(&EditorHarness) -> bo
 }
 
 #[test]
+fn what_another_program_breaks_is_told_where_it_is() {
+    let (mut harness, path) = changed_outside(|_| {});
+    std::fs::write(&path, "Scene(\n  version: 1,\n  objects: [}\n").expect("written");
+    wait_for(&mut harness, |harness| {
+        let told = harness.window.query_by_label_contains("given.ron:3:");
+        told.is_some()
+    });
+    assert_eq!(radius(harness.scene(), 0), 20.0);
+    std::fs::write(&path, demo_text(31.5)).expect("written");
+    wait_for(&mut harness, |harness| radius(harness.scene(), 0) == 31.5);
+    assert!(
+        harness
+            .window
+            .query_by_label_contains("given.ron:3:")
+            .is_none()
+    );
+}
+
+#[test]
 fn what_another_program_writes_is_read_anew_and_can_be_undone() {
     let (mut harness, _) = changed_outside(|_| {});
     wait_for(&mut harness, |harness| radius(harness.scene(), 0) == 31.5);

@@ -287,3 +287,86 @@ fn of_several_a_dragged_position_moves_all_and_a_typed_one_is_for_all() {
         [50.0, 20.0]
     );
 }
+
+#[test]
+fn escape_gives_the_drag_of_a_number_up() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    let field = harness
+        .window
+        .get_by_role_and_label(Role::SpinButton, "radius");
+    let start = field.rect().center();
+    harness.window.drag_at(start);
+    harness.window.step();
+    for part in 1..=5 {
+        harness
+            .window
+            .hover_at(start + vec2(8.0 * part as f32, 0.0));
+        harness.window.step();
+    }
+    assert!(radius(harness.scene(), 0) > 55.0);
+    harness.window.key_down(Key::Escape);
+    harness.window.step();
+    harness.window.key_up(Key::Escape);
+    harness.window.step();
+    assert_eq!(harness.scene(), &Scene::demo());
+    harness.window.hover_at(start + vec2(80.0, 0.0));
+    harness.window.step();
+    harness.window.drop_at(start + vec2(80.0, 0.0));
+    harness.settle();
+    assert_eq!(harness.scene(), &Scene::demo(), "it was let go");
+    assert_eq!(harness.editor().undo_label(), None);
+    assert_eq!(harness.editor().selected().items().len(), 1);
+}
+
+#[test]
+fn what_is_typed_for_several_is_for_all_however_it_is_ended() {
+    let mut harness = EditorHarness::new();
+    both_balls(&mut harness);
+    let field = harness
+        .window
+        .get_by_role_and_label(Role::SpinButton, "center x");
+    field.click();
+    harness.settle();
+    harness.window.event(Event::Text("100".to_owned()));
+    harness.settle();
+    let away = harness.view().left_top() - vec2(4.0, 0.0);
+    click(&mut harness, away, Modifiers::NONE);
+    let [now, then] = [0, 1].map(|ball| center(harness.scene(), ball));
+    assert_eq!((now.x, then.x), (100.0, 100.0));
+}
+
+#[test]
+fn a_change_of_a_pack_is_for_the_packs_of_all() {
+    let mut harness = EditorHarness::new();
+    both_balls(&mut harness);
+    let before = harness.scene().color_packs.clone();
+    harness.type_into("phong", "64");
+    for name in ["sphere 1", "sphere 2"] {
+        let pack = &harness.scene().color_packs[name];
+        assert_eq!(pack.phong_exponent, 64.0, "{name}");
+        assert_eq!(pack.diffuse, before[name].diffuse, "{name}");
+    }
+    assert_eq!(harness.scene().color_packs["plane"], before["plane"]);
+}
+
+#[test]
+fn triangles_that_are_dragged_together_stay_as_they_are() {
+    let mut harness = EditorHarness::new();
+    harness.click("Triangle 1");
+    let last = harness.window.get_by_label("Triangle 6");
+    last.click_modifiers(Modifiers::SHIFT);
+    harness.settle();
+    assert_eq!(harness.editor().selected().items().len(), 6);
+    harness.drag("b x", 20.0);
+    let by = center(harness.scene(), 2) - center(&Scene::demo(), 2);
+    assert!(by.x > 1.0, "{by}");
+    for object in 2..8 {
+        let bounds = |scene: &Scene| scene.objects[object].shape.bounds();
+        let (before, after) = (bounds(&Scene::demo()), bounds(harness.scene()));
+        let (Some((low, high)), Some((less, more))) = (before, after) else {
+            panic!("they end");
+        };
+        assert!((less - low - by).length() < 1e-9 && (more - high - by).length() < 1e-9);
+    }
+}

@@ -1,0 +1,282 @@
+//! A change of one thing, made to several.
+
+use std::collections::BTreeSet;
+
+use glam::DVec3;
+
+use crate::editor::{Edit, Item, Kind};
+use crate::scene::{ColorPack, FieldValue, Light, Object, Scene, Shape};
+
+/// A point of something that a change moves.
+struct MovedPoint {
+    from: DVec3,
+    to: DVec3,
+    /// Whether it is where that is, and not one of several corners.
+    is_only: bool,
+}
+
+fn moved_point(scene: &Scene, edit: &Edit) -> Option<MovedPoint> {
+    match edit {
+        Edit::Object(index, new, _) => {
+            let (old, new) = (&scene.objects.get(*index)?.shape, &new.shape);
+            let (old, new) = (points(old), points(new));
+            let mut pairs = old.iter().zip(&new);
+            let (from, to) = pairs.find(|(from, to)| from != to)?;
+            Some(MovedPoint {
+                from: *from,
+                to: *to,
+                is_only: old.len() == 1,
+            })
+        }
+        Edit::Light(index, new, _) => {
+            let old = scene.lights.get(*index)?;
+            (old.position != new.position).then_some(MovedPoint {
+                from: old.position,
+                to: new.position,
+                is_only: true,
+            })
+        }
+        _ => None,
+    }
+}
+
+fn points(shape: &Shape) -> Vec<DVec3> {
+    let mut points = Vec::new();
+    shape.clone().fields(&mut |field| {
+        if let FieldValue::Point(point) = field.value {
+            points.push(*point);
+        }
+    });
+    points
+}
+
+/// Moves everything that is selected as what was selected last, which a change moves: by as much where that is
+/// dragged, or to the coordinates that were typed.
+fn move_all(
+    scene: &Scene,
+    selected: &[Item],
+    (edit, point): (Edit, &MovedPoint),
+    is_dragged: bool,
+) -> Edit {
+    let to = |place: DVec3| {
+        if is_dragged {
+            place + (point.to - point.from)
+        } else {
+            changed(place, point.from, point.to)
+        }
+    };
+    // Where it is a corner that is dragged, what has it is moved as a whole, too.
+    let (others, own) = match selected.split_last() {
+        Some((_, others)) if point.is_only => (others, Some(edit)),
+        _ => (selected, None),
+    };
+    let edits = others.iter().filter_map(|item| match item.kind {
+        Kind::Object => {
+            let mut object = scene.objects.get(item.index)?.clone();
+            object.shape = placed(&object.shape, to(object.shape.position()));
+            Some(Edit::object(item.index, object, "position"))
+        }
+        Kind::Light => {
+            let mut light = scene.lights.get(item.index)?.clone();
+            light.position = to(light.position);
+            Some(Edit::Light(item.index, light, "position"))
+        }
+        Kind::Pack => None,
+    });
+    let edits = edits.chain(own).collect();
+    Edit::Each(edits, format!("Move {} items", selected.len()))
+}
+
+/// A shape in another place.
+fn placed(shape: &Shape, place: DVec3) -> Shape {
+    let mut placed = shape.moved(place - shape.position());
+    if points(shape).len() == 1 {
+        // To the last digit, as it was typed.
+        placed.fields(&mut |field| {
+            if let FieldValue::Point(point) = field.value {
+                *point = place;
+            }
+        });
+    }
+    placed
+}
+
+/// The same change for everything that is selected, which is made of what was selected last; whether it is dragged.
+pub fn for_all(scene: &Scene, selected: &[Item], edit: Edit, is_dragged: bool) -> Edit {
+    if let Some(point) = moved_point(scene, &edit).filter(|point| is_dragged || point.is_only) {
+        return move_all(scene, selected, (edit, &point), is_dragged);
+    }
+    let count = selected.len();
+    let (edits, field): (Vec<Edit>, &str) = match edit {
+        Edit::Object(index, new, field) => {
+            let Some(old) = scene.objects.get(index) else {
+                return Edit::Object(index, new, field);
+            };
+            let edits = selected
+                .iter()
+                .filter_map(|item| like_object(scene, *item, (old, &new), field));
+            (edits.collect(), field)
+        }
+        Edit::Light(index, new, field) => {
+            let Some(old) = scene.lights.get(index) else {
+                return Edit::Light(index, new, field);
+            };
+            let edits = selected
+                .iter()
+                .filter_map(|item| like_light(scene, *item, (old, &new), field));
+            (edits.collect(), field)
+        }
+        Edit::Pack(index, new, field) => {
+            let Some((_, old)) = scene.color_packs.get_index(index) else {
+                return Edit::Pack(index, new, field);
+            };
+            let edits = packs_of(scene, selected).filter_map(|index| {
+                let (_, own) = scene.color_packs.get_index(index)?;
+                Some(Edit::Pack(index, like_pack(own, (old, &new)), field))
+            });
+            (edits.collect(), field)
+        }
+        other => return other,
+    };
+    Edit::Each(edits, format!("{count} items: {field}"))
+}
+
+/// The packs that the selected objects wear, each once.
+fn packs_of(scene: &Scene, selected: &[Item]) -> impl Iterator<Item = usize> {
+    let objects = selected.iter().filter(|item| item.kind == Kind::Object);
+    let worn = objects.filter_map(|item| {
+        let object = scene.objects.get(item.index)?;
+        scene.color_packs.get_index_of(&object.color_pack)
+    });
+    worn.collect::<BTreeSet<_>>().into_iter()
+}
+
+/// A pack with what of another one has changed.
+fn like_pack(own: &ColorPack, (old, new): (&ColorPack, &ColorPack)) -> ColorPack {
+    let mut pack = own.clone();
+    take(&mut pack.ambient, &old.ambient, &new.ambient);
+    take(&mut pack.diffuse, &old.diffuse, &new.diffuse);
+    take(&mut pack.specular, &old.specular, &new.specular);
+    take(
+        &mut pack.phong_exponent,
+        &old.phong_exponent,
+        &new.phong_exponent,
+    );
+    take(&mut pack.reflective, &old.reflective, &new.reflective);
+    pack
+}
+
+/// Takes a property over that has changed.
+fn take<T: Clone + PartialEq>(own: &mut T, old: &T, new: &T) {
+    if old != new {
+        own.clone_from(new);
+    }
+}
+
+/// The change of an item that makes it like an object that has changed.
+fn like_object(
+    scene: &Scene,
+    item: Item,
+    (old, new): (&Object, &Object),
+    field: &'static str,
+) -> Option<Edit> {
+    let Item { kind, index } = item;
+    match kind {
+        Kind::Object => {
+            let mut object = scene.objects.get(index)?.clone();
+            take(&mut object.color_pack, &old.color_pack, &new.color_pack);
+            take(&mut object.visible, &old.visible, &new.visible);
+            take_changes(&mut object.shape, &old.shape, &new.shape);
+            Some(Edit::object(index, object, field))
+        }
+        Kind::Light => {
+            let mut light = scene.lights.get(index)?.clone();
+            take(&mut light.visible, &old.visible, &new.visible);
+            if let Some(marker) = &mut light.marker {
+                take(&mut marker.color_pack, &old.color_pack, &new.color_pack);
+            }
+            Some(Edit::Light(index, light, field))
+        }
+        Kind::Pack => None,
+    }
+}
+
+/// The change of an item that makes it like a light that has changed.
+fn like_light(
+    scene: &Scene,
+    item: Item,
+    (old, new): (&Light, &Light),
+    field: &'static str,
+) -> Option<Edit> {
+    let Item { kind, index } = item;
+    match kind {
+        Kind::Light => {
+            let mut light = scene.lights.get(index)?.clone();
+            take(&mut light.intensity, &old.intensity, &new.intensity);
+            take(&mut light.visible, &old.visible, &new.visible);
+            match (&mut light.marker, &old.marker, &new.marker) {
+                (Some(own), Some(old), Some(new)) => {
+                    take(&mut own.radius, &old.radius, &new.radius);
+                    take(&mut own.color_pack, &old.color_pack, &new.color_pack);
+                }
+                (own @ None, None, Some(new)) => *own = Some(new.clone()),
+                (own, Some(_), None) => *own = None,
+                _ => {}
+            }
+            Some(Edit::Light(index, light, field))
+        }
+        Kind::Object => {
+            let mut object = scene.objects.get(index)?.clone();
+            take(&mut object.visible, &old.visible, &new.visible);
+            Some(Edit::object(index, object, field))
+        }
+        Kind::Pack => None,
+    }
+}
+
+/// `own` with those coordinates that have changed.
+fn changed(own: DVec3, old: DVec3, new: DVec3) -> DVec3 {
+    DVec3::select(new.cmpne(old), new, own)
+}
+
+/// Every property of a shape by its name; one number stands for three.
+pub fn values(shape: &Shape) -> Vec<(&'static str, DVec3)> {
+    let mut values = Vec::new();
+    shape.clone().fields(&mut |field| {
+        values.push((field.name, value_of(&field.value)));
+    });
+    values
+}
+
+fn value_of(value: &FieldValue) -> DVec3 {
+    match value {
+        FieldValue::Point(vector)
+        | FieldValue::Direction(vector)
+        | FieldValue::Angles(vector)
+        | FieldValue::Factors(vector) => **vector,
+        FieldValue::Length(number) | FieldValue::Angle(number) => DVec3::splat(**number),
+    }
+}
+
+/// Changes the properties of a shape that have changed from `old` to `new`, where it has them.
+fn take_changes(shape: &mut Shape, old: &Shape, new: &Shape) {
+    let (old, new) = (values(old), values(new));
+    shape.fields(&mut |field| {
+        let of = |values: &[(&str, DVec3)]| {
+            let mut named = values.iter().filter(|(name, _)| *name == field.name);
+            named.next().map(|(_, value)| *value)
+        };
+        let (Some(old), Some(new)) = (of(&old), of(&new)) else {
+            return;
+        };
+        match field.value {
+            FieldValue::Point(own)
+            | FieldValue::Direction(own)
+            | FieldValue::Angles(own)
+            | FieldValue::Factors(own) => *own = changed(*own, old, new),
+            FieldValue::Length(own) | FieldValue::Angle(own) => {
+                *own = changed(DVec3::splat(*own), old, new).x;
+            }
+        }
+    });
+}
