@@ -40,45 +40,32 @@ fn lists(ui: &mut Ui, width: f32) {
         (keys.join(", "), shortcut.what)
     });
     let mut commands: Vec<_> = commands.collect();
-    let gap = 2.0 * GRID;
     if width < TWO_COLUMNS {
         list(ui, "Commands", commands);
-        ui.add_space(gap);
-        flying(ui);
-        ui.add_space(gap);
-        return mouse(ui);
+        ui.add_space(2.0 * GRID);
+        flying_and_mouse(ui);
+        return;
     }
+    let rest = if width < SIZE.x {
+        Vec::new()
+    } else {
+        commands.split_off(commands.len().div_ceil(2))
+    };
     ui.horizontal_top(|ui| {
-        if width < SIZE.x {
-            list(ui, "Commands", commands);
-            ui.add_space(gap);
-            ui.vertical(|ui| {
-                flying(ui);
-                ui.add_space(gap);
-                mouse(ui);
-            });
-            return;
-        }
-        // About as high as each other.
-        let rest = commands.split_off(commands.len() * 3 / 5);
         list(ui, "Commands", commands);
-        ui.add_space(gap);
-        ui.vertical(|ui| {
+        ui.add_space(2.0 * GRID);
+        if !rest.is_empty() {
             list(ui, "More commands", rest);
-            ui.add_space(gap);
-            flying(ui);
-        });
-        ui.add_space(gap);
-        mouse(ui);
+            ui.add_space(2.0 * GRID);
+        }
+        ui.vertical(flying_and_mouse);
     });
 }
 
-fn flying(ui: &mut Ui) {
+fn flying_and_mouse(ui: &mut Ui) {
     let flight = FLIGHT.iter().map(|key| (key.name().to_owned(), key.what));
     list(ui, "Flying (hold)", flight.collect());
-}
-
-fn mouse(ui: &mut Ui) {
+    ui.add_space(2.0 * GRID);
     let mouse = MOUSE.iter().map(|(name, what)| ((*name).to_owned(), *what));
     list(ui, "Mouse", mouse.collect());
 }
