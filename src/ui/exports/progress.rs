@@ -72,7 +72,8 @@ pub fn show_state(
     ui.label(name).hint(place.display().to_string());
     let row = ui.horizontal(|ui| {
         let (share, text) = progress(state, video);
-        let bar = ProgressBar::new(share as f32).desired_width(FIELDS - 120.0);
+        let buttons = if state.ended.is_some() { 150.0 } else { 120.0 };
+        let bar = ProgressBar::new(share as f32).desired_width(FIELDS - buttons);
         ui.add(bar.text(RichText::new(text).small().color(palette(ui.ctx()).text)));
         if state.ended.is_some() {
             let is_making = video.is_some_and(|video| matches!(video.state, VideoState::Making(_)));

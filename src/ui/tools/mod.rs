@@ -34,7 +34,7 @@ use super::requests::UiRequests;
 use super::viewport::Place;
 use crate::editor::{Action, Edit, Editor, Item, Kind, Selected};
 use crate::image::{ObjectMap, Thing};
-use crate::scene::{Camera, Projection};
+use crate::scene::{Camera, Projection, Scene};
 
 /// Seconds that the pointer rests before it is told what it is over.
 const PATIENCE: f32 = 0.3;
@@ -346,19 +346,19 @@ pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
 
 /// The camera that looks along a direction at what is selected, or at everything.
 pub fn axis_camera(editor: &Editor, direction: DVec3) -> Camera {
-    let about = middle(editor).unwrap_or_default();
-    along(&editor.shown().camera, about, direction)
-}
-
-/// The camera with another projection, in which what is selected, or the middle of the scene, is as large as before.
-pub fn projected_camera(editor: &Editor, projection: Projection) -> Camera {
-    projected(&editor.shown().camera, middle(editor), projection)
-}
-
-/// The middle of what is selected, or of everything.
-fn middle(editor: &Editor) -> Option<DVec3> {
     let scene = editor.shown();
     let selected = Subject::of(editor.selected(), scene);
     let middle = selected.first().map(Subject::middle);
-    middle.or_else(|| surroundings(scene).map(|(low, high)| low * 0.5 + high * 0.5))
+    let about = middle.or_else(|| middle_of(scene)).unwrap_or_default();
+    along(&scene.camera, about, direction)
+}
+
+/// The camera with another projection, in which the middle of the scene is about as large as before.
+pub fn projected_camera(editor: &Editor, projection: Projection) -> Camera {
+    let scene = editor.shown();
+    projected(&scene.camera, middle_of(scene), projection)
+}
+
+fn middle_of(scene: &Scene) -> Option<DVec3> {
+    surroundings(scene).map(|(low, high)| low * 0.5 + high * 0.5)
 }
