@@ -259,7 +259,8 @@ impl Editor {
     /// # Errors
     /// Why it could not be written; the document then still counts as changed.
     pub fn save(&mut self, path: &Path) -> Result<(), SceneError> {
-        let gone = self.scene.gone_mesh_files().join(", ");
+        let gone: Vec<_> = self.scene.gone_mesh_files().into_iter().collect();
+        let gone = gone.join(", ");
         let (backup, stamp) = self.document().save_stamped(path)?;
         self.path = Some(absolute(path));
         self.stamp = Some(stamp);
@@ -274,7 +275,9 @@ impl Editor {
         });
         let gone = match &gone[..] {
             "" => String::new(),
-            gone => format!("; {gone} is gone, so its triangles are in the scene file now"),
+            gone => format!(
+                "; what was in {gone} is in the scene file now: there is no such file any more"
+            ),
         };
         self.notify(format!("Saved {}{kept}{gone}", path.display()));
         Ok(())

@@ -1,6 +1,6 @@
 //! The scene itself.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -168,19 +168,25 @@ impl Scene {
     /// The same scene for a file in this folder: meshes that lie elsewhere, or whose files are gone, are taken in.
     #[must_use]
     pub fn taken_to(&self, folder: &Path) -> Self {
-        self.with_sources(|source| source.taken_to(folder))
+        let gone = self.gone_mesh_files();
+        self.with_sources(|source| match source.file() {
+            Some((_, path)) if gone.contains(path) => source.taken_in(),
+            _ => source.taken_to(folder),
+        })
     }
 
-    /// The files of meshes that were read, and are not there any more.
-    pub fn gone_mesh_files(&self) -> Vec<&str> {
-        let sources = self
-            .objects
-            .iter()
-            .filter_map(|object| match &object.shape {
-                Shape::Mesh(mesh) => mesh.source.gone_file(),
-                _ => None,
-            });
-        sources.collect()
+    /// The files of meshes that were read, and are not there any more. Each is looked for once, however many show it.
+    pub fn gone_mesh_files(&self) -> BTreeSet<&str> {
+        let shapes = self.objects.iter().map(|object| &object.shape);
+        let files = shapes.filter_map(|shape| match shape {
+            Shape::Mesh(mesh) => mesh.source.file(),
+            _ => None,
+        });
+        let files: BTreeSet<_> = files.collect();
+        let gone = files
+            .into_iter()
+            .filter(|(folder, path)| !folder.join(path).exists());
+        gone.map(|(_, path)| path).collect()
     }
 
     /// The same scene with the triangles of all meshes: it needs no other files.

@@ -93,28 +93,23 @@ impl MeshSource {
         }
     }
 
-    /// The same in a scene file of this folder: triangles that were read from elsewhere, or whose file is gone, are
-    /// taken in.
+    /// The same in a scene file of this folder: triangles that were read from elsewhere are taken in.
     pub fn taken_to(&self, folder: &Path) -> Self {
         match self {
-            Self::File { folder: own, .. }
-                if own.as_deref() != Some(folder) || self.gone_file().is_some() =>
-            {
-                self.taken_in()
-            }
+            Self::File { folder: own, .. } if own.as_deref() != Some(folder) => self.taken_in(),
             _ => self.clone(),
         }
     }
 
-    /// The path of the file that was read, if it is not there any more.
-    pub fn gone_file(&self) -> Option<&str> {
+    /// The folder and the path in it of a file that was read.
+    pub fn file(&self) -> Option<(&Path, &str)> {
         match self {
             Self::File {
                 path,
                 folder: Some(folder),
                 problem: None,
                 ..
-            } if !folder.join(path).exists() => Some(path),
+            } => Some((folder, path)),
             _ => None,
         }
     }

@@ -70,18 +70,12 @@ fn move_all(
         Some((_, others)) if point.is_only => (others, Some(edit)),
         _ => (selected, None),
     };
-    let edits = others.iter().filter_map(|item| match item.kind {
-        Kind::Object => {
-            let mut object = scene.objects.get(item.index)?.clone();
+    let edits = others.iter().filter_map(|item| {
+        let object = |object: &mut Object| {
             object.shape = placed(&object.shape, to(object.shape.position()));
-            Some(Edit::object(item.index, object, "position"))
-        }
-        Kind::Light => {
-            let mut light = scene.lights.get(item.index)?.clone();
-            light.position = to(light.position);
-            Some(Edit::Light(item.index, light, "position"))
-        }
-        Kind::Pack => None,
+        };
+        let light = |light: &mut Light| light.position = to(light.position);
+        edited(scene, *item, "position", (object, light))
     });
     let edits = edits.chain(own).collect();
     Edit::Each(edits, format!("Move {} items", selected.len()))
@@ -173,6 +167,28 @@ fn take<T: Clone + PartialEq>(own: &mut T, old: &T, new: &T) {
     }
 }
 
+/// The change of an item that does this to an object, and this to a light.
+fn edited(
+    scene: &Scene,
+    Item { kind, index }: Item,
+    field: &'static str,
+    (to_object, to_light): (impl FnOnce(&mut Object), impl FnOnce(&mut Light)),
+) -> Option<Edit> {
+    match kind {
+        Kind::Object => {
+            let mut object = scene.objects.get(index)?.clone();
+            to_object(&mut object);
+            Some(Edit::object(index, object, field))
+        }
+        Kind::Light => {
+            let mut light = scene.lights.get(index)?.clone();
+            to_light(&mut light);
+            Some(Edit::Light(index, light, field))
+        }
+        Kind::Pack => None,
+    }
+}
+
 /// The change of an item that makes it like an object that has changed.
 fn like_object(
     scene: &Scene,
@@ -180,25 +196,18 @@ fn like_object(
     (old, new): (&Object, &Object),
     field: &'static str,
 ) -> Option<Edit> {
-    let Item { kind, index } = item;
-    match kind {
-        Kind::Object => {
-            let mut object = scene.objects.get(index)?.clone();
-            take(&mut object.color_pack, &old.color_pack, &new.color_pack);
-            take(&mut object.visible, &old.visible, &new.visible);
-            take_changes(&mut object.shape, &old.shape, &new.shape);
-            Some(Edit::object(index, object, field))
+    let to_object = |object: &mut Object| {
+        take(&mut object.color_pack, &old.color_pack, &new.color_pack);
+        take(&mut object.visible, &old.visible, &new.visible);
+        take_changes(&mut object.shape, &old.shape, &new.shape);
+    };
+    let to_light = |light: &mut Light| {
+        take(&mut light.visible, &old.visible, &new.visible);
+        if let Some(marker) = &mut light.marker {
+            take(&mut marker.color_pack, &old.color_pack, &new.color_pack);
         }
-        Kind::Light => {
-            let mut light = scene.lights.get(index)?.clone();
-            take(&mut light.visible, &old.visible, &new.visible);
-            if let Some(marker) = &mut light.marker {
-                take(&mut marker.color_pack, &old.color_pack, &new.color_pack);
-            }
-            Some(Edit::Light(index, light, field))
-        }
-        Kind::Pack => None,
-    }
+    };
+    edited(scene, item, field, (to_object, to_light))
 }
 
 /// The change of an item that makes it like a light that has changed.
@@ -208,30 +217,21 @@ fn like_light(
     (old, new): (&Light, &Light),
     field: &'static str,
 ) -> Option<Edit> {
-    let Item { kind, index } = item;
-    match kind {
-        Kind::Light => {
-            let mut light = scene.lights.get(index)?.clone();
-            take(&mut light.intensity, &old.intensity, &new.intensity);
-            take(&mut light.visible, &old.visible, &new.visible);
-            match (&mut light.marker, &old.marker, &new.marker) {
-                (Some(own), Some(old), Some(new)) => {
-                    take(&mut own.radius, &old.radius, &new.radius);
-                    take(&mut own.color_pack, &old.color_pack, &new.color_pack);
-                }
-                (own @ None, None, Some(new)) => *own = Some(new.clone()),
-                (own, Some(_), None) => *own = None,
-                _ => {}
+    let to_object = |object: &mut Object| take(&mut object.visible, &old.visible, &new.visible);
+    let to_light = |light: &mut Light| {
+        take(&mut light.intensity, &old.intensity, &new.intensity);
+        take(&mut light.visible, &old.visible, &new.visible);
+        match (&mut light.marker, &old.marker, &new.marker) {
+            (Some(own), Some(old), Some(new)) => {
+                take(&mut own.radius, &old.radius, &new.radius);
+                take(&mut own.color_pack, &old.color_pack, &new.color_pack);
             }
-            Some(Edit::Light(index, light, field))
+            (own @ None, None, Some(new)) => *own = Some(new.clone()),
+            (own, Some(_), None) => *own = None,
+            _ => {}
         }
-        Kind::Object => {
-            let mut object = scene.objects.get(index)?.clone();
-            take(&mut object.visible, &old.visible, &new.visible);
-            Some(Edit::object(index, object, field))
-        }
-        Kind::Pack => None,
-    }
+    };
+    edited(scene, item, field, (to_object, to_light))
 }
 
 /// `own` with those coordinates that have changed.

@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::gizmo::{Handle, label};
 use super::grip::{Grip, Pull};
 use super::lens::Lens;
-use super::navigate::{panned, surroundings, turn};
+use super::navigate::{middle_of, panned, turn};
 use super::sight::{Sight, item_of};
 use super::subject::Subject;
 use crate::editor::{Action, Edit, Editor, Selected};
@@ -58,7 +58,7 @@ impl View<'_> {
         };
         let middle = match seen {
             Some(Thing::Light(index)) => scene.lights.get(index).map(|light| light.position),
-            _ => surroundings(scene).map(|(low, high)| low * 0.5 + high * 0.5),
+            _ => middle_of(scene),
         };
         let on_shape = shape.and_then(|shape| self.lens.on_shape(at, shape));
         let forward = self.lens.forward();

@@ -24,7 +24,7 @@ use glam::DVec3;
 
 use self::drag::{Drag, View};
 use self::gizmo::{Handle, handle_at};
-use self::navigate::{along, dollied, framed, projected, surroundings};
+use self::navigate::{along, dollied, framed, middle_of, projected, surroundings};
 use self::sight::{Sight, item_of, pixel, question};
 use self::subject::Subject;
 use super::commands::{Command, is_enabled};
@@ -34,7 +34,7 @@ use super::requests::UiRequests;
 use super::viewport::Place;
 use crate::editor::{Action, Edit, Editor, Item, Kind, Selected};
 use crate::image::{ObjectMap, Thing};
-use crate::scene::{Camera, Projection, Scene};
+use crate::scene::{Camera, Projection};
 
 /// Seconds that the pointer rests before it is told what it is over.
 const PATIENCE: f32 = 0.3;
@@ -357,8 +357,4 @@ pub fn axis_camera(editor: &Editor, direction: DVec3) -> Camera {
 pub fn projected_camera(editor: &Editor, projection: Projection) -> Camera {
     let scene = editor.shown();
     projected(&scene.camera, middle_of(scene), projection)
-}
-
-fn middle_of(scene: &Scene) -> Option<DVec3> {
-    surroundings(scene).map(|(low, high)| low * 0.5 + high * 0.5)
 }

@@ -106,6 +106,11 @@ pub fn surroundings(scene: &Scene) -> Option<(DVec3, DVec3)> {
     scene.objects_bounds().or_else(|| scene.bounds())
 }
 
+/// The middle of that.
+pub fn middle_of(scene: &Scene) -> Option<DVec3> {
+    surroundings(scene).map(|(low, high)| low * 0.5 + high * 0.5)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
