@@ -14,7 +14,7 @@ use super::timeline::{Time, Timeline};
 use crate::animate::CameraPath;
 use crate::files::Stamp;
 use crate::scene::{
-    Document, EXAMPLES, Example, Leftover, Orientation, Scene, SceneError, check_edit,
+    Document, EXAMPLES, Example, MeshSource, Orientation, Scene, SceneError, check_edit,
 };
 
 /// The open document and everything about working on it.
@@ -32,6 +32,8 @@ pub struct Editor {
     pub(super) saves: u64,
     documents: u64,
     pub(super) is_dirty: bool,
+    /// Mesh files that other programs have written since the document was opened, as they are now.
+    pub(super) reread: Vec<MeshSource>,
     pub(super) history: History,
     flight: Flight,
     pub(super) animation_state: AnimationState,
@@ -70,6 +72,7 @@ impl Editor {
             saves: 0,
             documents: 0,
             is_dirty: false,
+            reread: Vec::new(),
             history: History::default(),
             flight: Flight::default(),
             selection: Selection::default(),
@@ -288,15 +291,6 @@ impl Editor {
         self.stamp.as_ref()
     }
 
-    /// Takes up unsaved work that another run of the program left behind. What others have written to its file since
-    /// is asked about like other changes from outside.
-    pub fn recover(&mut self, leftover: Leftover) {
-        self.replace(leftover.document, leftover.path);
-        self.stamp = leftover.stamp;
-        self.saved = Arc::new(Scene::empty());
-        self.is_dirty = true;
-    }
-
     /// The text of the document as it would be saved.
     ///
     /// # Errors
@@ -323,7 +317,7 @@ impl Editor {
         }
     }
 
-    fn replace(&mut self, document: Document, path: Option<PathBuf>) {
+    pub(super) fn replace(&mut self, document: Document, path: Option<PathBuf>) {
         self.become_other(Self::new(document, path));
     }
 
@@ -403,7 +397,7 @@ impl Editor {
         self.select(there.selected, there.selection);
         // Keys are known by their places, which may be others' now.
         self.animation_state.deselect_keys();
-        self.set_scene(there.scene);
+        self.set_scene(self.refreshed(&there.scene));
     }
 
     /// What is selected stays so, wherever it is in the lists of the scene that comes.

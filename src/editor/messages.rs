@@ -57,6 +57,12 @@ impl Editor {
         self.report_error_in(MESHES, text);
     }
 
+    /// Says that a mesh file was written by another program, and is none any more.
+    pub(super) fn tell_broken_mesh(&mut self, why: &str) {
+        self.begin(MESHES);
+        self.report_error_in(MESHES, format!("{why}; what was read of it before stays"));
+    }
+
     /// Tells why an edit is not made.
     pub(super) fn refuse(&mut self, why: String) {
         self.is_refused = true;

@@ -1,13 +1,22 @@
-//! What other programs have written to the document's file.
+//! What other programs, and other runs of this one, have written.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use super::document::Editor;
 use crate::files::{Stamp, is_same_file};
-use crate::scene::Document;
+use crate::scene::{Document, Leftover, MeshSource, Scene};
 
 impl Editor {
+    /// Takes up unsaved work that another run of the program left behind. What others have written to its file since
+    /// is asked about like other changes from outside.
+    pub fn recover(&mut self, leftover: Leftover) {
+        self.replace(leftover.document, leftover.path);
+        self.stamp = leftover.stamp;
+        self.saved = Arc::new(Scene::empty());
+        self.is_dirty = true;
+    }
+
     /// Whether another program has written the document's file since this window read or wrote it.
     pub fn is_changed_outside(&self) -> bool {
         match (&self.path, &self.stamp) {
@@ -48,6 +57,36 @@ impl Editor {
             self.title()
         ));
         self.tell_missing_meshes();
+    }
+
+    /// Takes what another program has written to a file of meshes, wherever the document shows them: now, and before or
+    /// after any step that is undone or done again. What cannot be read any more stays as it is.
+    pub fn take_mesh(&mut self, read: MeshSource) {
+        let Some((_, path)) = read.reference() else {
+            return;
+        };
+        let path = path.to_owned();
+        if let Some(why) = read.problem() {
+            return self.tell_broken_mesh(why);
+        }
+        self.reread
+            .retain(|old| old.reference() != read.reference());
+        self.reread.push(read);
+        let scene = self.refreshed(&self.scene);
+        if Arc::ptr_eq(&scene, &self.scene) {
+            return;
+        }
+        self.saved = self.refreshed(&self.saved);
+        self.set_scene(scene);
+        self.notify(format!(
+            "{path} was changed by another program and read anew"
+        ));
+    }
+
+    /// The scene with what mesh files hold now.
+    pub(super) fn refreshed(&self, scene: &Arc<Scene>) -> Arc<Scene> {
+        let new = scene.with_read(&self.reread);
+        new.map_or_else(|| Arc::clone(scene), Arc::new)
     }
 
     /// Keeps the scene beside what another program has written, if it can be read; the next save replaces

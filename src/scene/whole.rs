@@ -1,6 +1,6 @@
 //! The scene itself.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -177,16 +177,37 @@ impl Scene {
 
     /// The files of meshes that were read, and are not there any more. Each is looked for once, however many show it.
     pub fn gone_mesh_files(&self) -> BTreeSet<&str> {
-        let shapes = self.objects.iter().map(|object| &object.shape);
-        let files = shapes.filter_map(|shape| match shape {
-            Shape::Mesh(mesh) => mesh.source.file(),
-            _ => None,
-        });
-        let files: BTreeSet<_> = files.collect();
+        let files: BTreeSet<_> = self.mesh_sources().filter_map(MeshSource::file).collect();
         let gone = files
             .into_iter()
             .filter(|(folder, path)| !folder.join(path).exists());
         gone.map(|(_, path)| path).collect()
+    }
+
+    /// The files that meshes refer to, whether they could be read or not: the folder, and the path in it.
+    pub fn mesh_files(&self) -> HashSet<(&Path, &str)> {
+        let sources = self.mesh_sources();
+        sources.filter_map(MeshSource::reference).collect()
+    }
+
+    /// The same scene with what was read anew of the files that its meshes refer to; `None` where that is in it
+    /// already.
+    pub fn with_read(&self, read: &[MeshSource]) -> Option<Self> {
+        let new = |source: &MeshSource| {
+            let own = source.reference()?;
+            let read = read.iter().find(|read| read.reference() == Some(own));
+            read.filter(|read| *read != source).cloned()
+        };
+        let is_other = self.mesh_sources().any(|source| new(source).is_some());
+        is_other.then(|| self.with_sources(|source| new(source).unwrap_or_else(|| source.clone())))
+    }
+
+    fn mesh_sources(&self) -> impl Iterator<Item = &MeshSource> {
+        let shapes = self.objects.iter().map(|object| &object.shape);
+        shapes.filter_map(|shape| match shape {
+            Shape::Mesh(mesh) => Some(&mesh.source),
+            _ => None,
+        })
     }
 
     /// The same scene with the triangles of all meshes: it needs no other files.
@@ -235,10 +256,8 @@ impl Scene {
 
     /// Whether the triangles of some mesh are in a file of their own.
     pub fn has_mesh_files(&self) -> bool {
-        self.objects.iter().any(|object| match &object.shape {
-            Shape::Mesh(mesh) => matches!(mesh.source, MeshSource::File { .. }),
-            _ => false,
-        })
+        let mut sources = self.mesh_sources();
+        sources.any(|source| matches!(source, MeshSource::File { .. }))
     }
 
     /// The objects whose meshes could not be read, and why.

@@ -173,7 +173,12 @@ impl Files {
             ctx.request_repaint_after(AT_ONCE);
             self.take_read(ctx, editor, Duration::ZERO);
         } else if self.is_free() && self.watch.is_due(ctx, editor) {
-            self.look_outside(editor);
+            if !self.watch.is_left(editor) {
+                self.look_outside(editor);
+            }
+            let changed = self.watch.changed_mesh(editor);
+            let again = changed.map(|file| Reading::again(editor, file));
+            self.reading.extend(again);
         }
         let Waiting {
             wish,
@@ -399,6 +404,7 @@ impl Files {
             Read::Mesh(Err(error)) => {
                 editor.report_error_in(Ask::ImportMesh.title(), error.to_string());
             }
+            Read::Again(source) => editor.take_mesh(source),
             Read::Nothing => {
                 let path = reading.path.display();
                 editor.report_error(format!("{path} could not be read: the reader stopped"));

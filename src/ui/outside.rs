@@ -1,5 +1,6 @@
 //! The open file, written by another program: read anew, or held against the own changes.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
@@ -28,10 +29,14 @@ pub struct Watch {
     broken: Option<String>,
     /// The state of the editor that was left as it was: the file is not brought up again before the next save.
     left: Option<u64>,
+    /// When the files of the meshes were written last: as they were read, and as they were found at the last look.
+    meshes: HashMap<PathBuf, [Option<SystemTime>; 2]>,
+    /// The document that they are of.
+    document: u64,
 }
 
 impl Watch {
-    /// Whether the file must be looked at again.
+    /// Whether files must be looked at again.
     pub fn is_due(&mut self, ctx: &Context, editor: &Editor) -> bool {
         if editor.path().is_none() {
             return false;
@@ -41,7 +46,34 @@ impl Watch {
         if is_due {
             self.looked = Some(Instant::now());
         }
-        is_due && self.left != Some(editor.saves())
+        is_due
+    }
+
+    /// Whether the file of the document is not brought up again before it is saved.
+    pub fn is_left(&self, editor: &Editor) -> bool {
+        self.left == Some(editor.saves())
+    }
+
+    /// A file of meshes that was written since it was read, and is the same at two looks: it may have been half written
+    /// at the first.
+    pub fn changed_mesh<'e>(&mut self, editor: &'e Editor) -> Option<(&'e Path, &'e str)> {
+        if self.document != editor.documents() {
+            self.document = editor.documents();
+            self.meshes.clear();
+        }
+        let mut files = editor.scene().mesh_files().into_iter();
+        files.find(|(folder, path)| {
+            let full = folder.join(path);
+            let now = time_of(&full);
+            let [read, found] = self.meshes.entry(full).or_insert([now; 2]);
+            let is_still = std::mem::replace(found, now) == now;
+            // What is gone stays as it is in the window.
+            let is_new = is_still && now.is_some() && now != *read;
+            if is_new {
+                *read = now;
+            }
+            is_new
+        })
     }
 
     /// Whether the file is another than when it was looked at last, by what the disk says of it: it is not read

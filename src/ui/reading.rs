@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use crate::editor::Editor;
 use crate::files::Stamp;
 use crate::mesh::{MeshError, MeshFile, read_mesh_file};
-use crate::scene::{Document, Scene, SceneError};
+use crate::scene::{Document, MeshSource, Scene, SceneError};
 use crate::worker::run_in_background;
 
 /// What was read.
@@ -17,6 +17,8 @@ pub enum Read {
     Scene(Box<Result<(Document, Stamp), SceneError>>),
     /// A mesh file, whose parts become objects.
     Mesh(Result<MeshFile, MeshError>),
+    /// A file that meshes refer to, once more.
+    Again(MeshSource),
     /// Nothing: the reader stopped.
     Nothing,
 }
@@ -44,7 +46,19 @@ impl Reading {
         Self::start(editor, path, |path| Read::Mesh(read_mesh_file(&path)))
     }
 
-    fn start(editor: &Editor, path: &Path, read: fn(PathBuf) -> Read) -> Self {
+    /// Begins to read once more what meshes refer to.
+    pub fn again(editor: &Editor, (folder, path): (&Path, &str)) -> Self {
+        let (own_folder, own_path) = (folder.to_owned(), path.to_owned());
+        Self::start(editor, &folder.join(path), move |_| {
+            Read::Again(MeshSource::read_anew(&own_folder, &own_path))
+        })
+    }
+
+    fn start(
+        editor: &Editor,
+        path: &Path,
+        read: impl FnOnce(PathBuf) -> Read + Send + 'static,
+    ) -> Self {
         let own = path.to_owned();
         Self {
             path: path.to_owned(),

@@ -103,15 +103,31 @@ impl MeshSource {
 
     /// The folder and the path in it of a file that was read.
     pub fn file(&self) -> Option<(&Path, &str)> {
+        self.reference().filter(|_| self.problem().is_none())
+    }
+
+    /// The folder and the path in it of the file that it refers to, whether that could be read or not.
+    pub fn reference(&self) -> Option<(&Path, &str)> {
         match self {
             Self::File {
                 path,
                 folder: Some(folder),
-                problem: None,
                 ..
             } => Some((folder, path)),
             _ => None,
         }
+    }
+
+    /// What a file holds by now.
+    pub fn read_anew(folder: &Path, path: &str) -> Self {
+        let mut source = Self::File {
+            path: path.to_owned(),
+            folder: None,
+            triangles: Arc::default(),
+            problem: None,
+        };
+        source.load(Some(folder), &mut MeshFiles::new());
+        source
     }
 
     /// The same with its triangles, wherever they were read.

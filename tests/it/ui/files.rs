@@ -1,6 +1,6 @@
 //! Files: opening, saving, and what is asked before something is lost.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
@@ -276,6 +276,57 @@ fn what_another_program_writes_is_read_anew_and_can_be_undone() {
     harness.press(CTRL, Key::Z);
     assert_eq!(radius(harness.scene(), 0), 20.0);
     assert!(harness.editor().is_dirty());
+}
+
+#[test]
+fn a_mesh_file_that_another_program_writes_is_read_anew_before_and_after_what_is_undone() {
+    let mesh =
+        |height: f64| format!("v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 {height}\nf 1 2 3\nf 1 2 4\n");
+    let text = r#"Scene(version: 1, color_packs: {"a": ColorPack()}, lights: [], objects: [
+        Object(name: "roof", color_pack: "a", shape: Mesh(file: "roof.obj", position: (0, 0, -50))),
+        Object(name: "late", color_pack: "a", shape: Mesh(file: "late.obj")),
+    ])"#;
+    let prepare = |folder: &Path| {
+        std::fs::write(folder.join("roof.obj"), mesh(3.0)).expect("written");
+        Vec::new()
+    };
+    let mut harness = EditorHarness::with(prepare, Some(text));
+    let top = |harness: &EditorHarness, index: usize| {
+        let Shape::Mesh(mesh) = &harness.scene().objects[index].shape else {
+            panic!("a mesh");
+        };
+        let points = mesh.source.triangles().points().iter();
+        points.map(|point| point.z).fold(0.0, f64::max)
+    };
+    assert_eq!((top(&harness, 0), top(&harness, 1)), (3.0, 0.0));
+    harness.click("roof");
+    harness.type_into("position x", "5");
+    let folder = harness.folder.path().to_owned();
+    let wait = |harness: &mut EditorHarness, name: &str, index: usize, height: f64| {
+        // The window has looked at what was there.
+        std::thread::sleep(Duration::from_millis(1100));
+        harness.window.step();
+        std::fs::write(folder.join(name), mesh(height)).expect("written");
+        wait_for(harness, |harness| top(harness, index) == height);
+    };
+    wait(&mut harness, "roof.obj", 0, 7.0);
+    // What was missing is there now.
+    wait(&mut harness, "late.obj", 1, 4.0);
+    assert!(harness.scene().mesh_problems().next().is_none());
+    // The position that was typed is all that is not saved, and its undo brings no old mesh back.
+    assert!(harness.editor().is_dirty());
+    harness.press(CTRL, Key::Z);
+    assert!(!harness.editor().is_dirty());
+    assert_eq!((top(&harness, 0), top(&harness, 1)), (7.0, 4.0));
+    // What is broken stays as it was, and is told.
+    std::fs::write(folder.join("roof.obj"), "f 1 2 3\n").expect("written");
+    wait_for(&mut harness, |harness| {
+        let told = harness
+            .window
+            .query_by_label_contains("what was read of it before stays");
+        told.is_some()
+    });
+    assert_eq!(top(&harness, 0), 7.0);
 }
 
 #[test]
