@@ -162,10 +162,10 @@ impl AnimationState {
             let is_flown_otherwise = new.keys != old.keys || new.take != old.take;
             if new.keys != old.keys {
                 self.path = CameraPath::new(&new.keys);
-                if new.keys.len() != old.keys.len() {
-                    // In those places are others now; who moved them says where they are.
-                    self.timeline.selected.clear();
-                }
+            }
+            if !new.has_places_of(old) {
+                // In those places are others now; who moved them says where they are.
+                self.timeline.selected.clear();
             }
             self.scene = Arc::clone(scene);
             if is_flown_otherwise {

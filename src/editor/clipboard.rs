@@ -1,6 +1,6 @@
 //! What is copied and pasted: the text of a scene with nothing else in it.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 
 use glam::DVec3;
@@ -9,12 +9,12 @@ use indexmap::IndexMap;
 use super::item::{Item, Kind};
 use super::names::{Taken, copy_offset, free_light_name, free_pack_name};
 use super::selection::Selected;
-use crate::scene::{ColorPack, Document, List, Scene, SceneError, names_field};
+use crate::scene::{ColorPack, Document, List, Owners, Scene, SceneError, Track, names_field};
 
 /// How far a copy of a light alone is from it, in world units.
 const LIGHT_APART: f64 = 10.0;
 
-/// The selected things alone, with the packs that they wear.
+/// The selected things alone, with the packs that they wear and the keys of their values.
 pub fn excerpt(scene: &Scene, selected: &Selected) -> Scene {
     let of = |kind: Kind| {
         let items = selected.items().iter();
@@ -44,7 +44,19 @@ pub fn excerpt(scene: &Scene, selected: &Selected) -> Scene {
         .map(|(_, (name, pack))| (name.clone(), pack.clone()))
         .collect();
     *part.packs_mut() = packs;
+    part.animation_mut().tracks = tracks_of(&part, scene);
     part
+}
+
+/// What moves the things of a part in the scene that it is from.
+fn tracks_of(part: &Scene, scene: &Scene) -> Vec<Track> {
+    let owners = Owners::of(
+        part,
+        scene.animation.tracks.iter().map(|track| &track.target),
+    );
+    let tracks = scene.animation.tracks.iter();
+    let own = tracks.filter(|track| owners.index(&track.target).is_some());
+    own.cloned().collect()
 }
 
 /// What a text means that is pasted into a scene: the text of a scene, or of objects, of lights, or of packs. Packs
@@ -101,7 +113,7 @@ fn items(scene: &Scene) -> impl Iterator<Item = Item> {
 /// Adds everything in `pasted`, behind what is there: packs that are there already are used, others get a name
 /// that is free.
 pub fn paste(scene: &mut Scene, pasted: &Scene) {
-    let mut names = IndexMap::new();
+    let mut packs = IndexMap::new();
     for (name, pack) in pasted.color_packs.iter() {
         let is_there = scene.color_packs.get(name) == Some(pack);
         let free = if is_there {
@@ -112,30 +124,44 @@ pub fn paste(scene: &mut Scene, pasted: &Scene) {
         if !is_there {
             scene.packs_mut().insert(free.clone(), pack.clone());
         }
-        names.insert(name.clone(), free);
+        packs.insert(name.clone(), free);
     }
     let known = |name: &mut String| {
-        if let Some(free) = names.get(name) {
+        if let Some(free) = packs.get(name) {
             name.clone_from(free);
         }
     };
     let by = way_aside(scene, pasted);
+    // What they are called here: whether it is a light, and its name there.
+    let mut names = HashMap::new();
     let mut taken = Taken::new(scene.objects.iter().map(|object| &object.name));
     for object in &pasted.objects {
         let mut object = object.clone();
         known(&mut object.color_pack);
-        object.name = taken.take(&object.name);
+        let name = taken.take(&object.name);
+        names.insert((false, object.name), name.clone());
+        object.name = name;
         object.shape = object.shape.moved(by);
         scene.objects.push(object);
     }
     for light in &pasted.lights {
-        let mut light = light.clone();
+        let (mut light, own_name) = (light.clone(), light.name.clone());
         light.position += by;
         if let Some(marker) = &mut light.marker {
             known(&mut marker.color_pack);
         }
         light.name = free_light_name(scene, &light.name);
+        names.insert((true, own_name), light.name.clone());
         scene.lights.push(light);
+    }
+    let tracks = pasted.animation.tracks.iter().filter_map(|track| {
+        let owner = track.target.owner()?.to_owned();
+        let name = names.get(&(track.target.is_of_light(), owner))?;
+        Some(track.for_copy(name, by))
+    });
+    let tracks: Vec<Track> = tracks.collect();
+    if !tracks.is_empty() {
+        scene.animation_mut().tracks.extend(tracks);
     }
 }
 
@@ -169,7 +195,8 @@ fn way_aside(scene: &Scene, pasted: &Scene) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::check;
+    use crate::editor::edit::Edit;
+    use crate::scene::{Target, check};
 
     #[test]
     fn what_is_copied_is_pasted_beside_it_with_its_packs() {
@@ -194,6 +221,47 @@ mod tests {
         let mut other = Scene::empty();
         paste(&mut other, &part);
         assert_eq!((other.objects.len(), check(&other)), (2, Ok(())));
+    }
+
+    #[test]
+    fn keys_of_values_are_copied_with_what_they_move() {
+        let mut scene = Scene::demo();
+        let (ball, lamp) = (scene.objects[0].name.clone(), scene.lights[0].name.clone());
+        let places = [
+            Target::ObjectPosition(ball),
+            Target::LightPosition(lamp.clone()),
+        ];
+        let others = [Target::LightIntensity(lamp), Target::AmbientIntensity];
+        for target in places.iter().chain(&others) {
+            let value = target.get(&scene).expect("a value");
+            let animation = scene.animation.with_value(target, 1.0, value);
+            scene.animation = animation.into();
+        }
+        let selected = Selected::all([Item::object(0), Item::light(0)]);
+        let part = excerpt(&scene, &selected);
+        assert_eq!(part.animation.tracks.len(), 3);
+        let document = Document {
+            header: String::new(),
+            scene: part,
+        };
+        let text = document.to_text().expect("a text");
+        let found = read(&text, &scene).expect("a scene");
+        paste(&mut scene, &found);
+        assert_eq!(check(&scene), Ok(()));
+        assert_eq!(scene.animation.tracks.len(), 4 + 3);
+        // They are as far away as what they move.
+        for track in &scene.animation.tracks {
+            assert_eq!(Some(track.keys[0].value), track.target.get(&scene));
+        }
+        // A copy of one of them has them as well.
+        for item in [Item::object(0), Item::light(0)] {
+            let copied = Edit::Duplicate(item).apply(&mut scene);
+            assert!(copied.is_ok());
+        }
+        assert_eq!(scene.animation.tracks.len(), 4 + 3 + 3);
+        for track in &scene.animation.tracks {
+            assert_eq!(Some(track.keys[0].value), track.target.get(&scene));
+        }
     }
 
     #[test]

@@ -7,7 +7,8 @@ use glam::DVec3;
 
 use crate::mesh::Part;
 use crate::scene::{
-    Animation, Bookmark, Camera, ColorPack, Light, List, Mesh, Object, Render, Scene, Shape, Target,
+    Animation, Bookmark, Camera, ColorPack, Light, List, Mesh, Object, Render, Scene, Shape,
+    Target, Track,
 };
 
 use super::adding::{add_light, add_object, add_pack};
@@ -267,19 +268,22 @@ fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
     let Item { kind, index } = item;
     match kind {
         Kind::Object => {
-            let mut copy = scene.objects.get(index)?.clone();
+            let original = scene.objects.get(index)?.clone();
+            let mut copy = original.clone();
             copy.name = free_object_name(scene, &copy.name);
-            copy.shape = copy.shape.moved(copy_offset(scene, &copy.shape));
+            let by = copy_offset(scene, &copy.shape);
+            copy.shape = copy.shape.moved(by);
+            copy_tracks(scene, (false, &original.name), &copy.name, by);
             scene.objects.insert(index + 1, copy);
         }
         Kind::Light => {
-            let mut copy = scene.lights.get(index)?.clone();
+            let original = scene.lights.get(index)?.clone();
+            let mut copy = original.clone();
             copy.name = free_light_name(scene, &copy.name);
-            let size = copy
-                .marker
-                .as_ref()
-                .map_or(1.0, |marker| marker.radius * 2.0);
-            copy.position.x += size;
+            let marker = copy.marker.as_ref();
+            let by = DVec3::X * marker.map_or(1.0, |marker| marker.radius * 2.0);
+            copy.position += by;
+            copy_tracks(scene, (true, &original.name), &copy.name, by);
             scene.lights.insert(index + 1, copy);
         }
         Kind::Pack => {
@@ -292,6 +296,16 @@ fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
         kind,
         index: index + 1,
     })
+}
+
+/// A copy of a light or object, so far from it, has the keys of its values.
+fn copy_tracks(scene: &mut Scene, (is_light, name): (bool, &str), copy: &str, by: DVec3) {
+    let tracks = scene.animation.tracks.iter();
+    let own = tracks.filter(|track| track.target.is_of(is_light, name));
+    let copies: Vec<Track> = own.map(|track| track.for_copy(copy, by)).collect();
+    if !copies.is_empty() {
+        scene.animation_mut().tracks.extend(copies);
+    }
 }
 
 fn delete(scene: &mut Scene, item: Item) -> Result<(), EditError> {

@@ -1,10 +1,9 @@
 //! Where on the line of time the editor is: the playhead, playing, recording.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use crate::animate::{Seen, Worst};
-use crate::scene::{Animation, Camera, MAX_KEYS, Orientation, Take};
+use crate::scene::{Animation, Camera, Keys, MAX_KEYS, Orientation, Take};
 
 /// The picture that a deviation is told for, in pixels.
 pub const MEASURED_AT: f64 = 1024.0;
@@ -38,8 +37,8 @@ pub enum Time {
     Speed(f64),
     /// Show the picture of the shot camera, or the one of the view.
     LookThrough(bool),
-    /// Select these keys, by place.
-    SelectKeys(BTreeSet<usize>),
+    /// Select these keys.
+    SelectKeys(Keys),
     /// Start to record what the camera does.
     Record,
     /// The camera as it is, at this time of the clock in seconds, is part of the recording.
@@ -66,8 +65,8 @@ pub struct Timeline {
     pub speed: f64,
     /// Whether the picture is that of the shot camera, if there are keys.
     pub looks_through: bool,
-    /// Places of the selected camera keys.
-    pub selected: BTreeSet<usize>,
+    /// The selected keys.
+    pub selected: Keys,
     /// How far keys made of a take may be off, in pixels of a picture 1024 high.
     pub tolerance: f64,
     /// Where the keys are off the recording the most, in the same pixels; `None` without one.
@@ -98,7 +97,7 @@ impl Default for Timeline {
             repeat: Repeat::default(),
             speed: 1.0,
             looks_through: false,
-            selected: BTreeSet::new(),
+            selected: Keys::new(),
             tolerance: 1.0,
             worst: None,
             jumps: 0,

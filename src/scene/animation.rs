@@ -258,6 +258,16 @@ impl Target {
         }
     }
 
+    /// Whether it is one of a light.
+    pub fn is_of_light(&self) -> bool {
+        matches!(self, Self::LightIntensity(_) | Self::LightPosition(_))
+    }
+
+    /// Whether it is one of this light, or of this object.
+    pub fn is_of(&self, is_light: bool, name: &str) -> bool {
+        self.is_of_light() == is_light && self.owner() == Some(name)
+    }
+
     /// The same, of a light or object with another name.
     #[must_use]
     pub fn renamed(&self, to: &str) -> Self {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::animation::{Target, Track, Value};
+use super::animation::{Target, Track};
 use super::import::Names;
 use super::list::List;
 use super::object::Object;
@@ -116,13 +116,9 @@ impl Scene {
         let moves = Target::ObjectPosition(object.name.clone());
         let further = position - object.shape.position();
         let tracks = animation.tracks.iter_mut();
-        for track in tracks.filter(|track| track.target == moves) {
-            for key in &mut track.keys {
-                if let Value::Point(point) = &mut key.value {
-                    *point += further;
-                }
-            }
-        }
+        tracks
+            .filter(|track| track.target == moves)
+            .for_each(|track| track.shift(further));
     }
 
     /// Puts triangles in place of the mesh at `index`, if there are no more than [`MOST_SEPARATE`]. Whether
@@ -182,6 +178,7 @@ fn world_corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::animation::Value;
     use crate::scene::{Animation, check};
 
     #[test]

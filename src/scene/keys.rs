@@ -2,13 +2,36 @@
 
 use std::collections::BTreeSet;
 
-use super::animation::{Animation, Key, Target, Track, Value};
+use glam::DVec3;
+
+use super::animation::{Animation, Easing, Interpolation, Key, Target, Track, Value};
 use super::camera::Camera;
 
 /// Keys nearer to each other than this share of a frame are one.
 const SAME: f64 = 0.25;
 /// Keys nearer to each other than this are at the same time, in seconds.
 const EQUAL: f64 = 1e-6;
+
+/// Where a key is among all of an animation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct KeyPlace {
+    /// Place of the track that it belongs to; `None` for the camera.
+    pub track: Option<usize>,
+    /// Its place there, in order of time.
+    pub index: usize,
+}
+
+/// Where several keys are.
+pub type Keys = BTreeSet<KeyPlace>;
+/// The way and the pace from a key to the next one.
+pub type Pace = (Interpolation, Easing);
+
+impl KeyPlace {
+    /// That of a key of the camera.
+    pub fn of_camera(index: usize) -> Self {
+        Self { track: None, index }
+    }
+}
 
 impl Animation {
     fn is_same_time(&self, a: f64, b: f64) -> bool {
@@ -46,71 +69,96 @@ impl Animation {
         (animation, index)
     }
 
-    /// Without these camera keys.
-    pub fn without_keys(&self, indices: &BTreeSet<usize>) -> Self {
-        let kept = self.keys.iter().enumerate();
-        let kept = kept.filter(|(index, _)| !indices.contains(index));
-        Self {
-            keys: kept.map(|(_, key)| key.clone()).collect(),
-            ..self.clone()
+    /// Where all keys are, those of the camera first.
+    pub fn places(&self) -> Keys {
+        let tracks = self.tracks.iter().enumerate();
+        let rows = tracks.map(|(track, own)| (Some(track), own.keys.len()));
+        std::iter::once((None, self.keys.len()))
+            .chain(rows)
+            .flat_map(|(track, count)| (0..count).map(move |index| KeyPlace { track, index }))
+            .collect()
+    }
+
+    /// Whether the same things have as many keys as in another animation.
+    pub fn has_places_of(&self, other: &Self) -> bool {
+        let is_same =
+            |(a, b): (&Track, &Track)| a.target == b.target && a.keys.len() == b.keys.len();
+        let are_as_many =
+            self.keys.len() == other.keys.len() && self.tracks.len() == other.tracks.len();
+        are_as_many && self.tracks.iter().zip(&other.tracks).all(is_same)
+    }
+
+    /// When the key in a place is, and how it goes on from there; `None` if there is no such key.
+    pub fn at_place(&self, place: KeyPlace) -> Option<(f64, Pace)> {
+        match place.track {
+            None => self.keys.get(place.index).map(time_and_pace),
+            Some(track) => {
+                let keys = &self.tracks.get(track)?.keys;
+                keys.get(place.index).map(time_and_pace)
+            }
         }
     }
 
-    /// With these camera keys, or copies of them, so many seconds later; they replace what they
-    /// land on, and none goes before the start. Also their new places.
-    pub fn with_moved(
-        &self,
-        indices: &BTreeSet<usize>,
-        later: f64,
-        are_copies: bool,
-    ) -> (Self, BTreeSet<usize>) {
-        let moved = indices.iter().filter_map(|&index| self.keys.get(index));
-        let first = moved
-            .clone()
-            .map(|key| key.time)
-            .fold(f64::INFINITY, f64::min);
-        let later = later.max(-first);
-        let moved: Vec<Key<Camera>> = moved
-            .map(|key| Key {
-                time: key.time + later,
-                ..key.clone()
-            })
-            .collect();
-        // A copy was nowhere before.
-        let from = |moved: &Key<Camera>| {
-            if are_copies {
-                f64::INFINITY
-            } else {
-                moved.time - later
-            }
+    /// What the key in a place is called.
+    pub fn name_of(&self, KeyPlace { track, index }: KeyPlace) -> String {
+        let number = index + 1;
+        match track.and_then(|track| self.tracks.get(track)) {
+            Some(track) => format!("{} key {number}", track.target.name()),
+            None => format!("Key {number}"),
+        }
+    }
+
+    /// Without these keys; without a track, if those were all it had.
+    pub fn without_keys(&self, places: &Keys) -> Self {
+        let mut animation = self.clone();
+        retain_others(&mut animation.keys, None, places);
+        for (track, own) in animation.tracks.iter_mut().enumerate() {
+            retain_others(&mut own.keys, Some(track), places);
+        }
+        animation.tracks.retain(|track| !track.keys.is_empty());
+        animation
+    }
+
+    /// With these keys, or copies of them, so many seconds later; they replace what they land on, and none goes before
+    /// the start. Also their new places.
+    pub fn with_moved(&self, places: &Keys, later: f64, are_copies: bool) -> (Self, Keys) {
+        let times = places.iter().filter_map(|place| self.at_place(*place));
+        let first = times.map(|(time, _)| time).fold(f64::INFINITY, f64::min);
+        let way = (later.max(-first), are_copies);
+        let (mut animation, mut new) = (self.clone(), Keys::new());
+        let mut note = |track, indices: Vec<usize>| {
+            let place = |index| KeyPlace { track, index };
+            new.extend(indices.into_iter().map(place));
         };
-        let others = self.keys.iter().enumerate();
-        let others = others.filter(|(index, _)| are_copies || !indices.contains(index));
-        let is_free = |key: &Key<Camera>| {
-            !moved
-                .iter()
-                .any(|moved| self.replaces((from(moved), moved.time), key.time))
-        };
-        let others = others.map(|(_, key)| key).filter(|key| is_free(key));
-        let mut keys: Vec<Key<Camera>> = others.cloned().chain(moved.iter().cloned()).collect();
-        keys.sort_by(|a, b| a.time.total_cmp(&b.time));
-        let is_moved = |key: &Key<Camera>| moved.iter().any(|moved| moved.time == key.time);
-        let new = (0..keys.len())
-            .filter(|&index| is_moved(&keys[index]))
-            .collect();
-        let animation = Self {
-            keys,
-            ..self.clone()
-        };
+        let moved = indices(places, None);
+        note(None, move_row(self, &mut animation.keys, &moved, way));
+        for (track, own) in animation.tracks.iter_mut().enumerate() {
+            let moved = indices(places, Some(track));
+            note(Some(track), move_row(self, &mut own.keys, &moved, way));
+        }
         (animation, new)
     }
 
-    /// With these camera keys changed.
-    pub fn with_each(&self, indices: &BTreeSet<usize>, change: impl Fn(&mut Key<Camera>)) -> Self {
+    /// With the camera keys among these changed.
+    pub fn with_each(&self, places: &Keys, change: impl Fn(&mut Key<Camera>)) -> Self {
         let mut animation = self.clone();
-        for &index in indices {
+        for index in indices(places, None) {
             if let Some(key) = animation.keys.get_mut(index) {
                 change(key);
+            }
+        }
+        animation
+    }
+
+    /// With another way or pace from each of these keys.
+    pub fn with_pace(&self, places: &Keys, change: impl Fn(&mut Pace)) -> Self {
+        let mut animation = self.with_each(places, |key| set_pace(key, &change));
+        for place in places {
+            let track = place
+                .track
+                .and_then(|track| animation.tracks.get_mut(track));
+            if let Some(key) = track.and_then(|track| track.keys.get_mut(place.index)) {
+                set_pace(key, &change);
             }
         }
         animation
@@ -122,8 +170,12 @@ impl Animation {
     }
 
     /// Place of the key that something has at this time, if it has one.
-    pub fn value_at(&self, target: &Target, time: f64) -> Option<usize> {
-        self.place_at(&self.track(target)?.keys, time)
+    pub fn value_at(&self, target: &Target, time: f64) -> Option<KeyPlace> {
+        let mut tracks = self.tracks.iter();
+        let track = tracks.position(|track| track.target == *target)?;
+        let index = self.place_at(&self.tracks[track].keys, time)?;
+        let track = Some(track);
+        Some(KeyPlace { track, index })
     }
 
     /// With a key of a track at this time, in place of one that is there.
@@ -141,7 +193,7 @@ impl Animation {
         });
         let keys = &mut tracks[index].keys;
         if let Some(there) = there {
-            keys[there].value = value;
+            keys[there.index].value = value;
         } else {
             let at = keys.partition_point(|key| key.time < time);
             keys.insert(at, Key::new(time, value));
@@ -149,55 +201,9 @@ impl Animation {
         animation
     }
 
-    /// Without the key in this place of a track; without the track, if that was its last.
-    pub fn without_value(&self, target: &Target, index: usize) -> Self {
-        let mut animation = self.clone();
-        for track in &mut animation.tracks {
-            if track.target == *target && index < track.keys.len() {
-                track.keys.remove(index);
-            }
-        }
-        animation.tracks.retain(|track| !track.keys.is_empty());
-        animation
-    }
-
-    /// With the key in this place of a track moved to another time; it replaces what it lands on.
-    pub fn with_value_moved(&self, target: &Target, index: usize, to: f64) -> Self {
-        let mut animation = self.clone();
-        let tracks = &mut animation.tracks;
-        let track = tracks.iter_mut().find(|track| track.target == *target);
-        let Some(track) = track.filter(|track| index < track.keys.len()) else {
-            return animation;
-        };
-        let key = track.keys.remove(index);
-        let way = (key.time, to);
-        track.keys.retain(|other| !self.replaces(way, other.time));
-        let at = track.keys.partition_point(|key| key.time < to);
-        track.keys.insert(at, Key { time: to, ..key });
-        animation
-    }
-
-    /// With a copy of the key in this place of a track at another time; it replaces what it lands on.
-    pub fn with_value_copied(&self, target: &Target, index: usize, to: f64) -> Self {
-        let key = self.track(target).and_then(|track| track.keys.get(index));
-        let Some(key) = key else { return self.clone() };
-        let mut animation = self.with_value(target, to, key.value);
-        let place = animation.value_at(target, to);
-        let tracks = &mut animation.tracks;
-        let track = tracks.iter_mut().find(|track| track.target == *target);
-        if let Some((track, place)) = track.zip(place) {
-            (track.keys[place].interpolation, track.keys[place].easing) =
-                (key.interpolation, key.easing);
-        }
-        animation
-    }
-
     /// What belongs to a light or object follows its new name, or goes with it.
     pub fn follow_name(&mut self, is_light: bool, name: &str, to: Option<&str>) {
-        let is_meant = |target: &Target| {
-            let lights = matches!(target, Target::LightIntensity(_) | Target::LightPosition(_));
-            lights == is_light && target.owner() == Some(name)
-        };
+        let is_meant = |target: &Target| target.is_of(is_light, name);
         match to {
             Some(to) => {
                 let tracks = self.tracks.iter_mut();
@@ -210,11 +216,110 @@ impl Animation {
     }
 }
 
+impl Track {
+    /// The same for a copy of what it moves, of another name, so far from it.
+    pub fn for_copy(&self, name: &str, by: DVec3) -> Self {
+        let mut copy = Self {
+            target: self.target.renamed(name),
+            keys: self.keys.clone(),
+        };
+        if matches!(
+            copy.target,
+            Target::LightPosition(_) | Target::ObjectPosition(_)
+        ) {
+            copy.shift(by);
+        }
+        copy
+    }
+
+    /// Moves the points of all keys, and what they go around.
+    pub fn shift(&mut self, by: DVec3) {
+        for key in &mut self.keys {
+            if let Value::Point(point) = &mut key.value {
+                *point += by;
+            }
+            if let Interpolation::Orbit { around } = &mut key.interpolation {
+                *around += by;
+            }
+        }
+    }
+}
+
+fn time_and_pace<T>(key: &Key<T>) -> (f64, Pace) {
+    (key.time, (key.interpolation, key.easing))
+}
+
+fn set_pace<T>(key: &mut Key<T>, change: &impl Fn(&mut Pace)) {
+    let (_, mut pace) = time_and_pace(key);
+    change(&mut pace);
+    (key.interpolation, key.easing) = pace;
+}
+
+/// Those of the places that are in one row, in order.
+fn indices(places: &Keys, track: Option<usize>) -> Vec<usize> {
+    let place = |index| KeyPlace { track, index };
+    let own = places.range(place(0)..=place(usize::MAX));
+    own.map(|place| place.index).collect()
+}
+
+fn retain_others<T>(keys: &mut Vec<Key<T>>, track: Option<usize>, places: &Keys) {
+    let mut index = 0;
+    keys.retain(|_| {
+        let place = KeyPlace { track, index };
+        index += 1;
+        !places.contains(&place)
+    });
+}
+
+/// Moves the keys of a row that are in these places, in order, or copies of them, so many seconds; their new places.
+fn move_row<T: Clone>(
+    animation: &Animation,
+    keys: &mut Vec<Key<T>>,
+    indices: &[usize],
+    (later, are_copies): (f64, bool),
+) -> Vec<usize> {
+    let moved = indices.iter().filter_map(|&index| keys.get(index));
+    let moved: Vec<Key<T>> = moved
+        .map(|key| Key {
+            time: key.time + later,
+            ..key.clone()
+        })
+        .collect();
+    if moved.is_empty() {
+        return Vec::new();
+    }
+    let near = SAME / animation.frames_per_second;
+    let is_free = |key: &Key<T>| {
+        let first = moved.partition_point(|moved| moved.time < key.time - near);
+        let close = moved[first..].iter();
+        let mut close = close.take_while(|moved| moved.time <= key.time + near);
+        !close.any(|moved| {
+            // A copy was nowhere before.
+            let from = if are_copies {
+                f64::INFINITY
+            } else {
+                moved.time - later
+            };
+            animation.replaces((from, moved.time), key.time)
+        })
+    };
+    let others = keys.iter().enumerate();
+    let others = others.filter(|(index, _)| are_copies || indices.binary_search(index).is_err());
+    let others = others.map(|(_, key)| key).filter(|key| is_free(key));
+    let mut all: Vec<(Key<T>, bool)> = others.map(|key| (key.clone(), false)).collect();
+    all.extend(moved.iter().map(|key| (key.clone(), true)));
+    all.sort_by(|(a, _), (b, _)| a.time.total_cmp(&b.time));
+    let new = (0..all.len()).filter(|&index| all[index].1).collect();
+    *keys = all.into_iter().map(|(key, _)| key).collect();
+    new
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn places(animation: &Animation) -> Vec<f64> {
+    /// Those of the keys of the only track.
+    fn times(animation: &Animation) -> Vec<f64> {
         let keys = animation.tracks[0].keys.iter();
         keys.map(|key| (key.time * 1e3).round() / 1e3).collect()
     }
@@ -231,18 +336,49 @@ mod tests {
         }
         // In slower pictures, three of them are within a quarter of a frame.
         animation.frames_per_second = 1.0;
-        assert_eq!(
-            places(&animation.without_value(&target, 2)),
-            [0.0, 1.0, 1.4, 3.0]
-        );
-        let moved = animation.with_value_moved(&target, 2, 2.0);
-        assert_eq!(places(&moved), [0.0, 1.0, 1.4, 2.0, 3.0]);
-        let moved = animation.with_value_moved(&target, 2, 2.9);
-        assert_eq!(places(&moved), [0.0, 1.0, 1.4, 2.9], "onto the last");
-        let copied = animation.with_value_copied(&target, 2, 2.0);
-        assert_eq!(places(&copied), [0.0, 1.0, 1.2, 1.4, 2.0, 3.0]);
+        let track = Some(0);
+        let third = KeyPlace { track, index: 2 };
+        let one = Keys::from([third]);
+        let without = animation.without_keys(&one);
+        assert_eq!(times(&without), [0.0, 1.0, 1.4, 3.0]);
+        let (moved, new) = animation.with_moved(&one, 0.8, false);
+        assert_eq!(times(&moved), [0.0, 1.0, 1.4, 2.0, 3.0]);
+        assert_eq!(new, [KeyPlace { track, index: 3 }].into());
+        let (moved, _) = animation.with_moved(&one, 1.7, false);
+        assert_eq!(times(&moved), [0.0, 1.0, 1.4, 2.9], "onto the last");
+        let (copied, new) = animation.with_moved(&one, 0.8, true);
+        assert_eq!(times(&copied), [0.0, 1.0, 1.2, 1.4, 2.0, 3.0]);
         assert_eq!(copied.tracks[0].keys[4].value, Value::Number(0.12));
-        assert_eq!(animation.value_at(&target, 1.15), Some(2), "the nearest");
+        assert_eq!(new, [KeyPlace { track, index: 4 }].into());
+        let nearest = animation.value_at(&target, 1.15);
+        assert_eq!(nearest, Some(third));
+        let none = animation.without_keys(&animation.places());
+        assert!(none.is_still());
+    }
+
+    #[test]
+    fn keys_of_the_camera_and_of_values_are_moved_and_paced_together() {
+        let camera = |time: f64| Key::new(time, Camera::default());
+        let animation = Animation {
+            frames_per_second: 10.0,
+            keys: [1.0, 2.0].map(camera).into(),
+            ..Animation::default()
+        };
+        let target = Target::AmbientIntensity;
+        let animation = animation.with_value(&target, 0.5, Value::Number(0.3));
+        let animation = animation.with_value(&target, 4.0, Value::Number(0.4));
+        let places: Keys = animation.places().into_iter().take(3).collect();
+        // None goes before the start, and all go as far.
+        let (moved, new) = animation.with_moved(&places, -2.0, false);
+        assert_eq!(new, places);
+        let of_camera: Vec<f64> = moved.keys.iter().map(|key| key.time).collect();
+        assert_eq!((of_camera, times(&moved)), (vec![0.5, 1.5], vec![0.0, 4.0]));
+        let paced = animation.with_pace(&places, |(way, _)| *way = Interpolation::Hold);
+        let there = |place| paced.at_place(place);
+        let held = paced.places().into_iter().filter_map(there);
+        let held = held.filter(|(_, (way, _))| *way == Interpolation::Hold);
+        let held: Vec<f64> = held.map(|(time, _)| time).collect();
+        assert_eq!(held, [1.0, 2.0, 0.5]);
     }
 
     #[test]
@@ -253,7 +389,7 @@ mod tests {
             keys: [0.0, 1.0, 1.02, 2.0].map(key).into(),
             ..Animation::default()
         };
-        let one = BTreeSet::from([1]);
+        let one = Keys::from([KeyPlace::of_camera(1)]);
         for (later, are_copies, count) in [
             (0.01, false, 4),
             (0.02, false, 3),

@@ -79,6 +79,7 @@ pub use file::{DEMO_TEXT, Document, SceneError, read_text};
 pub use frame::Frame;
 pub use hints::{About, Hint, hints};
 pub use join::MOST_SEPARATE;
+pub use keys::{KeyPlace, Keys};
 pub use list::List;
 pub use locate::{PathStep, names_field};
 pub use material::{ColorPack, MAX_EXPONENT};

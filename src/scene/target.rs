@@ -95,9 +95,10 @@ impl<'a> Owners<'a> {
     pub fn of(scene: &Scene, targets: impl IntoIterator<Item = &'a Target>) -> Self {
         let (mut lights, mut objects) = (HashSet::new(), HashSet::new());
         for target in targets {
-            let wanted = match target {
-                Target::LightIntensity(_) | Target::LightPosition(_) => &mut lights,
-                _ => &mut objects,
+            let wanted = if target.is_of_light() {
+                &mut lights
+            } else {
+                &mut objects
             };
             wanted.extend(target.owner());
         }
@@ -109,9 +110,10 @@ impl<'a> Owners<'a> {
 
     /// Where the one of this target is in its list.
     pub fn index(&self, target: &Target) -> Option<usize> {
-        let places = match target {
-            Target::LightIntensity(_) | Target::LightPosition(_) => &self.lights,
-            _ => &self.objects,
+        let places = if target.is_of_light() {
+            &self.lights
+        } else {
+            &self.objects
         };
         places.get(target.owner()?).copied()
     }

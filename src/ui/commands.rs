@@ -107,7 +107,7 @@ pub enum Command {
     StopRecording,
     /// Set a key at the playhead.
     AddKey,
-    /// Select all keys of the camera.
+    /// Select all keys, of the camera and of values.
     SelectKeys,
     /// Look through the shot camera, or at it.
     LookThrough,
@@ -385,11 +385,11 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             _ => Some(nothing),
         },
         Command::Play if editor.scene().animation.is_still() => Some("nothing moves yet"),
-        Command::SelectKeys
-        | Command::PreviousKey
-        | Command::NextKey
-        | Command::LookThrough
-        | Command::ExportPath => {
+        Command::SelectKeys | Command::PreviousKey | Command::NextKey => {
+            let is_still = editor.scene().animation.is_still();
+            is_still.then_some("there are no keys yet")
+        }
+        Command::LookThrough | Command::ExportPath => {
             let has = !editor.scene().animation.keys.is_empty();
             (!has).then_some("the camera has no keys yet")
         }

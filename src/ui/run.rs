@@ -68,7 +68,6 @@ impl App {
                 self.paste(&text);
                 None
             }
-            Command::Delete if self.delete_value() => None,
             // The two share the room below the picture.
             Command::Lab => {
                 self.lab.is_open = !self.lab.is_open;
@@ -131,19 +130,8 @@ impl App {
     /// Whether all keys are meant where all is to be selected: some are, or the pointer is over the line of time.
     fn means_keys(&self, ctx: &Context) -> bool {
         let is_over = self.timeline.is_hovered(ctx.cumulative_frame_nr());
-        let has_keys = !self.editor.scene().animation.keys.is_empty();
+        let has_keys = !self.editor.scene().animation.is_still();
         has_keys && (is_over || self.editor.selection == Selection::Keys)
-    }
-
-    /// Deletes the key of a value that was clicked. Whether one was.
-    fn delete_value(&mut self) -> bool {
-        let animation = &self.editor.scene().animation;
-        let Some(without) = self.timeline.without_value(animation) else {
-            return false;
-        };
-        let edit = Edit::animation(without, "Delete key");
-        self.editor.apply(Action::Edit(edit));
-        true
     }
 
     /// Puts what is selected on the clipboard. Whether it is there.

@@ -13,7 +13,8 @@ use glint::editor::{Action, Edit, Editor, Repeat, Selection, Time};
 use glint::image::render;
 use glint::plan::RenderRequest;
 use glint::scene::{
-    Animation, Document, Interpolation, Key as SceneKey, Leftover, Projection, Scene, Value,
+    Animation, Document, Interpolation, Key as SceneKey, KeyPlace, Keys, Leftover, Projection,
+    Scene, Value,
 };
 use glint::trace::RenderControl;
 use glint::ui::Ask;
@@ -254,10 +255,11 @@ fn keys_made_anew_keep_the_time_that_the_flight_was_given() {
         "known as soon as it is opened: {said:?}"
     );
     let before = editor.scene().clone();
-    editor.apply(Action::Time(Time::SelectKeys([3].into())));
+    let fourth: Keys = [KeyPlace::of_camera(3)].into();
+    editor.apply(Action::Time(Time::SelectKeys(fourth.clone())));
     editor.apply(Action::Select(Selection::Camera));
     assert!(editor.timeline().selected.is_empty(), "something else is");
-    editor.apply(Action::Time(Time::SelectKeys([3].into())));
+    editor.apply(Action::Time(Time::SelectKeys(fourth.clone())));
     editor.apply(Action::Time(Time::Simplify(5.0)));
     assert!(editor.scene().animation.keys.len() < before.animation.keys.len());
     assert_eq!(editor.scene().animation.frame_count(), 202);
@@ -508,6 +510,65 @@ fn delete_is_meant_for_the_key_of_a_value_that_was_clicked_last() {
     harness.press(Modifiers::NONE, Key::Delete);
     assert_eq!(harness.scene().lights.len(), 1);
     assert!(harness.scene().animation.tracks.is_empty());
+}
+
+#[test]
+fn keys_of_values_are_edited_like_those_of_the_camera() {
+    let mut harness = animation(&[(0.0, 0.0), (2.0, 0.0)]);
+    harness.click("Light 1");
+    harness.click("key intensity");
+    harness.press(Modifiers::NONE, Key::End);
+    harness.type_into("intensity", "0.8");
+    let track = harness.scene().animation.tracks[0].target.name();
+    harness.click(&format!("{track} key 2"));
+    harness.type_into("intensity", "0.5");
+    harness.type_into("time", "1.5");
+    let [_, key] = &harness.scene().animation.tracks[0].keys[..] else {
+        panic!("two keys");
+    };
+    assert_eq!((key.time, key.value), (1.5, Value::Number(0.5)));
+    assert_eq!(harness.scene().lights[0].intensity, 0.2, "its own stays");
+    // It is still the one that is selected; with a key of the camera, both are moved, as far.
+    harness
+        .window
+        .get_by_label("Key 2")
+        .click_modifiers(Modifiers::SHIFT);
+    harness.settle();
+    assert_eq!(harness.editor().timeline().selected.len(), 2);
+    let at = place_of(&harness, "Key 2");
+    let by = vec2(0.5 * points_per_second(&harness), 0.0);
+    drag(&mut harness, at, by, Modifiers::NONE);
+    let of_value = |harness: &EditorHarness| {
+        let keys = harness.scene().animation.tracks[0].keys.iter();
+        keys.map(|key| key.time).collect::<Vec<_>>()
+    };
+    assert_eq!(times(&harness), [0.0, 2.5]);
+    assert_eq!(of_value(&harness), [0.0, 2.0]);
+    // A frame around keys of two rows; what is not in it is not selected any more.
+    let (first, last) = (
+        place_of(&harness, "Key 1"),
+        place_of(&harness, &format!("{track} key 1")),
+    );
+    drag(
+        &mut harness,
+        first + vec2(12.0, 0.0),
+        last - first + vec2(-24.0, 4.0),
+        Modifiers::NONE,
+    );
+    let selected = &harness.editor().timeline().selected;
+    assert_eq!(
+        *selected,
+        [None, Some(0)]
+            .map(|track| KeyPlace { track, index: 0 })
+            .into()
+    );
+    // All keys of both.
+    harness.press(CTRL, Key::A);
+    assert_eq!(harness.editor().timeline().selected.len(), 4);
+    harness.press(Modifiers::NONE, Key::Delete);
+    assert!(harness.scene().animation.is_still());
+    harness.press(CTRL, Key::Z);
+    assert_eq!(of_value(&harness), [0.0, 2.0]);
 }
 
 #[test]

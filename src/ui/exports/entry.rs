@@ -79,6 +79,12 @@ impl Entry {
             return None;
         }
         let Some(state) = state else {
+            if let Some(Order { name, settings, .. }) = &self.order {
+                let folder = &settings.folder;
+                editor.notify(format!(
+                    "{name} is given up; frames that are done stay in {folder}"
+                ));
+            }
             self.end();
             return None;
         };

@@ -1,6 +1,5 @@
 //! The selected keys of the camera, and the keys of other values.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::{Button, Id, Ui};
@@ -10,95 +9,129 @@ use super::camera::place_rows;
 use super::title::title;
 use crate::editor::{Edit, Editor, Time};
 use crate::scene::{
-    Animation, Camera, Easing, Interpolation, Key, MAX_SECONDS, Orientation, Target,
+    Animation, Easing, Interpolation, KeyPlace, Keys, MAX_SECONDS, Orientation, Target, Value,
 };
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, coordinate};
 
-/// Time, way and camera of the selected key; of several, way and pace of the first, which others take on.
+/// Time, way and value of the selected key; of several, way and pace of the first, which others take on.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     if !ui.input(|input| input.pointer.any_down()) {
         ui.data_mut(|data| data.remove::<Moved>(drag_id()));
     }
     let animation = &editor.scene().animation;
-    let indices = &editor.timeline().selected;
-    let Some(first) = indices
-        .iter()
-        .next()
-        .and_then(|&index| animation.keys.get(index))
-    else {
+    let places = &editor.timeline().selected;
+    let Some(&first) = places.first() else { return };
+    let Some((time, pace)) = animation.at_place(first) else {
         return;
     };
-    let name = match indices.len() {
-        1 => format!("Key {}", indices.iter().next().map_or(0, |index| index + 1)),
-        count => format!("{count} keys"),
+    let only = (places.len() == 1).then_some(first);
+    let name = match only {
+        Some(only) => animation.name_of(only),
+        None => format!("{} keys", places.len()),
     };
     title(ui, icons::KEY, &name);
-    let mut key = first.clone();
+    let (mut new_time, mut new_pace) = (time, pace);
     let mut rows = Rows::new(ui);
-    if indices.len() == 1 {
-        rows.number(&time_field(), &mut key.time);
+    if only.is_some() {
+        rows.number(&time_field(), &mut new_time);
     }
-    way_rows(&mut rows, editor, &mut key);
-    if indices.len() == 1 {
-        rows.heading("Camera");
-        let angles = Orientation::of(&key.value);
-        place_rows(&mut rows, angles, &mut key.value);
-    }
+    pace_rows(&mut rows, editor, &mut new_pace);
+    let new_value = only.and_then(|only| value_rows(&mut rows, animation, only));
     let changed = rows.changed();
     ui.horizontal_wrapped(|ui| buttons(ui, editor, out));
-    let Some(field) = changed.filter(|_| key != *first) else {
-        return;
-    };
-    if key.time != first.time {
-        return move_key(ui, editor, key.time, out);
-    }
-    let changed = animation.with_each(indices, |each| {
+    if new_time != time {
+        move_key(ui, editor, new_time, out);
+    } else if let Some(value) = new_value {
+        out.edit(Edit::animation(value, "Key: value"));
+    } else if new_pace != pace {
         // Of several, what was not changed stays as it is in each.
-        if key.interpolation != first.interpolation {
-            each.interpolation = key.interpolation;
-        }
-        if key.easing != first.easing {
-            each.easing = key.easing;
-        }
-        if key.value != first.value {
-            each.value = key.value.clone();
-        }
-    });
-    let label = match field {
-        "way" => "Key: way",
-        "pace" => "Key: pace",
-        _ => "Key: camera",
+        let (way, easing) = new_pace;
+        let (changed, label) = if changed == Some("pace") {
+            let changed = animation.with_pace(places, |(_, each)| *each = easing);
+            (changed, "Key: pace")
+        } else {
+            let changed = animation.with_pace(places, |(each, _)| *each = way);
+            (changed, "Key: way")
+        };
+        out.edit(Edit::animation(changed, label));
+    }
+}
+
+/// What holds at the time of a key; the animation with another one, once it is changed.
+fn value_rows(rows: &mut Rows, animation: &Animation, place: KeyPlace) -> Option<Animation> {
+    let Some(track) = place.track else {
+        let key = animation.keys.get(place.index)?;
+        let mut camera = key.value.clone();
+        rows.heading("Camera");
+        place_rows(rows, Orientation::of(&key.value), &mut camera);
+        let own = Keys::from([place]);
+        return (camera != key.value)
+            .then(|| animation.with_each(&own, |key| key.value = camera.clone()));
     };
-    out.edit(Edit::animation(changed, label));
+    let track = animation.tracks.get(track)?;
+    let key = track.keys.get(place.index)?;
+    let mut value = key.value;
+    match &mut value {
+        Value::Number(number) => rows.number(&intensity_field(), number),
+        Value::Point(point) => {
+            let before = *point;
+            rows.vector(&point_field(&track.target), before, point);
+        }
+    }
+    (value != key.value).then(|| animation.with_value(&track.target, key.time, value))
+}
+
+fn intensity_field() -> Field {
+    Field {
+        name: "intensity",
+        hint: "How bright it is at that time, 0–1",
+        unit: "",
+        default: 1.0,
+        range: 0.0..=1.0,
+        speed: Some(0.005),
+    }
+}
+
+fn point_field(target: &Target) -> Field {
+    match target {
+        Target::ObjectRotation(_) => Field {
+            unit: "°",
+            speed: Some(0.5),
+            ..coordinate(
+                "rotation",
+                "How it is turned at that time: about x, then y, then z",
+            )
+        },
+        _ => coordinate("position", "Where it is at that time, in world units"),
+    }
 }
 
 /// A key before its time was dragged: it replaces what it lands on, and not what it passes.
 #[derive(Clone)]
 struct Moved {
     animation: Arc<Animation>,
-    indices: BTreeSet<usize>,
+    places: Keys,
     time: f64,
 }
 
 /// Moves the selected key to another time.
 fn move_key(ui: &Ui, editor: &Editor, to: f64, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
-    let indices = &editor.timeline().selected;
-    let Some(first) = indices.first().and_then(|&index| animation.keys.get(index)) else {
-        return;
-    };
+    let places = &editor.timeline().selected;
+    let first = places.first().and_then(|place| animation.at_place(*place));
+    let Some((time, _)) = first else { return };
     let now = || Moved {
         animation: Arc::clone(animation),
-        indices: indices.clone(),
-        time: first.time,
+        places: places.clone(),
+        time,
     };
     // A typed time has nothing to remember: it is one step.
     let before = ui.data_mut(|data| data.get_temp_mut_or_insert_with(drag_id(), now).clone());
     let later = to - before.time;
-    let (moved, new) = before.animation.with_moved(&before.indices, later, false);
+    let (moved, new) = before.animation.with_moved(&before.places, later, false);
     out.edit(Edit::animation(moved, "Key: time"));
     out.time(Time::SelectKeys(new));
 }
@@ -111,7 +144,7 @@ fn drag_id() -> Id {
 fn time_field() -> Field {
     Field {
         name: "time",
-        hint: "Seconds from the start",
+        hint: "Seconds from the start; it takes the place of a key that is there",
         unit: " s",
         default: 0.0,
         range: 0.0..=MAX_SECONDS,
@@ -119,24 +152,15 @@ fn time_field() -> Field {
     }
 }
 
-fn way_rows(rows: &mut Rows, editor: &Editor, key: &mut Key<Camera>) {
-    let around = match key.interpolation {
-        Interpolation::Orbit { around } => around,
-        _ => target(editor),
-    };
-    let ways = [
-        Interpolation::Smooth,
-        Interpolation::Linear,
-        Interpolation::Hold,
-        Interpolation::Orbit { around },
-    ];
+fn pace_rows(rows: &mut Rows, editor: &Editor, (way, pace): &mut (Interpolation, Easing)) {
+    let ways = key_ways(editor, &editor.timeline().selected, *way);
     rows.choice(
         "way",
-        "How the camera goes on to the next key.\nsmooth: in a curve\nlinear: straight\nhold: stays, then cuts\norbit: on an arc around a point",
-        &mut key.interpolation,
-        ways.map(|way| (way, way.name().to_owned())),
+        "How it goes on to the next key.\nsmooth: in a curve\nlinear: straight\nhold: stays, then cuts\norbit: on an arc around a point",
+        way,
+        ways.into_iter().map(|way| (way, way.name().to_owned())),
     );
-    if let Interpolation::Orbit { around } = &mut key.interpolation {
+    if let Interpolation::Orbit { around } = way {
         let field = coordinate("around", "The point that the arc goes around");
         let before = *around;
         rows.vector(&field, before, around);
@@ -144,9 +168,36 @@ fn way_rows(rows: &mut Rows, editor: &Editor, key: &mut Key<Camera>) {
     rows.choice(
         "pace",
         "How fast, on the way to the next key",
-        &mut key.easing,
+        pace,
         Easing::ALL.map(|easing| (easing, easing.name().to_owned())),
     );
+}
+
+/// The ways that all of these keys can go on; one of them does as `own` says. Only what has a place goes around a point.
+pub fn key_ways(editor: &Editor, places: &Keys, own: Interpolation) -> Vec<Interpolation> {
+    let tracks = &editor.scene().animation.tracks;
+    let has_place = |place: &KeyPlace| {
+        let target = place.track.and_then(|track| tracks.get(track));
+        target.is_none_or(|track| {
+            matches!(
+                track.target,
+                Target::LightPosition(_) | Target::ObjectPosition(_)
+            )
+        })
+    };
+    let around = match own {
+        Interpolation::Orbit { around } => around,
+        _ => target(editor),
+    };
+    let mut ways = vec![
+        Interpolation::Smooth,
+        Interpolation::Linear,
+        Interpolation::Hold,
+    ];
+    if places.iter().all(has_place) {
+        ways.push(Interpolation::Orbit { around });
+    }
+    ways
 }
 
 /// The middle of what is selected, or of everything that ends.
@@ -162,28 +213,27 @@ pub fn target(editor: &Editor) -> DVec3 {
 
 fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
-    let indices = &editor.timeline().selected;
-    let overwrite = ui.add_enabled(indices.len() == 1, Button::new("Overwrite with view"));
+    let places = &editor.timeline().selected;
+    let only = places.first().filter(|_| places.len() == 1);
+    let is_of_camera = only.is_some_and(|only| only.track.is_none());
+    let overwrite = ui.add_enabled(is_of_camera, Button::new("Overwrite with view"));
     let hint = "Put the camera of the view into this key";
     if overwrite.hint(hint).clicked() {
         let view = editor.shown().camera.clone();
-        let changed = animation.with_each(indices, |key| key.value = view.clone());
+        let changed = animation.with_each(places, |key| key.value = view.clone());
         out.edit(Edit::animation(changed, "Overwrite key"));
     }
-    let go = ui.add_enabled(indices.len() == 1, Button::new("Go there"));
-    let key = indices
-        .iter()
-        .next()
-        .and_then(|&index| animation.keys.get(index));
+    let go = ui.add_enabled(only.is_some(), Button::new("Go there"));
+    let there = only.and_then(|only| animation.at_place(*only));
     if go.hint("Put the playhead on this key").clicked()
-        && let Some(key) = key
+        && let Some((time, _)) = there
     {
-        out.time(Time::Seek(key.time));
+        out.time(Time::Seek(time));
     }
     if ui.button("Delete").clicked() {
-        let kept = animation.without_keys(indices);
+        let kept = animation.without_keys(places);
         out.edit(Edit::animation(kept, "Delete keys"));
-        out.time(Time::SelectKeys(BTreeSet::new()));
+        out.time(Time::SelectKeys(Keys::new()));
     }
 }
 
@@ -208,7 +258,7 @@ pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[(&str, Target)], out: &
             let button = ui.add(button).hint(hint);
             if button.accessible_name(format!("key {name}")).clicked() {
                 let changed = if let Some(there) = there {
-                    Some(animation.without_value(target, there))
+                    Some(animation.without_keys(&Keys::from([there])))
                 } else {
                     let value = target.get(editor.shown());
                     value.map(|value| animation.with_value(target, time, value))

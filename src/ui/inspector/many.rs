@@ -32,7 +32,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     };
     let can_join = objects.len() == selected.len() && objects.iter().all(is_joinable);
     let join = ui.add_enabled(can_join, egui::Button::new("Join"));
-    let hint = "Make one mesh of these triangles and meshes";
+    let hint = "Make one mesh of these triangles and meshes, with the name and the color pack of the first";
     if join.hint(hint).on_disabled_hover_text(hint).clicked() {
         out.edit(Edit::Join(objects));
     }

@@ -18,7 +18,7 @@ mod needs;
 
 mod world;
 
-pub use keys::target;
+pub use keys::{key_ways, target};
 pub use quality::Quality;
 pub use title::name_field;
 use title::title_field;

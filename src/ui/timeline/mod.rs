@@ -6,7 +6,11 @@ mod overlay;
 
 mod strip;
 
-mod tracks_area;
+mod ruler;
+
+mod key_menu;
+
+mod key_rows;
 
 mod graph;
 
@@ -17,10 +21,10 @@ mod transport;
 use egui::{InputState, Key, Modifiers, Rect, ScrollArea, Ui};
 
 use self::graph::Graph;
+use self::key_rows::KeyRows;
 pub use self::overlay::Overlay;
 use self::scale::Scale;
 pub use self::thumbs::Thumbs;
-use self::tracks_area::{Drag, ValueKey};
 pub use self::transport::{actions, clock};
 use super::commands::Command;
 use super::requests::UiRequests;
@@ -50,9 +54,7 @@ pub struct TimelinePanel {
     hovered_in: u64,
     /// The frame of the window in which it was shown last.
     frame: u64,
-    drag: Option<Drag>,
-    /// The key of a value that was clicked.
-    value: Option<ValueKey>,
+    rows: KeyRows,
     graph: Graph,
 }
 
@@ -66,8 +68,7 @@ impl Default for TimelinePanel {
             document: 0,
             hovered_in: 0,
             frame: 0,
-            drag: None,
-            value: None,
+            rows: KeyRows::default(),
             graph: Graph::default(),
         }
     }
@@ -126,17 +127,15 @@ impl TimelinePanel {
             };
             self.zoom(ui, (&scale, area), end);
             let gives_up = |input: &mut InputState| input.consume_key(Modifiers::NONE, Key::Escape);
-            if self.drag.is_some() && ui.input_mut(gives_up) {
-                self.drag = None;
+            if self.rows.is_dragging() && ui.input_mut(gives_up) {
+                self.rows.let_go();
                 out.actions.push(Action::CancelGesture);
             }
-            tracks_area::ruler(ui, &scale, editor, out);
+            ruler::show(ui, &scale, editor, out);
             if !animation.keys.is_empty() {
                 thumbs.show(ui, &scale, animation);
-                tracks_area::keys(ui, &scale, editor, &mut self.drag, out);
             }
-            let (drag, value) = (&mut self.drag, &mut self.value);
-            tracks_area::tracks(ui, &scale, editor, (drag, value), out);
+            self.rows.show(ui, &scale, editor, out);
             if self.shows_graph && animation.keys.len() > 1 {
                 self.graph.show(ui, &scale, editor);
             }
@@ -152,14 +151,7 @@ impl TimelinePanel {
 
     /// Whether keys are being moved.
     pub fn is_dragging(&self) -> bool {
-        self.drag.is_some()
-    }
-
-    /// The animation without the key of a value that was clicked, if one was and is still there.
-    pub fn without_value(&self, animation: &Animation) -> Option<Animation> {
-        let (target, index) = self.value.as_ref().filter(|_| self.is_open)?;
-        let without = animation.without_value(target, *index);
-        (without != *animation).then_some(without)
+        self.rows.is_dragging()
     }
 
     /// Whether the pointer is over the line, in this frame of the window.

@@ -1,13 +1,11 @@
 //! The flight in the view: its way, a tick for each frame, and its keys, which can be dragged.
 
-use std::collections::BTreeSet;
-
 use egui::{Color32, Painter, Pos2, Rect, Sense, Stroke, Ui, vec2};
 
 use glam::DVec3;
 
 use crate::editor::{Edit, Editor, Time};
-use crate::scene::{Camera, Projection};
+use crate::scene::{Camera, KeyPlace, Keys, Projection};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
 use crate::ui::tools::Lens;
@@ -68,7 +66,7 @@ impl Overlay {
         let selected = &editor.timeline().selected;
         let mut drawn: Vec<Pos2> = Vec::new();
         for (place, key) in animation.keys.iter().enumerate() {
-            let is_selected = selected.contains(&place);
+            let is_selected = selected.contains(&KeyPlace::of_camera(place));
             let color = if is_selected {
                 colors.accent
             } else {
@@ -187,13 +185,14 @@ impl Overlay {
         let response = ui.interact(near, id, Sense::click_and_drag());
         let name = format!("Key {} in the view", place + 1);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+        let own = Keys::from([KeyPlace::of_camera(place)]);
         if response.clicked() {
-            out.time(Time::SelectKeys(BTreeSet::from([place])));
+            out.time(Time::SelectKeys(own.clone()));
         }
         if response.drag_started_by(egui::PointerButton::Primary) {
             let (origin, direction) = lens.ray(at);
             self.dragged = Some((place, (position - origin).dot(direction)));
-            out.time(Time::SelectKeys(BTreeSet::from([place])));
+            out.time(Time::SelectKeys(own.clone()));
         }
         let Some((dragged, depth)) = self.dragged.filter(|(dragged, _)| *dragged == place) else {
             return;
@@ -210,7 +209,7 @@ impl Overlay {
         let depth = depth * before.dot(straight) / direction.dot(straight);
         self.dragged = Some((dragged, depth));
         let to = origin + direction * depth;
-        let moved = animation.with_each(&BTreeSet::from([place]), |key| key.value.position = to);
+        let moved = animation.with_each(&own, |key| key.value.position = to);
         out.edit(Edit::animation(moved, "Move key in the view"));
     }
 }

@@ -1,13 +1,11 @@
 //! The buttons above the keys.
 
-use std::collections::BTreeSet;
-
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, DragValue, PopupCloseBehavior, RichText, Slider, Ui};
 
 use crate::animate::{Retime, paused_seconds};
 use crate::editor::{Edit, Editor, Repeat, Time};
-use crate::scene::{Animation, MAX_SECONDS};
+use crate::scene::{Animation, KeyPlace, Keys, MAX_SECONDS};
 use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
@@ -277,9 +275,11 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action>
     let time = editor.shown_time();
     // The playhead goes to the frame nearest to a key, which may be before or behind it.
     let frame = |time: f64| animation.frame_at(time + 0.5 / animation.frames_per_second);
-    let is_later = |key: &f64| frame(*key) > frame(time);
-    let is_earlier = |key: &f64| frame(*key) < frame(time);
-    let mut keys = animation.keys.iter().map(|key| key.time);
+    let times = || {
+        let places = animation.places().into_iter();
+        let there = places.filter_map(|place| animation.at_place(place));
+        there.map(|(time, _)| time)
+    };
     let timed = |time: Time| vec![Action::Time(time)];
     let has_time = !animation.is_still();
     match command {
@@ -289,16 +289,18 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action>
         Command::FrameBack if has_time => timed(Time::Step(-1)),
         Command::FrameOn if has_time => timed(Time::Step(1)),
         Command::PreviousKey => {
-            let key = keys.rfind(is_earlier);
+            let earlier = times().filter(|key| frame(*key) < frame(time));
+            let key = earlier.max_by(f64::total_cmp);
             key.map_or(Vec::new(), |key| timed(Time::Seek(key)))
         }
         Command::NextKey => {
-            let key = keys.find(is_later);
+            let later = times().filter(|key| frame(*key) > frame(time));
+            let key = later.min_by(f64::total_cmp);
             key.map_or(Vec::new(), |key| timed(Time::Seek(key)))
         }
         Command::Record if editor.timeline().recorded().is_none() => timed(Time::Record),
         Command::StopRecording => timed(Time::Stop),
-        Command::SelectKeys => timed(Time::SelectKeys((0..animation.keys.len()).collect())),
+        Command::SelectKeys => timed(Time::SelectKeys(animation.places())),
         Command::LookThrough if !animation.keys.is_empty() => {
             timed(Time::LookThrough(!editor.looks_through()))
         }
@@ -307,7 +309,7 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action>
             let (changed, place) = animation.with_key(time, view);
             vec![
                 Action::Edit(Edit::animation(changed, "Add key")),
-                Action::Time(Time::SelectKeys(BTreeSet::from([place]))),
+                Action::Time(Time::SelectKeys(Keys::from([KeyPlace::of_camera(place)]))),
             ]
         }
         _ => Vec::new(),

@@ -1,0 +1,258 @@
+//! The keys on the line of time: a row for the camera, and one for each value that has some.
+
+use std::sync::Arc;
+
+use egui::{PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
+
+use super::key_menu::menu;
+use super::ruler::playhead;
+use super::scale::Scale;
+use super::strip::{KEY, band, diamond, label};
+use crate::editor::{Action, Edit, Editor, Time};
+use crate::scene::{Animation, Interpolation, Key, KeyPlace, Keys};
+use crate::ui::hint::Hint as _;
+use crate::ui::requests::UiRequests;
+use crate::ui::theme::{TRACK, palette};
+
+/// What the pointer does to the rows from when it is pressed to when it is let go.
+#[derive(Default)]
+pub struct KeyRows {
+    drag: Option<Drag>,
+    /// Where no key was, when a frame around some began.
+    frame: Option<Pos2>,
+    /// What is in the frame.
+    framed: Keys,
+}
+
+/// Keys on their way.
+struct Drag {
+    /// The animation before.
+    before: Arc<Animation>,
+    /// Where they were in it.
+    places: Keys,
+    /// Time of the key that the pointer holds.
+    from: f64,
+    are_copies: bool,
+}
+
+impl KeyRows {
+    /// Whether keys are being moved.
+    pub fn is_dragging(&self) -> bool {
+        self.drag.is_some()
+    }
+
+    /// Keys that are being moved stay where they are.
+    pub fn let_go(&mut self) {
+        self.drag = None;
+    }
+
+    /// Shows all rows: click, Shift-click, drag, Ctrl-drag, a frame around several, and a menu.
+    pub fn show(&mut self, ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) {
+        self.framed.clear();
+        let animation = &editor.scene().animation;
+        if !animation.keys.is_empty() {
+            self.row(ui, (scale, editor), (None, &animation.keys), out);
+        }
+        for (track, own) in animation.tracks.iter().enumerate() {
+            self.row(ui, (scale, editor), (Some(track), &own.keys), out);
+        }
+        self.drag_to_pointer(ui, (scale, editor), out);
+        self.close_frame(ui, editor, out);
+    }
+
+    fn row<T>(
+        &mut self,
+        ui: &mut Ui,
+        (scale, editor): (&Scale, &Editor),
+        (track, keys): (Option<usize>, &[Key<T>]),
+        out: &mut UiRequests,
+    ) {
+        let (rect, response) = band(ui, scale, Sense::click_and_drag());
+        if response.clicked() {
+            out.time(Time::SelectKeys(Keys::new()));
+        }
+        if response.drag_started_by(PointerButton::Primary) {
+            self.frame = ui.input(|input| input.pointer.press_origin());
+        }
+        self.note_framed(ui, (scale, rect), (track, keys));
+        if !ui.is_rect_visible(rect) {
+            return;
+        }
+        let tracks = &editor.scene().animation.tracks;
+        match track.and_then(|track| tracks.get(track)) {
+            Some(track) => label(ui, rect, &track.target.name()),
+            None => label(ui, rect, "Camera"),
+        }
+        ways(ui, scale, rect, keys);
+        playhead(ui, scale, rect, editor);
+        for (index, key) in keys.iter().enumerate() {
+            if scale.shows(key.time) {
+                let at = pos2(scale.x(key.time), rect.center().y);
+                self.key(ui, (at, editor), KeyPlace { track, index }, out);
+            }
+        }
+    }
+
+    fn key(
+        &mut self,
+        ui: &mut Ui,
+        (at, editor): (Pos2, &Editor),
+        place: KeyPlace,
+        out: &mut UiRequests,
+    ) {
+        let animation = &editor.scene().animation;
+        let Some((time, (way, _))) = animation.at_place(place) else {
+            return;
+        };
+        let near = Rect::from_center_size(at, vec2(2.0 * KEY + 2.0, TRACK));
+        let id = ui.scope_id().with(("key", place.track, place.index));
+        let response = ui.interact(near, id, Sense::click_and_drag());
+        let name = animation.name_of(place);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+        let is_on = editor.timeline().selected.contains(&place);
+        let colors = palette(ui.ctx());
+        let fill = match (is_on, response.hovered()) {
+            (true, _) => colors.accent,
+            (false, true) => colors.text,
+            (false, false) => colors.curve,
+        };
+        diamond(ui, at, fill, way == Interpolation::Hold);
+        self.pick(&response, (place, time), editor, out);
+        response.context_menu(|ui| menu(ui, place, editor, out));
+        response.hint(format!(
+            "{name}: {time:.3} s, {}\nDrag to move, Ctrl-drag to copy, Shift-click for several",
+            way.name()
+        ));
+    }
+
+    /// A click selects, a drag starts to move.
+    fn pick(
+        &mut self,
+        response: &Response,
+        (place, time): (KeyPlace, f64),
+        editor: &Editor,
+        out: &mut UiRequests,
+    ) {
+        let selected = &editor.timeline().selected;
+        let modifiers = response.ctx.input(|input| input.modifiers);
+        if response.secondary_clicked() && !selected.contains(&place) {
+            out.time(Time::SelectKeys(Keys::from([place])));
+        }
+        if response.clicked() {
+            let mut places = selected.clone();
+            if !modifiers.shift {
+                places = Keys::from([place]);
+            } else if !places.remove(&place) {
+                places.insert(place);
+            }
+            out.time(Time::SelectKeys(places));
+        }
+        if response.drag_started() {
+            let places = if selected.contains(&place) {
+                selected.clone()
+            } else {
+                Keys::from([place])
+            };
+            // What was done before is none of it, and stays where it is taken back.
+            out.actions.push(Action::BeginGesture);
+            self.drag = Some(Drag {
+                before: Arc::clone(&editor.scene().animation),
+                places,
+                from: time,
+                are_copies: modifiers.command,
+            });
+        }
+    }
+
+    /// Moves what is dragged to the frame at the pointer.
+    fn drag_to_pointer(
+        &mut self,
+        ui: &Ui,
+        (scale, editor): (&Scale, &Editor),
+        out: &mut UiRequests,
+    ) {
+        let Some(held) = &self.drag else { return };
+        let Some(to) = pointed(ui, scale, &held.before) else {
+            self.drag = None;
+            return;
+        };
+        let later = to - held.from;
+        let (moved, new) = held.before.with_moved(&held.places, later, held.are_copies);
+        if moved != *editor.scene().animation {
+            let label = if held.are_copies {
+                "Copy keys"
+            } else {
+                "Move keys"
+            };
+            out.edit(Edit::animation(moved, label));
+        }
+        if new != editor.timeline().selected {
+            out.time(Time::SelectKeys(new));
+        }
+    }
+
+    /// Notes the keys of a row that are in the frame.
+    fn note_framed<T>(
+        &mut self,
+        ui: &Ui,
+        (scale, rect): (&Scale, Rect),
+        (track, keys): (Option<usize>, &[Key<T>]),
+    ) {
+        let Some(frame) = self.frame_to_pointer(ui) else {
+            return;
+        };
+        if !frame.y_range().intersects(rect.y_range()) {
+            return;
+        }
+        let keys = keys.iter().enumerate();
+        let within = keys.filter(|(_, key)| frame.x_range().contains(scale.x(key.time)));
+        let places = within.map(|(index, _)| KeyPlace { track, index });
+        self.framed.extend(places);
+    }
+
+    /// From where the frame began to the pointer.
+    fn frame_to_pointer(&self, ui: &Ui) -> Option<Rect> {
+        let to = ui.input(|input| input.pointer.latest_pos())?;
+        Some(Rect::from_two_pos(self.frame?, to))
+    }
+
+    /// Selects what is in the frame, and draws it.
+    fn close_frame(&mut self, ui: &Ui, editor: &Editor, out: &mut UiRequests) {
+        let Some(frame) = self.frame_to_pointer(ui) else {
+            return;
+        };
+        if self.framed != editor.timeline().selected {
+            out.time(Time::SelectKeys(self.framed.clone()));
+        }
+        let fill = palette(ui.ctx()).accent.gamma_multiply(0.2);
+        ui.painter().rect_filled(frame, 0, fill);
+        if !ui.input(|input| input.pointer.primary_down()) {
+            self.frame = None;
+        }
+    }
+}
+
+/// Lines between keys: straight ones thin, curves thick, none where it is held.
+fn ways<T>(ui: &Ui, scale: &Scale, rect: Rect, keys: &[Key<T>]) {
+    let color = palette(ui.ctx()).line;
+    for pair in keys.windows(2) {
+        let width = match pair[0].interpolation {
+            Interpolation::Hold => continue,
+            Interpolation::Linear => 1.0,
+            Interpolation::Smooth | Interpolation::Orbit { .. } => 3.0,
+        };
+        let ends = [pair[0].time, pair[1].time].map(|time| time.clamp(scale.start, scale.end));
+        let span = scale.x(ends[0])..=scale.x(ends[1]);
+        ui.painter()
+            .hline(span, rect.center().y, Stroke::new(width, color));
+    }
+}
+
+/// The frame's time at the pointer; `None` once it is let go.
+fn pointed(ui: &Ui, scale: &Scale, animation: &Animation) -> Option<f64> {
+    let (is_down, at) =
+        ui.input(|input| (input.pointer.primary_down(), input.pointer.latest_pos()));
+    let at = at.filter(|_| is_down)?;
+    let fps = animation.frames_per_second;
+    Some((scale.time(at.x).max(0.0) * fps).round() / fps)
+}

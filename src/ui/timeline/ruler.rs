@@ -1,0 +1,77 @@
+//! Seconds and frames above the keys, and where the playhead is.
+
+use egui::{Align2, FontId, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+
+use super::scale::Scale;
+use super::strip::{KEY, SMALL, band};
+use crate::editor::{Editor, Time};
+use crate::ui::requests::UiRequests;
+use crate::ui::theme::{GRID, palette};
+
+/// Least room between two times that are written out.
+const APART: f32 = 64.0;
+/// Least room between two marks of frames.
+const FRAME_APART: f32 = 4.0;
+/// Steps of written times, in seconds.
+const STEPS: [f64; 11] = [
+    0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 600.0, 3600.0,
+];
+
+/// Seconds, frames, and the playhead, which follows the pointer.
+pub fn show(ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) {
+    let (rect, response) = band(ui, scale, Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Playhead"));
+    if let Some(pointer) = response.interact_pointer_pos() {
+        out.time(Time::Seek(
+            scale.time(pointer.x).clamp(scale.start, scale.end),
+        ));
+    }
+    let colors = palette(ui.ctx());
+    let painter = ui.painter();
+    let animation = &editor.scene().animation;
+    let per_second = scale.width / scale.seconds() as f32;
+    let step = STEPS
+        .iter()
+        .find(|step| **step as f32 * per_second >= APART);
+    let step = step.copied().unwrap_or(scale.end);
+    let line = Stroke::new(1.0, colors.line);
+    for n in (scale.start / step).ceil().max(0.0) as u32..=(scale.end / step) as u32 {
+        let x = scale.x(f64::from(n) * step);
+        painter.vline(x, rect.y_range(), line);
+        let text = format!("{} s", (f64::from(n) * step * 100.0).round() / 100.0);
+        let at = pos2(x + GRID / 2.0, rect.top());
+        painter.text(
+            at,
+            Align2::LEFT_TOP,
+            text,
+            FontId::proportional(SMALL),
+            colors.muted,
+        );
+    }
+    if per_second / animation.frames_per_second as f32 >= FRAME_APART {
+        let frame_at = |time: f64| (time.max(0.0) * animation.frames_per_second) as u64 + 1;
+        let last = animation.frame_count().min(frame_at(scale.end));
+        for frame in frame_at(scale.start)..=last {
+            let x = scale.x(animation.time_of(frame));
+            painter.vline(x, rect.bottom() - GRID / 2.0..=rect.bottom(), line);
+        }
+    }
+    playhead(ui, scale, rect, editor);
+    if !scale.shows(editor.shown_time()) {
+        return;
+    }
+    let x = scale.x(editor.shown_time());
+    let tip = pos2(x, rect.bottom());
+    let corners = vec![tip + vec2(-KEY, -KEY), tip + vec2(KEY, -KEY), tip];
+    ui.painter()
+        .add(Shape::convex_polygon(corners, colors.accent, Stroke::NONE));
+}
+
+/// A line at the time that is on show.
+pub fn playhead(ui: &Ui, scale: &Scale, rect: Rect, editor: &Editor) {
+    let time = editor.shown_time();
+    if scale.shows(time) {
+        let stroke = Stroke::new(1.0, palette(ui.ctx()).accent);
+        ui.painter().vline(scale.x(time), rect.y_range(), stroke);
+    }
+}
