@@ -10,7 +10,7 @@ use super::paths::Paths;
 use super::roots::Roots;
 use super::scan::{Test, Thicket, scan_lists};
 use super::slip::least_pixels;
-use super::thresholds::{LARGEST_SPREAD, NEAR, ONE_THING, SLIPPING};
+use super::thresholds::{LARGEST_SPREAD, NEAR, ONE_THING, SLIPPING, WIDEST_SPREAD};
 use super::walk::Stack;
 use crate::plan::PackedMesh;
 use crate::primitive::{Approach, Blur, Primitive};
@@ -44,6 +44,19 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         gaze: &Gaze<L>,
         stack: &mut Stack<L::Real>,
     ) -> L {
+        let spread = self.plan.view.spread();
+        let narrow = spread * L::Real::from_f64(LARGEST_SPREAD);
+        let widest = if gaze.is_to_light {
+            narrow
+        } else {
+            spread * L::Real::from_f64(WIDEST_SPREAD)
+        };
+        let is_narrow = gaze.spread.at_most(self.splat(0.0).like(narrow));
+        let is_calm = gaze.spread.at_most(self.splat(0.0).like(widest));
+        let gaze = &Gaze {
+            active: gaze.active & is_calm,
+            ..*gaze
+        };
         let mut test = ThinTest::new(gaze, true, self.infinity());
         scan_lists(self.plan, among, gaze.paths, &mut test);
         let mut best = test.best;
@@ -56,8 +69,6 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             idle: &[],
         };
         let exact = Blur::splat(self.token, Blur::NONE);
-        let widest = self.plan.view.spread() * L::Real::from_f64(LARGEST_SPREAD);
-        let is_narrow = gaze.spread.at_most(self.splat(0.0).like(widest));
         // Apart from each other: boxes are as wide as the widest pixel.
         for (looking, enters) in [(is_narrow, true), (!is_narrow, false)] {
             let looking = gaze.active & looking;
