@@ -11,17 +11,18 @@ use super::grouping::{Held, grouped};
 use crate::primitive::BoundingBox;
 use crate::simd::{Real, Vec3};
 
-/// A node: up to [`GROUP`] boxes, component by component, each of which is one line of the processor's cache in
-/// single precision.
+/// A node: up to [`GROUP`] boxes, component by component, each of which is one line of the processor's cache. Single
+/// precision is enough to hold what is in them: a million faces in double precision take 40 MB less, and each way down
+/// half of the memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub struct Node<R> {
-    /// The lowest x of each box, y, z; then the highest.
-    pub planes: [[[R; GROUP]; 3]; 2],
+pub struct Node {
+    /// The lowest x of each box, y, z; then the highest: rounded outwards.
+    pub planes: [[[f32; GROUP]; 3]; 2],
     /// What the boxes hold: the numbers of members, and of nodes with this bit: [`IS_NODE`].
     children: [u32; GROUP],
-    /// The smallest thickness of what is in each box, see [`crate::primitive::Primitive::thickness`].
-    pub thickness: [R; GROUP],
+    /// The smallest thickness of what is in each box, see [`crate::primitive::Primitive::thickness`]; rounded down.
+    pub thickness: [f32; GROUP],
     /// How many boxes there are.
     pub count: usize,
 }
@@ -44,7 +45,7 @@ pub struct Member<R> {
 #[derive(Clone, Debug)]
 pub struct Bvh<R> {
     /// The nodes, each before those in its boxes.
-    pub nodes: Vec<Node<R>>,
+    pub nodes: Vec<Node>,
     /// The box around everything.
     pub bounds: BoundingBox<R>,
     /// The smallest thickness of any member.
@@ -53,13 +54,13 @@ pub struct Bvh<R> {
     built: f64,
 }
 
-impl<R: Real> Node<R> {
+impl Node {
     /// No boxes.
     pub fn empty() -> Self {
         Self {
-            planes: [[[R::INFINITY; GROUP]; 3], [[-R::INFINITY; GROUP]; 3]],
+            planes: [[[f32::INFINITY; GROUP]; 3], [[-f32::INFINITY; GROUP]; 3]],
             children: [0; GROUP],
-            thickness: [R::INFINITY; GROUP],
+            thickness: [f32::INFINITY; GROUP],
             count: 0,
         }
     }
@@ -71,9 +72,10 @@ impl<R: Real> Node<R> {
 
     /// The box at `place`.
     #[inline(always)]
-    pub fn bounds(&self, place: usize) -> BoundingBox<R> {
-        let corner = |planes: &[[R; GROUP]; 3]| {
-            Vec3::new(planes[0][place], planes[1][place], planes[2][place])
+    pub fn bounds<R: Real>(&self, place: usize) -> BoundingBox<R> {
+        let corner = |planes: &[[f32; GROUP]; 3]| {
+            let [x, y, z] = planes;
+            Vec3::new(x[place], y[place], z[place]).map(R::from_single)
         };
         BoundingBox {
             low: corner(&self.planes[0]),
@@ -117,26 +119,28 @@ impl<R: Real> Node<R> {
         self.count = last;
     }
 
-    fn set(&mut self, place: usize, member: &Member<R>) {
-        let Member { bounds, thickness } = member;
-        for (planes, corner) in self.planes.iter_mut().zip([bounds.low, bounds.high]) {
-            for (plane, coordinate) in planes.iter_mut().zip(corner.to_array()) {
+    fn set<R: Real>(&mut self, place: usize, member: &Member<R>) {
+        let BoundingBox { low, high } = member.bounds;
+        let low = low.to_array().map(below);
+        let high = high.to_array().map(|high| -below(-high));
+        for (planes, corner) in self.planes.iter_mut().zip([low, high]) {
+            for (plane, coordinate) in planes.iter_mut().zip(corner) {
                 plane[place] = coordinate;
             }
         }
-        self.thickness[place] = *thickness;
+        self.thickness[place] = below(member.thickness);
     }
 
     /// The box at `place` as if it were a member.
-    fn get(&self, place: usize) -> Member<R> {
+    fn get<R: Real>(&self, place: usize) -> Member<R> {
         Member {
             bounds: self.bounds(place),
-            thickness: self.thickness[place],
+            thickness: R::from_single(self.thickness[place]),
         }
     }
 
     /// All boxes together.
-    fn around(&self) -> Member<R> {
+    fn around<R: Real>(&self) -> Member<R> {
         (0..self.count).fold(Member::nothing(), |around, place| {
             around.and(&self.get(place))
         })
@@ -243,6 +247,17 @@ impl<R: Real> Bvh<R> {
     }
 }
 
+/// The largest number in single precision that is not above another one.
+fn below<R: Real>(number: R) -> f32 {
+    let number = number.to_f64();
+    let nearest = number as f32;
+    if f64::from(nearest) > number {
+        nearest.next_down()
+    } else {
+        nearest
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::grouping::DEEPEST;
@@ -272,6 +287,14 @@ mod tests {
         outer.and(inner) == *outer
     }
 
+    /// Boxes in single precision are no larger than that asks for.
+    fn is_near(outer: &BoundingBox<f64>, inner: &BoundingBox<f64>) -> bool {
+        let off = (outer.low - inner.low)
+            .max_abs()
+            .max((outer.high - inner.high).max_abs());
+        off <= 100.0 * f64::from(f32::EPSILON)
+    }
+
     /// Every member is held once, and by all boxes above it.
     fn is_whole(bvh: &Bvh<f64>, members: &[Member<f64>]) -> bool {
         let mut found = vec![0; members.len()];
@@ -287,7 +310,8 @@ mod tests {
                     Child::Node(node) => waiting.push((node, held.bounds, depth + 1)),
                     Child::Member(member) => {
                         found[member as usize] += 1;
-                        if held.bounds != members[member as usize].bounds {
+                        let own = &members[member as usize].bounds;
+                        if !holds(&held.bounds, own) || !is_near(&held.bounds, own) {
                             return false;
                         }
                     }
@@ -304,7 +328,7 @@ mod tests {
             let mut bvh = tree(&members);
             prop_assert!(is_whole(&bvh, &members));
             let thinnest = members.iter().map(|member| member.thickness).fold(f64::INFINITY, f64::min);
-            prop_assert_eq!(bvh.thinnest, thinnest);
+            prop_assert_eq!(bvh.thinnest, f64::from(below(thinnest)));
             for moved in &mut members {
                 moved.bounds.high = moved.bounds.high + Vec3::new(1.0, 2.0, 0.0);
             }

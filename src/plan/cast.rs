@@ -62,15 +62,16 @@ pub fn is_outside<R: Real>(triangles: &[PackedTriangle<R>], bvh: &Bvh<R>, point:
 
 /// Where a ray enters and leaves the boxes of a node.
 fn slabs<R: Real>(
-    planes: &[[[R; GROUP]; 3]; 2],
+    planes: &[[[f32; GROUP]; 3]; 2],
     origin: [R; 3],
     inverse: [R; 3],
 ) -> ([R; GROUP], [R; GROUP]) {
     let (mut near, mut far) = ([R::ZERO; GROUP], [R::INFINITY; GROUP]);
     for axis in 0..3 {
         for place in 0..GROUP {
-            let low = (planes[0][axis][place] - origin[axis]) * inverse[axis];
-            let high = (planes[1][axis][place] - origin[axis]) * inverse[axis];
+            let plane = |side: usize| R::from_single(planes[side][axis][place]);
+            let low = (plane(0) - origin[axis]) * inverse[axis];
+            let high = (plane(1) - origin[axis]) * inverse[axis];
             near[place] = near[place].max(low.min(high));
             far[place] = far[place].min(low.max(high));
         }

@@ -43,16 +43,21 @@ pub fn measures<R: Real>(
         let is_alike = |&[one, other]: &[u32; 2]| material_of(one) == material_of(other);
         parts = parts_along_edges(points.len(), borders.pairs().filter(is_alike));
     }
+    let is_closed = borders.is_closed();
+    let width = |&face: &u32| faces.width(face as usize, &borders);
+    let widths: Vec<R> = borders.faces.iter().map(width).collect();
+    let at_borders = borders.faces;
+    // Those of a million faces are not kept while the rest takes its room.
+    drop(borders.edges);
     let mut thicknesses = faces.depths();
-    for &face in &borders.faces {
-        let width = faces.width(face as usize, &borders);
+    for (&face, width) in at_borders.iter().zip(widths) {
         let thickness = &mut thicknesses[face as usize];
         *thickness = thickness.min(width);
     }
     Measures {
-        tips: tips(triangles, points, &borders.faces),
+        tips: tips(triangles, points, &at_borders),
         thicknesses,
-        is_closed: borders.is_closed(),
+        is_closed,
         parts,
     }
 }

@@ -54,6 +54,8 @@ pub trait SimdFloat:
     fn from_fn(token: Self::Token, number: impl FnMut(usize) -> Self::Real) -> Self;
     /// The first [`Self::WIDTH`] numbers of a slice that has as many.
     fn load(token: Self::Token, numbers: &[Self::Real]) -> Self;
+    /// The same of numbers in single precision.
+    fn load_singles(token: Self::Token, numbers: &[f32]) -> Self;
     /// Writes the lanes to the start of a slice that has room for them.
     fn store(self, numbers: &mut [Self::Real]);
     /// The number in one lane, `index` < [`Self::WIDTH`].
@@ -114,6 +116,16 @@ pub trait Real:
     fn from_f64(value: f64) -> Self;
     /// The same number in double precision (exact).
     fn to_f64(self) -> f64;
+    /// As many numbers as a row has, of which these are the first.
+    fn row_of_singles<S: Simd, V: fearless_simd::SimdFloat<S, Element = Self>>(
+        token: S,
+        numbers: &[f32],
+    ) -> V;
+    /// The same number.
+    #[inline(always)]
+    fn from_single(number: f32) -> Self {
+        Self::from_f64(number.into())
+    }
     /// The nearest whole number, of two the even one; for 0 ≤ self < 2²².
     fn nearest(self) -> u32;
 }
@@ -135,6 +147,19 @@ macro_rules! real {
             #[inline(always)]
             fn to_f64(self) -> f64 {
                 self.into()
+            }
+            #[inline(always)]
+            fn row_of_singles<S: Simd, V: fearless_simd::SimdFloat<S, Element = Self>>(
+                token: S,
+                numbers: &[f32],
+            ) -> V {
+                let numbers = &numbers[..V::LEN];
+                // In a loop, which is done for all in step; in a closure it would not be.
+                let mut row = [0.0; MAX_LANES];
+                for (own, &number) in row.iter_mut().zip(numbers) {
+                    *own = <Self as Real>::from_single(number);
+                }
+                V::from_slice(token, &row[..V::LEN])
             }
             #[inline(always)]
             fn nearest(self) -> u32 {
@@ -180,6 +205,10 @@ macro_rules! single_lane {
             #[inline(always)]
             fn load((): (), numbers: &[Self]) -> Self {
                 numbers[0]
+            }
+            #[inline(always)]
+            fn load_singles((): (), numbers: &[f32]) -> Self {
+                Self::from_single(numbers[0])
             }
             #[inline(always)]
             fn store(self, numbers: &mut [Self]) {
@@ -330,6 +359,10 @@ where
     #[inline(always)]
     fn load(token: S, numbers: &[Self::Real]) -> Self {
         wide(V::from_slice(token, &numbers[..V::LEN]))
+    }
+    #[inline(always)]
+    fn load_singles(token: S, numbers: &[f32]) -> Self {
+        wide(V::Element::row_of_singles(token, numbers))
     }
     #[inline(always)]
     fn store(self, numbers: &mut [Self::Real]) {

@@ -27,11 +27,11 @@ pub struct Bounce<L: SimdFloat> {
     /// What the rays can meet.
     pub seen: Candidates,
     /// Where to start in the trees.
-    pub roots: Roots<L::Real>,
+    pub roots: Roots,
     /// Those of them that may slip between samples.
     pub thin: Candidates,
     /// What can cast shadows where they meet something, light by light.
-    pub lights: Vec<LightCandidates<L::Real>>,
+    pub lights: Vec<LightCandidates>,
     /// What tells edges, for each packet.
     pub signatures: Vec<[u32; MAX_LANES]>,
     /// Which of the samples the rays are, if they were put in another order.

@@ -158,13 +158,7 @@ impl<L: SimdFloat> Bundle<L> {
     /// Which of the rays meet the box at `place` of a node, or pass within `beside` of its sides, before
     /// their own `reach`: slabs, as Kay and Kajiya, "Ray tracing complex scenes", SIGGRAPH 1986.
     #[inline(always)]
-    pub fn each_meets(
-        &self,
-        node: &Node<L::Real>,
-        place: usize,
-        reach: L,
-        beside: L::Real,
-    ) -> L::Mask {
+    pub fn each_meets(&self, node: &Node, place: usize, reach: L, beside: L::Real) -> L::Mask {
         let mut near = reach.like(L::Real::ZERO);
         let mut far = reach;
         let [below, above] = &self.origins;
@@ -174,8 +168,9 @@ impl<L: SimdFloat> Bundle<L> {
             (below.z, above.z, self.inverse.z),
         ];
         for (axis, (below, above, inverse)) in origins.into_iter().enumerate() {
-            let low = reach.like(node.planes[0][axis][place] - beside);
-            let high = reach.like(node.planes[1][axis][place] + beside);
+            let low = L::Real::from_single(node.planes[0][axis][place]);
+            let high = L::Real::from_single(node.planes[1][axis][place]);
+            let (low, high) = (reach.like(low - beside), reach.like(high + beside));
             // The origin is moved away from either plane, so that the box grows.
             let (low, high) = ((low - above) * inverse, (high - below) * inverse);
             near = near.max(low.min(high));
@@ -195,7 +190,7 @@ impl<L: SimdFloat> Bundle<L> {
     pub fn few_meet(
         &self,
         mut lanes: u64,
-        node: &Node<L::Real>,
+        node: &Node,
         reach: L,
         nears: &mut [L::Real; GROUP],
     ) -> u64 {
@@ -264,7 +259,7 @@ impl<R: Real> Shaft<R> {
     pub fn meets<L: SimdFloat<Real = R>>(
         &self,
         token: L::Token,
-        node: &Node<R>,
+        node: &Node,
         reach: R,
         nears: &mut [R; GROUP],
     ) -> u64 {
@@ -283,7 +278,7 @@ impl<R: Real> Shaft<R> {
     pub fn grazes<L: SimdFloat<Real = R>>(
         &self,
         token: L::Token,
-        node: &Node<R>,
+        node: &Node,
         reach: R,
         beside: &Beside<R>,
         widths: &mut [R; GROUP],
@@ -293,7 +288,7 @@ impl<R: Real> Shaft<R> {
             let width = self.distance::<L>(token, node, first) * L::splat(token, beside.spread)
                 + L::splat(token, beside.width);
             width.store(&mut widths[first..]);
-            let thickness = L::load(token, &node.thickness[first..]);
+            let thickness = L::load_singles(token, &node.thickness[first..]);
             let is_thin = thickness.less(width * L::splat(token, beside.thickest));
             if is_thin.any() {
                 let reach = beside.end(L::splat(token, reach), width);
@@ -306,12 +301,12 @@ impl<R: Real> Shaft<R> {
 
     /// How far the farthest corner of each box is from where a ray starts, at most.
     #[inline(always)]
-    fn distance<L: SimdFloat<Real = R>>(&self, token: L::Token, node: &Node<R>, from: usize) -> L {
+    fn distance<L: SimdFloat<Real = R>>(&self, token: L::Token, node: &Node, from: usize) -> L {
         let mut sum = L::splat(token, R::ZERO);
         for (axis, common) in self.axes.iter().enumerate() {
             let [one, other] = common.origins;
-            let low = L::load(token, &node.planes[0][axis][from..]);
-            let high = L::load(token, &node.planes[1][axis][from..]);
+            let low = L::load_singles(token, &node.planes[0][axis][from..]);
+            let high = L::load_singles(token, &node.planes[1][axis][from..]);
             let above = high - L::splat(token, one.min(other));
             let below = L::splat(token, one.max(other)) - low;
             sum = sum + above.max(below).max(L::splat(token, R::ZERO));
@@ -324,7 +319,7 @@ impl<R: Real> Shaft<R> {
     #[inline(always)]
     fn slabs<L: SimdFloat<Real = R>>(
         &self,
-        node: &Node<R>,
+        node: &Node,
         from: usize,
         reach: L,
         beside: Option<L>,
@@ -334,8 +329,8 @@ impl<R: Real> Shaft<R> {
         let mut far = reach;
         for (axis, common) in self.axes.iter().enumerate() {
             let Some(first) = common.first else { continue };
-            let enter = L::load(token, &node.planes[first][axis][from..]);
-            let leave = L::load(token, &node.planes[1 - first][axis][from..]);
+            let enter = L::load_singles(token, &node.planes[first][axis][from..]);
+            let leave = L::load_singles(token, &node.planes[1 - first][axis][from..]);
             let mut enter = enter - L::splat(token, common.origins[0]);
             let mut leave = leave - L::splat(token, common.origins[1]);
             if let Some(beside) = beside {

@@ -23,7 +23,7 @@ pub struct Among<'a, R> {
     /// The lists, and whether there is anything in the trees.
     pub candidates: &'a Candidates,
     /// Where to start in the trees.
-    pub roots: &'a Roots<R>,
+    pub roots: &'a Roots,
     /// The light that the rays go to, if they do.
     pub light: Option<&'a PointLight<R>>,
     /// For each mesh, the faces that are not tested, if there are any.

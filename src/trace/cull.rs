@@ -35,11 +35,11 @@ impl<R> Default for Scratch<R> {
 
 /// What can stand between a light and the hits of a tile.
 #[derive(Clone, Debug, Default)]
-pub struct LightCandidates<R> {
+pub struct LightCandidates {
     /// What may block the light for some of them.
     pub casters: Candidates,
     /// Where to start in the trees.
-    pub roots: Roots<R>,
+    pub roots: Roots,
     /// Those of them whose shadows may slip between samples.
     pub thin: Candidates,
     /// Whether one primitive blocks it for all of them.
@@ -108,7 +108,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     #[inline(always)]
     pub fn keep_between(
         self,
-        between: &mut LightCandidates<L::Real>,
+        between: &mut LightCandidates,
         light: &PointLight<L::Real>,
         (ball, footprint): (&Ball, Option<L::Real>),
         scratch: &mut Scratch<L::Real>,
@@ -158,7 +158,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     #[inline(always)]
     pub fn enter_towards(
         self,
-        between: &mut LightCandidates<L::Real>,
+        between: &mut LightCandidates,
         light: &PointLight<L::Real>,
         (hits, footprint): (&BoundingBox<L::Real>, Option<L::Real>),
     ) {

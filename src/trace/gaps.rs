@@ -17,7 +17,7 @@ use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// Whether some light may leave gaps between the shadows of two of its casters.
     #[inline(always)]
-    pub fn may_leave_gaps(self, lights: &[LightCandidates<L::Real>]) -> bool {
+    pub fn may_leave_gaps(self, lights: &[LightCandidates]) -> bool {
         let mut lights = lights.iter().enumerate();
         lights.any(|(light, candidates)| {
             weight_of(light).is_some() && candidates.casters.are_several(self.plan)
@@ -31,7 +31,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     #[inline(never)]
     pub fn shadows_at(
         self,
-        lights: &[LightCandidates<L::Real>],
+        lights: &[LightCandidates],
         (hit, footprint, brightness): (&Hit<L>, &Footprint<L>, L),
         lit: L,
         stack: &mut Stack<L::Real>,

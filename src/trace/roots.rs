@@ -2,7 +2,7 @@
 
 use super::bundle::Shaft;
 use crate::plan::{Bvh, Child, GROUP, Geometry, Node};
-use crate::simd::{Real, SimdFloat};
+use crate::simd::{Real as _, SimdFloat};
 
 /// Most meshes that a tile has starts of their own for; the others are entered at their roots.
 const MESHES: usize = 4;
@@ -10,12 +10,12 @@ const MESHES: usize = 4;
 /// For a tile's rays, the nodes to start from. A node of these may be in no tree: its boxes come from
 /// several, and together hold everything that the rays can meet.
 #[derive(Clone, Debug, Default)]
-pub struct Roots<R> {
-    objects: Option<Node<R>>,
-    meshes: Vec<(u32, Node<R>)>,
+pub struct Roots {
+    objects: Option<Node>,
+    meshes: Vec<(u32, Node)>,
 }
 
-impl<R: Real> Roots<R> {
+impl Roots {
     /// The roots of the trees themselves.
     pub fn forget(&mut self) {
         self.objects = None;
@@ -24,12 +24,12 @@ impl<R: Real> Roots<R> {
 
     /// Finds the starts of rays that go no farther than `reach`. Whether they can meet anything.
     #[inline(never)]
-    pub fn narrow<L: SimdFloat<Real = R>>(
+    pub fn narrow<L: SimdFloat>(
         &mut self,
         token: L::Token,
-        geometry: &Geometry<R>,
-        shaft: &Shaft<R>,
-        reach: R,
+        geometry: &Geometry<L::Real>,
+        shaft: &Shaft<L::Real>,
+        reach: L::Real,
     ) -> bool {
         L::vectorize(
             token,
@@ -39,12 +39,12 @@ impl<R: Real> Roots<R> {
     }
 
     #[inline(always)]
-    fn narrow_vectorized<L: SimdFloat<Real = R>>(
+    fn narrow_vectorized<L: SimdFloat>(
         &mut self,
         token: L::Token,
-        geometry: &Geometry<R>,
-        shaft: &Shaft<R>,
-        reach: R,
+        geometry: &Geometry<L::Real>,
+        shaft: &Shaft<L::Real>,
+        reach: L::Real,
     ) -> bool {
         self.meshes.clear();
         let Some(mut objects) = start::<L>(token, &geometry.bvh, shaft, reach) else {
@@ -72,13 +72,13 @@ impl<R: Real> Roots<R> {
 
     /// Where to start among the objects.
     #[inline(always)]
-    pub fn of_objects<'a>(&'a self, geometry: &'a Geometry<R>) -> Option<&'a Node<R>> {
+    pub fn of_objects<'a, R>(&'a self, geometry: &'a Geometry<R>) -> Option<&'a Node> {
         self.objects.as_ref().or(geometry.bvh.nodes.first())
     }
 
     /// Where to start in a mesh.
     #[inline(always)]
-    pub fn of_mesh<'a>(&'a self, geometry: &'a Geometry<R>, mesh: usize) -> Option<&'a Node<R>> {
+    pub fn of_mesh<'a, R>(&'a self, geometry: &'a Geometry<R>, mesh: usize) -> Option<&'a Node> {
         let own = self
             .meshes
             .iter()
@@ -97,7 +97,7 @@ fn start<L: SimdFloat>(
     bvh: &Bvh<L::Real>,
     shaft: &Shaft<L::Real>,
     reach: L::Real,
-) -> Option<Node<L::Real>> {
+) -> Option<Node> {
     let mut nears = [L::Real::ZERO; GROUP];
     let mut met = Node::empty();
     met.take_met(
@@ -121,7 +121,7 @@ fn start<L: SimdFloat>(
     (met.count > 0).then_some(met)
 }
 
-impl<R: Real> Node<R> {
+impl Node {
     /// Takes over the boxes of a node whose bits are set.
     #[inline(always)]
     fn take_met(&mut self, from: &Self, mut bits: u64) {

@@ -108,7 +108,7 @@ pub struct Thicket<'a, L: SimdFloat> {
     /// The number of its first primitive.
     pub first: usize,
     /// Where to start; at the roots of the trees, to look beside the rays.
-    pub roots: &'a Roots<L::Real>,
+    pub roots: &'a Roots,
     /// For each mesh, the faces that are not tested, if there are any.
     pub idle: &'a [Option<Arc<IdleFaces>>],
     /// The point that boxes are held against the ways from, see [`Bundle::from_point`].

@@ -38,9 +38,9 @@ pub struct Shader<'a, L: SimdFloat, const TREE: bool> {
     /// What rays can meet, or just miss, that may slip between samples.
     pub thin: &'a Candidates,
     /// What can stand before each light.
-    pub lights: &'a [LightCandidates<L::Real>],
+    pub lights: &'a [LightCandidates],
     /// The same, if one may shine between the shadows of two of them, and somebody looks for that.
-    pub gaps: Option<&'a [LightCandidates<L::Real>]>,
+    pub gaps: Option<&'a [LightCandidates]>,
 }
 
 /// What is noted of a packet, where it is.
@@ -62,7 +62,7 @@ struct ShadingPoint<'a, L: SimdFloat> {
 struct LightSource<'a, R> {
     index: usize,
     light: &'a PointLight<R>,
-    candidates: &'a LightCandidates<R>,
+    candidates: &'a LightCandidates,
 }
 
 impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {

@@ -58,7 +58,7 @@ const START: u32 = u32::MAX;
 /// Shows `seek` the members that the rays may meet, from a node on.
 #[inline(always)]
 pub fn walk<L: SimdFloat>(
-    (bvh, start): (&Bvh<L::Real>, &Node<L::Real>),
+    (bvh, start): (&Bvh<L::Real>, &Node),
     bundle: &Bundle<L>,
     stack: &mut Stack<L::Real>,
     seek: &mut impl Seek<L>,
@@ -164,7 +164,8 @@ pub fn walk_beside<L: SimdFloat>(
                     let mut settled = settled;
                     let ball = node.bounds(place as usize).ball();
                     if ball.1 + ball.1 < width * L::Real::from_f64(ONE_THING) {
-                        settled |= seek.settle(ball, node.thickness[place as usize]);
+                        let thickness = L::Real::from_single(node.thickness[place as usize]);
+                        settled |= seek.settle(ball, thickness);
                     }
                     if settled & all != all {
                         stack.push(Waiting {
