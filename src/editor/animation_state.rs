@@ -190,6 +190,22 @@ impl AnimationState {
         self.shown = shown;
     }
 
+    /// The scene with the objects in these places as they are on show.
+    pub fn posed(&self, scene: &Scene, places: &[usize]) -> Scene {
+        let mut posed = scene.clone();
+        for &place in places {
+            let shown = self.shown.objects.get(place);
+            let own = scene.objects.get(place);
+            if let Some((shown, own)) = shown.zip(own)
+                && shown.shape != own.shape
+                && let Some(object) = posed.objects.get_mut(place)
+            {
+                object.shape.clone_from(&shown.shape);
+            }
+        }
+        posed
+    }
+
     /// What has keys gets one at the time that is on show, where the edit from `scene` to `next`
     /// has changed it, or has put something else in place of what is on show; the scene's own value stays.
     pub fn key_tracked(&self, scene: &Scene, next: &mut Scene, replaced: &Replaced) {

@@ -1,5 +1,6 @@
 //! The open document: [`Editor::apply`] is the one place that changes it.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -34,6 +35,8 @@ pub struct Editor {
     pub(super) is_dirty: bool,
     /// Mesh files that other programs have written since the document was opened, as they are now.
     pub(super) reread: Vec<MeshSource>,
+    /// Mesh files that were read, and hold something else now that cannot be.
+    pub(super) broken: BTreeSet<PathBuf>,
     pub(super) history: History,
     flight: Flight,
     pub(super) animation_state: AnimationState,
@@ -73,6 +76,7 @@ impl Editor {
             documents: 0,
             is_dirty: false,
             reread: Vec::new(),
+            broken: BTreeSet::new(),
             history: History::default(),
             flight: Flight::default(),
             selection: Selection::default(),
@@ -262,9 +266,14 @@ impl Editor {
     /// # Errors
     /// Why it could not be written; the document then still counts as changed.
     pub fn save(&mut self, path: &Path) -> Result<(), SceneError> {
-        let gone: Vec<_> = self.scene.gone_mesh_files().into_iter().collect();
-        let gone = gone.join(", ");
-        let (backup, stamp) = self.document().save_stamped(path)?;
+        let document = self.document();
+        let (backup, stamp) = document.save_stamped(path)?;
+        let lost = self.lost_meshes();
+        // What is in the scene file now follows no other file.
+        let scene = document.scene_at(path);
+        if scene != *self.scene {
+            self.set_scene(Arc::new(scene));
+        }
         self.path = Some(absolute(path));
         self.stamp = Some(stamp);
         self.saves += 1;
@@ -276,13 +285,7 @@ impl Editor {
                 backup.display()
             )
         });
-        let gone = match &gone[..] {
-            "" => String::new(),
-            gone => format!(
-                "; what was in {gone} is in the scene file now: there is no such file any more"
-            ),
-        };
-        self.notify(format!("Saved {}{kept}{gone}", path.display()));
+        self.notify(format!("Saved {}{kept}{lost}", path.display()));
         Ok(())
     }
 
@@ -303,7 +306,7 @@ impl Editor {
     pub fn document(&self) -> Document {
         Document {
             header: self.header.clone(),
-            scene: Scene::clone(&self.scene),
+            scene: self.scene.without_files(&self.broken),
         }
     }
 
@@ -311,10 +314,9 @@ impl Editor {
     /// not be found again, is taken in.
     pub fn document_to_keep(&self) -> Document {
         let folder = self.path().and_then(Path::parent);
-        Document {
-            header: self.header.clone(),
-            scene: self.scene.taken_to(folder.unwrap_or(Path::new(""))),
-        }
+        let Document { header, scene } = self.document();
+        let scene = scene.taken_to(folder.unwrap_or(Path::new("")));
+        Document { header, scene }
     }
 
     pub(super) fn replace(&mut self, document: Document, path: Option<PathBuf>) {
@@ -343,9 +345,10 @@ impl Editor {
         let label = edit.label(&self.scene);
         let is_camera = matches!(edit, Edit::Camera(..));
         // What moves the joined things is taken along by it.
-        let is_join = matches!(edit, Edit::Join(_) | Edit::Separate(_));
+        let is_join = !edit.joined().is_empty();
         let replaced = edit.replaced();
-        let mut next = Scene::clone(&self.scene);
+        let posed = self.animation_state.posed(&self.scene, edit.joined());
+        let mut next = posed.clone();
         let selection = match edit.apply(&mut next) {
             Ok(selection) => selection,
             Err(error) => {
@@ -360,7 +363,7 @@ impl Editor {
         if is_camera {
             self.animation_state.look_at_view();
         }
-        if next == *self.scene {
+        if next == posed {
             return true;
         }
         if let Err(problem) = check_edit(&next, &self.scene) {
@@ -368,6 +371,9 @@ impl Editor {
             return false;
         }
         self.forget_refusal();
+        if is_join {
+            self.tell_lost_keys(&label, &next);
+        }
         let before = self.here();
         self.history.record(label, before, &next);
         match selection {
@@ -390,14 +396,14 @@ impl Editor {
             scene: Arc::clone(&self.scene),
             selection: self.selection,
             selected: self.selected.clone(),
+            keys: self.timeline().selected.clone(),
         }
     }
 
     fn return_to(&mut self, there: Snapshot) {
         self.select(there.selected, there.selection);
-        // Keys are known by their places, which may be others' now.
-        self.animation_state.deselect_keys();
         self.set_scene(self.refreshed(&there.scene));
+        self.animation_state.timeline.selected = there.keys;
     }
 
     /// What is selected stays so, wherever it is in the lists of the scene that comes.

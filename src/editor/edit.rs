@@ -134,6 +134,15 @@ impl Edit {
         Self::Object(index, Box::new(object), field)
     }
 
+    /// The objects that are joined, or taken apart: they stay where they are on show.
+    pub fn joined(&self) -> &[usize] {
+        match self {
+            Self::Join(joined) => joined,
+            Self::Separate(index) => std::slice::from_ref(index),
+            _ => &[],
+        }
+    }
+
     /// What it puts in place of what is on show.
     pub fn replaced(&self) -> Replaced {
         let mut replaced = Replaced::default();

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::selection::{Selected, Selection};
-use crate::scene::Scene;
+use crate::scene::{Keys, Scene};
 
 /// Steps that can be taken back; older ones are forgotten.
 const MOST_STEPS: usize = 500;
@@ -20,6 +20,8 @@ pub struct Snapshot {
     pub selection: Selection,
     /// What was selected.
     pub selected: Selected,
+    /// The keys that were selected.
+    pub keys: Keys,
 }
 
 /// A step that was done, or taken back.
@@ -131,6 +133,7 @@ mod tests {
             scene: Arc::new(scene.clone()),
             selection: Selection::default(),
             selected: Selected::default(),
+            keys: Keys::default(),
         }
     }
 

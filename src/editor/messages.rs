@@ -2,6 +2,7 @@
 
 use super::action::Message;
 use super::document::Editor;
+use crate::scene::{Scene, Track};
 
 /// What messages about edits are about.
 const EDIT: &str = "edit";
@@ -61,6 +62,17 @@ impl Editor {
     pub(super) fn tell_broken_mesh(&mut self, why: &str) {
         self.begin(MESHES);
         self.report_error_in(MESHES, format!("{why}; what was read of it before stays"));
+    }
+
+    /// Says which values have no keys any more after an edit of this name.
+    pub(super) fn tell_lost_keys(&mut self, label: &str, next: &Scene) {
+        let is_lost = |track: &&Track| next.animation.track(&track.target).is_none();
+        let lost = self.scene.animation.tracks.iter().filter(is_lost);
+        let names: Vec<String> = lost.map(|track| track.target.name()).collect();
+        if !names.is_empty() {
+            let names = names.join(", ");
+            self.notify(format!("{label}: it has no keys of {names} any more"));
+        }
     }
 
     /// Tells why an edit is not made.

@@ -1,5 +1,6 @@
 //! What other programs, and other runs of this one, have written.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -62,25 +63,42 @@ impl Editor {
     /// Takes what another program has written to a file of meshes, wherever the document shows them: now, and before or
     /// after any step that is undone or done again. What cannot be read any more stays as it is.
     pub fn take_mesh(&mut self, read: MeshSource) {
-        let Some((_, path)) = read.reference() else {
+        let Some((folder, path)) = read.reference() else {
             return;
         };
-        let path = path.to_owned();
+        let (full, path) = (folder.join(path), path.to_owned());
         if let Some(why) = read.problem() {
+            self.broken.insert(full);
             return self.tell_broken_mesh(why);
         }
+        self.broken.remove(&full);
         self.reread
             .retain(|old| old.reference() != read.reference());
         self.reread.push(read);
         let scene = self.refreshed(&self.scene);
-        if Arc::ptr_eq(&scene, &self.scene) {
-            return;
+        if !Arc::ptr_eq(&scene, &self.scene) {
+            self.saved = self.refreshed(&self.saved);
+            self.set_scene(scene);
+            self.notify(format!(
+                "{path} was changed by another program and read anew"
+            ));
         }
-        self.saved = self.refreshed(&self.saved);
-        self.set_scene(scene);
-        self.notify(format!(
-            "{path} was changed by another program and read anew"
-        ));
+        self.tell_missing_meshes();
+    }
+
+    /// Says which meshes are in the scene file once it is saved, because their own files are gone or broken; nothing
+    /// for none.
+    pub(super) fn lost_meshes(&self) -> String {
+        let files = self.scene.mesh_files().into_iter();
+        let broken = files.filter(|(folder, path)| self.broken.contains(&folder.join(path)));
+        let gone = self.scene.gone_mesh_files().into_iter();
+        let lost: BTreeSet<&str> = gone.chain(broken.map(|(_, path)| path)).collect();
+        match &lost.into_iter().collect::<Vec<_>>().join(", ")[..] {
+            "" => String::new(),
+            names => format!(
+                "; what was in {names} is in the scene file now: that is gone, or cannot be read any more"
+            ),
+        }
     }
 
     /// The scene with what mesh files hold now.

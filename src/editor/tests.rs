@@ -72,12 +72,34 @@ fn hiding_leaves_keys_alone_and_joining_takes_them_along() {
     assert_eq!(editor.scene().animation, before);
     assert_eq!(editor.scene().objects[2].shape.position(), place);
 
+    // Joined and taken apart, things stay where they are on show, and what has no keys any more is said.
+    editor.apply(Action::Edit(
+        Edit::visible(editor.shown(), Item::object(2), true).expect("one"),
+    ));
+    let bounds = editor.shown().objects_bounds().expect("objects");
+    let stays = |editor: &Editor| {
+        let new = editor.shown().objects_bounds().expect("objects");
+        (new.0 - bounds.0).length() < 1e-9 && (new.1 - bounds.1).length() < 1e-9
+    };
+    editor.apply(Action::Edit(Edit::Separate(2)));
+    assert!(stays(&editor) && editor.scene().animation.tracks.is_empty());
+    let said = editor.messages.last().expect("a message");
+    assert!(
+        said.text.contains("position") && said.text.contains("rotation"),
+        "{said:?}"
+    );
+    editor.apply(Action::Undo);
     editor.apply(Action::Edit(Edit::Join(vec![2, 3])));
+    assert!(stays(&editor));
     let scene = editor.scene();
     let tracks = &scene.animation.tracks;
     assert_eq!((tracks.len(), tracks[0].keys.len()), (1, 2));
     let place = scene.objects[2].shape.position();
-    for (key, there) in tracks[0].keys.iter().zip([place, place + DVec3::X * 10.0]) {
+    for (key, there) in tracks[0]
+        .keys
+        .iter()
+        .zip([-5.0, 5.0].map(|x| place + DVec3::X * x))
+    {
         let Value::Point(key) = key.value else {
             panic!("a place");
         };

@@ -230,6 +230,11 @@ impl Document {
         self.save_stamped(path).map(|(backup, _)| backup)
     }
 
+    /// The scene as a file in this place has it: what is in no file beside it is in the scene itself.
+    pub fn scene_at(&self, path: &Path) -> Scene {
+        self.scene.taken_to(&folder_of(path))
+    }
+
     /// The same, with what the file holds now.
     ///
     /// # Errors
@@ -237,7 +242,7 @@ impl Document {
     pub fn save_stamped(&self, path: &Path) -> Result<(Option<PathBuf>, Stamp), SceneError> {
         let document = Self {
             header: self.header.clone(),
-            scene: self.scene.taken_to(&folder_of(path)),
+            scene: self.scene_at(path),
         };
         let text = document.to_text()?;
         // What could not be read again is not written.

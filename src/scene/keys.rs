@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 
-use super::animation::{Animation, Easing, Interpolation, Key, Target, Track, Value};
+use super::animation::{Animation, Easing, Interpolation, Key, MAX_SECONDS, Target, Track, Value};
 use super::camera::Camera;
 
 /// Keys nearer to each other than this share of a frame are one.
@@ -120,11 +120,13 @@ impl Animation {
     }
 
     /// With these keys, or copies of them, so many seconds later; they replace what they land on, and none goes before
-    /// the start. Also their new places.
+    /// the start or behind [`MAX_SECONDS`]. Also their new places.
     pub fn with_moved(&self, places: &Keys, later: f64, are_copies: bool) -> (Self, Keys) {
         let times = places.iter().filter_map(|place| self.at_place(*place));
-        let first = times.map(|(time, _)| time).fold(f64::INFINITY, f64::min);
-        let way = (later.max(-first), are_copies);
+        let (first, last) = times.fold((MAX_SECONDS, 0.0), |(first, last), (time, _)| {
+            (time.min(first), time.max(last))
+        });
+        let way = (later.clamp(-first, MAX_SECONDS - last), are_copies);
         let (mut animation, mut new) = (self.clone(), Keys::new());
         let mut note = |track, indices: Vec<usize>| {
             let place = |index| KeyPlace { track, index };

@@ -1,7 +1,7 @@
 //! The scene itself.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -182,6 +182,15 @@ impl Scene {
             .into_iter()
             .filter(|(folder, path)| !folder.join(path).exists());
         gone.map(|(_, path)| path).collect()
+    }
+
+    /// The same scene with the meshes that were read of these files in itself.
+    #[must_use]
+    pub fn without_files(&self, files: &BTreeSet<PathBuf>) -> Self {
+        self.with_sources(|source| match source.file() {
+            Some((folder, path)) if files.contains(&folder.join(path)) => source.taken_in(),
+            _ => source.clone(),
+        })
     }
 
     /// The files that meshes refer to, whether they could be read or not: the folder, and the path in it.

@@ -113,6 +113,7 @@ pub const MOUSE: &[(&str, &str)] = &[
     ("High-res: Shift, drag", "Trace only this part anew"),
     ("Shift, held", "Fly four times as fast"),
     ("Wheel, while flying", "Fly faster, or slower"),
+    ("Timeline: drag beside keys", "Select all in a frame"),
     ("Timeline: Ctrl, wheel", "Show less or more of it"),
     ("Timeline: middle button", "Move it; Home shows all"),
     ("Lab: B, held", "What a picture should be"),

@@ -9,7 +9,7 @@ use egui::{Context, Ui};
 use super::prompts::{Answer, primary, question};
 use super::theme::GRID;
 use crate::editor::Editor;
-use crate::files::{Stamp, time_of};
+use crate::files::{Stamp, marks_of, time_of};
 use crate::scene::{Document, SceneError, differences};
 
 /// What messages are about that tell of it.
@@ -30,7 +30,7 @@ pub struct Watch {
     /// The state of the editor that was left as it was: the file is not brought up again before the next save.
     left: Option<u64>,
     /// When the files of the meshes were written last: as they were read, and as they were found at the last look.
-    meshes: HashMap<PathBuf, [Option<SystemTime>; 2]>,
+    meshes: HashMap<PathBuf, [Option<(SystemTime, u64)>; 2]>,
     /// The document that they are of.
     document: u64,
 }
@@ -64,7 +64,7 @@ impl Watch {
         let mut files = editor.scene().mesh_files().into_iter();
         files.find(|(folder, path)| {
             let full = folder.join(path);
-            let now = time_of(&full);
+            let now = marks_of(&full);
             let [read, found] = self.meshes.entry(full).or_insert([now; 2]);
             let is_still = std::mem::replace(found, now) == now;
             // What is gone stays as it is in the window.

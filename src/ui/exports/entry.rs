@@ -139,7 +139,11 @@ impl Entry {
     }
 
     fn show_thumb(&mut self, ui: &mut Ui, state: &ExportState) {
-        let Some(image) = &state.last else { return };
+        let Some(image) = &state.last else {
+            // Its room: what is beside it does not move when it comes.
+            ui.allocate_space(vec2(THUMB, THUMB));
+            return;
+        };
         let at = state.done.written;
         let (when, texture) = self.thumb.get_or_insert_with(|| {
             let load = |name| {

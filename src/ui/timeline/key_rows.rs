@@ -18,10 +18,19 @@ use crate::ui::theme::{TRACK, palette};
 #[derive(Default)]
 pub struct KeyRows {
     drag: Option<Drag>,
-    /// Where no key was, when a frame around some began.
-    frame: Option<Pos2>,
-    /// What is in the frame.
-    framed: Keys,
+    frame: Option<Frame>,
+}
+
+/// A frame around keys, as it is drawn.
+struct Frame {
+    /// Where no key was, when it began.
+    from: Pos2,
+    /// What was selected then.
+    before: Keys,
+    /// Whether that stays so.
+    adds: bool,
+    /// What is in it.
+    within: Keys,
 }
 
 /// Keys on their way.
@@ -36,19 +45,28 @@ struct Drag {
 }
 
 impl KeyRows {
-    /// Whether keys are being moved.
-    pub fn is_dragging(&self) -> bool {
-        self.drag.is_some()
+    /// Whether keys are being moved, or a frame is drawn around some.
+    pub fn is_busy(&self) -> bool {
+        self.drag.is_some() || self.frame.is_some()
     }
 
-    /// Keys that are being moved stay where they are.
-    pub fn let_go(&mut self) {
-        self.drag = None;
+    /// Gives up what the pointer does.
+    pub fn give_up(&mut self, editor: &Editor, out: &mut UiRequests) {
+        if let Some(Frame { before, .. }) = self.frame.take()
+            && before != editor.timeline().selected
+        {
+            out.time(Time::SelectKeys(before));
+        }
+        if self.drag.take().is_some() {
+            out.actions.push(Action::CancelGesture);
+        }
     }
 
     /// Shows all rows: click, Shift-click, drag, Ctrl-drag, a frame around several, and a menu.
     pub fn show(&mut self, ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) {
-        self.framed.clear();
+        if let Some(frame) = &mut self.frame {
+            frame.within.clear();
+        }
         let animation = &editor.scene().animation;
         if !animation.keys.is_empty() {
             self.row(ui, (scale, editor), (None, &animation.keys), out);
@@ -57,7 +75,35 @@ impl KeyRows {
             self.row(ui, (scale, editor), (Some(track), &own.keys), out);
         }
         self.drag_to_pointer(ui, (scale, editor), out);
-        self.close_frame(ui, editor, out);
+    }
+
+    /// The room below the rows, where a frame can begin as well; and the frame.
+    pub fn show_rest(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+        let room = ui.available_rect_before_wrap();
+        if room.is_positive() {
+            let response = ui.allocate_rect(room, Sense::click_and_drag());
+            self.press(ui, &response, editor, out);
+        }
+        self.show_frame(ui, editor, out);
+    }
+
+    /// A press where no key is.
+    fn press(&mut self, ui: &Ui, response: &Response, editor: &Editor, out: &mut UiRequests) {
+        let selected = &editor.timeline().selected;
+        // Where no key was selected, what else is stays so.
+        if response.clicked() && !selected.is_empty() {
+            out.time(Time::SelectKeys(Keys::new()));
+        }
+        if response.drag_started_by(PointerButton::Primary) {
+            let (from, adds) =
+                ui.input(|input| (input.pointer.press_origin(), input.modifiers.shift));
+            self.frame = from.map(|from| Frame {
+                from,
+                before: selected.clone(),
+                adds,
+                within: Keys::new(),
+            });
+        }
     }
 
     fn row<T>(
@@ -68,12 +114,7 @@ impl KeyRows {
         out: &mut UiRequests,
     ) {
         let (rect, response) = band(ui, scale, Sense::click_and_drag());
-        if response.clicked() {
-            out.time(Time::SelectKeys(Keys::new()));
-        }
-        if response.drag_started_by(PointerButton::Primary) {
-            self.frame = ui.input(|input| input.pointer.press_origin());
-        }
+        self.press(ui, &response, editor, out);
         self.note_framed(ui, (scale, rect), (track, keys));
         if !ui.is_rect_visible(rect) {
             return;
@@ -191,44 +232,52 @@ impl KeyRows {
         }
     }
 
-    /// Notes the keys of a row that are in the frame.
+    /// Notes the keys of a row that are in the frame, of those that are on show.
     fn note_framed<T>(
         &mut self,
         ui: &Ui,
         (scale, rect): (&Scale, Rect),
         (track, keys): (Option<usize>, &[Key<T>]),
     ) {
-        let Some(frame) = self.frame_to_pointer(ui) else {
+        let Some(frame) = &mut self.frame else { return };
+        let Some(around) = frame.around(ui) else {
             return;
         };
-        if !frame.y_range().intersects(rect.y_range()) {
+        if !around.y_range().intersects(rect.y_range()) {
             return;
         }
+        let is_within = |time: f64| scale.shows(time) && around.x_range().contains(scale.x(time));
         let keys = keys.iter().enumerate();
-        let within = keys.filter(|(_, key)| frame.x_range().contains(scale.x(key.time)));
+        let within = keys.filter(|(_, key)| is_within(key.time));
         let places = within.map(|(index, _)| KeyPlace { track, index });
-        self.framed.extend(places);
-    }
-
-    /// From where the frame began to the pointer.
-    fn frame_to_pointer(&self, ui: &Ui) -> Option<Rect> {
-        let to = ui.input(|input| input.pointer.latest_pos())?;
-        Some(Rect::from_two_pos(self.frame?, to))
+        frame.within.extend(places);
     }
 
     /// Selects what is in the frame, and draws it.
-    fn close_frame(&mut self, ui: &Ui, editor: &Editor, out: &mut UiRequests) {
-        let Some(frame) = self.frame_to_pointer(ui) else {
-            return;
-        };
-        if self.framed != editor.timeline().selected {
-            out.time(Time::SelectKeys(self.framed.clone()));
+    fn show_frame(&mut self, ui: &Ui, editor: &Editor, out: &mut UiRequests) {
+        let Some(frame) = &self.frame else { return };
+        let mut places = frame.within.clone();
+        if frame.adds {
+            places.extend(&frame.before);
         }
-        let fill = palette(ui.ctx()).accent.gamma_multiply(0.2);
-        ui.painter().rect_filled(frame, 0, fill);
+        if places != editor.timeline().selected {
+            out.time(Time::SelectKeys(places));
+        }
+        if let Some(around) = frame.around(ui) {
+            let fill = palette(ui.ctx()).accent.gamma_multiply(0.2);
+            ui.painter().rect_filled(around, 0, fill);
+        }
         if !ui.input(|input| input.pointer.primary_down()) {
             self.frame = None;
         }
+    }
+}
+
+impl Frame {
+    /// From where it began to the pointer.
+    fn around(&self, ui: &Ui) -> Option<Rect> {
+        let to = ui.input(|input| input.pointer.latest_pos())?;
+        Some(Rect::from_two_pos(self.from, to))
     }
 }
 

@@ -29,7 +29,7 @@ pub use self::transport::{actions, clock};
 use super::commands::Command;
 use super::requests::UiRequests;
 use super::theme::{GRID, TRACK_LABEL};
-use crate::editor::{Action, Editor};
+use crate::editor::Editor;
 use crate::scene::Animation;
 use crate::ui::hint::Hint as _;
 
@@ -117,21 +117,21 @@ impl TimelinePanel {
             self.span = self.chosen.unwrap_or((0.0, end));
         }
         let area = ui.max_rect();
+        let left = area.left() + TRACK_LABEL;
+        let scale = Scale {
+            left,
+            width: area.right() - 2.0 * GRID - left,
+            start: self.span.0,
+            end: self.span.1,
+        };
+        self.zoom(ui, (&scale, area), end);
+        let gives_up = |input: &mut InputState| input.consume_key(Modifiers::NONE, Key::Escape);
+        if self.rows.is_busy() && ui.input_mut(gives_up) {
+            self.rows.give_up(editor, out);
+        }
+        // What time it is stays in sight, however many rows there are.
+        ruler::show(ui, &scale, editor, out);
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            let left = ui.max_rect().left() + TRACK_LABEL;
-            let scale = Scale {
-                left,
-                width: ui.max_rect().right() - 2.0 * GRID - left,
-                start: self.span.0,
-                end: self.span.1,
-            };
-            self.zoom(ui, (&scale, area), end);
-            let gives_up = |input: &mut InputState| input.consume_key(Modifiers::NONE, Key::Escape);
-            if self.rows.is_dragging() && ui.input_mut(gives_up) {
-                self.rows.let_go();
-                out.actions.push(Action::CancelGesture);
-            }
-            ruler::show(ui, &scale, editor, out);
             if !animation.keys.is_empty() {
                 thumbs.show(ui, &scale, animation);
             }
@@ -139,6 +139,7 @@ impl TimelinePanel {
             if self.shows_graph && animation.keys.len() > 1 {
                 self.graph.show(ui, &scale, editor);
             }
+            self.rows.show_rest(ui, editor, out);
         });
     }
 }
@@ -149,9 +150,9 @@ impl TimelinePanel {
         self.chosen = None;
     }
 
-    /// Whether keys are being moved.
+    /// Whether keys are being moved, or a frame is drawn around some.
     pub fn is_dragging(&self) -> bool {
-        self.rows.is_dragging()
+        self.rows.is_busy()
     }
 
     /// Whether the pointer is over the line, in this frame of the window.

@@ -76,7 +76,10 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
     let width = ui.content_rect().width();
     if width >= NARROW {
         let frame = animation.frame_at(timeline.playhead);
-        let frames = format!("{frame:>4}/{}", animation.frame_count());
+        let frames = match animation.frame_count() {
+            count if count < frame => format!("{frame:>4}, after {count}"),
+            count => format!("{frame:>4}/{count}"),
+        };
         let hint = "Frame, from 1; the number that glint render --frame takes";
         ui.label(RichText::new(frames).monospace().weak())
             .hint(hint);

@@ -20,13 +20,23 @@ pub struct Outline {
     pub image: ColorImage,
 }
 
-/// The lines of a colour, and their edges, around everything that is wanted; `None` if nothing of it is seen.
+/// What a pixel shows; the sky has no end.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seen {
+    /// Whether it is wanted.
+    pub is_wanted: bool,
+    /// Whether it has an end: before what has none, everything else stands in front.
+    pub ends: bool,
+}
+
+/// The lines of a colour, and their edges, around everything that is wanted; `None` if nothing of it is seen. Around
+/// what has no end they do not run where something that has one stands before it.
 pub fn outline(
     map: &ObjectMap,
     (color, halo): (Color32, Color32),
-    is_wanted: impl Fn(Thing) -> bool,
+    seen: impl Fn(Thing) -> Seen,
 ) -> Option<Outline> {
-    let (inside, columns, rows) = silhouette(map, is_wanted)?;
+    let (inside, columns, rows) = silhouette(map, seen)?;
     let reach = LINE + HALO;
     let columns = columns.start.saturating_sub(reach)..(columns.end + reach).min(map.width());
     let rows = rows.start.saturating_sub(reach)..(rows.end + reach).min(map.height());
@@ -34,27 +44,29 @@ pub fn outline(
     let mut distances = vec![usize::MAX; size[0] * size[1]];
     for row in rows.clone() {
         for column in columns.clone() {
-            if inside[row * width + column] && is_border(&inside, width, column, row) {
+            if is_border(&inside, width, column, row) {
+                let own = inside[row * width + column];
                 let at = [column - columns.start, row - rows.start];
-                spread(&mut distances, size, at);
+                let is_free = |[column, row]: [usize; 2]| {
+                    let there = (row + rows.start) * width + column + columns.start;
+                    own.ends || !inside[there].ends
+                };
+                spread(&mut distances, size, at, is_free);
             }
         }
     }
     let pixels = rows.clone().flat_map(|row| {
         let inside = &inside[row * width + columns.start..row * width + columns.end];
         let distances = &distances[(row - rows.start) * size[0]..][..size[0]];
-        inside
-            .iter()
-            .zip(distances)
-            .map(move |(&inside, &distance)| {
-                let far = LINE + HALO;
-                match distance {
-                    _ if inside => Color32::TRANSPARENT,
-                    distance if distance <= LINE * LINE => color,
-                    distance if distance <= far * far => halo,
-                    _ => Color32::TRANSPARENT,
-                }
-            })
+        inside.iter().zip(distances).map(move |(seen, &distance)| {
+            let far = LINE + HALO;
+            match distance {
+                _ if seen.is_wanted => Color32::TRANSPARENT,
+                distance if distance <= LINE * LINE => color,
+                distance if distance <= far * far => halo,
+                _ => Color32::TRANSPARENT,
+            }
+        })
     });
     Some(Outline {
         corner: [columns.start, rows.start],
@@ -62,22 +74,22 @@ pub fn outline(
     })
 }
 
-/// For each pixel whether something wanted is seen there, and the columns and rows with such pixels.
+/// What is seen at each pixel, and the columns and rows of those that show something wanted.
 fn silhouette(
     map: &ObjectMap,
-    is_wanted: impl Fn(Thing) -> bool,
-) -> Option<(Vec<bool>, Range<usize>, Range<usize>)> {
+    seen: impl Fn(Thing) -> Seen,
+) -> Option<(Vec<Seen>, Range<usize>, Range<usize>)> {
     let mut inside = Vec::with_capacity(map.width() * map.height());
     let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
     // Neighbours are mostly alike.
-    let mut last = (None, false);
+    let mut last = (None, Seen::default());
     for row in 0..map.height() {
         for (column, thing) in map.row(row).enumerate() {
             if thing != last.0 {
-                last = (thing, thing.is_some_and(&is_wanted));
+                last = (thing, thing.map_or(Seen::default(), &seen));
             }
             inside.push(last.1);
-            if last.1 {
+            if last.1.is_wanted {
                 low = [low[0].min(column), low[1].min(row)];
                 high = [high[0].max(column + 1), row + 1];
             }
@@ -86,23 +98,38 @@ fn silhouette(
     (high[0] > 0).then(|| (inside, low[0]..high[0], low[1]..high[1]))
 }
 
-/// Whether a neighbour of a pixel inside is outside.
-fn is_border(inside: &[bool], width: usize, column: usize, row: usize) -> bool {
+/// Whether a pixel shows something wanted, and a neighbour of it something else that is not in front of that.
+fn is_border(inside: &[Seen], width: usize, column: usize, row: usize) -> bool {
     let at = row * width + column;
-    let is_out = |place: Option<usize>| place.and_then(|place| inside.get(place)) == Some(&false);
-    is_out(at.checked_sub(width))
-        || is_out(at.checked_add(width))
-        || (column > 0 && !inside[at - 1])
-        || (column + 1 < width && !inside[at + 1])
+    let own = inside[at];
+    let is_end = |there: &Seen| !there.is_wanted && (own.ends || !there.ends);
+    let is_out = |place: Option<usize>| {
+        place
+            .and_then(|place| inside.get(place))
+            .is_some_and(is_end)
+    };
+    own.is_wanted
+        && (is_out(at.checked_sub(width))
+            || is_out(at.checked_add(width))
+            || (column > 0 && is_end(&inside[at - 1]))
+            || (column + 1 < width && is_end(&inside[at + 1])))
 }
 
-/// Notes the squares of the distances from a pixel.
-fn spread(distances: &mut [usize], size: [usize; 2], at: [usize; 2]) {
+/// Notes the squares of the distances from a pixel, where those are free.
+fn spread(
+    distances: &mut [usize],
+    size: [usize; 2],
+    at: [usize; 2],
+    is_free: impl Fn([usize; 2]) -> bool,
+) {
     let reach = LINE + HALO;
     let around =
         |middle: usize, count: usize| middle.saturating_sub(reach)..(middle + reach + 1).min(count);
     for row in around(at[1], size[1]) {
         for column in around(at[0], size[0]) {
+            if !is_free([column, row]) {
+                continue;
+            }
             let (x, y) = (column.abs_diff(at[0]), row.abs_diff(at[1]));
             let distance = &mut distances[row * size[0] + column];
             *distance = (*distance).min(x * x + y * y);
@@ -119,15 +146,21 @@ mod tests {
     use crate::trace::RenderControl;
 
     #[test]
-    fn a_line_runs_outside_all_around_a_ball() {
+    fn lines_run_outside_all_around_a_ball_and_along_the_end_of_the_floor() {
         let scene = Scene::demo();
         let request = RenderRequest::sized(200, 200);
         let context = (&Planner::default(), &RenderControl::default());
         let map = ObjectMapper::default().map(&scene, &request, &[], context);
         let map = map.expect("nobody stops it");
-        let ball = Thing::Object(0);
+        let (ball, floor) = (Thing::Object(0), Thing::Object(8));
         let colors = (Color32::WHITE, Color32::BLACK);
-        let found = outline(&map, colors, |thing| thing == ball).expect("it is seen");
+        let seen = |wanted: Thing| {
+            move |thing: Thing| Seen {
+                is_wanted: thing == wanted,
+                ends: thing != floor,
+            }
+        };
+        let found = outline(&map, colors, seen(ball)).expect("it is seen");
         let [left, top] = found.corner;
         let [width, height] = found.image.size;
         assert!(width < 200 && height < 200);
@@ -149,6 +182,26 @@ mod tests {
             }
         }
         assert!(lines > 100, "{lines}");
-        assert!(outline(&map, colors, |thing| thing == Thing::Object(99)).is_none());
+        assert!(outline(&map, colors, seen(Thing::Object(99))).is_none());
+        // Around the floor they run along the horizon, and not around what stands on it.
+        let found = outline(&map, colors, seen(floor)).expect("it is seen");
+        let [left, top] = found.corner;
+        let size = found.image.size[0];
+        let mut is_long = false;
+        for (index, pixel) in found.image.pixels.iter().enumerate() {
+            let (column, row) = (left + index % size, top + index / size);
+            if *pixel == Color32::WHITE {
+                let mut around = (row.saturating_sub(3)..=row + 3)
+                    .flat_map(|y| (column.saturating_sub(3)..=column + 3).map(move |x| (x, y)));
+                // Nothing stands where it is drawn.
+                assert!([None, Some(floor)].contains(&map.at(column, row)));
+                assert!(
+                    around.any(|(x, y)| map.at(x, y).is_none()),
+                    "{column} {row}"
+                );
+                is_long |= column > 190;
+            }
+        }
+        assert!(is_long);
     }
 }

@@ -5,10 +5,11 @@ use std::collections::{BTreeSet, HashSet};
 
 use egui::{Color32, Context, Painter, Pos2, Rect, TextureHandle, TextureOptions, pos2, vec2};
 
-use super::outline::outline;
+use super::outline::{Seen, outline};
 use crate::editor::{Editor, Item};
 use crate::image::{ObjectMap, Thing};
 use crate::plan::RenderRequest;
+use crate::scene::Scene;
 use crate::ui::theme::palette;
 use crate::ui::viewport::Place;
 use crate::worker::Question;
@@ -93,15 +94,7 @@ impl Sight {
                 }
             }
         }
-        let scene = editor.scene();
-        let is_endless = |thing: &Thing| match thing {
-            Thing::Object(index) => {
-                let object = scene.objects.get(*index);
-                object.is_none_or(|object| object.shape.bounds().is_none())
-            }
-            Thing::Light(_) => false,
-        };
-        found.retain(|thing| !is_endless(thing));
+        found.retain(|thing| ends(editor.scene(), *thing));
         found.into_iter().map(item_of).collect()
     }
 
@@ -121,9 +114,21 @@ impl Sight {
             (colors.text, hovered.into_iter().collect()),
         ];
         for (lines, (color, items)) in self.lines.iter_mut().zip(wanted) {
-            lines.update(painter.ctx(), map, (*revision, color, items));
+            let wanted = (*revision, color, items);
+            lines.update(painter.ctx(), (map, editor.shown()), wanted);
             lines.show(painter, map, view);
         }
+    }
+}
+
+/// Whether a thing has an end.
+fn ends(scene: &Scene, thing: Thing) -> bool {
+    match thing {
+        Thing::Object(index) => {
+            let object = scene.objects.get(index);
+            object.is_some_and(|object| object.shape.bounds().is_some())
+        }
+        Thing::Light(_) => true,
     }
 }
 
@@ -150,7 +155,12 @@ pub fn pixel(map: &ObjectMap, view: Rect, at: Pos2) -> Option<[usize; 2]> {
 }
 
 impl Lines {
-    fn update(&mut self, ctx: &Context, map: &ObjectMap, wanted: (u64, Color32, Vec<Item>)) {
+    fn update(
+        &mut self,
+        ctx: &Context,
+        (map, scene): (&ObjectMap, &Scene),
+        wanted: (u64, Color32, Vec<Item>),
+    ) {
         if self.made_for.as_ref() == Some(&wanted) {
             return;
         }
@@ -158,7 +168,10 @@ impl Lines {
         let all: HashSet<Item> = items.iter().copied().collect();
         let made = (!items.is_empty()).then(|| {
             let colors = (*color, palette(ctx).halo);
-            outline(map, colors, |thing| all.contains(&item_of(thing)))
+            outline(map, colors, |thing| Seen {
+                is_wanted: all.contains(&item_of(thing)),
+                ends: ends(scene, thing),
+            })
         });
         self.shown = made.flatten().map(|outline| {
             let [left, top] = outline.corner.map(|place| place as f32);

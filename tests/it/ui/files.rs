@@ -327,6 +327,22 @@ fn a_mesh_file_that_another_program_writes_is_read_anew_before_and_after_what_is
         told.is_some()
     });
     assert_eq!(top(&harness, 0), 7.0);
+    // It is saved in the scene then, which follows the file no more.
+    harness.click("roof");
+    harness.type_into("position x", "6");
+    harness.press(CTRL, Key::S);
+    harness
+        .window
+        .get_by_label_contains("what was in roof.obj is in the scene file now");
+    let saved = |harness: &EditorHarness| {
+        let path = harness.folder.path().join("given.ron");
+        Document::load(&path).expect("valid").scene == **harness.editor().scene()
+    };
+    assert!(saved(&harness));
+    std::fs::write(folder.join("roof.obj"), mesh(9.0)).expect("written");
+    wait(&mut harness, "late.obj", 1, 5.0);
+    assert_eq!(top(&harness, 0), 7.0);
+    assert!(saved(&harness) && !harness.editor().is_dirty());
 }
 
 #[test]

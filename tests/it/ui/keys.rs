@@ -174,6 +174,16 @@ fn the_window_of_exports_follows_the_scene() {
 }
 
 #[test]
+fn home_over_the_line_of_time_leaves_the_camera() {
+    let mut harness = window(&[0.0, 1.0, 2.0]);
+    let above = on_ruler(&harness, 1.5);
+    harness.window.hover_at(above);
+    harness.settle();
+    harness.press(Modifiers::NONE, Key::Home);
+    assert!(!harness.editor().is_dirty());
+}
+
+#[test]
 fn all_that_is_selected_is_all_things_or_all_keys() {
     let mut harness = window(&[0.0, 1.0, 2.0]);
     let selected = |harness: &EditorHarness| {
