@@ -242,11 +242,14 @@ pub fn remove_oldest(folder: &Path, most: usize) {
 
 /// When a file was written last, where the system tells.
 pub fn time_of(path: &Path) -> Option<SystemTime> {
-    fs::metadata(path).ok()?.modified().ok()
+    marks_of(path).map(|(time, _)| time)
 }
 
-/// When a file was written last, and how long it is; `None` where the system does not say.
-pub fn marks_of(path: &Path) -> Option<(SystemTime, u64)> {
+/// When a file was written last, and how long it is: another one has others, mostly.
+pub type Marks = (SystemTime, u64);
+
+/// Those of a file; `None` where the system does not say.
+pub fn marks_of(path: &Path) -> Option<Marks> {
     let about = fs::metadata(path).ok()?;
     Some((about.modified().ok()?, about.len()))
 }

@@ -163,7 +163,8 @@ impl AnimationState {
             if new.keys != old.keys {
                 self.path = CameraPath::new(&new.keys);
             }
-            if !new.has_places_of(old) {
+            let is_other = !Arc::ptr_eq(new, old);
+            if is_other && !new.has_places_of(old) {
                 // In those places are others now; who moved them says where they are.
                 self.timeline.selected.clear();
             }

@@ -135,7 +135,7 @@ impl Editor {
 
     /// Whether there are changes that no file has.
     pub fn is_dirty(&self) -> bool {
-        self.is_dirty || self.is_making_keys()
+        self.is_dirty || self.is_making_keys() || self.has_broken_meshes()
     }
 
     /// What the document is called: its file name, or `demo` or `untitled`.
@@ -266,13 +266,13 @@ impl Editor {
     /// # Errors
     /// Why it could not be written; the document then still counts as changed.
     pub fn save(&mut self, path: &Path) -> Result<(), SceneError> {
-        let document = self.document();
-        let (backup, stamp) = document.save_stamped(path)?;
         let lost = self.lost_meshes();
+        let mut document = self.document();
+        document.scene = document.scene_at(path);
+        let (backup, stamp) = document.save_stamped(path)?;
         // What is in the scene file now follows no other file.
-        let scene = document.scene_at(path);
-        if scene != *self.scene {
-            self.set_scene(Arc::new(scene));
+        if document.scene != *self.scene {
+            self.set_scene(Arc::new(document.scene));
         }
         self.path = Some(absolute(path));
         self.stamp = Some(stamp);
@@ -302,7 +302,7 @@ impl Editor {
         self.document().to_text()
     }
 
-    /// The document as it would be saved; the copy shares the scene.
+    /// The document as it would be saved; the copy shares what it can with the scene.
     pub fn document(&self) -> Document {
         Document {
             header: self.header.clone(),

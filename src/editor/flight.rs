@@ -54,7 +54,9 @@ impl Editor {
                 timeline.stays_outside = !looks_through;
                 self.leave_still();
             }
-            Time::SelectKeys(places) => {
+            Time::SelectKeys(mut places) => {
+                // What was to move them may have been refused.
+                places.retain(|place| animation.at_place(*place).is_some());
                 let selection = if places.is_empty() {
                     Selection::Camera
                 } else {

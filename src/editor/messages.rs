@@ -1,13 +1,19 @@
 //! What the user is told.
 
+use std::collections::HashSet;
+
 use super::action::Message;
 use super::document::Editor;
-use crate::scene::{Scene, Track};
+use crate::scene::{Scene, Target};
 
 /// What messages about edits are about.
 const EDIT: &str = "edit";
 /// What messages about meshes that are missing are about.
 const MESHES: &str = "meshes";
+/// What messages about meshes are about whose files are broken.
+const BROKEN: &str = "broken meshes";
+/// Most values that a message names.
+const MOST_NAMES: usize = 3;
 
 impl Editor {
     /// Tells the user something.
@@ -60,18 +66,36 @@ impl Editor {
 
     /// Says that a mesh file was written by another program, and is none any more.
     pub(super) fn tell_broken_mesh(&mut self, why: &str) {
-        self.begin(MESHES);
-        self.report_error_in(MESHES, format!("{why}; what was read of it before stays"));
+        let text = format!("{why}; what was read of it before stays, and is saved with the scene");
+        self.report_error_in(BROKEN, text);
+    }
+
+    /// One of those can be read again.
+    pub(super) fn forget_broken_meshes(&mut self) {
+        self.begin(BROKEN);
     }
 
     /// Says which values have no keys any more after an edit of this name.
     pub(super) fn tell_lost_keys(&mut self, label: &str, next: &Scene) {
-        let is_lost = |track: &&Track| next.animation.track(&track.target).is_none();
-        let lost = self.scene.animation.tracks.iter().filter(is_lost);
-        let names: Vec<String> = lost.map(|track| track.target.name()).collect();
+        let kept = next.animation.tracks.iter().map(|track| &track.target);
+        let kept: HashSet<&Target> = kept.collect();
+        let targets = self
+            .scene
+            .animation
+            .tracks
+            .iter()
+            .map(|track| &track.target);
+        let mut lost = targets.filter(|target| !kept.contains(target));
+        let names: Vec<String> = lost.by_ref().take(MOST_NAMES).map(Target::name).collect();
+        let more = match lost.count() {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
         if !names.is_empty() {
             let names = names.join(", ");
-            self.notify(format!("{label}: it has no keys of {names} any more"));
+            self.notify(format!(
+                "{label}: there are no keys of {names}{more} any more"
+            ));
         }
     }
 

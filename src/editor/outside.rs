@@ -1,7 +1,7 @@
 //! What other programs, and other runs of this one, have written.
 
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::document::Editor;
@@ -60,45 +60,85 @@ impl Editor {
         self.tell_missing_meshes();
     }
 
-    /// Takes what another program has written to a file of meshes, wherever the document shows them: now, and before or
+    /// Takes what another program has written to files of meshes, wherever the document shows them: now, and before or
     /// after any step that is undone or done again. What cannot be read any more stays as it is.
-    pub fn take_mesh(&mut self, read: MeshSource) {
-        let Some((folder, path)) = read.reference() else {
-            return;
-        };
-        let (full, path) = (folder.join(path), path.to_owned());
-        if let Some(why) = read.problem() {
-            self.broken.insert(full);
-            return self.tell_broken_mesh(why);
+    pub fn take_meshes(&mut self, read: Vec<MeshSource>) {
+        let before = self.broken.len();
+        let mut names = Vec::new();
+        for read in read {
+            let Some((folder, path)) = read.reference() else {
+                continue;
+            };
+            let full = folder.join(path);
+            if let Some(why) = read.problem() {
+                self.note_broken_mesh(full, why);
+            } else {
+                self.broken.remove(&full);
+                names.push(path.to_owned());
+            }
+            let (own, is_good) = (read.reference(), read.problem().is_none());
+            // What was read last of what is broken is what is shown of it.
+            let is_replaced =
+                |old: &MeshSource| old.reference() == own && (is_good || old.problem().is_some());
+            self.reread.retain(|old| !is_replaced(old));
+            self.reread.push(read);
         }
-        self.broken.remove(&full);
-        self.reread
-            .retain(|old| old.reference() != read.reference());
-        self.reread.push(read);
+        if self.broken.len() < before {
+            self.forget_broken_meshes();
+        }
         let scene = self.refreshed(&self.scene);
-        if !Arc::ptr_eq(&scene, &self.scene) {
-            self.saved = self.refreshed(&self.saved);
-            self.set_scene(scene);
-            self.notify(format!(
-                "{path} was changed by another program and read anew"
-            ));
+        if Arc::ptr_eq(&scene, &self.scene) {
+            return;
+        }
+        self.saved = if Arc::ptr_eq(&self.scene, &self.saved) {
+            Arc::clone(&scene)
+        } else {
+            self.refreshed(&self.saved)
+        };
+        self.set_scene(scene);
+        let who = match &names[..] {
+            [] => String::new(),
+            [one] => format!("{one} was"),
+            [one, more @ ..] => format!("{one} and {} more were", more.len()),
+        };
+        if !who.is_empty() {
+            self.notify(format!("{who} changed by another program and read anew"));
         }
         self.tell_missing_meshes();
+    }
+
+    /// Whether a mesh is shown whose file holds something else now that cannot be read: the document alone has it.
+    pub(super) fn has_broken_meshes(&self) -> bool {
+        !self.scene.shown_of(&self.broken).is_empty()
+    }
+
+    fn note_broken_mesh(&mut self, full: PathBuf, why: &str) {
+        let one = BTreeSet::from([full]);
+        if !self.scene.shown_of(&one).is_empty() {
+            self.broken.extend(one);
+            self.tell_broken_mesh(why);
+        }
     }
 
     /// Says which meshes are in the scene file once it is saved, because their own files are gone or broken; nothing
     /// for none.
     pub(super) fn lost_meshes(&self) -> String {
-        let files = self.scene.mesh_files().into_iter();
-        let broken = files.filter(|(folder, path)| self.broken.contains(&folder.join(path)));
+        let broken = self.scene.shown_of(&self.broken).into_iter();
+        let broken = broken.filter_map(|path| path.file_name()?.to_str());
         let gone = self.scene.gone_mesh_files().into_iter();
-        let lost: BTreeSet<&str> = gone.chain(broken.map(|(_, path)| path)).collect();
+        let lost: BTreeSet<&str> = gone.chain(broken).collect();
         match &lost.into_iter().collect::<Vec<_>>().join(", ")[..] {
             "" => String::new(),
             names => format!(
                 "; what was in {names} is in the scene file now: that is gone, or cannot be read any more"
             ),
         }
+    }
+
+    /// A part of the scene, as it was copied, with what mesh files hold now.
+    pub fn up_to_date(&self, part: &Scene) -> Scene {
+        let new = part.with_read(&self.reread);
+        new.unwrap_or_else(|| part.clone())
     }
 
     /// The scene with what mesh files hold now.

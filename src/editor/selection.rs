@@ -19,7 +19,7 @@ pub enum Selection {
     Render,
     /// One entry of a list of the scene.
     Item(Item),
-    /// The selected keys of the camera.
+    /// The selected keys.
     Keys,
 }
 

@@ -287,6 +287,17 @@ mod tests {
         outer.and(inner) == *outer
     }
 
+    #[test]
+    fn numbers_are_rounded_down_by_less_than_a_digit() {
+        for number in [0.1, 1e12 / 3.0, 1e300, 1e-45, 1e-300, 0.0, 16_777_217.0] {
+            for number in [number, -number] {
+                let found = below(number);
+                assert!(f64::from(found) <= number, "{found} {number}");
+                assert!(f64::from(found.next_up()) > number, "{found} {number}");
+            }
+        }
+    }
+
     /// Boxes in single precision are no larger than that asks for.
     fn is_near(outer: &BoundingBox<f64>, inner: &BoundingBox<f64>) -> bool {
         let off = (outer.low - inner.low)

@@ -263,6 +263,11 @@ impl Target {
         matches!(self, Self::LightIntensity(_) | Self::LightPosition(_))
     }
 
+    /// Whether it is where something is.
+    pub fn is_position(&self) -> bool {
+        matches!(self, Self::LightPosition(_) | Self::ObjectPosition(_))
+    }
+
     /// Whether it is one of this light, or of this object.
     pub fn is_of(&self, is_light: bool, name: &str) -> bool {
         self.is_of_light() == is_light && self.owner() == Some(name)

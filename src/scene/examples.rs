@@ -61,10 +61,10 @@ impl Example {
                 {
                     (*triangles, *problem) = (Arc::clone(&read), None);
                 }
-                Mesh {
+                Some(Mesh {
                     source,
                     ..mesh.clone()
-                }
+                })
             });
         }
         document

@@ -2,7 +2,6 @@
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
-use std::sync::Arc;
 
 use glam::DVec3;
 
@@ -43,12 +42,7 @@ impl Scene {
         {
             // In the file's own coordinates, which are not moved to their middle.
             let mut linked = Mesh {
-                source: MeshSource::File {
-                    path: near.to_owned(),
-                    folder: None,
-                    triangles: Arc::default(),
-                    problem: None,
-                },
+                source: MeshSource::unread(near.to_owned()),
                 position: DVec3::ZERO,
                 ..mesh.clone()
             };
@@ -266,7 +260,7 @@ mod tests {
             _ => panic!("a mesh"),
         };
         assert_eq!(triangles(0).faces().len(), 1);
-        assert!(Arc::ptr_eq(triangles(0), triangles(1)));
+        assert!(std::sync::Arc::ptr_eq(triangles(0), triangles(1)));
     }
 
     #[test]

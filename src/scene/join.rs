@@ -157,7 +157,7 @@ impl Scene {
         let after = self.objects.iter().skip(index + 1).cloned();
         self.objects = before.chain(pieces).chain(after).collect::<List<_>>();
         // What moved it would move one of them.
-        let is_moved = |track: &Track| track.target.owner() == Some(&*name);
+        let is_moved = |track: &Track| track.target.is_of(false, &name);
         if self.animation.tracks.iter().any(is_moved) {
             Arc::make_mut(&mut self.animation).follow_name(false, &name, None);
         }

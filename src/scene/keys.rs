@@ -225,10 +225,7 @@ impl Track {
             target: self.target.renamed(name),
             keys: self.keys.clone(),
         };
-        if matches!(
-            copy.target,
-            Target::LightPosition(_) | Target::ObjectPosition(_)
-        ) {
+        if copy.target.is_position() {
             copy.shift(by);
         }
         copy

@@ -8,6 +8,8 @@ use glam::DVec3;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
+use crate::files::Marks;
+
 use super::animation::Animation;
 use super::camera::{Bookmark, Camera};
 use super::list::List;
@@ -161,7 +163,7 @@ impl Scene {
         self.change_meshes(|mesh| {
             let mut loaded = mesh.clone();
             loaded.load(folder, &mut files);
-            loaded
+            Some(loaded)
         });
     }
 
@@ -169,9 +171,11 @@ impl Scene {
     #[must_use]
     pub fn taken_to(&self, folder: &Path) -> Self {
         let gone = self.gone_mesh_files();
-        self.with_sources(|source| match source.file() {
-            Some((_, path)) if gone.contains(path) => source.taken_in(),
-            _ => source.taken_to(folder),
+        self.with_sources(|source| {
+            let is_gone = source.file().is_some_and(|(_, path)| gone.contains(path));
+            (is_gone || source.is_outside(folder))
+                .then(|| source.taken_in())
+                .flatten()
         })
     }
 
@@ -187,28 +191,46 @@ impl Scene {
     /// The same scene with the meshes that were read of these files in itself.
     #[must_use]
     pub fn without_files(&self, files: &BTreeSet<PathBuf>) -> Self {
-        self.with_sources(|source| match source.file() {
-            Some((folder, path)) if files.contains(&folder.join(path)) => source.taken_in(),
-            _ => source.clone(),
+        self.with_sources(|source| {
+            let (folder, path) = source.file()?;
+            let is_meant = files.contains(&folder.join(path));
+            is_meant.then(|| source.taken_in()).flatten()
         })
     }
 
-    /// The files that meshes refer to, whether they could be read or not: the folder, and the path in it.
-    pub fn mesh_files(&self) -> HashSet<(&Path, &str)> {
-        let sources = self.mesh_sources();
-        sources.filter_map(MeshSource::reference).collect()
+    /// Those of these files that were read for some mesh.
+    pub fn shown_of<'f>(&self, files: &'f BTreeSet<PathBuf>) -> BTreeSet<&'f Path> {
+        if files.is_empty() {
+            return BTreeSet::new();
+        }
+        let shown = self.mesh_sources().filter_map(MeshSource::file);
+        let shown: HashSet<_> = shown.collect();
+        let shown = shown.into_iter();
+        let found = shown.filter_map(|(folder, path)| files.get(&folder.join(path)));
+        found.map(PathBuf::as_path).collect()
     }
 
-    /// The same scene with what was read anew of the files that its meshes refer to; `None` where that is in it
-    /// already.
+    /// The files that meshes refer to, whether they could be read or not: the folder, the path in it, and what marked
+    /// the file when it was read.
+    pub fn mesh_files(&self) -> HashSet<(&Path, &str, Option<Marks>)> {
+        let referring = self.mesh_sources().filter_map(|source| {
+            let (folder, path) = source.reference()?;
+            Some((folder, path, source.marks()))
+        });
+        referring.collect()
+    }
+
+    /// The same scene with what was read anew of the files that its meshes refer to, but for what cannot be read any
+    /// more; `None` where that is in it already.
     pub fn with_read(&self, read: &[MeshSource]) -> Option<Self> {
         let new = |source: &MeshSource| {
             let own = source.reference()?;
-            let read = read.iter().find(|read| read.reference() == Some(own));
-            read.filter(|read| *read != source).cloned()
+            let read = read.iter().find(|read| read.reference() == Some(own))?;
+            let is_loss = read.problem().is_some() && source.problem().is_none();
+            (read != source && !is_loss).then(|| read.clone())
         };
         let is_other = self.mesh_sources().any(|source| new(source).is_some());
-        is_other.then(|| self.with_sources(|source| new(source).unwrap_or_else(|| source.clone())))
+        is_other.then(|| self.with_sources(new))
     }
 
     fn mesh_sources(&self) -> impl Iterator<Item = &MeshSource> {
@@ -229,31 +251,32 @@ impl Scene {
     /// triangles: what tells scenes apart without writing them down.
     #[must_use]
     pub fn abridged(&self) -> Self {
-        self.with_sources(MeshSource::abridged)
+        self.with_sources(|source| Some(source.abridged()))
     }
 
-    /// The same scene whose meshes come from elsewhere.
-    fn with_sources(&self, change: impl Fn(&MeshSource) -> MeshSource) -> Self {
+    /// The same scene with other sources of its meshes, where there are some; what is left shares its room with this one.
+    fn with_sources(&self, change: impl Fn(&MeshSource) -> Option<MeshSource>) -> Self {
         let mut scene = self.clone();
-        scene.change_meshes(|mesh| Mesh {
-            source: change(&mesh.source),
-            ..mesh.clone()
+        scene.change_meshes(|mesh| {
+            let source = change(&mesh.source)?;
+            Some(Mesh {
+                source,
+                ..mesh.clone()
+            })
         });
         scene
     }
 
-    /// Puts another mesh in place of each.
-    pub(super) fn change_meshes(&mut self, mut change: impl FnMut(&Mesh) -> Mesh) {
-        let meshes = self.objects.iter().enumerate();
-        let meshes = meshes.filter_map(|(index, object)| match object.shape {
-            Shape::Mesh(_) => Some(index),
-            _ => None,
-        });
-        for index in meshes.collect::<Vec<_>>() {
-            if let Some(object) = self.objects.get_mut(index)
-                && let Shape::Mesh(mesh) = &mut object.shape
+    /// Puts another mesh in place of each that shall have one.
+    pub(super) fn change_meshes(&mut self, mut change: impl FnMut(&Mesh) -> Option<Mesh>) {
+        for index in 0..self.objects.len() {
+            let Shape::Mesh(mesh) = &self.objects[index].shape else {
+                continue;
+            };
+            if let Some(new) = change(mesh)
+                && let Some(object) = self.objects.get_mut(index)
             {
-                *mesh = change(mesh);
+                object.shape = new.into();
             }
         }
     }

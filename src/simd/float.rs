@@ -116,11 +116,6 @@ pub trait Real:
     fn from_f64(value: f64) -> Self;
     /// The same number in double precision (exact).
     fn to_f64(self) -> f64;
-    /// As many numbers as a row has, of which these are the first.
-    fn row_of_singles<S: Simd, V: fearless_simd::SimdFloat<S, Element = Self>>(
-        token: S,
-        numbers: &[f32],
-    ) -> V;
     /// The same number.
     #[inline(always)]
     fn from_single(number: f32) -> Self {
@@ -147,19 +142,6 @@ macro_rules! real {
             #[inline(always)]
             fn to_f64(self) -> f64 {
                 self.into()
-            }
-            #[inline(always)]
-            fn row_of_singles<S: Simd, V: fearless_simd::SimdFloat<S, Element = Self>>(
-                token: S,
-                numbers: &[f32],
-            ) -> V {
-                let numbers = &numbers[..V::LEN];
-                // In a loop, which is done for all in step; in a closure it would not be.
-                let mut row = [0.0; MAX_LANES];
-                for (own, &number) in row.iter_mut().zip(numbers) {
-                    *own = <Self as Real>::from_single(number);
-                }
-                V::from_slice(token, &row[..V::LEN])
             }
             #[inline(always)]
             fn nearest(self) -> u32 {
@@ -362,7 +344,12 @@ where
     }
     #[inline(always)]
     fn load_singles(token: S, numbers: &[f32]) -> Self {
-        wide(V::Element::row_of_singles(token, numbers))
+        // In a loop, which is done for all in step where the compiler tries hard; in a closure it would not be.
+        let mut row = [V::Element::ZERO; MAX_LANES];
+        for (own, &number) in row.iter_mut().zip(&numbers[..V::LEN]) {
+            *own = V::Element::from_single(number);
+        }
+        wide(V::from_slice(token, &row[..V::LEN]))
     }
     #[inline(always)]
     fn store(self, numbers: &mut [Self::Real]) {

@@ -26,7 +26,8 @@ pub struct Gaze<'a, L: SimdFloat> {
     /// How wide a pixel is along them.
     pub cone: RayCone<L>,
     /// How much it widens along rays that are mirrored there: those for which that is more than [`LARGEST_SPREAD`] do not
-    /// look into meshes.
+    /// look into meshes, and on the way to a light at nothing; those for which it is more than [`WIDEST_SPREAD`] look at
+    /// nothing.
     pub spread: L,
     /// How far they go.
     pub reach: L,

@@ -43,7 +43,7 @@ pub enum Command {
     RequestPaste,
     /// Add what a text from the clipboard describes.
     Paste(String),
-    /// Select all objects and lights, or all keys of the camera where they are meant.
+    /// Select all objects and lights, or all keys where they are meant.
     SelectAll,
     /// Select all objects that wear the pack of the selected one.
     SelectSamePack,
@@ -227,7 +227,7 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     StopRecording [plain(Key::T)] "Stop recording and make keys",
     Play [plain(Key::G)] "Play or pause",
     AddKey [plain(Key::K)] "Set a key at the playhead",
-    SelectAll [ctrl(Key::A)] "Select all objects and lights; over the timeline, all keys of the camera",
+    SelectAll [ctrl(Key::A)] "Select all objects and lights; over the timeline, all keys",
     LookThrough [plain(Key::C)] "Look through the shot camera, or at it",
     PreviousKey [plain(Key::OpenBracket)] "Previous key",
     NextKey [plain(Key::CloseBracket)] "Next key",

@@ -176,9 +176,8 @@ impl Files {
             if !self.watch.is_left(editor) {
                 self.look_outside(editor);
             }
-            let changed = self.watch.changed_mesh(editor);
-            let again = changed.map(|file| Reading::again(editor, file));
-            self.reading.extend(again);
+            let changed = self.watch.changed_meshes(editor);
+            self.reading.extend(Reading::again(editor, changed));
         }
         let Waiting {
             wish,
@@ -404,7 +403,7 @@ impl Files {
             Read::Mesh(Err(error)) => {
                 editor.report_error_in(Ask::ImportMesh.title(), error.to_string());
             }
-            Read::Again(source) => editor.take_mesh(source),
+            Read::Again(sources) => editor.take_meshes(sources),
             Read::Nothing => {
                 let path = reading.path.display();
                 editor.report_error(format!("{path} could not be read: the reader stopped"));

@@ -236,9 +236,10 @@ fn animate_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     );
     ui.separator();
     entry(ui, "Add key", Command::AddKey, true, out);
-    entry(ui, "Select all keys", Command::SelectKeys, has_keys, out);
-    entry(ui, "Previous key", Command::PreviousKey, has_keys, out);
-    entry(ui, "Next key", Command::NextKey, has_keys, out);
+    let has_any = !animation.is_still();
+    entry(ui, "Select all keys", Command::SelectKeys, has_any, out);
+    entry(ui, "Previous key", Command::PreviousKey, has_any, out);
+    entry(ui, "Next key", Command::NextKey, has_any, out);
     entry(
         ui,
         "Look through the shot",

@@ -9,8 +9,8 @@ use egui::{Context, Ui};
 use super::prompts::{Answer, primary, question};
 use super::theme::GRID;
 use crate::editor::Editor;
-use crate::files::{Stamp, marks_of, time_of};
-use crate::scene::{Document, SceneError, differences};
+use crate::files::{Marks, Stamp, marks_of, time_of};
+use crate::scene::{Document, List, Object, SceneError, differences};
 
 /// What messages are about that tell of it.
 pub const OUTSIDE: &str = "Changed outside";
@@ -29,10 +29,10 @@ pub struct Watch {
     broken: Option<String>,
     /// The state of the editor that was left as it was: the file is not brought up again before the next save.
     left: Option<u64>,
-    /// When the files of the meshes were written last: as they were read, and as they were found at the last look.
-    meshes: HashMap<PathBuf, [Option<(SystemTime, u64)>; 2]>,
-    /// The document that they are of.
-    document: u64,
+    /// The objects that were looked at last, and the files of their meshes.
+    shown: Option<(List<Object>, Vec<MeshFile>)>,
+    /// What marked those files at the last look, and when they were last to be read.
+    seen: HashMap<PathBuf, [Option<Marks>; 2]>,
 }
 
 impl Watch {
@@ -54,26 +54,39 @@ impl Watch {
         self.left == Some(editor.saves())
     }
 
-    /// A file of meshes that was written since it was read, and is the same at two looks: it may have been half written
-    /// at the first.
-    pub fn changed_mesh<'e>(&mut self, editor: &'e Editor) -> Option<(&'e Path, &'e str)> {
-        if self.document != editor.documents() {
-            self.document = editor.documents();
-            self.meshes.clear();
+    /// The files of meshes that were written since they were read, and are the same at two looks: they may have been
+    /// half written at the first. Their folders, and the paths in those.
+    pub fn changed_meshes(&mut self, editor: &Editor) -> Vec<(PathBuf, String)> {
+        let objects = &editor.scene().objects;
+        if !self
+            .shown
+            .as_ref()
+            .is_some_and(|(of, _)| of.is_same(objects))
+        {
+            let files = editor.scene().mesh_files().into_iter();
+            let files = files.map(|(folder, path, read)| MeshFile {
+                folder: folder.to_owned(),
+                path: path.to_owned(),
+                read,
+            });
+            self.shown = Some((objects.clone(), files.collect()));
         }
-        let mut files = editor.scene().mesh_files().into_iter();
-        files.find(|(folder, path)| {
-            let full = folder.join(path);
+        let files = self.shown.iter().flat_map(|(_, files)| files);
+        let seen = &mut self.seen;
+        let changed = files.filter(|file| {
+            let full = file.folder.join(&file.path);
             let now = marks_of(&full);
-            let [read, found] = self.meshes.entry(full).or_insert([now; 2]);
+            let [found, asked] = seen.entry(full).or_default();
             let is_still = std::mem::replace(found, now) == now;
             // What is gone stays as it is in the window.
-            let is_new = is_still && now.is_some() && now != *read;
+            let is_new = is_still && now.is_some() && now != file.read && now != *asked;
             if is_new {
-                *read = now;
+                *asked = now;
             }
             is_new
-        })
+        });
+        let places = changed.map(|file| (file.folder.clone(), file.path.clone()));
+        places.collect()
     }
 
     /// Whether the file is another than when it was looked at last, by what the disk says of it: it is not read
@@ -104,6 +117,14 @@ impl Watch {
     pub fn leave(&mut self, editor: &Editor) {
         self.left = Some(editor.saves());
     }
+}
+
+/// A file that meshes refer to.
+struct MeshFile {
+    folder: PathBuf,
+    path: String,
+    /// What marked it when it was read.
+    read: Option<Marks>,
 }
 
 /// What another program has written, and how it differs.

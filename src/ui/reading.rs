@@ -17,8 +17,8 @@ pub enum Read {
     Scene(Box<Result<(Document, Stamp), SceneError>>),
     /// A mesh file, whose parts become objects.
     Mesh(Result<MeshFile, MeshError>),
-    /// A file that meshes refer to, once more.
-    Again(MeshSource),
+    /// Files that meshes refer to, once more.
+    Again(Vec<MeshSource>),
     /// Nothing: the reader stopped.
     Nothing,
 }
@@ -46,12 +46,15 @@ impl Reading {
         Self::start(editor, path, |path| Read::Mesh(read_mesh_file(&path)))
     }
 
-    /// Begins to read once more what meshes refer to.
-    pub fn again(editor: &Editor, (folder, path): (&Path, &str)) -> Self {
-        let (own_folder, own_path) = (folder.to_owned(), path.to_owned());
-        Self::start(editor, &folder.join(path), move |_| {
-            Read::Again(MeshSource::read_anew(&own_folder, &own_path))
-        })
+    /// Begins to read once more what meshes refer to, if that is something: paths in their folders.
+    pub fn again(editor: &Editor, files: Vec<(PathBuf, String)>) -> Option<Self> {
+        let (folder, path) = files.first()?;
+        let first = folder.join(path);
+        Some(Self::start(editor, &first, |_| {
+            let files = files.into_iter();
+            let read = files.map(|(folder, path)| MeshSource::read_anew(&folder, path));
+            Read::Again(read.collect())
+        }))
     }
 
     fn start(

@@ -159,7 +159,7 @@ impl App {
     fn paste(&mut self, text: &str) {
         let copied = self.copied.as_ref().filter(|(copied, _)| copied == text);
         let pasted = match copied {
-            Some((_, scene)) => Ok(scene.clone()),
+            Some((_, scene)) => Ok(self.editor.up_to_date(scene)),
             None => read(text, self.editor.scene()).map(|mut scene| {
                 let path = self.editor.path();
                 scene.load_meshes(path.and_then(Path::parent));

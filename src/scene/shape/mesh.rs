@@ -126,12 +126,7 @@ impl<'de> Deserialize<'de> for Mesh {
                     "a mesh has either a file or points and faces, this one has both",
                 ));
             }
-            Some(path) => MeshSource::File {
-                path,
-                folder: None,
-                triangles: Arc::default(),
-                problem: None,
-            },
+            Some(path) => MeshSource::unread(path),
             None => {
                 let points = text.points.into_iter().map(|Point(point)| point).collect();
                 let triangles = Triangles::new(points, text.faces);
@@ -388,12 +383,7 @@ mod tests {
     /// A mesh that is not read yet.
     fn of_file(path: &str) -> Mesh {
         Mesh {
-            source: MeshSource::File {
-                path: path.to_owned(),
-                folder: None,
-                triangles: Arc::default(),
-                problem: None,
-            },
+            source: MeshSource::unread(path.to_owned()),
             ..Mesh::example(DVec3::ZERO, 1.0)
         }
     }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::files::stays_inside;
+use crate::files::{Marks, marks_of, stays_inside};
 use crate::mesh::{Triangles, read_triangles};
 
 /// Where the triangles of a mesh come from.
@@ -22,6 +22,8 @@ pub enum MeshSource {
         triangles: Arc<Triangles>,
         /// Why nothing was read, as a sentence without its full stop.
         problem: Option<String>,
+        /// Those of the file just before it was read.
+        marks: Option<Marks>,
     },
 }
 
@@ -59,16 +61,20 @@ impl MeshSource {
             folder: own_folder,
             triangles,
             problem,
+            marks,
         } = self
         else {
             return;
         };
-        *own_folder = folder.map(Path::to_owned);
+        // What is not read is not looked at either.
+        let allowed = folder.filter(|folder| stays_inside(folder, Path::new(path)));
+        *own_folder = allowed.map(Path::to_owned);
+        *marks = allowed.and_then(|folder| marks_of(&folder.join(&path)));
         let read = match folder {
             None => Err(format!(
                 "cannot read {path}: the scene has no folder before it is saved"
             )),
-            Some(folder) if !stays_inside(folder, Path::new(path)) => Err(format!(
+            Some(_) if allowed.is_none() => Err(format!(
                 "{path} is not read: a mesh file must lie in the folder of the scene, or in one within it"
             )),
             Some(folder) => {
@@ -93,12 +99,9 @@ impl MeshSource {
         }
     }
 
-    /// The same in a scene file of this folder: triangles that were read from elsewhere are taken in.
-    pub fn taken_to(&self, folder: &Path) -> Self {
-        match self {
-            Self::File { folder: own, .. } if own.as_deref() != Some(folder) => self.taken_in(),
-            _ => self.clone(),
-        }
+    /// Whether it is none for a scene file of this folder: it was read from elsewhere.
+    pub fn is_outside(&self, of: &Path) -> bool {
+        matches!(self, Self::File { folder, .. } if folder.as_deref() != Some(of))
     }
 
     /// The folder and the path in it of a file that was read.
@@ -106,7 +109,8 @@ impl MeshSource {
         self.reference().filter(|_| self.problem().is_none())
     }
 
-    /// The folder and the path in it of the file that it refers to, whether that could be read or not.
+    /// The folder and the path in it of the file that it refers to, whether that could be read or not; `None` as well
+    /// where it may not be.
     pub fn reference(&self) -> Option<(&Path, &str)> {
         match self {
             Self::File {
@@ -118,38 +122,47 @@ impl MeshSource {
         }
     }
 
-    /// What a file holds by now.
-    pub fn read_anew(folder: &Path, path: &str) -> Self {
-        let mut source = Self::File {
-            path: path.to_owned(),
+    /// Those of its file, just before that was read.
+    pub fn marks(&self) -> Option<Marks> {
+        match self {
+            Self::Inline(_) => None,
+            Self::File { marks, .. } => *marks,
+        }
+    }
+
+    /// A file that is not read yet.
+    pub fn unread(path: String) -> Self {
+        Self::File {
+            path,
             folder: None,
             triangles: Arc::default(),
             problem: None,
-        };
+            marks: None,
+        }
+    }
+
+    /// What a file holds by now.
+    pub fn read_anew(folder: &Path, path: String) -> Self {
+        let mut source = Self::unread(path);
         source.load(Some(folder), &mut MeshFiles::new());
         source
     }
 
-    /// The same with its triangles, wherever they were read.
-    pub fn taken_in(&self) -> Self {
+    /// The same with its triangles; `None` where it has them itself, or they could not be read.
+    pub fn taken_in(&self) -> Option<Self> {
         match self {
             Self::File {
                 triangles,
                 problem: None,
                 ..
-            } if !triangles.faces().is_empty() => Self::Inline(Arc::clone(triangles)),
-            _ => self.clone(),
+            } if !triangles.faces().is_empty() => Some(Self::Inline(Arc::clone(triangles))),
+            _ => None,
         }
     }
 
     /// A stand-in that is written in few words and is another one for other triangles.
     pub fn abridged(&self) -> Self {
-        Self::File {
-            path: self.triangles().fingerprint().to_string(),
-            folder: None,
-            triangles: Arc::default(),
-            problem: None,
-        }
+        Self::unread(self.triangles().fingerprint().to_string())
     }
 
     /// The triangles; none where a file could not be read.

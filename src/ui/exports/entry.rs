@@ -82,7 +82,7 @@ impl Entry {
             if let Some(Order { name, settings, .. }) = &self.order {
                 let folder = &settings.folder;
                 editor.notify(format!(
-                    "{name} is given up; frames that are done stay in {folder}"
+                    "{name} is given up; what is done of it stays in {folder}"
                 ));
             }
             self.end();

@@ -1,4 +1,4 @@
-//! The selected keys of the camera, and the keys of other values.
+//! The selected keys.
 
 use std::sync::Arc;
 
@@ -11,10 +11,18 @@ use crate::editor::{Edit, Editor, Time};
 use crate::scene::{
     Animation, Easing, Interpolation, KeyPlace, Keys, MAX_SECONDS, Orientation, Target, Value,
 };
+use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, coordinate};
+
+/// The ways on which every value can go on.
+const STAYING: [Interpolation; 3] = [
+    Interpolation::Smooth,
+    Interpolation::Linear,
+    Interpolation::Hold,
+];
 
 /// Time, way and value of the selected key; of several, way and pace of the first, which others take on.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
@@ -154,13 +162,16 @@ fn time_field() -> Field {
 
 fn pace_rows(rows: &mut Rows, editor: &Editor, (way, pace): &mut (Interpolation, Easing)) {
     let ways = key_ways(editor, &editor.timeline().selected, *way);
+    let can_orbit = ways.len() > STAYING.len();
     rows.choice(
         "way",
         "How it goes on to the next key.\nsmooth: in a curve\nlinear: straight\nhold: stays, then cuts\norbit: on an arc around a point",
         way,
         ways.into_iter().map(|way| (way, way.name().to_owned())),
     );
-    if let Interpolation::Orbit { around } = way {
+    if let Interpolation::Orbit { around } = way
+        && can_orbit
+    {
         let field = coordinate("around", "The point that the arc goes around");
         let before = *around;
         rows.vector(&field, before, around);
@@ -177,23 +188,14 @@ fn pace_rows(rows: &mut Rows, editor: &Editor, (way, pace): &mut (Interpolation,
 pub fn key_ways(editor: &Editor, places: &Keys, own: Interpolation) -> Vec<Interpolation> {
     let tracks = &editor.scene().animation.tracks;
     let has_place = |place: &KeyPlace| {
-        let target = place.track.and_then(|track| tracks.get(track));
-        target.is_none_or(|track| {
-            matches!(
-                track.target,
-                Target::LightPosition(_) | Target::ObjectPosition(_)
-            )
-        })
+        let track = place.track.and_then(|track| tracks.get(track));
+        track.is_none_or(|track| track.target.is_position())
     };
     let around = match own {
         Interpolation::Orbit { around } => around,
         _ => target(editor),
     };
-    let mut ways = vec![
-        Interpolation::Smooth,
-        Interpolation::Linear,
-        Interpolation::Hold,
-    ];
+    let mut ways = STAYING.to_vec();
     if places.iter().all(has_place) {
         ways.push(Interpolation::Orbit { around });
     }
@@ -231,9 +233,7 @@ fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         out.time(Time::Seek(time));
     }
     if ui.button("Delete").clicked() {
-        let kept = animation.without_keys(places);
-        out.edit(Edit::animation(kept, "Delete keys"));
-        out.time(Time::SelectKeys(Keys::new()));
+        out.commands.push(Command::Delete);
     }
 }
 

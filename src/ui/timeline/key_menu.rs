@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use crate::editor::{Edit, Editor, Time};
+use crate::editor::{Edit, Editor};
 use crate::scene::{Easing, KeyPlace, Keys};
 use crate::ui::inspector::key_ways;
 use crate::ui::requests::UiRequests;
@@ -34,6 +34,5 @@ pub fn menu(ui: &mut Ui, place: KeyPlace, editor: &Editor, out: &mut UiRequests)
     if ui.button("Delete").clicked() {
         let kept = animation.without_keys(&places);
         out.edit(Edit::animation(kept, "Delete keys"));
-        out.time(Time::SelectKeys(Keys::new()));
     }
 }

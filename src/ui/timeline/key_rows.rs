@@ -8,7 +8,7 @@ use super::key_menu::menu;
 use super::ruler::playhead;
 use super::scale::Scale;
 use super::strip::{KEY, band, diamond, label};
-use crate::editor::{Action, Edit, Editor, Time};
+use crate::editor::{Action, Edit, Editor, Selected, Selection, Time};
 use crate::scene::{Animation, Interpolation, Key, KeyPlace, Keys};
 use crate::ui::hint::Hint as _;
 use crate::ui::requests::UiRequests;
@@ -26,8 +26,8 @@ struct Frame {
     /// Where no key was, when it began.
     from: Pos2,
     /// What was selected then.
-    before: Keys,
-    /// Whether that stays so.
+    before: (Selected, Selection, Keys),
+    /// Whether those keys stay so.
     adds: bool,
     /// What is in it.
     within: Keys,
@@ -52,10 +52,17 @@ impl KeyRows {
 
     /// Gives up what the pointer does.
     pub fn give_up(&mut self, editor: &Editor, out: &mut UiRequests) {
-        if let Some(Frame { before, .. }) = self.frame.take()
-            && before != editor.timeline().selected
-        {
-            out.time(Time::SelectKeys(before));
+        if let Some(Frame { before, .. }) = self.frame.take() {
+            let (selected, selection, keys) = before;
+            if selection != Selection::Keys && selection != editor.selection {
+                out.actions.push(if selected.items().is_empty() {
+                    Action::Select(selection)
+                } else {
+                    Action::SelectItems(selected)
+                });
+            } else if keys != editor.timeline().selected {
+                out.time(Time::SelectKeys(keys));
+            }
         }
         if self.drag.take().is_some() {
             out.actions.push(Action::CancelGesture);
@@ -71,9 +78,23 @@ impl KeyRows {
         if !animation.keys.is_empty() {
             self.row(ui, (scale, editor), (None, &animation.keys), out);
         }
-        for (track, own) in animation.tracks.iter().enumerate() {
+        // Of tens of thousands, those that are in sight.
+        let pitch = TRACK + ui.spacing().item_spacing.y;
+        let (top, sight) = (ui.cursor().top(), ui.clip_rect());
+        let row_at = |y: f32| ((y - top) / pitch).max(0.0) as usize;
+        let count = animation.tracks.len();
+        let first = row_at(sight.top()).min(count);
+        let last = (row_at(sight.bottom()) + 1).clamp(first, count);
+        let skip = |ui: &mut Ui, rows: usize| {
+            if rows > 0 {
+                ui.add_space(rows as f32 * pitch);
+            }
+        };
+        skip(ui, first);
+        for (track, own) in (first..).zip(&animation.tracks[first..last]) {
             self.row(ui, (scale, editor), (Some(track), &own.keys), out);
         }
+        skip(ui, count - last);
         self.drag_to_pointer(ui, (scale, editor), out);
     }
 
@@ -99,7 +120,11 @@ impl KeyRows {
                 ui.input(|input| (input.pointer.press_origin(), input.modifiers.shift));
             self.frame = from.map(|from| Frame {
                 from,
-                before: selected.clone(),
+                before: (
+                    editor.selected().clone(),
+                    editor.selection,
+                    selected.clone(),
+                ),
                 adds,
                 within: Keys::new(),
             });
@@ -116,9 +141,6 @@ impl KeyRows {
         let (rect, response) = band(ui, scale, Sense::click_and_drag());
         self.press(ui, &response, editor, out);
         self.note_framed(ui, (scale, rect), (track, keys));
-        if !ui.is_rect_visible(rect) {
-            return;
-        }
         let tracks = &editor.scene().animation.tracks;
         match track.and_then(|track| tracks.get(track)) {
             Some(track) => label(ui, rect, &track.target.name()),
@@ -232,7 +254,7 @@ impl KeyRows {
         }
     }
 
-    /// Notes the keys of a row that are in the frame, of those that are on show.
+    /// Notes the keys of a row that are in the frame, of those that are in sight.
     fn note_framed<T>(
         &mut self,
         ui: &Ui,
@@ -243,7 +265,8 @@ impl KeyRows {
         let Some(around) = frame.around(ui) else {
             return;
         };
-        if !around.y_range().intersects(rect.y_range()) {
+        let is_crossed = around.y_range().intersects(rect.y_range());
+        if !is_crossed || !ui.is_rect_visible(rect) {
             return;
         }
         let is_within = |time: f64| scale.shows(time) && around.x_range().contains(scale.x(time));
@@ -258,7 +281,7 @@ impl KeyRows {
         let Some(frame) = &self.frame else { return };
         let mut places = frame.within.clone();
         if frame.adds {
-            places.extend(&frame.before);
+            places.extend(&frame.before.2);
         }
         if places != editor.timeline().selected {
             out.time(Time::SelectKeys(places));

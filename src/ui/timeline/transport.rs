@@ -279,9 +279,9 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action>
     // The playhead goes to the frame nearest to a key, which may be before or behind it.
     let frame = |time: f64| animation.frame_at(time + 0.5 / animation.frames_per_second);
     let times = || {
-        let places = animation.places().into_iter();
-        let there = places.filter_map(|place| animation.at_place(place));
-        there.map(|(time, _)| time)
+        let tracks = animation.tracks.iter().flat_map(|track| &track.keys);
+        let of_camera = animation.keys.iter().map(|key| key.time);
+        of_camera.chain(tracks.map(|key| key.time))
     };
     let timed = |time: Time| vec![Action::Time(time)];
     let has_time = !animation.is_still();

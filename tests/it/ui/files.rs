@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use glint::editor::Editor;
+use glint::editor::{Editor, excerpt};
 use glint::scene::{Document, Recovery, Scene, Shape};
 use glint::ui::Ask;
 
@@ -318,6 +318,23 @@ fn a_mesh_file_that_another_program_writes_is_read_anew_before_and_after_what_is
     harness.press(CTRL, Key::Z);
     assert!(!harness.editor().is_dirty());
     assert_eq!((top(&harness, 0), top(&harness, 1)), (7.0, 4.0));
+    // What was copied before is pasted as it is now.
+    harness.click("roof");
+    harness.window.event(Event::Copy);
+    harness.settle();
+    let editor = harness.editor();
+    let copied = Document {
+        header: String::new(),
+        scene: excerpt(editor.scene(), editor.selected()),
+    };
+    let copied = copied.to_text().expect("a text");
+    wait(&mut harness, "roof.obj", 0, 8.0);
+    harness.window.event(Event::Paste(copied));
+    harness.settle();
+    assert_eq!(top(&harness, 2), 8.0);
+    harness.press(CTRL, Key::Z);
+    wait(&mut harness, "roof.obj", 0, 7.0);
+    assert!(!harness.editor().is_dirty());
     // What is broken stays as it was, and is told.
     std::fs::write(folder.join("roof.obj"), "f 1 2 3\n").expect("written");
     wait_for(&mut harness, |harness| {

@@ -179,7 +179,14 @@ fn home_over_the_line_of_time_leaves_the_camera() {
     let above = on_ruler(&harness, 1.5);
     harness.window.hover_at(above);
     harness.settle();
+    // Some of the line, then all of it again.
+    let key = |harness: &EditorHarness| harness.window.get_by_label("Key 2").rect().center().x;
+    let before = key(&harness);
+    harness.window.event(egui::Event::Zoom(2.0));
+    harness.settle();
+    assert!((key(&harness) - before).abs() > 10.0);
     harness.press(Modifiers::NONE, Key::Home);
+    assert!((key(&harness) - before).abs() < 1.0);
     assert!(!harness.editor().is_dirty());
 }
 
