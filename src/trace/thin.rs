@@ -26,8 +26,8 @@ pub struct Gaze<'a, L: SimdFloat> {
     /// How wide a pixel is along them.
     pub cone: RayCone<L>,
     /// How much it widens along rays that are mirrored there: those for which that is more than [`LARGEST_SPREAD`] do not
-    /// look into meshes, and on the way to a light at nothing; those for which it is more than [`WIDEST_SPREAD`] look at
-    /// nothing.
+    /// look into meshes, and on the way to a light at nothing in the tree; nor do those for which it is more than
+    /// [`WIDEST_SPREAD`].
     pub spread: L,
     /// How far they go.
     pub reach: L,
@@ -45,19 +45,6 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         gaze: &Gaze<L>,
         stack: &mut Stack<L::Real>,
     ) -> L {
-        let spread = self.plan.view.spread();
-        let narrow = spread * L::Real::from_f64(LARGEST_SPREAD);
-        let widest = if gaze.is_to_light {
-            narrow
-        } else {
-            spread * L::Real::from_f64(WIDEST_SPREAD)
-        };
-        let is_narrow = gaze.spread.at_most(self.splat(0.0).like(narrow));
-        let is_calm = gaze.spread.at_most(self.splat(0.0).like(widest));
-        let gaze = &Gaze {
-            active: gaze.active & is_calm,
-            ..*gaze
-        };
         let mut test = ThinTest::new(gaze, true, self.infinity());
         scan_lists(self.plan, among, gaze.paths, &mut test);
         let mut best = test.best;
@@ -70,8 +57,18 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             idle: &[],
         };
         let exact = Blur::splat(self.token, Blur::NONE);
+        // What stands in lists is few: all rays have looked at it.
+        let spread = self.plan.view.spread();
+        let narrow = spread * L::Real::from_f64(LARGEST_SPREAD);
+        let widest = if gaze.is_to_light {
+            narrow
+        } else {
+            spread * L::Real::from_f64(WIDEST_SPREAD)
+        };
+        let is_narrow = gaze.spread.at_most(self.splat(0.0).like(narrow));
+        let is_wide = gaze.spread.at_most(self.splat(0.0).like(widest)) & !is_narrow;
         // Apart from each other: boxes are as wide as the widest pixel.
-        for (looking, enters) in [(is_narrow, true), (!is_narrow, false)] {
+        for (looking, enters) in [(is_narrow, true), (is_wide, false)] {
             let looking = gaze.active & looking;
             if looking.any()
                 && let Some(thicket) = self.thicket(among, (looking, exact))
