@@ -88,6 +88,8 @@ pub struct Plan<R> {
     /// How far above hits rays start at least, as a share of the coordinates: off what may lie in the same surface.
     /// What is met so near to a hit is in its surface.
     pub clearance: R,
+    /// How many objects are visible.
+    pub things: usize,
     /// The largest coordinate of what ends.
     pub farthest: R,
     /// The same without what is much farther away than most, see [`Frame`].
@@ -145,6 +147,7 @@ impl<R: Real> Plan<R> {
             eye_on: None,
             ties: Vec::new(),
             clearance: R::ZERO,
+            things: scene.objects.iter().filter(|object| object.visible).count(),
             farthest: R::from_f64(frame.farthest),
             extent: R::from_f64(frame.extent),
             blur: Blur::NONE,

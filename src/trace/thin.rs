@@ -10,7 +10,7 @@ use super::paths::Paths;
 use super::roots::Roots;
 use super::scan::{Test, Thicket, scan_lists};
 use super::slip::least_pixels;
-use super::thresholds::{LARGEST_SPREAD, NEAR, ONE_THING, SLIPPING, WIDEST_SPREAD};
+use super::thresholds::{CROWD, LARGEST_SPREAD, NEAR, ONE_THING, SLIPPING, WIDEST_SPREAD};
 use super::walk::Stack;
 use crate::plan::PackedMesh;
 use crate::primitive::{Approach, Blur, Primitive};
@@ -26,8 +26,8 @@ pub struct Gaze<'a, L: SimdFloat> {
     /// How wide a pixel is along them.
     pub cone: RayCone<L>,
     /// How much it widens along rays that are mirrored there: those for which that is more than [`LARGEST_SPREAD`] do not
-    /// look into meshes, and on the way to a light at nothing in the tree; nor do those for which it is more than
-    /// [`WIDEST_SPREAD`].
+    /// look into meshes; in crowded scenes they look at nothing on the way to a light, and those for which it is more than
+    /// [`WIDEST_SPREAD`] at nothing at all.
     pub spread: L,
     /// How far they go.
     pub reach: L,
@@ -45,6 +45,21 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         gaze: &Gaze<L>,
         stack: &mut Stack<L::Real>,
     ) -> L {
+        let spread = self.plan.view.spread();
+        let narrow = spread * L::Real::from_f64(LARGEST_SPREAD);
+        let widest = if self.plan.things < CROWD {
+            L::Real::INFINITY
+        } else if gaze.is_to_light {
+            narrow
+        } else {
+            spread * L::Real::from_f64(WIDEST_SPREAD)
+        };
+        let is_narrow = gaze.spread.at_most(self.splat(0.0).like(narrow));
+        let is_looking = gaze.spread.at_most(self.splat(0.0).like(widest));
+        let gaze = &Gaze {
+            active: gaze.active & is_looking,
+            ..*gaze
+        };
         let mut test = ThinTest::new(gaze, true, self.infinity());
         scan_lists(self.plan, among, gaze.paths, &mut test);
         let mut best = test.best;
@@ -57,18 +72,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             idle: &[],
         };
         let exact = Blur::splat(self.token, Blur::NONE);
-        // What stands in lists is few: all rays have looked at it.
-        let spread = self.plan.view.spread();
-        let narrow = spread * L::Real::from_f64(LARGEST_SPREAD);
-        let widest = if gaze.is_to_light {
-            narrow
-        } else {
-            spread * L::Real::from_f64(WIDEST_SPREAD)
-        };
-        let is_narrow = gaze.spread.at_most(self.splat(0.0).like(narrow));
-        let is_wide = gaze.spread.at_most(self.splat(0.0).like(widest)) & !is_narrow;
         // Apart from each other: boxes are as wide as the widest pixel.
-        for (looking, enters) in [(is_narrow, true), (is_wide, false)] {
+        for (looking, enters) in [(is_narrow, true), (!is_narrow, false)] {
             let looking = gaze.active & looking;
             if looking.any()
                 && let Some(thicket) = self.thicket(among, (looking, exact))
