@@ -493,14 +493,21 @@ fn what_has_keys_is_keyed_by_changing_it() {
     assert!(harness.scene().animation.tracks.is_empty());
 }
 
-#[test]
-fn delete_is_meant_for_the_key_of_a_value_that_was_clicked_last() {
+/// A window in which the camera has keys at 0 and 2 seconds, and so has the intensity of a light, from 0.2 to 0.8; and
+/// the name of that row.
+fn brightening() -> (EditorHarness, String) {
     let mut harness = animation(&[(0.0, 0.0), (2.0, 0.0)]);
     harness.click("Light 1");
     harness.click("key intensity");
     harness.press(Modifiers::NONE, Key::End);
     harness.type_into("intensity", "0.8");
     let track = harness.scene().animation.tracks[0].target.name();
+    (harness, track)
+}
+
+#[test]
+fn delete_is_meant_for_the_key_of_a_value_that_was_clicked_last() {
+    let (mut harness, track) = brightening();
     harness.click(&format!("{track} key 2"));
     harness.press(Modifiers::NONE, Key::Delete);
     assert_eq!(harness.scene().animation.tracks[0].keys.len(), 1);
@@ -515,12 +522,7 @@ fn delete_is_meant_for_the_key_of_a_value_that_was_clicked_last() {
 
 #[test]
 fn keys_of_values_are_edited_like_those_of_the_camera() {
-    let mut harness = animation(&[(0.0, 0.0), (2.0, 0.0)]);
-    harness.click("Light 1");
-    harness.click("key intensity");
-    harness.press(Modifiers::NONE, Key::End);
-    harness.type_into("intensity", "0.8");
-    let track = harness.scene().animation.tracks[0].target.name();
+    let (mut harness, track) = brightening();
     harness.click(&format!("{track} key 2"));
     harness.type_into("intensity", "0.5");
     harness.type_into("time", "1.5");
