@@ -94,6 +94,12 @@ impl Node {
         }
     }
 
+    /// The members among what it holds.
+    pub fn members(&self) -> impl Iterator<Item = u32> {
+        let held = self.children[..self.count].iter().copied();
+        held.filter(|held| held & IS_NODE == 0)
+    }
+
     /// Takes over a box of another node, behind its own, of which there are fewer than [`GROUP`].
     #[inline(always)]
     pub fn take(&mut self, from: &Self, place: usize) {
@@ -179,7 +185,10 @@ impl<R: Real> Bvh<R> {
             count,
             ..Node::empty()
         };
-        let nodes = grouped(boxes.collect()).into_iter().map(node).collect();
+        let boxes: Vec<_> = boxes.collect();
+        let groups = grouped(&boxes);
+        drop(boxes);
+        let nodes = groups.into_iter().map(node).collect();
         let mut bvh = Self {
             nodes,
             bounds: BoundingBox::nothing(),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::borders::Borders;
 use super::bvh::{Bvh, Member};
 use super::contacts::LightContacts;
 use super::idle::KeptIdle;
@@ -365,7 +366,14 @@ pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>, apart: &BTreeSet<u
         let mut triangles: Vec<_> = group.iter().map(|&at| primitives.triangles[at]).collect();
         let corners = number_corners(&triangles);
         let mut bvh = Bvh::new(triangles.len(), |number| member(&triangles[number]));
-        let parts = measure(&mut triangles, &corners, &mut bvh).parts;
+        let all = &triangles;
+        let borders = Borders::of(
+            &corners,
+            |face| all[face as usize].corners,
+            |face| all[face as usize].material,
+        );
+        measure(&mut triangles, &corners, &mut bvh, &borders);
+        let parts = borders.of_one_material.unwrap_or(borders.connected);
         let things = things(&parts);
         for (index, (&place, mut triangle)) in group.iter().zip(triangles).enumerate() {
             let thing = things.get(index).copied().flatten();

@@ -12,6 +12,8 @@ mod cast;
 
 mod parts;
 
+mod borders;
+
 mod tips;
 
 mod thickness;

@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
+use super::borders::Borders;
 use super::bvh::{Bvh, Member};
 use super::cast::is_outside;
 use super::parts::{first_of_parts, volume};
 use super::smooth::{corner_normals, largest_lift};
-use super::thickness::{Measures, measures};
+use super::thickness::measures;
 use crate::mesh::Triangles;
 use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle, Primitive};
 use crate::scene::Mesh;
@@ -81,11 +82,14 @@ impl<R: Real> PackedMesh<R> {
         // What is met together stands together.
         let order = bvh.renumber().into_iter();
         let faces: Vec<_> = order.map(|number| faces[number as usize]).collect();
-        let mut triangles: Vec<_> = faces.iter().filter_map(packed).collect();
+        let corners_of = |face: u32| corners(faces[face as usize]).map(Vec3::from_dvec3);
+        let borders = Borders::of(&faces, corners_of, |_| 0);
+        let mut triangles = Vec::with_capacity(faces.len());
+        triangles.extend(faces.iter().filter_map(packed));
         drop(points);
-        let measures = measure(&mut triangles, &faces, &mut bvh);
-        let things = first_of_parts(&measures.parts);
-        let volume = if measures.is_closed {
+        measure(&mut triangles, &faces, &mut bvh, &borders);
+        let things = first_of_parts(&borders.connected);
+        let volume = if borders.is_closed {
             volume(&triangles)
         } else {
             0.0
@@ -138,21 +142,21 @@ impl<R: Real> PackedMesh<R> {
     }
 }
 
-/// Sets how thick each of the triangles is, whose corners have these numbers and that are in this tree, and how
-/// thick is what is in its boxes.
+/// Sets how thick each of the triangles is, whose corners have these numbers, that are in this tree and have these
+/// borders, and how thick is what is in its boxes.
 pub fn measure<R: Real>(
     triangles: &mut [PackedTriangle<R>],
     faces: &[[u32; 3]],
     bvh: &mut Bvh<R>,
-) -> Measures<R> {
-    let measures = measures(triangles, faces, bvh);
+    borders: &Borders<R>,
+) {
+    let measures = measures(triangles, faces, bvh, borders);
     let measured = measures.thicknesses.iter().zip(&measures.tips);
     for (triangle, (&thickness, &has_tips)) in triangles.iter_mut().zip(measured) {
         triangle.thickness = triangle.thickness.max(thickness);
         triangle.has_tips = has_tips;
     }
     bvh.refit(|number| member(&triangles[number]));
-    measures
 }
 
 /// How far the corners of triangles are from a point, at most.

@@ -1,12 +1,12 @@
 //! How thick a mesh is at each of its faces: what is narrower than two pixels may slip between samples,
 //! and a face of something thick never does, however small it is.
 
-use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
-use rayon::slice::ParallelSliceMut as _;
+use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
-use super::bvh::{Bvh, Child};
+use super::borders::Borders;
+use super::bvh::{Bvh, Node};
 use super::cast::cast;
-use super::parts::{inside_out, parts_along_edges};
+use super::parts::inside_out;
 use super::tips::tips;
 use crate::primitive::PackedTriangle;
 use crate::simd::{Real, Vec3};
@@ -18,108 +18,74 @@ const ALIKE: f64 = 0.7;
 /// Where faces are measured, as shares of their corners: not in the middle, which lies before an edge of the other side
 /// where that is its mirror image.
 const NEARLY_MIDDLE: [f64; 3] = [0.38, 0.34, 0.28];
-/// Most faces on the way from one border of a mesh to the other.
-const LONGEST_WALK: usize = 32;
 
 /// For each triangle how thick the mesh is there, at least: through the inside to the other side of it
 /// (Shapira, Shamir and Cohen-Or, "Consistent mesh partitioning and skeletonisation using the shape
 /// diameter function", The Visual Computer 24, 2008; with one ray), whichever way its faces are wound, and along
-/// the surface from border to border. Infinity where there is neither. `points` numbers the corners of each triangle.
+/// the surface from border to border. Infinity where there is neither. `points` numbers the corners of each triangle,
+/// and `borders` are those of the triangles.
 pub fn measures<R: Real>(
     triangles: &[PackedTriangle<R>],
     points: &[[u32; 3]],
     bvh: &Bvh<R>,
+    borders: &Borders<R>,
 ) -> Measures<R> {
-    let borders = Borders::of(points);
-    let mut parts = parts_along_edges(points.len(), borders.pairs());
     let faces = Faces {
         triangles,
-        points,
         bvh,
-        inside_out: inside_out(triangles, &parts),
+        inside_out: inside_out(triangles, &borders.connected),
     };
-    let material_of = |face: u32| triangles[face as usize].material;
-    if (1..points.len() as u32).any(|face| material_of(face) != material_of(0)) {
-        let is_alike = |&[one, other]: &[u32; 2]| material_of(one) == material_of(other);
-        parts = parts_along_edges(points.len(), borders.pairs().filter(is_alike));
-    }
-    let is_closed = borders.is_closed();
-    let width = |&face: &u32| faces.width(face as usize, &borders);
-    let widths: Vec<R> = borders.faces.iter().map(width).collect();
-    let at_borders = borders.faces;
-    // Those of a million faces are not kept while the rest takes its room.
-    drop(borders.edges);
     let mut thicknesses = faces.depths();
-    for (&face, width) in at_borders.iter().zip(widths) {
+    for &(face, width) in &borders.widths {
         let thickness = &mut thicknesses[face as usize];
         *thickness = thickness.min(width);
     }
     Measures {
-        tips: tips(triangles, points, &at_borders),
+        tips: tips(
+            triangles,
+            points,
+            borders.widths.iter().map(|&(face, _)| face),
+        ),
         thicknesses,
-        is_closed,
-        parts,
     }
 }
 
 /// Faces of a mesh in space.
 struct Faces<'a, R> {
     triangles: &'a [PackedTriangle<R>],
-    /// The numbers of the corners: the same where faces meet.
-    points: &'a [[u32; 3]],
     /// The way to the faces.
     bvh: &'a Bvh<R>,
     /// Which of them look inwards.
     inside_out: Vec<bool>,
 }
 
-/// An edge, from the smaller number to the larger, and a face that has it, twice its number, and 1 if the
-/// face passes it that way.
-type Edge = (u32, u32, u32);
-
-/// What is known of a mesh.
+/// What is known of triangles.
 pub struct Measures<R> {
     /// For each triangle how thick the mesh is there, at least.
     pub thicknesses: Vec<R>,
     /// For each triangle whether it ends in something narrower, see [`tips`].
     pub tips: Vec<bool>,
-    /// Whether every edge is passed once in each direction: it has an inside.
-    pub is_closed: bool,
-    /// For each triangle the part that it is connected with, along edges and in one material.
-    pub parts: Vec<u32>,
 }
 
 impl<R: Real> Faces<'_, R> {
     /// Through the inside. Neighbours share the least of what some of them have.
     fn depths(&self) -> Vec<R> {
-        let nodes = (0..self.bvh.nodes.len()).into_par_iter();
-        let found: Vec<(Vec<u32>, R)> = nodes
-            .map(|node| {
-                let node = &self.bvh.nodes[node];
-                let faces: Vec<u32> = (0..node.count)
-                    .filter_map(|place| match node.child(place) {
-                        Child::Member(face) => Some(face),
-                        Child::Node(_) => None,
-                    })
-                    .collect();
-                let least = self.least_depth(&faces);
-                (faces, least)
-            })
-            .collect();
+        let nodes = self.bvh.nodes.par_iter();
+        let found: Vec<R> = nodes.map(|node| self.least_depth(node)).collect();
         let mut depths = vec![R::INFINITY; self.triangles.len()];
-        for (faces, least) in found {
-            for face in faces {
+        for (node, least) in self.bvh.nodes.iter().zip(found) {
+            for face in node.members() {
                 depths[face as usize] = least;
             }
         }
         depths
     }
 
-    /// The least of what some of these faces have: one of each way that they look at least, since the ends of a rod are
-    /// as far apart as it is long.
-    fn least_depth(&self, faces: &[u32]) -> R {
+    /// The least of what some of the faces in a node have: one of each way that they look at least, since the ends of a
+    /// rod are as far apart as it is long.
+    fn least_depth(&self, node: &Node) -> R {
         let (mut least, mut measured) = (R::INFINITY, Vec::new());
-        for (place, &face) in faces.iter().enumerate() {
+        for (place, face) in node.members().enumerate() {
             let normal = self.triangles[face as usize].normal;
             let is_alike = |other: &Vec3<R>| R::from_f64(ALIKE) < normal.dot(*other);
             if place.is_multiple_of(MEASURED) || !measured.iter().any(is_alike) {
@@ -153,143 +119,6 @@ impl<R: Real> Faces<'_, R> {
     }
 }
 
-/// Where a mesh ends.
-struct Borders {
-    /// Faces with an edge that no other face has.
-    faces: Vec<u32>,
-    /// All edges, sorted.
-    edges: Vec<Edge>,
-}
-
-impl Borders {
-    /// Those of faces whose corners have these numbers.
-    fn of(points: &[[u32; 3]]) -> Self {
-        let mut edges: Vec<Edge> = Vec::with_capacity(points.len() * 3);
-        for (face, &[a, b, c]) in (0..).zip(points) {
-            for (from, to) in [(a, b), (b, c), (c, a)] {
-                edges.push((from.min(to), from.max(to), face * 2 + u32::from(from < to)));
-            }
-        }
-        edges.par_sort_unstable();
-        let alone = edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1));
-        let mut faces: Vec<u32> = alone
-            .filter(|edge| edge.len() == 1)
-            .map(|edge| edge[0].2 / 2)
-            .collect();
-        faces.sort_unstable();
-        faces.dedup();
-        Self { faces, edges }
-    }
-
-    /// Pairs of faces that have an edge in common: enough of them to connect all that do.
-    fn pairs(&self) -> impl Iterator<Item = [u32; 2]> {
-        let neighbours = self.edges.windows(2);
-        let pairs = neighbours.filter(|pair| (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1));
-        pairs.map(|pair| [pair[0].2 / 2, pair[1].2 / 2])
-    }
-
-    /// Whether two faces meet at every edge and pass it in different directions.
-    fn is_closed(&self) -> bool {
-        let mut edges = self.edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1));
-        edges.all(|edge| matches!(edge, [one, two] if (one.2 ^ two.2) & 1 == 1))
-    }
-
-    /// The other face at an edge; `None` on a border, and where more than two faces meet.
-    fn other(&self, from: u32, to: u32, face: u32) -> Option<u32> {
-        let edge = (from.min(to), from.max(to));
-        let first = self.edges.partition_point(|&(a, b, _)| (a, b) < edge);
-        let here = self.edges[first..].iter();
-        let mut here = here.take_while(|&&(a, b, _)| (a, b) == edge);
-        match (here.next(), here.next(), here.next()) {
-            (Some(&(_, _, one)), Some(&(_, _, two)), None) => {
-                Some(if one / 2 == face { two / 2 } else { one / 2 })
-            }
-            _ => None,
-        }
-    }
-}
-
-impl<R: Real> Faces<'_, R> {
-    /// The way along the surface from the border of a face to the next one; infinity if that is far.
-    fn width(&self, face: usize, borders: &Borders) -> R {
-        let mut least = R::INFINITY;
-        for side in 0..3 {
-            let [from, to] = [self.points[face][side], self.points[face][(side + 1) % 3]];
-            if borders.other(from, to, face as u32).is_none() {
-                least = least.min(self.walk(face, side, borders));
-            }
-        }
-        least
-    }
-
-    /// The length of the straight line over the surface that sets out across the middle of a side.
-    fn walk(&self, mut face: usize, side: usize, borders: &Borders) -> R {
-        let mut entered = side;
-        let corners = self.triangles[face].corners;
-        let (from, to) = (corners[side], corners[(side + 1) % 3]);
-        let mut at = (from + to) * R::from_f64(0.5);
-        let mut direction = inwards(&corners, side);
-        let mut length = R::ZERO;
-        for _ in 0..LONGEST_WALK {
-            let corners = self.triangles[face].corners;
-            // Each of the other sides is crossed where the line comes to its height over it.
-            let crossing = |side: usize| {
-                let inwards = inwards(&corners, side);
-                let (height, speed) = ((at - corners[side]).dot(inwards), direction.dot(inwards));
-                if speed < R::ZERO {
-                    -height / speed
-                } else {
-                    R::INFINITY
-                }
-            };
-            let sides = [(entered + 1) % 3, (entered + 2) % 3];
-            let (one, two) = (crossing(sides[0]), crossing(sides[1]));
-            let (left, step) = if one < two {
-                (sides[0], one)
-            } else {
-                (sides[1], two)
-            };
-            if !step.less(R::INFINITY) {
-                return R::INFINITY;
-            }
-            length = length + step.max(R::ZERO);
-            at = at + direction * step;
-            let points = self.points[face];
-            let (a, b) = (points[left], points[(left + 1) % 3]);
-            let Some(next) = borders.other(a, b, face as u32) else {
-                return length;
-            };
-            // Over the edge: what goes along it stays, what goes across it goes on across.
-            let along = (corners[(left + 1) % 3] - corners[left]).try_normalize();
-            let Some(along) = along else { return length };
-            let across = -direction.dot(inwards(&corners, left));
-            let kept = along * direction.dot(along);
-            face = next as usize;
-            let is_entered = |side: &usize| {
-                let points = self.points[face];
-                let edge = (points[*side], points[(*side + 1) % 3]);
-                edge == (a, b) || edge == (b, a)
-            };
-            let Some(side) = (0..3).find(is_entered) else {
-                return length;
-            };
-            entered = side;
-            direction = kept + inwards(&self.triangles[face].corners, side) * across;
-        }
-        R::INFINITY
-    }
-}
-
-/// The unit direction in the plane of a triangle that leads from one of its sides into it.
-fn inwards<R: Real>(corners: &[Vec3<R>; 3], side: usize) -> Vec3<R> {
-    let (from, to) = (corners[side], corners[(side + 1) % 3]);
-    let third = corners[(side + 2) % 3];
-    let along = to - from;
-    let normal = along.cross(third - from);
-    let direction = normal.cross(along).try_normalize();
-    direction.unwrap_or(Vec3::splat(R::ZERO))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -306,12 +135,9 @@ mod tests {
         };
         let members: Vec<_> = triangles.iter().map(member).collect();
         let points = number_corners(&triangles);
-        measures(
-            &triangles,
-            &points,
-            &Bvh::new(members.len(), |n| members[n]),
-        )
-        .thicknesses
+        let borders = Borders::of(&points, |face| triangles[face as usize].corners, |_| 0);
+        let bvh = Bvh::new(members.len(), |n| members[n]);
+        measures(&triangles, &points, &bvh, &borders).thicknesses
     }
 
     fn at(x: f64, y: f64, z: f64) -> Vec3<f64> {

@@ -24,12 +24,12 @@ struct Point<R> {
 pub fn tips<R: Real>(
     triangles: &[PackedTriangle<R>],
     points: &[[u32; 3]],
-    borders: &[u32],
+    borders: impl Iterator<Item = u32>,
 ) -> Vec<bool> {
     let sharp = sharp_points(triangles, points);
     let is_sharp = |corners: &[u32; 3]| corners.iter().any(|&point| sharp[point as usize]);
     let mut tips: Vec<bool> = points.iter().map(is_sharp).collect();
-    for &face in borders {
+    for face in borders {
         tips[face as usize] = true;
     }
     tips
@@ -102,7 +102,7 @@ mod tests {
         } else {
             (0..sides).collect()
         };
-        tips(&triangles, &faces, &borders)
+        tips(&triangles, &faces, borders.into_iter())
     }
 
     #[test]

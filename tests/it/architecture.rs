@@ -30,6 +30,8 @@ const HOMES: &[(&[&str], &[&str])] = &[
             "export/writers",
             "export/ffmpeg",
             "export/povray",
+            "plan/grouping",
+            "plan/borders",
             "plan/idle",
             "plan/thickness",
             "trace/tracer",

@@ -1,0 +1,200 @@
+//! Where faces hang together, and where they end: known from the numbers of their corners.
+
+use rayon::slice::ParallelSliceMut as _;
+
+use super::parts::parts_along_edges;
+use crate::simd::{Real, Vec3};
+
+/// Most faces on the way from one border of a mesh to the other.
+const LONGEST_WALK: usize = 32;
+
+/// What the edges of faces tell of them.
+pub struct Borders<R> {
+    /// Faces with an edge that no other face has, in ascending order, and how far it is from there over the surface to
+    /// the next such edge; infinity if that is far.
+    pub widths: Vec<(u32, R)>,
+    /// Whether every edge is passed once in each direction: there is an inside.
+    pub is_closed: bool,
+    /// For each face the part that it is connected with along edges.
+    pub connected: Vec<u32>,
+    /// The same for parts that are of one material, if there are several materials.
+    pub of_one_material: Option<Vec<u32>>,
+}
+
+impl<R: Real> Borders<R> {
+    /// Those of faces whose corners have these numbers, are there, and that are of these materials.
+    pub fn of(
+        points: &[[u32; 3]],
+        corners: impl Fn(u32) -> [Vec3<R>; 3],
+        material: impl Fn(u32) -> u32,
+    ) -> Self {
+        let edges = Edges::of(points);
+        let parts =
+            |pairs: &mut dyn Iterator<Item = [u32; 2]>| parts_along_edges(points.len(), pairs);
+        let are_different = (1..points.len() as u32).any(|face| material(face) != material(0));
+        let is_alike = |&[one, other]: &[u32; 2]| material(one) == material(other);
+        let surface = Surface {
+            points,
+            corners,
+            edges: &edges,
+        };
+        let alone = edges.alone().into_iter();
+        Self {
+            widths: alone.map(|face| (face, surface.width(face))).collect(),
+            is_closed: edges.are_closed(),
+            connected: parts(&mut edges.pairs()),
+            of_one_material: are_different.then(|| parts(&mut edges.pairs().filter(is_alike))),
+        }
+    }
+}
+
+/// An edge, from the smaller number to the larger, and a face that has it, twice its number, and 1 if the
+/// face passes it that way.
+type Edge = (u32, u32, u32);
+
+/// All edges, sorted.
+struct Edges(Vec<Edge>);
+
+impl Edges {
+    /// Those of faces whose corners have these numbers.
+    fn of(points: &[[u32; 3]]) -> Self {
+        let mut edges: Vec<Edge> = Vec::with_capacity(points.len() * 3);
+        for (face, &[a, b, c]) in (0..).zip(points) {
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                edges.push((from.min(to), from.max(to), face * 2 + u32::from(from < to)));
+            }
+        }
+        edges.par_sort_unstable();
+        Self(edges)
+    }
+
+    /// Those that are one edge, together.
+    fn each(&self) -> impl Iterator<Item = &[Edge]> {
+        self.0.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
+    }
+
+    /// Faces with an edge that no other face has.
+    fn alone(&self) -> Vec<u32> {
+        let alone = self.each().filter(|edge| edge.len() == 1);
+        let mut faces: Vec<u32> = alone.map(|edge| edge[0].2 / 2).collect();
+        faces.sort_unstable();
+        faces.dedup();
+        faces
+    }
+
+    /// Pairs of faces that have an edge in common: enough of them to connect all that do.
+    fn pairs(&self) -> impl Iterator<Item = [u32; 2]> {
+        let neighbours = self.0.windows(2);
+        let pairs = neighbours.filter(|pair| (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1));
+        pairs.map(|pair| [pair[0].2 / 2, pair[1].2 / 2])
+    }
+
+    /// Whether two faces meet at every edge and pass it in different directions.
+    fn are_closed(&self) -> bool {
+        self.each()
+            .all(|edge| matches!(edge, [one, two] if (one.2 ^ two.2) & 1 == 1))
+    }
+
+    /// The other face at an edge; `None` on a border, and where more than two faces meet.
+    fn other(&self, from: u32, to: u32, face: u32) -> Option<u32> {
+        let edge = (from.min(to), from.max(to));
+        let first = self.0.partition_point(|&(a, b, _)| (a, b) < edge);
+        let here = self.0[first..].iter();
+        let mut here = here.take_while(|&&(a, b, _)| (a, b) == edge);
+        match (here.next(), here.next(), here.next()) {
+            (Some(&(_, _, one)), Some(&(_, _, two)), None) => {
+                Some(if one / 2 == face { two / 2 } else { one / 2 })
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Faces that straight lines are drawn over.
+struct Surface<'a, F> {
+    points: &'a [[u32; 3]],
+    corners: F,
+    edges: &'a Edges,
+}
+
+impl<R: Real, F: Fn(u32) -> [Vec3<R>; 3]> Surface<'_, F> {
+    /// The way along the surface from the border of a face to the next one; infinity if that is far.
+    fn width(&self, face: u32) -> R {
+        let mut least = R::INFINITY;
+        for side in 0..3 {
+            let points = self.points[face as usize];
+            let (from, to) = (points[side], points[(side + 1) % 3]);
+            if self.edges.other(from, to, face).is_none() {
+                least = least.min(self.walk(face, side));
+            }
+        }
+        least
+    }
+
+    /// The length of the straight line over the surface that sets out across the middle of a side.
+    fn walk(&self, mut face: u32, side: usize) -> R {
+        let mut entered = side;
+        let corners = (self.corners)(face);
+        let (from, to) = (corners[side], corners[(side + 1) % 3]);
+        let mut at = (from + to) * R::from_f64(0.5);
+        let mut direction = inwards(&corners, side);
+        let mut length = R::ZERO;
+        for _ in 0..LONGEST_WALK {
+            let corners = (self.corners)(face);
+            // Each of the other sides is crossed where the line comes to its height over it.
+            let crossing = |side: usize| {
+                let inwards = inwards(&corners, side);
+                let (height, speed) = ((at - corners[side]).dot(inwards), direction.dot(inwards));
+                if speed < R::ZERO {
+                    -height / speed
+                } else {
+                    R::INFINITY
+                }
+            };
+            let sides = [(entered + 1) % 3, (entered + 2) % 3];
+            let (one, two) = (crossing(sides[0]), crossing(sides[1]));
+            let (left, step) = if one < two {
+                (sides[0], one)
+            } else {
+                (sides[1], two)
+            };
+            if !step.less(R::INFINITY) {
+                return R::INFINITY;
+            }
+            length = length + step.max(R::ZERO);
+            at = at + direction * step;
+            let points = self.points[face as usize];
+            let (a, b) = (points[left], points[(left + 1) % 3]);
+            let Some(next) = self.edges.other(a, b, face) else {
+                return length;
+            };
+            // Over the edge: what goes along it stays, what goes across it goes on across.
+            let along = (corners[(left + 1) % 3] - corners[left]).try_normalize();
+            let Some(along) = along else { return length };
+            let across = -direction.dot(inwards(&corners, left));
+            let kept = along * direction.dot(along);
+            face = next;
+            let points = self.points[face as usize];
+            let is_entered = |side: &usize| {
+                let edge = (points[*side], points[(*side + 1) % 3]);
+                edge == (a, b) || edge == (b, a)
+            };
+            let Some(side) = (0..3).find(is_entered) else {
+                return length;
+            };
+            entered = side;
+            direction = kept + inwards(&(self.corners)(face), side) * across;
+        }
+        R::INFINITY
+    }
+}
+
+/// The unit direction in the plane of a triangle that leads from one of its sides into it.
+fn inwards<R: Real>(corners: &[Vec3<R>; 3], side: usize) -> Vec3<R> {
+    let (from, to) = (corners[side], corners[(side + 1) % 3]);
+    let third = corners[(side + 2) % 3];
+    let along = to - from;
+    let normal = along.cross(third - from);
+    let direction = normal.cross(along).try_normalize();
+    direction.unwrap_or(Vec3::splat(R::ZERO))
+}
