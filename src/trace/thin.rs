@@ -10,7 +10,9 @@ use super::paths::Paths;
 use super::roots::Roots;
 use super::scan::{Test, Thicket, scan_lists};
 use super::slip::least_pixels;
-use super::thresholds::{CROWD, LARGEST_SPREAD, NEAR, ONE_THING, SLIPPING, WIDEST_SPREAD};
+use super::thresholds::{
+    CROWD, LARGEST_SPREAD, NEAR, ONE_THING, SLIPPING, WIDEST_SPREAD, WIDEST_TO_LIGHTS,
+};
 use super::walk::Stack;
 use crate::plan::PackedMesh;
 use crate::primitive::{Approach, Blur, Primitive};
@@ -26,8 +28,8 @@ pub struct Gaze<'a, L: SimdFloat> {
     /// How wide a pixel is along them.
     pub cone: RayCone<L>,
     /// How much it widens along rays that are mirrored there: those for which that is more than [`LARGEST_SPREAD`] do not
-    /// look into meshes; in crowded scenes they look at nothing on the way to a light, and those for which it is more than
-    /// [`WIDEST_SPREAD`] at nothing at all.
+    /// look into meshes, and those for which it is more than [`WIDEST_TO_LIGHTS`] at nothing on the way to a light; in
+    /// crowded scenes, these do not from [`LARGEST_SPREAD`] on, and from [`WIDEST_SPREAD`] on at nothing at all.
     pub spread: L,
     /// How far they go.
     pub reach: L,
@@ -47,12 +49,11 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     ) -> L {
         let spread = self.plan.view.spread();
         let narrow = spread * L::Real::from_f64(LARGEST_SPREAD);
-        let widest = if self.plan.things < CROWD {
-            L::Real::INFINITY
-        } else if gaze.is_to_light {
-            narrow
-        } else {
-            spread * L::Real::from_f64(WIDEST_SPREAD)
+        let widest = match (self.plan.things < CROWD, gaze.is_to_light) {
+            (true, true) => spread * L::Real::from_f64(WIDEST_TO_LIGHTS),
+            (true, false) => L::Real::INFINITY,
+            (false, true) => narrow,
+            (false, false) => spread * L::Real::from_f64(WIDEST_SPREAD),
         };
         let is_narrow = gaze.spread.at_most(self.splat(0.0).like(narrow));
         let is_looking = gaze.spread.at_most(self.splat(0.0).like(widest));
