@@ -222,6 +222,23 @@ pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// What an open file or pipe holds, or how much there is if that is more than `most` bytes.
+///
+/// # Errors
+/// What the system answered; no memory for it.
+pub fn read_at_most(file: File, most: u64) -> io::Result<Result<Vec<u8>, u64>> {
+    let length = file.metadata()?.len();
+    if length > most {
+        return Ok(Err(length));
+    }
+    let mut bytes = Vec::new();
+    let size = usize::try_from(length).unwrap_or(usize::MAX);
+    bytes.try_reserve_exact(size.saturating_add(1))?;
+    // The file may grow while it is read, and a pipe has no length.
+    let read = file.take(most + 1).read_to_end(&mut bytes)? as u64;
+    Ok(if read > most { Err(read) } else { Ok(bytes) })
+}
+
 /// What a text file holds; `None` if it cannot be read.
 pub fn read_text(path: &Path) -> Option<String> {
     fs::read_to_string(path).ok()

@@ -68,11 +68,9 @@ fn write_scene(args: &ConvertArgs) -> Result<(), CliError> {
     })?;
     let objects = scene.objects.len();
     let faces: usize = scene.faces();
-    let document = Document {
-        header: String::new(),
-        scene,
-    };
-    document.save(&output).map_err(CliError::failed)?;
+    Document::of(scene)
+        .save(&output)
+        .map_err(CliError::failed)?;
     say(&format!(
         "{}: {}, {}",
         args.output.display(),

@@ -13,18 +13,8 @@ pub struct SettingArgs {
 impl SettingArgs {
     /// Puts what was asked for in place of the scene's own.
     pub fn apply(&self, render: &mut Render) {
-        render.visit_settings(&mut Apply(self));
-    }
-}
-
-struct Apply<'a>(&'a SettingArgs);
-
-impl VisitSetting for Apply<'_> {
-    fn visit<M: Method>(&mut self, setting: Setting, value: &mut M) {
-        let mut asked = self.0.asked.iter();
-        let asked = asked.find(|(name, _)| *name == setting.name);
-        if let Some(Ok(asked)) = asked.map(|(_, id)| M::parse(id)) {
-            *value = asked;
+        for (name, id) in &self.asked {
+            render.choose(name, id);
         }
     }
 }

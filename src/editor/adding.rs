@@ -1,12 +1,10 @@
 //! New things in a scene.
 
-use std::collections::HashSet;
-
 use glam::DVec3;
 
 use super::item::Item;
 use super::names::{free_light_name, free_object_name, free_pack_name};
-use crate::scene::{ColorPack, Light, LightObj, Object, Scene, Shape};
+use crate::scene::{ColorPack, Light, LightObj, Object, Scene, Shape, light_pack};
 
 /// Colours that new things wear, one after the other: told apart from each other, and from a grey floor.
 const COLORS: [[f64; 3]; 8] = [
@@ -59,13 +57,7 @@ pub fn add_light(scene: &mut Scene, position: DVec3) -> Item {
     let color_pack = if scene.color_packs.contains_key("light") {
         "light".to_owned()
     } else {
-        let yellow = DVec3::new(255.0, 255.0, 0.0);
-        let pack = ColorPack {
-            ambient: yellow,
-            diffuse: yellow,
-            ..ColorPack::default()
-        };
-        insert_pack(scene, "light", pack).1
+        insert_pack(scene, "light", light_pack()).1
     };
     scene.lights.push(Light {
         name,
@@ -84,20 +76,10 @@ pub fn add_pack(scene: &mut Scene) -> Item {
 
 /// A pack that nothing wears; not the one that is kept for lights.
 fn free_pack(scene: &Scene) -> Option<String> {
-    let objects = scene
-        .objects
-        .iter()
-        .map(|object| object.color_pack.as_str());
-    let markers = scene
-        .lights
-        .iter()
-        .filter_map(|light| light.marker.as_ref());
-    let worn: HashSet<&str> = objects
-        .chain(markers.map(|marker| marker.color_pack.as_str()))
-        .chain(["light"])
-        .collect();
+    let worn = scene.worn_packs();
     let mut names = scene.color_packs.keys();
-    names.find(|name| !worn.contains(name.as_str())).cloned()
+    let is_free = |name: &&String| *name != "light" && !worn.contains(name.as_str());
+    names.find(is_free).cloned()
 }
 
 /// Puts a pack behind the others, under this name or one like it: its place and its name.

@@ -40,11 +40,11 @@ pub struct AnimationState {
     pub timeline: Timeline,
     /// The scene that the rest was made from.
     scene: Arc<Scene>,
-    path: CameraPath,
+    pub path: CameraPath,
     pub shown: Arc<Scene>,
     /// Time and camera that `shown` was made for.
     made_for: (f64, bool),
-    revision: u64,
+    pub revision: u64,
     /// What the samples of a take see: to find out takes rays, which are not traced here.
     pub survey: Option<(Arc<Take>, Vec<Vec<Seen>>)>,
     /// What is done with the survey once it is there.
@@ -117,11 +117,6 @@ impl AnimationState {
         Arc::ptr_eq(of, take).then_some(seen.as_slice())
     }
 
-    /// No key is selected any more.
-    pub fn deselect_keys(&mut self) {
-        self.timeline.selected.clear();
-    }
-
     /// For another document; how it is played stays.
     pub fn start_again(&self, scene: &Arc<Scene>) -> Self {
         let mut new = Self::new(scene);
@@ -129,22 +124,6 @@ impl AnimationState {
         new.timeline.speed = self.timeline.speed;
         new.revision = self.revision + 1;
         new
-    }
-
-    pub fn timeline(&self) -> &Timeline {
-        &self.timeline
-    }
-
-    pub fn path(&self) -> &CameraPath {
-        &self.path
-    }
-
-    pub fn shown(&self) -> &Arc<Scene> {
-        &self.shown
-    }
-
-    pub fn revision(&self) -> u64 {
-        self.revision
     }
 
     /// The picture is that of the view from now on.

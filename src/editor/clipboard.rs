@@ -14,17 +14,12 @@ use crate::scene::{ColorPack, Document, List, Owners, Scene, SceneError, Track, 
 /// How far a copy of a light alone is from it, in world units.
 const LIGHT_APART: f64 = 10.0;
 
+/// How deep a row is, as a share of its length, whose copy stands before it.
+const THINNEST: f64 = 0.05;
+
 /// The selected things alone, with the packs that they wear and the keys of their values.
 pub fn excerpt(scene: &Scene, selected: &Selected) -> Scene {
-    let of = |kind: Kind| {
-        let items = selected.items().iter();
-        let mut places: Vec<usize> = items
-            .filter(|item| item.kind == kind)
-            .map(|item| item.index)
-            .collect();
-        places.sort_unstable();
-        places.into_iter()
-    };
+    let of = |kind| selected.places(kind).into_iter();
     let objects = of(Kind::Object).filter_map(|index| scene.objects.get(index).cloned());
     let lights = of(Kind::Light).filter_map(|index| scene.lights.get(index).cloned());
     let mut part = Scene {
@@ -32,14 +27,11 @@ pub fn excerpt(scene: &Scene, selected: &Selected) -> Scene {
         lights: lights.collect(),
         ..Scene::empty()
     };
-    let markers = part.lights.iter().filter_map(|light| light.marker.as_ref());
-    let worn = part.objects.iter().map(|object| &object.color_pack);
-    let worn: HashSet<&String> = worn
-        .chain(markers.map(|marker| &marker.color_pack))
-        .collect();
+    let worn = part.worn_packs();
     let chosen: HashSet<usize> = of(Kind::Pack).collect();
     let packs = scene.color_packs.iter().enumerate();
-    let packs = packs.filter(|(place, (name, _))| worn.contains(name) || chosen.contains(place));
+    let packs =
+        packs.filter(|(place, (name, _))| worn.contains(name.as_str()) || chosen.contains(place));
     let packs: IndexMap<String, ColorPack> = packs
         .map(|(_, (name, pack))| (name.clone(), pack.clone()))
         .collect();
@@ -84,7 +76,7 @@ pub fn read(text: &str, scene: &Scene) -> Result<Scene, SceneError> {
         if names_field(text, "color_packs") {
             return Ok(read);
         }
-        return Ok(excerpt(&read, &Selected::all(items(&read))));
+        return Ok(excerpt(&read, &Selected::all(Item::everything(&read))));
     }
     let mut packs = String::new();
     for name in scene.color_packs.keys() {
@@ -101,13 +93,7 @@ pub fn read(text: &str, scene: &Scene) -> Result<Scene, SceneError> {
     let mut read = Document::from_text(&whole)?.scene;
     // The scene has them as they are.
     read.color_packs = scene.color_packs.clone();
-    Ok(excerpt(&read, &Selected::all(items(&read))))
-}
-
-/// All lights and objects of a scene.
-fn items(scene: &Scene) -> impl Iterator<Item = Item> {
-    let lights = (0..scene.lights.len()).map(Item::light);
-    lights.chain((0..scene.objects.len()).map(Item::object))
+    Ok(excerpt(&read, &Selected::all(Item::everything(&read))))
 }
 
 /// Adds everything in `pasted`, behind what is there: packs that are there already are used, others get a name
@@ -178,7 +164,16 @@ fn way_aside(scene: &Scene, pasted: &Scene) -> DVec3 {
         return DVec3::X * if is_there { LIGHT_APART } else { 0.0 };
     };
     let step = match pasted.objects_bounds() {
-        Some((low, high)) => DVec3::X * (high - low).max_element(),
+        // What stands in a row has its copy before it, and not where the picture ends.
+        Some((low, high)) => {
+            let size = high - low;
+            let is_row = pasted.objects.len() > 1 && size.x * THINNEST < size.z && size.z < size.x;
+            if is_row {
+                DVec3::Z * size.z
+            } else {
+                DVec3::X * size.max_element()
+            }
+        }
         None => copy_offset(scene, &first.shape),
     };
     let is_there = |by: DVec3| {
@@ -196,17 +191,32 @@ fn way_aside(scene: &Scene, pasted: &Scene) -> DVec3 {
 mod tests {
     use super::*;
     use crate::editor::edit::Edit;
-    use crate::scene::{Target, check};
+    use crate::scene::{Sphere, Target, check};
+
+    #[test]
+    fn copies_of_a_row_stand_before_it_and_those_of_anything_else_beside_it() {
+        for (apart, deep, along_z) in [(100.0, 10.0, true), (100.0, 2.0, false), (0.0, 10.0, false)]
+        {
+            let mut scene = Scene::demo();
+            for place in [0, 1] {
+                let center = DVec3::new(apart * place as f64, 0.0, 0.0);
+                let radius = deep / 2.0;
+                scene.objects[place].shape = Sphere { center, radius }.into();
+            }
+            let selected = Selected::all([0, 1].map(Item::object));
+            let part = excerpt(&scene, &selected);
+            let by = way_aside(&scene, &part);
+            assert_eq!(by.z > 0.0, along_z, "{by}");
+            assert_eq!(by.x > 0.0, !along_z, "{by}");
+        }
+    }
 
     #[test]
     fn what_is_copied_is_pasted_beside_it_with_its_packs() {
         let mut scene = Scene::demo();
         let selected = Selected::all([Item::object(1), Item::light(0), Item::object(0)]);
         let part = excerpt(&scene, &selected);
-        let document = Document {
-            header: String::new(),
-            scene: part.clone(),
-        };
+        let document = Document::of(part.clone());
         let text = document.to_text().expect("a text");
         let found = read(&text, &scene).expect("a scene");
         assert_eq!(found, part);
@@ -240,10 +250,7 @@ mod tests {
         let selected = Selected::all([Item::object(0), Item::light(0)]);
         let part = excerpt(&scene, &selected);
         assert_eq!(part.animation.tracks.len(), 3);
-        let document = Document {
-            header: String::new(),
-            scene: part,
-        };
+        let document = Document::of(part);
         let text = document.to_text().expect("a text");
         let found = read(&text, &scene).expect("a scene");
         paste(&mut scene, &found);

@@ -95,22 +95,22 @@ impl Editor {
     /// The scene as it is on show: at the time of the playhead, through the camera that is looked
     /// through.
     pub fn shown(&self) -> &Arc<Scene> {
-        self.animation_state.shown()
+        &self.animation_state.shown
     }
 
     /// Grows with every change of what is on show.
     pub fn shown_revision(&self) -> u64 {
-        self.animation_state.revision()
+        self.animation_state.revision
     }
 
     /// The timeline.
     pub fn timeline(&self) -> &Timeline {
-        self.animation_state.timeline()
+        &self.animation_state.timeline
     }
 
     /// The camera over time.
     pub fn path_of_camera(&self) -> &CameraPath {
-        self.animation_state.path()
+        &self.animation_state.path
     }
 
     /// The time that is on show, in seconds.
@@ -140,14 +140,17 @@ impl Editor {
 
     /// What the document is called: its file name, or `demo` or `untitled`.
     pub fn title(&self) -> String {
-        match &self.path {
-            Some(path) => path
-                .file_name()
-                .unwrap_or(path.as_os_str())
-                .to_string_lossy()
-                .into_owned(),
-            None => self.name.to_owned(),
-        }
+        let Some(path) = &self.path else {
+            return self.name.to_owned();
+        };
+        let name = path.file_name().unwrap_or(path.as_os_str());
+        name.to_string_lossy().into_owned()
+    }
+
+    /// The same without the ending.
+    pub fn stem(&self) -> String {
+        let title = self.title();
+        title.strip_suffix(".ron").unwrap_or(&title).to_owned()
     }
 
     /// The name of the step that undo would take back.
@@ -167,13 +170,11 @@ impl Editor {
 
     /// Selects the objects and lights of these names.
     pub fn select_named(&mut self, names: &[String]) {
-        let lights = (0..self.scene.lights.len()).map(Item::light);
-        let items = lights.chain((0..self.scene.objects.len()).map(Item::object));
         let is_named = |item: &Item| {
             let name = item.name(&self.scene);
             name.is_some_and(|name| names.iter().any(|wanted| wanted == name))
         };
-        let items = Selected::all(items.filter(is_named));
+        let items = Selected::all(Item::everything(&self.scene).filter(is_named));
         if !items.items().is_empty() {
             self.apply(Action::SelectItems(items));
         }
@@ -191,11 +192,11 @@ impl Editor {
             Action::Fly(motion) => {
                 let camera = self
                     .flight
-                    .step(&self.animation_state.shown().camera, &motion);
+                    .step(&self.animation_state.shown.camera, &motion);
                 self.edit(Edit::Camera(camera, "move"));
             }
             Action::Orbit(about, turn) => {
-                let camera = &self.animation_state.shown().camera;
+                let camera = &self.animation_state.shown.camera;
                 let camera = self.flight.orbit(camera, about, turn);
                 self.edit(Edit::Camera(camera, "move"));
             }
@@ -234,7 +235,7 @@ impl Editor {
 
     /// Starts a document from an empty scene.
     pub fn start_new(&mut self) {
-        self.replace(Document::empty(), None);
+        self.replace(Document::of(Scene::empty()), None);
     }
 
     /// Starts a document from an example.
@@ -422,7 +423,7 @@ impl Editor {
     pub(super) fn select(&mut self, selected: Selected, selection: Selection) {
         (self.selected, self.selection) = (selected, selection);
         if selection != Selection::Keys {
-            self.animation_state.deselect_keys();
+            self.animation_state.timeline.selected.clear();
         }
     }
 

@@ -80,7 +80,7 @@ pub enum Edit {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditError {
     /// Something wears the pack that was to go.
-    #[error("{name:?} is used by {users}; give them another color pack first")]
+    #[error("“{name}” is used by {users}; give them another color pack first")]
     PackInUse {
         /// The pack's name.
         name: String,
@@ -88,7 +88,7 @@ pub enum EditError {
         users: String,
     },
     /// Two packs would have one name.
-    #[error("There is another color pack named {0:?}; choose another name")]
+    #[error("There is another color pack named “{0}”; choose another name")]
     PackNameTaken(String),
 }
 
@@ -367,19 +367,7 @@ fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), EditError> {
             scene
                 .packs_mut()
                 .shift_insert(item.index, to.to_owned(), pack);
-            let markers = scene
-                .lights
-                .iter_mut()
-                .filter_map(|light| light.marker.as_mut());
-            let worn = markers.map(|marker| &mut marker.color_pack);
-            let worn = worn.chain(
-                scene
-                    .objects
-                    .iter_mut()
-                    .map(|object| &mut object.color_pack),
-            );
-            worn.filter(|name| **name == from)
-                .for_each(|name| to.clone_into(name));
+            scene.wear_instead(|name| (name == from).then_some(to));
         }
     }
     Ok(())
@@ -387,11 +375,7 @@ fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), EditError> {
 
 fn move_item(scene: &mut Scene, item: Item, to: usize) -> Item {
     let Item { kind, index } = item;
-    let count = match kind {
-        Kind::Object => scene.objects.len(),
-        Kind::Light => scene.lights.len(),
-        Kind::Pack => scene.color_packs.len(),
-    };
+    let count = kind.count(scene);
     if index >= count {
         return item;
     }

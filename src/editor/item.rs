@@ -13,6 +13,17 @@ pub enum Kind {
     Pack,
 }
 
+impl Kind {
+    /// How many of them the scene has.
+    pub fn count(self, scene: &Scene) -> usize {
+        match self {
+            Self::Light => scene.lights.len(),
+            Self::Object => scene.objects.len(),
+            Self::Pack => scene.color_packs.len(),
+        }
+    }
+}
+
 /// One entry of a list of the scene, by its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Item {
@@ -44,6 +55,21 @@ impl Item {
         Self {
             kind: Kind::Pack,
             index,
+        }
+    }
+
+    /// All lights and objects of a scene.
+    pub fn everything(scene: &Scene) -> impl Iterator<Item = Self> + use<> {
+        let lights = (0..scene.lights.len()).map(Self::light);
+        lights.chain((0..scene.objects.len()).map(Self::object))
+    }
+
+    /// Whether it shines, or is visible; `None` for packs, and where there is none.
+    pub fn is_visible(self, scene: &Scene) -> Option<bool> {
+        match self.kind {
+            Kind::Light => scene.lights.get(self.index).map(|light| light.visible),
+            Kind::Object => scene.objects.get(self.index).map(|object| object.visible),
+            Kind::Pack => None,
         }
     }
 

@@ -76,6 +76,14 @@ impl Selected {
         &self.0
     }
 
+    /// The places of those of a kind, in ascending order.
+    pub fn places(&self, kind: Kind) -> Vec<usize> {
+        let own = self.0.iter().filter(|item| item.kind == kind);
+        let mut places: Vec<usize> = own.map(|item| item.index).collect();
+        places.sort_unstable();
+        places
+    }
+
     /// Whether it is among them.
     pub fn has(&self, item: Item) -> bool {
         self.0.contains(&item)
@@ -125,19 +133,13 @@ impl Selected {
             return self.clone();
         }
         let mut places: HashMap<(Kind, &str), Item> = HashMap::new();
-        let lights = (0..to.lights.len()).map(Item::light);
-        let objects = (0..to.objects.len()).map(Item::object);
         let packs = (0..to.color_packs.len()).map(Item::pack);
-        for item in lights.chain(objects).chain(packs) {
+        for item in Item::everything(to).chain(packs) {
             if let Some(name) = item.name(to) {
                 places.insert((item.kind, name), item);
             }
         }
-        let same_length = |kind: Kind| match kind {
-            Kind::Light => from.lights.len() == to.lights.len(),
-            Kind::Object => from.objects.len() == to.objects.len(),
-            Kind::Pack => from.color_packs.len() == to.color_packs.len(),
-        };
+        let same_length = |kind: Kind| kind.count(from) == kind.count(to);
         let followed = self.0.iter().filter_map(|item| {
             let name = item.name(from)?;
             let found = places.get(&(item.kind, name)).copied();

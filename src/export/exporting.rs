@@ -135,11 +135,6 @@ impl Exporting {
         }
     }
 
-    /// What is exported.
-    pub fn sequence(&self) -> &Sequence {
-        &self.sequence
-    }
-
     /// What has been done so far.
     pub fn done(&self) -> Exported {
         self.done
@@ -175,7 +170,7 @@ impl Exporting {
             };
         }
         let trace = |mut due: Due| {
-            let request = self.sequence.request(&due.shown);
+            let request = RenderRequest::still(&due.shown);
             let cost = due
                 .film
                 .expose(&mut due.planner, &due.shown, &request, control);
@@ -209,7 +204,7 @@ impl Exporting {
     /// Traces a large frame while it is written.
     fn draw(&mut self, mut due: Due, control: &RenderControl) -> Result<ExportStep, ExportError> {
         let sequence = Arc::clone(&self.sequence);
-        let request = sequence.request(&due.shown);
+        let request = RenderRequest::still(&due.shown);
         let written = sequence.write(due.frame, &due.fingerprint, |file| {
             let picture = (&*due.shown, &request);
             let mut drawing = due.film.draw(&mut due.planner, picture, control);

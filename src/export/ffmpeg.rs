@@ -19,7 +19,7 @@ use crate::image::Format;
 pub fn by_ffmpeg(
     sequence: &Sequence,
     (unfinished, path): (&Path, &Path),
-    codec: &[&str],
+    codec: &str,
     done: impl FnMut(usize),
 ) -> Result<(), VideoError> {
     let wrong = |error: io::Error| VideoError::disk(path, &error);
@@ -65,7 +65,7 @@ pub fn by_ffmpeg(
     Err(VideoError::Ffmpeg { said })
 }
 
-fn start(sequence: &Sequence, unfinished: &Path, codec: &[&str]) -> io::Result<Child> {
+fn start(sequence: &Sequence, unfinished: &Path, codec: &str) -> io::Result<Child> {
     let fps = sequence.frames_per_second().to_string();
     let frames = match sequence.format {
         Format::Png => "png",
@@ -76,7 +76,7 @@ fn start(sequence: &Sequence, unfinished: &Path, codec: &[&str]) -> io::Result<C
         .args(quiet)
         .args(["-f", "image2pipe", "-c:v", frames, "-framerate", &fps])
         .args(["-i", "-"])
-        .args(codec)
+        .args(codec.split(' '))
         .arg(unfinished)
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
@@ -111,9 +111,9 @@ fn feed(
 }
 
 /// What one would type to make the video by hand.
-fn command(sequence: &Sequence, path: &Path, codec: &[&str]) -> String {
+fn command(sequence: &Sequence, path: &Path, codec: &str) -> String {
     let fps = sequence.frames_per_second();
-    let codec: Vec<String> = codec.iter().map(|word| quoted(word)).collect();
+    let codec: Vec<String> = codec.split(' ').map(quoted).collect();
     let (codec, output) = (codec.join(" "), quoted(&path.display().to_string()));
     let first = sequence.frames.iter().next().unwrap_or(1);
     let in_a_row = first..first + sequence.frames.count() as u64;

@@ -15,7 +15,7 @@ pub const MANIFEST: &str = "glint-frames.txt";
 const HEAD: &str =
     "# Frames by Glint: file, hash of its bytes, fingerprint of what it shows, milliseconds";
 
-/// A hash as 64 hexadecimal digits.
+/// What tells one content from another; 64 hexadecimal digits in the file.
 pub type Hash = blake3::Hash;
 
 /// What was noted about a frame.
@@ -89,14 +89,8 @@ fn note(line: &str) -> Option<(String, Note)> {
 /// Whatever the system answers.
 pub fn content(path: &Path) -> io::Result<Hash> {
     let mut hasher = blake3::Hasher::new();
-    let mut file = open_file(path)?;
-    let mut part = vec![0; 1 << 18];
-    loop {
-        match file.read(&mut part)? {
-            0 => return Ok(hasher.finalize()),
-            count => hasher.update(&part[..count]),
-        };
-    }
+    hasher.update_reader(open_file(path)?)?;
+    Ok(hasher.finalize())
 }
 
 /// Adds a line about a file with this hash. Lines are added whole, so that several programs may write frames into

@@ -16,7 +16,6 @@ use super::save::{disk, write_beside};
 use crate::animate::{CameraPath, shot};
 use crate::files::{make_folder, remove_leftovers};
 use crate::image::Format;
-use crate::plan::RenderRequest;
 use crate::scene::{Method as _, Scene};
 use crate::words::counted;
 
@@ -108,11 +107,6 @@ impl Sequence {
     /// What a frame shows.
     pub fn shown(&self, frame: u64) -> Arc<Scene> {
         shot(&self.scene, &self.path, self.scene.animation.time_of(frame))
-    }
-
-    /// How a frame is traced.
-    pub fn request(&self, scene: &Scene) -> RenderRequest {
-        RenderRequest::still(scene)
     }
 
     /// The file's name.

@@ -8,6 +8,12 @@ use super::ffmpeg::by_ffmpeg;
 use super::sequence::Sequence;
 use crate::files::NewFile;
 
+/// What ffmpeg is told about the codec: both sides even, as H.264 needs them.
+const H264: &str = "-c:v libx264 -crf 25 -vf scale=trunc(iw/2)*2:trunc(ih/2)*2,format=yuv420p -movflags +faststart";
+const PRORES: &str = "-c:v prores_ks -profile:v 4444 -pix_fmt yuv444p10le";
+/// Exact to the bit: without the number drawn by lot that tells one file from another.
+const LOSSLESS: &str = "-c:v ffv1 -level 3 -pix_fmt bgr0 -fflags +bitexact";
+
 /// How a video is encoded; its ending says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Video {
@@ -42,44 +48,6 @@ impl Video {
         }
     }
 
-    /// What ffmpeg is told about the codec.
-    fn codec(self) -> &'static [&'static str] {
-        match self {
-            // Both sides even, as the codec needs them.
-            Self::H264 => &[
-                "-c:v",
-                "libx264",
-                "-crf",
-                "25",
-                "-vf",
-                "scale=trunc(iw/2)*2:trunc(ih/2)*2,format=yuv420p",
-                "-movflags",
-                "+faststart",
-            ],
-            Self::ProRes => &[
-                "-c:v",
-                "prores_ks",
-                "-profile:v",
-                "4444",
-                "-pix_fmt",
-                "yuv444p10le",
-            ],
-            Self::Lossless | Self::Gif | Self::Apng => {
-                // Exact to the bit: without the number drawn by lot that tells one file from another.
-                &[
-                    "-c:v",
-                    "ffv1",
-                    "-level",
-                    "3",
-                    "-pix_fmt",
-                    "bgr0",
-                    "-fflags",
-                    "+bitexact",
-                ]
-            }
-        }
-    }
-
     /// Makes a video of the frames of a sequence, all of which must be there, and puts it in place
     /// when it is whole. `done` is told how many frames are in it.
     ///
@@ -92,12 +60,13 @@ impl Video {
         mut done: impl FnMut(usize),
     ) -> Result<(), VideoError> {
         let beside = NewFile::beside(path).map_err(|error| VideoError::disk(path, &error))?;
+        let files = (beside.path(), path);
         match self {
             Self::Gif => gif(sequence, (beside.as_file(), path), &mut done)?,
             Self::Apng => apng(sequence, (beside.as_file(), path), &mut done)?,
-            Self::H264 | Self::ProRes | Self::Lossless => {
-                by_ffmpeg(sequence, (beside.path(), path), self.codec(), &mut done)?;
-            }
+            Self::H264 => by_ffmpeg(sequence, files, H264, &mut done)?,
+            Self::ProRes => by_ffmpeg(sequence, files, PRORES, &mut done)?,
+            Self::Lossless => by_ffmpeg(sequence, files, LOSSLESS, &mut done)?,
         }
         let placed = beside.place();
         placed.map_err(|error| VideoError::disk(path, &error))

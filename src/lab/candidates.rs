@@ -200,10 +200,7 @@ fn neighbours(render: &Render) -> Vec<(String, Render)> {
         .filter(|(setting, ..)| setting.name != "antialias");
     let neighbours = formulas.map(|(setting, id)| {
         let mut neighbour = render.clone();
-        neighbour.visit_settings(&mut Choose {
-            name: setting.name,
-            id,
-        });
+        neighbour.choose(setting.name, id);
         (format!("{}{id}", setting.prefix), neighbour)
     });
     neighbours.collect()
@@ -216,22 +213,6 @@ impl VisitSetting for MethodList {
     fn visit<M: Method>(&mut self, setting: Setting, _value: &mut M) {
         let others = M::ALL[1..].iter();
         self.0.extend(others.map(|method| (setting, method.id)));
-    }
-}
-
-/// Chooses one method by its id.
-struct Choose<'a> {
-    name: &'static str,
-    id: &'a str,
-}
-
-impl VisitSetting for Choose<'_> {
-    fn visit<M: Method>(&mut self, setting: Setting, value: &mut M) {
-        let mut methods = M::ALL.iter();
-        let method = methods.find(|method| method.id == self.id);
-        if let Some(method) = method.filter(|_| setting.name == self.name) {
-            *value = method.value;
-        }
     }
 }
 

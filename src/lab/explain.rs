@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::scene::{ColorPack, Scene, Shape, coincidences, unit};
+use crate::scene::{ColorPack, Frame, Scene, Shape, coincidences, unit};
 
 /// Roundings of the largest coordinate by which a ray must have left a surface to meet it again.
 const LEFT: f64 = 1e-10;
@@ -215,8 +215,8 @@ fn in_its_place<'a>(
     let What::Object(later) = met.what else {
         return None;
     };
-    let bounds = scene.objects_bounds();
-    let centre = bounds.map_or(scene.camera.position, |(low, high)| low * 0.5 + high * 0.5);
+    let frame = Frame::of(scene);
+    let centre = frame.map_or(scene.camera.position, |frame| frame.centre);
     let pairs = coincidences(&scene.objects, centre).into_iter();
     let mut earlier = pairs.filter(|pair| pair.later == later);
     earlier.find_map(|pair| {
@@ -241,8 +241,8 @@ fn blocker(scene: &Scene, point: DVec3, towards: DVec3, distance: f64) -> Option
     found.map(|object| object.name.clone())
 }
 
-/// How far along a ray a shape is, and its unit normal there.
-fn meet(shape: &Shape, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
+/// How far along a ray with a unit direction a shape is, and its unit normal there: that of a ball points outwards.
+pub fn meet(shape: &Shape, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
     match shape {
         Shape::Sphere(ball) => meet_ball(ball.center, ball.radius, origin, direction),
         Shape::Plane(plane) => meet_plane(plane.point, plane.normal, origin, direction),
@@ -253,12 +253,8 @@ fn meet(shape: &Shape, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> 
         }
         Shape::Triangle(triangle) => meet_triangle(triangle.corners(), origin, direction),
         Shape::Mesh(mesh) => {
-            let transform = mesh.transform();
-            let faces = mesh.source.triangles().corners();
-            let hits = faces.filter_map(|corners| {
-                let corners = corners.map(|corner| transform.transform_point3(corner));
-                meet_triangle(corners, origin, direction)
-            });
+            let faces = mesh.world_corners();
+            let hits = faces.filter_map(|corners| meet_triangle(corners, origin, direction));
             hits.min_by(|one, other| one.0.total_cmp(&other.0))
         }
     }

@@ -1,7 +1,7 @@
 //! What a study has found, in a sentence.
 
 use super::clusters::front_of;
-use super::measure::EIGHT_BIT_FLOOR;
+use super::measure::{EIGHT_BIT_FLOOR, decibels};
 use super::pareto_front::cheapest_within;
 use super::study::Study;
 
@@ -34,7 +34,7 @@ pub fn finding(study: &Study, name: &str) -> String {
     if error <= EIGHT_BIT_FLOOR {
         return format!("{name}: the default is below what 8 bits show at {ms:.1} ms");
     }
-    let decibels = -20.0 * error.log10();
+    let decibels = decibels(error);
     match within(EIGHT_BIT_FLOOR) {
         Some(place) => {
             let (way, cost) = (&study.measurements[place].candidate.name, costs[place].0);

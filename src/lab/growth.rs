@@ -7,7 +7,7 @@ use std::time::Instant;
 use glam::DVec3;
 use serde::Serialize;
 
-use super::table::written;
+use super::table::csv_of;
 use crate::export::by_povray;
 use crate::image::LinearRgb;
 use crate::mesh::Triangles;
@@ -148,11 +148,7 @@ impl Growth {
     /// # Errors
     /// None is known: everything is written to memory.
     pub fn csv(&self) -> Result<String, csv::Error> {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        for cost in &self.costs {
-            writer.serialize(cost)?;
-        }
-        written(writer)
+        csv_of(&self.costs)
     }
 }
 

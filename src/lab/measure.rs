@@ -24,8 +24,13 @@ pub struct ErrorMetrics {
 impl ErrorMetrics {
     /// Peak signal to noise in decibels: -20·log₁₀(RMSE); infinity for equal pictures.
     pub fn psnr(self) -> f64 {
-        -20.0 * self.rmse.log10()
+        decibels(self.rmse)
     }
+}
+
+/// A mean error as peak signal to noise in decibels, where 1 is white.
+pub fn decibels(error: f64) -> f64 {
+    -20.0 * error.log10()
 }
 
 /// How far `picture` is off `reference`, which is as large.

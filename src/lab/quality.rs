@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use super::candidates::samplings;
-use super::measure::difference;
+use super::measure::{decibels, difference};
 use super::pareto_front::{cheapest_within, closest_within};
 use crate::image::LinearRgb;
 use crate::plan::{Planner, RenderRequest};
@@ -49,12 +49,12 @@ pub struct Choice {
 impl Choice {
     /// What was chosen, and why.
     pub fn words(&self) -> String {
-        let decibels = |rmse: f64| format!("{:.1} dB", -20.0 * rmse.log10());
+        let level = |rmse: f64| format!("{:.1} dB", decibels(rmse));
         let millis = |time: Duration| format!("{:.1} ms", time.as_secs_f64() * 1e3);
         let goal = match (self.goal, self.is_met) {
-            (Goal::Within(error), true) => format!("the cheapest within {}", decibels(error)),
+            (Goal::Within(error), true) => format!("the cheapest within {}", level(error)),
             (Goal::Within(error), false) => {
-                format!("the closest; none is within {}", decibels(error))
+                format!("the closest; none is within {}", level(error))
             }
             (Goal::Budget(time), true) => format!("the closest within {}", millis(time)),
             (Goal::Budget(time), false) => {
@@ -65,7 +65,7 @@ impl Choice {
             "antialias {}: {goal}, of {} measured here ({} in about {})",
             self.sampling.id(),
             self.tried,
-            decibels(self.rmse),
+            level(self.rmse),
             millis(self.time),
         )
     }

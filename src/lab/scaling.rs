@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use super::table::written;
+use super::table::csv_of;
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::Scene;
 use crate::trace::Tracer;
@@ -71,11 +71,7 @@ pub fn scaling(name: &str, scene: &Scene, request: &RenderRequest) -> Vec<Shared
 /// # Errors
 /// None is known: everything is written to memory.
 pub fn scaling_csv(pictures: &[SharedPicture]) -> Result<String, csv::Error> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for picture in pictures {
-        writer.serialize(picture)?;
-    }
-    written(writer)
+    csv_of(pictures)
 }
 
 fn milliseconds(time: Duration) -> f64 {

@@ -105,28 +105,24 @@ pub fn csv(
     machine: &str,
     threads: usize,
 ) -> Result<String, csv::Error> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for (scene, study) in studies {
-        write_figures(&mut writer, scene, study, (machine, threads))?;
-    }
-    written(writer)
+    let rows = studies.iter();
+    csv_of(rows.flat_map(|(scene, study)| figures(scene, study, (machine, threads))))
 }
 
-fn write_figures(
-    writer: &mut csv::Writer<Vec<u8>>,
-    scene: &str,
-    study: &Study,
-    (machine, threads): (&str, usize),
-) -> Result<(), csv::Error> {
+/// A line for each dot that is measured.
+fn figures<'a>(
+    scene: &'a str,
+    study: &'a Study,
+    (machine, threads): (&'a str, usize),
+) -> impl Iterator<Item = Figures<'a>> {
     let front = front_of(study);
     let reference = study.reference.as_ref();
     let reference_rmse = reference.map_or(f64::NAN, |truth| truth.rmse);
     let (width, height) = study.size();
-    for (index, dot) in study.measurements.iter().enumerate() {
-        let (Some(timing), Some(metrics)) = (dot.timing(), dot.metrics) else {
-            continue;
-        };
-        writer.serialize(Figures {
+    let dots = study.measurements.iter().enumerate();
+    dots.filter_map(move |(index, dot)| {
+        let (timing, metrics) = (dot.timing()?, dot.metrics?);
+        Some(Figures {
             name: &dot.candidate.name,
             settings: dot.candidate.words(),
             width,
@@ -145,16 +141,19 @@ fn write_figures(
             threads,
             machine,
             scene,
-        })?;
-    }
-    Ok(())
+        })
+    })
 }
 
-/// The text that a writer has made.
+/// Rows as comma-separated values.
 ///
 /// # Errors
 /// None is known: everything is written to memory.
-pub fn written(writer: csv::Writer<Vec<u8>>) -> Result<String, csv::Error> {
+pub fn csv_of(rows: impl IntoIterator<Item: Serialize>) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.serialize(row)?;
+    }
     let bytes = writer
         .into_inner()
         .map_err(csv::IntoInnerError::into_error)?;

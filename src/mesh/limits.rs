@@ -1,10 +1,10 @@
 //! How much is read, so that no file, broken or hostile, can fill the memory.
 
-use std::fs::File;
-use std::io::{self, Read as _};
+use std::io;
 use std::path::Path;
 
 use super::error::{Fault, MeshError};
+use crate::files::{open_file, read_at_most};
 
 /// Longest file that is read, in bytes.
 const MAX_BYTES: u64 = 2 << 30;
@@ -39,7 +39,7 @@ fn check(what: &'static str, count: usize, limit: usize) -> Result<(), Fault> {
 
 /// The bytes of a mesh file.
 pub(super) fn read_mesh_bytes(path: &Path) -> Result<Vec<u8>, MeshError> {
-    let bytes = read_at_most(path, MAX_BYTES).map_err(|source| MeshError::Disk {
+    let bytes = read_bounded(path, MAX_BYTES).map_err(|source| MeshError::Disk {
         path: path.to_owned(),
         source,
     })?;
@@ -51,23 +51,10 @@ pub(super) fn read_mesh_bytes(path: &Path) -> Result<Vec<u8>, MeshError> {
 
 /// The bytes of a file beside a mesh file.
 pub(super) fn read_companion(path: &Path) -> io::Result<Vec<u8>> {
-    read_at_most(path, MAX_BYTES)?.ok_or_else(|| io::ErrorKind::FileTooLarge.into())
+    read_bounded(path, MAX_BYTES)?.ok_or_else(|| io::ErrorKind::FileTooLarge.into())
 }
 
 /// The bytes of a file, or nothing if there are more than `limit`.
-pub(super) fn read_at_most(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>>> {
-    // Asked before opening: a pipe would wait for somebody who writes into it.
-    let metadata = std::fs::metadata(path)?;
-    if !metadata.is_file() {
-        return Err(io::Error::other("this is not a file"));
-    }
-    if metadata.len() > limit {
-        return Ok(None);
-    }
-    let mut bytes = Vec::new();
-    let size = usize::try_from(metadata.len()).unwrap_or(usize::MAX);
-    bytes.try_reserve_exact(size.saturating_add(1))?;
-    // The file may grow while it is read.
-    let read = File::open(path)?.take(limit + 1).read_to_end(&mut bytes)?;
-    Ok((read as u64 <= limit).then_some(bytes))
+pub(super) fn read_bounded(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>>> {
+    Ok(read_at_most(open_file(path)?, limit)?.ok())
 }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use tobj::{LoadError, MTLLoadResult, Material};
 
 use super::error::excerpt;
-use super::limits::read_at_most;
+use super::limits::read_bounded;
 use super::part::PartColors;
 use crate::files::stays_inside;
 
@@ -98,7 +98,7 @@ impl<'a> Libraries<'a> {
         let name = Some(Path::new(name)).filter(|name| is_allowed(name))?;
         let name = Some(self.spelled(name)).filter(|name| is_allowed(name))?;
         let left = self.left.get();
-        let bytes = read_at_most(&self.folder.join(name), left).ok()??;
+        let bytes = read_bounded(&self.folder.join(name), left).ok()??;
         // An empty file costs something too.
         self.left
             .set(left.saturating_sub(bytes.len() as u64 + 1024));

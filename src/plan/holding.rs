@@ -73,16 +73,13 @@ impl Place {
         if !may_hold {
             return None; // Only now are all faces worth a look.
         }
-        let transform = mesh.transform();
-        let in_world = |corner| transform.transform_point3(corner);
-        let faces = mesh.source.triangles().corners();
-        let holding = faces.filter(|corners| {
-            let piece = PlanePiece::between(corners.map(in_world));
-            piece.is_some_and(|piece| self.is_in(&piece))
-        });
+        let faces = mesh.source.triangles().corners().zip(mesh.world_corners());
         // What is near is not on it: rounding may decide there, and is told where it does.
+        let holding = faces.filter(|(_, corners)| {
+            PlanePiece::between(*corners).is_some_and(|piece| self.is_in(&piece))
+        });
         let holding: HashSet<_> = holding
-            .map(|corners| sorted(corners.map(|corner| packed.place(corner))))
+            .map(|(corners, _)| sorted(corners.map(|corner| packed.place(corner))))
             .collect();
         let is_held = |face: &PackedTriangle<R>| holding.contains(&sorted(face.corners));
         (!holding.is_empty()).then(|| Arc::new(IdleFaces::of(packed, is_held)))

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::file::{DEMO_TEXT, Document};
 use super::shape::{Mesh, MeshSource};
+use super::whole::Scene;
 use crate::mesh::read_ply;
 
 /// A scene to begin with.
@@ -47,7 +48,8 @@ pub const EXAMPLES: [Example; 7] = [
 impl Example {
     /// The example, ready to be opened; an empty scene if it is none, which a test rules out.
     pub fn document(&self) -> Document {
-        let mut document = Document::from_text(self.text).unwrap_or_else(|_| Document::empty());
+        let mut document =
+            Document::from_text(self.text).unwrap_or_else(|_| Document::of(Scene::empty()));
         let triangles = self
             .mesh
             .and_then(|bytes| read_ply(bytes).ok())

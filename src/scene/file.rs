@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::path::{Path, PathBuf, absolute};
 
 use ron::extensions::Extensions;
@@ -12,7 +12,7 @@ use super::check::{Problem, check};
 use super::locate::{claimed_version, has_inner_comments, header, locate};
 use super::parse_errors::sentence;
 use super::whole::{Scene, VERSION};
-use crate::files::{Stamp, back_up, read_file, time_of, write_atomic};
+use crate::files::{Stamp, back_up, read_at_most, read_file, time_of, write_atomic};
 use crate::mesh::is_mesh_file;
 
 /// The RON text of the demo scene, as embedded in the program.
@@ -198,11 +198,11 @@ impl Document {
         }
     }
 
-    /// An empty scene without a header.
-    pub fn empty() -> Self {
+    /// A scene without a header.
+    pub fn of(scene: Scene) -> Self {
         Self {
             header: String::new(),
-            scene: Scene::empty(),
+            scene,
         }
     }
 
@@ -306,25 +306,12 @@ fn read_bounded(path: &Path) -> Result<Vec<u8>, SceneError> {
         path: path.to_owned(),
         source,
     };
-    let file = File::open(path).map_err(disk)?;
-    let metadata = file.metadata().map_err(disk)?;
-    let too_large = |found| SceneError::TooLarge {
+    let read = File::open(path).and_then(|file| read_at_most(file, MAX_BYTES));
+    read.map_err(disk)?.map_err(|found| SceneError::TooLarge {
         path: path.to_owned(),
         found,
         limit: MAX_BYTES,
-    };
-    if metadata.len() > MAX_BYTES {
-        return Err(too_large(metadata.len()));
-    }
-    // A pipe has no length: what it gives is bounded while it is read.
-    let mut bytes = Vec::new();
-    file.take(MAX_BYTES + 1)
-        .read_to_end(&mut bytes)
-        .map_err(disk)?;
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err(too_large(bytes.len() as u64));
-    }
-    Ok(bytes)
+    })
 }
 
 fn options() -> ron::Options {

@@ -1,7 +1,5 @@
 //! What is probably not meant in a scene, though it is valid.
 
-use std::collections::HashSet;
-
 use glam::DVec3;
 
 use super::camera::{Camera, Projection};
@@ -86,9 +84,9 @@ pub fn hints(scene: &Scene) -> Vec<Hint> {
             }
         }
     }
-    let worn = worn(scene);
+    let worn = scene.worn_packs();
     for (index, (name, _)) in scene.color_packs.iter().enumerate() {
-        if !worn.contains(name) {
+        if !worn.contains(name.as_str()) {
             let words = format!("No object wears {name}");
             add(words, About::Pack(index), false);
         }
@@ -96,14 +94,6 @@ pub fn hints(scene: &Scene) -> Vec<Hint> {
     let centre = frame.map_or(DVec3::ZERO, |frame| frame.centre);
     add_coincident(scene, centre, &mut add);
     hints
-}
-
-/// The names of the packs that something wears.
-fn worn(scene: &Scene) -> HashSet<&String> {
-    let markers = scene.lights.iter();
-    let markers = markers.filter_map(|light| Some(&light.marker.as_ref()?.color_pack));
-    let objects = scene.objects.iter().map(|object| &object.color_pack);
-    objects.chain(markers).collect()
 }
 
 /// Visible objects that fill the same surface; coordinates count from `centre`.

@@ -213,10 +213,7 @@ mod tests {
         assert_eq!(pack.phong_exponent, 40.0);
         assert_eq!(scene.objects[1].color_pack, "red");
         // Two parts are taken in, and read again as they are.
-        let document = Document {
-            header: String::new(),
-            scene,
-        };
+        let document = Document::of(scene);
         let text = document.to_text().expect("a text");
         let again = Document::from_text(&text).expect("a scene");
         assert_eq!(again, document);
@@ -269,10 +266,7 @@ mod tests {
         let path = folder.path().join("m.obj");
         std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
         let (scene, _) = Scene::of_mesh_file(&path, Some(folder.path())).expect("read");
-        let document = Document {
-            header: String::new(),
-            scene,
-        };
+        let document = Document::of(scene);
         let file = folder.path().join("s.ron");
         document.save(&file).expect("saved");
         let text = std::fs::read_to_string(&file).expect("there");

@@ -66,7 +66,7 @@ impl Scene {
                 Shape::Triangle(triangle) => faces.push(triangle.corners().map(&mut number)),
                 Shape::Mesh(mesh) => {
                     smooth = smooth.max(mesh.smooth);
-                    let corners = world_corners(mesh);
+                    let corners = outer_corners(mesh);
                     faces.extend(corners.map(|corners| corners.map(&mut number)));
                 }
                 _ => return None,
@@ -141,7 +141,7 @@ impl Scene {
             .filter(|other| other.name != object.name);
         let mut names = Names::new(others.map(|other| other.name.as_str()));
         // Slivers without an area are seen nowhere, and would be no triangles.
-        let triangles = world_corners(mesh).map(|[a, b, c]| Shape::from(Triangle { a, b, c }));
+        let triangles = outer_corners(mesh).map(|[a, b, c]| Shape::from(Triangle { a, b, c }));
         let pieces: Vec<Object> = triangles
             .filter(|triangle| triangle.problem().is_none())
             .map(|triangle| Object {
@@ -166,13 +166,10 @@ impl Scene {
 }
 
 /// The corners of each face where they are in the world, clockwise seen from outside.
-fn world_corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {
-    let transform = mesh.transform();
-    let is_mirrored = transform.matrix3.determinant() < 0.0;
-    mesh.source.triangles().corners().map(move |corners| {
-        let [a, b, c] = corners.map(|corner| transform.transform_point3(corner));
-        if is_mirrored { [a, c, b] } else { [a, b, c] }
-    })
+fn outer_corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {
+    let is_mirrored = mesh.turn().determinant() < 0.0;
+    let turned = move |[a, b, c]: [DVec3; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
+    mesh.world_corners().map(turned)
 }
 
 #[cfg(test)]

@@ -300,14 +300,6 @@ impl<T: Clone> FromIterator<T> for List<T> {
     }
 }
 
-impl<T: Clone> Extend<T> for List<T> {
-    fn extend<I: IntoIterator<Item = T>>(&mut self, items: I) {
-        for item in items {
-            self.push(item);
-        }
-    }
-}
-
 impl<T: Clone> From<Vec<T>> for List<T> {
     fn from(items: Vec<T>) -> Self {
         items.into_iter().collect()

@@ -38,6 +38,8 @@ mod keys;
 
 mod whole;
 
+mod worn;
+
 mod frame;
 
 mod differences;
@@ -98,4 +100,4 @@ pub use shape::{
     Triangle,
 };
 pub use target::Owners;
-pub use whole::{Scene, VERSION};
+pub use whole::{Scene, VERSION, light_pack};

@@ -88,7 +88,28 @@ pub trait VisitSetting {
     fn visit<M: Method>(&mut self, setting: Setting, value: &mut M);
 }
 
+/// Chooses the method of this id for the setting of this name.
+struct Choose<'a> {
+    name: &'a str,
+    id: &'a str,
+}
+
+impl VisitSetting for Choose<'_> {
+    fn visit<M: Method>(&mut self, setting: Setting, value: &mut M) {
+        if setting.name == self.name
+            && let Ok(method) = M::parse(self.id)
+        {
+            *value = method;
+        }
+    }
+}
+
 impl Render {
+    /// Chooses a method by the name of its setting and its id; without such ones, nothing changes.
+    pub fn choose(&mut self, name: &str, id: &str) {
+        self.visit_settings(&mut Choose { name, id });
+    }
+
     /// Shows every setting that has competing methods: flags, rows of the inspector and the lab's
     /// candidates are made from this list.
     pub fn visit_settings(&mut self, visitor: &mut impl VisitSetting) {

@@ -1,6 +1,6 @@
 //! The scene itself.
 
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -81,36 +81,6 @@ impl Scene {
             lights: List::from(vec![light]),
             render: Render::default(),
             animation: Arc::default(),
-        }
-    }
-
-    /// Takes away each pack that is equal to one before it, which is worn in its place.
-    pub fn merge_equal_packs(&mut self) {
-        let mut kept: Vec<(&String, &ColorPack)> = Vec::new();
-        let mut instead = HashMap::new();
-        for (name, pack) in self.color_packs.iter() {
-            match kept.iter().find(|(_, other)| *other == pack) {
-                Some((first, _)) => {
-                    instead.insert(name.clone(), (*first).clone());
-                }
-                None => kept.push((name, pack)),
-            }
-        }
-        if instead.is_empty() {
-            return;
-        }
-        self.packs_mut()
-            .retain(|name, _| !instead.contains_key(name));
-        for index in 0..self.objects.len() {
-            if let Some(name) = instead.get(&self.objects[index].color_pack) {
-                self.objects[index].color_pack.clone_from(name);
-            }
-        }
-        let markers = self.lights.iter_mut();
-        for marker in markers.filter_map(|light| light.marker.as_mut()) {
-            if let Some(name) = instead.get(&marker.color_pack) {
-                marker.color_pack.clone_from(name);
-            }
         }
     }
 
@@ -329,7 +299,8 @@ fn default_ambient_intensity() -> f64 {
     0.5
 }
 
-fn light_pack() -> ColorPack {
+/// What shows where lights are.
+pub fn light_pack() -> ColorPack {
     let yellow = DVec3::new(255.0, 255.0, 0.0);
     ColorPack {
         ambient: yellow,

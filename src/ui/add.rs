@@ -31,9 +31,12 @@ impl Addition {
         match self {
             Self::Shape(place) => {
                 let shape = Shape::examples(at, size).swap_remove(place);
-                let floor = scene.objects_bounds().map(|(low, _)| low.y);
+                let low = scene.objects_bounds().map(|(low, _)| low.y);
+                let is_first = planes(scene).next().is_none();
+                let ground = || ground_distance(scene).filter(|_| is_first).map(|_| 0.0);
+                let floor = low.or_else(ground);
                 match (&shape, floor) {
-                    // What is there stands on it.
+                    // What is there stands on it; where nothing is, it is the ground.
                     (Shape::Plane(_), Some(floor)) => {
                         let down = DVec3::Y * (floor - shape.position().y);
                         Edit::AddObject(shape.moved(down))
@@ -48,7 +51,7 @@ impl Addition {
                     smooth: solid.smooth,
                     ..Mesh::of((solid.make)(size))
                 };
-                Edit::AddMesh(solid.name, mesh)
+                Edit::AddMesh(solid.name, stood(scene, mesh, size))
             }
             Self::Light => Edit::AddLight(at + DVec3::new(0.0, size, 0.0)),
             Self::Pack => Edit::AddPack,
@@ -102,6 +105,10 @@ const ROOM: f64 = 0.65;
 const NEARER: f64 = 1.6;
 /// How far what it stands on may be, in distances where a new thing goes.
 const FARTHEST_FLOOR: f64 = 2.0;
+/// How upright the normal of a floor is: walls hold nothing up.
+const LEVEL: f64 = 0.7;
+/// How far away the ground may be that a first floor is, in world units.
+const FARTHEST_GROUND: f64 = 2_000.0;
 /// What is nearer than this, in distances where a new thing goes, is not gone before.
 const NEAREST: f64 = 0.1;
 /// The smallest that a new thing is, in world units.
@@ -121,9 +128,8 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     let across = across
         .into_iter()
         .filter(|x| x.abs() + SHARE / 2.0 <= half.max(SHARE / 2.0));
-    let is_floor = |object: &Object| object.visible && matches!(object.shape, Shape::Plane(_));
-    let has_floor = scene.objects.iter().any(is_floor);
     // Nothing hangs in the air over a floor.
+    let has_floor = planes(scene).next().is_some();
     let up = [0.0, -step, step]
         .into_iter()
         .take(if has_floor { 2 } else { 3 });
@@ -146,11 +152,49 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     (at, tidy(size).max(SMALLEST))
 }
 
-/// How far away the middle of the scene is; where the eye is within it, half as far as it reaches.
+/// A mesh that has room for so large a thing over a floor stands on that, however flat it is.
+fn stood(scene: &Scene, mut mesh: Mesh, size: f64) -> Mesh {
+    let pieces = planes(scene).filter_map(|object| object.shape.plane_piece());
+    for piece in pieces.filter(|piece| piece.normal.y.abs() > LEVEL) {
+        let up = piece.normal * piece.normal.y.signum();
+        let heights = mesh.world_corners().flatten();
+        let heights = heights.map(|corner| up.dot(corner - piece.point));
+        let gap = heights.fold(f64::INFINITY, f64::min);
+        // Rounding may have sunk it in.
+        if (-size / 10.0..size / 2.0).contains(&gap) {
+            mesh.position -= up * gap;
+        }
+    }
+    mesh
+}
+
+/// The visible planes of a scene.
+fn planes(scene: &Scene) -> impl Iterator<Item = &Object> {
+    let is_plane = |object: &&Object| object.visible && matches!(object.shape, Shape::Plane(_));
+    scene.objects.iter().filter(is_plane)
+}
+
+/// How far away the ground, y = 0, is in the middle of the picture; `None` where it is not seen, or very far.
+fn ground_distance(scene: &Scene) -> Option<f64> {
+    let (origin, direction) = scene.camera.framing()?.ray([0.0, 0.0]);
+    let distance = -origin.y / direction.y;
+    (0.0 < distance && distance < FARTHEST_GROUND).then_some(distance)
+}
+
+/// How far away the middle of the scene is; where the eye is within it, half as far as it reaches. Where there is only
+/// a floor, as far as that.
 fn usual_distance(scene: &Scene) -> f64 {
     let camera = &scene.camera;
     let Some((low, high)) = scene.objects_bounds() else {
-        return 100.0;
+        let has_floor = planes(scene).next().is_some();
+        let ahead = camera.framing().filter(|_| has_floor).map(|framing| {
+            let (origin, direction) = framing.ray([0.0, 0.0]);
+            explain(scene, origin, direction)
+        });
+        return match ahead {
+            Some(Sight::Surface(lit)) => lit.distance.min(FARTHEST_GROUND),
+            _ => 100.0,
+        };
     };
     let (reach, middle) = ((high - low).length() / 2.0, (low + high) / 2.0);
     let look = camera.look_at.normalize_or_zero();
@@ -183,12 +227,8 @@ fn free_place(scene: &Scene, ray: (DVec3, DVec3), usual: f64) -> Option<(DVec3, 
             return None;
         }
     }
-    let visible = scene.objects.iter().filter(|object| object.visible);
     // It stands on a plane, not in it.
-    let planes = visible
-        .clone()
-        .filter(|object| matches!(object.shape, Shape::Plane(_)));
-    for piece in planes.filter_map(|object| object.shape.plane_piece()) {
+    for piece in planes(scene).filter_map(|object| object.shape.plane_piece()) {
         let (height, eye) = (piece.height(at), piece.height(origin));
         if height.abs() < size / 2.0 {
             at += piece.normal * (size / 2.0 * eye.signum() - height);
@@ -196,6 +236,7 @@ fn free_place(scene: &Scene, ray: (DVec3, DVec3), usual: f64) -> Option<(DVec3, 
     }
     let is_in_the_way =
         |(low, high): (DVec3, DVec3)| (at.clamp(low, high) - at).length() < size * ROOM;
+    let visible = scene.objects.iter().filter(|object| object.visible);
     let mut bounds = visible.filter_map(|object| object.shape.bounds());
     (!bounds.any(is_in_the_way)).then_some((at, size))
 }
@@ -258,6 +299,24 @@ mod tests {
             .iter()
             .filter_map(|object| object.shape.bounds());
         bounds.collect()
+    }
+
+    #[test]
+    fn every_solid_stands_on_the_floor_however_flat_it_is() {
+        for solid in SOLIDS {
+            let mut scene = Scene::empty();
+            scene.objects.clear();
+            added(&mut scene, &["Add Plane", &format!("Add {}", solid.name)]);
+            let floor = scene.objects[0].shape.plane_piece().expect("a floor");
+            assert_eq!(floor.point.y, 0.0, "the ground");
+            let Shape::Mesh(mesh) = &scene.objects[1].shape else {
+                panic!("{}", solid.name);
+            };
+            let heights = mesh.world_corners().flatten();
+            let low = heights.map(|corner| floor.height(corner));
+            let low = low.fold(f64::INFINITY, f64::min);
+            assert!(low.abs() < 1e-9, "{}: {low}", solid.name);
+        }
     }
 
     #[test]

@@ -2,6 +2,7 @@
 //! scene to the render thread.
 
 use egui::{Context, Event, SurrenderFocusOn, Theme, Ui, ViewportCommand};
+use serde::de::DeserializeOwned;
 
 use super::autosave::Autosave;
 use super::commands::{Command, is_about_files, pressed};
@@ -14,7 +15,7 @@ use super::histogram::Levels;
 use super::inspector::Quality;
 use super::lab::Lab;
 use super::layout::Layout;
-use super::number::dragged;
+use super::number::{dragged, take_refused};
 use super::outliner::Outliner;
 use super::pictures::Pictures;
 use super::requests::UiRequests;
@@ -87,15 +88,18 @@ pub struct App {
     pub(super) start: Option<StartWatch>,
 }
 
+/// What the window kept under this name when it was closed last.
+fn kept<T: DeserializeOwned>(cc: &eframe::CreationContext<'_>, name: &str) -> Option<T> {
+    eframe::get_value(cc.storage?, name)
+}
+
 impl App {
     /// Sets the window up: fonts, theme, render thread, and the document.
     ///
     /// # Errors
     /// [`RenderThreadError`] when the system starts no threads.
     pub fn new(cc: &eframe::CreationContext<'_>, setup: Setup) -> Result<Self, RenderThreadError> {
-        let chosen = cc
-            .storage
-            .and_then(|storage| eframe::get_value(storage, THEME_KEY));
+        let chosen = kept(cc, THEME_KEY);
         theme::install(&cc.egui_ctx, chosen.unwrap_or(Theme::Dark));
         cc.egui_ctx.options_mut(|options| {
             options.quit_shortcuts.clear();
@@ -103,21 +107,13 @@ impl App {
             // What was typed is taken over before the click that ends it does something of its own.
             options.input_options.surrender_focus_on = SurrenderFocusOn::Presses;
         });
-        let recent = cc
-            .storage
-            .and_then(|storage| eframe::get_value(storage, RECENT_KEY));
-        let folders = cc
-            .storage
-            .and_then(|storage| eframe::get_value(storage, FOLDERS_KEY))
-            .unwrap_or_default();
-        let layout = cc
-            .storage
-            .and_then(|storage| eframe::get_value::<Layout>(storage, LAYOUT_KEY))
-            .unwrap_or_default();
+        let recent = kept(cc, RECENT_KEY).unwrap_or_default();
+        let folders = kept(cc, FOLDERS_KEY).unwrap_or_default();
+        let layout: Layout = kept(cc, LAYOUT_KEY).unwrap_or_default();
         let mut app = Self {
             editor: Editor::demo(),
             pictures: Pictures::new(&cc.egui_ctx)?,
-            files: Files::new(setup.dialogs, recent.unwrap_or_default(), folders),
+            files: Files::new(setup.dialogs, recent, folders),
             outliner: Outliner::default(),
             lab: Lab::new(setup.data_folder.as_ref().map(|folder| folder.join("lab"))),
             quality: Quality::default(),
@@ -148,11 +144,9 @@ impl App {
             screenshot: setup.screenshot,
             start: setup.start,
         };
-        let kept = cc
-            .storage
-            .and_then(|storage| eframe::get_value(storage, EXPORTS_KEY));
         let folder = setup.data_folder.clone();
-        app.exports = Exports::new(folder, kept.unwrap_or_default(), &mut app.editor);
+        let exports = kept(cc, EXPORTS_KEY).unwrap_or_default();
+        app.exports = Exports::new(folder, exports, &mut app.editor);
         app.exports.is_open = setup.exports;
         (app.timeline.is_open, app.lab.is_open) = (layout.timeline, layout.lab);
         if let Some(path) = setup.scene {
@@ -334,6 +328,9 @@ impl eframe::App for App {
         }
         let picture = self.show_panels(ui, &mut out);
         let ctx = ui.ctx().clone();
+        if let Some(words) = take_refused(&ctx) {
+            self.editor.notify(words);
+        }
         if dragged(&ctx) == Some(true) {
             out.actions.push(Action::CancelGesture);
         }

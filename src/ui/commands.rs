@@ -111,6 +111,8 @@ pub enum Command {
     SelectKeys,
     /// Look through the shot camera, or at it.
     LookThrough,
+    /// Put what is selected on what is below it.
+    PutDown,
     /// Open the window of exports.
     Export,
     /// Choose a file and write a job for a render farm to it.
@@ -255,6 +257,7 @@ pub const KEYLESS: &[(Command, &str)] = &[
         "Select all objects with the same color pack",
     ),
     (Command::MergePacks, "Merge equal color packs"),
+    (Command::PutDown, "Put what is selected on what is below"),
 ];
 
 /// The commands whose keys were pressed in this frame. A key that repeats because it is held
@@ -358,7 +361,7 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             let has = matches!(editor.selection, Selection::Item(_));
             (!has).then_some(nothing)
         }
-        Command::Group => {
+        Command::Group | Command::PutDown => {
             let mut items = editor.selected().items().iter();
             let has = items.any(|item| item.kind == Kind::Object);
             (!has).then_some("no object is selected")

@@ -23,77 +23,26 @@ const STILL: Motion = Motion {
     pitch: 0.0,
 };
 
+/// A table of keys: each with the direction in which it flies, and what Help says about it.
+macro_rules! flight {
+    ($($key:expr, $field:ident: $by:expr, $what:expr;)*) => {
+        &[$(FlightKey { key: $key, motion: Motion { $field: $by, ..STILL }, what: $what }),*]
+    };
+}
+
 /// Every flight key.
-pub const FLIGHT: &[FlightKey] = &[
-    FlightKey {
-        key: Some(Key::W),
-        motion: Motion {
-            forward: 1.0,
-            ..STILL
-        },
-        what: "Fly forward",
-    },
-    FlightKey {
-        key: Some(Key::S),
-        motion: Motion {
-            forward: -1.0,
-            ..STILL
-        },
-        what: "Fly back",
-    },
-    FlightKey {
-        key: Some(Key::A),
-        motion: Motion {
-            right: -1.0,
-            ..STILL
-        },
-        what: "Fly left",
-    },
-    FlightKey {
-        key: Some(Key::D),
-        motion: Motion {
-            right: 1.0,
-            ..STILL
-        },
-        what: "Fly right",
-    },
-    FlightKey {
-        key: Some(Key::Space),
-        motion: Motion { up: 1.0, ..STILL },
-        what: "Fly up",
-    },
-    FlightKey {
-        key: None,
-        motion: Motion { up: -1.0, ..STILL },
-        what: "Fly down",
-    },
-    FlightKey {
-        key: Some(Key::ArrowLeft),
-        motion: Motion { yaw: -1.0, ..STILL },
-        what: "Turn left",
-    },
-    FlightKey {
-        key: Some(Key::ArrowRight),
-        motion: Motion { yaw: 1.0, ..STILL },
-        what: "Turn right",
-    },
-    FlightKey {
-        key: Some(Key::ArrowUp),
-        motion: Motion {
-            pitch: 1.0,
-            ..STILL
-        },
-        what: "Look up",
-    },
-    FlightKey {
-        key: Some(Key::ArrowDown),
-        motion: Motion {
-            pitch: -1.0,
-            ..STILL
-        },
-        what: "Look down",
-    },
-];
+pub const FLIGHT: &[FlightKey] = flight! {
+    Some(Key::W), forward: 1.0, "Fly forward";
+    Some(Key::S), forward: -1.0, "Fly back";
+    Some(Key::A), right: -1.0, "Fly left";
+    Some(Key::D), right: 1.0, "Fly right";
+    Some(Key::Space), up: 1.0, "Fly up";
+    None, up: -1.0, "Fly down";
+    Some(Key::ArrowLeft), yaw: -1.0, "Turn left";
+    Some(Key::ArrowRight), yaw: 1.0, "Turn right";
+    Some(Key::ArrowUp), pitch: 1.0, "Look up";
+    Some(Key::ArrowDown), pitch: -1.0, "Look down";
+};
 
 /// What the mouse does in the picture.
 pub const MOUSE: &[(&str, &str)] = &[

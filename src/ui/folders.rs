@@ -39,8 +39,7 @@ impl Folders {
             _ => last.or(own),
         };
         let folder = folder.unwrap_or(&here);
-        let title = editor.title();
-        let stem = title.strip_suffix(".ron").unwrap_or(&title);
+        let stem = editor.stem();
         match ask {
             Ask::OpenScene | Ask::ImportMesh | Ask::ImportPath | Ask::ExportFolder => {
                 folder.join("")

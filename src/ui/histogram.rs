@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Color32, Context, Rect, Shape, Stroke, StrokeKind, TextStyle, Ui, pos2, vec2};
+use egui::{Color32, Rect, Shape, Stroke, StrokeKind, TextStyle, Ui, pos2, vec2};
 
 use super::theme::{GRID, palette};
 use crate::image::{Histogram, Image};
@@ -51,7 +51,8 @@ impl Levels {
         let fill = colors.panel.gamma_multiply(0.9);
         painter.rect(frame, 4, fill, line, StrokeKind::Inside);
         let graph = Rect::from_min_size(frame.min + vec2(GRID, GRID), SIZE.into());
-        for (counts, color) in histogram.counts.iter().zip(channel_colors(ui.ctx())) {
+        // Red, green and blue are those of the axes.
+        for (counts, color) in histogram.counts.iter().zip(colors.axes) {
             painter.extend(curve(counts, histogram.highest(), graph, color));
         }
         let words = format!("{:.1} % at the brightest", histogram.clipped * 100.0);
@@ -59,11 +60,6 @@ impl Levels {
         let at = graph.left_bottom() + vec2(0.0, GRID / 2.0);
         painter.text(at, egui::Align2::LEFT_TOP, words, font, colors.text);
     }
-}
-
-/// Red, green and blue, as the axes have them.
-fn channel_colors(ctx: &Context) -> [Color32; 3] {
-    palette(ctx).axes
 }
 
 /// One line for a channel; the root of the counts, so that few are seen beside many.

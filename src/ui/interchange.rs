@@ -1,4 +1,4 @@
-//! Paths of the camera and jobs for farms, from and to files.
+//! What other programs make and read: meshes, paths of the camera, jobs for farms, scenes for POV-Ray.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};

@@ -6,14 +6,14 @@ use egui::containers::menu::{MenuConfig, SubMenuButton};
 use egui::{Button, Context, DragValue, MenuBar, PopupCloseBehavior, Theme, Ui};
 
 use super::add::add_menu;
-use super::commands::{Command, is_enabled};
+use super::commands::Command;
 use super::examples::Examples;
 use super::flying::{FASTEST, SLOWEST};
 use super::hint::Hint as _;
 use super::icons;
 use super::inspector::target;
 use super::layout::{Layout, Panels, Part};
-use super::menu_entry::{ITEM_COMMANDS, entry, switch, ticked};
+use super::menu_entry::{ITEM_COMMANDS, entry, offer, switch, ticked};
 use super::requests::UiRequests;
 use crate::animate::{Preset, Retime};
 use crate::editor::{Edit, Editor, Mode, Selection, Time};
@@ -96,30 +96,16 @@ fn edit_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         None => verb.to_owned(),
     };
     let undo = step("Undo", editor.undo_label());
-    entry(
-        ui,
-        &undo,
-        Command::Undo,
-        is_enabled(&Command::Undo, editor),
-        out,
-    );
+    offer(ui, editor, &undo, Command::Undo, out);
     let redo = step("Redo", editor.redo_label());
-    entry(
-        ui,
-        &redo,
-        Command::Redo,
-        is_enabled(&Command::Redo, editor),
-        out,
-    );
+    offer(ui, editor, &redo, Command::Redo, out);
     ui.separator();
     for (text, command) in ITEM_COMMANDS {
-        let enabled = is_enabled(&command, editor);
-        entry(ui, text, command, enabled, out);
+        offer(ui, editor, text, command, out);
     }
     entry(ui, "Paste", Command::RequestPaste, true, out);
     entry(ui, "Select all", Command::SelectAll, true, out);
-    let can_merge = is_enabled(&Command::MergePacks, editor);
-    entry(ui, "Merge equal packs", Command::MergePacks, can_merge, out);
+    offer(ui, editor, "Merge equal packs", Command::MergePacks, out);
 }
 
 fn bookmark_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
@@ -216,45 +202,31 @@ fn panel_entries(ui: &mut Ui, (layout, panels): (&mut Layout, Panels), out: &mut
 }
 
 fn animate_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
-    let animation = &editor.scene().animation;
-    let is_recording = editor.timeline().recorded().is_some();
-    let has_keys = !animation.keys.is_empty();
-    entry(
-        ui,
-        "Play or pause",
-        Command::Play,
-        !animation.is_still(),
-        out,
-    );
-    entry(ui, "Record flight", Command::Record, !is_recording, out);
-    entry(
-        ui,
-        "Stop recording",
-        Command::StopRecording,
-        is_recording,
-        out,
-    );
+    for (text, command) in [
+        ("Play or pause", Command::Play),
+        ("Record flight", Command::Record),
+        ("Stop recording", Command::StopRecording),
+    ] {
+        offer(ui, editor, text, command, out);
+    }
     ui.separator();
-    entry(ui, "Add key", Command::AddKey, true, out);
-    let has_any = !animation.is_still();
-    entry(ui, "Select all keys", Command::SelectKeys, has_any, out);
-    entry(ui, "Previous key", Command::PreviousKey, has_any, out);
-    entry(ui, "Next key", Command::NextKey, has_any, out);
-    entry(
-        ui,
-        "Look through the shot",
-        Command::LookThrough,
-        has_keys,
-        out,
-    );
+    for (text, command) in [
+        ("Add key", Command::AddKey),
+        ("Select all keys", Command::SelectKeys),
+        ("Previous key", Command::PreviousKey),
+        ("Next key", Command::NextKey),
+        ("Look through the shot", Command::LookThrough),
+    ] {
+        offer(ui, editor, text, command, out);
+    }
     ui.separator();
     ui.menu_button("Ready-made flight", |ui| preset_entries(ui, editor, out));
-    ui.add_enabled_ui(animation.keys.len() > 1, |ui| {
+    ui.add_enabled_ui(editor.scene().animation.keys.len() > 1, |ui| {
         ui.menu_button("Other timing", |ui| retime_entries(ui, editor, out));
     });
     ui.separator();
     entry(ui, "Import path…", Command::ImportPath, true, out);
-    entry(ui, "Export path…", Command::ExportPath, has_keys, out);
+    offer(ui, editor, "Export path…", Command::ExportPath, out);
 }
 
 /// Seconds that a ready-made flight takes.

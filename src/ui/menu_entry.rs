@@ -2,12 +2,13 @@
 
 use egui::{Button, Color32, Response, Role, Ui, WidgetInfo};
 
-use super::commands::{Command, key_of};
+use super::commands::{Command, is_enabled, key_of};
 use super::icons;
 use super::requests::UiRequests;
+use crate::editor::Editor;
 
 /// What can be done to the selected item.
-pub const ITEM_COMMANDS: [(&str, Command); 11] = [
+pub const ITEM_COMMANDS: [(&str, Command); 12] = [
     ("Cut", Command::Cut),
     ("Copy", Command::Copy),
     ("Hide or show", Command::ToggleVisible),
@@ -16,6 +17,7 @@ pub const ITEM_COMMANDS: [(&str, Command); 11] = [
     ("Group", Command::Group),
     ("Ungroup", Command::Ungroup),
     ("Duplicate", Command::Duplicate),
+    ("Put down", Command::PutDown),
     ("Move up", Command::MoveUp),
     ("Move down", Command::MoveDown),
     ("Delete", Command::Delete),
@@ -37,6 +39,12 @@ pub fn entry(
         out.commands.push(command);
     }
     is_chosen
+}
+
+/// The same where the command would do something now.
+pub fn offer(ui: &mut Ui, editor: &Editor, text: &str, command: Command, out: &mut UiRequests) {
+    let enabled = is_enabled(&command, editor);
+    entry(ui, text, command, enabled, out);
 }
 
 /// An entry that is on or off: a tick before it says that it is on.

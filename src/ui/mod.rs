@@ -39,6 +39,8 @@ mod dress;
 
 mod add;
 
+mod put_down;
+
 mod prompts;
 
 mod outside;

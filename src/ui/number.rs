@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::hint::Hint as _;
 use super::theme::ROW;
-use crate::scene::parse_vec3;
+use crate::scene::{format_number, parse_vec3};
 
 /// Letters that one of three fields in a row has room for.
 const NARROW: usize = 7;
@@ -73,6 +73,48 @@ pub fn dragged(ctx: &Context) -> Option<bool> {
     (last.frame == ctx.cumulative_frame_nr()).then_some(last.is_given_up)
 }
 
+fn refused_id() -> Id {
+    Id::unique("what was typed and not taken")
+}
+
+/// Notes what is wrong with what was typed into a field, once that is left.
+pub fn tell_refused(response: &Response, is_cancelled: bool, words: Option<String>) {
+    if let Some(words) = words.filter(|_| response.lost_focus() && !is_cancelled) {
+        response
+            .ctx
+            .data_mut(|data| data.insert_temp(refused_id(), words));
+    }
+}
+
+/// What was wrong with what was typed last, once.
+pub fn take_refused(ctx: &Context) -> Option<String> {
+    ctx.data_mut(|data| data.remove_temp(refused_id()))
+}
+
+/// What is wrong with a text for a field: it is no number, or one that is out of range.
+fn refusal(field: &Field, text: &str) -> Option<String> {
+    let (least, most) = (*field.range.start(), *field.range.end());
+    let name = field.name;
+    match read(text) {
+        None if text.is_empty() => None,
+        None => Some(format!("“{text}” is no number")),
+        Some(number) if number <= 0.0 && 0.0 < least => Some(format!("{name} is above 0")),
+        Some(number) if !field.range.contains(&number) => {
+            let [least, most] = [least, most].map(format_number);
+            Some(format!("{name} goes from {least} to {most}"))
+        }
+        Some(_) => None,
+    }
+}
+
+/// The number that a text is.
+fn read(text: &str) -> Option<f64> {
+    // Half of the world writes a comma before decimals.
+    let number: Option<f64> = text.parse().ok();
+    let number = number.or_else(|| text.replacen(',', ".", 1).parse().ok());
+    number.filter(|number| number.is_finite())
+}
+
 /// A number without bounds, for positions.
 pub fn coordinate(name: &'static str, hint: &'static str) -> Field {
     Field {
@@ -125,6 +167,10 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
     } = *number;
     let by_size = || (value.abs().max(size) * 0.01).max(0.01);
     let speed = field.speed.unwrap_or_else(by_size);
+    // Three in a row have less room.
+    let most = if pasted.is_some() { NARROW } else { WIDE };
+    let shown = |value: f64| rounded(value, field.unit, most);
+    let (own, refused) = (shown(*value), Cell::new(None));
     let parser = |text: &str| {
         let text = text.trim().trim_end_matches(field.unit);
         if let (Some(pasted), Some(whole)) = (pasted, parse_vec3(text)) {
@@ -132,15 +178,11 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
             return Some(whole.x);
         }
         let text = text.trim();
-        // Half of the world writes a comma before decimals.
-        let number: Option<f64> = text.parse().ok();
-        let number = number.or_else(|| text.replacen(',', ".", 1).parse().ok());
+        // A field that is left as it was says nothing.
+        refused.set(refusal(field, text).filter(|_| text != own));
         // A length below zero is a slip, and not a wish for the shortest.
-        number.filter(|number| *field.range.start() <= 0.0 || 0.0 < *number)
+        read(text).filter(|number| *field.range.start() <= 0.0 || 0.0 < *number)
     };
-    // Three in a row have less room.
-    let most = if pasted.is_some() { NARROW } else { WIDE };
-    let shown = |value: f64| rounded(value, field.unit, most);
     let mut edited = *value;
     let widget = DragValue::new(&mut edited)
         .speed(speed)
@@ -173,6 +215,7 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
     if let Some(pasted) = pasted.filter(|_| is_cancelled) {
         pasted.set(None);
     }
+    tell_refused(&response, is_cancelled, refused.take());
     // A field that is left as it was entered gives back what it showed.
     let is_as_shown = !response.dragged() && shown(*value).parse() == Ok(edited);
     if response.changed() && edited.is_finite() && !is_cancelled && !is_as_shown {

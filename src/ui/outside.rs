@@ -58,11 +58,8 @@ impl Watch {
     /// half written at the first. Their folders, and the paths in those.
     pub fn changed_meshes(&mut self, editor: &Editor) -> Vec<(PathBuf, String)> {
         let objects = &editor.scene().objects;
-        if !self
-            .shown
-            .as_ref()
-            .is_some_and(|(of, _)| of.is_same(objects))
-        {
+        let is_other = |(of, _): &(List<Object>, _)| !of.is_same(objects);
+        if self.shown.as_ref().is_none_or(is_other) {
             let files = editor.scene().mesh_files().into_iter();
             let files = files.map(|(folder, path, read)| MeshFile {
                 folder: folder.to_owned(),

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use egui::text::{CCursor, CCursorRange};
-use egui::{Button, Context, Frame, Id, Key, Modal, RichText, TextEdit, Ui};
+use egui::{Button, Context, Event, Frame, Id, InputState, Key, Modal, RichText, TextEdit, Ui};
 
 use super::dialogs::Ask;
 use super::theme::{GRID, palette};
@@ -49,15 +49,16 @@ pub fn ask_about_changes(ctx: &Context, title: &str) -> Answer {
 
 /// Asks whether quitting is meant.
 pub fn ask_to_quit(ctx: &Context) -> Answer {
-    question(ctx, ("quit", 160.0, Answer::Yes), |ui, answer| {
+    // Esc asks for it too, which is pressed in passing: what ends the session is not the next key.
+    question(ctx, ("quit", 160.0, Answer::Cancel), |ui, answer| {
         ui.heading("Quit Glint?");
         ui.add_space(2.0 * GRID);
         ui.horizontal(|ui| {
-            if primary(ui, "Quit now").clicked() {
-                *answer = Answer::Yes;
-            }
-            if ui.button("Stay").clicked() {
+            if primary(ui, "Stay").clicked() {
                 *answer = Answer::Cancel;
+            }
+            if ui.button("Quit now").clicked() {
+                *answer = Answer::Yes;
             }
         });
     })
@@ -89,6 +90,8 @@ pub struct PathPrompt {
     label: &'static str,
     text: String,
     is_new: bool,
+    /// The file that was asked about: whether it is to be replaced.
+    asked: Option<PathBuf>,
     /// Why a folder could not be made.
     problem: Option<String>,
 }
@@ -101,6 +104,7 @@ impl PathPrompt {
             label,
             text: suggested.display().to_string(),
             is_new: true,
+            asked: None,
             problem: None,
         }
     }
@@ -137,17 +141,17 @@ impl PathPrompt {
             ui.colored_label(palette(ui.ctx()).accent, words);
             ui.add_space(GRID);
             ui.horizontal(|ui| {
-                let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-                let word = if self.ask.writes() {
-                    "Save file"
-                } else {
-                    "Open file"
-                };
+                let entered = field.lost_focus() && ui.input(is_entered);
                 let can = is_possible && !self.text.trim().is_empty();
-                let button = ui.add_enabled_ui(can, |ui| primary(ui, word)).inner;
-                if can && (button.clicked() || entered) {
+                let button = ui.add_enabled_ui(can, |ui| primary(ui, self.word())).inner;
+                let is_accepted = can && (button.clicked() || entered);
+                if is_accepted && (!self.would_replace() || self.is_asked()) {
                     *answer = Answer::Yes;
-                } else if entered {
+                } else if is_accepted {
+                    // Whoever types a name quickly has not read yet that there is such a file.
+                    self.asked = Some(self.path());
+                }
+                if *answer == Answer::Open && entered {
                     // What was typed is not lost: it can be mended.
                     field.request_focus();
                 }
@@ -164,6 +168,27 @@ impl PathPrompt {
                 }
             });
         })
+    }
+
+    /// What the button says that goes on.
+    fn word(&self) -> &'static str {
+        if !self.ask.writes() {
+            "Open file"
+        } else if self.is_asked() {
+            "Replace it"
+        } else {
+            "Save file"
+        }
+    }
+
+    /// Whether a file is there that would be another one then.
+    fn would_replace(&self) -> bool {
+        self.ask.writes() && self.path().is_file()
+    }
+
+    /// Whether it was asked whether that is meant.
+    fn is_asked(&self) -> bool {
+        self.asked.as_ref() == Some(&self.path())
     }
 
     /// The folder of a file to be written, if it is not there.
@@ -206,7 +231,11 @@ impl PathPrompt {
         }
         match (self.ask.writes(), is_there) {
             (true, true) if path.is_file() => Some(Warning {
-                words: format!("Replaces {}", path.display()),
+                words: if self.is_asked() {
+                    format!("{} is there already. Replace it?", path.display())
+                } else {
+                    format!("Replaces {}", path.display())
+                },
                 is_possible: true,
             }),
             (false, false) => Some(Warning {
@@ -223,6 +252,22 @@ struct Warning {
     words: String,
     /// Whether it can be used all the same.
     is_possible: bool,
+}
+
+/// Whether Enter was pressed, and is not only held.
+fn is_entered(input: &InputState) -> bool {
+    let is_it = |event: &Event| {
+        matches!(
+            event,
+            Event::Key {
+                key: Key::Enter,
+                pressed: true,
+                repeat: false,
+                ..
+            }
+        )
+    };
+    input.events.iter().any(is_it)
 }
 
 /// Fields remember where the caret was in another text.

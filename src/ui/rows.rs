@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::hint::Hint as _;
 pub use super::number::{Field, coordinate, fraction};
-use super::number::{Number, drag, is_cancelled};
+use super::number::{Number, drag, is_cancelled, tell_refused};
 use super::theme::{GRID, HEX, LABEL, ROW, palette};
 use crate::scene::format_number;
 
@@ -260,15 +260,23 @@ fn hex(ui: &mut Ui, name: &str, value: &mut DVec3) {
     let [r, g, b] = to_bytes(*value);
     let packed = f64::from(u32::from_be_bytes([0, r, g, b]));
     let mut edited = packed;
+    let refused = Cell::new(None);
     let widget = DragValue::new(&mut edited)
         .speed(0.0)
         .update_while_editing(false)
         .custom_formatter(|number, _| format!("#{:06X}", number as u32))
-        .custom_parser(|text| parse_hex(text).map(f64::from));
+        .custom_parser(|text| {
+            let color = parse_hex(text);
+            let words = || format!("“{text}” is no color: write it like #FF8040");
+            let is_wrong = color.is_none() && !text.trim().is_empty();
+            refused.set(is_wrong.then(words));
+            color.map(f64::from)
+        });
     let response = ui
         .add_sized([HEX, ROW], widget)
         .accessible_name(format!("{name} hex"));
     let is_cancelled = is_cancelled(ui, &response);
+    tell_refused(&response, is_cancelled, refused.take());
     if response.changed() && edited != packed && !is_cancelled {
         let [_, r, g, b] = (edited as u32).to_be_bytes();
         *value = DVec3::new(f64::from(r), f64::from(g), f64::from(b));
@@ -276,11 +284,18 @@ fn hex(ui: &mut Ui, name: &str, value: &mut DVec3) {
     response.hint_beside(ui, "Click to type or copy, for example #FF8040");
 }
 
+/// Six digits, or three that are each meant twice.
 fn parse_hex(text: &str) -> Option<u32> {
     let digits = text.trim().trim_start_matches('#');
-    (digits.len() == 6)
-        .then(|| u32::from_str_radix(digits, 16).ok())
-        .flatten()
+    if !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
+        return None; // Signs would pass.
+    }
+    let number = u32::from_str_radix(digits, 16).ok()?;
+    match digits.len() {
+        6 => Some(number),
+        3 => Some(((number & 0xF00) << 8 | (number & 0xF0) << 4 | number & 0xF) * 0x11),
+        _ => None,
+    }
 }
 
 fn to_bytes(color: DVec3) -> [u8; 3] {
@@ -295,7 +310,8 @@ mod tests {
     fn hex_colours_are_read_with_or_without_hash() {
         assert_eq!(parse_hex("#FF8040"), Some(0x00FF_8040));
         assert_eq!(parse_hex(" ff8040 "), Some(0x00FF_8040));
-        for text in ["", "#FFF", "#GG8040", "#FF804000"] {
+        assert_eq!(parse_hex("#0fA"), Some(0x0000_FFAA));
+        for text in ["", "#FFFF", "#GG8040", "#FF804000", "#+12345", "#+12"] {
             assert_eq!(parse_hex(text), None, "{text}");
         }
     }

@@ -8,6 +8,7 @@ use glam::DVec3;
 use super::app::App;
 use super::commands::{Command, is_enabled};
 use super::dialogs::Ask;
+use super::put_down::put_down;
 use super::timeline::actions;
 use super::tools::{axis_camera, framing_camera, projected_camera};
 use super::wishes::{FileOutcome, Next};
@@ -83,7 +84,7 @@ impl App {
                 return self.run(ctx, Command::SelectKeys);
             }
             Command::SelectAll => {
-                let all = Action::SelectItems(everything(self.editor.scene()));
+                let all = Action::SelectItems(Selected::all(Item::everything(self.editor.scene())));
                 self.editor.apply(all);
                 None
             }
@@ -136,11 +137,7 @@ impl App {
 
     /// Puts what is selected on the clipboard. Whether it is there.
     fn copy(&mut self, ctx: &Context) -> bool {
-        let scene = excerpt(self.editor.scene(), self.editor.selected());
-        let document = Document {
-            header: String::new(),
-            scene,
-        };
+        let document = Document::of(excerpt(self.editor.scene(), self.editor.selected()));
         match document.to_text() {
             Ok(text) => {
                 ctx.copy_text(text.clone());
@@ -220,11 +217,18 @@ impl App {
             }
             Command::ToggleVisible => return toggle_visible(editor),
             Command::Group => Action::Edit(Edit::Group(
-                selected_objects(editor),
+                editor.selected().places(Kind::Object),
                 free_group_name(editor.scene(), "Group 1"),
             )),
-            Command::Ungroup => Action::Edit(Edit::Group(selected_objects(editor), String::new())),
+            Command::Ungroup => {
+                let objects = editor.selected().places(Kind::Object);
+                Action::Edit(Edit::Group(objects, String::new()))
+            }
             Command::MergePacks => Action::Edit(Edit::MergePacks),
+            Command::PutDown => match put_down(editor.shown(), editor.selected()) {
+                Ok(edit) => Action::Edit(edit),
+                Err(why) => return editor.notify(why.to_owned()),
+            },
             Command::AddBookmark => add_bookmark(editor),
             Command::GoToBookmark(index) => {
                 let Some(bookmark) = editor.scene().bookmarks.get(*index) else {
@@ -312,31 +316,14 @@ impl App {
 fn toggle_visible(editor: &mut Editor) {
     let scene = editor.shown();
     let items = editor.selected().items();
-    let is_visible = |item: &Item| match item.kind {
-        Kind::Object => scene.objects.get(item.index).map(|object| object.visible),
-        Kind::Light => scene.lights.get(item.index).map(|light| light.visible),
-        Kind::Pack => None,
-    };
-    let visible = !items.iter().filter_map(is_visible).any(|visible| visible);
+    let mut visible = items.iter().filter_map(|item| item.is_visible(scene));
+    let visible = !visible.any(|visible| visible);
     let field = if visible { "show" } else { "hide" };
     let edits = items.iter();
     let edits = edits.filter_map(|item| Edit::visible(scene, *item, visible));
     let edits: Vec<Edit> = edits.collect();
     let label = format!("{field} {} items", edits.len());
     editor.apply(Action::Edit(Edit::Each(edits, label)));
-}
-
-/// All objects and lights.
-fn everything(scene: &Scene) -> Selected {
-    let lights = (0..scene.lights.len()).map(Item::light);
-    Selected::all(lights.chain((0..scene.objects.len()).map(Item::object)))
-}
-
-/// The places of the selected objects.
-fn selected_objects(editor: &Editor) -> Vec<usize> {
-    let items = editor.selected().items().iter();
-    let objects = items.filter(|item| item.kind == Kind::Object);
-    objects.map(|item| item.index).collect()
 }
 
 /// This view as one more bookmark.

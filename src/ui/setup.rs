@@ -33,7 +33,7 @@ impl Setup {
         Self {
             scene,
             dialogs: Box::new(Native),
-            data_folder: data_folder(),
+            data_folder: eframe::storage_dir(APP_ID),
             screenshot: None,
             start: None,
             exports: false,
@@ -58,9 +58,4 @@ impl Setup {
             ..Self::native(scene)
         }
     }
-}
-
-/// The folder in which the system keeps the program's data.
-fn data_folder() -> Option<PathBuf> {
-    eframe::storage_dir(APP_ID)
 }

@@ -1,4 +1,4 @@
-//! The picture in the middle: exact pixels, letterboxed, nothing over it.
+//! The picture in the middle: exact pixels, letterboxed.
 
 use std::sync::Arc;
 

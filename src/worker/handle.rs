@@ -195,7 +195,7 @@ impl Worker {
             },
             (_, Some(Job::Still(still))) => Activity::Still {
                 done: 0,
-                total: still.pixels(),
+                total: still.request.pixels(),
                 elapsed: Duration::ZERO,
             },
             _ => Activity::Idle,

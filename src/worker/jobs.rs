@@ -129,13 +129,6 @@ pub struct StillJob {
     pub save_to: Option<PathBuf>,
 }
 
-impl StillJob {
-    /// How many pixels the picture has.
-    pub fn pixels(&self) -> u64 {
-        u64::from(self.request.width) * u64::from(self.request.height)
-    }
-}
-
 /// A picture to look at.
 #[derive(Clone, Debug)]
 pub struct Frame {

@@ -91,7 +91,11 @@ impl Running {
     fn new(job: &Job, control: &Arc<RenderControl>) -> Self {
         let (revision, pixels, save_to) = match job {
             Job::Live(live) => (live.revision, 0, None),
-            Job::Still(still) => (still.revision, still.pixels(), still.save_to.clone()),
+            Job::Still(still) => (
+                still.revision,
+                still.request.pixels(),
+                still.save_to.clone(),
+            ),
             _ => (0, 0, None),
         };
         Self {

@@ -16,6 +16,7 @@ use egui_kittest::kittest::Queryable as _;
 use glint::export::{ExportStep, Exporting};
 use glint::export::{Frames, Pattern, Sequence};
 use glint::image::{Format, render};
+use glint::plan::RenderRequest;
 use glint::scene::{Document, Sampling, Scene};
 use glint::trace::{RenderControl, Threads};
 use glint::ui::Ask;
@@ -499,13 +500,14 @@ fn a_frame_too_large_for_the_memory_is_the_whole_picture() {
     (scene.render.width, scene.render.height) = (8200, 2100);
     scene.render.antialias = Sampling::Grid(1);
     let scene = Arc::new(scene);
-    let begin = || {
+    let sequence = || {
         let numbers = Some(Frames::parse("7").expect("a frame"));
         let (pattern, format) = (Pattern::default(), Format::Ppm);
         let place = folder.path().to_owned();
         let sequence = Sequence::new(Arc::clone(&scene), numbers, pattern, format, place);
-        Exporting::new(sequence.expect("a frame")).expect("a folder")
+        sequence.expect("a frame")
     };
+    let begin = || Exporting::new(sequence()).expect("a folder");
     let mut exporting = begin().side_by_side();
     let control = RenderControl::default();
     control.stop.store(true, Ordering::Relaxed);
@@ -521,8 +523,8 @@ fn a_frame_too_large_for_the_memory_is_the_whole_picture() {
     let mut again = begin();
     while !matches!(again.step(&control), ExportStep::Done) {}
     assert_eq!(again.finish().expect("there").kept, 1, "its hash is noted");
-    let shown = again.sequence().shown(7);
-    let request = again.sequence().request(&shown);
+    let shown = sequence().shown(7);
+    let request = RenderRequest::still(&shown);
     let (whole, _) = render(&shown, &request, &control).expect("not stopped");
     let mut expected = Cursor::new(Vec::new());
     let encoded = whole.encode(Format::Ppm, &mut expected);

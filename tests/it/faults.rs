@@ -12,7 +12,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use glint::scene::{Document, Object, Recovery, Sphere};
+use glint::scene::{Document, Object, Recovery, Scene, Sphere};
 
 use crate::random::Dice;
 
@@ -140,7 +140,7 @@ fn keeps_unsaved_work_until_it_is_killed() {
 
 /// Work after so many steps: the file is the larger, the more there were of the last hundred.
 fn unsaved(step: usize) -> Document {
-    let mut document = Document::empty();
+    let mut document = Document::of(Scene::empty());
     document.scene.ambient_intensity = 1.0 / step as f64;
     for number in 0..200 + 10 * (step % 100) {
         let center = DVec3::splat(number as f64);

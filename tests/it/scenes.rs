@@ -84,7 +84,7 @@ fn what_it_is_traced_with_is_kept_and_the_default_is_not_written() {
     let picture = RenderRequest::still(&document.scene);
     assert_eq!(picture.methods.offset, RayOffset::Relative(0.01));
     assert_eq!(picture.sampling, Sampling::Grid(3));
-    let plain = Document::empty().to_text().expect("writable");
+    let plain = Document::of(Scene::empty()).to_text().expect("writable");
     assert!(!plain.contains("antialias") && !plain.contains("offset"));
 }
 
@@ -342,10 +342,7 @@ fn saving_follows_links_and_keeps_permissions() {
     fs::write(&real, "old").expect("written");
     fs::set_permissions(&real, fs::Permissions::from_mode(0o640)).expect("set");
     symlink(&real, &link).expect("linked");
-    let document = Document {
-        header: String::new(),
-        scene: Scene::demo(),
-    };
+    let document = Document::of(Scene::demo());
     document.save(&link).expect("saved");
     assert!(
         fs::symlink_metadata(&link)
@@ -377,10 +374,7 @@ fn saving_follows_links_and_keeps_permissions() {
 #[test]
 fn a_save_that_fails_leaves_the_old_file_and_nothing_else() {
     let folder = tempfile::tempdir().expect("a folder");
-    let document = Document {
-        header: String::new(),
-        scene: Scene::demo(),
-    };
+    let document = Document::of(Scene::demo());
     let inside = folder.path().join("missing").join("scene.ron");
     let error = document
         .save(&inside)

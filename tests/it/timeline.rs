@@ -47,10 +47,7 @@ fn animation(keys: &[(f64, f64)]) -> EditorHarness {
     };
     scene.animation_mut().keys = keys.iter().map(key).collect();
     scene.animation_mut().frames_per_second = 10.0;
-    let document = Document {
-        header: String::new(),
-        scene,
-    };
+    let document = Document::of(scene);
     EditorHarness::with(|_| Vec::new(), Some(&document.to_text().expect("a text")))
 }
 
@@ -701,10 +698,7 @@ fn paths_go_out_to_a_table_and_come_back() {
 fn a_frame_is_the_same_from_the_command_line_and_in_the_window() {
     let mut scene = flight();
     (scene.render.width, scene.render.height) = (160, 120);
-    let document = Document {
-        header: String::new(),
-        scene,
-    };
+    let document = Document::of(scene);
     let text = document.to_text().expect("a text");
     let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
     let frame = 77;

@@ -165,10 +165,7 @@ fn a_take_is_replayed_bit_by_bit_from_its_file() {
     scene.animation_mut().take = Some(Arc::new(take.clone()));
     let key = |n: usize| Key::new(take.samples[n].0, take.camera(n).expect("a sample"));
     scene.animation_mut().keys = (0..take.samples.len()).map(key).collect();
-    let text = Document {
-        header: String::new(),
-        scene,
-    };
+    let text = Document::of(scene);
     let text = text.to_text().expect("writable");
     let read = Document::from_text(&text).expect("readable").scene;
     assert_eq!(read.animation.take.as_deref(), Some(&take));

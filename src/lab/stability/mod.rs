@@ -43,7 +43,7 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::table::written;
+use super::table::csv_of;
 
 /// All maps in single precision, `effort` times as many tries as for a first look.
 pub fn maps(effort: u32) -> Vec<Map> {
@@ -117,27 +117,24 @@ struct Cell<'a> {
 /// # Errors
 /// None is known: everything is written to memory.
 pub fn cells_csv(maps: &[Map]) -> Result<String, csv::Error> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for map in maps {
+    csv_of(maps.iter().flat_map(|map| {
         let width = map.across.values.len();
-        for (index, cell) in map.cells.iter().enumerate() {
-            writer.serialize(Cell {
-                subject: map.subject.name(),
-                method: &map.method,
-                default: map.is_default,
-                failure: map.failure,
-                across: map.across.name,
-                x: map.across.values[index % width],
-                up: map.up.name,
-                y: map.up.values[index / width],
-                tries: cell.tries,
-                failures: cell.failures,
-                rate: cell.rate(),
-                bound_95: cell.bound(),
-            })?;
-        }
-    }
-    written(writer)
+        let cells = map.cells.iter().enumerate();
+        cells.map(move |(index, cell)| Cell {
+            subject: map.subject.name(),
+            method: &map.method,
+            default: map.is_default,
+            failure: map.failure,
+            across: map.across.name,
+            x: map.across.values[index % width],
+            up: map.up.name,
+            y: map.up.values[index / width],
+            tries: cell.tries,
+            failures: cell.failures,
+            rate: cell.rate(),
+            bound_95: cell.bound(),
+        })
+    }))
 }
 
 #[cfg(test)]

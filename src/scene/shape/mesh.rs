@@ -220,12 +220,16 @@ impl Mesh {
         }
     }
 
+    /// The corners of each face where they are in the world.
+    pub fn world_corners(&self) -> impl Iterator<Item = [DVec3; 3]> {
+        let transform = self.transform();
+        let corners = self.source.triangles().corners();
+        corners.map(move |corners| corners.map(|corner| transform.transform_point3(corner)))
+    }
+
     /// Its faces in the world; those without an area are none.
     pub fn pieces(&self) -> impl Iterator<Item = PlanePiece> {
-        let transform = self.transform();
-        let place = move |corner: DVec3| transform.transform_point3(corner);
-        let corners = self.source.triangles().corners();
-        corners.filter_map(move |corners| PlanePiece::between(corners.map(place)))
+        self.world_corners().filter_map(PlanePiece::between)
     }
 }
 

@@ -81,8 +81,7 @@ impl Settings {
         let here = std::env::current_dir().unwrap_or_default();
         let folder = editor.path().and_then(Path::parent).unwrap_or(&here);
         let folder = folder.strip_prefix(&here).unwrap_or(folder);
-        let title = editor.title();
-        let stem = title.strip_suffix(".ron").unwrap_or(&title);
+        let stem = editor.stem();
         let own = Own {
             seconds: scene.animation.duration(),
             size: (scene.render.width, scene.render.height),

@@ -37,18 +37,13 @@ pub struct Order {
 
 impl Order {
     /// An order for the scene of an editor, kept in the folder of the program's data.
-    pub fn new(mut settings: Settings, editor: &Editor, folder: Option<&Path>) -> Self {
+    pub fn new(settings: Settings, editor: &Editor, folder: Option<&Path>) -> Self {
         // The next program may run elsewhere.
-        if let Ok(absolute) = std::path::absolute(settings.folder.trim()) {
-            settings.folder = absolute.display().to_string();
-        }
+        let settings = settings.at_home();
         let place = folder.and_then(|folder| Recovery::new(&folder.join(FOLDER)).ok());
         let place = place.map(Arc::new);
         // With the triangles of its meshes: their files may be others when it goes on.
-        let document = Document {
-            header: String::new(),
-            scene: editor.scene().taken_in(),
-        };
+        let document = Document::of(editor.scene().taken_in());
         let path = editor.path().map(Path::to_owned);
         let writing = place.clone().map(|place| {
             let settings = settings.clone();

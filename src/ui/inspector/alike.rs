@@ -50,16 +50,16 @@ fn points(shape: &Shape) -> Vec<DVec3> {
     points
 }
 
-/// Moves everything that is selected as what was selected last, which a change moves: by as much where that is
-/// dragged, or to the coordinates that were typed.
+/// Moves everything that is selected as what was selected last, which a change moves: together, by as much; or to the
+/// coordinates that were typed.
 fn move_all(
     scene: &Scene,
     selected: &[Item],
     (edit, point): (Edit, &MovedPoint),
-    is_dragged: bool,
+    is_together: bool,
 ) -> Edit {
     let to = |place: DVec3| {
-        if is_dragged {
+        if is_together {
             place + (point.to - point.from)
         } else {
             changed(place, point.from, point.to)
@@ -95,10 +95,11 @@ fn placed(shape: &Shape, place: DVec3) -> Shape {
     placed
 }
 
-/// The same change for everything that is selected, which is made of what was selected last; whether it is dragged.
-pub fn for_all(scene: &Scene, selected: &[Item], edit: Edit, is_dragged: bool) -> Edit {
-    if let Some(point) = moved_point(scene, &edit).filter(|point| is_dragged || point.is_only) {
-        return move_all(scene, selected, (edit, &point), is_dragged);
+/// The same change for everything that is selected, which is made of what was selected last; whether places are moved
+/// together.
+pub fn for_all(scene: &Scene, selected: &[Item], edit: Edit, is_together: bool) -> Edit {
+    if let Some(point) = moved_point(scene, &edit).filter(|point| is_together || point.is_only) {
+        return move_all(scene, selected, (edit, &point), is_together);
     }
     let count = selected.len();
     let (edits, field): (Vec<Edit>, &str) = match edit {
@@ -126,7 +127,11 @@ pub fn for_all(scene: &Scene, selected: &[Item], edit: Edit, is_dragged: bool) -
             };
             let edits = packs_of(scene, selected).filter_map(|index| {
                 let (_, own) = scene.color_packs.get_index(index)?;
-                Some(Edit::Pack(index, like_pack(own, (old, &new)), field))
+                let mut pack = like_pack(own, (old, &new));
+                if field == "color" {
+                    (pack.ambient, pack.diffuse) = (new.ambient, new.diffuse);
+                }
+                Some(Edit::Pack(index, pack, field))
             });
             (edits.collect(), field)
         }

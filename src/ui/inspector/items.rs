@@ -64,24 +64,19 @@ pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut
 
 fn length(name: &'static str, hint: &'static str, default: f64) -> Field {
     Field {
-        name,
-        hint,
-        unit: "",
         default,
         range: 1e-9..=1e12,
-        speed: None,
+        ..coordinate(name, hint)
     }
 }
 
 /// Degrees.
 fn angle(name: &'static str, hint: &'static str) -> Field {
     Field {
-        name,
-        hint,
         unit: "°",
-        default: 0.0,
         range: -1e6..=1e6,
         speed: Some(0.5),
+        ..coordinate(name, hint)
     }
 }
 
@@ -96,12 +91,9 @@ fn half_turn(name: &'static str, hint: &'static str) -> Field {
 /// What something is multiplied by.
 fn factor(name: &'static str, hint: &'static str) -> Field {
     Field {
-        name,
-        hint,
-        unit: "",
         default: 1.0,
         range: -1e6..=1e6,
-        speed: None,
+        ..coordinate(name, hint)
     }
 }
 
@@ -232,6 +224,16 @@ pub fn pack(ui: &mut Ui, index: usize, before: &ColorPack, out: &mut UiRequests)
     let mut pack = before.clone();
     let defaults = ColorPack::default();
     let mut rows = Rows::new(ui);
+    let mut both = pack.diffuse;
+    rows.color(
+        "color",
+        "Ambient and diffuse at once: what most things are painted in",
+        defaults.diffuse,
+        &mut both,
+    );
+    if both != pack.diffuse {
+        (pack.ambient, pack.diffuse) = (both, both);
+    }
     rows.color(
         "ambient",
         "Colour without any light, scaled by the ambient intensity",
@@ -263,7 +265,7 @@ pub fn pack(ui: &mut Ui, index: usize, before: &ColorPack, out: &mut UiRequests)
     );
     rows.toggle(
         "reflective",
-        "Whether the surface mirrors the scene",
+        "Whether the surface mirrors the scene: through its specular color, as bright as all lights together",
         &mut pack.reflective,
     );
     if let Some(field) = rows.changed().filter(|_| pack != *before) {

@@ -15,7 +15,7 @@ use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
-use crate::ui::rows::{Field, Rows, coordinate};
+use crate::ui::rows::{Field, Rows, coordinate, fraction};
 
 /// The ways on which every value can go on.
 const STAYING: [Interpolation; 3] = [
@@ -93,14 +93,7 @@ fn value_rows(rows: &mut Rows, animation: &Animation, place: KeyPlace) -> Option
 }
 
 fn intensity_field() -> Field {
-    Field {
-        name: "intensity",
-        hint: "How bright it is at that time, 0–1",
-        unit: "",
-        default: 1.0,
-        range: 0.0..=1.0,
-        speed: Some(0.005),
-    }
+    fraction("intensity", "How bright it is at that time, 0–1", 1.0)
 }
 
 fn point_field(target: &Target) -> Field {

@@ -1,16 +1,16 @@
 //! Several things at once: what they have in common is changed for all.
 
-use egui::Ui;
+use egui::{Id, Ui};
 
 use super::alike::{for_all, values};
 use super::items;
-use super::title::title;
+use super::title::{name_field, title};
 use crate::editor::{Action, Edit, Editor, Item, Kind};
 use crate::scene::{Light, Object, Scene, Shape};
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
-use crate::ui::theme::GRID;
+use crate::ui::theme::{GRID, ROW};
 
 /// Most things that are compared, in every frame of the window.
 const MOST: usize = 500;
@@ -18,14 +18,23 @@ const MOST: usize = 500;
 /// The properties of what was selected last; a change is made to all that have the property.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let (scene, selected) = (editor.shown(), editor.selected().items());
-    title(ui, icons::SELECTED, &format!("{} items", selected.len()));
+    let objects = editor.selected().places(Kind::Object);
+    let group = editor.selected().group(scene);
+    if let Some(group) = group {
+        group_title(ui, group, &objects, out);
+    } else {
+        title(ui, icons::SELECTED, &format!("{} items", selected.len()));
+    }
     let Some(&last) = selected.last() else { return };
     let different = differences(scene, selected, last);
     if !different.is_empty() {
         ui.weak(format!("Not the same for all: {}", different.join(", ")));
     }
-    ui.weak("A change is made to all that have the property; a position that is dragged moves them together.");
-    let objects = of_kind(selected, Kind::Object);
+    ui.weak(if group.is_some() {
+        "A change is made to all that have the property; a position moves the group."
+    } else {
+        "A change is made to all that have the property; a position that is dragged moves them together."
+    });
     let is_joinable = |index: &usize| {
         let object = scene.objects.get(*index);
         object.is_some_and(|object| matches!(object.shape, Shape::Triangle(_) | Shape::Mesh(_)))
@@ -51,25 +60,28 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         }
         Kind::Pack => {}
     }
-    // Not the click elsewhere that ends what was typed.
-    let is_dragged = ui.input(|input| input.pointer.is_decidedly_dragging());
+    // A group stays what it is; and it is not the click elsewhere that ends what was typed.
+    let is_together = group.is_some() || ui.input(|input| input.pointer.is_decidedly_dragging());
     for action in own.actions {
         out.actions.push(match action {
-            Action::Edit(edit) => Action::Edit(for_all(scene, selected, edit, is_dragged)),
+            Action::Edit(edit) => Action::Edit(for_all(scene, selected, edit, is_together)),
             other => other,
         });
     }
 }
 
-/// The places of the items of a kind, in ascending order.
-fn of_kind(items: &[Item], kind: Kind) -> Vec<usize> {
-    let mut places: Vec<usize> = items
-        .iter()
-        .filter(|item| item.kind == kind)
-        .map(|item| item.index)
-        .collect();
-    places.sort_unstable();
-    places
+/// The name of a group, which can be edited.
+fn group_title(ui: &mut Ui, group: &str, members: &[usize], out: &mut UiRequests) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(ROW);
+        ui.label(icons::text(icons::GROUP));
+        let id = Id::unique(("title of a group", group));
+        let name = name_field(ui, "group", id, group);
+        let name = name.map(|name| name.trim().to_owned());
+        if let Some(name) = name.filter(|name| !name.is_empty()) {
+            out.edit(Edit::Group(members.to_vec(), name));
+        }
+    });
 }
 
 /// The properties of `last` that others of its kind do not have, or have otherwise.

@@ -8,10 +8,32 @@ use super::comparison::FACES;
 use super::dots::figures;
 use super::panel::{DETAILS, Lab};
 use crate::editor::{Edit, Editor};
-use crate::lab::{Family, account};
+use crate::lab::{Candidate, Family, account};
 use crate::plan::Model;
 use crate::scene::Render;
 use crate::ui::hint::Hint as _;
+
+/// Whether the scene can be made to be traced in a way, what the button for that says, and its hint.
+fn adoption(candidate: &Candidate, is_used: bool) -> (bool, &'static str, &'static str) {
+    let word = "Use this";
+    if candidate.family == Family::Referee {
+        let hint = "It is another program, and only looked at here";
+        (false, word, hint)
+    } else if candidate.model == Model::Unculled {
+        (false, word, "It is the default, with nothing spared")
+    } else if candidate.upscale > 1 {
+        (false, word, "A scene is never traced smaller than it is")
+    } else if is_used {
+        (false, "In use", "The scene is traced with these settings")
+    } else if candidate.model == Model::Everything {
+        let hint =
+            "A scene cannot ask for what it does not need; its formulas are used without that";
+        (true, word, hint)
+    } else {
+        let hint = "Trace the scene with these settings (one undo step)";
+        (true, word, hint)
+    }
+}
 
 impl Lab {
     /// Its settings, its figures, and which of its pictures is shown.
@@ -58,28 +80,16 @@ impl Lab {
             }
         });
         let candidate = &dot.candidate;
-        let (is_possible, hint) = if candidate.family == Family::Referee {
-            (false, "It is another program, and only looked at here")
-        } else if candidate.model == Model::Unculled {
-            (false, "It is the default, with nothing spared")
-        } else if candidate.upscale > 1 {
-            (false, "A scene is never traced smaller than it is")
-        } else if candidate.model == Model::Everything {
-            let words =
-                "A scene cannot ask for what it does not need; its formulas are used without that";
-            (true, words)
-        } else {
-            (true, "Trace the scene with these settings (one undo step)")
+        let own = &editor.shown().render;
+        let render = Render {
+            width: own.width,
+            height: own.height,
+            ..candidate.render.clone()
         };
-        let adopt = ui.add_enabled(is_possible, Button::new("Use this"));
+        let (can, word, hint) = adoption(candidate, render == *own);
+        let adopt = ui.add_enabled(can, Button::new(word));
         let adopt = adopt.hint(hint).on_disabled_hover_text(hint);
         if adopt.clicked() {
-            let own = &editor.shown().render;
-            let render = Render {
-                width: own.width,
-                height: own.height,
-                ..dot.candidate.render.clone()
-            };
             out.edit(Edit::Render(render, "settings from the lab"));
         }
     }

@@ -19,6 +19,7 @@ use crate::files::processor;
 use crate::lab::{EIGHT_BIT_FLOOR, Study, keep, kept};
 use crate::scene::{Render, Scene};
 use crate::trace::Threads;
+use crate::words::counted;
 use crate::worker::run_in_background;
 
 /// Time between two looks at whether a kept study is read.
@@ -93,7 +94,11 @@ impl Default for Lab {
             face: Face::Picture,
             look: Comparison::default(),
             bounds: (EIGHT_BIT_FLOOR, 100.0),
-            machine: { format!("{} threads, {}", Threads::available(), processor()) },
+            machine: format!(
+                "{}, {}",
+                counted(Threads::available(), "thread"),
+                processor()
+            ),
             tab: Tab::Chart,
             stability: Stability::default(),
             asks_povray: false,
@@ -167,7 +172,7 @@ impl Lab {
             self.study = Some(Box::new(study));
             self.chosen = None;
             self.number += 1;
-            self.name = name_of(editor);
+            self.name = editor.stem();
         }
     }
 
@@ -209,7 +214,8 @@ impl Lab {
     ) -> Option<LabRequest> {
         self.look_for_kept(ui, editor);
         ui.add_space(GRID / 2.0);
-        let wish = ui.horizontal(|ui| self.show_head(ui, editor, out)).inner;
+        let wish = ui.horizontal_wrapped(|ui| self.show_head(ui, editor, out));
+        let wish = wish.inner;
         if self.tab == Tab::Stability {
             self.stability.show(ui, editor.shown());
             return wish;
@@ -244,7 +250,7 @@ impl Lab {
         self.study = Some(study.clone());
         self.chosen = None;
         self.number += 1;
-        self.name = name_of(editor);
+        self.name = editor.stem();
         self.is_running = true;
         LabRequest::Measure(study)
     }
@@ -309,10 +315,4 @@ impl Lab {
         };
         Some(chart(self.study.as_deref()?, &view))
     }
-}
-
-/// What the chart calls the document.
-fn name_of(editor: &Editor) -> String {
-    let title = editor.title();
-    title.strip_suffix(".ron").unwrap_or(&title).to_owned()
 }

@@ -16,19 +16,15 @@ use crate::ui::theme::{ROW, palette};
 /// Letters that a row has room for, about.
 const LONG: usize = 18;
 
-/// The symbol of an item, and whether it is visible if it can be hidden.
-pub fn look(scene: &Scene, item: Item) -> (MaterialIcon, Option<bool>) {
+/// The symbol of an item.
+pub fn icon_of(scene: &Scene, item: Item) -> MaterialIcon {
     match item.kind {
-        Kind::Light => (
-            icons::LIGHT,
-            scene.lights.get(item.index).map(|light| light.visible),
-        ),
+        Kind::Light => icons::LIGHT,
         Kind::Object => {
             let object = scene.objects.get(item.index);
-            let icon = object.map_or(icons::SPHERE, |object| icons::of_shape(&object.shape));
-            (icon, object.map(|object| object.visible))
+            object.map_or(icons::SPHERE, |object| icons::of_shape(&object.shape))
         }
-        Kind::Pack => (icons::PACK, None),
+        Kind::Pack => icons::PACK,
     }
 }
 
@@ -128,10 +124,8 @@ pub fn take_dropped(
 
 /// Shows or hides an item by this name.
 pub fn eye(ui: &mut Ui, scene: &Scene, item: Item, name: &str, out: &mut UiRequests) {
-    let visible = match item.kind {
-        Kind::Light => scene.lights[item.index].visible,
-        Kind::Object => scene.objects[item.index].visible,
-        Kind::Pack => return,
+    let Some(visible) = item.is_visible(scene) else {
+        return;
     };
     if eye_button(ui, visible, name)
         && let Some(edit) = Edit::visible(scene, item, !visible)

@@ -50,12 +50,11 @@ impl GroupRows {
         let dropped = response.dnd_release_payload::<Item>();
         if let Some(item) = dropped.filter(|item| item.kind == Kind::Object) {
             let selected = editor.selected();
-            let all = selected.items().iter().filter(|_| selected.has(*item));
-            let objects = all.filter(|item| item.kind == Kind::Object);
-            let mut places: Vec<usize> = objects.map(|item| item.index).collect();
-            if places.is_empty() {
-                places.push(item.index);
-            }
+            let places = if selected.has(*item) {
+                selected.places(Kind::Object)
+            } else {
+                vec![item.index]
+            };
             out.edit(Edit::Group(places, group.name.clone()));
         }
         response.context_menu(|ui| {

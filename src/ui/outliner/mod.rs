@@ -10,7 +10,7 @@ mod groups;
 use egui::{Align, Id, Layout, Rect, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2};
 
 use self::entry::{
-    Renaming, RowStyle, color_of, entry, eye, look, rename_field, row, take_dropped,
+    Renaming, RowStyle, color_of, entry, eye, icon_of, rename_field, row, take_dropped,
 };
 use self::groups::GroupRows;
 use self::lines::{Entries, Groups, Line, Lines};
@@ -237,7 +237,7 @@ impl Outliner {
             self.rename_row(ui, scene, item, out);
             return;
         }
-        let (icon, visible) = look(scene, item);
+        let (icon, visible) = (icon_of(scene, item), item.is_visible(scene));
         let is_selected = editor.selected().has(item);
         let (mut rect, mut eye_rect) = (row(ui), Rect::NOTHING);
         if is_in_group {
@@ -293,7 +293,7 @@ impl Outliner {
                 .layout(Layout::left_to_right(Align::Center)),
             |ui| {
                 ui.add_space(GRID);
-                ui.label(icons::text(look(scene, item).0));
+                ui.label(icons::text(icon_of(scene, item)));
                 let id = Id::unique(("rename", item));
                 match rename_field(ui, rect, ("new name", id), name) {
                     Renaming::Going => return,

@@ -3,36 +3,33 @@
 use egui::Ui;
 
 use crate::editor::{Edit, Editor};
-use crate::scene::{Easing, KeyPlace, Keys};
+use crate::scene::{Easing, KeyPlace};
+use crate::ui::commands::Command;
 use crate::ui::inspector::key_ways;
 use crate::ui::requests::UiRequests;
 
-/// Way and pace of the selected keys, or of the one in this place alone; and their end.
+/// Way and pace of the selected keys, of which this is one; and their end.
 pub fn menu(ui: &mut Ui, place: KeyPlace, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
-    let mut places = editor.timeline().selected.clone();
-    if !places.contains(&place) {
-        places = Keys::from([place]);
-    }
+    let places = &editor.timeline().selected;
     let Some((_, (own_way, own_pace))) = animation.at_place(place) else {
         return;
     };
-    for way in key_ways(editor, &places, own_way) {
+    for way in key_ways(editor, places, own_way) {
         if ui.radio(own_way == way, way.name()).clicked() {
-            let changed = animation.with_pace(&places, |(each, _)| *each = way);
+            let changed = animation.with_pace(places, |(each, _)| *each = way);
             out.edit(Edit::animation(changed, "Key: way"));
         }
     }
     ui.separator();
     for pace in Easing::ALL {
         if ui.radio(own_pace == pace, pace.name()).clicked() {
-            let changed = animation.with_pace(&places, |(_, each)| *each = pace);
+            let changed = animation.with_pace(places, |(_, each)| *each = pace);
             out.edit(Edit::animation(changed, "Key: pace"));
         }
     }
     ui.separator();
     if ui.button("Delete").clicked() {
-        let kept = animation.without_keys(&places);
-        out.edit(Edit::animation(kept, "Delete keys"));
+        out.commands.push(Command::Delete);
     }
 }

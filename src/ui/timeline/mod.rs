@@ -96,7 +96,7 @@ impl TimelinePanel {
         });
         let animation = &editor.scene().animation;
         if animation.take.is_some() {
-            ui.horizontal(|ui| transport::show_take(ui, editor, out));
+            ui.horizontal_wrapped(|ui| transport::show_take(ui, editor, out));
         }
         if animation.is_still() {
             ui.centered_and_justified(|ui| {

@@ -1,6 +1,6 @@
 //! Strips of the line of time, and what is drawn on each of them.
 
-use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Color32, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use super::scale::Scale;
 use crate::ui::theme::{GRID, TRACK, palette};
@@ -20,25 +20,31 @@ pub fn band(ui: &mut Ui, scale: &Scale, sense: Sense) -> (Rect, Response) {
     (rect, response)
 }
 
-/// Writes to the left of a strip what it is about.
+/// Writes to the left of a strip what it is about. What a name is too long for is cut from the name, and not from what
+/// stands behind it.
 pub fn label(ui: &Ui, rect: Rect, text: &str) {
     let colors = palette(ui.ctx());
     let room = Rect::from_min_max(pos2(ui.max_rect().left(), rect.top()), rect.left_bottom());
     let painter = ui.painter().with_clip_rect(room.shrink2(vec2(GRID, 0.0)));
     let at = room.left_center() + vec2(GRID, 0.0);
-    painter.text(
-        at,
-        Align2::LEFT_CENTER,
-        text,
-        FontId::proportional(SMALL + 1.0),
-        colors.muted,
-    );
+    let font = FontId::proportional(SMALL + 1.0);
+    let layout = |text: String| painter.layout_no_wrap(text, font.clone(), colors.muted);
+    let (name, what) = text.split_at(text.rfind(": ").unwrap_or(text.len()));
+    let (mut galley, width) = (layout(text.to_owned()), room.width() - 3.0 * GRID);
+    let mut kept = name.chars().count();
+    while galley.size().x > width && kept > 1 {
+        // As many letters as would do if all were alike.
+        kept = (kept - 1).min((kept as f32 * width / galley.size().x) as usize + 1);
+        let name: String = name.chars().take(kept).collect();
+        galley = layout(format!("{}…{what}", name.trim_end()));
+    }
+    let at = at - vec2(0.0, galley.size().y / 2.0);
+    painter.galley(at, galley, colors.muted);
 }
 
 /// Draws a key: what is held is a square.
 pub fn diamond(ui: &Ui, at: Pos2, fill: Color32, is_cut: bool) {
     let corners = if is_cut {
-        // What is held is a square.
         let half = KEY * 0.8;
         [
             vec2(-half, -half),

@@ -7,7 +7,7 @@ use super::gizmo::{Handle, label};
 use super::grip::{Grip, Pull};
 use super::lens::Lens;
 use super::navigate::{middle_of, panned, turn};
-use super::sight::{Sight, item_of};
+use super::sight::{Sight, ends, item_of};
 use super::subject::Subject;
 use crate::editor::{Action, Edit, Editor, Selected};
 use crate::image::Thing;
@@ -81,17 +81,6 @@ impl View<'_> {
         middle.unwrap_or_else(|| self.point_at(sight, at))
     }
 
-    /// Whether something never ends.
-    pub fn is_endless(&self, thing: Thing) -> bool {
-        match thing {
-            Thing::Object(index) => {
-                let object = self.editor.shown().objects.get(index);
-                object.is_some_and(|object| object.shape.bounds().is_none())
-            }
-            Thing::Light(_) => false,
-        }
-    }
-
     /// What is seen at a place, if it is a body that can be taken hold of.
     fn body_at(&self, sight: &Sight, at: Pos2) -> Option<Thing> {
         let seen = sight.at(self.editor, self.place.rect, at)?;
@@ -104,7 +93,7 @@ impl View<'_> {
             },
             Thing::Light(_) => false,
         };
-        (!self.is_endless(seen) && !surrounds).then_some(seen)
+        (ends(self.editor.shown(), seen) && !surrounds).then_some(seen)
     }
 }
 

@@ -25,11 +25,11 @@ use glam::DVec3;
 use self::drag::{Drag, View};
 use self::gizmo::{Handle, handle_at};
 use self::navigate::{along, dollied, framed, middle_of, projected, surroundings};
-use self::sight::{Sight, item_of, pixel, question};
+use self::sight::{Sight, ends, item_of, pixel, question};
 use self::subject::Subject;
-use super::commands::{Command, is_enabled};
+use super::commands::Command;
 use super::dress::{dressed, dropped_pack};
-use super::menu_entry::{ITEM_COMMANDS, entry};
+use super::menu_entry::{ITEM_COMMANDS, entry, offer};
 use super::requests::UiRequests;
 use super::viewport::Place;
 use crate::editor::{Action, Edit, Editor, Item, Kind, Selected};
@@ -121,20 +121,24 @@ impl Tools {
         };
         let has_gizmo = !editor.looks_through();
         let hovered = response.hover_pos().filter(|_| self.drag.is_none());
-        let mut meant = hovered
+        let meant = hovered
             .filter(|_| has_gizmo)
             .and_then(|at| handle_at(&view.lens, editor.selected(), editor.shown(), at));
         self.start(ui, &view, response, has_gizmo, out);
+        let show_gizmo = |meant| {
+            if has_gizmo {
+                gizmo::show(&view.painter, &view.lens, editor, meant);
+            }
+        };
         if let Some(drag) = &mut self.drag {
-            meant = drag.handle();
+            // Below the value that is written beside the pointer.
+            show_gizmo(drag.handle());
             if !drag.go_on(ui, &view, &self.sight, response, out) {
                 self.drag = None;
             }
         } else {
             self.hover(ui, &view, hovered, meant);
-        }
-        if has_gizmo {
-            gizmo::show(&view.painter, &view.lens, editor, meant);
+            show_gizmo(meant);
         }
         if self.drag.is_none() {
             self.turn_wheel(&view, response, wheel, out);
@@ -199,8 +203,7 @@ impl Tools {
             }
             ui.separator();
             for (text, command) in ITEM_COMMANDS {
-                let can = is_enabled(&command, view.editor);
-                entry(ui, text, command, can, out);
+                offer(ui, view.editor, text, command, out);
             }
             ui.separator();
             entry(ui, "Paste", Command::RequestPaste, true, out);
@@ -242,7 +245,7 @@ impl Tools {
         let seen = at.and_then(|at| self.sight.at(view.editor, view.place.rect, at));
         let item = seen.map(item_of).filter(|_| meant.is_none());
         // A line around the floor would be one around everything that stands on it.
-        let outlined = seen.filter(|thing| !view.is_endless(*thing));
+        let outlined = seen.filter(|thing| ends(view.editor.shown(), *thing));
         let outlined = outlined.map(item_of).filter(|_| meant.is_none());
         self.sight
             .show(&view.painter, view.editor, view.place.rect, outlined);
@@ -348,7 +351,7 @@ pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
 pub fn axis_camera(editor: &Editor, direction: DVec3) -> Camera {
     let scene = editor.shown();
     let selected = Subject::of(editor.selected(), scene);
-    let middle = selected.first().map(Subject::middle);
+    let middle = Subject::middle_of(&selected);
     let about = middle.or_else(|| middle_of(scene)).unwrap_or_default();
     along(&scene.camera, about, direction)
 }

@@ -122,7 +122,7 @@ impl Sight {
 }
 
 /// Whether a thing has an end.
-fn ends(scene: &Scene, thing: Thing) -> bool {
+pub fn ends(scene: &Scene, thing: Thing) -> bool {
     match thing {
         Thing::Object(index) => {
             let object = scene.objects.get(index);

@@ -63,6 +63,24 @@ fn without_dialogs_a_path_is_typed() {
 }
 
 #[test]
+fn a_file_that_is_there_is_replaced_once_that_is_meant() {
+    let mut harness = EditorHarness::new();
+    let path = harness.folder.path().join("theirs.ron");
+    std::fs::write(&path, "theirs").expect("written");
+    harness.press(Modifiers::COMMAND, Key::S);
+    let text = path.to_str().expect("plain");
+    harness.type_name("Path (this desktop offers no file dialog)", text);
+    harness
+        .window
+        .get_by_label_contains("is there already. Replace it?");
+    let held = || std::fs::read_to_string(&path).expect("read");
+    assert_eq!(held(), "theirs");
+    harness.click("Replace it");
+    assert_ne!(held(), "theirs");
+    assert_eq!(harness.editor().path(), Some(path.as_path()));
+}
+
+#[test]
 fn the_still_picture_is_written_to_a_file() {
     let answers =
         |folder: &std::path::Path| vec![(Ask::SaveImage, Some(folder.join("picture.png")))];
@@ -134,10 +152,7 @@ fn a_refused_file_is_shown_with_its_place_and_the_document_stays() {
 fn dropped_files_open() {
     let mut harness = EditorHarness::new();
     let path = harness.folder.path().join("dropped.ron");
-    let document = Document {
-        header: String::new(),
-        scene: Scene::empty(),
-    };
+    let document = Document::of(Scene::empty());
     document.save(&path).expect("saved");
     harness.drop_file(path);
     assert_eq!(harness.scene(), &Scene::empty());
@@ -160,7 +175,7 @@ fn unsaved_changes_survive_a_cancelled_open() {
 
 #[test]
 fn saving_works_from_within_a_field() {
-    let text = Document::empty().to_text().expect("a text");
+    let text = Document::of(Scene::empty()).to_text().expect("a text");
     let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
     harness
         .window
@@ -218,10 +233,7 @@ fn demo_text(radius: f64) -> String {
         panic!("a ball");
     };
     ball.radius = radius;
-    let document = Document {
-        header: String::new(),
-        scene,
-    };
+    let document = Document::of(scene);
     document.to_text().expect("a text")
 }
 
@@ -323,10 +335,7 @@ fn a_mesh_file_that_another_program_writes_is_read_anew_before_and_after_what_is
     harness.window.event(Event::Copy);
     harness.settle();
     let editor = harness.editor();
-    let copied = Document {
-        header: String::new(),
-        scene: excerpt(editor.scene(), editor.selected()),
-    };
+    let copied = Document::of(excerpt(editor.scene(), editor.selected()));
     let copied = copied.to_text().expect("a text");
     wait(&mut harness, "roof.obj", 0, 8.0);
     harness.window.event(Event::Paste(copied));

@@ -289,6 +289,48 @@ fn of_several_a_dragged_position_moves_all_and_a_typed_one_is_for_all() {
 }
 
 #[test]
+fn a_typed_position_moves_a_group_as_one_and_its_name_is_the_groups() {
+    let mut harness = EditorHarness::new();
+    let [one, other] = both_balls(&mut harness);
+    harness.press(CTRL, Key::G);
+    harness.type_into("center y", "70");
+    let [now, then] = [0, 1].map(|ball| center(harness.scene(), ball));
+    assert_eq!(then.y, 70.0, "what was selected last");
+    assert!((now - one - (then - other)).length() < 1e-9, "{now} {then}");
+    harness.type_name("group", "Balls");
+    let groups = [0, 1].map(|ball| harness.scene().objects[ball].group.clone());
+    assert_eq!(groups, ["Balls", "Balls"]);
+}
+
+#[test]
+fn what_is_typed_and_not_taken_is_told() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    for (field, text, words) in [
+        ("radius", "-5", "radius is above 0"),
+        ("radius", "big", "“big” is no number"),
+        (
+            "center y",
+            "1e30",
+            "center goes from -1000000000000 to 1000000000000",
+        ),
+        ("diffuse hex", "#12", "“#12” is no color"),
+    ] {
+        harness.type_into(field, text);
+        harness.window.get_by_label_contains(words);
+    }
+    assert_eq!(radius(harness.scene(), 0), 50.0);
+    harness.type_into("diffuse hex", "#0f0");
+    let pack = &harness.scene().color_packs["sphere 1"];
+    assert_eq!(pack.diffuse.to_array(), [0.0, 255.0, 0.0]);
+    assert_ne!(pack.ambient, pack.diffuse);
+    harness.type_into("color hex", "#FF8040");
+    let pack = &harness.scene().color_packs["sphere 1"];
+    assert_eq!(pack.diffuse.to_array(), [255.0, 128.0, 64.0]);
+    assert_eq!(pack.ambient, pack.diffuse, "both at once");
+}
+
+#[test]
 fn escape_gives_the_drag_of_a_number_up() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");

@@ -1,6 +1,6 @@
 //! Hands in the picture: clicks, handles, and the camera.
 
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, ViewportCommand, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 use glint::editor::{Item, Selection};
@@ -346,6 +346,15 @@ fn escape_leaves_one_thing_after_the_other() {
     harness.window.get_by_label_contains("Ctrl+Q quits");
     harness.press(NONE, Key::Escape);
     harness.window.get_by_label("Quit now");
+    harness.window.key_down(Key::Enter);
+    for _ in 0..4 {
+        harness.window.step();
+        let mut windows = harness.window.output().viewport_output.values();
+        assert!(!windows.any(|window| window.commands.contains(&ViewportCommand::Close)));
+    }
+    harness.window.key_up(Key::Enter);
+    harness.settle();
+    assert!(harness.window.query_by_label("Quit now").is_none());
 }
 
 #[test]

@@ -1,0 +1,55 @@
+//! Which packs are worn, and what is worn in place of others.
+
+use std::collections::{HashMap, HashSet};
+
+use super::material::ColorPack;
+use super::whole::Scene;
+
+impl Scene {
+    /// The names of the packs that objects and markers wear.
+    pub fn worn_packs(&self) -> HashSet<&str> {
+        let markers = self.lights.iter().filter_map(|light| light.marker.as_ref());
+        let markers = markers.map(|marker| marker.color_pack.as_str());
+        let objects = self.objects.iter().map(|object| object.color_pack.as_str());
+        objects.chain(markers).collect()
+    }
+
+    /// Whoever wears a pack that has something `instead` wears that.
+    pub fn wear_instead<'a>(&mut self, instead: impl Fn(&str) -> Option<&'a str>) {
+        // One by one: a list shares what is not changed with the states before.
+        for index in 0..self.objects.len() {
+            if let Some(name) = instead(&self.objects[index].color_pack) {
+                name.clone_into(&mut self.objects[index].color_pack);
+            }
+        }
+        for index in 0..self.lights.len() {
+            let marker = self.lights[index].marker.as_ref();
+            let name = marker.and_then(|marker| instead(&marker.color_pack));
+            if let Some(name) = name
+                && let Some(marker) = &mut self.lights[index].marker
+            {
+                name.clone_into(&mut marker.color_pack);
+            }
+        }
+    }
+
+    /// Takes away each pack that is equal to one before it, which is worn in its place.
+    pub fn merge_equal_packs(&mut self) {
+        let mut kept: Vec<(&String, &ColorPack)> = Vec::new();
+        let mut instead = HashMap::new();
+        for (name, pack) in self.color_packs.iter() {
+            match kept.iter().find(|(_, other)| *other == pack) {
+                Some((first, _)) => {
+                    instead.insert(name.clone(), (*first).clone());
+                }
+                None => kept.push((name, pack)),
+            }
+        }
+        if instead.is_empty() {
+            return;
+        }
+        self.packs_mut()
+            .retain(|name, _| !instead.contains_key(name));
+        self.wear_instead(|name| instead.get(name).map(String::as_str));
+    }
+}

@@ -1,0 +1,293 @@
+//! Things that are put down on what is below them.
+
+use glam::DVec3;
+
+use crate::editor::{Edit, Kind, Selected};
+use crate::lab::meet;
+use crate::scene::{Scene, Shape};
+
+/// Vertical lines along each side of a thing on which what is below it is looked for.
+const LINES: usize = 5;
+/// Most shapes and faces that are met by such lines: a tenth of a second.
+const MOST_WORK: usize = 20_000_000;
+/// What is no farther from what is below it stands there: a share of the coordinates.
+const STANDING: f64 = 1e-9;
+/// How far from a thing lines begin that are to meet it: a share of the coordinates.
+const APART: f64 = 1e-6;
+
+/// A vertical line through a thing: where, and where the thing begins and ends there.
+struct Line {
+    x: f64,
+    z: f64,
+    low: f64,
+    high: f64,
+}
+
+/// Puts each selected object, or the group that they are, down on what is below it; what has sunk in is lifted.
+///
+/// # Errors
+/// Why nothing moves, in words.
+pub fn put_down(scene: &Scene, selected: &Selected) -> Result<Edit, &'static str> {
+    let places = selected.places(Kind::Object);
+    let mut bodies = match selected.group(scene) {
+        Some(_) => vec![places],
+        None => places.into_iter().map(|place| vec![place]).collect(),
+    };
+    let ends = |index: &usize| lowest_point(&scene.objects[*index].shape).is_some();
+    bodies.retain(|body: &Vec<usize>| body.iter().all(ends));
+    if bodies.is_empty() {
+        return Err("What never ends cannot be put down");
+    }
+    let work = bodies.len() * (scene.objects.len() + scene.faces());
+    if work > MOST_WORK {
+        return Err("That is too much to be put down at once");
+    }
+    let lines = if work * LINES * LINES > MOST_WORK {
+        0
+    } else {
+        LINES
+    };
+    // What stands on others comes down with them.
+    let low = |body: &Vec<usize>| bounds(scene, body).0.y;
+    bodies.sort_by(|one, other| low(one).total_cmp(&low(other)));
+    let (mut scene, mut edits) = (scene.clone(), Vec::new());
+    for body in bodies {
+        let Some(gap) = gap_below(&scene, &body, lines) else {
+            continue;
+        };
+        for index in body {
+            let mut object = scene.objects[index].clone();
+            object.shape = object.shape.moved(DVec3::NEG_Y * gap);
+            scene.objects[index] = object.clone();
+            edits.push(Edit::object(index, object, "position"));
+        }
+    }
+    let label = match edits.len() {
+        0 => return Err("It stands already, or nothing is below"),
+        1 => "Put down".to_owned(),
+        count => format!("Put down {count} items"),
+    };
+    Ok(Edit::Each(edits, label))
+}
+
+/// How far these objects are above what is below them; `None` where they stand, or nothing is.
+fn gap_below(scene: &Scene, body: &[usize], lines: usize) -> Option<f64> {
+    let gaps = lines_through(scene, body, lines).into_iter();
+    let gaps = gaps.filter_map(|line| Some(line.low - ground_below(scene, body, &line)?));
+    let gap = gaps.reduce(f64::min)?;
+    let (low, high) = bounds(scene, body);
+    let size = low.abs().max(high.abs()).max_element();
+    (gap.abs() > STANDING * (1.0 + size)).then_some(gap)
+}
+
+/// Lines through these objects: so many along each side, and the one through their lowest point.
+fn lines_through(scene: &Scene, body: &[usize], lines: usize) -> Vec<Line> {
+    let (low, high) = bounds(scene, body);
+    let shapes = || body.iter().map(|&index| &scene.objects[index].shape);
+    let top = |x: f64, z: f64| {
+        let met = shapes().filter_map(|shape| downwards(shape, DVec3::new(x, high.y, z)));
+        met.reduce(f64::max)
+    };
+    let share = |line: usize| (line as f64 + 0.5) / lines as f64;
+    let places = (0..lines).flat_map(|x| (0..lines).map(move |z| (share(x), share(z))));
+    let mut found: Vec<Line> = places
+        .filter_map(|(x, z)| {
+            let place = low + (high - low) * DVec3::new(x, 0.0, z);
+            let met = shapes().filter_map(|shape| upwards(shape, place));
+            Some(Line {
+                x: place.x,
+                z: place.z,
+                low: met.reduce(f64::min)?,
+                high: top(place.x, place.z)?,
+            })
+        })
+        .collect();
+    let points = shapes().filter_map(lowest_point);
+    found.extend(points.min_by(|a, b| a.y.total_cmp(&b.y)).map(|point| Line {
+        x: point.x,
+        z: point.z,
+        low: point.y,
+        high: top(point.x, point.z).unwrap_or(high.y),
+    }));
+    found
+}
+
+/// How high what these objects could stand on is on a line, below their top there.
+fn ground_below(scene: &Scene, body: &[usize], line: &Line) -> Option<f64> {
+    let from = DVec3::new(line.x, line.high, line.z);
+    let others = scene.objects.iter().enumerate();
+    let others = others.filter(|(index, other)| other.visible && !body.contains(index));
+    let heights = others.filter_map(|(_, other)| {
+        let is_beside = other.shape.bounds().is_some_and(|(low, high)| {
+            line.x < low.x || line.x > high.x || line.z < low.z || line.z > high.z
+        });
+        (!is_beside).then(|| downwards(&other.shape, from))?
+    });
+    heights.reduce(f64::max)
+}
+
+/// The highest point of a shape below another one; nothing from inside of a ball.
+fn downwards(shape: &Shape, from: DVec3) -> Option<f64> {
+    let from = from + DVec3::Y * apart(from);
+    let (t, normal) = meet(shape, from, DVec3::NEG_Y)?;
+    let is_inside = matches!(shape, Shape::Sphere(_)) && normal.y < 0.0;
+    (!is_inside).then_some(from.y - t)
+}
+
+/// The lowest point of a shape above another one.
+fn upwards(shape: &Shape, from: DVec3) -> Option<f64> {
+    let from = from - DVec3::Y * apart(from);
+    Some(from.y + meet(shape, from, DVec3::Y)?.0)
+}
+
+fn apart(from: DVec3) -> f64 {
+    APART * (1.0 + from.abs().max_element())
+}
+
+/// The box around objects that end.
+fn bounds(scene: &Scene, body: &[usize]) -> (DVec3, DVec3) {
+    let bounds = body
+        .iter()
+        .filter_map(|&index| scene.objects[index].shape.bounds());
+    let all = bounds
+        .reduce(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)));
+    all.unwrap_or_default()
+}
+
+/// Where a shape is lowest; `None` for planes.
+fn lowest_point(shape: &Shape) -> Option<DVec3> {
+    match shape {
+        Shape::Plane(_) => None,
+        Shape::Sphere(ball) => Some(ball.center - DVec3::Y * ball.radius),
+        Shape::Disc(disc) => {
+            let normal = disc.normal.normalize_or_zero();
+            let down = (normal * normal.y - DVec3::Y).normalize_or_zero();
+            Some(disc.center + down * disc.radius)
+        }
+        Shape::Triangle(triangle) => lowest(triangle.corners().into_iter()),
+        Shape::Mesh(mesh) => lowest(mesh.world_corners().flatten()),
+    }
+}
+
+fn lowest(points: impl Iterator<Item = DVec3>) -> Option<DVec3> {
+    points.min_by(|a, b| a.y.total_cmp(&b.y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::Item;
+    use crate::mesh::SOLIDS;
+    use crate::scene::{Disc, Mesh, Object, Plane, Sphere};
+
+    /// These shapes over the ground.
+    fn scene(shapes: Vec<Shape>) -> Scene {
+        let mut scene = Scene::empty();
+        let ground = Plane {
+            point: DVec3::ZERO,
+            normal: DVec3::Y,
+        };
+        for (number, shape) in shapes.into_iter().chain([ground.into()]).enumerate() {
+            let object = Object::new(format!("Thing {number}"), "pack 1", shape);
+            scene.objects.push(object);
+        }
+        scene
+    }
+
+    fn ball(x: f64, y: f64, radius: f64) -> Shape {
+        let center = DVec3::new(x, y, 0.0);
+        Sphere { center, radius }.into()
+    }
+
+    fn put(scene: &mut Scene, places: &[usize]) -> bool {
+        let selected = Selected::all(places.iter().copied().map(Item::object));
+        let Ok(edit) = put_down(scene, &selected) else {
+            return false;
+        };
+        edit.apply(scene).expect("a step");
+        true
+    }
+
+    fn low(scene: &Scene, place: usize) -> f64 {
+        lowest_point(&scene.objects[place].shape)
+            .expect("it ends")
+            .y
+    }
+
+    #[test]
+    fn things_come_down_to_the_floor_and_up_from_below_it() {
+        for height in [40.0, -3.0] {
+            let mut scene = scene(vec![ball(3.0, height, 5.0)]);
+            assert!(put(&mut scene, &[0]));
+            assert!(low(&scene, 0).abs() < 1e-9);
+            assert!(!put(&mut scene, &[0]), "it stands there");
+        }
+    }
+
+    #[test]
+    fn what_is_turned_stands_on_its_corner() {
+        for solid in SOLIDS {
+            let mesh = Mesh {
+                position: DVec3::new(7.0, 90.0, -4.0),
+                rotation: DVec3::new(20.0, 30.0, 40.0),
+                ..Mesh::of((solid.make)(10.0))
+            };
+            let mut scene = scene(vec![mesh.into()]);
+            assert!(put(&mut scene, &[0]));
+            assert!(low(&scene, 0).abs() < 1e-9, "{}", solid.name);
+        }
+    }
+
+    #[test]
+    fn a_stack_comes_down_as_a_stack_and_a_group_as_one() {
+        let mut scene = scene(vec![ball(0.0, 60.0, 5.0), ball(0.0, 30.0, 5.0)]);
+        let mut group = scene.clone();
+        assert!(put(&mut scene, &[0, 1]));
+        assert!(low(&scene, 1).abs() < 1e-9);
+        assert!((low(&scene, 0) - 10.0).abs() < 1e-9);
+        for place in [0, 1] {
+            group.objects[place].group = "both".to_owned();
+        }
+        assert!(put(&mut group, &[0, 1]));
+        assert!(low(&group, 1).abs() < 1e-9);
+        assert!((low(&group, 0) - 30.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_flat_stays_on_what_it_lies_on() {
+        let table = Mesh {
+            position: DVec3::Y * 5.0,
+            ..Mesh::of((SOLIDS[0].make)(10.0))
+        };
+        let disc = Disc {
+            center: DVec3::Y * 30.0,
+            normal: DVec3::Y,
+            radius: 2.0,
+        };
+        let mut scene = scene(vec![table.into(), disc.into()]);
+        assert!(put(&mut scene, &[1]));
+        assert!((low(&scene, 1) - 10.0).abs() < 1e-6, "{}", low(&scene, 1));
+        assert!(!put(&mut scene, &[1]));
+    }
+
+    #[test]
+    fn what_stands_beside_holds_nothing_up() {
+        // In the corner of the box around the large one, and not below it.
+        let mut scene = scene(vec![ball(0.0, 50.0, 50.0), ball(46.0, 5.0, 5.0)]);
+        let Shape::Sphere(small) = &mut scene.objects[1].shape else {
+            panic!("a ball");
+        };
+        small.center.z = 46.0;
+        assert!(!put(&mut scene, &[0]));
+    }
+
+    #[test]
+    fn what_has_nothing_below_stays_and_so_does_what_never_ends() {
+        let mut scene = scene(vec![ball(0.0, 9.0, 1.0)]);
+        assert!(!put(&mut scene, &[1]), "the ground");
+        scene.objects.remove(1);
+        let before = scene.clone();
+        assert!(!put(&mut scene, &[0]));
+        assert_eq!(scene, before);
+    }
+}
