@@ -196,7 +196,12 @@ fn the_window_shows_the_demo_follows_keys_and_closes() {
     display.key("Escape");
     display.key("Escape");
     wait_for("the question", || changed(&start, &display.look()) > 50_000);
+    // Nor does the next key.
     display.key("Return");
+    wait_for("the window again", || {
+        changed(&start, &display.look()) < 500
+    });
+    display.key("ctrl+q");
     assert!(program.end().success());
 }
 
