@@ -100,4 +100,4 @@ pub use shape::{
     Triangle,
 };
 pub use target::Owners;
-pub use whole::{Scene, VERSION, light_pack};
+pub use whole::{Scene, VERSION, around, light_pack};

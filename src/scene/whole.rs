@@ -290,8 +290,8 @@ impl Scene {
     }
 }
 
-/// The box around boxes.
-fn around(boxes: impl Iterator<Item = (DVec3, DVec3)>) -> Option<(DVec3, DVec3)> {
+/// The box around boxes, each by its lowest and highest corner; `None` for none.
+pub fn around(boxes: impl Iterator<Item = (DVec3, DVec3)>) -> Option<(DVec3, DVec3)> {
     boxes.reduce(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)))
 }
 

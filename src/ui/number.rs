@@ -217,7 +217,7 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
     }
     tell_refused(&response, is_cancelled, refused.take());
     // A field that is left as it was entered gives back what it showed.
-    let is_as_shown = !response.dragged() && shown(*value).parse() == Ok(edited);
+    let is_as_shown = !response.dragged() && own.parse() == Ok(edited);
     if response.changed() && edited.is_finite() && !is_cancelled && !is_as_shown {
         *value = edited.clamp(*field.range.start(), *field.range.end());
     }

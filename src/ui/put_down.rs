@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::editor::{Edit, Kind, Selected};
 use crate::lab::meet;
-use crate::scene::{Scene, Shape};
+use crate::scene::{Scene, Shape, around};
 
 /// Vertical lines along each side of a thing on which what is below it is looked for.
 const LINES: usize = 5;
@@ -116,7 +116,9 @@ fn lines_through(scene: &Scene, body: &[usize], lines: usize) -> Vec<Line> {
 fn ground_below(scene: &Scene, body: &[usize], line: &Line) -> Option<f64> {
     let from = DVec3::new(line.x, line.high, line.z);
     let others = scene.objects.iter().enumerate();
-    let others = others.filter(|(index, other)| other.visible && !body.contains(index));
+    // Those of a body are in ascending order: a group may have thousands.
+    let others =
+        others.filter(|(index, other)| other.visible && body.binary_search(index).is_err());
     let heights = others.filter_map(|(_, other)| {
         let is_beside = other.shape.bounds().is_some_and(|(low, high)| {
             line.x < low.x || line.x > high.x || line.z < low.z || line.z > high.z
@@ -149,9 +151,7 @@ fn bounds(scene: &Scene, body: &[usize]) -> (DVec3, DVec3) {
     let bounds = body
         .iter()
         .filter_map(|&index| scene.objects[index].shape.bounds());
-    let all = bounds
-        .reduce(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)));
-    all.unwrap_or_default()
+    around(bounds).unwrap_or_default()
 }
 
 /// Where a shape is lowest; `None` for planes.
