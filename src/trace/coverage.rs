@@ -4,6 +4,7 @@
 use super::crossing::{Crossing, Thing, contrast};
 use super::lattice::{Cell, Lattice, Limits, Sample};
 use super::samples::THING;
+use super::shadows::may_swap_lights;
 use super::thresholds::{EDGE_ERROR, FINEST, GAP_CONTRAST, UNEVEN};
 use super::tile::TileColors;
 use crate::simd::Real;
@@ -77,7 +78,8 @@ impl<R: Real> CrossedCell<R> {
         let crossing = |(corner, axis): (usize, usize)| {
             let (one, other) = (corners[corner], corners[corner ^ (1 << axis)]);
             let mut apart = contrast(one, other);
-            if (one.signature ^ other.signature) & THING != 0 {
+            let shadows = [one.shadows, other.shadows, one.shadows, other.shadows];
+            if (one.signature ^ other.signature) & THING != 0 || may_swap_lights(shadows) {
                 apart = apart.max(R::from_f64(GAP_CONTRAST));
             }
             Crossing::new(cell, (corner, axis), enough(cell, apart, limits))

@@ -3,7 +3,7 @@
 use super::faces::may_hide_light;
 use super::points::Points;
 use super::samples::{Samples, THING, Traced};
-use super::shadows::may_leave_gap;
+use super::shadows::{may_leave_gap, may_swap_lights};
 use super::thresholds::{EDGE_ERROR, FINEST, NEAR, TWISTED, UNEVEN};
 use super::tile::{Tile, TileColors};
 use crate::scene::MAX_HALVINGS;
@@ -301,7 +301,7 @@ impl<R: Real> Lattice<R> {
         }
         let contrast = ranges[0] + ranges[1] + ranges[2];
         let limit = limits.at(R::from_f64(cell.width())).contrast(is_one);
-        let may_hide = differing & THING != 0 && HIDING <= cell.side;
+        let may_hide = HIDING <= cell.side && (differing & THING != 0 || may_swap_lights(shadows));
         match (limit < contrast || may_hide, is_one) {
             (false, _) => Inside::Known,
             (true, true) => Inside::One,

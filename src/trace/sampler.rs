@@ -8,7 +8,7 @@ use super::faces::may_hide_face;
 use super::lattice::{Limits, range};
 use super::refinement::Refinement;
 use super::samples::{Edges, Samples, THING, Traced};
-use super::shadows::may_leave_gap;
+use super::shadows::{may_leave_gap, may_swap_lights};
 use super::thresholds::NEAR;
 use super::tile::{Tile, TileColors};
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
@@ -219,8 +219,8 @@ impl<L: SimdFloat> Sampler<L> {
                 let (a, b) = (dark(first), dark(first + 1));
                 let (c, d) = (dark(first + stride), dark(first + stride + 1));
                 for lane in 0..L::WIDTH {
-                    let may_shine = may_leave_gap([a[lane], b[lane], c[lane], d[lane]]);
-                    limit[lane] = if may_shine {
+                    let shadows = [a[lane], b[lane], c[lane], d[lane]];
+                    limit[lane] = if may_leave_gap(shadows) | may_swap_lights(shadows) {
                         -L::Real::ONE
                     } else {
                         limit[lane]

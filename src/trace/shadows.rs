@@ -37,6 +37,15 @@ pub fn may_leave_gap([a, b, c, d]: [u32; 4]) -> bool {
     noted(a) & noted(b) & noted(c) & noted(d) & noted(differing) != 0
 }
 
+/// Whether each of two lights shines at a corner where the shadow of the other ends nearby: between those there may be
+/// light of both or of neither, and if they are as bright, the corners look alike.
+#[inline(always)]
+pub fn may_swap_lights([a, b, c, d]: [u32; 4]) -> bool {
+    let [a, b, c, d] = [noted(a), noted(b), noted(c), noted(d)];
+    let swapped = |one: u32, other: u32| (one & !other != 0) & (other & !one != 0);
+    swapped(a, b) | swapped(a, c) | swapped(a, d) | swapped(b, c) | swapped(b, d) | swapped(c, d)
+}
+
 /// The highest bit of each mark that is not zero.
 #[inline(always)]
 fn noted(shadows: u32) -> u32 {
@@ -98,6 +107,9 @@ mod tests {
         // Each of two lights shines at some corner.
         let (one, other) = (behind(&[Some(1), None], &[]), behind(&[None, Some(1)], &[]));
         assert!(!may_leave_gap([one, other, one, other]));
+        assert!(may_swap_lights([one, other, one, other]));
+        assert!(may_swap_lights([0, one, one | other, other]));
+        assert!(!may_swap_lights([one | other, one, 0, 0]), "one by one");
         assert!(weight_of(LIGHTS).is_none());
     }
 }
