@@ -7,3 +7,33 @@ pub fn counted<N: Copy + Display + PartialEq + From<u8>>(number: N, one: &str) -
     let s = if number == N::from(1) { "" } else { "s" };
     format!("{number} {one}{s}")
 }
+
+/// Letters of somebody's text that a sentence has room for.
+const QUOTED: usize = 40;
+
+/// What somebody wrote, in quotation marks, as far as it is short.
+pub fn quoted(text: &str) -> String {
+    format!("“{}”", shortened(text, QUOTED))
+}
+
+/// The first line of a text, so many letters of it at most.
+pub fn shortened(text: &str, most: usize) -> String {
+    let text = text.trim();
+    let line = text.lines().next().unwrap_or_default();
+    let short: String = line.chars().take(most).collect();
+    let rest = if short.len() < text.len() { "…" } else { "" };
+    format!("{}{rest}", short.trim_end())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_texts_are_quoted_by_their_beginning() {
+        assert_eq!(quoted(" abc "), "“abc”");
+        assert_eq!(quoted("Scene(\n  version: 1"), "“Scene(…”");
+        assert_eq!(quoted(&"é".repeat(41)), format!("“{}…”", "é".repeat(40)));
+        assert_eq!(quoted(""), "“”");
+    }
+}

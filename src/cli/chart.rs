@@ -62,7 +62,7 @@ pub struct ChartArgs {
     #[arg(long, value_name = "ERROR", value_parser = error)]
     within: Option<f64>,
     /// Name the closest way that takes at most so long: 16ms, 2s, or a number of milliseconds
-    #[arg(long, value_name = "TIME", value_parser = time)]
+    #[arg(long, value_name = "TIME", value_parser = time, allow_negative_numbers = true)]
     budget: Option<Duration>,
     /// Put POV-Ray, an independent engine, among the ways, where it is installed
     #[arg(long)]

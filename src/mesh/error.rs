@@ -40,7 +40,7 @@ pub enum MeshError {
         limit: usize,
     },
     /// There is no triangle in the file that has an area.
-    #[error("{path}: there are no faces in this file", path = .path.display())]
+    #[error("{path}: there are no faces with an area in this file", path = .path.display())]
     Empty {
         /// The file.
         path: PathBuf,

@@ -12,6 +12,7 @@ use super::sampler::Sampler;
 use super::shelf::Shelf;
 use super::stats::{Rays, RenderControl};
 use super::tile::{Grid, Pixel, Tile, TileColors};
+use super::told::Hearing;
 use crate::plan::{Plan, Region, Show};
 use crate::scene::Sampling;
 use crate::simd::{SimdFloat, SimdReal, WithSimd};
@@ -38,6 +39,8 @@ pub struct Band<'a, R, P> {
     pub grid: Grid,
     /// How they are sampled.
     pub sampling: Sampling,
+    /// What its pixels are told by those beside them.
+    pub hearing: Hearing<'a>,
     /// What traces again what is in doubt.
     pub reference: Option<&'a dyn Reference>,
     /// Memory of other bands of the plan.
@@ -132,7 +135,18 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
                 }
                 Sampling::Adaptive { contrast, depth } => {
                     let limits = Limits::new(contrast, depth);
-                    sampler.adaptive(&mut engine, in_tile, &tile, limits, colors);
+                    let Hearing { told, those } = self.hearing;
+                    if let Some(those) = those {
+                        let looked = (limits, told, those);
+                        sampler.told(&mut engine, in_tile, &tile, looked, colors);
+                        if engine.is_stopped() {
+                            return None;
+                        }
+                        self.write(&tile, sampler.were_told(), colors);
+                        continue;
+                    }
+                    let looked = (limits, told);
+                    sampler.adaptive(&mut engine, in_tile, &tile, looked, colors);
                     (colors.stride, colors.channels())
                 }
             };
@@ -185,6 +199,16 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
         self.control
             .pixels
             .fetch_add((width * tile.rows.len()) as u64, Ordering::Relaxed);
+    }
+
+    /// Writes the colours of some pixels of a tile again, by row and column in it.
+    fn write(&mut self, tile: &Tile, pixels: &[[usize; 2]], colors: &TileColors<R>) {
+        let [red, green, blue] = colors.channels();
+        for &[row, column] in pixels {
+            let index = row * colors.stride + column;
+            let pixel = self.pixel(tile.columns.start + column, tile.rows.start + row);
+            *pixel = P::of(red[index], green[index], blue[index]);
+        }
     }
 
     /// Writes the colours of those pixels of a tile that the pass takes.

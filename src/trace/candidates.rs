@@ -114,16 +114,18 @@ impl Candidates {
         !self.has_geometry && self.lists.iter().all(Vec::is_empty)
     }
 
-    /// Whether two of them may have outlines of their own, see [`Primitive::has_outline`].
-    pub fn are_several<R: Real>(&self, plan: &Plan<R>) -> bool {
+    /// How many of them may have outlines of their own, see [`Primitive::has_outline`]: none, one, or two for more.
+    pub fn outlines<R: Real>(&self, plan: &Plan<R>) -> usize {
         let all = &plan.primitives.triangles;
         let triangles = self.of(Kind::Triangle).iter();
         let loose = triangles.filter(|&&index| all[index as usize].has_outline());
         let round = self.of(Kind::Sphere).len() + self.of(Kind::Disc).len();
         // Meshes have none.
         let in_tree = plan.geometry.as_ref().filter(|_| self.has_geometry);
-        in_tree.is_some_and(|geometry| !geometry.primitives.is_empty())
-            || 1 < round + loose.take(2).count()
+        if in_tree.is_some_and(|geometry| !geometry.primitives.is_empty()) {
+            return 2;
+        }
+        (round + loose.take(2).count()).min(2)
     }
 
     /// Becomes those of `from` that can be seen in these columns (or rows).

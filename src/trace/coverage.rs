@@ -1,10 +1,10 @@
 //! Cells that one edge crosses. Where it crosses their sides is searched for, which says how much of them lies on
 //! either side of it; two colours are then enough.
 
+use super::cell::Cell;
 use super::crossing::{Crossing, Thing, contrast};
-use super::lattice::{Cell, Lattice, Limits, Sample};
+use super::lattice::{Lattice, Limits, Sample};
 use super::samples::THING;
-use super::shadows::may_swap_lights;
 use super::thresholds::{EDGE_ERROR, FINEST, GAP_CONTRAST, UNEVEN};
 use super::tile::TileColors;
 use crate::simd::Real;
@@ -78,8 +78,7 @@ impl<R: Real> CrossedCell<R> {
         let crossing = |(corner, axis): (usize, usize)| {
             let (one, other) = (corners[corner], corners[corner ^ (1 << axis)]);
             let mut apart = contrast(one, other);
-            let shadows = [one.shadows, other.shadows, one.shadows, other.shadows];
-            if (one.signature ^ other.signature) & THING != 0 || may_swap_lights(shadows) {
+            if (one.signature ^ other.signature) & THING != 0 || cell.swaps_lights {
                 apart = apart.max(R::from_f64(GAP_CONTRAST));
             }
             Crossing::new(cell, (corner, axis), enough(cell, apart, limits))
@@ -105,6 +104,11 @@ impl<R: Real> CrossedCell<R> {
             checks: [None; 2],
             checked: [0; 2],
         })
+    }
+
+    /// The sides that the edge crosses, as bits.
+    pub fn sides(&self) -> u8 {
+        self.crossings[0].side(&self.cell) | self.crossings[1].side(&self.cell)
     }
 
     /// Wants the samples that it needs next.
@@ -292,7 +296,7 @@ mod tests {
         }
         samples.pad(1);
         let mut pixel = [Cell::pixel(0, 0, false)];
-        lattice.start(&PIXEL, &see(&samples, &is_white), &mut pixel);
+        lattice.add(&PIXEL, &see(&samples, &is_white), &mut pixel);
         let mut colors = TileColors::default();
         colors.clear(1, 1);
         let mut crossed = CrossedCell::of(&pixel[0], &lattice, limits)?;

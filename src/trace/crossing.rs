@@ -1,6 +1,8 @@
 //! Where an edge crosses a side of a cell: it is searched for between two samples that see different things.
 
-use super::lattice::{Cell, Lattice, Sample};
+use super::cell::Cell;
+use super::lattice::{Lattice, Sample};
+use super::told::{ABOVE, BELOW, LEFT, RIGHT};
 use crate::simd::Real;
 
 /// What is seen on one side of an edge.
@@ -67,6 +69,17 @@ impl Crossing {
             enough,
             seen: [cell.corners[corner], cell.corners[corner ^ (1 << axis)]],
             inside: [0; 3],
+        }
+    }
+
+    /// The side of the cell that it is on, as a bit.
+    pub fn side(&self, cell: &Cell) -> u8 {
+        let [x, y] = self.corner;
+        match (self.axis, x == cell.x, y == cell.y) {
+            (0, _, true) => ABOVE,
+            (0, _, false) => BELOW,
+            (_, true, _) => LEFT,
+            (_, false, _) => RIGHT,
         }
     }
 

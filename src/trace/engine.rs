@@ -110,7 +110,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
         let is_anything_seen = !seen.is_empty() && !self.is_stopped();
         // Empty in most scenes, and small where it is not: beside the kernel, which is quicker without.
         traced.faces.clear();
-        if edges == Edges::Near && is_anything_seen {
+        if edges >= Edges::Bordered && is_anything_seen {
             let bounce = &self.work.bounces[0];
             let packets = (&bounce.packets[..], &bounce.order.samples[..]);
             note_faces(self.kernel.plan, packets, traced);

@@ -266,7 +266,7 @@ impl<L: SimdFloat> Bounce<L> {
         (stack, rays): (&mut Stack<L::Real>, &mut Rays),
     ) {
         let looks_beside = self.looks_beside();
-        let has_gaps = looks_beside && kernel.may_leave_gaps(&self.lights);
+        let has_gaps = self.edges_are >= Edges::Bordered && kernel.may_leave_gaps(&self.lights);
         for index in 0..self.packets.len() {
             let ignored = self.ignored_by(kernel, index);
             let shader = Shader {

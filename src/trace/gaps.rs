@@ -1,4 +1,4 @@
-//! Which shadows hits are in that end near them: between two of those there may be light.
+//! Which shadows hits are in that end near them: between two of those there may be light, or none.
 
 use super::candidates::Among;
 use super::cull::LightCandidates;
@@ -15,13 +15,17 @@ use crate::scene::Methods;
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
-    /// Whether some light may leave gaps between the shadows of two of its casters.
+    /// Whether there may be gaps between two shadows, of one light or of two.
     #[inline(always)]
     pub fn may_leave_gaps(self, lights: &[LightCandidates]) -> bool {
-        let mut lights = lights.iter().enumerate();
-        lights.any(|(light, candidates)| {
-            weight_of(light).is_some() && candidates.casters.are_several(self.plan)
-        })
+        let mut shadows = 0;
+        for (light, candidates) in lights.iter().enumerate() {
+            if weight_of(light).is_none() || 1 < shadows {
+                break;
+            }
+            shadows += candidates.casters.outlines(self.plan);
+        }
+        1 < shadows
     }
 
     /// The marks of casters, see [`super::shadows`], in whose shadows hits of this brightness are; `lit` tells which
@@ -45,7 +49,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     let Some(weight) = weight_of(index) else {
                         break;
                     };
-                    if !candidates.casters.are_several(self.plan) {
+                    let unlit = hit.here & !self.is_lit(lit, index);
+                    if !unlit.any() || candidates.casters.outlines(self.plan) == 0 {
                         continue;
                     }
                     let light = &self.plan.lights[index];
@@ -56,8 +61,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     let seen = hit.surface.normal.dot(direction)
                         * brightness
                         * distance.like(light.intensity);
-                    let dark =
-                        hit.here & self.splat(EDGE_CONTRAST).less(seen) & !self.is_lit(lit, index);
+                    let dark = unlit & self.splat(EDGE_CONTRAST).less(seen);
                     if !dark.any() {
                         continue;
                     }

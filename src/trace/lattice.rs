@@ -1,8 +1,9 @@
 //! The samples of a tile that its pixels share, and when a cell between them is subdivided.
 
+use super::cell::Cell;
 use super::faces::may_hide_light;
 use super::points::Points;
-use super::samples::{Samples, THING, Traced};
+use super::samples::{Edges, Samples, THING, Traced};
 use super::shadows::{may_leave_gap, may_swap_lights};
 use super::thresholds::{EDGE_ERROR, FINEST, NEAR, TWISTED, UNEVEN};
 use super::tile::{Tile, TileColors};
@@ -48,67 +49,6 @@ pub struct Lattice<R> {
     samples: Vec<Sample<R>>,
     /// The faces that the first of them are on, see [`super::faces`], in scenes with some.
     faces: Vec<u64>,
-}
-
-/// A square between samples: its upper left corner on the finest grid, its side, and its samples.
-#[derive(Clone, Copy, Debug)]
-pub struct Cell {
-    /// Columns of the finest grid from the left.
-    pub x: u16,
-    /// Rows of the finest grid from the top.
-    pub y: u16,
-    /// Steps of the finest grid.
-    pub side: u16,
-    /// Whether its corners know what may slip between them, or samples beside them did.
-    is_watched: bool,
-    /// Whether it may show a face of a mesh that no corner is on, or light between two of them.
-    may_hide_face: bool,
-    /// The samples at its corners: upper left and right, lower left and right.
-    pub corners: [u32; 4],
-}
-
-impl Cell {
-    /// A pixel of a tile, whose samples [`Lattice::start`] finds.
-    pub fn pixel(column: usize, row: usize, may_hide_face: bool) -> Self {
-        Self {
-            x: (column * FINEST) as u16,
-            y: (row * FINEST) as u16,
-            side: FINEST as u16,
-            is_watched: true,
-            may_hide_face,
-            corners: [0; 4],
-        }
-    }
-
-    /// The same, about which nobody has looked what may slip between samples.
-    pub fn unwatched(self) -> Self {
-        Self {
-            is_watched: false,
-            ..self
-        }
-    }
-
-    /// The pixel that it is in, `stride` from one row of them to the next.
-    #[inline(always)]
-    pub fn pixel_in(&self, stride: usize) -> usize {
-        self.y as usize / FINEST * stride + self.x as usize / FINEST
-    }
-
-    /// Its side in pixels.
-    #[inline(always)]
-    pub fn width(&self) -> f64 {
-        f64::from(self.side) / FINEST as f64
-    }
-
-    /// Adds its colour, red, green and blue first, to its pixel, by its area.
-    #[inline(always)]
-    pub fn add_color<R: Real>(&self, color: [R; 4], colors: &mut TileColors<R>) {
-        let pixel = self.pixel_in(colors.stride);
-        let area = R::from_f64(self.width() * self.width());
-        for (sum, color) in colors.channels.iter_mut().zip(color) {
-            sum[pixel] = sum[pixel] + color * area;
-        }
-    }
 }
 
 /// What is inside of a cell, as far as its corners tell.
@@ -194,16 +134,18 @@ impl<R: Real> Lattice<R> {
         }
     }
 
-    /// Forgets the tile before, and starts with the corners of these pixels, among those of all.
-    #[inline(always)]
-    pub fn start(&mut self, tile: &Tile, corners: &Traced<R>, pixels: &mut [Cell]) {
+    /// Forgets the tile before.
+    pub fn clear(&mut self) {
         self.points.clear();
         self.samples.clear();
         self.faces.clear();
+    }
+
+    /// Adds the corners of these pixels, among those of all; nothing is wanted then that is not there yet.
+    #[inline(always)]
+    pub fn add(&mut self, tile: &Tile, corners: &Traced<R>, pixels: &mut [Cell]) {
         for pixel in pixels {
-            let (left, top) = (pixel.x, pixel.y);
-            let (right, bottom) = (left + pixel.side, top + pixel.side);
-            let places = [(left, top), (right, top), (left, bottom), (right, bottom)];
+            let places = pixel.places();
             for (corner, (x, y)) in pixel.corners.iter_mut().zip(places) {
                 *corner = self.want(x, y);
                 if *corner as usize == self.samples.len() {
@@ -253,6 +195,33 @@ impl<R: Real> Lattice<R> {
         }
     }
 
+    /// How many samples there are.
+    pub fn len(&self) -> usize {
+        self.samples.len()
+    }
+
+    /// Where a sample is on the finest grid.
+    #[inline(always)]
+    pub fn point(&self, index: usize) -> [u16; 2] {
+        self.points.from(index)[0]
+    }
+
+    /// How far, summed over the channels, the colour of a sample is from all between those at two points; 0 where one of
+    /// those is not known.
+    pub fn excess(&self, sample: usize, ends: [[u16; 2]; 2]) -> R {
+        let at = |[x, y]: [u16; 2]| Some(&self.samples[self.points.find(x, y)? as usize]);
+        let [Some(a), Some(b)] = ends.map(at) else {
+            return R::ZERO;
+        };
+        let seen = &self.samples[sample];
+        let mut sum = R::ZERO;
+        for ((seen, a), b) in seen.values.iter().zip(a.values).zip(b.values).take(3) {
+            let beyond = (a.min(b) - *seen).max(*seen - a.max(b));
+            sum = sum + beyond.max(R::ZERO);
+        }
+        sum
+    }
+
     /// A sample by its index.
     #[inline(always)]
     pub fn sample(&self, index: u32) -> &Sample<R> {
@@ -269,11 +238,11 @@ impl<R: Real> Lattice<R> {
 
     /// Whether something may have slipped between the corners of a cell.
     #[inline(always)]
-    fn is_near(&self, cell: &Cell) -> bool {
+    pub fn is_near(&self, cell: &Cell) -> bool {
         let [a, b, c, d] = self.corners(cell);
         let (a, b, c, d) = (a.values[3], b.values[3], c.values[3], d.values[3]);
         let least = a.min(b).min(c.min(d));
-        cell.is_watched && least < R::from_f64(NEAR * cell.width())
+        cell.looked == Edges::Near && least < R::from_f64(NEAR * cell.width())
     }
 
     /// What must be known of a cell.
@@ -290,7 +259,9 @@ impl<R: Real> Lattice<R> {
             return Inside::Anything;
         }
         let shadows = [a.shadows, b.shadows, c.shadows, d.shadows];
-        if cell.may_hide_face || (is_one && may_leave_gap(shadows)) {
+        if cell.may_hide_face
+            || (is_one && Edges::Bordered <= cell.looked && may_leave_gap(shadows))
+        {
             return Inside::Anything;
         }
         let mut ranges = [R::ZERO; 4];
@@ -301,12 +272,22 @@ impl<R: Real> Lattice<R> {
         }
         let contrast = ranges[0] + ranges[1] + ranges[2];
         let limit = limits.at(R::from_f64(cell.width())).contrast(is_one);
-        let may_hide = HIDING <= cell.side && (differing & THING != 0 || may_swap_lights(shadows));
+        let may_hide =
+            HIDING <= cell.side && (differing & THING != 0 || !is_one && cell.swaps_lights);
         match (limit < contrast || may_hide, is_one) {
             (false, _) => Inside::Known,
             (true, true) => Inside::One,
             (true, false) => Inside::Several,
         }
+    }
+
+    /// Whether light of two lamps or of none may be hidden between the corners of a pixel. Of smaller cells nobody knows:
+    /// what is noted at their corners depends on what was looked at together.
+    #[inline(always)]
+    pub fn may_swap_lights(&self, pixel: &Cell) -> bool {
+        let [a, b, c, d] = self.corners(pixel);
+        let shadows = [a.shadows, b.shadows, c.shadows, d.shadows];
+        Edges::Bordered <= pixel.looked && shadows != [0; 4] && may_swap_lights(shadows)
     }
 
     /// Makes sure that there will be a sample in the middle of a cell: its index.
@@ -380,7 +361,8 @@ impl<R: Real> Lattice<R> {
             x,
             y,
             side: half,
-            is_watched: cell.is_watched,
+            looked: cell.looked,
+            swaps_lights: cell.swaps_lights,
             may_hide_face: false,
             corners,
         };
@@ -395,7 +377,6 @@ impl<R: Real> Lattice<R> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::samples::Edges;
     use super::*;
     use crate::scene::Sampling;
 
@@ -419,7 +400,7 @@ mod tests {
             rows: 0..1,
         };
         let (mut lattice, mut pixel) = (Lattice::new(), [Cell::pixel(0, 0, false)]);
-        lattice.start(&tile, &traced(&corners), &mut pixel);
+        lattice.add(&tile, &traced(&corners), &mut pixel);
         let [pixel] = pixel;
         let at = lattice.want_middle(&pixel);
         lattice.take_results(&traced(&[middle]));

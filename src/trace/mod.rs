@@ -76,6 +76,12 @@ mod engine;
 
 mod points;
 
+mod cell;
+
+mod told;
+
+mod borders;
+
 mod lattice;
 
 mod crossing;

@@ -50,6 +50,13 @@ impl Points {
         number
     }
 
+    /// The number of a point that has one.
+    #[inline(always)]
+    pub fn find(&self, x: u16, y: u16) -> Option<u32> {
+        let key = u64::from(x) << 16 | u64::from(y);
+        (self.slots[self.slot(key)] as u32).checked_sub(1)
+    }
+
     /// Where a point is, or would be.
     #[inline(always)]
     fn slot(&self, key: u64) -> usize {
@@ -89,6 +96,8 @@ mod tests {
             }
         }
         assert_eq!(points.from(6298), [[88 * 32, 69 * 32], [89 * 32, 69 * 32]]);
+        assert_eq!(points.find(89 * 32, 69 * 32), Some(6299));
+        assert_eq!(points.find(89 * 32, 70 * 32), None);
         points.clear();
         assert_eq!(points.number(5, 7), 0);
         assert_eq!(points.number(7, 5), 1);

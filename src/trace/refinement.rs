@@ -1,10 +1,14 @@
 //! The cells of a tile whose insides are looked at. What becomes of them is decided one by one, not in lanes: it is
 //! compiled once for each precision, and not for every width of vectors.
 
+use super::borders::Borders;
+use super::cell::Cell;
 use super::coverage::{CrossedCell, Found};
-use super::lattice::{Cell, Inside, Lattice, Limits};
-use super::samples::{Samples, Traced};
+use super::lattice::{Inside, Lattice, Limits};
+use super::samples::{Edges, Samples, Traced};
+use super::thresholds::{FINEST, TELLING};
 use super::tile::{Tile, TileColors};
+use super::told::{ALL, Told};
 use crate::simd::Real;
 
 /// The cells of a tile whose inside is not known. Where their corners say that one edge crosses them, [`CrossedCell`]
@@ -18,6 +22,14 @@ pub struct Refinement<R> {
     crossed: Vec<CrossedCell<R>>,
     /// Cells that may be even, and the samples in their middles.
     even: Vec<(Cell, u32)>,
+    /// What the pixels know of their sides.
+    borders: Borders,
+    /// Samples of which it was seen what they tell of the pixels beside them.
+    heard: usize,
+    /// Pixels that were told something and are not divided yet.
+    told: Vec<Cell>,
+    /// Row and column of all of them in the tile.
+    were_told: Vec<[usize; 2]>,
 }
 
 impl<R: Real> Refinement<R> {
@@ -29,6 +41,10 @@ impl<R: Real> Refinement<R> {
             split: Vec::new(),
             crossed: Vec::new(),
             even: Vec::new(),
+            borders: Borders::new(),
+            heard: 0,
+            told: Vec::new(),
+            were_told: Vec::new(),
         }
     }
 
@@ -38,6 +54,12 @@ impl<R: Real> Refinement<R> {
         self.cells.clear();
         self.crossed.clear();
         self.even.clear();
+        self.were_told.clear();
+    }
+
+    /// The pixels that were told something since, by row and column in the tile.
+    pub fn were_told(&self) -> &[[usize; 2]] {
+        &self.were_told
     }
 
     /// Adds a pixel of a tile, and whether it may show a face of a mesh that no corner is on.
@@ -52,23 +74,69 @@ impl<R: Real> Refinement<R> {
     pub fn start(
         &mut self,
         tile: &Tile,
-        corners: &Traced<R>,
+        (corners, told): (&Traced<R>, &Told),
         limits: Limits<R>,
         colors: &mut TileColors<R>,
     ) -> bool {
         if self.split.is_empty() {
             return false;
         }
-        self.lattice.start(tile, corners, &mut self.split);
+        self.lattice.clear();
+        self.lattice.add(tile, corners, &mut self.split);
+        self.borders.start(tile, told);
+        self.heard = 0;
         self.cells.append(&mut self.split);
-        for channel in &mut colors.channels {
-            for pixel in &self.cells {
-                channel[pixel.pixel_in(colors.stride)] = R::ZERO;
-            }
+        for pixel in &self.cells {
+            colors.blacken(pixel.pixel_in(colors.stride));
         }
         self.sort(limits, colors);
-        self.subdivide();
         true
+    }
+
+    /// Starts with pixels of a tile, by row and column in the picture, that were told something.
+    pub fn start_told(
+        &mut self,
+        tile: &Tile,
+        (corners, told): (&Traced<R>, &Told),
+        pixels: &[[usize; 2]],
+        colors: &mut TileColors<R>,
+    ) {
+        self.clear();
+        self.lattice.clear();
+        self.borders.start(tile, told);
+        self.heard = 0;
+        for pixel in pixels {
+            let pixel = self.borders.cell_of(*pixel);
+            self.borders.note(&pixel, ALL);
+            self.told.push(pixel);
+        }
+        self.divide_told(tile, corners, colors);
+    }
+
+    /// Divides the pixels that something thin is near; of the others, nothing thin is to be found at their quarters.
+    #[inline(never)]
+    pub fn divide_near(&mut self) {
+        let (lattice, cells) = (&mut self.lattice, &mut self.cells);
+        self.split.retain(|pixel| {
+            let is_near = lattice.is_near(pixel);
+            if is_near {
+                self.borders.note(pixel, ALL);
+                lattice.subdivide(pixel, cells);
+            }
+            !is_near
+        });
+        for pixel in &mut self.split {
+            pixel.looked = Edges::Bordered;
+        }
+    }
+
+    /// Divides the cells that are to be divided.
+    #[inline(never)]
+    pub fn divide(&mut self) {
+        for cell in self.split.drain(..) {
+            self.borders.note(&cell, ALL);
+            self.lattice.subdivide(&cell, &mut self.cells);
+        }
     }
 
     /// Wants the samples that decide what becomes of the cells. Whether there are any cells.
@@ -117,37 +185,84 @@ impl<R: Real> Refinement<R> {
                 continue;
             }
             match CrossedCell::of_colors(&cell, lattice, limits) {
-                Some(crossed) => self.crossed.push(crossed),
+                Some(crossed) => {
+                    self.borders.note(&cell, crossed.sides());
+                    self.crossed.push(crossed);
+                }
                 None => split.push(cell.unwatched()),
             }
         }
         self.sort(limits, colors);
-        self.subdivide();
+        self.divide();
     }
 
-    /// Adds the colours of the cells that are known by their corners, and puts the others where they belong: those that
-    /// one edge crosses, those that may be even, and those to subdivide.
-    fn sort(&mut self, limits: Limits<R>, colors: &mut TileColors<R>) {
-        let lattice = &self.lattice;
-        for cell in &self.cells {
-            match lattice.inside(cell, limits) {
-                Inside::Known => lattice.accumulate(cell, colors),
-                Inside::One => self.even.push((*cell, 0)),
-                Inside::Several => match CrossedCell::of(cell, lattice, limits) {
-                    Some(crossed) => self.crossed.push(crossed),
-                    None => self.split.push(*cell),
-                },
-                Inside::Anything => self.split.push(*cell),
+    /// Divides the pixels of which a sample on one of their sides tells that nothing that was taken for their colour has
+    /// seen all of what they show: a corner of something, say, ends in them. Whether there are any.
+    #[inline(never)]
+    pub fn listen(
+        &mut self,
+        tile: &Tile,
+        (corners, told): (&Traced<R>, &Told),
+        colors: &mut TileColors<R>,
+    ) -> bool {
+        for heard in self.heard..self.lattice.len() {
+            let Some(side) = self.borders.side_of(self.lattice.point(heard)) else {
+                continue;
+            };
+            if R::from_f64(TELLING) < self.lattice.excess(heard, side.ends) {
+                for (place, side) in side.listening.into_iter().flatten() {
+                    if let Some(pixel) = self.borders.cell(place) {
+                        self.borders.note(&pixel, ALL);
+                        self.told.push(pixel);
+                    } else if let Some(pixel) = self.borders.pixel(place) {
+                        told.tell(pixel, side);
+                    }
+                }
+            }
+        }
+        self.heard = self.lattice.len();
+        self.divide_told(tile, corners, colors);
+        let is_done = self.cells.is_empty();
+        if is_done {
+            self.borders.finish(tile, told);
+        }
+        !is_done
+    }
+
+    /// Divides the pixels that were told something, twice: an end of something may be in one quarter alone.
+    fn divide_told(&mut self, tile: &Tile, corners: &Traced<R>, colors: &mut TileColors<R>) {
+        self.lattice.add(tile, corners, &mut self.told);
+        for pixel in self.told.drain(..) {
+            colors.blacken(pixel.pixel_in(colors.stride));
+            self.were_told.push(pixel.row_and_column());
+            let first = self.split.len();
+            self.lattice.subdivide(&pixel, &mut self.split);
+            for quarter in self.split.drain(first..) {
+                self.lattice.subdivide(&quarter, &mut self.cells);
             }
         }
     }
 
-    /// Divides the cells that are to be divided.
-    fn subdivide(&mut self) {
-        self.cells.clear();
-        for cell in &self.split {
-            self.lattice.subdivide(cell, &mut self.cells);
+    /// Adds the colours of the cells that are known by their corners, and puts the others where they belong: those that
+    /// one edge crosses, those that may be even, and those to divide.
+    fn sort(&mut self, limits: Limits<R>, colors: &mut TileColors<R>) {
+        let lattice = &self.lattice;
+        for mut cell in self.cells.drain(..) {
+            if usize::from(cell.side) == FINEST {
+                cell.swaps_lights = lattice.may_swap_lights(&cell);
+            }
+            match lattice.inside(&cell, limits) {
+                Inside::Known => lattice.accumulate(&cell, colors),
+                Inside::One => self.even.push((cell, 0)),
+                Inside::Several => match CrossedCell::of(&cell, lattice, limits) {
+                    Some(crossed) => {
+                        self.borders.note(&cell, crossed.sides());
+                        self.crossed.push(crossed);
+                    }
+                    None => self.split.push(cell),
+                },
+                Inside::Anything => self.split.push(cell),
+            }
         }
-        self.split.clear();
     }
 }

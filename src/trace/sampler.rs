@@ -11,6 +11,7 @@ use super::samples::{Edges, Samples, THING, Traced};
 use super::shadows::{may_leave_gap, may_swap_lights};
 use super::thresholds::NEAR;
 use super::tile::{Tile, TileColors};
+use super::told::Told;
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
 
 /// Samples the pixels of tiles; its buffers are used again.
@@ -26,6 +27,8 @@ pub struct Sampler<L: SimdFloat> {
     unsorted: Traced<L::Real>,
     samples: Samples<L::Real>,
     traced: Traced<L::Real>,
+    /// What was traced at the corners of the pixels of a tile.
+    corners: Traced<L::Real>,
     refinement: Refinement<L::Real>,
 }
 
@@ -40,6 +43,7 @@ impl<L: SimdFloat> Sampler<L> {
             unsorted: Traced::default(),
             samples: Samples::default(),
             traced: Traced::default(),
+            corners: Traced::default(),
             refinement: Refinement::new(),
         }
     }
@@ -139,22 +143,80 @@ impl<L: SimdFloat> Sampler<L> {
         engine: &mut Engine<L, TREE>,
         seen: &Candidates,
         tile: &Tile,
-        limits: Limits<L::Real>,
+        (limits, told): (Limits<L::Real>, &Told),
         colors: &mut TileColors<L::Real>,
+    ) {
+        self.trace_corners(engine, seen, tile);
+        self.judge(engine.token(), tile, limits, colors);
+        let corners = (&self.corners, told);
+        if !self.refinement.start(tile, corners, limits, colors) {
+            return;
+        }
+        // What slips between samples is looked for once more, in the middle of pixels and of their sides; what is
+        // thinner than their quarters is met by some sample nearby, or shows too little. Where nothing thin is near the
+        // corners of a pixel, there is nothing in it either.
+        self.refinement.divide_near();
+        self.look(engine, seen, tile, Edges::Near);
+        self.refinement.divide();
+        self.look(engine, seen, tile, Edges::Bordered);
+        self.refine(engine, seen, tile, (limits, told), colors);
+    }
+
+    /// The means of pixels that were told something, by row and column in the picture, and of those that they tell.
+    pub fn told<const TREE: bool>(
+        &mut self,
+        engine: &mut Engine<L, TREE>,
+        seen: &Candidates,
+        tile: &Tile,
+        (limits, told, pixels): (Limits<L::Real>, &Told, &[[usize; 2]]),
+        colors: &mut TileColors<L::Real>,
+    ) {
+        self.trace_corners(engine, seen, tile);
+        let stride = tile.width() + 1;
+        colors.resize(stride, stride * tile.rows.len());
+        let corners = (&self.corners, told);
+        self.refinement.start_told(tile, corners, pixels, colors);
+        self.refine(engine, seen, tile, (limits, told), colors);
+    }
+
+    /// The pixels of the last tile that were told something, by row and column in it.
+    pub fn were_told(&self) -> &[[usize; 2]] {
+        self.refinement.were_told()
+    }
+
+    /// Traces a sample at each corner of the pixels of a tile.
+    #[inline(always)]
+    fn trace_corners<const TREE: bool>(
+        &mut self,
+        engine: &mut Engine<L, TREE>,
+        seen: &Candidates,
+        tile: &Tile,
     ) {
         let columns = tile.columns.start..tile.columns.end + 1;
         let rows = tile.rows.start..tile.rows.end + 1;
         self.trace(engine, seen, (columns, rows), ((0.0, 0.0), Edges::Near));
-        self.judge(engine.token(), tile, limits, colors);
-        if !self.refinement.start(tile, &self.traced, limits, colors) {
-            return;
-        }
-        // What slips between samples is looked for once more, in the middle of pixels and of their sides; what is
-        // thinner than their quarters is met by some sample nearby, or shows too little.
-        self.look(engine, seen, tile, Edges::Near);
-        while self.refinement.want() {
-            self.look(engine, seen, tile, Edges::Signed);
-            self.refinement.settle(limits, colors);
+        std::mem::swap(&mut self.traced, &mut self.corners);
+    }
+
+    /// Looks into what is not known until it is.
+    #[inline(always)]
+    fn refine<const TREE: bool>(
+        &mut self,
+        engine: &mut Engine<L, TREE>,
+        seen: &Candidates,
+        tile: &Tile,
+        (limits, told): (Limits<L::Real>, &Told),
+        colors: &mut TileColors<L::Real>,
+    ) {
+        loop {
+            while self.refinement.want() {
+                self.look(engine, seen, tile, Edges::Signed);
+                self.refinement.settle(limits, colors);
+            }
+            let corners = (&self.corners, told);
+            if engine.is_stopped() || !self.refinement.listen(tile, corners, colors) {
+                return;
+            }
         }
     }
 
@@ -189,21 +251,21 @@ impl<L: SimdFloat> Sampler<L> {
         let (width, stride) = (tile.width(), tile.width() + 1);
         let length = stride * tile.rows.len() - 1;
         colors.resize(stride, length.next_multiple_of(L::WIDTH));
-        self.traced.lengthen(L::WIDTH);
+        self.corners.lengthen(L::WIDTH);
         self.refinement.clear();
         let quarter = L::splat(token, L::Real::from_f64(0.25));
         let reach = quarter.like_f64(NEAR);
-        let has_faces = !self.traced.faces.is_empty();
-        let has_shadows = self.traced.shadows.iter().any(|&shadows| shadows != 0);
+        let has_faces = !self.corners.faces.is_empty();
+        let has_shadows = self.corners.shadows.iter().any(|&shadows| shadows != 0);
         for first in (0..length).step_by(L::WIDTH) {
             let mut contrast = quarter.like(L::Real::ZERO);
-            for (means, traced) in colors.channels.iter_mut().zip(self.traced.channels()) {
+            for (means, traced) in colors.channels.iter_mut().zip(self.corners.channels()) {
                 let [a, b, c, d] = corners_at::<L>(token, traced, first, stride);
                 (((a + b) + (c + d)) * quarter).store(&mut means[first..]);
                 contrast = contrast + range(a, b, c, d);
             }
             let mut limit = [L::Real::ZERO; MAX_LANES];
-            let seen = |from: usize| &self.traced.signature[from..from + L::WIDTH];
+            let seen = |from: usize| &self.corners.signature[from..from + L::WIDTH];
             let (a, b) = (seen(first), seen(first + 1));
             let (c, d) = (seen(first + stride), seen(first + stride + 1));
             for lane in 0..L::WIDTH {
@@ -215,7 +277,7 @@ impl<L: SimdFloat> Sampler<L> {
                 };
             }
             if has_shadows {
-                let dark = |from: usize| &self.traced.shadows[from..from + L::WIDTH];
+                let dark = |from: usize| &self.corners.shadows[from..from + L::WIDTH];
                 let (a, b) = (dark(first), dark(first + 1));
                 let (c, d) = (dark(first + stride), dark(first + stride + 1));
                 for lane in 0..L::WIDTH {
@@ -227,12 +289,12 @@ impl<L: SimdFloat> Sampler<L> {
                     };
                 }
             }
-            let [a, b, c, d] = corners_at::<L>(token, &self.traced.near, first, stride);
+            let [a, b, c, d] = corners_at::<L>(token, &self.corners.near, first, stride);
             let is_near = a.min(b).min(c.min(d)).less(reach);
             let wanting = is_near | L::load(token, &limit).less(contrast);
             let mut left = wanting.bits();
             let hiding = if has_faces {
-                hiding_at(&self.traced.faces, (first, stride), L::WIDTH)
+                hiding_at(&self.corners.faces, (first, stride), L::WIDTH)
             } else {
                 0
             };

@@ -6,13 +6,15 @@ use std::ops::Range;
 use crate::simd::{Real, Vec3};
 
 /// What a trace finds out about its samples.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Edges {
     /// Colours alone.
     Ignored,
     /// Also signatures, which tell edges.
     Signed,
-    /// Also what may slip between samples.
+    /// Also the shadows and the faces that end near them: between two of those may be others.
+    Bordered,
+    /// Also what is so thin that it may slip between samples.
     Near,
 }
 
@@ -45,7 +47,7 @@ pub struct Traced<R> {
     pub near: Vec<R>,
     /// Which shadows it is in that end near it, see [`super::shadows`]. Only with edges.
     pub shadows: Vec<u32>,
-    /// Which flat face it is on, see [`super::faces`]; empty in scenes without. Only with [`Edges::Near`].
+    /// Which flat face it is on, see [`super::faces`]; empty in scenes without. Only with [`Edges::Bordered`].
     pub faces: Vec<u64>,
 }
 

@@ -1,4 +1,5 @@
-//! Which shadows samples are in that end near them: between two of them a pixel may be lit whose corners are all dark.
+//! Which shadows samples are in that end near them: between two of them a pixel may be lit whose corners are all dark,
+//! and between those of two lights there may be light of both or of neither.
 //!
 //! A sample notes for each light the caster that it is deepest behind, as a few bits; nothing if that hides all of a
 //! pixel, or if the light shines. Where all corners of a cell are behind one caster or behind what hides it all, so
@@ -42,7 +43,7 @@ pub fn may_leave_gap([a, b, c, d]: [u32; 4]) -> bool {
 #[inline(always)]
 pub fn may_swap_lights([a, b, c, d]: [u32; 4]) -> bool {
     let [a, b, c, d] = [noted(a), noted(b), noted(c), noted(d)];
-    let swapped = |one: u32, other: u32| (one & !other != 0) & (other & !one != 0);
+    let swapped = |one: u32, other: u32| one & !other != 0 && other & !one != 0;
     swapped(a, b) | swapped(a, c) | swapped(a, d) | swapped(b, c) | swapped(b, d) | swapped(c, d)
 }
 

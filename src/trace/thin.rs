@@ -214,8 +214,11 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         let (center, radius) = mesh.bvh.bounds.ball();
         let small = least_pixels(mesh);
         if widest * small <= radius + radius {
+            if !self.enters {
+                return None;
+            }
             self.cone = self.gaze.cone.widening();
-            return if self.enters { Some(active) } else { None };
+            return Some(active);
         }
         let ball = self.passed(center, radius, paths);
         let is_small = (ball.radius + ball.radius).less(ball.width * ball.width.like(small));

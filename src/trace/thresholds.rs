@@ -28,6 +28,9 @@ pub const FINEST: usize = 1 << (MAX_HALVINGS + 2);
 /// is divided where they see different things: an edge in it is off by half of its side at most, and the
 /// pixel by half of this, three levels of 255.
 pub const EDGE_ERROR: f64 = 0.025;
+/// How far a colour on a side of a pixel may be from all between those at its ends, summed over the channels, before the
+/// pixel beside it is divided for it: what ends in there covers a quarter of it at most.
+pub const TELLING: f64 = 0.1;
 /// Contrast of what may be seen in a gap between two things, which is looked for along with their edges: gaps that are
 /// wider than they are known within are found.
 pub const GAP_CONTRAST: f64 = 0.2;

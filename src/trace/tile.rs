@@ -103,6 +103,14 @@ impl<R: Real> TileColors<R> {
         }
     }
 
+    /// Makes a pixel black.
+    #[inline(always)]
+    pub fn blacken(&mut self, pixel: usize) {
+        for channel in &mut self.channels {
+            channel[pixel] = R::ZERO;
+        }
+    }
+
     /// Makes all pixels black.
     pub fn clear(&mut self, stride: usize, length: usize) {
         self.resize(stride, length);

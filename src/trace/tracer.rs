@@ -1,5 +1,7 @@
 //! The tile loop: which pixels are traced, by which thread, and when to stop.
 
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use rayon::iter::{IndexedParallelIterator as _, IntoParallelIterator as _, ParallelIterator as _};
@@ -13,7 +15,8 @@ use super::shelf::Shelf;
 use super::stats::{Rays, RenderControl};
 use super::threads::Threads;
 use super::tile::{Grid, Pass, Pixel};
-use crate::plan::{Plan, Planner, Region, RenderRequest, is_double, is_filtered};
+use super::told::{Hearing, Told};
+use crate::plan::{Plan, Planner, Region, RenderRequest, Show, is_double, is_filtered};
 use crate::scene::{Aspect, Sampling, Scene};
 use crate::simd::{Level, SimdReal};
 
@@ -201,6 +204,7 @@ impl Tracer {
         let seen = Candidates::all_seen(plan);
         let samples = (Grid::ALL, self.sampling);
         let mut pixels = vec![[0.0_f32; 3]; self.width * self.tile];
+        let told = self.told(0..self.height, self.sampling);
         let time = |place: Region| {
             let width = place.columns.1 - place.columns.0;
             let height = place.rows.1 - place.rows.0;
@@ -208,7 +212,11 @@ impl Tracer {
             let since = Instant::now();
             // Nobody stops it.
             let control = RenderControl::default();
-            let _ = self.piece((plan, &seen), (place, rows), samples, &control);
+            let hearing = Hearing {
+                told: &told,
+                those: None,
+            };
+            let _ = self.piece((plan, &seen), (place, rows), samples, (hearing, &control));
             since.elapsed()
         };
         self.pieces(threads).map(time).collect()
@@ -220,7 +228,7 @@ impl Tracer {
         (plan, seen): (&Plan<R>, &Candidates),
         (place, pixels): (Region, Vec<&mut [P]>),
         (grid, sampling): (Grid, Sampling),
-        control: &RenderControl,
+        (hearing, control): (Hearing, &RenderControl),
     ) -> Option<Rays> {
         self.level.run(Band {
             plan,
@@ -233,6 +241,7 @@ impl Tracer {
             pixels,
             grid,
             sampling,
+            hearing,
             reference: self.exact.as_ref().map(|exact| exact as &dyn Reference),
             shelf: &self.shelf,
             control,
@@ -253,6 +262,7 @@ impl Tracer {
             Pass::Centres(grid) => (grid, Sampling::Centres),
         };
         let rows = pixels.len() / self.width.max(1);
+        let mut told = self.told(first..first + rows, sampling);
         let piece = self.columns_of_pieces(rows, Threads::current());
         let bands = pixels
             .par_chunks_mut(self.width * self.tile)
@@ -266,13 +276,75 @@ impl Tracer {
                 let left = index * piece;
                 let columns = (left, (left + piece).min(self.width));
                 let place = Region { columns, rows };
-                self.piece((plan, &seen), (place, pixels), (grid, sampling), control)
+                let notes = (
+                    Hearing {
+                        told: &told,
+                        those: None,
+                    },
+                    control,
+                );
+                self.piece((plan, &seen), (place, pixels), (grid, sampling), notes)
             });
             pieces.try_reduce(Rays::default, |a, b| Some(a + b))
         };
-        bands
+        let mut rays = bands
             .map(trace)
-            .try_reduce(Rays::default, |a, b| Some(a + b))
+            .try_reduce(Rays::default, |a, b| Some(a + b))?;
+        loop {
+            let heard = told.heard();
+            if heard.is_empty() || plan.show == Show::Cost {
+                return Some(rays);
+            }
+            let (heard, seen) = ((&told, heard), (plan, &seen));
+            rays += self.pass_told(seen, (pixels, first), heard, control)?;
+        }
+    }
+
+    /// What the pixels of these rows are told by those beside them.
+    fn told(&self, rows: Range<usize>, sampling: Sampling) -> Told {
+        match sampling {
+            Sampling::Adaptive { .. } => Told::new(self.width, rows),
+            Sampling::Centres | Sampling::Grid(_) => Told::new(0, 0..0),
+        }
+    }
+
+    /// Traces pixels again that were told something across the border of a tile.
+    fn pass_told<R: SimdReal, P: Pixel>(
+        &self,
+        seen: (&Plan<R>, &Candidates),
+        (pixels, first): (&mut [P], usize),
+        (told, heard): (&Told, BTreeSet<[usize; 2]>),
+        control: &RenderControl,
+    ) -> Option<Rays> {
+        let mut tiles: BTreeMap<[usize; 2], Vec<[usize; 2]>> = BTreeMap::new();
+        for [row, column] in heard {
+            let tile = [(row - first) / self.tile, column / self.tile];
+            tiles.entry(tile).or_default().push([row, column]);
+        }
+        let bands = pixels
+            .par_chunks_mut(self.width * self.tile)
+            .with_max_len(1);
+        let trace = |(index, pixels): (usize, &mut [P])| {
+            let top = first + index * self.tile;
+            let rows = (top, top + pixels.len() / self.width);
+            let mut rays = Rays::default();
+            for (&[_, across], those) in tiles.range([index, 0]..[index + 1, 0]) {
+                let left = across * self.tile;
+                let columns = (left, (left + self.tile).min(self.width));
+                let part = pixels.chunks_mut(self.width);
+                let part = part.map(|row| &mut row[columns.0..columns.1]).collect();
+                let place = (Region { columns, rows }, part);
+                let hearing = Hearing {
+                    told,
+                    those: Some(those),
+                };
+                let notes = (hearing, control);
+                rays += self.piece(seen, place, (Grid::ALL, self.sampling), notes)?;
+            }
+            Some(rays)
+        };
+        let bands = bands.enumerate().map(trace);
+        bands.try_reduce(Rays::default, |a, b| Some(a + b))
     }
 }
 
@@ -289,152 +361,4 @@ fn in_pieces<P>(pixels: &mut [P], (width, piece): (usize, usize)) -> Vec<Vec<&mu
 }
 
 #[cfg(test)]
-mod tests {
-    use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-
-    use super::*;
-    use crate::scene::Accelerator;
-    use crate::simd::Real;
-
-    impl Pixel for [u64; 3] {
-        fn of<R: Real>(red: R, green: R, blue: R) -> Self {
-            [red, green, blue].map(|channel| channel.to_f64().to_bits())
-        }
-    }
-
-    #[test]
-    fn tiles_of_any_size_give_the_same_bits() {
-        let mut scene = Scene::demo();
-        scene.render.reflection_limit = 3;
-        for sampling in [Sampling::Centres, Sampling::Grid(2), Sampling::ADAPTIVE] {
-            let pictures = [16, 8, 5, 32, 200].map(|tile| {
-                let request = RenderRequest {
-                    sampling,
-                    ..RenderRequest::sized(171, 93)
-                };
-                let tracer = Tracer {
-                    tile,
-                    ..Tracer::new(&scene, &request)
-                };
-                let mut pixels = vec![[0_u64; 3]; 171 * 93];
-                let rays = tracer.pass(&mut pixels, Pass::Whole, &RenderControl::default());
-                assert!(rays.is_some());
-                pixels
-            });
-            for other in &pictures[1..] {
-                assert!(*other == pictures[0], "{sampling:?}");
-            }
-        }
-    }
-
-    #[test]
-    fn many_threads_share_the_tiles_of_a_row() {
-        let scene = Scene::demo();
-        for (sampling, tiles) in [(Sampling::Centres, 66), (Sampling::ADAPTIVE, 84)] {
-            let request = RenderRequest {
-                sampling,
-                ..RenderRequest::sized(171, 93)
-            };
-            let tracer = Tracer::new(&scene, &request);
-            let pictures = [1, 24].map(|threads| {
-                let threads = Threads::new(Some(threads)).expect("threads");
-                let mut pixels = vec![[0_u64; 3]; 171 * 93];
-                let control = RenderControl::default();
-                threads.run(|| tracer.pass(&mut pixels, Pass::Whole, &control));
-                pixels
-            });
-            assert!(pictures[0] == pictures[1], "{sampling:?}");
-            assert_eq!(tracer.pieces(24).count(), tiles, "every tile");
-            let large = Tracer::new(&scene, &RenderRequest::sized(1024, 1024));
-            assert_eq!(large.pieces(1).count(), 128, "quarters of rows");
-            assert_eq!(
-                tracer.pieces(24).map(Region::pixels).sum::<usize>(),
-                171 * 93
-            );
-            assert_eq!(tracer.time_pieces(24).len(), tiles);
-        }
-    }
-
-    #[test]
-    fn packets_in_squares_give_the_same_bits() {
-        let scene = Scene::demo();
-        for (sampling, tile) in [(Sampling::Centres, 16), (Sampling::Grid(2), 13)] {
-            let pictures = [false, true].map(|in_squares| {
-                let request = RenderRequest {
-                    sampling,
-                    accelerator: Accelerator::Bvh,
-                    ..RenderRequest::sized(83, 61)
-                };
-                let tracer = Tracer {
-                    tile,
-                    in_squares,
-                    ..Tracer::new(&scene, &request)
-                };
-                let mut pixels = vec![[0_u64; 3]; 83 * 61];
-                let rays = tracer.pass(&mut pixels, Pass::Whole, &RenderControl::default());
-                (pixels, rays)
-            });
-            assert!(pictures[0] == pictures[1], "{sampling:?}");
-        }
-    }
-
-    #[test]
-    fn a_picture_in_pieces_has_the_same_bits() {
-        let scene = Scene::demo();
-        for sampling in [Sampling::Grid(2), Sampling::ADAPTIVE] {
-            let request = RenderRequest {
-                sampling,
-                ..RenderRequest::sized(83, 61)
-            };
-            let (tracer, control) = (Tracer::new(&scene, &request), RenderControl::default());
-            let mut whole = vec![[0_u64; 3]; 83 * 61];
-            let rays = tracer.pass(&mut whole, Pass::Whole, &control);
-            let mut pieces = Vec::new();
-            let mut sum = Rays::default();
-            for first in (0..61).step_by(7) {
-                let mut piece = vec![[0_u64; 3]; 83 * (61 - first).min(7)];
-                sum += tracer
-                    .rows(&mut piece, first, &control)
-                    .expect("not stopped");
-                pieces.extend(piece);
-            }
-            assert!(pieces == whole, "{sampling:?}");
-            if sampling == Sampling::Grid(2) {
-                assert_eq!(Some(sum), rays);
-            }
-        }
-    }
-
-    /// Told to stop by the first pixel that is written.
-    static FIRST: RenderControl = RenderControl {
-        stop: AtomicBool::new(false),
-        pixels: AtomicU64::new(0),
-    };
-
-    #[derive(Clone, Copy)]
-    struct Stopping;
-
-    impl Pixel for Stopping {
-        fn of<R: Real>(_: R, _: R, _: R) -> Self {
-            FIRST.stop.store(true, Ordering::Relaxed);
-            Self
-        }
-    }
-
-    #[test]
-    fn a_stopped_pass_writes_no_tile_that_was_being_traced() {
-        let (scene, side) = (Scene::demo(), 2048);
-        let tracer = Tracer::new(&scene, &RenderRequest::sized(side, side));
-        let mut pixels = vec![Stopping; (side * side) as usize];
-        let threads = Threads::new(Some(3)).expect("threads");
-        let rays = threads.run(|| tracer.pass(&mut pixels, Pass::Whole, &FIRST));
-        assert_eq!(rays, None);
-        let traced = FIRST.pixels.load(Ordering::Relaxed);
-        // The tile that told to stop, and those that the other threads were writing meanwhile.
-        let most = (3 * tracer.tile * tracer.tile) as u64;
-        assert!(
-            traced <= most,
-            "{traced} pixels after the stop, {most} at most"
-        );
-    }
-}
+mod tests;

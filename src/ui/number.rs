@@ -12,6 +12,7 @@ use glam::DVec3;
 use super::hint::Hint as _;
 use super::theme::ROW;
 use crate::scene::{format_number, parse_vec3};
+use crate::words::quoted;
 
 /// Letters that one of three fields in a row has room for.
 const NARROW: usize = 7;
@@ -97,7 +98,7 @@ fn refusal(field: &Field, text: &str) -> Option<String> {
     let name = field.name;
     match read(text) {
         None if text.is_empty() => None,
-        None => Some(format!("“{text}” is no number")),
+        None => Some(format!("{} is no number", quoted(text))),
         Some(number) if number <= 0.0 && 0.0 < least => Some(format!("{name} is above 0")),
         Some(number) if !field.range.contains(&number) => {
             let [least, most] = [least, most].map(format_number);

@@ -9,6 +9,10 @@ use egui::{Button, Context, Event, Frame, Id, InputState, Key, Modal, RichText, 
 use super::dialogs::Ask;
 use super::theme::{GRID, palette};
 use crate::files::make_folder;
+use crate::words::shortened;
+
+/// Letters of a path that a message has room for.
+const LONGEST_PATH: usize = 200;
 
 /// What the user said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -239,7 +243,10 @@ impl PathPrompt {
                 is_possible: true,
             }),
             (false, false) => Some(Warning {
-                words: format!("There is no file {}", path.display()),
+                words: format!(
+                    "There is no file {}",
+                    shortened(&path.to_string_lossy(), LONGEST_PATH)
+                ),
                 is_possible: false,
             }),
             _ => None,

@@ -12,6 +12,7 @@ pub use super::number::{Field, coordinate, fraction};
 use super::number::{Number, drag, is_cancelled, tell_refused};
 use super::theme::{GRID, HEX, LABEL, ROW, palette};
 use crate::scene::format_number;
+use crate::words::quoted;
 
 /// A stack of rows that remembers which field was changed.
 pub struct Rows<'u> {
@@ -264,10 +265,11 @@ fn hex(ui: &mut Ui, name: &str, value: &mut DVec3) {
     let widget = DragValue::new(&mut edited)
         .speed(0.0)
         .update_while_editing(false)
+        .clip_text(true)
         .custom_formatter(|number, _| format!("#{:06X}", number as u32))
         .custom_parser(|text| {
             let color = parse_hex(text);
-            let words = || format!("“{text}” is no color: write it like #FF8040");
+            let words = || format!("{} is no color: write it like #FF8040", quoted(text));
             let is_wrong = color.is_none() && !text.trim().is_empty();
             refused.set(is_wrong.then(words));
             color.map(f64::from)

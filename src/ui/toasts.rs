@@ -6,11 +6,14 @@ use super::icons;
 use super::theme::{GRID, palette};
 use crate::editor::Message;
 
-/// Seconds that a message stays that is not an error, and those that it takes to read a letter of it.
+/// Seconds that a message stays that is not an error, those that it takes to read a letter of it, and the most of all.
 const LIFETIME: f64 = 4.0;
 const PER_LETTER: f64 = 0.06;
+const LONGEST: f64 = 30.0;
 /// Width of a message in points: the excerpt of a refused file fits in.
 const WIDTH: f32 = 560.0;
+/// Height of the sentence of a message, in parts of that of the window.
+const HIGHEST: f32 = 0.25;
 /// Most messages on screen; older ones make room.
 const MOST: usize = 3;
 
@@ -30,7 +33,8 @@ struct Toast {
 impl Toast {
     /// When it goes by itself.
     fn end(&self) -> f64 {
-        self.since + LIFETIME + PER_LETTER * self.message.text.len() as f64
+        let reading = PER_LETTER * self.message.text.len() as f64;
+        self.since + (LIFETIME + reading).min(LONGEST)
     }
 }
 
@@ -127,7 +131,14 @@ fn draw(ui: &mut egui::Ui, message: &Message) -> bool {
 /// a refused file.
 fn body(ui: &mut egui::Ui, text: &str) {
     let (sentence, excerpt) = text.split_once('\n').unwrap_or((text, ""));
-    ui.add(egui::Label::new(sentence).wrap().selectable(true));
+    // Whatever it quotes, it does not hide the picture.
+    let height = ui.ctx().content_rect().height() * HIGHEST;
+    let area = ScrollArea::vertical()
+        .id_salt("sentence")
+        .max_height(height);
+    area.show(ui, |ui| {
+        ui.add(egui::Label::new(sentence).wrap().selectable(true))
+    });
     if !excerpt.is_empty() {
         ScrollArea::horizontal().show(ui, |ui| {
             ui.add(

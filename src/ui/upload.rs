@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use egui::{Color32, ColorImage};
+use egui::{Color32, ColorImage, Painter, Rect, TextureHandle, pos2};
 
 use crate::image::Image;
 
@@ -59,6 +59,12 @@ fn differ(old: &Image, new: &Image, columns: &Range<usize>, rows: &Range<usize>)
         let range = row * new.width + columns.start..row * new.width + columns.end;
         old.pixels[range.clone()] != new.pixels[range]
     })
+}
+
+/// Paints all of a texture into a place.
+pub fn paint(painter: &Painter, texture: &TextureHandle, place: Rect) {
+    let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+    painter.image(texture.id(), place, all, Color32::WHITE);
 }
 
 /// The whole picture as the graphics card wants it.

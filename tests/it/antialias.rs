@@ -1,5 +1,6 @@
 //! Clean edges: against many samples per pixel, in double precision, on the published views.
 
+use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -312,6 +313,96 @@ fn light_between_two_shadows_is_seen() {
             "looking to {look_at}: {got:?}"
         );
     }
+}
+
+/// Balls over a floor, and two lamps that are as bright: where the shadow of one ends and that of the other begins, there
+/// is light of both between them, or of neither, and in many places it is narrower than a pixel.
+fn balls_before_two_lamps() -> Scene {
+    let text = r#"Scene(version: 1, light_visualization: false,
+        camera: Camera(position: (0, 80, 190), look_at: (0, -0.25, -1), up: (0, 1, 0)),
+        color_packs: {
+            "floor": ColorPack(ambient: (120, 120, 120), diffuse: (120, 120, 120), specular: (0, 0, 0)),
+            "thing": ColorPack(ambient: (220, 220, 220), diffuse: (220, 220, 220), specular: (0, 0, 0)),
+        },
+        objects: [Object(name: "Floor", color_pack: "floor", shape: Plane(point: (0, 0, 0), normal: (0, 1, 0)))],
+        lights: [
+            Light(name: "Left", position: (-150, 220, 160), intensity: 0.5),
+            Light(name: "Right", position: (180, 220, 160), intensity: 0.5),
+        ])"#;
+    let mut scene = Document::from_text(text).expect("a scene").scene;
+    let (count, radius) = (60, 60.0 / 60_f64.sqrt());
+    for number in 0..count {
+        let share = |step: f64| (f64::from(number) * step).fract();
+        let center = DVec3::new(
+            (share(0.819_172_513_396_164_5) - 0.5) * 150.0,
+            radius + share(0.671_043_606_703_789_3) * 90.0,
+            (share(0.549_700_477_901_970_3) - 0.5) * 120.0,
+        );
+        let ball = Sphere { center, radius };
+        let name = format!("Ball {number}");
+        scene.objects.push(Object::new(name, "thing", ball));
+    }
+    scene
+}
+
+#[test]
+fn light_of_two_lamps_or_of_none_between_their_shadows_is_seen() {
+    let got = quality_of_clean_edges(&balls_before_two_lamps(), 192);
+    assert!(
+        got.psnr >= EIGHT_BITS && got.worst <= INVISIBLE && got.rays < 20.0,
+        "{got:?}"
+    );
+}
+
+/// Boxes from above, each turned a little more than the one before: their corners end in pixels of which none of the
+/// corners is on them.
+fn boxes() -> Scene {
+    let (mut points, mut faces) = (Vec::new(), Vec::new());
+    for (row, column) in (0..9).flat_map(|row| (0..9).map(move |column| (row, column))) {
+        let [along, down] = [column, row].map(f64::from);
+        let middle = DVec3::new(
+            (along - 4.0) * 0.9 + down * 0.03,
+            0.0,
+            (down - 4.0) * 0.9 + along * 0.017,
+        );
+        let turn = 0.3 + 0.05 * down + 0.07 * along;
+        let first = points.len() as u32;
+        for (height, corner) in [0.0, -0.5]
+            .into_iter()
+            .flat_map(|h| (0..4).map(move |c| (h, c)))
+        {
+            let (z, x) = (turn + f64::from(corner) * FRAC_PI_2).sin_cos();
+            points.push(middle + DVec3::new(0.38 * x, height, 0.38 * z));
+        }
+        let mut add = |corners: [u32; 3]| faces.push(corners.map(|corner| first + corner));
+        add([0, 1, 2]);
+        add([0, 2, 3]);
+        add([4, 6, 5]);
+        add([4, 7, 6]);
+        for side in 0..4 {
+            let next = (side + 1) % 4;
+            add([side, side + 4, next + 4]);
+            add([side, next + 4, next]);
+        }
+    }
+    let mut scene = Document::from_text(FAN).expect("a scene").scene;
+    let boxes = Triangles::new(points, faces).expect("boxes");
+    scene.objects = [Object {
+        shape: Shape::Mesh(Mesh::of(boxes)),
+        ..scene.objects[0].clone()
+    }]
+    .into_iter()
+    .collect();
+    scene
+}
+
+#[test]
+fn corners_of_boxes_that_end_in_a_pixel_are_seen() {
+    let got = quality_of_clean_edges(&boxes(), 65);
+    assert!(
+        got.psnr >= 46.0 && got.worst <= INVISIBLE && got.rays < 12.0,
+        "{got:?}"
+    );
 }
 
 /// A fan of faces from above: two dark ones of one colour, and between them a bright one, narrower than a pixel nearly

@@ -900,7 +900,7 @@ fn an_export_that_failed_says_why_and_can_be_taken_up() {
         .window
         .query_all_by_label_contains("is not a folder");
     assert_eq!(why.count(), 2);
-    assert!(harness.window.query_by_label("Interrupted").is_none());
+    assert!(harness.window.query_by_label("Not finished").is_none());
     fs::remove_file(&folder).expect("removed");
     harness.click("Resume");
     finish(&mut harness);
@@ -965,15 +965,15 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
 
     // The next window is on another scene, and makes the frames of this one.
     let mut harness = EditorHarness::kept_in(data.path(), "scenes/mirrors.ron".into());
-    see(&mut harness, "An export was interrupted");
+    see(&mut harness, "An export is not finished");
     let before = fs::read_dir(&folder).expect("there").count();
     assert!((2..203).contains(&before), "{before} files");
     harness.press(CTRL.plus(Modifiers::SHIFT), Key::E);
-    harness.window.get_by_label("Interrupted");
+    harness.window.get_by_label("Not finished");
     harness.click("Resume");
     finish(&mut harness);
     harness.window.get_by_label_contains("202 frames in");
-    assert!(harness.window.query_by_label("Interrupted").is_none());
+    assert!(harness.window.query_by_label("Not finished").is_none());
     drop(harness);
     let sequence = |size: u32| {
         let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;

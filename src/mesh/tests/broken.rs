@@ -75,7 +75,7 @@ fn broken_stl() {
     );
     assert_eq!(
         error_of("m.stl", "solid a\nendsolid a\n"),
-        "m.stl: there are no faces in this file"
+        "m.stl: there are no faces with an area in this file"
     );
     let mut binary = binary_stl();
     binary[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
@@ -215,7 +215,7 @@ fn broken_gltf() {
     let mut bytes = glb(&gltf_json("", ""), &[0; 264]);
     assert_eq!(
         error_of("m.glb", &bytes),
-        "m.glb: there are no faces in this file"
+        "m.glb: there are no faces with an area in this file"
     );
     assert!(error_of("m.glb", &bytes[..50]).contains("and the file has 50"));
     bytes[8..12].fill(0);

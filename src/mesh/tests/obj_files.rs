@@ -99,11 +99,11 @@ fn broken_lines_are_named() {
     );
     assert_eq!(
         error_of("m.obj", SQUARE),
-        "m.obj: there are no faces in this file"
+        "m.obj: there are no faces with an area in this file"
     );
     assert_eq!(
         error_of("m.obj", ""),
-        "m.obj: there are no faces in this file"
+        "m.obj: there are no faces with an area in this file"
     );
 }
 

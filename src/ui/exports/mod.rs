@@ -80,7 +80,7 @@ impl Exports {
                 more => format!(" and {} more", more - 1),
             };
             editor.notify(format!(
-                "An export was interrupted: {}{more}. Export animation in the File menu resumes it.",
+                "An export is not finished: {}{more}. Export animation in the File menu resumes it.",
                 order.name
             ));
         }
@@ -329,7 +329,7 @@ impl Exports {
             ui.label(&order.name).hint(&order.settings.folder);
             match &order.why {
                 Some(why) => ui.colored_label(palette(ui.ctx()).error, why),
-                None => ui.weak("Interrupted"),
+                None => ui.weak("Not finished"),
             };
             ui.horizontal(|ui| {
                 let resume = ui

@@ -1,8 +1,8 @@
 //! A dot looked at: its picture, the reference, or what lies between them.
 
-use egui::{Color32, Context, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, pos2};
+use egui::{Context, Response, Sense, TextureHandle, TextureOptions, Ui};
 
-use super::super::upload::whole;
+use super::super::upload::{paint, whole};
 use super::super::viewport::Place;
 use crate::image::Image;
 
@@ -95,9 +95,7 @@ impl Comparison {
         let response = ui.allocate_rect(place.rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Lab picture"));
         if let Some(texture) = &self.texture {
-            let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-            ui.painter()
-                .image(texture.id(), place.rect, all, Color32::WHITE);
+            paint(ui.painter(), texture, place.rect);
         }
         if let Some(pointer) = response.hover_pos() {
             let text = pixel(

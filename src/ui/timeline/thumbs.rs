@@ -1,6 +1,6 @@
 //! Small pictures: what the keys see, above them, and the shot in a corner of the view.
 
-use egui::{Context, Pos2, Rect, Sense, TextureHandle, TextureOptions, Ui, pos2, vec2};
+use egui::{Context, Rect, Sense, TextureHandle, TextureOptions, Ui, pos2, vec2};
 
 use super::scale::Scale;
 use crate::animate::shot;
@@ -8,7 +8,7 @@ use crate::editor::Editor;
 use crate::image::Image;
 use crate::scene::Animation;
 use crate::ui::theme::{GRID, THUMB, palette};
-use crate::ui::upload::whole;
+use crate::ui::upload::{paint, whole};
 use crate::worker::ThumbnailJob;
 
 /// The name of the shot's picture; keys are named by their places.
@@ -117,7 +117,7 @@ impl Thumbs {
             }
             free = left + width + 2.0;
             let place = Rect::from_min_size(pos2(left, rect.top()), vec2(width, THUMB));
-            paint(ui, texture, place);
+            paint(ui.painter(), texture, place);
         }
     }
 
@@ -128,7 +128,7 @@ impl Thumbs {
         };
         let size = texture.size_vec2();
         let place = shot_place(view, size.x / size.y);
-        paint(ui, texture, place);
+        paint(ui.painter(), texture, place);
         let colors = palette(ui.ctx());
         let stroke = egui::Stroke::new(1.0, colors.accent);
         ui.painter()
@@ -145,10 +145,4 @@ fn shot_place(view: Rect, aspect: f32) -> Rect {
     let width = (view.width() * SHARE).round();
     let size = vec2(width, (width / aspect).round());
     Rect::from_min_size(view.max - size - vec2(GRID, GRID), size)
-}
-
-fn paint(ui: &Ui, texture: &TextureHandle, place: Rect) {
-    let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-    ui.painter()
-        .image(texture.id(), place, whole, egui::Color32::WHITE);
 }

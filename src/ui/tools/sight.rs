@@ -11,6 +11,7 @@ use crate::image::{ObjectMap, Thing};
 use crate::plan::RenderRequest;
 use crate::scene::Scene;
 use crate::ui::theme::palette;
+use crate::ui::upload::paint;
 use crate::ui::viewport::Place;
 use crate::worker::Question;
 
@@ -190,7 +191,6 @@ impl Lines {
         let scale = view.size() / vec2(map.width() as f32, map.height() as f32);
         let corner = view.min + part.min.to_vec2() * scale;
         let rect = Rect::from_min_size(corner, part.size() * scale);
-        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-        painter.image(texture.id(), rect, whole, Color32::WHITE);
+        paint(painter, texture, rect);
     }
 }

@@ -1,0 +1,210 @@
+//! The sides of the pixels of a tile: which of them may still tell something of the pixels beside them.
+
+use std::sync::atomic::Ordering;
+
+use super::cell::Cell;
+use super::thresholds::FINEST;
+use super::tile::Tile;
+use super::told::{ABOVE, ALL, BELOW, LEFT, RIGHT, Told};
+
+/// What the pixels of a tile, and those around it, know of their sides.
+#[derive(Debug)]
+pub struct Borders {
+    /// The sides that have nothing more to tell, bit by bit, row by row, with a margin of the pixels around the tile.
+    known: Vec<u8>,
+    /// Numbers from one row to the next.
+    stride: usize,
+    /// Row and column of the first pixel of the tile.
+    first: [usize; 2],
+}
+
+/// A side between two pixels.
+pub struct Side {
+    /// The points at its ends.
+    pub ends: [[u16; 2]; 2],
+    /// The places of the pixels beside it that it may tell something, and which of their sides it is.
+    pub listening: [Option<(usize, u8)>; 2],
+}
+
+impl Borders {
+    /// No pixels.
+    pub fn new() -> Self {
+        Self {
+            known: Vec::new(),
+            stride: 0,
+            first: [0; 2],
+        }
+    }
+
+    /// Starts with what the pixels of a tile know. Those around it may know more than is known here.
+    pub fn start(&mut self, tile: &Tile, told: &Told) {
+        let (width, height) = (tile.width(), tile.rows.len());
+        self.stride = width + 2;
+        self.first = [tile.rows.start, tile.columns.start];
+        self.known.clear();
+        self.known.resize(self.stride * (height + 2), 0);
+        // Nobody is beyond the edges.
+        let before = tile.rows.start.checked_sub(1);
+        if !before.is_some_and(|row| told.has(row)) {
+            self.known[..self.stride].fill(ALL);
+        }
+        if !told.has(tile.rows.end) {
+            self.known[self.stride * (height + 1)..].fill(ALL);
+        }
+        let rows = self.known.chunks_exact_mut(self.stride).skip(1);
+        for (row, known) in tile.rows.clone().zip(rows) {
+            if tile.columns.start == 0 {
+                known[0] = ALL;
+            }
+            if tile.columns.end == told.width() {
+                known[width + 1] = ALL;
+            }
+            let told = told.row(row, &tile.columns);
+            for (known, told) in known[1..=width].iter_mut().zip(told) {
+                *known = told.load(Ordering::Relaxed);
+            }
+        }
+    }
+
+    /// Hands on what the pixels of the tile know.
+    pub fn finish(&self, tile: &Tile, told: &Told) {
+        let rows = self.known.chunks_exact(self.stride).skip(1);
+        for (row, known) in tile.rows.clone().zip(rows) {
+            let told = told.row(row, &tile.columns);
+            for (&known, told) in known[1..].iter().zip(told) {
+                if known != 0 {
+                    told.store(known, Ordering::Relaxed);
+                }
+            }
+        }
+    }
+
+    /// Notes of a cell, if it is a pixel, that some of its sides have nothing more to tell.
+    #[inline(always)]
+    pub fn note(&mut self, cell: &Cell, sides: u8) {
+        if usize::from(cell.side) == FINEST {
+            let place = self.place([cell.x, cell.y]);
+            self.known[place] |= sides;
+        }
+    }
+
+    /// The side that a point is on; `None` for a corner, inside of a pixel, and where nobody listens.
+    #[inline(always)]
+    pub fn side_of(&self, [x, y]: [u16; 2]) -> Option<Side> {
+        let step = FINEST as u16;
+        let (is_on_column, is_on_row) = (x % step == 0, y % step == 0);
+        if is_on_column == is_on_row {
+            return None;
+        }
+        let behind = self.place([x, y]);
+        let (before, end, start) = if is_on_column {
+            (behind - 1, RIGHT, LEFT)
+        } else {
+            (behind - self.stride, BELOW, ABOVE)
+        };
+        let listens =
+            |place: usize, side: u8| (self.known[place] & side == 0).then_some((place, side));
+        let listening = [listens(before, end), listens(behind, start)];
+        if listening == [None; 2] {
+            return None;
+        }
+        let (left, top) = (x / step * step, y / step * step);
+        let other = if is_on_column {
+            [left, top + step]
+        } else {
+            [left + step, top]
+        };
+        Some(Side {
+            ends: [[left, top], other],
+            listening,
+        })
+    }
+
+    /// The pixel of the tile at a place, as a cell that nobody has looked at.
+    pub fn cell(&self, place: usize) -> Option<Cell> {
+        let is_inside = self.is_inside(place);
+        let pixel = self.pixel(place).filter(|_| is_inside)?;
+        Some(self.cell_of(pixel))
+    }
+
+    /// The same by its row and column in the picture.
+    pub fn cell_of(&self, [row, column]: [usize; 2]) -> Cell {
+        let [top, left] = self.first;
+        Cell::pixel(column - left, row - top, false).unwatched()
+    }
+
+    /// Row and column in the picture of what is at a place; `None` before the first ones.
+    pub fn pixel(&self, place: usize) -> Option<[usize; 2]> {
+        let [top, left] = self.first;
+        let row = (top + place / self.stride).checked_sub(1)?;
+        let column = (left + place % self.stride).checked_sub(1)?;
+        Some([row, column])
+    }
+
+    fn is_inside(&self, place: usize) -> bool {
+        let (row, column) = (place / self.stride, place % self.stride);
+        let rows = self.known.len() / self.stride;
+        0 < row && row + 1 < rows && 0 < column && column + 1 < self.stride
+    }
+
+    /// The place of the pixel below and behind a point.
+    #[inline(always)]
+    fn place(&self, [x, y]: [u16; 2]) -> usize {
+        (usize::from(y) / FINEST + 1) * self.stride + usize::from(x) / FINEST + 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sides_tell_the_pixels_beside_them_that_do_not_know_yet() {
+        let step = FINEST as u16;
+        let tile = Tile {
+            columns: 4..7,
+            rows: 0..2,
+        };
+        let told = Told::new(7, 0..4);
+        told.row(0, &(6..7))[0].store(ALL, Ordering::Relaxed);
+        let mut borders = Borders::new();
+        borders.start(&tile, &told);
+        let listening = |borders: &Borders, point: [u16; 2]| {
+            let side = borders.side_of(point)?;
+            let pixels = side.listening.into_iter().flatten();
+            Some(
+                pixels
+                    .filter_map(|(place, side)| Some((borders.pixel(place)?, side)))
+                    .collect(),
+            )
+        };
+        let between = [step, step + 5];
+        let both: Vec<([usize; 2], u8)> = vec![([1, 4], RIGHT), ([1, 5], LEFT)];
+        assert_eq!(listening(&borders, between), Some(both));
+        let side = borders.side_of(between).expect("a side");
+        assert_eq!(side.ends, [[step, step], [step, 2 * step]]);
+        borders.note(&borders.cell_of([1, 5]), LEFT | ABOVE);
+        assert_eq!(listening(&borders, between), Some(vec![([1, 4], RIGHT)]));
+        borders.note(&borders.cell_of([1, 4]), ALL);
+        assert_eq!(listening(&borders, between), None);
+        assert_eq!(
+            listening(&borders, [2 * step + 1, step]),
+            Some(vec![([1, 6], ABOVE)])
+        );
+        // Beyond the tile are others, and beyond the picture there is nobody.
+        let (left, _) = borders
+            .side_of([0, 1])
+            .and_then(|side| side.listening[0])
+            .expect("one");
+        assert!(borders.cell(left).is_none());
+        assert_eq!(borders.pixel(left), Some([0, 3]));
+        assert_eq!(listening(&borders, [3 * step, 1]), None);
+        assert_eq!(listening(&borders, [1, 0]), Some(vec![([0, 4], ABOVE)]));
+        assert_eq!(listening(&borders, [step, step]), None, "a corner");
+        assert_eq!(listening(&borders, [1, 1]), None, "inside");
+        borders.finish(&tile, &told);
+        let known = told.row(1, &(3..6)).iter();
+        let known: Vec<u8> = known.map(|sides| sides.load(Ordering::Relaxed)).collect();
+        assert_eq!(known, [0, ALL, LEFT | ABOVE]);
+    }
+}

@@ -1,0 +1,82 @@
+//! Squares between samples, pixels and parts of them.
+
+use super::samples::Edges;
+use super::thresholds::FINEST;
+use super::tile::TileColors;
+use crate::simd::Real;
+
+/// A square between samples: its upper left corner on the finest grid, its side, and its samples.
+#[derive(Clone, Copy, Debug)]
+pub struct Cell {
+    /// Columns of the finest grid from the left.
+    pub x: u16,
+    /// Rows of the finest grid from the top.
+    pub y: u16,
+    /// Steps of the finest grid.
+    pub side: u16,
+    /// What was looked for at its corners, or at those of the cell that it is a part of.
+    pub looked: Edges,
+    /// Whether it is, or is a part of, one where lights may swap, see [`super::shadows`].
+    pub swaps_lights: bool,
+    /// Whether it may show a face of a mesh that no corner is on, or light between two of them.
+    pub may_hide_face: bool,
+    /// The samples at its corners: upper left and right, lower left and right.
+    pub corners: [u32; 4],
+}
+
+impl Cell {
+    /// A pixel of a tile, whose samples are not known.
+    pub fn pixel(column: usize, row: usize, may_hide_face: bool) -> Self {
+        Self {
+            x: (column * FINEST) as u16,
+            y: (row * FINEST) as u16,
+            side: FINEST as u16,
+            looked: Edges::Near,
+            swaps_lights: false,
+            may_hide_face,
+            corners: [0; 4],
+        }
+    }
+
+    /// The same, about which nobody has looked what may slip between samples, or ends near them.
+    pub fn unwatched(self) -> Self {
+        Self {
+            looked: Edges::Signed,
+            ..self
+        }
+    }
+
+    /// Row and column of the pixel that it is in.
+    pub fn row_and_column(&self) -> [usize; 2] {
+        [self.y, self.x].map(|place| usize::from(place) / FINEST)
+    }
+
+    /// The pixel that it is in, `stride` from one row of them to the next.
+    #[inline(always)]
+    pub fn pixel_in(&self, stride: usize) -> usize {
+        self.y as usize / FINEST * stride + self.x as usize / FINEST
+    }
+
+    /// Its corners on the finest grid: upper left and right, lower left and right.
+    pub fn places(&self) -> [(u16, u16); 4] {
+        let (left, top) = (self.x, self.y);
+        let (right, bottom) = (left + self.side, top + self.side);
+        [(left, top), (right, top), (left, bottom), (right, bottom)]
+    }
+
+    /// Its side in pixels.
+    #[inline(always)]
+    pub fn width(&self) -> f64 {
+        f64::from(self.side) / FINEST as f64
+    }
+
+    /// Adds its colour, red, green and blue first, to its pixel, by its area.
+    #[inline(always)]
+    pub fn add_color<R: Real>(&self, color: [R; 4], colors: &mut TileColors<R>) {
+        let pixel = self.pixel_in(colors.stride);
+        let area = R::from_f64(self.width() * self.width());
+        for (sum, color) in colors.channels.iter_mut().zip(color) {
+            sum[pixel] = sum[pixel] + color * area;
+        }
+    }
+}

@@ -1,0 +1,147 @@
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use super::*;
+use crate::scene::Accelerator;
+use crate::simd::Real;
+
+impl Pixel for [u64; 3] {
+    fn of<R: Real>(red: R, green: R, blue: R) -> Self {
+        [red, green, blue].map(|channel| channel.to_f64().to_bits())
+    }
+}
+
+#[test]
+fn tiles_of_any_size_give_the_same_bits() {
+    let mut scene = Scene::demo();
+    scene.render.reflection_limit = 3;
+    for sampling in [Sampling::Centres, Sampling::Grid(2), Sampling::ADAPTIVE] {
+        let pictures = [16, 8, 5, 32, 200].map(|tile| {
+            let request = RenderRequest {
+                sampling,
+                ..RenderRequest::sized(171, 93)
+            };
+            let tracer = Tracer {
+                tile,
+                ..Tracer::new(&scene, &request)
+            };
+            let mut pixels = vec![[0_u64; 3]; 171 * 93];
+            let rays = tracer.pass(&mut pixels, Pass::Whole, &RenderControl::default());
+            assert!(rays.is_some());
+            pixels
+        });
+        for other in &pictures[1..] {
+            assert!(*other == pictures[0], "{sampling:?}");
+        }
+    }
+}
+
+#[test]
+fn many_threads_share_the_tiles_of_a_row() {
+    let scene = Scene::demo();
+    for (sampling, tiles) in [(Sampling::Centres, 66), (Sampling::ADAPTIVE, 84)] {
+        let request = RenderRequest {
+            sampling,
+            ..RenderRequest::sized(171, 93)
+        };
+        let tracer = Tracer::new(&scene, &request);
+        let pictures = [1, 24].map(|threads| {
+            let threads = Threads::new(Some(threads)).expect("threads");
+            let mut pixels = vec![[0_u64; 3]; 171 * 93];
+            let control = RenderControl::default();
+            threads.run(|| tracer.pass(&mut pixels, Pass::Whole, &control));
+            pixels
+        });
+        assert!(pictures[0] == pictures[1], "{sampling:?}");
+        assert_eq!(tracer.pieces(24).count(), tiles, "every tile");
+        let large = Tracer::new(&scene, &RenderRequest::sized(1024, 1024));
+        assert_eq!(large.pieces(1).count(), 128, "quarters of rows");
+        assert_eq!(
+            tracer.pieces(24).map(Region::pixels).sum::<usize>(),
+            171 * 93
+        );
+        assert_eq!(tracer.time_pieces(24).len(), tiles);
+    }
+}
+
+#[test]
+fn packets_in_squares_give_the_same_bits() {
+    let scene = Scene::demo();
+    for (sampling, tile) in [(Sampling::Centres, 16), (Sampling::Grid(2), 13)] {
+        let pictures = [false, true].map(|in_squares| {
+            let request = RenderRequest {
+                sampling,
+                accelerator: Accelerator::Bvh,
+                ..RenderRequest::sized(83, 61)
+            };
+            let tracer = Tracer {
+                tile,
+                in_squares,
+                ..Tracer::new(&scene, &request)
+            };
+            let mut pixels = vec![[0_u64; 3]; 83 * 61];
+            let rays = tracer.pass(&mut pixels, Pass::Whole, &RenderControl::default());
+            (pixels, rays)
+        });
+        assert!(pictures[0] == pictures[1], "{sampling:?}");
+    }
+}
+
+#[test]
+fn a_picture_in_pieces_has_the_same_bits() {
+    let scene = Scene::demo();
+    for sampling in [Sampling::Grid(2), Sampling::ADAPTIVE] {
+        let request = RenderRequest {
+            sampling,
+            ..RenderRequest::sized(83, 61)
+        };
+        let (tracer, control) = (Tracer::new(&scene, &request), RenderControl::default());
+        let mut whole = vec![[0_u64; 3]; 83 * 61];
+        let rays = tracer.pass(&mut whole, Pass::Whole, &control);
+        let mut pieces = Vec::new();
+        let mut sum = Rays::default();
+        for first in (0..61).step_by(7) {
+            let mut piece = vec![[0_u64; 3]; 83 * (61 - first).min(7)];
+            sum += tracer
+                .rows(&mut piece, first, &control)
+                .expect("not stopped");
+            pieces.extend(piece);
+        }
+        assert!(pieces == whole, "{sampling:?}");
+        if sampling == Sampling::Grid(2) {
+            assert_eq!(Some(sum), rays);
+        }
+    }
+}
+
+/// Told to stop by the first pixel that is written.
+static FIRST: RenderControl = RenderControl {
+    stop: AtomicBool::new(false),
+    pixels: AtomicU64::new(0),
+};
+
+#[derive(Clone, Copy)]
+struct Stopping;
+
+impl Pixel for Stopping {
+    fn of<R: Real>(_: R, _: R, _: R) -> Self {
+        FIRST.stop.store(true, Ordering::Relaxed);
+        Self
+    }
+}
+
+#[test]
+fn a_stopped_pass_writes_no_tile_that_was_being_traced() {
+    let (scene, side) = (Scene::demo(), 2048);
+    let tracer = Tracer::new(&scene, &RenderRequest::sized(side, side));
+    let mut pixels = vec![Stopping; (side * side) as usize];
+    let threads = Threads::new(Some(3)).expect("threads");
+    let rays = threads.run(|| tracer.pass(&mut pixels, Pass::Whole, &FIRST));
+    assert_eq!(rays, None);
+    let traced = FIRST.pixels.load(Ordering::Relaxed);
+    // The tile that told to stop, and those that the other threads were writing meanwhile.
+    let most = (3 * tracer.tile * tracer.tile) as u64;
+    assert!(
+        traced <= most,
+        "{traced} pixels after the stop, {most} at most"
+    );
+}
