@@ -14,12 +14,6 @@ use crate::plan::{Planner, RenderRequest};
 use crate::scene::Scene;
 use crate::trace::{Pixel, Rays, RenderControl, Tracer};
 
-/// Pixels of a strip, at most: 16 MB of levels, or 48 of light. Smaller pictures are one strip.
-const STRIP: usize = 1 << 22;
-/// Strips have a multiple of so many rows: an EXR file is written in squares with this side, and a square is asked for
-/// row by row.
-const SQUARE: usize = 64;
-
 /// A picture that is traced when its rows are asked for, of which no more than a strip is there.
 #[derive(Debug)]
 pub struct Strips<'a, P> {
@@ -45,9 +39,8 @@ impl<'a, P: Pixel + Copy + Default> Strips<'a, P> {
     ) -> Self {
         let start = Instant::now();
         let tracer = Tracer::planned(scene, request, planner);
-        let step = STRIP / tracer.width().max(1) / SQUARE * SQUARE;
         Self {
-            step: step.clamp(SQUARE, tracer.height().max(SQUARE)),
+            step: tracer.strip(),
             tracer,
             control,
             strip,
@@ -191,33 +184,14 @@ mod tests {
             let mut film = Film::new(format);
             let mut drawing = film.draw(&mut planner, (&scene, &request), &control);
             match &mut drawing {
-                Drawing::Levels(strips) => strips.step = SQUARE,
-                Drawing::Linear(strips) => strips.step = SQUARE,
+                Drawing::Levels(strips) => strips.step = 64,
+                Drawing::Linear(strips) => strips.step = 64,
             }
             drawing.start().expect("not stopped");
             drawing.encode(format, &mut strips).expect("encodes");
             let rays = drawing.cost().rays.camera;
             assert_eq!(rays, 70 * 150 * 4, "{format:?}: every row is traced once");
             assert!(strips == whole, "{format:?}");
-        }
-    }
-
-    #[test]
-    fn a_large_picture_is_no_more_than_a_strip_in_memory() {
-        let control = RenderControl::default();
-        for (width, height) in [(16_384, 16_384), (16_384, 1), (1, 16_384), (2048, 2048)] {
-            let request = RenderRequest::sized(width, height);
-            let mut pixels: Vec<LinearRgb> = Vec::new();
-            let picture = (&Scene::demo(), &request);
-            let strips = Strips::new(&mut pixels, &mut Planner::default(), picture, &control);
-            assert!(strips.step * width as usize <= STRIP.max(SQUARE * width as usize));
-            let is_whole = strips.step >= height as usize;
-            assert!(
-                is_whole || strips.step.is_multiple_of(SQUARE),
-                "{}",
-                strips.step
-            );
-            assert_eq!(is_whole, width < 16_384 || height == 1);
         }
     }
 

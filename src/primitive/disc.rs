@@ -135,7 +135,9 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
 
     /// Seen along the ray, the disc is an ellipse of half-axes r and r·|n·d|. With f = √((a/B)² + (b/A)²),
     /// which is 1 on an ellipse and changes by at most 1/B per length, (f - 1)·B is no more than the
-    /// distance from it, and neither is the distance from the circle of radius r.
+    /// distance from it, and neither is the distance from the circle of radius r. It reaches from end to end of the
+    /// chord over which the ray passes, and not of the whole disc: where rays end before that, it is not there, and the
+    /// box around it need not be met.
     #[inline(always)]
     fn approach<L: SimdFloat<Real = R>>(
         &self,
@@ -160,9 +162,10 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
         let long = square - short;
         let by_ellipse = (short + long * cosine * cosine).sqrt() - radius * cosine.abs();
         let by_circle = square.sqrt() - radius;
+        let half_chord = ((radius * radius - long).max(zero) * sine_square).sqrt();
         Some(Approach {
-            from: along - radius,
-            to: along + radius,
+            from: along - half_chord,
+            to: along + half_chord,
             distance: by_ellipse.max(by_circle),
             size: (radius + radius) * cosine.abs(),
         })
@@ -219,7 +222,12 @@ mod tests {
             let off = point - eye * 3.0;
             let beside = (off - direction * off.dot(direction)).length();
             prop_assert!(approach.distance <= beside + 1e-9, "{} {}", approach.distance, beside);
-            prop_assert!(approach.from - 1e-9 <= off.dot(direction) && off.dot(direction) <= approach.to + 1e-9);
+            // It reaches from rim to rim where the ray passes over it: through all of its points along the ray, to two of them.
+            let through = Ray::<f64> { origin: Vec3::from_dvec3(point - direction * 2.0), ..ray };
+            let chord = target.approach(&through, &(), |_| true).expect("asked for");
+            prop_assert!(chord.from - 1e-6 <= 2.0 && 2.0 <= chord.to + 1e-6, "{chord:?}");
+            let sine = (1.0 - normal.dot(direction).powi(2)).sqrt();
+            prop_assert!(chord.to - chord.from <= 1.2 * sine + 1e-9, "{chord:?}");
             if target.meet(&ray, &Methods::default()).is_finite() {
                 prop_assert!(approach.distance <= 1e-9, "a hit is inside: {}", approach.distance);
             }

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::atomic::Ordering;
 
 use super::candidates::{Candidates, Span};
+use super::canvas::Canvas;
 use super::engine::{Engine, Reference, Workspace};
 use super::heat::heat;
 use super::intersect::Kernel;
@@ -11,14 +12,14 @@ use super::lattice::Limits;
 use super::sampler::Sampler;
 use super::shelf::Shelf;
 use super::stats::{Rays, RenderControl};
-use super::tile::{Grid, Pixel, Tile, TileColors};
+use super::tile::{Grid, Tile, TileColors};
 use super::told::Hearing;
 use crate::plan::{Plan, Region, Show};
 use crate::scene::Sampling;
 use crate::simd::{SimdFloat, SimdReal, WithSimd};
 
 /// A row of tiles, or a piece of one.
-pub struct Band<'a, R, P> {
+pub struct Band<'a, R> {
     /// What is seen.
     pub plan: &'a Plan<R>,
     /// Everything that can be seen.
@@ -33,8 +34,8 @@ pub struct Band<'a, R, P> {
     pub columns: Range<usize>,
     /// Its rows.
     pub rows: Range<usize>,
-    /// The pixels there, row by row.
-    pub pixels: Vec<&'a mut [P]>,
+    /// The pixels there.
+    pub canvas: &'a mut dyn Canvas<R>,
     /// Those that are traced.
     pub grid: Grid,
     /// How they are sampled.
@@ -70,7 +71,7 @@ impl<L: SimdFloat> Desk<L> {
     }
 }
 
-impl<R: SimdReal, P: Pixel> WithSimd<R> for Band<'_, R, P> {
+impl<R: SimdReal> WithSimd<R> for Band<'_, R> {
     type Output = Option<Rays>;
 
     #[inline(always)]
@@ -84,7 +85,7 @@ impl<R: SimdReal, P: Pixel> WithSimd<R> for Band<'_, R, P> {
     }
 }
 
-impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
+impl<R: SimdReal> Band<'_, R> {
     #[inline(always)]
     fn trace<L: SimdFloat<Real = R>, const TREE: bool>(mut self, token: L::Token) -> Option<Rays> {
         let band = Tile {
@@ -153,11 +154,15 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
             if engine.is_stopped() {
                 return None;
             }
-            if self.grid == Grid::ALL {
-                self.fill(&tile, stride, channels);
+            let traced = if self.grid == Grid::ALL {
+                self.canvas.fill(&tile, stride, channels);
+                tile.width() * tile.rows.len()
             } else {
-                self.scatter(&tile, channels);
-            }
+                self.canvas.scatter(&tile, self.grid, channels);
+                self.grid.pixels(&tile).count()
+            };
+            let pixels = &self.control.pixels;
+            pixels.fetch_add(traced as u64, Ordering::Relaxed);
             if plan.show == Show::Cost {
                 self.fill_with_heat(&tile, engine.rays.total() - before);
             }
@@ -167,58 +172,22 @@ impl<R: SimdReal, P: Pixel> Band<'_, R, P> {
         Some(rays)
     }
 
-    fn pixel(&mut self, column: usize, row: usize) -> &mut P {
-        &mut self.pixels[row - self.rows.start][column - self.columns.start]
-    }
-
     /// Writes how many rays each pixel of a tile took.
     fn fill_with_heat(&mut self, tile: &Tile, rays: u64) {
         let count = self.grid.pixels(tile).count().max(1);
-        let [red, green, blue] = heat::<R>(rays as f64 / count as f64);
+        let color = heat::<R>(rays as f64 / count as f64);
         for (column, row) in self.grid.pixels(tile) {
-            *self.pixel(column, row) = P::of(red, green, blue);
+            self.canvas.set(column, row, color);
         }
-    }
-
-    /// Writes the colours of a whole tile, `stride` apart from row to row.
-    #[inline(always)]
-    fn fill(&mut self, tile: &Tile, stride: usize, [red, green, blue]: [&[R]; 3]) {
-        let width = tile.columns.len();
-        for row in 0..tile.rows.len() {
-            let from = tile.columns.start - self.columns.start;
-            let pixels = &mut self.pixels[row][from..from + width];
-            let part = row * stride..row * stride + width;
-            let channels = red[part.clone()]
-                .iter()
-                .zip(&green[part.clone()])
-                .zip(&blue[part]);
-            for (pixel, ((&red, &green), &blue)) in pixels.iter_mut().zip(channels) {
-                *pixel = P::of(red, green, blue);
-            }
-        }
-        self.control
-            .pixels
-            .fetch_add((width * tile.rows.len()) as u64, Ordering::Relaxed);
     }
 
     /// Writes the colours of some pixels of a tile again, by row and column in it.
     fn write(&mut self, tile: &Tile, pixels: &[[usize; 2]], colors: &TileColors<R>) {
-        let [red, green, blue] = colors.channels();
         for &[row, column] in pixels {
             let index = row * colors.stride + column;
-            let pixel = self.pixel(tile.columns.start + column, tile.rows.start + row);
-            *pixel = P::of(red[index], green[index], blue[index]);
+            let color = colors.channels().map(|channel| channel[index]);
+            let (column, row) = (tile.columns.start + column, tile.rows.start + row);
+            self.canvas.set(column, row, color);
         }
-    }
-
-    /// Writes the colours of those pixels of a tile that the pass takes.
-    #[inline(always)]
-    fn scatter(&mut self, tile: &Tile, [red, green, blue]: [&[R]; 3]) {
-        let mut count = 0;
-        for (index, (column, row)) in self.grid.pixels(tile).enumerate() {
-            *self.pixel(column, row) = P::of(red[index], green[index], blue[index]);
-            count += 1;
-        }
-        self.control.pixels.fetch_add(count, Ordering::Relaxed);
     }
 }

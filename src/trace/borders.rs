@@ -26,6 +26,14 @@ pub struct Side {
     pub listening: [Option<(usize, u8)>; 2],
 }
 
+/// A pixel beside a side.
+pub enum Listener {
+    /// Of the tile, as a cell that nobody has looked at.
+    Here(Cell),
+    /// Of another one, by its row and column in the picture.
+    Elsewhere([usize; 2]),
+}
+
 impl Borders {
     /// No pixels.
     pub fn new() -> Self {
@@ -120,21 +128,23 @@ impl Borders {
         })
     }
 
-    /// The pixel of the tile at a place, as a cell that nobody has looked at.
-    pub fn cell(&self, place: usize) -> Option<Cell> {
-        let is_inside = self.is_inside(place);
-        let pixel = self.pixel(place).filter(|_| is_inside)?;
-        Some(self.cell_of(pixel))
+    /// The pixel at a place; `None` before the first ones of the picture.
+    pub fn listener(&self, place: usize) -> Option<Listener> {
+        let pixel = self.pixel(place)?;
+        Some(if self.is_inside(place) {
+            Listener::Here(self.cell_of(pixel))
+        } else {
+            Listener::Elsewhere(pixel)
+        })
     }
 
-    /// The same by its row and column in the picture.
+    /// A pixel of the tile, by its row and column in the picture, as a cell that nobody has looked at.
     pub fn cell_of(&self, [row, column]: [usize; 2]) -> Cell {
         let [top, left] = self.first;
         Cell::pixel(column - left, row - top, false).unwatched()
     }
 
-    /// Row and column in the picture of what is at a place; `None` before the first ones.
-    pub fn pixel(&self, place: usize) -> Option<[usize; 2]> {
+    fn pixel(&self, place: usize) -> Option<[usize; 2]> {
         let [top, left] = self.first;
         let row = (top + place / self.stride).checked_sub(1)?;
         let column = (left + place % self.stride).checked_sub(1)?;
@@ -196,8 +206,8 @@ mod tests {
             .side_of([0, 1])
             .and_then(|side| side.listening[0])
             .expect("one");
-        assert!(borders.cell(left).is_none());
-        assert_eq!(borders.pixel(left), Some([0, 3]));
+        let left = borders.listener(left);
+        assert!(matches!(left, Some(Listener::Elsewhere([0, 3]))));
         assert_eq!(listening(&borders, [3 * step, 1]), None);
         assert_eq!(listening(&borders, [1, 0]), Some(vec![([0, 4], ABOVE)]));
         assert_eq!(listening(&borders, [step, step]), None, "a corner");

@@ -100,6 +100,8 @@ mod shelf;
 
 mod again;
 
+mod canvas;
+
 mod band;
 
 mod tracer;

@@ -1,7 +1,7 @@
 //! The cells of a tile whose insides are looked at. What becomes of them is decided one by one, not in lanes: it is
 //! compiled once for each precision, and not for every width of vectors.
 
-use super::borders::Borders;
+use super::borders::{Borders, Listener};
 use super::cell::Cell;
 use super::coverage::{CrossedCell, Found};
 use super::lattice::{Inside, Lattice, Limits};
@@ -211,11 +211,13 @@ impl<R: Real> Refinement<R> {
             };
             if R::from_f64(TELLING) < self.lattice.excess(heard, side.ends) {
                 for (place, side) in side.listening.into_iter().flatten() {
-                    if let Some(pixel) = self.borders.cell(place) {
-                        self.borders.note(&pixel, ALL);
-                        self.told.push(pixel);
-                    } else if let Some(pixel) = self.borders.pixel(place) {
-                        told.tell(pixel, side);
+                    match self.borders.listener(place) {
+                        Some(Listener::Here(pixel)) => {
+                            self.borders.note(&pixel, ALL);
+                            self.told.push(pixel);
+                        }
+                        Some(Listener::Elsewhere(pixel)) => told.tell(pixel, side),
+                        None => {}
                     }
                 }
             }

@@ -43,6 +43,13 @@ pub struct Hearing<'a> {
     pub those: Option<&'a [[usize; 2]]>,
 }
 
+impl<'a> Hearing<'a> {
+    /// Of all pixels.
+    pub fn all(told: &'a Told) -> Self {
+        Self { told, those: None }
+    }
+}
+
 impl Told {
     /// Nothing yet, for these rows of so many pixels.
     pub fn new(width: usize, rows: Range<usize>) -> Self {

@@ -10,6 +10,7 @@ use rayon::slice::ParallelSliceMut as _;
 use super::again::Exact;
 use super::band::Band;
 use super::candidates::Candidates;
+use super::canvas::Pixels;
 use super::engine::Reference;
 use super::shelf::Shelf;
 use super::stats::{Rays, RenderControl};
@@ -39,6 +40,12 @@ const PIXELS_IN_SQUARES: u64 = 128;
 /// fifth of their time, and 64 half of it.
 const PIECES_PER_THREAD: usize = 128;
 
+/// Pixels of a strip, at most: 16 MB of levels, or 48 of light. Smaller pictures are one strip.
+const STRIP: usize = 1 << 22;
+/// Strips have a multiple of so many rows: an EXR file is written in squares with this side, and a square is asked for
+/// row by row.
+const SQUARE: usize = 64;
+
 /// A picture of a scene, planned for the real type it needs.
 #[derive(Debug)]
 pub struct Tracer {
@@ -47,6 +54,8 @@ pub struct Tracer {
     /// Side of a tile.
     tile: usize,
     in_squares: bool,
+    /// Rows of a strip.
+    strip: usize,
     /// The part that is traced.
     region: Option<Region>,
     sampling: Sampling,
@@ -98,9 +107,12 @@ impl Tracer {
         let pixels = request.pixels();
         let is_sparse = plan.bounded() * PIXELS_PER_PRIMITIVE <= pixels;
         let side = if is_sparse { LARGE_TILE } else { SMALL_TILE };
+        let (width, height) = (request.width as usize, request.height as usize);
+        let strip = STRIP / width.max(1) / SQUARE * SQUARE;
         Self {
-            width: request.width as usize,
-            height: request.height as usize,
+            width,
+            height,
+            strip: strip.clamp(SQUARE, height.max(SQUARE)),
             tile: match (request.aspect, request.sampling) {
                 (Aspect::Cost, _) => COST_TILE,
                 // It has one more corner than pixels in a row: they fill whole packets.
@@ -127,6 +139,12 @@ impl Tracer {
         self.height
     }
 
+    /// How many rows can be traced by themselves: pixels tell nothing to those of the next strip, so that it does not
+    /// matter which of them are traced at once.
+    pub fn strip(&self) -> usize {
+        self.strip
+    }
+
     /// The real type and how many of it are computed in step, for example `f32×16 avx2`.
     pub fn lanes(&self) -> String {
         match self.plan {
@@ -146,10 +164,16 @@ impl Tracer {
         pass: Pass,
         control: &RenderControl,
     ) -> Option<Rays> {
-        self.trace_rows(pixels, 0, pass, control)
+        let strips = pixels.chunks_mut((self.strip * self.width).max(1));
+        let mut rays = Rays::default();
+        for (index, pixels) in strips.enumerate() {
+            rays += self.trace_rows(pixels, index * self.strip, pass, control)?;
+        }
+        Some(rays)
     }
 
-    /// Traces whole rows of the picture, from `first` on, into `pixels`; see [`Self::pass`].
+    /// Traces whole rows of the picture, from `first` on, into `pixels`; see [`Self::pass`]. They are what they are in
+    /// the whole picture if they are a strip of it.
     pub fn rows<P: Pixel>(
         &self,
         pixels: &mut [P],
@@ -212,11 +236,8 @@ impl Tracer {
             let since = Instant::now();
             // Nobody stops it.
             let control = RenderControl::default();
-            let hearing = Hearing {
-                told: &told,
-                those: None,
-            };
-            let _ = self.piece((plan, &seen), (place, rows), samples, (hearing, &control));
+            let notes = (Hearing::all(&told), &control);
+            let _ = self.piece((plan, &seen), (place, rows), samples, notes);
             since.elapsed()
         };
         self.pieces(threads).map(time).collect()
@@ -230,6 +251,11 @@ impl Tracer {
         (grid, sampling): (Grid, Sampling),
         (hearing, control): (Hearing, &RenderControl),
     ) -> Option<Rays> {
+        let mut canvas = Pixels {
+            place,
+            rows: pixels,
+            level: self.level,
+        };
         self.level.run(Band {
             plan,
             seen,
@@ -238,7 +264,7 @@ impl Tracer {
             region: self.region,
             columns: place.columns.0..place.columns.1,
             rows: place.rows.0..place.rows.1,
-            pixels,
+            canvas: &mut canvas,
             grid,
             sampling,
             hearing,
@@ -276,13 +302,7 @@ impl Tracer {
                 let left = index * piece;
                 let columns = (left, (left + piece).min(self.width));
                 let place = Region { columns, rows };
-                let notes = (
-                    Hearing {
-                        told: &told,
-                        those: None,
-                    },
-                    control,
-                );
+                let notes = (Hearing::all(&told), control);
                 self.piece((plan, &seen), (place, pixels), (grid, sampling), notes)
             });
             pieces.try_reduce(Rays::default, |a, b| Some(a + b))

@@ -11,7 +11,7 @@ use super::dialogs::Ask;
 use super::put_down::put_down;
 use super::timeline::actions;
 use super::tools::{axis_camera, framing_camera, projected_camera};
-use super::wishes::{FileOutcome, Next};
+use super::wishes::Next;
 use crate::editor::{
     Action, Edit, Editor, Item, Kind, Mode, Selected, Selection, Time, excerpt, free_bookmark_name,
     free_group_name, read,
@@ -26,106 +26,66 @@ const PASTE: &str = "paste";
 
 impl App {
     pub(super) fn run(&mut self, ctx: &Context, command: Command) {
-        let outcome = match command {
-            Command::New => self.files.start(ctx, &mut self.editor, Next::New),
-            Command::OpenExample(place) => {
-                self.files
-                    .start(ctx, &mut self.editor, Next::Example(place))
+        if let Some(next) = next_document(&command) {
+            let outcome = self.files.start(ctx, &mut self.editor, next);
+            return self.act_on(ctx, outcome);
+        }
+        if let Some(ask) = asked_for(&command) {
+            // Nothing comes of it before it is answered.
+            return self.files.ask(ctx, &self.editor, ask);
+        }
+        match command {
+            Command::Save => {
+                let outcome = self.files.save(ctx, &mut self.editor);
+                self.act_on(ctx, outcome);
             }
-            Command::Open => self.files.start(ctx, &mut self.editor, Next::Choose),
-            Command::OpenRecent(path) => self.files.start(ctx, &mut self.editor, Next::Open(path)),
-            Command::Quit => self.files.start(ctx, &mut self.editor, Next::Quit),
-            Command::Save => self.files.save(ctx, &mut self.editor),
-            Command::SaveAs => self.ask(ctx, Ask::SaveScene),
-            Command::SaveImage => self.ask(ctx, Ask::SaveImage),
-            Command::Escape => {
-                self.escape(ctx);
-                None
-            }
-            Command::ImportMesh => self.ask(ctx, Ask::ImportMesh),
-            Command::ImportPath => self.ask(ctx, Ask::ImportPath),
-            Command::ExportPath => self.ask(ctx, Ask::ExportPath),
-            Command::Export => {
-                self.exports.is_open = !self.exports.is_open;
-                None
-            }
-            Command::ExportJob => self.ask(ctx, Ask::ExportJob),
-            Command::ExportPovray => self.ask(ctx, Ask::ExportPovray),
-            Command::ExportFolder => self.ask(ctx, Ask::ExportFolder),
+            Command::Escape => self.escape(ctx),
+            Command::Export => self.exports.is_open = !self.exports.is_open,
             Command::Live | Command::LowRes | Command::HighRes if self.lab.leave() => {
-                return self.run(ctx, command);
+                self.run(ctx, command);
             }
             Command::Copy | Command::Cut if is_enabled(&command, &self.editor) => {
                 if self.copy(ctx) && command == Command::Cut {
-                    return self.run(ctx, Command::Delete);
+                    self.run(ctx, Command::Delete);
                 }
-                None
             }
-            Command::RequestPaste => {
-                ctx.send_viewport_cmd(ViewportCommand::RequestPaste);
-                None
-            }
-            Command::Paste(text) => {
-                self.paste(&text);
-                None
-            }
+            Command::RequestPaste => ctx.send_viewport_cmd(ViewportCommand::RequestPaste),
+            Command::Paste(text) => self.paste(&text),
             // The two share the room below the picture.
             Command::Lab => {
                 self.lab.is_open = !self.lab.is_open;
                 self.timeline.is_open = !self.lab.is_open;
-                None
             }
             Command::Timeline => {
                 self.timeline.is_open = !self.timeline.is_open;
                 self.lab.is_open = false;
-                None
             }
-            Command::SelectAll if self.means_keys(ctx) => {
-                return self.run(ctx, Command::SelectKeys);
-            }
+            Command::SelectAll if self.means_keys(ctx) => self.run(ctx, Command::SelectKeys),
             Command::SelectAll => {
                 let all = Action::SelectItems(Selected::all(Item::everything(self.editor.scene())));
                 self.editor.apply(all);
-                None
             }
             Command::FrameAll if self.timeline.is_hovered(ctx.cumulative_frame_nr()) => {
                 self.timeline.fit();
-                None
             }
-            Command::PictureAlone => {
-                self.is_alone = !self.is_alone;
-                None
-            }
-            Command::Aspect(aspect) => {
-                self.layout.aspect = aspect;
-                None
-            }
+            Command::PictureAlone => self.is_alone = !self.is_alone,
+            Command::Aspect(aspect) => self.layout.aspect = aspect,
             Command::Part(part) => {
                 let is_shown = self.layout.part(part);
                 *is_shown = !*is_shown;
-                None
             }
             Command::Why(origin, direction) => {
                 self.why.ask(self.editor.shown(), (origin, direction));
-                None
             }
-            Command::Find => {
-                self.finder.open();
-                None
-            }
-            Command::Shortcuts => {
-                self.shortcuts_open = !self.shortcuts_open;
-                None
-            }
+            Command::Find => self.finder.open(),
+            Command::Shortcuts => self.shortcuts_open = !self.shortcuts_open,
             other => {
                 for action in actions(&other, &self.editor) {
                     self.editor.apply(action);
                 }
                 self.run_on_scene(&other);
-                None
             }
-        };
-        self.act_on(ctx, outcome);
+        }
     }
 
     /// Whether all keys are meant where all is to be selected: some are, or the pointer is over the line of time.
@@ -267,12 +227,6 @@ impl App {
         editor.apply(action);
     }
 
-    /// Asks for a path; nothing comes of it before it is answered.
-    fn ask(&mut self, ctx: &Context, ask: Ask) -> Option<FileOutcome> {
-        self.files.ask(ctx, &self.editor, ask);
-        None
-    }
-
     /// Leaves the innermost of what is going on; where nothing is, the second time asks to quit.
     fn escape(&mut self, ctx: &Context) {
         let time = ctx.input(|input| input.time);
@@ -310,6 +264,33 @@ impl App {
                 .notify("Ctrl+Q quits; so does Esc once more".to_owned());
         }
     }
+}
+
+/// What follows once unsaved changes are out of the way, if the command leaves the document.
+fn next_document(command: &Command) -> Option<Next> {
+    Some(match command {
+        Command::New => Next::New,
+        Command::OpenExample(place) => Next::Example(*place),
+        Command::Open => Next::Choose,
+        Command::OpenRecent(path) => Next::Open(path.clone()),
+        Command::Quit => Next::Quit,
+        _ => return None,
+    })
+}
+
+/// Which path the command asks for, if it asks for one.
+fn asked_for(command: &Command) -> Option<Ask> {
+    Some(match command {
+        Command::SaveAs => Ask::SaveScene,
+        Command::SaveImage => Ask::SaveImage,
+        Command::ImportMesh => Ask::ImportMesh,
+        Command::ImportPath => Ask::ImportPath,
+        Command::ExportPath => Ask::ExportPath,
+        Command::ExportJob => Ask::ExportJob,
+        Command::ExportPovray => Ask::ExportPovray,
+        Command::ExportFolder => Ask::ExportFolder,
+        _ => return None,
+    })
 }
 
 /// Hides everything that is selected, or shows it if all of it is hidden.

@@ -6,8 +6,8 @@ use glam::DVec3;
 use glint::image::{Image, render};
 use glint::plan::RenderRequest;
 use glint::scene::{
-    Disc, HighlightMethod, Mesh, Method as _, Methods, Plane, Precision, Projection, RayOffset,
-    Sampling, Scene, Shape, Sphere, SphereMethod, Triangle, TriangleMethod,
+    Disc, Document, HighlightMethod, Mesh, Method as _, Methods, Plane, Precision, Projection,
+    RayOffset, Sampling, Scene, Shape, Sphere, SphereMethod, Triangle, TriangleMethod,
 };
 use glint::simd::Level;
 use glint::trace::{Grid, Pass, Rays, RenderControl, Threads, Tracer};
@@ -85,6 +85,61 @@ fn any_lanes_give_the_same_bytes() {
                 );
             }
         }
+    }
+}
+
+/// A box before a disc that is seen nearly from its edge: rays that end on the box come close to where the disc begins.
+const BEFORE_A_DISC: &str = r#"
+    camera: Camera(position: (93.2379, 21.8223, -139.607), look_at: (-108.221, -11.442, 135.074), up: (0, 1, 0), projection_distance: 1.284),
+    objects: [
+        Object(name: "Box", color_pack: "dull", shape: Mesh(BOX,
+            position: (-23.9713, 38.2683, 40.9062), rotation: (141.882, 0, 0), scale: (20.4303, 24.2158, 13.0766))),
+        Object(name: "Disc", color_pack: "pale", shape: Disc(center: (-33.576, 39.0663, 27.5988), normal: (0.866922, 0.16259, 0.0632068), radius: 20.6733)),
+    ],
+    lights: [
+        Light(name: "One", position: (-103.949, 119.116, -53.9353), intensity: 0.11),
+        Light(name: "Two", position: (-21.8643, 176.909, -65.0833), intensity: 0.14),
+        Light(name: "Three", position: (49.4944, 182.114, -36.6859), intensity: 0.33),
+    ],"#;
+
+/// Boxes, a ball and a floor that mirror: rays that a ball has spread look at boxes as a whole, and others into them.
+const BEFORE_A_BALL: &str = r#"
+    camera: Camera(position: (-130, 25.39, 120), look_at: (130, -33.44, -120), up: (0, 1, 0), projection_distance: 1.3),
+    objects: [
+        Object(name: "One", color_pack: "dull", shape: Mesh(BOX,
+            position: (-29.39, 32.25, -6.061), rotation: (54.57, 103.9, -146.2), scale: (5.284, 17.41, 15.98))),
+        Object(name: "Two", color_pack: "dull", shape: Mesh(BOX,
+            position: (4.969, 56.65, -14.26), rotation: (-102, -28.04, -169.5), scale: (18.32, 3.52, 3.433))),
+        Object(name: "Ball", color_pack: "mirror", shape: Sphere(center: (-22.26, 23.14, -0.335), radius: 14.66)),
+        Object(name: "Floor", color_pack: "mirror", shape: Plane(point: (0, 0, 0), normal: (0, 1, 0))),
+    ],
+    lights: [Light(name: "Lamp", position: (-4.04, 90, -21.02), intensity: 0.7)],"#;
+
+const BOX: &str = "points: [(-1, -1, -1), (-1, -1, 1), (-1, 1, -1), (-1, 1, 1), (1, -1, -1), (1, -1, 1), (1, 1, -1), (1, 1, 1)],
+    faces: [(0, 3, 1), (0, 2, 3), (4, 7, 6), (4, 5, 7), (0, 5, 4), (0, 1, 5), (2, 7, 3), (2, 6, 7), (0, 6, 2), (0, 4, 6), (1, 7, 5), (1, 3, 7)]";
+
+const THREE_PACKS: &str = r#"Scene(version: 1, light_visualization: false,
+    color_packs: {
+        "dull": ColorPack(ambient: (224, 158, 84), diffuse: (224, 158, 84)),
+        "pale": ColorPack(ambient: (211, 210, 167), diffuse: (211, 210, 167)),
+        "mirror": ColorPack(ambient: (60, 160, 120), diffuse: (60, 160, 120), specular: (220, 220, 240), phong_exponent: 16, reflective: true),
+    },
+    render: Render(reflection_limit: 2),"#;
+
+#[test]
+fn what_a_ray_finds_beside_itself_depends_on_no_other_ray_of_its_packet() {
+    for rest in [BEFORE_A_DISC, BEFORE_A_BALL] {
+        let text = format!("{THREE_PACKS}{})", rest.replace("BOX", BOX));
+        let scene = Document::from_text(&text).expect("a scene").scene;
+        let [alone, together] = [Level::SINGLE, Level::widest()].map(|level| {
+            let request = RenderRequest {
+                sampling: Sampling::ADAPTIVE,
+                level: Some(level),
+                ..RenderRequest::sized(160, 120)
+            };
+            picture(&scene, &request)
+        });
+        assert!(alone == together, "{rest}");
     }
 }
 

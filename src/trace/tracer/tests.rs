@@ -1,7 +1,10 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
+use glam::DVec3;
+
 use super::*;
-use crate::scene::Accelerator;
+use crate::mesh::SOLIDS;
+use crate::scene::{Accelerator, Mesh, Object, Shape};
 use crate::simd::Real;
 
 impl Pixel for [u64; 3] {
@@ -86,30 +89,92 @@ fn packets_in_squares_give_the_same_bits() {
     }
 }
 
+/// Boxes from above, turned differently: pixels tell those beside them, of other tiles and strips too, of corners that
+/// end in them.
+fn boxes() -> Scene {
+    let solid = SOLIDS.iter().find(|solid| solid.name == "Box");
+    let solid = Mesh::of((solid.expect("there is").make)(0.6));
+    let mut scene = Scene::demo();
+    let object = scene.objects[0].clone();
+    scene.camera.position = DVec3::new(0.0, 10.0, 0.1);
+    scene.camera.look_at = DVec3::NEG_Y;
+    let boxes = (0..81).map(|index| {
+        let (along, down) = (f64::from(index % 9) - 4.0, f64::from(index / 9) - 4.0);
+        let mesh = Mesh {
+            position: DVec3::new(along * 0.9 + down * 0.03, 0.0, down * 0.9),
+            rotation: DVec3::new(0.0, 7.0 * f64::from(index), 0.0),
+            ..solid.clone()
+        };
+        Object {
+            name: format!("Box {index}"),
+            shape: Shape::Mesh(mesh),
+            ..object.clone()
+        }
+    });
+    scene.objects = boxes.collect();
+    scene
+}
+
 #[test]
-fn a_picture_in_pieces_has_the_same_bits() {
-    let scene = Scene::demo();
-    for sampling in [Sampling::Grid(2), Sampling::ADAPTIVE] {
+fn a_picture_in_strips_has_the_same_bits() {
+    for (scene, sampling) in [
+        (Scene::demo(), Sampling::Grid(2)),
+        (Scene::demo(), Sampling::ADAPTIVE),
+        (boxes(), Sampling::ADAPTIVE),
+    ] {
         let request = RenderRequest {
             sampling,
             ..RenderRequest::sized(83, 61)
         };
-        let (tracer, control) = (Tracer::new(&scene, &request), RenderControl::default());
+        let control = RenderControl::default();
+        let tracer = Tracer {
+            strip: 7,
+            ..Tracer::new(&scene, &request)
+        };
         let mut whole = vec![[0_u64; 3]; 83 * 61];
         let rays = tracer.pass(&mut whole, Pass::Whole, &control);
-        let mut pieces = Vec::new();
+        let mut strips = Vec::new();
         let mut sum = Rays::default();
-        for first in (0..61).step_by(7) {
-            let mut piece = vec![[0_u64; 3]; 83 * (61 - first).min(7)];
+        for first in (0..61).step_by(tracer.strip()) {
+            let mut strip = vec![[0_u64; 3]; 83 * (61 - first).min(7)];
             sum += tracer
-                .rows(&mut piece, first, &control)
+                .rows(&mut strip, first, &control)
                 .expect("not stopped");
-            pieces.extend(piece);
+            strips.extend(strip);
         }
-        assert!(pieces == whole, "{sampling:?}");
-        if sampling == Sampling::Grid(2) {
-            assert_eq!(Some(sum), rays);
-        }
+        assert!(strips == whole, "{sampling:?}");
+        assert_eq!(Some(sum), rays);
+    }
+}
+
+#[test]
+fn strips_tell_each_other_nothing() {
+    let request = RenderRequest {
+        sampling: Sampling::ADAPTIVE,
+        ..RenderRequest::sized(83, 61)
+    };
+    let traced = |strip: usize| {
+        let tracer = Tracer {
+            strip,
+            ..Tracer::new(&boxes(), &request)
+        };
+        let mut pixels = vec![[0_u64; 3]; 83 * 61];
+        tracer.pass(&mut pixels, Pass::Whole, &RenderControl::default());
+        pixels
+    };
+    // The scene is one in which that matters.
+    assert!(traced(61) != traced(7));
+}
+
+#[test]
+fn a_large_picture_is_no_more_than_a_strip_in_memory() {
+    for (width, height) in [(16_384, 16_384), (16_384, 1), (1, 16_384), (2048, 2048)] {
+        let tracer = Tracer::new(&Scene::demo(), &RenderRequest::sized(width, height));
+        let strip = tracer.strip();
+        assert!(strip * width as usize <= STRIP.max(SQUARE * width as usize));
+        let is_whole = strip >= height as usize;
+        assert!(is_whole || strip.is_multiple_of(SQUARE), "{strip}");
+        assert_eq!(is_whole, width < 16_384 || height == 1);
     }
 }
 
