@@ -143,7 +143,7 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
         args.output.display(),
         counted(done.written, "frame"),
         done.kept,
-        done.total as f64 / seconds
+        done.written as f64 / seconds
     ));
     Ok(())
 }

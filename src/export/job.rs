@@ -11,6 +11,9 @@ use super::sequence::Sequence;
 use crate::files::{back_up, is_same_file, read_file, write_atomic};
 use crate::scene::{Document, SceneError};
 
+/// Most letters of the name of a job: Open Job Description, template schemas 2023-09, `<JobName>`.
+const LONGEST_NAME: usize = 128;
+
 /// Frames that one task makes, unless the farm says otherwise.
 const CHUNK: u32 = 10;
 
@@ -106,6 +109,12 @@ fn write_scene(
     Ok(backup)
 }
 
+/// What a job can be called after a scene of this name: two braces begin what is put in there.
+fn job_name(scene: &str) -> String {
+    let name = scene.replace("{{", "{ ");
+    name.chars().take(LONGEST_NAME).collect()
+}
+
 /// The template: frames in chunks, then a video of all of them. The scene is an attached file, which
 /// lies beside the template under the name `scene`; `name` is what the job is called.
 fn job_template(sequence: &Sequence, name: &str, scene: &str) -> String {
@@ -113,7 +122,7 @@ fn job_template(sequence: &Sequence, name: &str, scene: &str) -> String {
     let quoted = |text: &str| serde_json::Value::from(text).to_string();
     let (width, height) = sequence.size();
     let values = [
-        ("@NAME@", quoted(name)),
+        ("@NAME@", quoted(&job_name(name))),
         ("@SCENE@", quoted(scene)),
         ("@FRAMES@", quoted(&sequence.frames.to_string())),
         ("@PATTERN@", quoted(&sequence.pattern.text())),

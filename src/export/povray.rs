@@ -278,6 +278,9 @@ pub struct ByPovray {
     pub rays: u64,
 }
 
+/// POV-Ray's clock counts these: what takes it no time took this long at most.
+const TICK: Duration = Duration::from_millis(1);
+
 /// What POV-Ray tells of a picture when it is done: how long it traced, and how many rays that were.
 fn statistics(said: &str) -> Option<(Duration, u64)> {
     let after = |word: &str| said.split_once(word).map(|(_, rest)| rest.trim_start());
@@ -287,7 +290,7 @@ fn statistics(said: &str) -> Option<(Duration, u64)> {
     };
     let seconds = after("Trace Time:")?.split_once('(')?.1;
     let seconds = seconds.split_once(" seconds)")?.0.parse().ok()?;
-    let time = Duration::try_from_secs_f64(seconds).ok()?;
+    let time = Duration::try_from_secs_f64(seconds).ok()?.max(TICK);
     // Without lights there are no tests of shadows.
     let shadows = number("Shadow Ray Tests:").unwrap_or(0);
     Some((time, number("Rays:")? + shadows))
@@ -377,6 +380,9 @@ mod tests {
             Trace Time:   0 hours  0 minutes  0 seconds (0.079 seconds)\n using 2 thread(s)";
         let expected = (Duration::from_millis(79), 691_762);
         assert_eq!(statistics(said), Some(expected));
+        let quick = said.replace("0.079", "0.000");
+        let least = (Duration::from_millis(1), 691_762);
+        assert_eq!(statistics(&quick), Some(least));
         assert_eq!(statistics("POV-Ray finished"), None);
     }
 

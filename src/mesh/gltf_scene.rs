@@ -332,6 +332,7 @@ fn colors_of(material: &Material) -> Option<PartColors> {
         diffuse: [red, green, blue].map(|channel| srgb_of(channel.into())),
         specular: None,
         exponent: None,
+        reflective: false,
     })
 }
 

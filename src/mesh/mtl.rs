@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
 use std::collections::HashSet;
 use std::fs;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use tobj::{LoadError, MTLLoadResult, Material};
@@ -15,6 +16,8 @@ use crate::files::stays_inside;
 
 /// Most bytes of the material files of one OBJ file: room for thousands of materials.
 const MAX_BYTES: u64 = 4 << 20;
+/// The models of illumination in which reflections are traced: Alias/Wavefront, "Object files", appendix B1.
+const MIRRORING: RangeInclusive<u8> = 3..=7;
 /// Most characters of a file's name in a sentence.
 const LONGEST_NAME: usize = 80;
 
@@ -151,6 +154,7 @@ fn is_color(line: &str) -> bool {
         Some("newmtl") => words.clone().next().is_some(),
         Some("Kd" | "Ks" | "Ka") => numbers(3),
         Some("Ns") => numbers(1),
+        Some("illum") => words.next().is_some_and(|word| word.parse::<u8>().is_ok()),
         _ => false,
     }
 }
@@ -163,6 +167,9 @@ pub(super) fn colors_of(material: &Material) -> Option<PartColors> {
         diffuse: clamp(material.diffuse?),
         specular: material.specular.map(clamp),
         exponent: material.shininess.map(|exponent| exponent.max(0.0)),
+        reflective: material
+            .illumination_model
+            .is_some_and(|model| MIRRORING.contains(&model)),
     })
 }
 
@@ -179,7 +186,7 @@ mod tests {
 
     #[test]
     fn lines_that_would_panic_are_left_out() {
-        for good in ["newmtl red", "Kd 1 0 0", "Ka 1 1 1 1", "Ns 10"] {
+        for good in ["newmtl red", "Kd 1 0 0", "Ka 1 1 1 1", "Ns 10", "illum 3"] {
             assert!(is_color(good), "{good}");
         }
         for bad in [
@@ -189,6 +196,8 @@ mod tests {
             "Ns",
             "Kd nan 0 0",
             "map_Kd a",
+            "illum",
+            "illum 1000",
         ] {
             assert!(!is_color(bad), "{bad}");
         }

@@ -51,4 +51,6 @@ pub struct PartColors {
     pub specular: Option<[f64; 3]>,
     /// `Ns` of MTL: the exponent of the highlight, 0 or more.
     pub exponent: Option<f64>,
+    /// Whether it mirrors, by `illum` of MTL.
+    pub reflective: bool,
 }

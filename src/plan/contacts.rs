@@ -47,6 +47,8 @@ pub struct Contacts {
 pub struct LightContacts {
     /// For each light of the scene, the flat objects whose planes hold it: they cast no shadow from it.
     pub held_by: Vec<Places>,
+    /// For each, the first ball whose surface holds it: that casts a shadow on one side of it.
+    pub on_balls: Vec<Option<usize>>,
     /// The lights of the scene that may be on the surface of an object that is no mesh.
     pub touching: Places,
 }
@@ -62,6 +64,7 @@ impl LightContacts {
             |light: &usize| !held_by[*light].is_empty() || is_on_any(objects, lights[*light]);
         Self {
             touching: (0..lights.len()).filter(touches).collect(),
+            on_balls: balls_at(objects, lights),
             held_by,
         }
     }
@@ -139,9 +142,12 @@ impl Contacts {
         // A mesh is told by its numbers where it stands.
         let is_mesh = |place: &usize| matches!(objects[*place].shape, Shape::Mesh(_));
         let shared = shared.filter(|place| !is_mesh(place));
-        let lights = self.lights.held_by.iter().flatten().copied();
+        let LightContacts {
+            held_by, on_balls, ..
+        } = &*self.lights;
+        let lights = held_by.iter().flatten().chain(on_balls.iter().flatten());
         let eye = self.edge_on.iter().chain(&self.eye_on).copied();
-        let all: BTreeSet<usize> = shared.chain(lights).chain(eye).collect();
+        let all: BTreeSet<usize> = shared.chain(lights.copied()).chain(eye).collect();
         if all.len() <= MOST_APART {
             self.apart = all;
         }
@@ -169,6 +175,19 @@ fn planes_through(objects: &List<Object>, points: &[DVec3]) -> Vec<Places> {
         }
     }
     through
+}
+
+/// For each point the first visible ball that it is on.
+fn balls_at(objects: &List<Object>, points: &[DVec3]) -> Vec<Option<usize>> {
+    let is_ball = |object: &Object| object.visible && matches!(object.shape, Shape::Sphere(_));
+    let balls = objects.iter().enumerate();
+    let balls: Vec<_> = balls.filter(|(_, object)| is_ball(object)).collect();
+    let at = |point: &DVec3| {
+        let holds = |ball: &Object| ball.shape.height_per_radius(*point) <= ON_ROUND;
+        let mut balls = balls.iter();
+        balls.find_map(|(place, ball)| holds(ball).then_some(*place))
+    };
+    points.iter().map(at).collect()
 }
 
 #[cfg(test)]

@@ -18,11 +18,11 @@ struct Tests {
     primitives: u64,
 }
 
-/// How many tests the tree of a scene spares the rays of `request` from the camera, as words; nothing where there is
-/// no tree. Everything is counted that a ray passes, also what is behind its hit: what is spared is rather more.
+/// How many tests the tree of a scene spares the rays of `request` from the camera, as words; nothing where none is
+/// walked. Everything is counted that a ray passes, also what is behind its hit: what is spared is rather more.
 pub fn tests_spared(scene: &Scene, request: &RenderRequest) -> Option<String> {
     let plan = Plan::<f64>::new(scene, request, &mut Kept::default());
-    let geometry = plan.geometry.as_ref()?;
+    let geometry = plan.geometry.as_ref().filter(|_| plan.is_boxed)?;
     let all = plan.bounded();
     let mut tests = Tests::default();
     let place =
@@ -36,9 +36,12 @@ pub fn tests_spared(scene: &Scene, request: &RenderRequest) -> Option<String> {
     }
     let rays = f64::from(LOOKED_AT * LOOKED_AT);
     let [boxes, primitives] = [tests.boxes, tests.primitives].map(|tests| tests as f64 / rays);
+    let tested = boxes + primitives;
+    let boxes = format!("{boxes:.0}");
+    let es = if boxes == "1" { "" } else { "es" };
     Some(format!(
-        "{:.2} % of the tests of this picture's camera rays: {boxes:.0} boxes and {primitives:.1} primitives instead of {all} for each",
-        (1.0 - (boxes + primitives) / all as f64).max(0.0) * 100.0
+        "{:.2} % of the tests of this picture's camera rays: {boxes} box{es} and {primitives:.1} primitives instead of {all} for each",
+        (1.0 - tested / all as f64).max(0.0) * 100.0
     ))
 }
 

@@ -9,7 +9,7 @@ use super::materials::Material;
 use super::pack::Plan;
 use super::precision::{is_filtered, is_too_much_twice, needs_double};
 use super::request::RenderRequest;
-use crate::scene::{Object, Precision, Sampling, Scene, Shape};
+use crate::scene::{Accelerator, HighlightMethod, Object, Precision, Sampling, Scene, Shape};
 use crate::simd::Exponent;
 use crate::words::counted;
 
@@ -41,9 +41,9 @@ pub fn needs(scene: &Scene, request: &RenderRequest) -> Vec<Need> {
         markers(scene, &plan),
         hidden(scene),
         faces(&plan),
-        accelerator(&plan, visible_faces(scene)),
+        accelerator(&plan, request, visible_faces(scene)),
         normals(scene),
-        highlights(scene, &plan),
+        highlights(scene, request, &plan),
         edges(request),
     ]
 }
@@ -126,7 +126,9 @@ fn reflections(scene: &Scene, plan: &Plan<f64>) -> Need {
 
 fn shadows(scene: &Scene, plan: &Plan<f64>) -> Need {
     let (used, all) = (plan.lights.len(), scene.lights.len());
-    let why = if used == all {
+    let why = if !scene.objects.iter().any(|object| object.visible) {
+        "there is nothing else to see"
+    } else if used == all {
         "every light shines on something that the camera can reach"
     } else {
         "the others are hidden, have no intensity or are behind a plane"
@@ -225,6 +227,10 @@ fn hidden(scene: &Scene) -> Need {
 fn faces(plan: &Plan<f64>) -> Need {
     let rule = "faces";
     let all = plan.primitives.triangles.len();
+    if all == 0 {
+        let why = "there are none but in meshes, whose trees know their far sides";
+        return need(rule, "no triangles by themselves", why, "nothing");
+    }
     let set = |flags: &[bool]| flags.iter().filter(|flag| **flag).count();
     let unseen = set(&plan.camera_culled_faces);
     let idle: usize = plan
@@ -244,37 +250,50 @@ fn faces(plan: &Plan<f64>) -> Need {
     need(
         rule,
         format!(
-            "{unseen} of {} left out for the camera, {idle} for the lights",
-            counted(all, "triangle")
+            "{unseen} of {} left out for the camera, {idle} of {} for {}",
+            counted(all, "triangle"),
+            all * plan.lights.len(),
+            counted(plan.lights.len(), "light")
         ),
         "they are the far sides of closed convex solids",
         "a test per triangle and ray",
     )
 }
 
-fn accelerator(plan: &Plan<f64>, faces: usize) -> Need {
+fn accelerator(plan: &Plan<f64>, request: &RenderRequest, faces: usize) -> Need {
     let rule = ACCELERATOR;
     let bounded = plan.bounded() + faces;
     if plan.screen.is_none() {
         return need(rule, "every primitive for every ray", FAILING, "nothing");
     }
     let what = counted(bounded, "bounded primitive");
+    let asked = (request.accelerator != Accelerator::Auto).then(|| "it was asked for".to_owned());
+    if request.accelerator == Accelerator::List && plan.geometry.is_some() {
+        let what = format!("{what} one by one for every ray");
+        return need(rule, what, "it was asked for", "nothing");
+    }
     if plan.geometry.is_some() {
+        let why = asked.unwrap_or_else(|| {
+            format!(
+                "meshes, more than {LARGEST_LIST} objects or {MOST_LISTED_TRIANGLES} triangles, or fewer that fill a space or share few pixels, are too much to be listed for every tile"
+            )
+        });
         need(
             rule,
             format!("{what} in a tree of boxes"),
-            format!(
-                "meshes, more than {LARGEST_LIST} objects or {MOST_LISTED_TRIANGLES} triangles, or fewer that fill a space or share few pixels, are too much to be listed for every tile"
-            ),
+            why,
             "time that grows with what a ray comes near, not with the scene",
         )
     } else {
+        let why = asked.unwrap_or_else(|| {
+            format!(
+                "up to {SMALLEST_TREE}, or {LARGEST_LIST} side by side with many pixels each, are tested faster than a tree is walked"
+            )
+        });
         need(
             rule,
             format!("{what} in a flat list, cut down for every tile"),
-            format!(
-                "up to {SMALLEST_TREE}, or {LARGEST_LIST} side by side with many pixels each, are tested faster than a tree is walked"
-            ),
+            why,
             "building a tree on every edit",
         )
     }
@@ -311,7 +330,7 @@ fn visible_faces(scene: &Scene) -> usize {
     faces.sum()
 }
 
-fn highlights(scene: &Scene, plan: &Plan<f64>) -> Need {
+fn highlights(scene: &Scene, request: &RenderRequest, plan: &Plan<f64>) -> Need {
     let rule = "highlights";
     // Of packs that nothing wears, none is computed.
     let visible = scene.objects.iter().filter(|object| object.visible);
@@ -325,17 +344,22 @@ fn highlights(scene: &Scene, plan: &Plan<f64>) -> Need {
         need(
             rule,
             "no highlights",
-            "no color pack has a specular colour",
+            "nothing that is visible has a specular color",
             "their powers, for every light",
         )
     } else if exponents
         .iter()
         .any(|exponent| matches!(exponent, Exponent::Large(_)))
     {
+        let why = if request.methods.highlight == HighlightMethod::Log1p {
+            "it was asked for"
+        } else {
+            "an exponent is above 256, which would magnify the rounding of n·h"
+        };
         need(
             rule,
             "exp(p·log1p(-w)) for large Phong exponents",
-            "an exponent is above 256, which would magnify the rounding of n·h",
+            why,
             "up to 43 levels of error at an exponent of 1,000,000",
         )
     } else if exponents

@@ -167,12 +167,18 @@ impl<R: Real> Plan<R> {
         plan.eye_on = contacts.eye_on.as_ref().and_then(number);
         plan.tie(scene, (request, &contacts), number);
         let occluders = occluders.as_deref().unwrap_or_default();
+        let ball = |light: usize| {
+            let ball = contacts.lights.on_balls.get(light).copied().flatten();
+            // In a tree, it is held against rays like everything else.
+            ball.filter(|place| numbers.contains_key(place))
+        };
         let holders = |light: usize| {
-            let holders = contacts.lights.held_by.get(light).into_iter().flatten();
-            holders.filter_map(number).collect()
+            let flat = contacts.lights.held_by.get(light).into_iter().flatten();
+            flat.chain(&ball(light)).filter_map(number).collect()
         };
         let touches = |light: usize| contacts.lights.touching.contains(&light);
-        plan.lights = pack_lights(scene, centre, (occluders, model), (touches, holders));
+        let holding = (touches, holders, ball);
+        plan.lights = pack_lights(scene, centre, (occluders, model), holding);
         plan.hold(scene, request);
         if matches!(request.sampling, Sampling::Adaptive { .. }) {
             measure_loose(&mut plan.primitives, &numbers.values().copied().collect());

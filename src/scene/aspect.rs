@@ -31,7 +31,7 @@ pub enum Aspect {
     Shadows,
     /// What mirrors add.
     Mirrors,
-    /// How many rays each pixel takes.
+    /// How many rays each pixel takes, as the mean of squares of 8.
     Cost,
     /// Which samples are traced again in double precision.
     Again,
@@ -109,6 +109,13 @@ impl Aspect {
         let mut all = Self::EACH.iter();
         all.find(|(aspect, ..)| *aspect == self)
             .map_or("", |(_, name, _)| name)
+    }
+
+    /// What it shows, in a phrase.
+    pub fn meaning(self) -> &'static str {
+        let mut all = Self::EACH.iter();
+        all.find(|(aspect, ..)| *aspect == self)
+            .map_or("", |(.., meaning)| meaning)
     }
 
     /// Its name on the command line.

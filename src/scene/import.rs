@@ -145,7 +145,7 @@ fn color_pack(colors: &PartColors) -> ColorPack {
         phong_exponent: colors
             .exponent
             .map_or(plain.phong_exponent, |exponent| exponent.min(MAX_EXPONENT)),
-        reflective: false,
+        reflective: colors.reflective,
     }
 }
 

@@ -384,7 +384,7 @@ impl Method for Sampling {
 
     fn syntax() -> String {
         format!(
-            "none, adaptive, grid: and a number from 1 to {MAX_GRID} such as grid:4, or adaptive:CONTRAST:DEPTH such as adaptive:0.1:{MAX_HALVINGS}"
+            "none, adaptive, grid: and a number from 1 to {MAX_GRID} such as grid:4, or adaptive:CONTRAST:DEPTH with 0 to 3 and 0 to {MAX_HALVINGS}, such as adaptive:0.1:{MAX_HALVINGS}"
         )
     }
 }

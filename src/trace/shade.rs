@@ -19,7 +19,7 @@ use super::thin::Gaze;
 use super::thresholds::EDGE_CONTRAST;
 use super::walk::Stack;
 use crate::plan::{PointLight, Show};
-use crate::primitive::{Blur, roundings};
+use crate::primitive::Blur;
 use crate::simd::{Mask as _, SimdFloat, Vec3};
 
 /// Lights that an edge tells apart: sums of so many powers of two are exact in any real type.
@@ -317,19 +317,17 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
     ) {
         let (kernel, hit) = (self.kernel, &point.hit);
         let (light, candidates) = (source.light, source.candidates);
-        let zero = kernel.splat(0.0);
-        let one = kernel.splat(1.0);
+        let (zero, one) = (kernel.splat(0.0), kernel.splat(1.0));
 
         // A light in the surface has no direction: NaN is not above zero, and it adds nothing. Nor does one
         // that is no higher above the surface than rounding may have lifted it.
-        let part = L::splat(kernel.token, roundings());
         let to_light = hit.surface.point.like(light.position) - hit.surface.point;
         let distance = to_light.length();
         let shrink = one / distance;
         let l = to_light * shrink;
         let cosine = hit.surface.normal.dot(l);
         let lowest = if light.may_be_level {
-            part + shrink * shrink.like(light.rounding)
+            kernel.lowest_lit(light, (l, distance), shrink)
         } else {
             zero
         };

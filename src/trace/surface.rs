@@ -145,6 +145,24 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         Paths { rays, ignored }
     }
 
+    /// How large the cosine between surfaces and a unit direction to a light at this distance, of which one over it is
+    /// given, must be for them to be lit, where the light may be level with them or on a ball: infinity where that is
+    /// before it.
+    #[inline(always)]
+    pub fn lowest_lit(
+        self,
+        light: &PointLight<L::Real>,
+        (direction, distance): (Vec3<L>, L),
+        shrink: L,
+    ) -> L {
+        let (part, rounding) = (distance.like(roundings()), distance.like(light.rounding));
+        let chord = direction.dot(direction.like(light.ball.chord));
+        let size = distance + distance.like(light.ball.diameter);
+        let is_hidden =
+            part.like(L::Real::ZERO).less(chord) & (size * part + rounding).less(distance - chord);
+        L::select(is_hidden, self.infinity(), part + shrink * rounding)
+    }
+
     /// How far from the start of such paths something stands before a light that is at a distance from the hits.
     #[inline(always)]
     pub fn reach_to(self, light: &PointLight<L::Real>, distance: L) -> L {

@@ -99,6 +99,8 @@ const SHARE: f64 = 0.2;
 const APART: f64 = 1.3;
 /// With more things than this, only one place is looked at.
 const CROWDED: usize = 100_000;
+/// With fewer, so many places are.
+const TRIES: usize = 64;
 /// How far what is there already must be from its middle, in sizes.
 const ROOM: f64 = 0.65;
 /// How much more of the picture what stands near may fill than what stands far away.
@@ -123,22 +125,29 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     };
     let usual = usual_distance(scene);
     let half = f64::from(scene.render.width) / f64::from(scene.render.height) / 2.0;
-    let step = SHARE * APART;
-    let across = [0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0].map(|steps| steps * step);
-    let across = across
-        .into_iter()
-        .filter(|x| x.abs() + SHARE / 2.0 <= half.max(SHARE / 2.0));
+    let is_inside = |place: f64, half: f64| place.abs() + SHARE / 2.0 <= half.max(SHARE / 2.0);
     // Nothing hangs in the air over a floor.
     let has_floor = planes(scene).next().is_some();
-    let up = [0.0, -step, step]
-        .into_iter()
-        .take(if has_floor { 2 } else { 3 });
-    let places = up.flat_map(|y| across.clone().map(move |x| [x, y]));
+    // Side by side first, then also between.
+    let places = [1.0, 0.5].into_iter().flat_map(|part| {
+        let step = SHARE * APART * part;
+        // Nearest first: none, one back, one forth, and so on.
+        let steps =
+            |most: i32| (0..=2 * most).map(move |i| f64::from((i + 1) / 2 * (1 - i % 2 * 2)));
+        let up = steps(3).map(move |steps| steps * step);
+        let up = up.filter(move |&y| is_inside(y, 0.5) && !(has_floor && y > 0.0));
+        up.flat_map(move |y| {
+            let across = steps(6).map(move |steps| -steps * step);
+            across
+                .filter(move |&x| is_inside(x, half))
+                .map(move |x| [x, y])
+        })
+    });
     // To look costs as much as there is to be looked at.
     let tries = if scene.faces() + scene.objects.len() > CROWDED {
         1
     } else {
-        21
+        TRIES
     };
     let mut free = places
         .take(tries)
@@ -316,6 +325,20 @@ mod tests {
             let low = heights.map(|corner| floor.height(corner));
             let low = low.fold(f64::INFINITY, f64::min);
             assert!(low.abs() < 1e-9, "{}: {low}", solid.name);
+        }
+    }
+
+    #[test]
+    fn what_is_added_to_the_demo_stands_on_its_floor_beside_what_is_there() {
+        let mut scene = Scene::demo();
+        let before = added(&mut scene, &[]).len();
+        let bounds = added(&mut scene, &["Add Box", "Add Cylinder", "Add Torus"]);
+        for (index, (low, high)) in bounds.iter().enumerate().skip(before) {
+            assert!(low.y.abs() < 1.0, "{index} hangs at {low}");
+            for (other_low, other_high) in &bounds[..index] {
+                let apart = low.cmpgt(*other_high).any() || high.cmplt(*other_low).any();
+                assert!(apart, "{index} in another");
+            }
         }
     }
 

@@ -26,7 +26,7 @@ use super::start::StartWatch;
 use super::still::Still;
 use super::timeline::{Overlay, Thumbs, TimelinePanel};
 use super::toasts::Toasts;
-use super::tools::Tools;
+use super::tools::{Lens, Tools};
 use super::why::Why;
 use super::wishes::{FileOutcome, Next};
 use super::{help, theme};
@@ -200,6 +200,7 @@ impl App {
                 ctx.request_repaint();
             }
             Some(FileOutcome::ExportFolder(path)) => self.exports.choose_folder(&path),
+            Some(FileOutcome::Frame) => self.run(ctx, Command::FrameSelected),
             Some(FileOutcome::SaveImage(path)) => {
                 self.editor.apply(Action::Show(Mode::HighRes));
                 self.pictures.request_still(&self.editor, Some(path));
@@ -344,10 +345,17 @@ impl eframe::App for App {
         self.why.show(&ctx);
         // Still pictures are looked at, not flown through: they would be gone.
         let (place, flown) = picture;
+        if let Some(lens) = Lens::new(&self.editor.shown().camera, place.rect) {
+            self.why
+                .mark(&ui.painter().with_clip_rect(place.rect), |point| {
+                    lens.place(point)
+                });
+        }
         let is_still = self.editor.mode == Mode::HighRes || self.lab.is_looking();
         let flown = Some(&flown).filter(|_| !is_still && !self.tools.is_dragging());
         // Space presses a button that has the focus, and does not lift the camera as well.
-        let flies = keys_are_free && ui.memory(|memory| memory.focused().is_none());
+        let is_free = ui.memory(|memory| memory.focused().is_none());
+        let flies = keys_are_free && is_free && !self.outliner.has_keys(ui);
         let speed = (&**self.editor.scene(), self.layout.fly_speed);
         let motion = self.flying.step(ui, flown, flies, speed);
         out.actions.extend(motion.map(Action::Fly));

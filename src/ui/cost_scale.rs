@@ -1,6 +1,9 @@
-//! What the colours of *Rays per pixel* mean, in a corner of the picture.
+//! What the colours of a view mean, in a corner of the picture: the scale of *Rays per pixel*, and the others in words.
 
-use egui::{Align2, Color32, Mesh, Rect, Shape, Stroke, StrokeKind, TextStyle, Ui, pos2, vec2};
+use egui::{
+    Align2, Color32, Mesh, Painter, Rect, Shape, Stroke, StrokeKind, TextStyle, Ui, Vec2, pos2,
+    vec2,
+};
 
 use super::theme::{GRID, palette};
 use crate::trace::heat;
@@ -14,15 +17,32 @@ const COLUMNS: u32 = 96;
 /// The counts that have a mark, from one end of the strip to the other.
 const MARKS: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
 
-/// Draws the scale over the lower right corner of the picture.
-pub fn show(ui: &Ui, picture: Rect) {
+/// Draws what is said of a view over the lower right corner of the picture.
+pub fn show_words(ui: &Ui, picture: Rect, words: &str) {
+    let font = TextStyle::Small.resolve(ui.style());
+    let widest = picture.width() - 4.0 * GRID;
+    let color = palette(ui.ctx()).text;
+    let words = ui.painter().layout(words.to_owned(), font, color, widest);
+    let (painter, frame) = frame(ui, picture, words.size() + vec2(GRID, GRID / 2.0) * 2.0);
+    painter.galley(frame.min + vec2(GRID, GRID / 2.0), words, color);
+}
+
+/// A frame of this size in the lower right corner, and what draws in it.
+fn frame(ui: &Ui, picture: Rect, size: Vec2) -> (Painter, Rect) {
     let colors = palette(ui.ctx());
-    let size = vec2(STRIP.0, STRIP.1 + WORDS) + vec2(3.0, 1.0) * 2.0 * GRID;
     let corner = picture.right_bottom() - size - vec2(GRID, GRID);
     let frame = Rect::from_min_size(corner, size);
     let painter = ui.painter().with_clip_rect(picture);
     let line = Stroke::new(1.0, colors.line);
     painter.rect(frame, 4, colors.panel, line, StrokeKind::Inside);
+    (painter, frame)
+}
+
+/// Draws the scale over the lower right corner of the picture.
+pub fn show(ui: &Ui, picture: Rect) {
+    let colors = palette(ui.ctx());
+    let size = vec2(STRIP.0, STRIP.1 + WORDS) + vec2(3.0, 1.0) * 2.0 * GRID;
+    let (painter, frame) = frame(ui, picture, size);
     let strip = Rect::from_min_size(frame.min + vec2(3.0 * GRID, GRID), STRIP.into());
     painter.add(colored(strip));
     let font = TextStyle::Small.resolve(ui.style());

@@ -188,11 +188,15 @@ impl App {
             self.overlay.show(ui, &self.editor, place.rect, out);
         }
         let aspect = self.layout.aspect;
-        if !is_still && aspect != Aspect::All && badge(ui, place, aspect.name()) {
-            self.layout.aspect = Aspect::All;
-        }
-        if !is_still && aspect == Aspect::Cost {
-            cost_scale::show(ui, place.rect);
+        if !is_still && aspect != Aspect::All {
+            if badge(ui, place, aspect.name()) {
+                self.layout.aspect = Aspect::All;
+            }
+            if aspect == Aspect::Cost {
+                cost_scale::show(ui, place.rect);
+            } else {
+                cost_scale::show_words(ui, place.rect, aspect.meaning());
+            }
         }
         if let Some((_, seconds)) = self.editor.timeline().recorded() {
             show_recording(ui, place, seconds);

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use egui::{Align, Layout, ProgressBar, RichText, Ui};
+use egui::{Align, Label, Layout, ProgressBar, RichText, Ui};
 
 use super::commands::Command;
 use super::hint::Hint as _;
@@ -34,38 +34,51 @@ pub fn show(
 ) {
     // As high with hints as without.
     ui.set_min_height(ui.available_height());
-    ui.horizontal_centered(|ui| {
-        ui.label(RichText::new(picture).monospace().weak());
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         ui.spacing_mut().interact_size.y = BAR;
         ui.spacing_mut().button_padding.y = 0.0;
+        doing(ui, activity, shown, note, out);
         check.show(ui, scene, out);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| match activity {
-            Activity::Still {
-                done,
-                total,
-                elapsed,
-            } if *elapsed >= PATIENCE => {
-                progress(ui, *done, *total, *elapsed, out);
-            }
-            Activity::Live { revision, elapsed }
-                if *elapsed >= READY && shown != Some(*revision) =>
-            {
-                ui.weak(format!(
-                    "making the scene ready for tracing, {:.1} s",
-                    elapsed.as_secs_f64()
-                ));
-                ui.request_repaint_after(Duration::from_millis(100));
-            }
-            Activity::Idle => {
-                if let Some(note) = note {
-                    ui.weak(note);
-                }
-            }
-            Activity::Live { .. } | Activity::Still { .. } => {
-                ui.weak("tracing");
-            }
+        // What there is no room for is cut here.
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            let words = RichText::new(picture).monospace().weak();
+            ui.add(Label::new(words).truncate());
         });
     });
+}
+
+/// What the tracer is doing; `note` where it rests.
+fn doing(
+    ui: &mut Ui,
+    activity: &Activity,
+    shown: Option<u64>,
+    note: Option<String>,
+    out: &mut UiRequests,
+) {
+    match activity {
+        Activity::Still {
+            done,
+            total,
+            elapsed,
+        } if *elapsed >= PATIENCE => {
+            progress(ui, *done, *total, *elapsed, out);
+        }
+        Activity::Live { revision, elapsed } if *elapsed >= READY && shown != Some(*revision) => {
+            ui.weak(format!(
+                "making the scene ready for tracing, {:.1} s",
+                elapsed.as_secs_f64()
+            ));
+            ui.request_repaint_after(Duration::from_millis(100));
+        }
+        Activity::Idle => {
+            if let Some(note) = note {
+                ui.weak(note);
+            }
+        }
+        Activity::Live { .. } | Activity::Still { .. } => {
+            ui.weak("tracing");
+        }
+    }
 }
 
 fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut UiRequests) {

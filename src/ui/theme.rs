@@ -173,6 +173,8 @@ fn restyle(style: &mut Style, theme: Theme) {
     spacing.button_padding = vec2(GRID, GRID / 4.0);
     spacing.interact_size = vec2(40.0, ROW);
     spacing.combo_width = 0.0;
+    // Bars stand beside what they scroll, and not over its last letters.
+    spacing.scroll.floating_allocated_width = spacing.scroll.bar_width;
     style.text_styles = [
         (TextStyle::Small, 11.0, FontFamily::Proportional),
         (TextStyle::Body, TEXT, FontFamily::Proportional),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError};
 
-use egui::{Color32, Context, Grid, RichText, Sense, Ui, Window, vec2};
+use egui::{Color32, Context, Grid, Painter, Pos2, RichText, Sense, Ui, Window, vec2};
 use glam::DVec3;
 
 use super::theme::{GRID, ROW, palette};
@@ -11,12 +11,16 @@ use crate::lab::{Lit, Share, Sight, explain};
 use crate::scene::{Scene, format_number};
 use crate::worker::run_in_background;
 
+/// Radius of the ring around the place, in points.
+const RING: f32 = 7.0;
 /// Decimals of the numbers.
 const DECIMALS: usize = 3;
 
 /// What is asked, and the answer.
 #[derive(Default)]
 pub struct Why {
+    /// The ray.
+    asked: (DVec3, DVec3),
     answer: Option<Sight>,
     waiting: Option<Receiver<Sight>>,
 }
@@ -24,6 +28,7 @@ pub struct Why {
 impl Why {
     /// Asks what a ray sees, and why. It is found out elsewhere: a mesh may have many faces.
     pub fn ask(&mut self, scene: &Arc<Scene>, (origin, direction): (DVec3, DVec3)) {
+        self.asked = (origin, direction);
         let scene = Arc::clone(scene);
         let look = move || explain(&scene, origin, direction);
         self.waiting = Some(run_in_background("glint-why", look));
@@ -32,6 +37,22 @@ impl Why {
     /// Whether an answer is shown.
     pub fn is_open(&self) -> bool {
         self.answer.is_some()
+    }
+
+    /// Marks the place that the answer is about, which `on_screen` finds.
+    pub fn mark(&self, painter: &Painter, on_screen: impl FnOnce(DVec3) -> Option<Pos2>) {
+        let Some(answer) = &self.answer else { return };
+        let (origin, direction) = self.asked;
+        let point = match answer {
+            Sight::Surface(lit) => lit.point,
+            Sight::Sky(_) | Sight::Marker(..) => origin + direction,
+        };
+        if let Some(at) = on_screen(point) {
+            let colors = palette(painter.ctx());
+            // Seen before light and before dark.
+            painter.circle_stroke(at, RING, (3.5, colors.halo));
+            painter.circle_stroke(at, RING, (1.5, colors.on_picture));
+        }
     }
 
     /// Forgets the answer.

@@ -6,8 +6,8 @@ use glint::image::Image;
 use glint::mesh::{SOLIDS, Triangles};
 use glint::plan::RenderRequest;
 use glint::scene::{
-    Accelerator, Camera, ColorPack, Disc, Document, Light, Mesh, Object, Plane, Precision, Scene,
-    Shape, Sphere, Triangle,
+    Accelerator, Camera, ColorPack, Disc, Document, Light, Mesh, Object, Plane, Precision,
+    Projection, Scene, Shape, Sphere, Triangle,
 };
 
 use crate::image_model::{assert_same_but_for_edges, picture};
@@ -377,6 +377,44 @@ fn a_light_on_a_surface_is_not_behind_it() {
     assert!(red > 0);
     lit.lights = [lamp(0.5, 0.0, 2.5)].into_iter().collect();
     steady(&lit, "a lamp on the floor");
+}
+
+/// The border of its light is the line in which the floor meets the plane that touches the ball at the light, straight
+/// to the last pixel: rounding decides nowhere whether the ball stands before what is on it.
+#[test]
+fn a_light_on_a_ball_shines_up_to_the_plane_that_touches_it_there() {
+    let outwards = DVec3::new(0.48, 0.6, 0.64);
+    for (radius, x, z) in [(1.0, 0.0, 0.0), (50.0, 125.0, -150.0), (1.37, 100.0, 99.0)] {
+        let center = DVec3::new(x, radius, z);
+        let light = center + outwards * radius;
+        let mut lit = scene([floor(), Sphere { center, radius }.into()]);
+        lit.lights = [lamp(light.x, light.y, light.z)].into_iter().collect();
+        lit.camera = Camera {
+            position: center + DVec3::Y * (20.0 * radius),
+            look_at: DVec3::NEG_Y,
+            up: DVec3::NEG_Z,
+            projection: Projection::Orthographic,
+            orthographic_height: 8.0 * radius,
+            ..Camera::default()
+        };
+        for precision in [Precision::Auto, Precision::Single, Precision::Double] {
+            let image = at(&lit, precision);
+            let [dark, ..] = image.pixels[0];
+            let mut checked = 0;
+            for (index, [red, ..]) in image.pixels.iter().enumerate() {
+                let place = |at: usize| ((at as f64 + 0.5) / f64::from(SIDE) - 0.5) * 8.0 * radius;
+                let (right, back) = (index % SIDE as usize, index / SIDE as usize);
+                let off = DVec3::new(place(right), -radius, place(back));
+                let height = outwards.dot(center + off - light);
+                if off.length() > 1.5 * radius && height.abs() > 1e-5 * radius {
+                    let what = format!("{precision:?}, radius {radius}, {off}");
+                    assert_eq!(*red > dark, height > 0.0, "{what}");
+                    checked += 1;
+                }
+            }
+            assert!(checked > 24_000, "{checked}");
+        }
+    }
 }
 
 #[test]

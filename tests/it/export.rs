@@ -801,6 +801,29 @@ fn a_job_is_a_template_with_its_scene_beside_it() {
     assert!(copy == fs::read(FLIGHT).expect("there"));
 }
 
+#[test]
+fn a_job_has_a_name_that_farms_take_whatever_the_scene_is_called() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let template = folder.path().join("job.yaml");
+    let path = template.to_str().expect("plain");
+    for (name, expected) in [
+        ("a {{{Param.Scene}} b".to_owned(), "a { {Param.Scene}} b"),
+        ("n".repeat(200), &*"n".repeat(128)),
+    ] {
+        let scene = folder.path().join(format!("{name}.ron"));
+        fs::copy(FLIGHT, &scene).expect("copied");
+        done(&mut glint(&[
+            "job",
+            scene.to_str().expect("plain"),
+            "-o",
+            path,
+        ]));
+        let text = fs::read_to_string(&template).expect("written");
+        let line = format!("\nname: \"{expected}\"\n");
+        assert!(text.contains(&line), "{text}");
+    }
+}
+
 /// Waits until nothing is exported any more.
 fn finish(harness: &mut EditorHarness) {
     let start = std::time::Instant::now();

@@ -4,7 +4,9 @@
 use glam::DVec3;
 use glint::image::{Image, render};
 use glint::plan::{Kept, Model, Plan, RenderRequest, needs};
-use glint::scene::{Object, Sampling, Scene, Shape, Sphere, Triangle};
+use glint::scene::{
+    Accelerator, HighlightMethod, Object, Sampling, Scene, Shape, Sphere, Triangle,
+};
 use glint::trace::{Rays, RenderControl};
 
 use crate::random;
@@ -251,6 +253,36 @@ fn far_faces_of_solids_are_left_out_and_of_open_meshes_are_not() {
         );
         assert!(needed == everything);
     }
+}
+
+#[test]
+fn what_was_asked_for_is_said_to_be() {
+    let why = |change: fn(&mut Scene), rule: &str| {
+        let scene = demo(change);
+        let needs = needs(&scene, &RenderRequest::still(&scene));
+        let need = needs.into_iter().find(|need| need.rule == rule);
+        let need = need.expect("a known rule");
+        format!("{}: {}", need.what, need.why)
+    };
+    let tree = why(
+        |scene| scene.render.accelerator = Accelerator::Bvh,
+        "accelerator",
+    );
+    assert_eq!(
+        tree,
+        "10 bounded primitives in a tree of boxes: it was asked for"
+    );
+    let power = why(
+        |scene| scene.render.specular = HighlightMethod::Log1p,
+        "highlights",
+    );
+    assert!(power.ends_with("Phong exponents: it was asked for"));
+    let nothing = |scene: &mut Scene| scene.objects = std::iter::empty().collect();
+    assert!(why(nothing, "highlights").contains("nothing that is visible"));
+    assert!(why(nothing, "shadows").ends_with("there is nothing else to see"));
+    assert!(why(nothing, "faces").starts_with("no triangles by themselves"));
+    let demo = why(|_| {}, "faces");
+    assert!(demo.contains("4 of 6 triangles left out for the camera, 8 of 12 for 2 lights"));
 }
 
 #[test]

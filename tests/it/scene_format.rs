@@ -174,7 +174,7 @@ fn examples(must_be: &str) -> Option<(Vec<String>, Vec<String>)> {
         return Some((words([low, high]), words(beyond)));
     }
     match must_be {
-        "above 0" => told(&["1e-9", "1e12"], &["0", "1.1e12"]),
+        "above 0, at most 1e12" => told(&["1e-9", "1e12"], &["0", "1.1e12"]),
         "a colour" => told(
             &["(0, 0, 0)", "(255, 255, 255)"],
             &["(-0.1, 0, 0)", "(0, 0, 255.1)"],
@@ -182,7 +182,11 @@ fn examples(must_be: &str) -> Option<(Vec<String>, Vec<String>)> {
         "a place" => told(&["(0.5, 1e3, -7)"], &["(0, 0, 1.1e12)", "(0, nan, 0)"]),
         "a direction" => told(&["(3, 1e6, 1e-6)"], &["(0, 0, 0)"]),
         "true or false" => told(&["true", "false"], &["1"]),
-        "a name" => told(&["\"é 1\""], &["\" \""]),
+        "a name" => told(&["\"é 1\""], &["\" \"", "\"a\\u{7}\""]),
+        "a factor from 1e-6 to 1e6, or three" => told(
+            &["1e-6", "-1e6", "(1, -2, 3e5)"],
+            &["0", "1.1e6", "1e-7", "(1, 0, 1)"],
+        ),
         words if words.starts_with('`') => {
             let words: Vec<&str> = words.split('`').skip(1).step_by(2).collect();
             told(&words, &["\"nonsense\"", "Nonsense"])

@@ -23,7 +23,7 @@ fn groups_are_parts_with_colors() {
     assert_eq!(names(&sample), plain, "without the material file");
     sample.beside(
         "my colors.mtl",
-        "newmtl red\nKd 1 0.5 0\nKs 2 2 2\nKa 0.1 0.1\nNs 30\nnewmtl none\nKs 1 1 1\n",
+        "newmtl red\nKd 1 0.5 0\nKs 2 2 2\nKa 0.1 0.1\nNs 30\nillum 3\nnewmtl none\nKs 1 1 1\n",
     );
     let colored = [
         part("two", None),
@@ -35,6 +35,7 @@ fn groups_are_parts_with_colors() {
     assert_eq!(red.diffuse, [1.0, 0.5, 0.0]);
     assert_eq!(red.specular, Some([1.0; 3]), "clamped");
     assert_eq!(red.exponent, Some(30.0));
+    assert!(red.reflective, "a mirror");
     let all = sample.triangles();
     assert_eq!(
         all.points(),

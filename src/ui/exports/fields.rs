@@ -304,8 +304,10 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
             let ending = settings.format.ending();
             let file = |frame: u64| format!("{}.{ending}", pattern.name(frame));
             let first = frames.iter().next().map_or(String::new(), file);
-            let last = frames.last().map_or(String::new(), file);
-            ui.weak(format!("{first} … {last}"));
+            ui.weak(match frames.last() {
+                Some(last) if frames.count() > 1 => format!("{first} … {}", file(last)),
+                _ => first,
+            });
         }
     });
     ui.end_row();

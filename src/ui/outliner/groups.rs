@@ -1,6 +1,8 @@
 //! The rows of groups in the list of objects.
 
-use egui::{Id, Rect, Ui, UiBuilder};
+use std::collections::HashSet;
+
+use egui::{Id, Rect, Response, Ui, UiBuilder};
 
 use super::entry::{Renaming, RowStyle, entry, eye_button, rename_field, row};
 use super::lines::Group;
@@ -22,10 +24,17 @@ pub struct GroupRows {
 
 impl GroupRows {
     /// The row of a group: it folds and unfolds, selects, shows and hides its members, and takes in what is
-    /// dropped on it.
-    pub fn show(&mut self, ui: &mut Ui, editor: &Editor, group: &Group, out: &mut UiRequests) {
+    /// dropped on it. Nothing while its name is edited.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        editor: &Editor,
+        group: &Group,
+        out: &mut UiRequests,
+    ) -> Option<Response> {
         if self.renaming.as_ref() == Some(&group.name) {
-            return self.rename(ui, group, out);
+            self.rename(ui, group, out);
+            return None;
         }
         let scene = editor.shown();
         let members = || group.members.iter().map(|index| Item::object(*index));
@@ -42,7 +51,8 @@ impl GroupRows {
         let response = entry(ui, rect, look, &group.name);
         let all = || Action::SelectItems(Selected::all(members()));
         if response.clicked() {
-            out.actions.push(all());
+            let selected = select_clicked(ui, editor.selected(), members());
+            out.actions.push(Action::SelectItems(selected));
         }
         if response.double_clicked() {
             self.renaming = Some(group.name.clone());
@@ -79,6 +89,7 @@ impl GroupRows {
                 out.edit(Edit::Each(edits.collect(), label));
             }
         });
+        Some(response)
     }
 
     fn fold_button(&mut self, ui: &mut Ui, rect: Rect, name: &str) {
@@ -117,5 +128,25 @@ impl GroupRows {
             }
             self.renaming = None;
         });
+    }
+}
+
+/// What is selected by a click on a group: with Ctrl or Shift besides the others, with Ctrl not if all of it was.
+fn select_clicked(
+    ui: &Ui,
+    selected: &Selected,
+    members: impl ExactSizeIterator<Item = Item> + Clone,
+) -> Selected {
+    let modifiers = ui.input(|input| input.modifiers);
+    if !modifiers.shift && !modifiers.command {
+        return Selected::all(members);
+    }
+    let own: HashSet<Item> = members.clone().collect();
+    let others = selected.items().iter().copied();
+    let others = others.filter(|item| !own.contains(item));
+    if modifiers.command && selected.has_all(members.clone()) {
+        Selected::all(others)
+    } else {
+        Selected::all(others.chain(members))
     }
 }

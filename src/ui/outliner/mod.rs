@@ -7,13 +7,18 @@ mod lines;
 
 mod groups;
 
-use egui::{Align, Id, Layout, Rect, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2};
+mod walk;
+
+use egui::{
+    Align, Id, Layout, Rect, Response, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2,
+};
 
 use self::entry::{
     Renaming, RowStyle, color_of, entry, eye, icon_of, rename_field, row, take_dropped,
 };
 use self::groups::GroupRows;
 use self::lines::{Entries, Groups, Line, Lines};
+use self::walk::Walk;
 use super::add::add_menu;
 use super::icons;
 use super::menu_entry::{ITEM_COMMANDS, entry as menu_entry};
@@ -36,6 +41,7 @@ pub struct Outliner {
     reveals: bool,
     groups: Groups,
     group_rows: GroupRows,
+    walk: Walk,
 }
 
 impl Outliner {
@@ -66,6 +72,11 @@ impl Outliner {
         is_filtered
     }
 
+    /// Whether the arrow keys that are held walk through the list.
+    pub fn has_keys(&self, ui: &Ui) -> bool {
+        self.walk.has_keys(ui)
+    }
+
     /// Shows the panel and pushes what is asked for.
     pub fn show(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         ui.add_space(GRID / 2.0);
@@ -92,6 +103,7 @@ impl Outliner {
         let mut groups = std::mem::take(&mut self.groups);
         groups.update(&editor.scene().objects, &self.group_rows.folded);
         let lines = self.lines(editor.scene(), &groups);
+        self.walk.step(ui, editor, (&lines, &groups.all), out);
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut area = ScrollArea::vertical().auto_shrink(false);
         if let Some(to) = self.to_reveal(editor, &lines) {
@@ -109,7 +121,9 @@ impl Outliner {
                             is_bright: true,
                             is_selected: editor.selection == selection,
                         };
-                        if entry(ui, rect, look, name).clicked() {
+                        let response = entry(ui, rect, look, name);
+                        self.walk.attend(ui, index, &response);
+                        if response.clicked() {
                             out.select(selection);
                         }
                     }
@@ -124,9 +138,16 @@ impl Outliner {
                         self.group(ui, kind, &words);
                     }
                     Some(Line::Group(place)) => {
-                        self.group_rows.show(ui, editor, &groups.all[place], out);
+                        let group = &groups.all[place];
+                        if let Some(response) = self.group_rows.show(ui, editor, group, out) {
+                            self.walk.attend(ui, index, &response);
+                        }
                     }
-                    Some(Line::Entry(item, is_in)) => self.item(ui, editor, (item, is_in), out),
+                    Some(Line::Entry(item, is_in)) => {
+                        if let Some(response) = self.item(ui, editor, (item, is_in), out) {
+                            self.walk.attend(ui, index, &response);
+                        }
+                    }
                     None => {}
                 }
             }
@@ -230,12 +251,12 @@ impl Outliner {
         editor: &Editor,
         (item, is_in_group): (Item, bool),
         out: &mut UiRequests,
-    ) {
+    ) -> Option<Response> {
         let scene = editor.shown();
-        let Some(name) = item.name(scene) else { return };
+        let name = item.name(scene)?;
         if self.renaming == Some(item) {
-            self.rename_row(ui, scene, item, out);
-            return;
+            self.rename_row(ui, scene, (item, is_in_group), out);
+            return None;
         }
         let (icon, visible) = (icon_of(scene, item), item.is_visible(scene));
         let is_selected = editor.selected().has(item);
@@ -282,10 +303,20 @@ impl Outliner {
                 eye(ui, scene, item, name, out);
             });
         }
+        Some(response)
     }
 
-    fn rename_row(&mut self, ui: &mut Ui, scene: &Scene, item: Item, out: &mut UiRequests) {
-        let rect = row(ui);
+    fn rename_row(
+        &mut self,
+        ui: &mut Ui,
+        scene: &Scene,
+        (item, is_in_group): (Item, bool),
+        out: &mut UiRequests,
+    ) {
+        let mut rect = row(ui);
+        if is_in_group {
+            rect.min.x += ROW;
+        }
         let name = item.name(scene).unwrap_or_default();
         ui.scope_builder(
             UiBuilder::new()

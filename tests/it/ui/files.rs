@@ -226,6 +226,26 @@ fn a_mesh_is_imported_turned_and_taken_apart() {
     assert_eq!(harness.scene().objects.len(), before - 5);
 }
 
+#[test]
+fn what_is_imported_into_an_empty_scene_is_brought_into_the_picture() {
+    let answers = |folder: &std::path::Path| {
+        let path = folder.join("plane.obj");
+        std::fs::write(&path, PARTS).expect("written");
+        vec![(Ask::ImportMesh, Some(path))]
+    };
+    let empty = "Scene(version: 1, objects: [])";
+    let mut harness = EditorHarness::with(answers, Some(empty));
+    let before = harness.scene().camera.clone();
+    harness.choose("File", "Import mesh…");
+    harness.settle();
+    let camera = &harness.scene().camera;
+    assert_ne!(*camera, before);
+    let (low, high) = harness.scene().objects_bounds().expect("objects");
+    let middle = (low + high) * 0.5 - camera.position;
+    let off = middle.angle_between(camera.look_at).to_degrees();
+    assert!(off < 20.0, "{off} degrees off the middle");
+}
+
 /// The text of the demo with another radius of its first ball.
 fn demo_text(radius: f64) -> String {
     let mut scene = Scene::demo();

@@ -6,6 +6,7 @@ use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 use glint::scene::{Scene, Shape, Sphere};
 
+use super::tools::{click, hover};
 use crate::harness::{CTRL, EditorHarness};
 
 #[test]
@@ -32,6 +33,36 @@ fn the_outliner_filters_hides_renames_and_reorders() {
     assert_eq!(harness.scene().objects.len(), 10);
     harness.press(Modifiers::NONE, Key::Delete);
     assert_eq!(harness.scene().objects.len(), 9);
+}
+
+#[test]
+fn arrows_walk_from_row_to_row_and_turn_no_camera_meanwhile() {
+    let mut harness = EditorHarness::new();
+    let selected = |harness: &EditorHarness| {
+        let items = harness.editor().selected().items().to_vec();
+        let names = items.iter().filter_map(|item| item.name(harness.scene()));
+        names.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let camera = harness.scene().camera.clone();
+    // With the pointer over the list, after a click there.
+    let row = harness.window.get_by_label("Sphere 1").rect().center();
+    click(&mut harness, row, Modifiers::NONE);
+    assert_eq!(selected(&harness), ["Sphere 1"]);
+    harness.press(Modifiers::NONE, Key::ArrowDown);
+    assert_eq!(selected(&harness), ["Sphere 2"]);
+    harness.press(Modifiers::NONE, Key::ArrowUp);
+    harness.press(Modifiers::NONE, Key::ArrowUp);
+    assert_eq!(selected(&harness), ["Light 2"], "over the title of a list");
+    // By the keys alone, from the row that has the focus: to the next one, and not to an eye.
+    let picture = harness.view().center();
+    hover(&mut harness, picture);
+    harness.window.get_by_label("Sphere 1").focus();
+    harness.settle();
+    harness.press(Modifiers::NONE, Key::ArrowDown);
+    harness.press(Modifiers::NONE, Key::ArrowDown);
+    assert!(harness.window.get_by_label("Triangle 1").is_focused());
+    assert_eq!(selected(&harness), ["Triangle 1"]);
+    assert_eq!(harness.scene().camera, camera);
 }
 
 #[test]

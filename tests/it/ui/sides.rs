@@ -5,7 +5,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glint::scene::{ColorPack, Document, Scene};
 
-use super::tools::{button, center, hover, place};
+use super::tools::{button, center, click, hover, place};
 use crate::harness::{CTRL, EditorHarness};
 
 const NONE: Modifiers = Modifiers::NONE;
@@ -58,10 +58,17 @@ fn a_group_is_listed_hidden_renamed_and_moved_as_one() {
     harness.click("Fold Group 1");
     assert!(harness.window.query_by_label("Sphere 2").is_none());
     harness.click("Unfold Group 1");
-    // One click takes hold of both.
+    // One click takes hold of both, besides others with Shift or Ctrl, with which another one lets go of them.
     harness.click("Sphere 1");
     harness.click("Group 1");
     assert_eq!(harness.editor().selected().items().len(), 2);
+    harness.click("Triangle 1");
+    for (modifiers, count) in [(Modifiers::SHIFT, 3), (CTRL, 1), (CTRL, 3)] {
+        let group = middle(&harness, "Group 1");
+        click(&mut harness, group, modifiers);
+        assert_eq!(harness.editor().selected().items().len(), count);
+    }
+    harness.click("Group 1");
     let at = middle(&harness, "Group 1");
     (0..60).for_each(|_| harness.window.step());
     for _ in 0..2 {
