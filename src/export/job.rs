@@ -112,7 +112,8 @@ fn write_scene(
 /// What a job can be called after a scene of this name: two braces begin what is put in there.
 fn job_name(scene: &str) -> String {
     let name = scene.replace("{{", "{ ");
-    name.chars().take(LONGEST_NAME).collect()
+    let plain = name.chars().filter(|letter| !letter.is_control());
+    plain.take(LONGEST_NAME).collect()
 }
 
 /// The template: frames in chunks, then a video of all of them. The scene is an attached file, which

@@ -184,6 +184,7 @@ mod tests {
             let mut film = Film::new(format);
             let mut drawing = film.draw(&mut planner, (&scene, &request), &control);
             match &mut drawing {
+                // Of a grid, any rows are what they are in the whole picture.
                 Drawing::Levels(strips) => strips.step = 64,
                 Drawing::Linear(strips) => strips.step = 64,
             }

@@ -47,7 +47,8 @@ pub struct Contacts {
 pub struct LightContacts {
     /// For each light of the scene, the flat objects whose planes hold it: they cast no shadow from it.
     pub held_by: Vec<Places>,
-    /// For each, the first ball whose surface holds it: that casts a shadow on one side of it.
+    /// For each, the first ball whose surface holds it: that casts a shadow on one side of it, exactly. Of further ones,
+    /// rounding decides.
     pub on_balls: Vec<Option<usize>>,
     /// The lights of the scene that may be on the surface of an object that is no mesh.
     pub touching: Places,

@@ -127,7 +127,7 @@ fn reflections(scene: &Scene, plan: &Plan<f64>) -> Need {
 fn shadows(scene: &Scene, plan: &Plan<f64>) -> Need {
     let (used, all) = (plan.lights.len(), scene.lights.len());
     let why = if !scene.objects.iter().any(|object| object.visible) {
-        "there is nothing else to see"
+        "nothing is visible"
     } else if used == all {
         "every light shines on something that the camera can reach"
     } else {
@@ -228,7 +228,7 @@ fn faces(plan: &Plan<f64>) -> Need {
     let rule = "faces";
     let all = plan.primitives.triangles.len();
     if all == 0 {
-        let why = "there are none but in meshes, whose trees know their far sides";
+        let why = "there are none outside of meshes, whose trees know their far sides";
         return need(rule, "no triangles by themselves", why, "nothing");
     }
     let set = |flags: &[bool]| flags.iter().filter(|flag| **flag).count();
@@ -344,7 +344,7 @@ fn highlights(scene: &Scene, request: &RenderRequest, plan: &Plan<f64>) -> Need 
         need(
             rule,
             "no highlights",
-            "nothing that is visible has a specular color",
+            "nothing that is visible has a specular colour",
             "their powers, for every light",
         )
     } else if exponents

@@ -169,7 +169,7 @@ impl<R: Real> Plan<R> {
         let occluders = occluders.as_deref().unwrap_or_default();
         let ball = |light: usize| {
             let ball = contacts.lights.on_balls.get(light).copied().flatten();
-            // In a tree, it is held against rays like everything else.
+            // Where it stands in a tree, it is held against rays like everything else.
             ball.filter(|place| numbers.contains_key(place))
         };
         let holders = |light: usize| {

@@ -50,7 +50,8 @@ pub struct SurfacePoint<L: SimdFloat> {
 /// How close rays come to a primitive.
 #[derive(Clone, Copy, Debug)]
 pub struct Approach<L> {
-    /// From where along the rays on it may be so close.
+    /// From where along the rays on it is about so close. What is round or pointed may begin a little before that where
+    /// rays pass beside it.
     pub from: L,
     /// Up to where.
     pub to: L,

@@ -106,16 +106,18 @@ impl Aspect {
 
     /// Its name.
     pub fn name(self) -> &'static str {
-        let mut all = Self::EACH.iter();
-        all.find(|(aspect, ..)| *aspect == self)
-            .map_or("", |(_, name, _)| name)
+        self.words_of().0
     }
 
     /// What it shows, in a phrase.
     pub fn meaning(self) -> &'static str {
+        self.words_of().1
+    }
+
+    fn words_of(self) -> (&'static str, &'static str) {
         let mut all = Self::EACH.iter();
         all.find(|(aspect, ..)| *aspect == self)
-            .map_or("", |(.., meaning)| meaning)
+            .map_or(("", ""), |(_, name, meaning)| (name, meaning))
     }
 
     /// Its name on the command line.

@@ -145,9 +145,9 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         Paths { rays, ignored }
     }
 
-    /// How large the cosine between surfaces and a unit direction to a light at this distance, of which one over it is
-    /// given, must be for them to be lit, where the light may be level with them or on a ball: infinity where that is
-    /// before it.
+    /// How large the cosine between the normals of surfaces and the unit direction to a light must be for them to be lit,
+    /// where the light may be level with them, or on a ball: infinity where that ball stands before it. The light is at
+    /// this distance; `shrink` is one over that.
     #[inline(always)]
     pub fn lowest_lit(
         self,

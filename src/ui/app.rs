@@ -200,7 +200,7 @@ impl App {
                 ctx.request_repaint();
             }
             Some(FileOutcome::ExportFolder(path)) => self.exports.choose_folder(&path),
-            Some(FileOutcome::Frame) => self.run(ctx, Command::FrameSelected),
+            Some(FileOutcome::Frame) => self.run(ctx, Command::FrameAll),
             Some(FileOutcome::SaveImage(path)) => {
                 self.editor.apply(Action::Show(Mode::HighRes));
                 self.pictures.request_still(&self.editor, Some(path));
@@ -345,13 +345,14 @@ impl eframe::App for App {
         self.why.show(&ctx);
         // Still pictures are looked at, not flown through: they would be gone.
         let (place, flown) = picture;
-        if let Some(lens) = Lens::new(&self.editor.shown().camera, place.rect) {
+        let is_still = self.editor.mode == Mode::HighRes || self.lab.is_looking();
+        let lens = Lens::new(&self.editor.shown().camera, place.rect);
+        if let Some(lens) = lens.filter(|_| !is_still) {
             self.why
                 .mark(&ui.painter().with_clip_rect(place.rect), |point| {
                     lens.place(point)
                 });
         }
-        let is_still = self.editor.mode == Mode::HighRes || self.lab.is_looking();
         let flown = Some(&flown).filter(|_| !is_still && !self.tools.is_dragging());
         // Space presses a button that has the focus, and does not lift the camera as well.
         let is_free = ui.memory(|memory| memory.focused().is_none());

@@ -408,7 +408,7 @@ impl Files {
             Read::Mesh(Ok(file)) => {
                 let is_first = editor.scene().objects.is_empty();
                 imported(editor, &reading.path, file);
-                self.has_first |= is_first && !editor.scene().objects.is_empty();
+                self.has_first = is_first && !editor.scene().objects.is_empty();
             }
             Read::Mesh(Err(error)) => {
                 editor.report_error_in(Ask::ImportMesh.title(), error.to_string());

@@ -81,7 +81,7 @@ mod toasts;
 
 mod histogram;
 
-mod cost_scale;
+mod legend;
 
 mod magnifier;
 

@@ -14,7 +14,7 @@ use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, TIMELINE, palette};
 use super::timeline::clock;
 use super::tools::label;
 use super::viewport::{Place, badge, describe, fit};
-use super::{cost_scale, inspector, menu, status};
+use super::{inspector, legend, menu, status};
 use crate::editor::Mode;
 use crate::scene::Aspect;
 
@@ -59,7 +59,8 @@ impl App {
                 .default_size(OUTLINER)
                 .size_range(160.0..=420.0)
                 .show(ui, |ui| {
-                    self.outliner.show(ui, &self.editor, out);
+                    let keys_are_free = !self.keys_are_taken;
+                    self.outliner.show(ui, &self.editor, keys_are_free, out);
                 });
         }
         let mut middle = ui.available_rect_before_wrap();
@@ -193,9 +194,9 @@ impl App {
                 self.layout.aspect = Aspect::All;
             }
             if aspect == Aspect::Cost {
-                cost_scale::show(ui, place.rect);
+                legend::show(ui, place.rect);
             } else {
-                cost_scale::show_words(ui, place.rect, aspect.meaning());
+                legend::show_words(ui, place.rect, aspect.meaning());
             }
         }
         if let Some((_, seconds)) = self.editor.timeline().recorded() {

@@ -20,6 +20,8 @@ const FORECAST: Duration = Duration::from_secs(1);
 /// Time after which a picture of which nothing is to be seen must have a scene that takes long to make ready.
 const READY: Duration = Duration::from_millis(500);
 
+/// Most of the line that what the tracer is doing may take up.
+const MOST: f32 = 0.6;
 /// Height of what stands in the line: lower than the line, which must not jump.
 const BAR: f32 = 16.0;
 
@@ -37,7 +39,11 @@ pub fn show(
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         ui.spacing_mut().interact_size.y = BAR;
         ui.spacing_mut().button_padding.y = 0.0;
-        doing(ui, activity, shown, note, out);
+        let most = ui.available_width() * MOST;
+        ui.scope(|ui| {
+            ui.set_max_width(most);
+            doing(ui, activity, shown, note, out);
+        });
         check.show(ui, scene, out);
         // What there is no room for is cut here.
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
@@ -72,7 +78,7 @@ fn doing(
         }
         Activity::Idle => {
             if let Some(note) = note {
-                ui.weak(note);
+                ui.add(Label::new(RichText::new(note).weak()).truncate());
             }
         }
         Activity::Live { .. } | Activity::Still { .. } => {

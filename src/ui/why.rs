@@ -19,8 +19,6 @@ const DECIMALS: usize = 3;
 /// What is asked, and the answer.
 #[derive(Default)]
 pub struct Why {
-    /// The ray.
-    asked: (DVec3, DVec3),
     answer: Option<Sight>,
     waiting: Option<Receiver<Sight>>,
 }
@@ -28,7 +26,6 @@ pub struct Why {
 impl Why {
     /// Asks what a ray sees, and why. It is found out elsewhere: a mesh may have many faces.
     pub fn ask(&mut self, scene: &Arc<Scene>, (origin, direction): (DVec3, DVec3)) {
-        self.asked = (origin, direction);
         let scene = Arc::clone(scene);
         let look = move || explain(&scene, origin, direction);
         self.waiting = Some(run_in_background("glint-why", look));
@@ -39,15 +36,11 @@ impl Why {
         self.answer.is_some()
     }
 
-    /// Marks the place that the answer is about, which `on_screen` finds.
+    /// Marks the place that the answer is about, if it is on something; `on_screen` finds it.
     pub fn mark(&self, painter: &Painter, on_screen: impl FnOnce(DVec3) -> Option<Pos2>) {
-        let Some(answer) = &self.answer else { return };
-        let (origin, direction) = self.asked;
-        let point = match answer {
-            Sight::Surface(lit) => lit.point,
-            Sight::Sky(_) | Sight::Marker(..) => origin + direction,
-        };
-        if let Some(at) = on_screen(point) {
+        if let Some(Sight::Surface(lit)) = &self.answer
+            && let Some(at) = on_screen(lit.point)
+        {
             let colors = palette(painter.ctx());
             // Seen before light and before dark.
             painter.circle_stroke(at, RING, (3.5, colors.halo));

@@ -397,8 +397,15 @@ fn a_light_on_a_ball_shines_up_to_the_plane_that_touches_it_there() {
             orthographic_height: 8.0 * radius,
             ..Camera::default()
         };
-        for precision in [Precision::Auto, Precision::Single, Precision::Double] {
-            let image = at(&lit, precision);
+        let both = [Accelerator::List, Accelerator::Bvh];
+        let precisions = [Precision::Auto, Precision::Single, Precision::Double];
+        for (precision, accelerator) in precisions.into_iter().flat_map(|p| both.map(|a| (p, a))) {
+            let wanted = RenderRequest {
+                precision,
+                accelerator,
+                ..RenderRequest::sized(SIDE, SIDE)
+            };
+            let image = picture(&lit, &wanted).0;
             let [dark, ..] = image.pixels[0];
             let mut checked = 0;
             for (index, [red, ..]) in image.pixels.iter().enumerate() {

@@ -51,7 +51,7 @@ impl GroupRows {
         let response = entry(ui, rect, look, &group.name);
         let all = || Action::SelectItems(Selected::all(members()));
         if response.clicked() {
-            let selected = select_clicked(ui, editor.selected(), members());
+            let selected = selected_with(ui, editor.selected(), members());
             out.actions.push(Action::SelectItems(selected));
         }
         if response.double_clicked() {
@@ -131,8 +131,8 @@ impl GroupRows {
     }
 }
 
-/// What is selected by a click on a group: with Ctrl or Shift besides the others, with Ctrl not if all of it was.
-fn select_clicked(
+/// What is selected by a click on a group: with Shift or Ctrl besides the others, with Ctrl alone not if all of it was.
+fn selected_with(
     ui: &Ui,
     selected: &Selected,
     members: impl ExactSizeIterator<Item = Item> + Clone,
@@ -144,7 +144,7 @@ fn select_clicked(
     let own: HashSet<Item> = members.clone().collect();
     let others = selected.items().iter().copied();
     let others = others.filter(|item| !own.contains(item));
-    if modifiers.command && selected.has_all(members.clone()) {
+    if !modifiers.shift && selected.has_all(members.clone()) {
         Selected::all(others)
     } else {
         Selected::all(others.chain(members))

@@ -18,7 +18,7 @@ use self::entry::{
 };
 use self::groups::GroupRows;
 use self::lines::{Entries, Groups, Line, Lines};
-use self::walk::Walk;
+use self::walk::{Listed, Walk};
 use super::add::add_menu;
 use super::icons;
 use super::menu_entry::{ITEM_COMMANDS, entry as menu_entry};
@@ -77,8 +77,14 @@ impl Outliner {
         self.walk.has_keys(ui)
     }
 
-    /// Shows the panel and pushes what is asked for.
-    pub fn show(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+    /// Shows the panel and pushes what is asked for; keys are heeded if they are free.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        editor: &Editor,
+        keys_are_free: bool,
+        out: &mut UiRequests,
+    ) {
         ui.add_space(GRID / 2.0);
         if self.listed.0 != editor.documents() {
             // What was looked for and named was in the other one.
@@ -103,10 +109,19 @@ impl Outliner {
         let mut groups = std::mem::take(&mut self.groups);
         groups.update(&editor.scene().objects, &self.group_rows.folded);
         let lines = self.lines(editor.scene(), &groups);
-        self.walk.step(ui, editor, (&lines, &groups.all), out);
+        let listed = Listed {
+            lines: &lines,
+            groups: &groups.all,
+        };
+        let walked = self.walk.step(ui, (editor, listed), keys_are_free);
+        let walked = walked.map(|(row, action)| {
+            out.actions.push(action);
+            row
+        });
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut area = ScrollArea::vertical().auto_shrink(false);
-        if let Some(to) = self.to_reveal(editor, &lines) {
+        let revealed = walked.or_else(|| self.revealed(editor, listed));
+        if let Some(to) = revealed.and_then(|row| self.to_reveal(row)) {
             area = area.vertical_scroll_offset(to);
         }
         self.listed = (editor.documents(), editor.selection);
@@ -156,13 +171,16 @@ impl Outliner {
         self.scrolled = (shown.state.clamped_offset().y, shown.inner_rect.height());
     }
 
-    /// Where to scroll to, so that what was just selected elsewhere is seen.
-    fn to_reveal(&self, editor: &Editor, lines: &Lines) -> Option<f32> {
-        let Selection::Item(item) = editor.selection else {
-            return None;
-        };
+    /// The row of what was just selected elsewhere.
+    fn revealed(&self, editor: &Editor, listed: Listed) -> Option<usize> {
         let is_new = self.reveals || self.listed != (editor.documents(), editor.selection);
-        let top = lines.row_of(item).filter(|_| is_new)? as f32 * ROW;
+        let is_item = matches!(editor.selection, Selection::Item(_));
+        listed.row_of(editor).filter(|_| is_new && is_item)
+    }
+
+    /// Where to scroll to, so that a row is seen; nothing where it is.
+    fn to_reveal(&self, row: usize) -> Option<f32> {
+        let top = row as f32 * ROW;
         let (from, height) = self.scrolled;
         let is_seen = top >= from && top + ROW <= from + height;
         (!is_seen).then(|| (top - (height - ROW) / 2.0).max(0.0))

@@ -1,75 +1,101 @@
 //! The arrow keys in the list: from row to row, and not from button to button.
 
-use egui::{EventFilter, Key, Response, Ui};
+use egui::{Event, EventFilter, Key, Modifiers, Response, Ui};
 
 use super::lines::{Group, Line, Lines, SINGLES};
 use crate::editor::{Action, Editor, Item, Selected, Selection};
-use crate::ui::requests::UiRequests;
 
 /// What has the arrow keys.
 #[derive(Debug, Default)]
 pub struct Walk {
-    /// Whether they are meant for the list: the pointer is over it, and nothing else has the focus.
-    is_over: bool,
+    /// The frame in which the pointer was over the list last, and nothing else had the keys.
+    over_in: u64,
+    /// Whether the key that is held was pressed for the list.
+    is_held: bool,
     /// The row that has the focus.
     focused: Option<usize>,
-    /// The row that was walked to, and what was selected there.
-    at: Option<(usize, Selection)>,
-    /// The row that the focus goes to.
+    /// The row that was walked to last: a group of one thing is another row than that.
+    last: Option<usize>,
+    /// The row that gets the focus.
     goal: Option<usize>,
 }
 
+/// The list, and the groups in it.
+#[derive(Clone, Copy)]
+pub struct Listed<'a> {
+    /// Its lines.
+    pub lines: &'a Lines<'a>,
+    /// The groups, by their places.
+    pub groups: &'a [Group],
+}
+
 impl Walk {
-    /// Whether they are meant for the list, and for nothing else.
+    /// Whether the keys that are held in this frame are meant for the list.
     pub fn has_keys(&self, ui: &Ui) -> bool {
         let is_down = |key: Key| ui.input(|input| input.key_down(key));
-        self.is_over && (is_down(Key::ArrowUp) || is_down(Key::ArrowDown))
+        self.over_in == ui.ctx().cumulative_frame_nr()
+            && (is_down(Key::ArrowUp) || is_down(Key::ArrowDown))
     }
 
-    /// Selects what is in the next row above or below, if a key says so.
+    /// The row that a key walks to in this frame, and what selects what is in it.
     pub fn step(
         &mut self,
         ui: &Ui,
-        editor: &Editor,
-        (lines, groups): (&Lines, &[Group]),
-        out: &mut UiRequests,
-    ) {
-        let is_free = ui.memory(|memory| memory.focused().is_none());
-        self.is_over = is_free && ui.rect_contains_pointer(ui.max_rect());
-        self.goal = None;
+        (editor, listed): (&Editor, Listed),
+        keys_are_free: bool,
+    ) -> Option<(usize, Action)> {
+        let is_unfocused = ui.memory(|memory| memory.focused().is_none());
+        let is_over = is_unfocused && ui.rect_contains_pointer(ui.max_rect());
         let focused = self.focused.take();
-        if !self.is_over && focused.is_none() {
-            return;
+        self.goal = None;
+        if !keys_are_free || !is_over && focused.is_none() {
+            return None;
         }
-        let is_pressed =
-            |key: Key| ui.input(|input| input.modifiers.is_none() && input.key_pressed(key));
-        let is_down = is_pressed(Key::ArrowDown);
-        if !is_down && !is_pressed(Key::ArrowUp) {
-            return;
+        if is_over {
+            self.over_in = ui.ctx().cumulative_frame_nr();
         }
-        let selection = editor.selection;
-        let walked = self.at.filter(|(_, selected)| *selected == selection);
-        let walked = walked.map(|(row, _)| row);
-        let from = focused.or(walked).or_else(|| row_of(selection, lines));
-        let mut rows: Box<dyn Iterator<Item = usize>> = match (from, is_down) {
-            (None, _) => Box::new(0..lines.len()),
-            (Some(row), true) => Box::new(row + 1..lines.len()),
-            (Some(row), false) => Box::new((0..row).rev()),
-        };
-        let next = rows.find_map(|row| Some((row, action(&lines.get(row)?, groups)?)));
-        if let Some((row, action)) = next {
-            let selection = match &action {
-                Action::Select(selection) => *selection,
-                Action::SelectItems(items) => items
-                    .items()
-                    .last()
-                    .map_or(selection, |item| Selection::Item(*item)),
-                _ => selection,
+        let is_down = self.pressed(ui)?;
+        let last = self.last.filter(|row| listed.is_selected(editor, *row));
+        let from = focused.or(last).or_else(|| listed.row_of(editor));
+        let count = listed.lines.len();
+        let mut row = from;
+        let (row, action) = loop {
+            let next = match (row, is_down) {
+                (None, true) => 0,
+                (None, false) => count - 1,
+                (Some(row), true) => row + 1,
+                (Some(row), false) => row.checked_sub(1)?,
             };
-            self.at = Some((row, selection));
-            self.goal = focused.map(|_| row);
-            out.actions.push(action);
-        }
+            if let Some(action) = listed.action(next) {
+                break (next, action);
+            }
+            row = (next < count).then_some(Some(next))?;
+        };
+        self.last = Some(row);
+        self.goal = focused.map(|_| row);
+        Some((row, action))
+    }
+
+    /// Whether Down was pressed, or Up; also again and again, if that began here.
+    fn pressed(&mut self, ui: &Ui) -> Option<bool> {
+        let mut pressed = None;
+        ui.input(|input| {
+            for event in &input.events {
+                if let Event::Key {
+                    key: key @ (Key::ArrowUp | Key::ArrowDown),
+                    pressed: true,
+                    repeat,
+                    modifiers: Modifiers::NONE,
+                    ..
+                } = event
+                {
+                    self.is_held |= !repeat;
+                    pressed = self.is_held.then_some(*key == Key::ArrowDown);
+                }
+            }
+            self.is_held &= input.key_down(Key::ArrowUp) || input.key_down(Key::ArrowDown);
+        });
+        pressed
     }
 
     /// Notes of a row whether it has the focus, and gives it to the one that was walked to.
@@ -88,23 +114,48 @@ impl Walk {
     }
 }
 
-/// The row of what is selected, if it is listed.
-fn row_of(selection: Selection, lines: &Lines) -> Option<usize> {
-    match selection {
-        Selection::Item(item) => lines.row_of(item),
-        other => SINGLES.iter().position(|(single, ..)| *single == other),
-    }
-}
-
-/// What selects what is in a line, if anything is.
-fn action(line: &Line, groups: &[Group]) -> Option<Action> {
-    Some(match line {
-        Line::Single(selection, ..) => Action::Select(*selection),
-        Line::Entry(item, _) => Action::SelectItems(Selected::all([*item])),
-        Line::Group(place) => {
-            let members = groups[*place].members.iter();
-            Action::SelectItems(Selected::all(members.map(|index| Item::object(*index))))
+impl Listed<'_> {
+    /// The row of what is selected, if it is listed: that of its group, if all of that is, or if the group is folded.
+    pub fn row_of(&self, editor: &Editor) -> Option<usize> {
+        let Selection::Item(item) = editor.selection else {
+            let mut singles = SINGLES.iter();
+            return singles.position(|(single, ..)| *single == editor.selection);
+        };
+        match editor.selected().group(editor.scene()) {
+            Some(group) => self.row_of_group(group),
+            None => self.lines.row_of(item).or_else(|| {
+                let object = editor.scene().objects.get(item.index)?;
+                self.row_of_group(&object.group)
+            }),
         }
-        Line::Kind(..) => return None,
-    })
+    }
+
+    fn row_of_group(&self, name: &str) -> Option<usize> {
+        (0..self.lines.len()).find(|row| match self.lines.get(*row) {
+            Some(Line::Group(place)) => self.groups[place].name == name,
+            _ => false,
+        })
+    }
+
+    /// What selects what is in a row, if anything is.
+    fn action(&self, row: usize) -> Option<Action> {
+        Some(match self.lines.get(row)? {
+            Line::Single(selection, ..) => Action::Select(selection),
+            Line::Entry(item, _) => Action::SelectItems(Selected::all([item])),
+            Line::Group(place) => {
+                let members = self.groups[place].members.iter();
+                Action::SelectItems(Selected::all(members.map(|index| Item::object(*index))))
+            }
+            Line::Kind(..) => return None,
+        })
+    }
+
+    /// Whether what is in a row is what is selected.
+    fn is_selected(&self, editor: &Editor, row: usize) -> bool {
+        match self.action(row) {
+            Some(Action::Select(selection)) => selection == editor.selection,
+            Some(Action::SelectItems(items)) => items == *editor.selected(),
+            _ => false,
+        }
+    }
 }

@@ -68,7 +68,6 @@ fn a_group_is_listed_hidden_renamed_and_moved_as_one() {
         click(&mut harness, group, modifiers);
         assert_eq!(harness.editor().selected().items().len(), count);
     }
-    harness.click("Group 1");
     let at = middle(&harness, "Group 1");
     (0..60).for_each(|_| harness.window.step());
     for _ in 0..2 {

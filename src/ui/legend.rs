@@ -20,7 +20,7 @@ const MARKS: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
 /// Draws what is said of a view over the lower right corner of the picture.
 pub fn show_words(ui: &Ui, picture: Rect, words: &str) {
     let font = TextStyle::Small.resolve(ui.style());
-    let widest = picture.width() - 4.0 * GRID;
+    let widest = (picture.width() - 4.0 * GRID).max(0.0);
     let color = palette(ui.ctx()).text;
     let words = ui.painter().layout(words.to_owned(), font, color, widest);
     let (painter, frame) = frame(ui, picture, words.size() + vec2(GRID, GRID / 2.0) * 2.0);
