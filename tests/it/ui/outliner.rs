@@ -66,6 +66,43 @@ fn arrows_walk_from_row_to_row_and_turn_no_camera_meanwhile() {
 }
 
 #[test]
+fn arrows_know_folded_groups_and_what_is_filtered() {
+    let mut scene = Scene::demo();
+    for index in [0, 1] {
+        scene.objects[index].group = "Balls".to_owned();
+    }
+    let mut harness = EditorHarness::on(scene);
+    let selected = |harness: &EditorHarness| {
+        let items = harness.editor().selected().items().to_vec();
+        let names = items.iter().filter_map(|item| item.name(harness.scene()));
+        names.map(str::to_owned).collect::<Vec<_>>()
+    };
+    harness.click("Fold Balls");
+    let row = harness.window.get_by_label("Balls").rect().center();
+    click(&mut harness, row, Modifiers::NONE);
+    assert_eq!(selected(&harness), ["Sphere 1", "Sphere 2"]);
+    harness.press(Modifiers::NONE, Key::ArrowDown);
+    assert_eq!(selected(&harness), ["Triangle 1"]);
+    harness.press(Modifiers::NONE, Key::ArrowUp);
+    assert_eq!(
+        selected(&harness),
+        ["Sphere 1", "Sphere 2"],
+        "all of the group"
+    );
+    harness.press(Modifiers::NONE, Key::ArrowUp);
+    assert_eq!(selected(&harness), ["Light 2"]);
+    // Of what is listed, whatever was walked to before.
+    harness.window.get_by_label("Filter").focus();
+    harness.window.get_by_label("Filter").type_text("triangle");
+    harness.settle();
+    harness.press(Modifiers::NONE, Key::Enter);
+    let row = harness.window.get_by_label("Triangle 3").rect().center();
+    click(&mut harness, row, Modifiers::NONE);
+    harness.press(Modifiers::NONE, Key::ArrowDown);
+    assert_eq!(selected(&harness), ["Triangle 4"]);
+}
+
+#[test]
 fn a_name_that_was_edited_is_not_edited_in_the_next_scene() {
     let mut harness = EditorHarness::new();
     let field = |harness: &EditorHarness| harness.window.query_by_label("new name").is_some();
