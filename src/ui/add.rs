@@ -348,7 +348,7 @@ mod tests {
     fn what_is_added_to_the_demo_stands_on_its_floor_beside_what_is_there() {
         let mut scene = Scene::demo();
         let before = added(&mut scene, &[]).len();
-        let bounds = added(&mut scene, &["Add Box", "Add Cylinder"]);
+        let bounds = added(&mut scene, &["Add Box", "Add Cylinder", "Add Torus"]);
         for (index, (low, high)) in bounds.iter().enumerate().skip(before) {
             assert!(low.y.abs() < 1.0, "{index} hangs at {low}");
             for (other_low, other_high) in &bounds[..index] {
