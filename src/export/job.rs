@@ -109,9 +109,9 @@ fn write_scene(
     Ok(backup)
 }
 
-/// What a job can be called after a scene of this name: two braces begin what is put in there.
+/// What a job can be called after a scene of this name: two braces begin and end what is put in there.
 fn job_name(scene: &str) -> String {
-    let name = scene.replace("{{", "{ ");
+    let name = scene.replace("{{", "{ ").replace("}}", "} ");
     let plain = name.chars().filter(|letter| !letter.is_control());
     plain.take(LONGEST_NAME).collect()
 }

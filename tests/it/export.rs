@@ -807,7 +807,7 @@ fn a_job_has_a_name_that_farms_take_whatever_the_scene_is_called() {
     let template = folder.path().join("job.yaml");
     let path = template.to_str().expect("plain");
     for (name, expected) in [
-        ("a {{{Param.Scene}}\tb".to_owned(), "a { {Param.Scene}}b"),
+        ("a {{{Param.Scene}}}\tb".to_owned(), "a { {Param.Scene} }b"),
         ("n".repeat(200), &*"n".repeat(128)),
     ] {
         let scene = folder.path().join(format!("{name}.ron"));

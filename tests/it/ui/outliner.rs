@@ -35,14 +35,17 @@ fn the_outliner_filters_hides_renames_and_reorders() {
     assert_eq!(harness.scene().objects.len(), 9);
 }
 
+/// The names of what is selected.
+fn selected(harness: &EditorHarness) -> Vec<&str> {
+    let items = harness.editor().selected().items().iter();
+    items
+        .filter_map(|item| item.name(harness.scene()))
+        .collect()
+}
+
 #[test]
 fn arrows_walk_from_row_to_row_and_turn_no_camera_meanwhile() {
     let mut harness = EditorHarness::new();
-    let selected = |harness: &EditorHarness| {
-        let items = harness.editor().selected().items().to_vec();
-        let names = items.iter().filter_map(|item| item.name(harness.scene()));
-        names.map(str::to_owned).collect::<Vec<_>>()
-    };
     let camera = harness.scene().camera.clone();
     // With the pointer over the list, after a click there.
     let row = harness.window.get_by_label("Sphere 1").rect().center();
@@ -72,11 +75,6 @@ fn arrows_know_folded_groups_and_what_is_filtered() {
         scene.objects[index].group = "Balls".to_owned();
     }
     let mut harness = EditorHarness::on(scene);
-    let selected = |harness: &EditorHarness| {
-        let items = harness.editor().selected().items().to_vec();
-        let names = items.iter().filter_map(|item| item.name(harness.scene()));
-        names.map(str::to_owned).collect::<Vec<_>>()
-    };
     harness.click("Fold Balls");
     let row = harness.window.get_by_label("Balls").rect().center();
     click(&mut harness, row, Modifiers::NONE);
