@@ -11,7 +11,7 @@ use super::roots::Roots;
 use super::scan::{Test, Thicket, scan_lists};
 use super::slip::least_pixels;
 use super::thresholds::{
-    CROWD, LARGEST_SPREAD, NEAR, ONE_THING, SLIPPING, WIDEST_SPREAD, WIDEST_TO_LIGHTS,
+    CLOSE, CROWD, LARGEST_SPREAD, ONE_THING, SLIPPING, WIDEST_SPREAD, WIDEST_TO_LIGHTS,
 };
 use super::walk::Stack;
 use crate::plan::PackedMesh;
@@ -194,7 +194,7 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
     fn note(&mut self, ball: &Passed<L>, counts: L::Mask, beside: L) {
         let width = ball.width;
         // Whether a ray meets what is inside, nobody asks: it passes closely enough.
-        let beside = beside.max(width * width.like_f64(NEAR / 2.0));
+        let beside = beside.max(width * width.like_f64(CLOSE));
         let near = pixels(counts, beside, width);
         self.best = self.best.min(near);
     }

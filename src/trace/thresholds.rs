@@ -55,6 +55,10 @@ pub const WIDEST_SPREAD: f64 = 300.0;
 /// A thing can be in a cell without being nearer than this to a corner, in sides of the cell: half
 /// its diagonal, and a little for the rounding.
 pub const NEAR: f64 = 0.75;
+/// How near rays come to what is looked at as one thing at most, in pixels, also where they go through it: it is looked
+/// for in pixels and their halves, and not in smaller cells. Between what these count as near: where it is the same as one
+/// of them, rounding decides.
+pub const CLOSE: f64 = 0.4 * NEAR;
 /// How far what is even may be from it, in parts of the range of the corners' colours: the middle of a cell from their
 /// mean, which an edge between two colours puts a quarter away at least; and colours of one face from each other.
 pub const UNEVEN: f64 = 0.125;
