@@ -210,7 +210,7 @@ fn write_shape(pov: &mut String, shape: &Shape, texture: &str) {
 
 /// The faces as the tracer has them: with the same normals where they are shaded as a curved surface.
 fn write_faces(pov: &mut String, mesh: &Mesh) {
-    let packed = PackedMesh::<f64>::new(mesh);
+    let packed = PackedMesh::new(mesh);
     let middle = packed.middle_of(mesh);
     for (index, triangle) in packed.triangles.iter().enumerate() {
         let [a, b, c] = triangle

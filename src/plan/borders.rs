@@ -3,16 +3,16 @@
 use rayon::slice::ParallelSliceMut as _;
 
 use super::parts::parts_along_edges;
-use crate::simd::{Real, Vec3};
+use crate::simd::Vec3;
 
 /// Most faces on the way from one border of a mesh to the other.
 const LONGEST_WALK: usize = 32;
 
 /// What the edges of faces tell of them.
-pub struct Borders<R> {
+pub struct Borders {
     /// Faces with an edge that no other face has, in ascending order, and how far it is from there over the surface to
     /// the next such edge; infinity if that is far.
-    pub widths: Vec<(u32, R)>,
+    pub widths: Vec<(u32, f64)>,
     /// Whether every edge is passed once in each direction: there is an inside.
     pub is_closed: bool,
     /// For each face the part that it is connected with along edges.
@@ -21,11 +21,11 @@ pub struct Borders<R> {
     pub of_one_material: Option<Vec<u32>>,
 }
 
-impl<R: Real> Borders<R> {
+impl Borders {
     /// Those of faces whose corners have these numbers, are there, and that are of these materials.
     pub fn of(
         points: &[[u32; 3]],
-        corners: impl Fn(u32) -> [Vec3<R>; 3],
+        corners: impl Fn(u32) -> [Vec3<f64>; 3],
         material: impl Fn(u32) -> u32,
     ) -> Self {
         let edges = Edges::of(points);
@@ -117,10 +117,10 @@ struct Surface<'a, F> {
     edges: &'a Edges,
 }
 
-impl<R: Real, F: Fn(u32) -> [Vec3<R>; 3]> Surface<'_, F> {
+impl<F: Fn(u32) -> [Vec3<f64>; 3]> Surface<'_, F> {
     /// The way along the surface from the border of a face to the next one; infinity if that is far.
-    fn width(&self, face: u32) -> R {
-        let mut least = R::INFINITY;
+    fn width(&self, face: u32) -> f64 {
+        let mut least = f64::INFINITY;
         for side in 0..3 {
             let points = self.points[face as usize];
             let (from, to) = (points[side], points[(side + 1) % 3]);
@@ -132,23 +132,23 @@ impl<R: Real, F: Fn(u32) -> [Vec3<R>; 3]> Surface<'_, F> {
     }
 
     /// The length of the straight line over the surface that sets out across the middle of a side.
-    fn walk(&self, mut face: u32, side: usize) -> R {
+    fn walk(&self, mut face: u32, side: usize) -> f64 {
         let mut entered = side;
         let corners = (self.corners)(face);
         let (from, to) = (corners[side], corners[(side + 1) % 3]);
-        let mut at = (from + to) * R::from_f64(0.5);
+        let mut at = (from + to) * 0.5;
         let mut direction = inwards(&corners, side);
-        let mut length = R::ZERO;
+        let mut length = 0.0;
         for _ in 0..LONGEST_WALK {
             let corners = (self.corners)(face);
             // Each of the other sides is crossed where the line comes to its height over it.
             let crossing = |side: usize| {
                 let inwards = inwards(&corners, side);
                 let (height, speed) = ((at - corners[side]).dot(inwards), direction.dot(inwards));
-                if speed < R::ZERO {
+                if speed < 0.0 {
                     -height / speed
                 } else {
-                    R::INFINITY
+                    f64::INFINITY
                 }
             };
             let sides = [(entered + 1) % 3, (entered + 2) % 3];
@@ -158,10 +158,11 @@ impl<R: Real, F: Fn(u32) -> [Vec3<R>; 3]> Surface<'_, F> {
             } else {
                 (sides[1], two)
             };
-            if !step.less(R::INFINITY) {
-                return R::INFINITY;
+            // Neither infinity nor not-a-number.
+            if !step.is_finite() {
+                return f64::INFINITY;
             }
-            length = length + step.max(R::ZERO);
+            length += step.max(0.0);
             at = at + direction * step;
             let points = self.points[face as usize];
             let (a, b) = (points[left], points[(left + 1) % 3]);
@@ -185,16 +186,16 @@ impl<R: Real, F: Fn(u32) -> [Vec3<R>; 3]> Surface<'_, F> {
             entered = side;
             direction = kept + inwards(&(self.corners)(face), side) * across;
         }
-        R::INFINITY
+        f64::INFINITY
     }
 }
 
 /// The unit direction in the plane of a triangle that leads from one of its sides into it.
-fn inwards<R: Real>(corners: &[Vec3<R>; 3], side: usize) -> Vec3<R> {
+fn inwards(corners: &[Vec3<f64>; 3], side: usize) -> Vec3<f64> {
     let (from, to) = (corners[side], corners[(side + 1) % 3]);
     let third = corners[(side + 2) % 3];
     let along = to - from;
     let normal = along.cross(third - from);
     let direction = normal.cross(along).try_normalize();
-    direction.unwrap_or(Vec3::splat(R::ZERO))
+    direction.unwrap_or(Vec3::splat(0.0))
 }

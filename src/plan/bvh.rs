@@ -3,6 +3,8 @@
 //! A packet of rays is held against all boxes of a node in step, so that a node is as wide as the widest
 //! packet.
 
+use std::sync::Arc;
+
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
@@ -44,8 +46,8 @@ pub struct Member<R> {
 /// A bounding volume hierarchy, the root first; no nodes where there are no members.
 #[derive(Clone, Debug)]
 pub struct Bvh<R> {
-    /// The nodes, each before those in its boxes.
-    pub nodes: Vec<Node>,
+    /// The nodes, each before those in its boxes; trees of both precisions may share them.
+    pub nodes: Arc<[Node]>,
     /// The box around everything.
     pub bounds: BoundingBox<R>,
     /// The smallest thickness of any member.
@@ -222,7 +224,7 @@ impl<R: Real> Bvh<R> {
     /// Numbers the members anew, so that those of a node follow each other. The old numbers, in the new order.
     pub fn renumber(&mut self) -> Vec<u32> {
         let mut old = Vec::new();
-        for node in &mut self.nodes {
+        for node in Arc::make_mut(&mut self.nodes) {
             for held in &mut node.children[..node.count] {
                 if *held & IS_NODE == 0 {
                     old.push(std::mem::replace(held, old.len() as u32));
@@ -234,18 +236,34 @@ impl<R: Real> Bvh<R> {
 
     /// Fits the boxes to the members, which have moved.
     pub fn refit(&mut self, member: impl Fn(usize) -> Member<R>) {
+        let nodes = Arc::make_mut(&mut self.nodes);
         // A node stands before those in its boxes.
-        for index in (0..self.nodes.len()).rev() {
-            for place in 0..self.nodes[index].count {
-                let held = match self.nodes[index].child(place) {
+        for index in (0..nodes.len()).rev() {
+            for place in 0..nodes[index].count {
+                let held = match nodes[index].child(place) {
                     Child::Member(number) => member(number as usize),
-                    Child::Node(node) => self.nodes[node as usize].around(),
+                    Child::Node(node) => nodes[node as usize].around(),
                 };
-                self.nodes[index].set(place, &held);
+                nodes[index].set(place, &held);
             }
         }
         let all = self.nodes.first().map_or(Member::nothing(), Node::around);
         (self.bounds, self.thinnest) = (all.bounds, all.thickness);
+    }
+
+    /// The same tree in another precision, around the same members rounded to it: what lies in a box of single precision
+    /// does so when it is rounded.
+    pub fn in_precision<S: Real>(&self) -> Bvh<S> {
+        let BoundingBox { low, high } = self.bounds;
+        Bvh {
+            nodes: Arc::clone(&self.nodes),
+            bounds: BoundingBox {
+                low: low.in_precision(),
+                high: high.in_precision(),
+            },
+            thinnest: S::from_f64(self.thinnest.to_f64()),
+            built: self.built,
+        }
     }
 
     /// The boxes of the root.

@@ -9,13 +9,14 @@ use super::borders::Borders;
 use super::bvh::{Bvh, Member};
 use super::contacts::LightContacts;
 use super::idle::KeptIdle;
+use super::meshes::Meshes;
 use super::packed_mesh::{MeshInstance, PackedMesh, measure, member};
 use super::parts::things;
 use super::request::RenderRequest;
 use super::solids::faces_of_solids;
 use crate::primitive::{
-    BoundingBox, KINDS, Kind, Packing, Primitive, Primitives, Visit, count_corner_users,
-    number_corners,
+    BoundingBox, KINDS, Kind, PackedTriangle, Packing, Primitive, Primitives, Visit,
+    count_corner_users, number_corners,
 };
 use crate::scene::{Accelerator, Coincidence, List, Object, Sampling, Scene, Shape, coincidences};
 use crate::simd::{Real, Vec3};
@@ -64,8 +65,8 @@ pub struct Kept<R> {
     last: Option<(Source, Arc<Geometry<R>>)>,
     coincidences: Option<(List<Object>, DVec3, Arc<[Coincidence]>)>,
     light_contacts: Option<(List<Object>, Vec<DVec3>, Arc<LightContacts>)>,
-    /// Meshes of other pictures.
-    others: Vec<Arc<PackedMesh<R>>>,
+    /// Meshes that are ready for the next picture, beside those of the last one.
+    others: Meshes<R>,
     idle: KeptIdle<R>,
 }
 
@@ -83,6 +84,21 @@ impl Planner {
     pub fn share_meshes(&mut self, other: &Self) {
         self.single.share_meshes(&other.single);
         self.double.share_meshes(&other.double);
+    }
+
+    /// Makes the meshes of a scene ready that is planned in both precisions: each of them once for both.
+    pub fn pack_meshes(&mut self, scene: &Scene) {
+        let Self { single, double } = self;
+        if single.is_of(&scene.objects) && double.is_of(&scene.objects) {
+            return;
+        }
+        let (mut rounded, mut packed) = (single.meshes(), double.meshes());
+        for object in scene.objects.iter().filter(|object| is_planted(object)) {
+            if let Shape::Mesh(mesh) = &object.shape {
+                rounded.take_over(&packed.ready(mesh));
+            }
+        }
+        (single.others, double.others) = (rounded, packed);
     }
 }
 
@@ -117,9 +133,27 @@ impl Source {
 
 impl<R: Real> Kept<R> {
     fn share_meshes(&mut self, other: &Self) {
-        let theirs = other.last.iter();
-        let meshes = theirs.flat_map(|(_, last)| last.packed_meshes());
-        self.others = meshes.collect();
+        self.others = Meshes::default();
+        self.others.extend(other.last_meshes());
+    }
+
+    /// The meshes of the last picture.
+    fn last_meshes(&self) -> impl Iterator<Item = Arc<PackedMesh<R>>> {
+        let last = self.last.iter();
+        last.flat_map(|(_, geometry)| geometry.packed_meshes())
+    }
+
+    /// The meshes that are ready, which are not kept any longer beside those of the last picture.
+    fn meshes(&mut self) -> Meshes<R> {
+        let mut meshes = std::mem::take(&mut self.others);
+        meshes.extend(self.last_meshes());
+        meshes
+    }
+
+    /// Whether the last picture was of these objects.
+    fn is_of(&self, objects: &List<Object>) -> bool {
+        let mut last = self.last.iter();
+        last.any(|(source, _)| source.objects.is_same(objects))
     }
 
     /// The faces that cast no shadows of their own.
@@ -172,9 +206,8 @@ impl<R: Real> Kept<R> {
         {
             return Arc::clone(geometry);
         }
+        let meshes = self.meshes();
         let last = self.last.take().map(|(_, last)| last);
-        let mut meshes = std::mem::take(&mut self.others);
-        meshes.extend(last.iter().flat_map(|last| last.packed_meshes()));
         let before = last.as_deref().filter(|_| may_refit);
         let before = before.map(|last| (last.counts(), &last.bvh));
         let geometry = Geometry::new(scene, (centre, apart), meshes, before);
@@ -233,7 +266,7 @@ impl<R: Real> Geometry<R> {
     fn new(
         scene: &Scene,
         (centre, apart): (DVec3, &BTreeSet<usize>),
-        mut packed: Vec<Arc<PackedMesh<R>>>,
+        mut ready: Meshes<R>,
         before: Option<(Counts, &Bvh<R>)>,
     ) -> Self {
         let (mut primitives, mut meshes) = (Primitives::default(), Vec::new());
@@ -250,18 +283,13 @@ impl<R: Real> Geometry<R> {
             let material = material_number(scene, &object.color_pack);
             match &object.shape {
                 Shape::Mesh(mesh) => {
-                    let mesh_of = |known: &&Arc<PackedMesh<R>>| known.is_of(mesh);
-                    let known = packed.iter().find(mesh_of).cloned().unwrap_or_else(|| {
-                        let new = Arc::new(PackedMesh::new(mesh));
-                        packed.push(Arc::clone(&new));
-                        new
-                    });
-                    if known.triangles.is_empty() {
+                    let packed = ready.ready(mesh);
+                    if packed.triangles.is_empty() {
                         continue; // None of them has an area.
                     }
                     meshes.push(MeshInstance {
-                        centre: Vec3::from_dvec3(known.middle_of(mesh) - centre),
-                        mesh: Arc::clone(&known),
+                        centre: Vec3::from_dvec3(packed.middle_of(mesh) - centre),
+                        mesh: packed,
                         material,
                         place: index,
                         first: 0,
@@ -363,7 +391,9 @@ pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>, apart: &BTreeSet<u
     let (apart, others): (Vec<usize>, Vec<usize>) = places.clone().partition(is_apart);
     let mut found = vec![None; places.len()];
     for group in [others, apart] {
-        let mut triangles: Vec<_> = group.iter().map(|&at| primitives.triangles[at]).collect();
+        // In double precision, as the faces of meshes are.
+        let own = group.iter().map(|&at| &primitives.triangles[at]);
+        let mut triangles: Vec<_> = own.map(PackedTriangle::in_precision).collect();
         let corners = number_corners(&triangles);
         let mut bvh = Bvh::new(triangles.len(), |number| member(&triangles[number]));
         let all = &triangles;
@@ -378,7 +408,7 @@ pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>, apart: &BTreeSet<u
         for (index, (&place, mut triangle)) in group.iter().zip(triangles).enumerate() {
             let thing = things.get(index).copied().flatten();
             triangle.has_tips |= thing.is_none();
-            primitives.triangles[place] = triangle;
+            primitives.triangles[place] = triangle.in_precision();
             found[place] = thing.map(|first| group[first as usize] as u32);
         }
     }

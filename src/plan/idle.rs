@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn half_of_a_ball_is_idle_with_its_nodes() {
-        let mesh = PackedMesh::<f32>::new(&Mesh::of(icosphere(1.0)));
+        let mesh = PackedMesh::new(&Mesh::of(icosphere(1.0)));
         let idle = IdleFaces::towards(&mesh, Vec3::new(0.0, 1e4, 0.0));
         let faces = 0..mesh.triangles.len() as u32;
         for face in faces.clone() {

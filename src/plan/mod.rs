@@ -22,6 +22,8 @@ mod smooth;
 
 mod packed_mesh;
 
+mod meshes;
+
 mod idle;
 
 mod request;

@@ -1,5 +1,6 @@
 //! A mesh, ready to be traced: its triangles relative to its own middle, and the way to them.
 
+use std::any::Any;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -33,14 +34,30 @@ pub struct PackedMesh<R> {
     /// How far they reach from the middle of the box around them.
     pub reach: R,
     /// For each of them the first of those that it hangs together with; none if all do.
-    things: Vec<u32>,
+    things: Arc<[u32]>,
     /// Whether it has an inside; its normals then point away from there, however its file winds them.
     is_solid: bool,
     /// The middle, from the origin of the mesh.
     middle: DVec3,
-    source: Arc<Triangles>,
     turn: DMat3,
-    smooth_degrees: f64,
+    /// What it was made of.
+    pub key: MeshKey,
+    /// Kept, so that nothing else is where it is.
+    source: Arc<Triangles>,
+}
+
+/// What a packed mesh is made of, wherever that is: where its faces are kept, how they are turned and scaled, and up to
+/// which angle they are smooth, bit by bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MeshKey(usize, [u64; 9], u64);
+
+impl MeshKey {
+    /// That of a mesh.
+    pub fn of(mesh: &Mesh) -> Self {
+        let address = Arc::as_ptr(mesh.source.triangles()).addr();
+        let turn = mesh.turn().to_cols_array().map(f64::to_bits);
+        Self(address, turn, mesh.smooth.to_bits())
+    }
 }
 
 /// A mesh in its place.
@@ -58,8 +75,8 @@ pub struct MeshInstance<R> {
     pub first: usize,
 }
 
-impl<R: Real> PackedMesh<R> {
-    /// Packs a mesh.
+impl PackedMesh<f64> {
+    /// Packs a mesh: what it is is decided in double precision, whatever it is traced in.
     pub fn new(mesh: &Mesh) -> Self {
         let (source, turn) = (mesh.source.triangles(), mesh.turn());
         let turned = || source.points().iter().map(|&point| turn * point);
@@ -77,7 +94,7 @@ impl<R: Real> PackedMesh<R> {
         // The tree first: to build it takes more room than anything else.
         let mut bvh = Bvh::new(faces.len(), |number| Member {
             bounds: BoundingBox::around(&corners(faces[number]).map(Vec3::from_dvec3)),
-            thickness: R::INFINITY,
+            thickness: f64::INFINITY,
         });
         // What is met together stands together.
         let order = bvh.renumber().into_iter();
@@ -88,7 +105,7 @@ impl<R: Real> PackedMesh<R> {
         triangles.extend(faces.iter().filter_map(packed));
         drop(points);
         measure(&mut triangles, &faces, &mut bvh, &borders);
-        let things = first_of_parts(&borders.connected);
+        let things = first_of_parts(&borders.connected).into();
         let volume = if borders.is_closed {
             volume(&triangles)
         } else {
@@ -102,9 +119,8 @@ impl<R: Real> PackedMesh<R> {
         } else {
             Vec::new()
         };
-        let has_flat = smooth.is_empty() || smooth.iter().any(CornerNormals::are_alike);
         Self {
-            has_flat,
+            has_flat: smooth.is_empty() || smooth.iter().any(CornerNormals::are_alike),
             lift: largest_lift(&triangles, &smooth),
             reach: reach(&triangles, bvh.bounds.ball().0),
             smooth,
@@ -113,22 +129,44 @@ impl<R: Real> PackedMesh<R> {
             is_solid: volume != 0.0,
             triangles,
             middle,
-            source: Arc::clone(source),
             turn,
-            smooth_degrees: mesh.smooth,
+            key: MeshKey::of(mesh),
+            source: Arc::clone(source),
         }
     }
 
+    /// The same in another precision, or this one itself: what was decided of it stays, and its tree is shared.
+    pub fn in_precision<R: Real>(this: &Arc<Self>) -> Arc<PackedMesh<R>> {
+        let own: Arc<dyn Any + Send + Sync> = Arc::clone(this) as _;
+        own.downcast().unwrap_or_else(|_| Arc::new(this.rounded()))
+    }
+
+    fn rounded<R: Real>(&self) -> PackedMesh<R> {
+        let triangles = self.triangles.iter().map(PackedTriangle::in_precision);
+        let smooth = self.smooth.iter().map(CornerNormals::in_precision);
+        let (triangles, smooth) = (triangles.collect::<Vec<_>>(), smooth.collect::<Vec<_>>());
+        let bvh = self.bvh.in_precision();
+        PackedMesh {
+            lift: largest_lift(&triangles, &smooth),
+            reach: reach(&triangles, bvh.bounds.ball().0),
+            triangles,
+            smooth,
+            bvh,
+            has_flat: self.has_flat,
+            things: Arc::clone(&self.things),
+            is_solid: self.is_solid,
+            middle: self.middle,
+            turn: self.turn,
+            key: self.key,
+            source: Arc::clone(&self.source),
+        }
+    }
+}
+
+impl<R: Real> PackedMesh<R> {
     /// The first of its faces that one of this number hangs together with.
     pub fn thing_of(&self, face: usize) -> usize {
         self.things.get(face).map_or(0, |&first| first as usize)
-    }
-
-    /// Whether it is what would be packed of a mesh, wherever that is.
-    pub fn is_of(&self, mesh: &Mesh) -> bool {
-        Arc::ptr_eq(&self.source, mesh.source.triangles())
-            && self.turn == mesh.turn()
-            && self.smooth_degrees == mesh.smooth
     }
 
     /// Where a point of its source is, from its middle: exactly where corners of its triangles are.
@@ -144,11 +182,11 @@ impl<R: Real> PackedMesh<R> {
 
 /// Sets how thick each of the triangles is, whose corners have these numbers, that are in this tree and have these
 /// borders, and how thick is what is in its boxes.
-pub fn measure<R: Real>(
-    triangles: &mut [PackedTriangle<R>],
+pub fn measure(
+    triangles: &mut [PackedTriangle<f64>],
     faces: &[[u32; 3]],
-    bvh: &mut Bvh<R>,
-    borders: &Borders<R>,
+    bvh: &mut Bvh<f64>,
+    borders: &Borders,
 ) {
     let measures = measures(triangles, faces, bvh, borders);
     let measured = measures.thicknesses.iter().zip(&measures.tips);
@@ -167,7 +205,7 @@ fn reach<R: Real>(triangles: &[PackedTriangle<R>], from: Vec3<R>) -> R {
 }
 
 /// A triangle as a member of a tree.
-pub fn member<R: Real>(triangle: &PackedTriangle<R>) -> Member<R> {
+pub fn member(triangle: &PackedTriangle<f64>) -> Member<f64> {
     Member {
         bounds: BoundingBox::around(&triangle.corners),
         thickness: Primitive::thickness(triangle),

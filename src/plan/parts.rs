@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use crate::primitive::PackedTriangle;
-use crate::simd::{Real, Vec3};
+use crate::simd::Vec3;
 
 /// What a sheet surrounds by rounding alone, in parts of its area to the power of 1.5.
 const ROUNDING: f64 = 1e-6;
@@ -14,7 +14,7 @@ const ROUNDING: f64 = 1e-6;
 const MANY: u32 = 64;
 
 /// Six times the volume that the triangles surround; negative where they look inwards.
-pub fn volume<R: Real>(triangles: &[PackedTriangle<R>]) -> f64 {
+pub fn volume(triangles: &[PackedTriangle<f64>]) -> f64 {
     triangles
         .iter()
         .map(|triangle| volume_from(DVec3::ZERO, corners(triangle)))
@@ -75,7 +75,7 @@ fn firsts(parts: &[u32]) -> Vec<(u32, u32)> {
 
 /// For each triangle whether it is of a part that looks inwards. Parts with borders are seen from the mean of their
 /// corners: a tube without ends has an inside, too.
-pub fn inside_out<R: Real>(triangles: &[PackedTriangle<R>], parts: &[u32]) -> Vec<bool> {
+pub fn inside_out(triangles: &[PackedTriangle<f64>], parts: &[u32]) -> Vec<bool> {
     let count = parts.iter().max().map_or(0, |&last| last as usize + 1);
     let mut sums = vec![(DVec3::ZERO, 0.0); count];
     for (triangle, &part) in triangles.iter().zip(parts) {
@@ -112,7 +112,7 @@ pub fn things(parts: &[u32]) -> Vec<Option<u32>> {
     parts.iter().map(thing).collect()
 }
 
-fn corners<R: Real>(triangle: &PackedTriangle<R>) -> [DVec3; 3] {
+fn corners(triangle: &PackedTriangle<f64>) -> [DVec3; 3] {
     triangle.corners.map(Vec3::to_dvec3)
 }
 

@@ -15,10 +15,7 @@ const JUST: f64 = 4e-6;
 ///
 /// Thürmer and Wüthrich, "Computing vertex normals from polygonal facets", Journal of Graphics Tools 3(1),
 /// 1998.
-pub fn corner_normals<R: Real>(
-    triangles: &[PackedTriangle<R>],
-    degrees: f64,
-) -> Vec<CornerNormals<R>> {
+pub fn corner_normals(triangles: &[PackedTriangle<f64>], degrees: f64) -> Vec<CornerNormals<f64>> {
     let least_cosine = degrees.to_radians().cos() + JUST;
     let numbers = number_corners(triangles);
     let around = Around::of(&numbers);
@@ -66,12 +63,12 @@ pub fn largest_lift<R: Real>(triangles: &[PackedTriangle<R>], smooth: &[CornerNo
 }
 
 /// The angle of a triangle at one of its corners.
-fn angle<R: Real>(triangle: &PackedTriangle<R>, corner: usize) -> f64 {
+fn angle(triangle: &PackedTriangle<f64>, corner: usize) -> f64 {
     let at = |step: usize| triangle.corners[(corner + step) % 3].to_dvec3();
     (at(1) - at(0)).angle_between(at(2) - at(0))
 }
 
-fn curvature<R: Real>(triangle: &PackedTriangle<R>, normals: &[Vec3<R>; 3]) -> R {
+fn curvature(triangle: &PackedTriangle<f64>, normals: &[Vec3<f64>; 3]) -> f64 {
     let along = |from: usize, to: usize| {
         let length = (triangle.corners[from] - triangle.corners[to]).length();
         (normals[from] - normals[to]).length() / length

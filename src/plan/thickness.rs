@@ -9,7 +9,7 @@ use super::cast::cast;
 use super::parts::inside_out;
 use super::tips::tips;
 use crate::primitive::PackedTriangle;
-use crate::simd::{Real, Vec3};
+use crate::simd::Vec3;
 
 /// Of the faces in a node, one of so many is measured for all of them, and those that look elsewhere.
 const MEASURED: usize = 8;
@@ -24,12 +24,12 @@ const NEARLY_MIDDLE: [f64; 3] = [0.38, 0.34, 0.28];
 /// diameter function", The Visual Computer 24, 2008; with one ray), whichever way its faces are wound, and along
 /// the surface from border to border. Infinity where there is neither. `points` numbers the corners of each triangle,
 /// and `borders` are those of the triangles.
-pub fn measures<R: Real>(
-    triangles: &[PackedTriangle<R>],
+pub fn measures(
+    triangles: &[PackedTriangle<f64>],
     points: &[[u32; 3]],
-    bvh: &Bvh<R>,
-    borders: &Borders<R>,
-) -> Measures<R> {
+    bvh: &Bvh<f64>,
+    borders: &Borders,
+) -> Measures {
     let faces = Faces {
         triangles,
         bvh,
@@ -51,28 +51,28 @@ pub fn measures<R: Real>(
 }
 
 /// Faces of a mesh in space.
-struct Faces<'a, R> {
-    triangles: &'a [PackedTriangle<R>],
+struct Faces<'a> {
+    triangles: &'a [PackedTriangle<f64>],
     /// The way to the faces.
-    bvh: &'a Bvh<R>,
+    bvh: &'a Bvh<f64>,
     /// Which of them look inwards.
     inside_out: Vec<bool>,
 }
 
 /// What is known of triangles.
-pub struct Measures<R> {
+pub struct Measures {
     /// For each triangle how thick the mesh is there, at least.
-    pub thicknesses: Vec<R>,
+    pub thicknesses: Vec<f64>,
     /// For each triangle whether it ends in something narrower, see [`tips`].
     pub tips: Vec<bool>,
 }
 
-impl<R: Real> Faces<'_, R> {
+impl Faces<'_> {
     /// Through the inside. Neighbours share the least of what some of them have.
-    fn depths(&self) -> Vec<R> {
+    fn depths(&self) -> Vec<f64> {
         let nodes = self.bvh.nodes.par_iter();
-        let found: Vec<R> = nodes.map(|node| self.least_depth(node)).collect();
-        let mut depths = vec![R::INFINITY; self.triangles.len()];
+        let found: Vec<f64> = nodes.map(|node| self.least_depth(node)).collect();
+        let mut depths = vec![f64::INFINITY; self.triangles.len()];
         for (node, least) in self.bvh.nodes.iter().zip(found) {
             for face in node.members() {
                 depths[face as usize] = least;
@@ -83,11 +83,11 @@ impl<R: Real> Faces<'_, R> {
 
     /// The least of what some of the faces in a node have: one of each way that they look at least, since the ends of a
     /// rod are as far apart as it is long.
-    fn least_depth(&self, node: &Node) -> R {
-        let (mut least, mut measured) = (R::INFINITY, Vec::new());
+    fn least_depth(&self, node: &Node) -> f64 {
+        let (mut least, mut measured) = (f64::INFINITY, Vec::new());
         for (place, face) in node.members().enumerate() {
             let normal = self.triangles[face as usize].normal;
-            let is_alike = |other: &Vec3<R>| R::from_f64(ALIKE) < normal.dot(*other);
+            let is_alike = |other: &Vec3<f64>| ALIKE < normal.dot(*other);
             if place.is_multiple_of(MEASURED) || !measured.iter().any(is_alike) {
                 least = least.min(self.depth(face as usize));
                 measured.push(normal);
@@ -97,9 +97,9 @@ impl<R: Real> Faces<'_, R> {
     }
 
     /// How far the other side is from about the middle of a face, straight through the inside.
-    fn depth(&self, face: usize) -> R {
+    fn depth(&self, face: usize) -> f64 {
         let [a, b, c] = self.triangles[face].corners;
-        let [of_a, of_b, of_c] = NEARLY_MIDDLE.map(R::from_f64);
+        let [of_a, of_b, of_c] = NEARLY_MIDDLE;
         let normal = self.triangles[face].normal;
         let inwards = if self.inside_out[face] {
             normal
@@ -108,7 +108,7 @@ impl<R: Real> Faces<'_, R> {
         };
         let middle = a * of_a + b * of_b + c * of_c;
         let is_other = |other: u32| other as usize != face;
-        let mut nearest = R::INFINITY;
+        let mut nearest = f64::INFINITY;
         cast(self.triangles, self.bvh, (middle, inwards), |face, t| {
             if is_other(face) {
                 nearest = nearest.min(t);

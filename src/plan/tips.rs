@@ -1,7 +1,7 @@
 //! Where meshes end in something narrower than they are: their borders, and sharp points.
 
 use crate::primitive::PackedTriangle;
-use crate::simd::{Real, Vec3};
+use crate::simd::Vec3;
 
 /// Cosine of the angle that all edges of a sharp point make with their middle, at least.
 const SHARP: f64 = 0.75;
@@ -11,18 +11,18 @@ const FEW: u32 = 8;
 
 /// The edges of a point.
 #[derive(Clone, Copy)]
-struct Point<R> {
+struct Point {
     faces: u32,
     /// The sum of their unit directions.
-    axis: Vec3<R>,
+    axis: Vec3<f64>,
     /// The least cosine of one of them with the axis.
-    least: R,
+    least: f64,
 }
 
 /// For each triangle whether it has an edge that no other has, or a corner that sticks out: seen from the side it is
 /// narrower than the mesh is thick. `points` numbers the corners, `borders` are the triangles on borders.
-pub fn tips<R: Real>(
-    triangles: &[PackedTriangle<R>],
+pub fn tips(
+    triangles: &[PackedTriangle<f64>],
     points: &[[u32; 3]],
     borders: impl Iterator<Item = u32>,
 ) -> Vec<bool> {
@@ -36,12 +36,12 @@ pub fn tips<R: Real>(
 }
 
 /// For each point whether it sticks out.
-fn sharp_points<R: Real>(triangles: &[PackedTriangle<R>], points: &[[u32; 3]]) -> Vec<bool> {
+fn sharp_points(triangles: &[PackedTriangle<f64>], points: &[[u32; 3]]) -> Vec<bool> {
     let count = points.iter().flatten().max().map_or(0, |last| last + 1);
     let empty = Point {
         faces: 0,
-        axis: Vec3::splat(R::ZERO),
-        least: R::ONE,
+        axis: Vec3::splat(0.0),
+        least: 1.0,
     };
     let mut around = vec![empty; count as usize];
     for (triangle, numbers) in triangles.iter().zip(points) {
@@ -57,21 +57,21 @@ fn sharp_points<R: Real>(triangles: &[PackedTriangle<R>], points: &[[u32; 3]]) -
         for (corner, &number) in numbers.iter().enumerate() {
             let point = &mut around[number as usize];
             let axis = point.axis.try_normalize();
-            let axis = axis.unwrap_or(Vec3::splat(R::ZERO));
+            let axis = axis.unwrap_or(Vec3::splat(0.0));
             for edge in edges_from(triangle, corner) {
                 point.least = point.least.min(axis.dot(edge));
             }
         }
     }
-    let is_sharp = |point: &Point<R>| point.faces <= FEW && R::from_f64(SHARP) < point.least;
+    let is_sharp = |point: &Point| point.faces <= FEW && SHARP < point.least;
     around.iter().map(is_sharp).collect()
 }
 
 /// The unit directions from a corner of a triangle to the others.
-fn edges_from<R: Real>(triangle: &PackedTriangle<R>, corner: usize) -> [Vec3<R>; 2] {
+fn edges_from(triangle: &PackedTriangle<f64>, corner: usize) -> [Vec3<f64>; 2] {
     let at = |step: usize| triangle.corners[(corner + step) % 3];
     let towards = |step: usize| (at(step) - at(0)).try_normalize();
-    [1, 2].map(|step| towards(step).unwrap_or(Vec3::splat(R::ZERO)))
+    [1, 2].map(|step| towards(step).unwrap_or(Vec3::splat(0.0)))
 }
 
 #[cfg(test)]
@@ -95,7 +95,7 @@ mod tests {
         if has_base {
             faces.extend((0..sides).map(|n| [1, rim(n), rim(n + 1)]));
         }
-        let packed = |face: &[u32; 3]| PackedTriangle::<f64>::of_mesh(face.map(place));
+        let packed = |face: &[u32; 3]| PackedTriangle::of_mesh(face.map(place));
         let triangles: Vec<_> = faces.iter().filter_map(packed).collect();
         let borders: Vec<u32> = if has_base {
             Vec::new()

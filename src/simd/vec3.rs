@@ -151,6 +151,12 @@ impl<R: Real> Vec3<R> {
         DVec3::new(self.x.to_f64(), self.y.to_f64(), self.z.to_f64())
     }
 
+    /// The same vector, rounded to another precision.
+    #[inline(always)]
+    pub fn in_precision<S: Real>(self) -> Vec3<S> {
+        Vec3::from_dvec3(self.to_dvec3())
+    }
+
     /// The vector of length 1 in this direction, or `None` where there is no direction (zero, NaN or infinite).
     #[inline(always)]
     pub fn try_normalize(self) -> Option<Self> {

@@ -92,12 +92,17 @@ impl Tracer {
     /// The same after other pictures: what they need as well is not made again.
     pub fn planned(scene: &Scene, request: &RenderRequest, planner: &mut Planner) -> Self {
         let level = request.level.unwrap_or_else(Level::widest);
+        let is_double = is_double(scene, request);
+        let is_filtered = !is_double && is_filtered(scene, request);
+        if is_filtered {
+            planner.pack_meshes(scene);
+        }
         let Planner { single, double } = planner;
         let mut in_single = || Box::new(Plan::new(scene, request, single));
         let mut in_double = || Box::new(Plan::new(scene, request, double));
-        let (plan, exact) = if is_double(scene, request) {
+        let (plan, exact) = if is_double {
             (PlanOf::Double(in_double()), None)
-        } else if is_filtered(scene, request) {
+        } else if is_filtered {
             let (mut plan, exact) = rayon::join(in_single, in_double);
             plan.doubt();
             (PlanOf::Single(plan), Some(Exact::new(exact, level)))

@@ -1,6 +1,8 @@
 //! Where light ends on faces that are shaded as one curved surface: points of a ball of triangles that the
 //! light reaches on the ball, and that its own flat faces put into shadow.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scattered};
@@ -53,7 +55,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
 }
 
 /// A ball of radius 1, shaded as one.
-fn ball(splits: u32) -> PackedMesh<f32> {
+fn ball(splits: u32) -> Arc<PackedMesh<f32>> {
     let mut points = vec![
         DVec3::X,
         DVec3::Y,
@@ -87,10 +89,11 @@ fn ball(splits: u32) -> PackedMesh<f32> {
             .collect();
     }
     let triangles = Triangles::new(points, faces).unwrap_or_default();
-    PackedMesh::new(&Mesh {
+    let packed = PackedMesh::new(&Mesh {
         smooth: 180.0,
         ..Mesh::of(triangles)
-    })
+    });
+    PackedMesh::in_precision(&Arc::new(packed))
 }
 
 fn fails(ball: &PackedMesh<f32>, number: u64, height: f64, is_lifted: bool) -> Option<bool> {

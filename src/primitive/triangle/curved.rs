@@ -19,6 +19,14 @@ pub struct CornerNormals<R> {
 }
 
 impl<R: Real> CornerNormals<R> {
+    /// The same, rounded to another precision.
+    pub fn in_precision<S: Real>(&self) -> CornerNormals<S> {
+        CornerNormals {
+            normals: self.normals.map(Vec3::in_precision),
+            curvature: S::from_f64(self.curvature.to_f64()),
+        }
+    }
+
     /// Whether they are the same but for rounding: the face looks as flat as it is.
     pub fn are_alike(&self) -> bool {
         let [a, b, c] = self.normals;

@@ -60,6 +60,20 @@ impl<R: Real> PackedTriangle<R> {
         })
     }
 
+    /// The same, rounded to another precision.
+    pub fn in_precision<S: Real>(&self) -> PackedTriangle<S> {
+        PackedTriangle {
+            corners: self.corners.map(Vec3::in_precision),
+            normal: self.normal.in_precision(),
+            in_mesh: self.in_mesh,
+            thickness: S::from_f64(self.thickness.to_f64()),
+            has_tips: self.has_tips,
+            spared: self.spared,
+            longest: S::from_f64(self.longest.to_f64()),
+            material: self.material,
+        }
+    }
+
     /// Turns its outside in.
     pub fn turn(&mut self) {
         self.corners.swap(1, 2);
