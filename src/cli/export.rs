@@ -10,12 +10,12 @@ use indicatif::ProgressBar;
 
 use super::args::{SizeArgs, ThreadsArgs};
 use super::bar::{TICK, progress_bar, restyle};
-use super::error::{CliError, say};
-use super::scene::missing_meshes;
+use super::error::{CliError, report_warning, say};
+use super::scene::read_whole_scene;
 use crate::export::{ExportError, ExportStep, Exported, Exporting};
 use crate::export::{Frames, Pattern, Sequence, Video, check_place, write_job};
 use crate::image::Format;
-use crate::scene::{Document, Method as _, Sampling, Scene};
+use crate::scene::{Document, Method as _, Sampling};
 use crate::trace::{RenderControl, Threads};
 use crate::words::counted;
 
@@ -79,12 +79,7 @@ fn format_of(word: &str) -> Result<Format, String> {
 
 impl What {
     fn sequence(&self, folder: PathBuf) -> Result<Sequence, CliError> {
-        let mut scene: Scene = Document::load(&self.scene)?.scene;
-        // A farm would take frames without it for good ones.
-        if let Some(problem) = missing_meshes(&self.scene, &scene).first() {
-            let sentence = format!("{problem}; no frame is made without it");
-            return Err(CliError::failed(sentence));
-        }
+        let mut scene = read_whole_scene(&self.scene)?;
         let render = &mut scene.render;
         (render.width, render.height) = self.size.of((render.width, render.height));
         render.antialias = self.antialias.unwrap_or(render.antialias);
@@ -115,7 +110,7 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
             check_place(path)?;
         }
         if let Some(remark) = remark {
-            say(&remark);
+            report_warning(&remark);
         }
     }
     if args.dry_run {
@@ -133,7 +128,11 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
             args.openjd,
             "{spinner} {bar:32} {pos}/{len} frames encoded",
         );
-        let made = video.make(&sequence, path, |frames| bar.set_position(frames as u64));
+        let tell = |frames| {
+            bar.set_position(frames as u64);
+            true
+        };
+        let made = video.make(&sequence, path, tell);
         bar.finish_and_clear();
         made.map_err(CliError::failed)?;
     }

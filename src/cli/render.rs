@@ -13,7 +13,7 @@ use super::args::{MAX_TIMES, SizeArgs, ThreadsArgs, whole};
 use super::bar::{SHARE, TICK, progress_bar};
 use super::error::{CliError, say};
 use super::goal::{error, time};
-use super::scene::read_scene;
+use super::scene::{read_scene, read_whole_scene};
 use super::settings::SettingArgs;
 use super::target::picture_format;
 use crate::animate::{CameraPath, shot};
@@ -110,7 +110,10 @@ fn lanes(word: &str) -> Result<Level, String> {
 pub fn run(args: &RenderArgs) -> Result<(), CliError> {
     // A name that cannot be written is known before the first ray.
     let format = picture_format(args.output.as_deref())?;
-    let mut scene = read_scene(&args.scene)?;
+    let mut scene = match args.frame {
+        None => read_scene(&args.scene)?,
+        Some(_) => read_whole_scene(&args.scene)?,
+    };
     let threads = args.threads.start()?;
     if let Some(frame) = args.frame {
         let place = |sentence| CliError::usage(format!("{}: {sentence}", args.scene.display()));

@@ -17,6 +17,21 @@ pub fn read_scene(path: &Path) -> Result<Scene, CliError> {
     Ok(scene)
 }
 
+/// Reads a scene of which frames are made: a farm would take those without a mesh for good ones.
+///
+/// # Errors
+/// [`CliError::Usage`], for a file that is no scene; [`CliError::Failed`], if a mesh of it could not be read.
+pub fn read_whole_scene(path: &Path) -> Result<Scene, CliError> {
+    let scene = Document::load(path)?.scene;
+    match missing_meshes(path, &scene).first() {
+        None => Ok(scene),
+        Some(problem) => {
+            let sentence = format!("{problem}; no frame is made without it");
+            Err(CliError::failed(sentence))
+        }
+    }
+}
+
 /// A line for each object whose mesh could not be read.
 pub fn missing_meshes(path: &Path, scene: &Scene) -> Vec<String> {
     let said = |(index, why): (usize, &str)| {

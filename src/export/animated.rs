@@ -31,7 +31,7 @@ pub const LONGEST_IN_APNG: f64 = 65_535.0;
 pub fn gif(
     sequence: &Sequence,
     (file, path): (&File, &Path),
-    done: &mut impl FnMut(usize),
+    go_on: &mut impl FnMut(usize) -> bool,
 ) -> Result<(), VideoError> {
     let mut file = BufWriter::new(file);
     let (width, height) = sequence.size();
@@ -49,7 +49,9 @@ pub fn gif(
             encoder.encode_frame(frame).map_err(wrong)?;
             start = end;
         }
-        done(index + 1);
+        if !go_on(index + 1) {
+            return Err(VideoError::Stopped);
+        }
     }
     // It writes its end when it is dropped, and cannot tell then that the disk is full.
     drop(encoder);
@@ -112,7 +114,7 @@ fn nearest_fraction(number: f64) -> (u16, u16) {
 pub fn apng(
     sequence: &Sequence,
     (file, path): (&File, &Path),
-    done: &mut impl FnMut(usize),
+    go_on: &mut impl FnMut(usize) -> bool,
 ) -> Result<(), VideoError> {
     let (width, height) = sequence.size();
     let wrong = |error: png::EncodingError| VideoError::disk(path, &error);
@@ -129,7 +131,9 @@ pub fn apng(
     for (index, frame) in sequence.frames.iter().enumerate() {
         let image = image::DynamicImage::from(read(&sequence.path(frame))?).to_rgb8();
         writer.write_image_data(&image).map_err(wrong)?;
-        done(index + 1);
+        if !go_on(index + 1) {
+            return Err(VideoError::Stopped);
+        }
     }
     writer.finish().map_err(wrong)?;
     file.flush().map_err(|error| VideoError::disk(path, &error))

@@ -40,6 +40,9 @@ pub enum VideoError {
     /// The ending says no known kind.
     #[error("{0:?} ends in no known video format; end it in .mp4, .mov, .mkv, .gif or .apng")]
     Unknown(String),
+    /// It was not wanted any more.
+    #[error("the video was stopped, and is not there; its frames are")]
+    Stopped,
     /// There is no ffmpeg.
     #[error(
         "ffmpeg is not installed, or not on the PATH; the frames are there, and this makes the video of them:\n{command}\n.gif and .apng need no ffmpeg"

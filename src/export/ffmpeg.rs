@@ -6,11 +6,15 @@ use std::io::{self, Read as _, Write as _};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread;
+use std::time::Duration;
 
 use super::error::{VideoError, last_lines};
 use super::frame_file::as_ppm;
 use super::sequence::Sequence;
 use crate::image::Format;
+
+/// How often it is asked, while ffmpeg does what is left, whether that is still wanted.
+const TICK: Duration = Duration::from_millis(20);
 
 /// Has ffmpeg make a video in a file that is to be that of a path, with these words about the codec.
 ///
@@ -20,7 +24,7 @@ pub fn by_ffmpeg(
     sequence: &Sequence,
     (unfinished, path): (&Path, &Path),
     codec: &str,
-    done: impl FnMut(usize),
+    mut go_on: impl FnMut(usize) -> bool,
 ) -> Result<(), VideoError> {
     let wrong = |error: io::Error| VideoError::disk(path, &error);
     let mut ffmpeg = match start(sequence, unfinished, codec) {
@@ -42,7 +46,13 @@ pub fn by_ffmpeg(
         let _ = stderr.map(|mut stderr| stderr.read_to_end(&mut said));
         said
     });
-    let fed = feed(sequence, &mut ffmpeg, done);
+    let mut fed = feed(sequence, &mut ffmpeg, &mut go_on);
+    while fed.is_ok() && ffmpeg.try_wait().map_err(wrong)?.is_none() {
+        if !go_on(sequence.frames.count()) {
+            fed = Err(VideoError::Stopped);
+        }
+        thread::sleep(TICK);
+    }
     if fed.is_err() {
         let _ = ffmpeg.kill();
     }
@@ -88,7 +98,7 @@ fn start(sequence: &Sequence, unfinished: &Path, codec: &str) -> io::Result<Chil
 fn feed(
     sequence: &Sequence,
     ffmpeg: &mut Child,
-    mut done: impl FnMut(usize),
+    mut go_on: impl FnMut(usize) -> bool,
 ) -> Result<bool, VideoError> {
     let Some(mut pipe) = ffmpeg.stdin.take() else {
         return Ok(false);
@@ -105,7 +115,9 @@ fn feed(
         if pipe.write_all(&bytes).is_err() {
             return Ok(false);
         }
-        done(index + 1);
+        if !go_on(index + 1) {
+            return Err(VideoError::Stopped);
+        }
     }
     Ok(true)
 }

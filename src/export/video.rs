@@ -49,7 +49,7 @@ impl Video {
     }
 
     /// Makes a video of the frames of a sequence, all of which must be there, and puts it in place
-    /// when it is whole. `done` is told how many frames are in it.
+    /// when it is whole. `go_on` is told how many frames are in it, and says whether more are wanted.
     ///
     /// # Errors
     /// [`VideoError`]; a file that was there is then untouched.
@@ -57,16 +57,16 @@ impl Video {
         self,
         sequence: &Sequence,
         path: &Path,
-        mut done: impl FnMut(usize),
+        mut go_on: impl FnMut(usize) -> bool,
     ) -> Result<(), VideoError> {
         let beside = NewFile::beside(path).map_err(|error| VideoError::disk(path, &error))?;
         let files = (beside.path(), path);
         match self {
-            Self::Gif => gif(sequence, (beside.as_file(), path), &mut done)?,
-            Self::Apng => apng(sequence, (beside.as_file(), path), &mut done)?,
-            Self::H264 => by_ffmpeg(sequence, files, H264, &mut done)?,
-            Self::ProRes => by_ffmpeg(sequence, files, PRORES, &mut done)?,
-            Self::Lossless => by_ffmpeg(sequence, files, LOSSLESS, &mut done)?,
+            Self::Gif => gif(sequence, (beside.as_file(), path), &mut go_on)?,
+            Self::Apng => apng(sequence, (beside.as_file(), path), &mut go_on)?,
+            Self::H264 => by_ffmpeg(sequence, files, H264, &mut go_on)?,
+            Self::ProRes => by_ffmpeg(sequence, files, PRORES, &mut go_on)?,
+            Self::Lossless => by_ffmpeg(sequence, files, LOSSLESS, &mut go_on)?,
         }
         let placed = beside.place();
         placed.map_err(|error| VideoError::disk(path, &error))

@@ -14,7 +14,7 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use glint::export::{ExportStep, Exporting};
-use glint::export::{Frames, Pattern, Sequence};
+use glint::export::{Frames, Pattern, Sequence, Video, VideoError};
 use glint::image::{Format, render};
 use glint::plan::RenderRequest;
 use glint::scene::{Document, Sampling, Scene};
@@ -59,6 +59,14 @@ fn done(command: &mut Command) -> String {
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
     String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// What a command that does its work says on stderr.
+fn warned(command: &mut Command) -> String {
+    let output = run(command);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    said
 }
 
 /// The files of a folder but the notes, whose times differ.
@@ -366,7 +374,7 @@ fn what_no_video_can_show_is_told_and_what_it_shows_otherwise_as_well() {
     ] {
         let gif = video("fast.gif");
         let words = ["--frames", frames, "--video", &gif];
-        let said = done(&mut at_rate(folder.path(), fps, (8, 8), &words));
+        let said = warned(&mut at_rate(folder.path(), fps, (8, 8), &words));
         assert!(
             said.contains(told) && told.is_empty() != said.contains("leaves out"),
             "{said}"
@@ -718,8 +726,40 @@ fn ffmpeg_makes_videos_of_all_frames() {
     }
     // H.264 has even sides.
     let odd = ["--frames", "1-2", "--video", &path("odd.mp4")];
-    let said = done(&mut at_rate(folder.path(), "14", (31, 17), &odd));
+    let said = warned(&mut at_rate(folder.path(), "14", (31, 17), &odd));
     assert!(said.contains("it shows 30 × 16 pixels"), "{said}");
+    for name in ["stopped.mp4", "stopped.mov", "stopped.mkv"] {
+        gives_up(&frames, name);
+    }
+}
+
+/// Stops to make a video of frames that are there after the second of them.
+fn gives_up(frames: &Path, name: &str) {
+    let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
+    (scene.render.width, scene.render.height) = (48, 48);
+    let (shown, pattern) = (Frames::parse("1-9").ok(), Pattern::default());
+    let sequence = Sequence::new(scene.into(), shown, pattern, Format::Ppm, frames.into());
+    let path = frames.join(name);
+    let video = Video::of_path(&path).expect("known");
+    let mut told = Vec::new();
+    let made = video.make(&sequence.expect("they are there"), &path, |count| {
+        told.push(count);
+        count < 2
+    });
+    assert!(matches!(made, Err(VideoError::Stopped)), "{name}: {made:?}");
+    assert_eq!(told, [1, 2], "{name}");
+    let left = files(frames).into_keys();
+    let left: Vec<String> = left.filter(|name| !name.starts_with("rayTrace")).collect();
+    assert!(left.is_empty(), "{left:?}");
+}
+
+#[test]
+fn a_video_that_is_not_wanted_any_more_leaves_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    done(&mut export(folder.path(), &["--frames", "1-9"]));
+    for name in ["a.gif", "b.apng"] {
+        gives_up(folder.path(), name);
+    }
 }
 
 /// Programs of that name that do not do what they should.
@@ -1262,22 +1302,21 @@ fn no_frame_is_made_without_a_mesh_that_is_missing() {
     )
     .expect("copied");
     let path = scene.to_str().expect("plain");
-    let frames = folder.path().join("frames");
-    let output = run(&mut glint(&[
-        "export",
-        path,
-        "-o",
-        frames.to_str().expect("plain"),
-        "--width",
-        "20",
-    ]));
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(
-        said.contains("knot.ply") && said.contains("no frame is made"),
-        "{said}"
-    );
-    assert!(!frames.exists());
+    let made = folder.path().join("made.png");
+    let place = made.to_str().expect("plain");
+    for words in [
+        ["export", path, "-o", place, "--frames", "1"],
+        ["render", path, "-o", place, "--frame", "1"],
+    ] {
+        let output = run(glint(&words).args(["--width", "20"]));
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(
+            said.contains("knot.ply") && said.contains("no frame is made"),
+            "{said}"
+        );
+        assert!(!made.exists());
+    }
 }
 
 /// The disk is full in the last bytes of a GIF, which its encoder writes when it is dropped.

@@ -69,6 +69,11 @@ impl Entry {
                     editor.notify(format!("Saved {}", video.path.display()));
                     self.end();
                 }
+                VideoState::Stopped => {
+                    let path = video.path.display();
+                    editor.notify(format!("{path} is given up; its frames stay"));
+                    self.end();
+                }
                 VideoState::Failed(error) => {
                     let error = error.clone();
                     editor.report_error_in(EXPORT, error.clone());

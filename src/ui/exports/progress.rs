@@ -55,7 +55,9 @@ fn video_progress(video: &VideoMaker) -> (f64, String) {
             (share, format!("{name}: {done} of {total}"))
         }
         VideoState::Made => (1.0, format!("{} and {name}", counted(total, "frame"))),
-        VideoState::Failed(_) => (1.0, format!("{}, but no video", counted(total, "frame"))),
+        VideoState::Stopped | VideoState::Failed(_) => {
+            (1.0, format!("{}, but no video", counted(total, "frame")))
+        }
     }
 }
 
@@ -76,9 +78,17 @@ pub fn show_state(
         let bar = ProgressBar::new(share as f32).desired_width(FIELDS - buttons);
         ui.add(bar.text(RichText::new(text).small().color(palette(ui.ctx()).text)));
         if state.ended.is_some() {
-            let is_making = video.is_some_and(|video| matches!(video.state, VideoState::Making(_)));
-            if !is_making && ui.button("Remove").clicked() {
-                pictures.forget_export(state.id);
+            match video.filter(|video| matches!(video.state, VideoState::Making(_))) {
+                Some(video) => {
+                    if ui.button("Cancel").hint("Its frames stay").clicked() {
+                        video.stop();
+                    }
+                }
+                None => {
+                    if ui.button("Remove").clicked() {
+                        pictures.forget_export(state.id);
+                    }
+                }
             }
             return ui.button("Open folder").clicked();
         }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError};
 
 use crate::export::{Sequence, Video, VideoError};
@@ -17,6 +17,8 @@ pub enum VideoState {
     Making(usize),
     /// It is there.
     Made,
+    /// It was given up.
+    Stopped,
     /// It is not, and why.
     Failed(String),
 }
@@ -32,6 +34,8 @@ pub struct VideoMaker {
     making: Option<Receiver<Result<(), VideoError>>>,
     /// Frames that are in it.
     done: Arc<AtomicUsize>,
+    /// Whether it is not wanted any more.
+    is_stopped: Arc<AtomicBool>,
 }
 
 impl VideoMaker {
@@ -44,6 +48,7 @@ impl VideoMaker {
             video,
             making: None,
             done: Arc::default(),
+            is_stopped: Arc::default(),
         }
     }
 
@@ -55,11 +60,19 @@ impl VideoMaker {
     /// Makes it, on a thread of its own.
     pub fn make(&mut self) {
         let (kind, sequence, path) = (self.video, self.sequence.clone(), self.path.clone());
-        let done = Arc::clone(&self.done);
-        let tell = move |frames| done.store(frames, Ordering::Relaxed);
-        let make = move || kind.make(&sequence, &path, tell);
+        let (done, is_stopped) = (Arc::clone(&self.done), Arc::clone(&self.is_stopped));
+        let go_on = move |frames| {
+            done.store(frames, Ordering::Relaxed);
+            !is_stopped.load(Ordering::Relaxed)
+        };
+        let make = move || kind.make(&sequence, &path, go_on);
         self.making = Some(run_in_background("glint-video", make));
         self.state = VideoState::Making(0);
+    }
+
+    /// Gives it up, soon.
+    pub fn stop(&self) {
+        self.is_stopped.store(true, Ordering::Relaxed);
     }
 
     /// Looks how far it is.
@@ -67,6 +80,7 @@ impl VideoMaker {
         if let Some(made) = &self.making {
             self.state = match made.try_recv() {
                 Ok(Ok(())) => VideoState::Made,
+                Ok(Err(VideoError::Stopped)) => VideoState::Stopped,
                 Ok(Err(error)) => VideoState::Failed(error.to_string()),
                 Err(TryRecvError::Disconnected) => {
                     VideoState::Failed("the video was not made".to_owned())
