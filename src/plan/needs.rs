@@ -16,6 +16,9 @@ use crate::words::counted;
 /// The rule for how primitives are found.
 pub const ACCELERATOR: &str = "accelerator";
 
+/// Why something is as it is that a user has chosen.
+const ASKED: &str = "it was asked for";
+
 /// One decision of the plan.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Need {
@@ -61,8 +64,8 @@ fn precision(scene: &Scene, request: &RenderRequest) -> Need {
     let rule = "precision";
     let double = "double precision";
     match request.precision {
-        Precision::Single => need(rule, "single precision", "it was asked for", "nothing more"),
-        Precision::Double => need(rule, double, "it was asked for", "nothing"),
+        Precision::Single => need(rule, "single precision", ASKED, "nothing more"),
+        Precision::Double => need(rule, double, ASKED, "nothing"),
         Precision::Auto if needs_double(scene, request) => need(
             rule,
             double,
@@ -267,10 +270,10 @@ fn accelerator(plan: &Plan<f64>, request: &RenderRequest, faces: usize) -> Need 
         return need(rule, "every primitive for every ray", FAILING, "nothing");
     }
     let what = counted(bounded, "bounded primitive");
-    let asked = (request.accelerator != Accelerator::Auto).then(|| "it was asked for".to_owned());
+    let asked = (request.accelerator != Accelerator::Auto).then(|| ASKED.to_owned());
     if request.accelerator == Accelerator::List && plan.geometry.is_some() {
         let what = format!("{what} one by one for every ray");
-        return need(rule, what, "it was asked for", "nothing");
+        return need(rule, what, ASKED, "nothing");
     }
     if plan.geometry.is_some() {
         let why = asked.unwrap_or_else(|| {
@@ -352,7 +355,7 @@ fn highlights(scene: &Scene, request: &RenderRequest, plan: &Plan<f64>) -> Need 
         .any(|exponent| matches!(exponent, Exponent::Large(_)))
     {
         let why = if request.methods.highlight == HighlightMethod::Log1p {
-            "it was asked for"
+            ASKED
         } else {
             "an exponent is above 256, which would magnify the rounding of n·h"
         };

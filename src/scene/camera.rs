@@ -59,6 +59,8 @@ pub struct Framing {
     orthographic_height: f64,
 }
 
+/// Room around what is brought into a picture.
+const ROOM: f64 = 1.15;
 /// Smallest sine of the angle between `look_at` and `up` that still defines a basis.
 const MIN_SINE: f64 = 1e-6;
 
@@ -86,6 +88,28 @@ impl Camera {
             projection_distance: self.projection_distance,
             orthographic_height: self.orthographic_height,
         })
+    }
+
+    /// The camera where everything between two corners of a box is in its picture of this aspect (width over height),
+    /// looking the same way.
+    #[must_use]
+    pub fn around(&self, aspect: f64, (low, high): (DVec3, DVec3)) -> Self {
+        let (middle, radius) = (low * 0.5 + high * 0.5, (high - low).length() * 0.5 * ROOM);
+        let forward = self.look_at.normalize_or_zero();
+        let mut next = self.clone();
+        // The narrower side of the picture, in picture heights.
+        let side = aspect.min(1.0);
+        let distance = match self.projection {
+            Projection::Perspective => {
+                radius / (0.5 * side / self.projection_distance).atan().sin()
+            }
+            Projection::Orthographic => {
+                next.orthographic_height = 2.0 * radius / side;
+                (middle - self.position).dot(forward).max(2.0 * radius)
+            }
+        };
+        next.position = middle - forward * distance;
+        next
     }
 
     /// Vertical field of view in radians (perspective): 2·atan(½ / projection distance).

@@ -105,6 +105,11 @@ impl VisitSetting for Choose<'_> {
 }
 
 impl Render {
+    /// Width over height of the picture.
+    pub fn aspect(&self) -> f64 {
+        f64::from(self.width) / f64::from(self.height)
+    }
+
     /// Chooses a method by the name of its setting and its id; without such ones, nothing changes.
     pub fn choose(&mut self, name: &str, id: &str) {
         self.visit_settings(&mut Choose { name, id });

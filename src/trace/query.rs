@@ -89,7 +89,7 @@ pub fn survey(
     control: &RenderControl,
 ) -> bool {
     let query = SceneQuery::new(scene);
-    let aspect = f64::from(scene.render.width) / f64::from(scene.render.height);
+    let aspect = scene.render.aspect();
     let sample = |sample: usize| {
         let framing = take.camera(sample).and_then(|camera| camera.framing());
         framing.map_or(Vec::new(), |framing| query.look(&framing, aspect))

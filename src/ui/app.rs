@@ -200,7 +200,6 @@ impl App {
                 ctx.request_repaint();
             }
             Some(FileOutcome::ExportFolder(path)) => self.exports.choose_folder(&path),
-            Some(FileOutcome::Frame) => self.run(ctx, Command::FrameAll),
             Some(FileOutcome::SaveImage(path)) => {
                 self.editor.apply(Action::Show(Mode::HighRes));
                 self.pictures.request_still(&self.editor, Some(path));

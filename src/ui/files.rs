@@ -34,8 +34,6 @@ pub struct Files {
     /// Files that are being read, the first one first.
     reading: VecDeque<Reading>,
     watch: Watch,
-    /// Whether the first things of a scene were just imported.
-    has_first: bool,
     /// Files that were opened or saved, newest first.
     pub recent: Vec<PathBuf>,
     /// Where paths were chosen before.
@@ -71,7 +69,6 @@ impl Files {
             question: None,
             reading: VecDeque::new(),
             watch: Watch::default(),
-            has_first: false,
             recent,
             folders,
         }
@@ -181,9 +178,6 @@ impl Files {
             }
             let changed = self.watch.changed_meshes(editor);
             self.reading.extend(Reading::again(editor, changed));
-        }
-        if std::mem::take(&mut self.has_first) {
-            return Some(FileOutcome::Frame);
         }
         let Waiting {
             wish,
@@ -406,9 +400,7 @@ impl Files {
             }
             Read::Scene(document) => self.opened(editor, &reading.path, *document),
             Read::Mesh(Ok(file)) => {
-                let is_first = editor.scene().objects.is_empty();
                 imported(editor, &reading.path, file);
-                self.has_first = is_first && !editor.scene().objects.is_empty();
             }
             Read::Mesh(Err(error)) => {
                 editor.report_error_in(Ask::ImportMesh.title(), error.to_string());

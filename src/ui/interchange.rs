@@ -10,7 +10,7 @@ use crate::export::{Job, Pattern, Sequence, povray_text, write_job, write_text};
 use crate::files::is_same_file;
 use crate::image::Format;
 use crate::mesh::MeshFile;
-use crate::scene::{Animation, read_text};
+use crate::scene::{Animation, around, read_text};
 use crate::words::counted;
 
 /// The keys of a file take the place of the camera's.
@@ -123,6 +123,7 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
         editor.scene().objects.len(),
         editor.scene().objects.len() + parts.len(),
     );
+    let bounds = around(parts.iter().filter_map(|part| part.triangles.bounds()));
     let import = Edit::Import(parts);
     let label = import.label(editor.scene());
     let mut edits = vec![import];
@@ -132,6 +133,16 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
         let group = free_group_name(editor.scene(), stem.trim());
         edits.push(Edit::Group((first..last).collect(), group));
     }
+    // What is all that there is to see is brought into the picture.
+    let scene = editor.scene();
+    let bounds = bounds.filter(|_| first == 0);
+    let camera = bounds.map(|bounds| scene.camera.around(scene.render.aspect(), bounds));
+    let how = if camera.is_some() {
+        ""
+    } else {
+        "; F brings them into the picture"
+    };
+    edits.extend(camera.map(|camera| Edit::Camera(camera, "frame")));
     if !is_made(editor, Edit::Each(edits, label)) {
         return;
     }
@@ -141,7 +152,5 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
     let count = counted(count, "triangle");
     let notes = notes.iter().map(|note| format!("; {note}"));
     let notes: String = notes.collect();
-    editor.notify(format!(
-        "{count} from {path}; F brings them into the picture{notes}"
-    ));
+    editor.notify(format!("{count} from {path}{how}{notes}"));
 }

@@ -31,8 +31,6 @@ pub enum FileOutcome {
     SaveImage(PathBuf),
     /// Frames are to be written here.
     ExportFolder(PathBuf),
-    /// What was imported is all that there is to see: it is brought into the picture.
-    Frame,
 }
 
 /// A path that is wanted, and what follows when it is there.

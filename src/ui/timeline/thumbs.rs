@@ -59,7 +59,7 @@ impl Thumbs {
             return None;
         }
         let scale = ctx.pixels_per_point();
-        let aspect = scene.render.width as f32 / scene.render.height as f32;
+        let aspect = scene.render.aspect() as f32;
         let pixels = |height: f32| {
             let height = (height * scale).round().clamp(1.0, 512.0);
             (

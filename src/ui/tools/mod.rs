@@ -24,7 +24,7 @@ use glam::DVec3;
 
 use self::drag::{Drag, View};
 use self::gizmo::{Handle, handle_at};
-use self::navigate::{along, dollied, framed, middle_of, projected, surroundings};
+use self::navigate::{along, dollied, middle_of, projected, surroundings};
 use self::sight::{Sight, ends, item_of, pixel, question};
 use self::subject::Subject;
 use super::commands::Command;
@@ -343,8 +343,7 @@ pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
     let least = DVec3::splat(least);
     let middle = low * 0.5 + high * 0.5;
     let bounds = (low.min(middle - least), high.max(middle + least));
-    let aspect = f64::from(scene.render.width) / f64::from(scene.render.height);
-    Some(framed(&scene.camera, aspect, bounds))
+    Some(scene.camera.around(scene.render.aspect(), bounds))
 }
 
 /// The camera that looks along a direction at what is selected, or at everything.

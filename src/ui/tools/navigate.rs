@@ -10,8 +10,6 @@ use crate::scene::{Camera, Projection, Scene};
 const ORBIT: f64 = 0.008;
 /// How much nearer a point of wheel movement comes.
 const DOLLY: f64 = 0.003;
-/// Room around what is framed.
-const ROOM: f64 = 1.15;
 /// How many times as large or small as before another projection may show something.
 const MUCH: f64 = 3.0;
 
@@ -45,24 +43,6 @@ pub fn dollied(camera: &Camera, point: DVec3, wheel: f64) -> Camera {
             next.orthographic_height *= factor;
         }
     }
-    next
-}
-
-/// The camera where everything between two corners of a box is in its picture, looking the same way.
-pub fn framed(camera: &Camera, aspect: f64, (low, high): (DVec3, DVec3)) -> Camera {
-    let (middle, radius) = (low * 0.5 + high * 0.5, (high - low).length() * 0.5 * ROOM);
-    let forward = camera.look_at.normalize_or_zero();
-    let mut next = camera.clone();
-    // The narrower side of the picture, in picture heights.
-    let side = aspect.min(1.0);
-    let distance = match camera.projection {
-        Projection::Perspective => radius / (0.5 * side / camera.projection_distance).atan().sin(),
-        Projection::Orthographic => {
-            next.orthographic_height = 2.0 * radius / side;
-            (middle - camera.position).dot(forward).max(2.0 * radius)
-        }
-    };
-    next.position = middle - forward * distance;
     next
 }
 
@@ -180,7 +160,7 @@ mod tests {
         for camera in cameras() {
             for aspect in [2.0, 0.5] {
                 let lens = Lens::new(
-                    &framed(&camera, aspect, corners),
+                    &camera.around(aspect, corners),
                     Rect::from_min_size(pos2(0.0, 0.0), vec2(400.0 * aspect as f32, 400.0)),
                 );
                 let lens = lens.expect("a basis");

@@ -160,6 +160,36 @@ fn dropped_files_open() {
 }
 
 #[test]
+fn the_first_things_of_a_scene_are_brought_into_the_picture_in_the_step_that_imports_them() {
+    let text = Document::of(Scene::empty()).to_text().expect("a text");
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let before = harness.scene().clone();
+    let corners = |place: f64| format!("v {place} 0 0\nv {place} 900 0\nv {place} 0 900\n");
+    for (name, place) in [("far.obj", 3000.0), ("near.obj", 100.0)] {
+        let path = harness.folder.path().join(name);
+        std::fs::write(&path, format!("{}f 1 2 3\n", corners(place))).expect("written");
+        harness.drop_file(path);
+    }
+    let framing = harness.scene().camera.framing().expect("a camera");
+    let aspect = harness.scene().render.aspect();
+    for corner in [
+        [3000.0, 0.0, 0.0],
+        [3000.0, 900.0, 0.0],
+        [3000.0, 0.0, 900.0],
+    ] {
+        let place = framing.project(corner.into());
+        let is_seen = place.is_some_and(|[x, y]| x.abs() * 2.0 < aspect && y.abs() < 0.5);
+        assert!(is_seen, "{corner:?}: {place:?}");
+    }
+    assert_eq!(harness.scene().objects.len(), 2);
+    // The camera stays where the first import put it, and goes back with it.
+    harness.press(Modifiers::COMMAND, Key::Z);
+    assert_ne!(harness.scene().camera, before.camera);
+    harness.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(harness.scene(), &before);
+}
+
+#[test]
 fn unsaved_changes_survive_a_cancelled_open() {
     let mut harness = EditorHarness::new();
     harness.press(Modifiers::NONE, Key::O);
