@@ -344,7 +344,7 @@ impl Editor {
     /// Makes a change. Whether it was; what changes nothing was, too.
     pub(super) fn edit(&mut self, edit: Edit) -> bool {
         let label = edit.label(&self.scene);
-        let is_camera = matches!(edit, Edit::Camera(..));
+        let is_camera = edit.moves_view();
         // What moves the joined things is taken along by it.
         let is_join = !edit.joined().is_empty();
         let replaced = edit.replaced();

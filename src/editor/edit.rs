@@ -143,6 +143,15 @@ impl Edit {
         }
     }
 
+    /// Whether it is about where the view is seen from.
+    pub fn moves_view(&self) -> bool {
+        match self {
+            Self::Camera(..) => true,
+            Self::Each(edits, _) => edits.iter().any(Self::moves_view),
+            _ => false,
+        }
+    }
+
     /// What it puts in place of what is on show.
     pub fn replaced(&self) -> Replaced {
         let mut replaced = Replaced::default();

@@ -4,7 +4,9 @@ use std::borrow::Cow;
 use std::fs;
 use std::io::{self, Read as _, Write as _};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Duration;
 
@@ -13,7 +15,7 @@ use super::frame_file::as_ppm;
 use super::sequence::Sequence;
 use crate::image::Format;
 
-/// How often it is asked, while ffmpeg does what is left, whether that is still wanted.
+/// How often it is asked whether the video is still wanted.
 const TICK: Duration = Duration::from_millis(20);
 
 /// Has ffmpeg make a video in a file that is to be that of a path, with these words about the codec.
@@ -46,19 +48,27 @@ pub fn by_ffmpeg(
         let _ = stderr.map(|mut stderr| stderr.read_to_end(&mut said));
         said
     });
-    let mut fed = feed(sequence, &mut ffmpeg, &mut go_on);
-    while fed.is_ok() && ffmpeg.try_wait().map_err(wrong)?.is_none() {
-        if !go_on(sequence.frames.count()) {
-            fed = Err(VideoError::Stopped);
+    // A program that takes no more frames is not waited for where nobody can stop it.
+    let fed = Arc::new(AtomicUsize::new(0));
+    let feeder = thread::spawn({
+        let (sequence, pipe) = (sequence.clone(), ffmpeg.stdin.take());
+        let fed = Arc::clone(&fed);
+        move || feed(&sequence, pipe, &fed)
+    });
+    let ended = loop {
+        match ffmpeg.try_wait() {
+            Ok(Some(status)) => break Ok(status),
+            Ok(None) if go_on(fed.load(Ordering::Relaxed)) => thread::sleep(TICK),
+            Ok(None) => break Err(VideoError::Stopped),
+            Err(error) => break Err(wrong(error)),
         }
-        thread::sleep(TICK);
-    }
-    if fed.is_err() {
+    };
+    let status = ended.inspect_err(|_| {
         let _ = ffmpeg.kill();
-    }
-    let status = ffmpeg.wait().map_err(wrong)?;
+        let _ = ffmpeg.wait();
+    })?;
     let said = listener.join().unwrap_or_default();
-    let has_all = fed?;
+    let has_all = feeder.join().unwrap_or(Ok(false))?;
     let is_written = || fs::metadata(unfinished).is_ok_and(|file| file.len() > 0);
     let why = if status.code().is_none() {
         format!("it was killed ({status})\n")
@@ -97,10 +107,10 @@ fn start(sequence: &Sequence, unfinished: &Path, codec: &str) -> io::Result<Chil
 /// Gives it the frames. Whether it took all of them: it hangs up when it fails.
 fn feed(
     sequence: &Sequence,
-    ffmpeg: &mut Child,
-    mut go_on: impl FnMut(usize) -> bool,
+    pipe: Option<ChildStdin>,
+    fed: &AtomicUsize,
 ) -> Result<bool, VideoError> {
-    let Some(mut pipe) = ffmpeg.stdin.take() else {
+    let Some(mut pipe) = pipe else {
         return Ok(false);
     };
     for (index, frame) in sequence.frames.iter().enumerate() {
@@ -115,9 +125,7 @@ fn feed(
         if pipe.write_all(&bytes).is_err() {
             return Ok(false);
         }
-        if !go_on(index + 1) {
-            return Err(VideoError::Stopped);
-        }
+        fed.store(index + 1, Ordering::Relaxed);
     }
     Ok(true)
 }

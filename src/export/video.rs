@@ -68,6 +68,10 @@ impl Video {
             Self::ProRes => by_ffmpeg(sequence, files, PRORES, &mut go_on)?,
             Self::Lossless => by_ffmpeg(sequence, files, LOSSLESS, &mut go_on)?,
         }
+        // It may have been given up in the last moment.
+        if !go_on(sequence.frames.count()) {
+            return Err(VideoError::Stopped);
+        }
         let placed = beside.place();
         placed.map_err(|error| VideoError::disk(path, &error))
     }

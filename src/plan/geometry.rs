@@ -391,7 +391,7 @@ pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>, apart: &BTreeSet<u
     let (apart, others): (Vec<usize>, Vec<usize>) = places.clone().partition(is_apart);
     let mut found = vec![None; places.len()];
     for group in [others, apart] {
-        // In double precision, as the faces of meshes are.
+        // Measured in double precision, whatever they are traced in.
         let own = group.iter().map(|&at| &primitives.triangles[at]);
         let mut triangles: Vec<_> = own.map(PackedTriangle::in_precision).collect();
         let corners = number_corners(&triangles);

@@ -18,10 +18,12 @@ impl<R: Real> Meshes<R> {
         Arc::clone(self.0.entry(MeshKey::of(mesh)).or_insert_with(make))
     }
 
-    /// Takes over what is ready in double precision.
+    /// Takes over what is ready in double precision, and shares its tree from then on.
     pub fn take_over(&mut self, packed: &Arc<PackedMesh<f64>>) {
-        let make = || PackedMesh::in_precision(packed);
-        self.0.entry(packed.key).or_insert_with(make);
+        let own = self.0.get(&packed.key);
+        if !own.is_some_and(|own| Arc::ptr_eq(&own.bvh.nodes, &packed.bvh.nodes)) {
+            self.0.insert(packed.key, PackedMesh::in_precision(packed));
+        }
     }
 }
 

@@ -120,7 +120,7 @@ impl PackedMesh<f64> {
             Vec::new()
         };
         Self {
-            has_flat: smooth.is_empty() || smooth.iter().any(CornerNormals::are_alike),
+            has_flat: has_flat(&smooth),
             lift: largest_lift(&triangles, &smooth),
             reach: reach(&triangles, bvh.bounds.ball().0),
             smooth,
@@ -147,12 +147,12 @@ impl PackedMesh<f64> {
         let (triangles, smooth) = (triangles.collect::<Vec<_>>(), smooth.collect::<Vec<_>>());
         let bvh = self.bvh.in_precision();
         PackedMesh {
+            has_flat: has_flat(&smooth),
             lift: largest_lift(&triangles, &smooth),
             reach: reach(&triangles, bvh.bounds.ball().0),
             triangles,
             smooth,
             bvh,
-            has_flat: self.has_flat,
             things: Arc::clone(&self.things),
             is_solid: self.is_solid,
             middle: self.middle,
@@ -195,6 +195,11 @@ pub fn measure(
         triangle.has_tips = has_tips;
     }
     bvh.refit(|number| member(&triangles[number]));
+}
+
+/// Whether some faces with these normals look flat.
+fn has_flat<R: Real>(smooth: &[CornerNormals<R>]) -> bool {
+    smooth.is_empty() || smooth.iter().any(CornerNormals::are_alike)
 }
 
 /// How far the corners of triangles are from a point, at most.

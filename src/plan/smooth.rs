@@ -7,7 +7,7 @@ use crate::simd::{Real, Vec3};
 const MOST_AROUND: usize = 256;
 
 /// By how much the cosine between faces must be above that of the angle, or they stay flat: several roundings of single
-/// precision, so that faces which meet at just that angle are the same in any precision.
+/// precision, which files have their corners in, so that of faces which meet at just that angle none is smooth by rounding.
 const JUST: f64 = 4e-6;
 
 /// Normals at the corners of each triangle: the mean of its own and of those that turn from it by less than

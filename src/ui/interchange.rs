@@ -10,7 +10,7 @@ use crate::export::{Job, Pattern, Sequence, povray_text, write_job, write_text};
 use crate::files::is_same_file;
 use crate::image::Format;
 use crate::mesh::MeshFile;
-use crate::scene::{Animation, around, read_text};
+use crate::scene::{Animation, Scene, around, check, read_text};
 use crate::words::counted;
 
 /// The keys of a file take the place of the camera's.
@@ -133,10 +133,18 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
         let group = free_group_name(editor.scene(), stem.trim());
         edits.push(Edit::Group((first..last).collect(), group));
     }
-    // What is all that there is to see is brought into the picture.
-    let scene = editor.scene();
+    // What is all that there is to see is brought into the picture, if a camera can be so far away.
+    let scene = editor.shown();
     let bounds = bounds.filter(|_| first == 0);
     let camera = bounds.map(|bounds| scene.camera.around(scene.render.aspect(), bounds));
+    let camera = camera.filter(|camera| {
+        let camera = camera.clone();
+        let alone = Scene {
+            camera,
+            ..Scene::empty()
+        };
+        check(&alone).is_ok()
+    });
     let how = if camera.is_some() {
         ""
     } else {

@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::hint::Hint as _;
 use super::theme::ROW;
-use crate::scene::{format_number, parse_vec3};
+use crate::scene::parse_vec3;
 use crate::words::quoted;
 
 /// Letters that one of three fields in a row has room for.
@@ -30,7 +30,7 @@ pub struct Field {
     pub unit: &'static str,
     /// What a double-click on the label brings back.
     pub default: f64,
-    /// Values outside are pulled to its ends.
+    /// What is typed is within, and what is dragged stops at its ends.
     pub range: RangeInclusive<f64>,
     /// Change per point of dragging; `None` follows the value's size.
     pub speed: Option<f64>,
@@ -94,18 +94,25 @@ pub fn take_refused(ctx: &Context) -> Option<String> {
 
 /// What is wrong with a text for a field: it is no number, or one that is out of range.
 fn refusal(field: &Field, text: &str) -> Option<String> {
-    let (least, most) = (*field.range.start(), *field.range.end());
-    let name = field.name;
     match read(text) {
         None if text.is_empty() => None,
         None => Some(format!("{} is no number", quoted(text))),
-        Some(number) if number <= 0.0 && 0.0 < least => Some(format!("{name} is above 0")),
-        Some(number) if !field.range.contains(&number) => {
-            let [least, most] = [least, most].map(format_number);
-            Some(format!("{name} goes from {least} to {most}"))
-        }
-        Some(_) => None,
+        Some(number) => out_of_range(field, number),
     }
+}
+
+/// What is wrong with a number that is out of the range of a field.
+fn out_of_range(field: &Field, number: f64) -> Option<String> {
+    if field.range.contains(&number) {
+        return None;
+    }
+    let (name, least, most) = (field.name, *field.range.start(), *field.range.end());
+    Some(if number <= 0.0 && 0.0 < least {
+        format!("{name} is above 0")
+    } else {
+        let [least, most] = [least, most].map(|end| rounded(end, "", NARROW));
+        format!("{name} goes from {least} to {most}")
+    })
 }
 
 /// The number that a text is.
@@ -175,14 +182,17 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
     let parser = |text: &str| {
         let text = text.trim().trim_end_matches(field.unit);
         if let (Some(pasted), Some(whole)) = (pasted, parse_vec3(text)) {
-            pasted.set(Some(whole));
-            return Some(whole.x);
+            let parts = whole.to_array();
+            refused.set(parts.iter().find_map(|part| out_of_range(field, *part)));
+            let is_within = parts.iter().all(|part| field.range.contains(part));
+            pasted.set(is_within.then_some(whole));
+            return is_within.then_some(whole.x);
         }
         let text = text.trim();
         // A field that is left as it was says nothing.
         refused.set(refusal(field, text).filter(|_| text != own));
-        // A length below zero is a slip, and not a wish for the shortest.
-        read(text).filter(|number| *field.range.start() <= 0.0 || 0.0 < *number)
+        // What is out of range is a slip, and not a wish for its end.
+        read(text).filter(|number| field.range.contains(number))
     };
     let mut edited = *value;
     let widget = DragValue::new(&mut edited)

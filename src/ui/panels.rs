@@ -224,7 +224,7 @@ impl App {
                 .show(ui, &self.editor, picture, (wheel, is_busy), out);
         }
         if !is_still && self.layout.shot {
-            self.thumbs.show_shot(ui, &self.editor, place.rect);
+            self.thumbs.show_shot(ui, &self.editor, place.rect, out);
         }
         (place, response)
     }

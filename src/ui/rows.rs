@@ -147,7 +147,7 @@ impl<'u> Rows<'u> {
                 drag(ui, &number, part);
             }
             if let Some(whole) = pasted.get() {
-                *value = whole.clamp(DVec3::ZERO, DVec3::splat(255.0));
+                *value = whole;
             }
             hex(ui, name, value);
         });

@@ -733,7 +733,7 @@ fn ffmpeg_makes_videos_of_all_frames() {
     }
 }
 
-/// Stops to make a video of frames that are there after the second of them.
+/// Begins to make a video of frames that are there, and stops.
 fn gives_up(frames: &Path, name: &str) {
     let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
     (scene.render.width, scene.render.height) = (48, 48);
@@ -741,13 +741,8 @@ fn gives_up(frames: &Path, name: &str) {
     let sequence = Sequence::new(scene.into(), shown, pattern, Format::Ppm, frames.into());
     let path = frames.join(name);
     let video = Video::of_path(&path).expect("known");
-    let mut told = Vec::new();
-    let made = video.make(&sequence.expect("they are there"), &path, |count| {
-        told.push(count);
-        count < 2
-    });
+    let made = video.make(&sequence.expect("they are there"), &path, |_| false);
     assert!(matches!(made, Err(VideoError::Stopped)), "{name}: {made:?}");
-    assert_eq!(told, [1, 2], "{name}");
     let left = files(frames).into_keys();
     let left: Vec<String> = left.filter(|name| !name.starts_with("rayTrace")).collect();
     assert!(left.is_empty(), "{left:?}");

@@ -418,6 +418,30 @@ fn the_window_plays_and_pauses() {
 }
 
 #[test]
+fn a_hand_on_the_shot_moves_nothing_behind_it_and_a_click_looks_through_it() {
+    let mut harness = animation(&[(0.0, 0.0), (2.0, 60.0)]);
+    let mut steps = 0..1000;
+    while harness.window.query_by_label("Shot").is_none() {
+        assert!(steps.next().is_some(), "it never came");
+        std::thread::sleep(std::time::Duration::from_millis(2));
+        harness.window.step();
+    }
+    let before = harness.scene().clone();
+    let place = harness.window.get_by_label("Shot").rect();
+    harness.window.drag_at(place.center());
+    harness.window.step();
+    harness.window.hover_at(place.left_top() + vec2(4.0, 4.0));
+    harness.window.step();
+    harness.window.drop_at(place.left_top() + vec2(4.0, 4.0));
+    harness.settle();
+    assert_eq!(harness.scene(), &before);
+    assert!(!harness.editor().looks_through());
+    harness.click("Shot");
+    assert!(harness.editor().looks_through());
+    assert!(harness.window.query_by_label("Shot").is_none());
+}
+
+#[test]
 fn a_key_is_dragged_in_the_view() {
     let mut harness = animation(&[(0.0, -60.0), (2.0, 40.0)]);
     // From farther back the flight is in sight.

@@ -55,9 +55,11 @@ fn video_progress(video: &VideoMaker) -> (f64, String) {
             (share, format!("{name}: {done} of {total}"))
         }
         VideoState::Made => (1.0, format!("{} and {name}", counted(total, "frame"))),
-        VideoState::Stopped | VideoState::Failed(_) => {
-            (1.0, format!("{}, but no video", counted(total, "frame")))
-        }
+        VideoState::Stopped => (
+            1.0,
+            format!("{}, the video given up", counted(total, "frame")),
+        ),
+        VideoState::Failed(_) => (1.0, format!("{}, but no video", counted(total, "frame"))),
     }
 }
 
@@ -78,19 +80,18 @@ pub fn show_state(
         let bar = ProgressBar::new(share as f32).desired_width(FIELDS - buttons);
         ui.add(bar.text(RichText::new(text).small().color(palette(ui.ctx()).text)));
         if state.ended.is_some() {
-            match video.filter(|video| matches!(video.state, VideoState::Making(_))) {
-                Some(video) => {
-                    if ui.button("Cancel").hint("Its frames stay").clicked() {
-                        video.stop();
-                    }
-                }
-                None => {
-                    if ui.button("Remove").clicked() {
-                        pictures.forget_export(state.id);
-                    }
-                }
+            let making = video.filter(|video| matches!(video.state, VideoState::Making(_)));
+            if making.is_none() && ui.button("Remove").clicked() {
+                pictures.forget_export(state.id);
             }
-            return ui.button("Open folder").clicked();
+            let is_asked = ui.button("Open folder").clicked();
+            // Not where *Remove* comes when it is made.
+            if let Some(video) = making
+                && ui.button("Cancel").hint("Its frames stay").clicked()
+            {
+                video.stop();
+            }
+            return is_asked;
         }
         let word = if state.is_paused { "Resume" } else { "Pause" };
         if ui.button(word).clicked() {

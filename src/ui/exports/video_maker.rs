@@ -94,3 +94,44 @@ impl VideoMaker {
         &self.state
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::thread::sleep;
+    use std::time::Duration;
+
+    use super::*;
+    use crate::export::{ExportStep, Exporting, Pattern};
+    use crate::image::Format;
+    use crate::scene::Scene;
+    use crate::trace::RenderControl;
+
+    #[test]
+    fn a_video_is_made_unless_it_is_given_up() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut scene = Scene::demo();
+        (scene.render.width, scene.render.height) = (8, 8);
+        let place = folder.path().to_owned();
+        let sequence = Sequence::new(scene.into(), None, Pattern::default(), Format::Ppm, place);
+        let sequence = sequence.expect("frames");
+        let mut exporting = Exporting::new(sequence.clone()).expect("a folder");
+        while matches!(exporting.step(&RenderControl::default()), ExportStep::Going) {}
+        exporting.finish().expect("written");
+        for (name, is_given_up, expected) in [
+            ("a.gif", true, VideoState::Stopped),
+            ("b.gif", false, VideoState::Made),
+        ] {
+            let path = folder.path().join(name);
+            let mut maker = VideoMaker::new(sequence.clone(), path.clone(), Video::Gif);
+            if is_given_up {
+                maker.stop();
+            }
+            maker.make();
+            while matches!(maker.update(), VideoState::Making(_)) {
+                sleep(Duration::from_millis(1));
+            }
+            assert_eq!(maker.state, expected);
+            assert_eq!(path.exists(), !is_given_up);
+        }
+    }
+}

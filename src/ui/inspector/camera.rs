@@ -142,8 +142,8 @@ fn angle_rows(rows: &mut Rows, before: Orientation, camera: &mut Camera) {
     let parts = [
         (
             "yaw",
-            "Turn to the right, from -180° to 180°",
-            180.0,
+            "Turn to the right; 270° is as -90°",
+            360.0,
             &mut angles.yaw,
         ),
         (
@@ -154,8 +154,8 @@ fn angle_rows(rows: &mut Rows, before: Orientation, camera: &mut Camera) {
         ),
         (
             "roll",
-            "Lean to the right, from -180° to 180°",
-            180.0,
+            "Lean to the right; 270° is as -90°",
+            360.0,
             &mut angles.roll,
         ),
     ];

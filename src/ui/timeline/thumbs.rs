@@ -1,12 +1,15 @@
 //! Small pictures: what the keys see, above them, and the shot in a corner of the view.
 
-use egui::{Context, Rect, Sense, TextureHandle, TextureOptions, Ui, pos2, vec2};
+use egui::{Context, Id, Rect, Sense, TextureHandle, TextureOptions, Ui, pos2, vec2};
 
 use super::scale::Scale;
 use crate::animate::shot;
 use crate::editor::Editor;
 use crate::image::Image;
 use crate::scene::Animation;
+use crate::ui::commands::Command;
+use crate::ui::hint::Hint as _;
+use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, THUMB, palette};
 use crate::ui::upload::{paint, whole};
 use crate::worker::ThumbnailJob;
@@ -121,14 +124,20 @@ impl Thumbs {
         }
     }
 
-    /// The shot in a corner of the view, while the view is not the shot itself.
-    pub fn show_shot(&self, ui: &Ui, editor: &Editor, view: Rect) {
+    /// The shot in a corner of the view, while the view is not the shot itself. What is behind it is not under the
+    /// pointer.
+    pub fn show_shot(&self, ui: &Ui, editor: &Editor, view: Rect, out: &mut UiRequests) {
         let Some(texture) = self.shot.as_ref().filter(|_| !editor.looks_through()) else {
             return;
         };
         let size = texture.size_vec2();
         let place = shot_place(view, size.x / size.y);
         paint(ui.painter(), texture, place);
+        let response = ui.interact(place, Id::unique("shot"), Sense::click_and_drag());
+        let response = response.hint("A click looks through the shot camera (C)");
+        if response.accessible_name("Shot").clicked() {
+            out.commands.push(Command::LookThrough);
+        }
         let colors = palette(ui.ctx());
         let stroke = egui::Stroke::new(1.0, colors.accent);
         ui.painter()

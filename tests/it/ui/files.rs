@@ -190,6 +190,38 @@ fn the_first_things_of_a_scene_are_brought_into_the_picture_in_the_step_that_imp
 }
 
 #[test]
+fn an_import_into_an_empty_scene_leaves_the_shot() {
+    let mut scene = Scene::empty();
+    let camera = scene.camera.clone();
+    scene.animation_mut().keys = [0.0, 2.0]
+        .map(|time| glint::scene::Key::new(time, camera.clone()))
+        .into();
+    let mut harness = EditorHarness::on(scene);
+    harness.press(Modifiers::NONE, Key::C);
+    assert!(harness.editor().looks_through());
+    let path = harness.folder.path().join("far.obj");
+    std::fs::write(&path, "v 900 0 0\nv 900 90 0\nv 900 0 90\nf 1 2 3\n").expect("written");
+    harness.drop_file(path);
+    assert!(!harness.editor().looks_through());
+    assert_ne!(harness.editor().shown().camera, camera);
+}
+
+#[test]
+fn an_import_that_no_camera_can_see_whole_is_made_all_the_same() {
+    let text = Document::of(Scene::empty()).to_text().expect("a text");
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let before = harness.scene().camera.clone();
+    let path = harness.folder.path().join("wide.obj");
+    std::fs::write(&path, "v 9e11 0 0\nv -9e11 0 0\nv 0 9e11 0\nf 1 2 3\n").expect("written");
+    harness.drop_file(path);
+    assert_eq!(harness.scene().objects.len(), 1);
+    assert_eq!(harness.scene().camera, before);
+    harness
+        .window
+        .get_by_label_contains("F brings them into the picture");
+}
+
+#[test]
 fn unsaved_changes_survive_a_cancelled_open() {
     let mut harness = EditorHarness::new();
     harness.press(Modifiers::NONE, Key::O);

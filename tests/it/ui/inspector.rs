@@ -309,17 +309,20 @@ fn what_is_typed_and_not_taken_is_told() {
     for (field, text, words) in [
         ("radius", "-5", "radius is above 0"),
         ("radius", "big", "“big” is no number"),
+        ("center y", "1e30", "center goes from -1.0e12 to 1.0e12"),
         (
-            "center y",
-            "1e30",
-            "center goes from -1000000000000 to 1000000000000",
+            "center x",
+            "0, 1e30, 0",
+            "center goes from -1.0e12 to 1.0e12",
         ),
+        ("diffuse red", "300", "diffuse goes from 0 to 255"),
+        ("diffuse green", "10, 20, 300", "diffuse goes from 0 to 255"),
         ("diffuse hex", "#12", "“#12” is no color"),
     ] {
         harness.type_into(field, text);
         harness.window.get_by_label_contains(words);
     }
-    assert_eq!(radius(harness.scene(), 0), 50.0);
+    assert_eq!(harness.scene(), &Scene::demo());
     harness.type_into("diffuse hex", "#0f0");
     let pack = &harness.scene().color_packs["sphere 1"];
     assert_eq!(pack.diffuse.to_array(), [0.0, 255.0, 0.0]);
@@ -328,6 +331,17 @@ fn what_is_typed_and_not_taken_is_told() {
     let pack = &harness.scene().color_packs["sphere 1"];
     assert_eq!(pack.diffuse.to_array(), [255.0, 128.0, 64.0]);
     assert_eq!(pack.ambient, pack.diffuse, "both at once");
+}
+
+#[test]
+fn a_turn_may_be_typed_either_way_around() {
+    let turned = ["270", "-90"].map(|text| {
+        let mut harness = EditorHarness::new();
+        harness.type_into("yaw", text);
+        assert_ne!(harness.scene().camera, Scene::demo().camera);
+        harness.scene().camera.look_at
+    });
+    assert!(turned[0].distance(turned[1]) < 1e-12, "{turned:?}");
 }
 
 #[test]
