@@ -3,6 +3,8 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
+use glam::DVec3;
+
 use super::dialogs::Ask;
 use crate::animate::{from_table, from_text, to_table, to_text};
 use crate::editor::{Action, Edit, Editor, Item, Selected, free_group_name};
@@ -10,7 +12,7 @@ use crate::export::{Job, Pattern, Sequence, povray_text, write_job, write_text};
 use crate::files::is_same_file;
 use crate::image::Format;
 use crate::mesh::MeshFile;
-use crate::scene::{Animation, Scene, around, check, read_text};
+use crate::scene::{Animation, Camera, Scene, around, check, read_text};
 use crate::words::counted;
 
 /// The keys of a file take the place of the camera's.
@@ -115,6 +117,16 @@ fn is_table(path: &Path) -> bool {
         .is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
 }
 
+/// The camera that sees all of a box; `None` if it would be too far away.
+fn camera_around(scene: &Scene, bounds: (DVec3, DVec3)) -> Option<Camera> {
+    let camera = scene.camera.around(scene.render.aspect(), bounds);
+    let alone = Scene {
+        camera: camera.clone(),
+        ..Scene::empty()
+    };
+    check(&alone).is_ok().then_some(camera)
+}
+
 /// The parts of a mesh file become objects.
 pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
     let MeshFile { parts, notes } = file;
@@ -133,18 +145,9 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
         let group = free_group_name(editor.scene(), stem.trim());
         edits.push(Edit::Group((first..last).collect(), group));
     }
-    // What is all that there is to see is brought into the picture, if a camera can be so far away.
-    let scene = editor.shown();
+    // What is all that there is to see is brought into the picture.
     let bounds = bounds.filter(|_| first == 0);
-    let camera = bounds.map(|bounds| scene.camera.around(scene.render.aspect(), bounds));
-    let camera = camera.filter(|camera| {
-        let camera = camera.clone();
-        let alone = Scene {
-            camera,
-            ..Scene::empty()
-        };
-        check(&alone).is_ok()
-    });
+    let camera = bounds.and_then(|bounds| camera_around(editor.shown(), bounds));
     let how = if camera.is_some() {
         ""
     } else {

@@ -235,6 +235,34 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
     response.hint_beside(ui, field.hint);
 }
 
+/// A draggable number in a bar, with nothing beside it that says its name; what is typed counts when it is left.
+pub fn lone(ui: &mut Ui, field: &Field, value: &mut f64) {
+    let (refused, before) = (Cell::new(None), *value);
+    let shown = |value: f64| rounded(value, field.unit, WIDE);
+    let parser = |text: &str| {
+        let text = text.trim().trim_end_matches(field.unit.trim()).trim();
+        refused.set(refusal(field, text));
+        read(text).filter(|number| field.range.contains(number))
+    };
+    let widget = DragValue::new(value)
+        .speed(field.speed.unwrap_or(1.0))
+        .range(field.range.clone())
+        .clamp_existing_to_range(false)
+        .update_while_editing(false)
+        .custom_formatter(|number, _| shown(number))
+        .suffix(field.unit)
+        .custom_parser(parser);
+    let response = ui.add(widget).accessible_name(field.name);
+    let is_cancelled = is_cancelled(ui, &response);
+    // A field that is left as it was entered gives back what it showed.
+    let is_as_shown = !response.dragged() && shown(before).parse() == Ok(*value);
+    if is_cancelled || is_as_shown {
+        *value = before;
+    }
+    tell_refused(&response, is_cancelled, refused.take());
+    response.hint(field.hint);
+}
+
 /// Whether the field was left with Escape, which gives what was typed up. A field counts as left
 /// for two frames, and in the second the key is gone: the first is remembered.
 pub fn is_cancelled(ui: &Ui, response: &Response) -> bool {

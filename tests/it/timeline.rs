@@ -418,6 +418,40 @@ fn the_window_plays_and_pauses() {
 }
 
 #[test]
+fn what_the_timeline_cannot_be_is_told_and_not_taken() {
+    let mut harness = animation(&[(0.0, 0.0), (2.0, 60.0)]);
+    let before = harness.scene().clone();
+    for (field, text, words) in [
+        (
+            "length of the flight",
+            "-1",
+            "length of the flight is above 0",
+        ),
+        (
+            "length of the flight",
+            "1e9",
+            "length of the flight goes from",
+        ),
+        (
+            "frames per second",
+            "1000",
+            "frames per second goes from 1 to 240",
+        ),
+        ("playing speed", "fast", "“fast” is no number"),
+    ] {
+        harness.type_into(field, text);
+        harness.window.get_by_label_contains(words);
+        assert_eq!(harness.scene(), &before, "{field}: {text}");
+    }
+    assert_eq!(harness.editor().timeline().speed, 1.0);
+    harness.type_into("length of the flight", "3 s");
+    harness.type_into("frames per second", "12,5 fps");
+    let animation = &harness.scene().animation;
+    assert_eq!(animation.keys[1].time, 3.0);
+    assert_eq!(animation.frames_per_second, 12.5);
+}
+
+#[test]
 fn a_hand_on_the_shot_moves_nothing_behind_it_and_a_click_looks_through_it() {
     let mut harness = animation(&[(0.0, 0.0), (2.0, 60.0)]);
     let mut steps = 0..1000;

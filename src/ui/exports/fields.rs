@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use egui::{Align2, ComboBox, DragValue, TextEdit, Ui};
+use egui::{Align2, ComboBox, TextEdit, Ui};
 use serde::{Deserialize, Serialize};
 
 use crate::editor::Editor;
@@ -15,6 +15,7 @@ use crate::scene::{Animation, MAX_SIDE, Method as _, Problem, Sampling, Scene};
 use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
+use crate::ui::number::{Field, lone};
 use crate::ui::requests::UiRequests;
 use crate::ui::status::in_words;
 use crate::ui::theme::ROW;
@@ -314,9 +315,21 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
     ui.weak("picture");
     ui.horizontal(|ui| {
         let mut size = (settings.width, settings.height);
-        for (name, side) in [("width", &mut size.0), ("height", &mut size.1)] {
-            ui.add(DragValue::new(side).range(1..=MAX_SIDE).suffix(" px"))
-                .accessible_name(format!("export {name}"));
+        for (name, side) in [
+            ("export width", &mut size.0),
+            ("export height", &mut size.1),
+        ] {
+            let field = Field {
+                name,
+                hint: "In pixels",
+                unit: " px",
+                default: f64::from(*side),
+                range: 1.0..=f64::from(MAX_SIDE),
+                speed: None,
+            };
+            let mut pixels = f64::from(*side);
+            lone(ui, &field, &mut pixels);
+            *side = pixels.round() as u32;
         }
         settings.set_size(size);
         let mut keeps_shape = !settings.is_free;
@@ -339,11 +352,15 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
     ui.weak("time");
     ui.horizontal(|ui| {
         let mut fps = settings.fps;
-        let drag = DragValue::new(&mut fps)
-            .range(1.0..=240.0)
-            .speed(0.1)
-            .suffix(" fps");
-        ui.add(drag).accessible_name("export frames per second");
+        let field = Field {
+            name: "export frames per second",
+            hint: "Of the frames and the video; the flight stays as it is",
+            unit: " fps",
+            default: fps,
+            range: 1.0..=240.0,
+            speed: Some(0.1),
+        };
+        lone(ui, &field, &mut fps);
         settings.set_fps(fps);
         ui.weak("video");
         for video in VIDEOS {

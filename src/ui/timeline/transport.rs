@@ -1,7 +1,7 @@
 //! The buttons above the keys.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
-use egui::{Button, DragValue, PopupCloseBehavior, RichText, Slider, Ui};
+use egui::{Button, PopupCloseBehavior, RichText, Slider, Ui};
 
 use crate::animate::{Retime, paused_seconds};
 use crate::editor::{Edit, Editor, Repeat, Time};
@@ -9,7 +9,7 @@ use crate::scene::{Animation, KeyPlace, Keys, MAX_SECONDS};
 use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
-use crate::ui::number::is_cancelled;
+use crate::ui::number::{Field, lone};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
 use crate::words::counted;
@@ -156,28 +156,34 @@ fn rates(ui: &mut Ui, editor: &Editor, graph: &mut bool, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     length(ui, animation, out);
     let mut fps = animation.frames_per_second;
-    let drag = DragValue::new(&mut fps)
-        .range(1.0..=240.0)
-        .speed(0.1)
-        .max_decimals(3)
-        .suffix(" fps");
-    let hint = "Frames per second; the flight stays as it is";
-    let drag = ui.add(drag).accessible_name("frames per second");
-    if drag.hint(hint).changed() && fps.is_finite() {
+    let field = Field {
+        name: "frames per second",
+        hint: "Frames per second; the flight stays as it is",
+        unit: " fps",
+        default: animation.frames_per_second,
+        range: 1.0..=240.0,
+        speed: Some(0.1),
+    };
+    lone(ui, &field, &mut fps);
+    if fps != animation.frames_per_second {
         let changed = Animation {
             frames_per_second: fps,
             ..Animation::clone(animation)
         };
         out.edit(Edit::animation(changed, "Frames per second"));
     }
-    let mut speed = editor.timeline().speed;
-    let drag = DragValue::new(&mut speed)
-        .range(0.05..=20.0)
-        .speed(0.01)
-        .max_decimals(2)
-        .suffix("×");
-    let drag = ui.add(drag).accessible_name("playing speed");
-    if drag.hint("Playing speed; 1 is real time").changed() && speed.is_finite() {
+    let before = editor.timeline().speed;
+    let mut speed = before;
+    let field = Field {
+        name: "playing speed",
+        hint: "Playing speed; 1 is real time",
+        unit: "×",
+        default: 1.0,
+        range: 0.05..=20.0,
+        speed: Some(0.01),
+    };
+    lone(ui, &field, &mut speed);
+    if speed != before {
         out.time(Time::Speed(speed));
     }
 }
@@ -187,18 +193,18 @@ fn length(ui: &mut Ui, animation: &Animation, out: &mut UiRequests) {
     let [first, .., last] = &animation.keys[..] else {
         return;
     };
-    let mut seconds = last.time - first.time;
-    let drag = DragValue::new(&mut seconds)
-        .range(0.1..=MAX_SECONDS)
-        .clamp_existing_to_range(false)
-        .speed(0.05)
-        .max_decimals(3)
-        .update_while_editing(false)
-        .suffix(" s");
-    let drag = ui.add(drag).accessible_name("length of the flight");
-    let hint = "Length of the flight; another one stretches it";
-    let is_cancelled = is_cancelled(ui, &drag);
-    if drag.hint(hint).changed() && seconds.is_finite() && !is_cancelled {
+    let before = last.time - first.time;
+    let mut seconds = before;
+    let field = Field {
+        name: "length of the flight",
+        hint: "Length of the flight; another one stretches it",
+        unit: " s",
+        default: before,
+        range: 0.1..=MAX_SECONDS,
+        speed: Some(0.05),
+    };
+    lone(ui, &field, &mut seconds);
+    if seconds != before {
         let changed = Animation {
             keys: Retime::Stretch(seconds).apply(&animation.keys),
             ..Animation::clone(animation)
