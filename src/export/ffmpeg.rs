@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::fs;
 use std::io::{self, Read as _, Write as _};
 use std::path::Path;
-use std::process::{Child, ChildStdin, Command, Stdio};
+use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
@@ -28,7 +28,6 @@ pub fn by_ffmpeg(
     codec: &str,
     mut go_on: impl FnMut(usize) -> bool,
 ) -> Result<(), VideoError> {
-    let wrong = |error: io::Error| VideoError::disk(path, &error);
     let mut ffmpeg = match start(sequence, unfinished, codec) {
         Ok(ffmpeg) => ffmpeg,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
@@ -55,18 +54,9 @@ pub fn by_ffmpeg(
         let fed = Arc::clone(&fed);
         move || feed(&sequence, pipe, &fed)
     });
-    let ended = loop {
-        match ffmpeg.try_wait() {
-            Ok(Some(status)) => break Ok(status),
-            Ok(None) if go_on(fed.load(Ordering::Relaxed)) => thread::sleep(TICK),
-            Ok(None) => break Err(VideoError::Stopped),
-            Err(error) => break Err(wrong(error)),
-        }
-    };
-    let status = ended.inspect_err(|_| {
-        let _ = ffmpeg.kill();
-        let _ = ffmpeg.wait();
-    })?;
+    let is_wanted = || go_on(fed.load(Ordering::Relaxed));
+    let ended = end_of(&mut ffmpeg, is_wanted).map_err(|error| VideoError::disk(path, &error))?;
+    let status = ended.ok_or(VideoError::Stopped)?;
     let said = listener.join().unwrap_or_default();
     let has_all = feeder.join().unwrap_or(Ok(false))?;
     let is_written = || fs::metadata(unfinished).is_ok_and(|file| file.len() > 0);
@@ -83,6 +73,24 @@ pub fn by_ffmpeg(
     };
     let said = format!("{why}{}", last_lines(&said));
     Err(VideoError::Ffmpeg { said })
+}
+
+/// Waits until a program ends. `None` where nobody wants that any more: it is killed.
+fn end_of(
+    program: &mut Child,
+    mut is_wanted: impl FnMut() -> bool,
+) -> io::Result<Option<ExitStatus>> {
+    let ended = loop {
+        match program.try_wait() {
+            Ok(None) if is_wanted() => thread::sleep(TICK),
+            ended => break ended,
+        }
+    };
+    if !matches!(ended, Ok(Some(_))) {
+        let _ = program.kill();
+        let _ = program.wait();
+    }
+    ended
 }
 
 fn start(sequence: &Sequence, unfinished: &Path, codec: &str) -> io::Result<Child> {
