@@ -1,5 +1,6 @@
 //! The flight of the camera and what else moves, as the file stores it: keys on a line of time.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use serde::de::{Error, SeqAccess, Visitor};
@@ -11,6 +12,8 @@ use super::camera::{Camera, Projection};
 use super::notation;
 use super::orientation::Orientation;
 
+/// Frames per second that there may be.
+pub const FRAME_RATES: RangeInclusive<f64> = 1.0..=240.0;
 /// Longest animation, in seconds: a day.
 pub const MAX_SECONDS: f64 = 86_400.0;
 /// Most keys of one kind.
@@ -20,7 +23,7 @@ pub const MAX_KEYS: usize = 100_000;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Animation {
-    /// Frames per second of playing time, 1–240. The curves do not depend on it.
+    /// Frames per second of playing time, within [`FRAME_RATES`]. The curves do not depend on it.
     #[serde(with = "notation::number")]
     pub frames_per_second: f64,
     /// Where the camera is at which time, in order of time.

@@ -67,8 +67,8 @@ mod examples;
 mod recovery;
 
 pub use animation::{
-    Animation, Easing, Interpolation, Key, Lens, MAX_KEYS, MAX_SECONDS, Sample, Take, Target,
-    Track, Value,
+    Animation, Easing, FRAME_RATES, Interpolation, Key, Lens, MAX_KEYS, MAX_SECONDS, Sample, Take,
+    Target, Track, Value,
 };
 pub use aspect::Aspect;
 pub use camera::{Bookmark, Camera, Framing, Projection};

@@ -135,7 +135,9 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
         editor.scene().objects.len(),
         editor.scene().objects.len() + parts.len(),
     );
-    let bounds = around(parts.iter().filter_map(|part| part.triangles.bounds()));
+    // What is all that there is to see is brought into the picture.
+    let seen = if first == 0 { &parts[..] } else { &[] };
+    let bounds = around(seen.iter().filter_map(|part| part.triangles.bounds()));
     let import = Edit::Import(parts);
     let label = import.label(editor.scene());
     let mut edits = vec![import];
@@ -145,8 +147,6 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
         let group = free_group_name(editor.scene(), stem.trim());
         edits.push(Edit::Group((first..last).collect(), group));
     }
-    // What is all that there is to see is brought into the picture.
-    let bounds = bounds.filter(|_| first == 0);
     let camera = bounds.and_then(|bounds| camera_around(editor.shown(), bounds));
     let how = if camera.is_some() {
         ""

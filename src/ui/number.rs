@@ -42,6 +42,8 @@ struct LastDrag {
     number: Id,
     /// The frame of the window.
     frame: u64,
+    /// What it was before.
+    start: f64,
     is_given_up: bool,
 }
 
@@ -49,23 +51,25 @@ fn last_drag_id() -> Id {
     Id::unique("number that was dragged last")
 }
 
-/// Notes whether a number is dragged, and whether that is given up with Escape, at which egui lets go of it.
-fn is_given_up(ui: &Ui, response: &Response) -> bool {
+/// Notes whether a number is dragged. What it was before, if that is given up with Escape, at which egui lets go of it.
+fn given_up(ui: &Ui, response: &Response, value: f64) -> Option<f64> {
     let frame = ui.cumulative_frame_nr();
     let last = ui.data(|data| data.get_temp::<LastDrag>(last_drag_id()));
-    let is_own = |last: LastDrag| last.number == response.id && last.frame + 1 == frame;
-    let is_let_go = !response.dragged() && last.is_some_and(is_own);
+    let last = last.filter(|last| last.number == response.id && last.frame + 1 == frame);
+    let is_let_go = !response.dragged() && last.is_some();
     let is_given_up =
         is_let_go && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
+    let start = last.map_or(value, |last| last.start);
     if response.dragged() || is_given_up {
         let drag = LastDrag {
             number: response.id,
             frame,
+            start,
             is_given_up,
         };
         ui.data_mut(|data| data.insert_temp(last_drag_id(), drag));
     }
-    is_given_up
+    is_given_up.then_some(start)
 }
 
 /// Whether a number is dragged in this frame, and then whether that was given up: what it has done is to be undone.
@@ -173,14 +177,53 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
         pasted,
         axis,
     } = *number;
-    let by_size = || (value.abs().max(size) * 0.01).max(0.01);
-    let speed = field.speed.unwrap_or_else(by_size);
+    let speed = (value.abs().max(size) * 0.01).max(0.01);
+    let add = |ui: &mut Ui, widget: DragValue| {
+        let widget = widget
+            .speed(field.speed.unwrap_or(speed))
+            .clip_text(true)
+            .prefix(Atom::grow());
+        let widget = match axis {
+            Some((letter, color)) => widget.prefix(RichText::new(letter).color(color)),
+            None => widget,
+        };
+        let widget = match field.unit {
+            "" => widget,
+            unit => widget.suffix(RichText::new(unit).weak()),
+        };
+        let size = vec2(width.max(8.0), ROW);
+        let layout = Layout::right_to_left(Align::Center).with_main_justify(true);
+        let placed = ui.allocate_ui_with_layout(size, layout, |ui| {
+            ui.add(widget.min_size(size)).accessible_name(name)
+        });
+        placed.inner
+    };
+    enter(ui, (field, pasted), value, add).hint_beside(ui, field.hint);
+}
+
+/// A draggable number in a bar, with nothing beside it that says its name.
+pub fn lone(ui: &mut Ui, field: &Field, value: &mut f64) {
+    let add = |ui: &mut Ui, widget: DragValue| {
+        let speed = field.speed.unwrap_or(1.0);
+        let widget = ui.add(widget.speed(speed).suffix(field.unit));
+        widget.accessible_name(field.name)
+    };
+    enter(ui, (field, None), value, add).hint(field.hint);
+}
+
+/// A number that `add` shows: what is typed counts when it is left.
+fn enter(
+    ui: &mut Ui,
+    (field, pasted): (&Field, Option<&Cell<Option<DVec3>>>),
+    value: &mut f64,
+    add: impl FnOnce(&mut Ui, DragValue) -> Response,
+) -> Response {
     // Three in a row have less room.
     let most = if pasted.is_some() { NARROW } else { WIDE };
     let shown = |value: f64| rounded(value, field.unit, most);
     let (own, refused) = (shown(*value), Cell::new(None));
     let parser = |text: &str| {
-        let text = text.trim().trim_end_matches(field.unit);
+        let text = text.trim().trim_end_matches(field.unit.trim());
         if let (Some(pasted), Some(whole)) = (pasted, parse_vec3(text)) {
             let parts = whole.to_array();
             refused.set(parts.iter().find_map(|part| out_of_range(field, *part)));
@@ -196,30 +239,15 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
     };
     let mut edited = *value;
     let widget = DragValue::new(&mut edited)
-        .speed(speed)
         .range(field.range.clone())
         .clamp_existing_to_range(false)
         .update_while_editing(false)
         .custom_formatter(|number, _| shown(number))
-        .clip_text(true)
-        .custom_parser(parser)
-        .prefix(Atom::grow());
-    let widget = match axis {
-        Some((letter, color)) => widget.prefix(RichText::new(letter).color(color)),
-        None => widget,
-    };
-    let widget = match field.unit {
-        "" => widget,
-        unit => widget.suffix(RichText::new(unit).weak()),
-    };
-    let size = vec2(width.max(8.0), ROW);
-    let layout = Layout::right_to_left(Align::Center).with_main_justify(true);
-    let response = ui.allocate_ui_with_layout(size, layout, |ui| {
-        ui.add(widget.min_size(size)).accessible_name(name)
-    });
-    let response = response.inner;
-    if is_given_up(ui, &response) {
-        return;
+        .custom_parser(parser);
+    let response = add(ui, widget);
+    if let Some(start) = given_up(ui, &response, *value) {
+        *value = start;
+        return response;
     }
     // Formatting rounds what is shown; only a change by hand may reach the scene.
     let is_cancelled = is_cancelled(ui, &response);
@@ -232,35 +260,7 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
     if response.changed() && edited.is_finite() && !is_cancelled && !is_as_shown {
         *value = edited.clamp(*field.range.start(), *field.range.end());
     }
-    response.hint_beside(ui, field.hint);
-}
-
-/// A draggable number in a bar, with nothing beside it that says its name; what is typed counts when it is left.
-pub fn lone(ui: &mut Ui, field: &Field, value: &mut f64) {
-    let (refused, before) = (Cell::new(None), *value);
-    let shown = |value: f64| rounded(value, field.unit, WIDE);
-    let parser = |text: &str| {
-        let text = text.trim().trim_end_matches(field.unit.trim()).trim();
-        refused.set(refusal(field, text));
-        read(text).filter(|number| field.range.contains(number))
-    };
-    let widget = DragValue::new(value)
-        .speed(field.speed.unwrap_or(1.0))
-        .range(field.range.clone())
-        .clamp_existing_to_range(false)
-        .update_while_editing(false)
-        .custom_formatter(|number, _| shown(number))
-        .suffix(field.unit)
-        .custom_parser(parser);
-    let response = ui.add(widget).accessible_name(field.name);
-    let is_cancelled = is_cancelled(ui, &response);
-    // A field that is left as it was entered gives back what it showed.
-    let is_as_shown = !response.dragged() && shown(before).parse() == Ok(*value);
-    if is_cancelled || is_as_shown {
-        *value = before;
-    }
-    tell_refused(&response, is_cancelled, refused.take());
-    response.hint(field.hint);
+    response
 }
 
 /// Whether the field was left with Escape, which gives what was typed up. A field counts as left

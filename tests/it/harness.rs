@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
-use egui::{Context, Event, Key, Modifiers, TexturesDelta};
+use egui::{Context, Event, Key, Modifiers, Pos2, TexturesDelta, vec2};
 use egui_kittest::kittest::Queryable as _;
 use egui_kittest::{Harness, TestRenderer};
 use glint::editor::{Action, Editor, Time};
@@ -213,6 +213,25 @@ impl EditorHarness {
         self.window.event(Event::Text(text.to_owned()));
         self.settle();
         self.press(Modifiers::NONE, Key::Enter);
+    }
+
+    /// Drags a number, looks at what that has done, and gives it up with Escape: where the pointer was, whose button
+    /// stays down.
+    pub fn give_up_dragging(&mut self, field: &str, meanwhile: impl FnOnce(&Self)) -> Pos2 {
+        let field = self.window.get_by_role_and_label(Role::SpinButton, field);
+        let start = field.rect().center();
+        self.window.drag_at(start);
+        self.window.step();
+        for part in 1..=5 {
+            self.window.hover_at(start + vec2(8.0 * part as f32, 0.0));
+            self.window.step();
+        }
+        meanwhile(self);
+        self.window.key_down(Key::Escape);
+        self.window.step();
+        self.window.key_up(Key::Escape);
+        self.window.step();
+        start
     }
 
     /// Types a name over the one in a field.

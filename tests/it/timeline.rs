@@ -452,6 +452,39 @@ fn what_the_timeline_cannot_be_is_told_and_not_taken() {
 }
 
 #[test]
+fn escape_gives_the_drag_of_a_number_of_the_timeline_up() {
+    let mut harness = animation(&[(0.0, 0.0), (2.0, 60.0)]);
+    let before = harness.scene().clone();
+    for field in ["length of the flight", "frames per second", "playing speed"] {
+        let at = harness.give_up_dragging(field, |harness| {
+            let is_faster = harness.editor().timeline().speed != 1.0;
+            assert!(is_faster || harness.scene() != &before, "{field}");
+        });
+        harness.window.drop_at(at);
+        harness.settle();
+        assert_eq!(harness.scene(), &before, "{field}");
+        assert_eq!(harness.editor().timeline().speed, 1.0);
+        assert_eq!(harness.editor().undo_label(), None, "{field}");
+    }
+}
+
+#[test]
+fn a_length_that_only_a_file_can_have_is_left_in_silence() {
+    let mut harness = animation(&[(0.0, 0.0), (0.05, 60.0)]);
+    let before = harness.scene().clone();
+    let field = "length of the flight";
+    let field = harness
+        .window
+        .get_by_role_and_label(Role::SpinButton, field);
+    field.click();
+    harness.settle();
+    harness.press(Modifiers::NONE, Key::Enter);
+    assert_eq!(harness.scene(), &before);
+    let words = "length of the flight goes from";
+    assert!(harness.window.query_by_label_contains(words).is_none());
+}
+
+#[test]
 fn a_hand_on_the_shot_moves_nothing_behind_it_and_a_click_looks_through_it() {
     let mut harness = animation(&[(0.0, 0.0), (2.0, 60.0)]);
     let mut steps = 0..1000;

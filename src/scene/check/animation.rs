@@ -5,7 +5,8 @@ use std::collections::HashSet;
 use super::camera::{PROJECTION_DISTANCES, check_camera};
 use super::place::{At, Check};
 use crate::scene::animation::{
-    Animation, Interpolation, Key, Lens, MAX_KEYS, MAX_SECONDS, Take, Target, Track, Value,
+    Animation, FRAME_RATES, Interpolation, Key, Lens, MAX_KEYS, MAX_SECONDS, Take, Target, Track,
+    Value,
 };
 use crate::scene::notation::format_number;
 use crate::scene::target::Owners;
@@ -16,8 +17,11 @@ const MIN_GAP: f64 = 0.999_999e-6;
 
 pub fn check_animation(at: &At, scene: &Scene) -> Check {
     let animation: &Animation = &scene.animation;
-    at.field("frames_per_second")
-        .within(animation.frames_per_second, 1.0, 240.0)?;
+    at.field("frames_per_second").within(
+        animation.frames_per_second,
+        *FRAME_RATES.start(),
+        *FRAME_RATES.end(),
+    )?;
     let here = at.field("keys");
     check_keys(&here, &animation.keys)?;
     for (index, key) in animation.keys.iter().enumerate() {

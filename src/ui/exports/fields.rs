@@ -11,7 +11,7 @@ use crate::export::{
     Frames, FramesError, Pattern, PatternError, Sequence, SequenceError, Video, VideoError,
 };
 use crate::image::Format;
-use crate::scene::{Animation, MAX_SIDE, Method as _, Problem, Sampling, Scene};
+use crate::scene::{Animation, FRAME_RATES, MAX_SIDE, Method as _, Problem, Sampling, Scene};
 use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
@@ -357,7 +357,7 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
             hint: "Of the frames and the video; the flight stays as it is",
             unit: " fps",
             default: fps,
-            range: 1.0..=240.0,
+            range: FRAME_RATES,
             speed: Some(0.1),
         };
         lone(ui, &field, &mut fps);

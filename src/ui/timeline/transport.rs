@@ -5,7 +5,7 @@ use egui::{Button, PopupCloseBehavior, RichText, Slider, Ui};
 
 use crate::animate::{Retime, paused_seconds};
 use crate::editor::{Edit, Editor, Repeat, Time};
-use crate::scene::{Animation, KeyPlace, Keys, MAX_SECONDS};
+use crate::scene::{Animation, FRAME_RATES, KeyPlace, Keys, MAX_SECONDS};
 use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
@@ -161,7 +161,7 @@ fn rates(ui: &mut Ui, editor: &Editor, graph: &mut bool, out: &mut UiRequests) {
         hint: "Frames per second; the flight stays as it is",
         unit: " fps",
         default: animation.frames_per_second,
-        range: 1.0..=240.0,
+        range: FRAME_RATES,
         speed: Some(0.1),
     };
     lone(ui, &field, &mut fps);

@@ -348,23 +348,9 @@ fn a_turn_may_be_typed_either_way_around() {
 fn escape_gives_the_drag_of_a_number_up() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
-    let field = harness
-        .window
-        .get_by_role_and_label(Role::SpinButton, "radius");
-    let start = field.rect().center();
-    harness.window.drag_at(start);
-    harness.window.step();
-    for part in 1..=5 {
-        harness
-            .window
-            .hover_at(start + vec2(8.0 * part as f32, 0.0));
-        harness.window.step();
-    }
-    assert!(radius(harness.scene(), 0) > 55.0);
-    harness.window.key_down(Key::Escape);
-    harness.window.step();
-    harness.window.key_up(Key::Escape);
-    harness.window.step();
+    let start = harness.give_up_dragging("radius", |harness| {
+        assert!(radius(harness.scene(), 0) > 55.0);
+    });
     assert_eq!(harness.scene(), &Scene::demo());
     harness.window.hover_at(start + vec2(80.0, 0.0));
     harness.window.step();
