@@ -78,16 +78,22 @@ fn precision(scene: &Scene, request: &RenderRequest) -> Need {
             "there is too much to keep all of it in both, to trace again where rounding may decide",
             "room: both take half as much again, and no less time",
         ),
-        Precision::Auto => need(
-            rule,
-            if is_filtered(scene, request) {
-                "single precision, and double where rounding may decide what is seen"
+        Precision::Auto => {
+            let (what, saves) = if is_filtered(scene, request) {
+                (
+                    "single precision, and double where rounding may decide what is seen",
+                    "time: a vector holds twice as many numbers",
+                )
             } else {
-                "single precision"
-            },
-            "nothing is farther than 5,000 of its radii or smaller than 1/10,000 of the scene",
-            "time: a vector holds twice as many numbers",
-        ),
+                (
+                    "single precision",
+                    "time: a vector holds twice as many numbers, and what rounding decides on a few edges stays",
+                )
+            };
+            let why =
+                "nothing is farther than 5,000 of its radii or smaller than 1/10,000 of the scene";
+            need(rule, what, why, saves)
+        }
     }
 }
 

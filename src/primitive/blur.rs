@@ -78,13 +78,14 @@ impl<L: SimdFloat> Blur<L> {
         }
     }
 
-    /// Of rays that go on from there to a point that is known, so far away: they come together there.
+    /// Of rays that go on from there to a point that is known, so far away: they come together there. Given with the
+    /// distance is one over it.
     #[inline(always)]
     #[must_use]
-    pub fn towards(&self, off: L, distance: L) -> Self {
+    pub fn towards(&self, off: L, (distance, per_length): (L, L)) -> Self {
         Self {
             least: self.at(distance),
-            ..self.onwards(off, -off / distance)
+            ..self.onwards(off, -off * per_length)
         }
     }
 
@@ -132,7 +133,7 @@ mod tests {
     fn rays_to_a_light_come_together_there() {
         let own = Blur::of_size(100.0_f32);
         let (off, distance) = (1.5, 2e4);
-        let blur = own.towards(off, distance);
+        let blur = own.towards(off, (distance, 1.0 / distance));
         for part in [0.0, 0.25, 0.5, 0.99, 1.0] {
             let t = part * distance;
             let known = off * (1.0 - part) + own.at(t);

@@ -24,6 +24,16 @@ impl<L: SimdFloat> Coat<'_, L> {
         }
     }
 
+    /// Which of the hits have highlights.
+    #[inline(always)]
+    pub fn shiny(&self, here: L::Mask) -> Option<L::Mask> {
+        match self {
+            Self::One(Surface { exponent: None, .. }) => None,
+            Self::One(_) => Some(here),
+            Self::Several(parts) => parts.shiny,
+        }
+    }
+
     /// Whether some highlight may be smaller than a pixel.
     pub fn is_sharp(&self) -> bool {
         match self {

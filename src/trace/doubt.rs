@@ -3,7 +3,7 @@
 
 use super::paths::Paths;
 use crate::plan::Plan;
-use crate::primitive::{Blur, Primitive};
+use crate::primitive::{Blur, Primitive, SurfacePoint};
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
@@ -125,7 +125,7 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
 
 /// The smallest cosine between rays and a surface's normal at which hits are told: the smaller it is, the more is
 /// looked for around hits, and the larger, the more is traced again.
-const LEAST_COSINE: f64 = 4e-3;
+const LEAST_COSINE: f64 = 1e-3;
 /// How much farther off at distance 1 mirrored rays may be.
 const WIDEST: f64 = 1e-3;
 /// Rays that bring back no more than this are not doubted, nor is what they see in mirrors: less than a step of 8 bits.
@@ -193,62 +193,65 @@ pub fn widest_blur<L: SimdFloat>(
     Blur::spreading(start.greatest(), spread.greatest())
 }
 
-/// How rays have met a surface, and with it how far along it their hits may be off. Worked out where it is asked for:
-/// most hits send no rays on that can meet anything.
+/// How far along a surface the hits of rays may be off.
 #[derive(Clone, Copy, Debug)]
 pub struct Slant<L: SimdFloat> {
-    /// How far the rays were beside their place when they set out.
-    pub blur: Blur<L>,
-    /// How far they have come.
-    pub t: L,
-    /// The cosine of their angle from the normal.
-    pub cosine: L,
+    off: L,
+    /// Where that is so far that nothing can be told of rays that go on from there: not even what is looked for around
+    /// them is as far off.
+    pub is_lost: L::Mask,
+    /// How much farther off at distance 1 the rays were that came here.
+    spread: L,
     /// Of the surface.
-    pub curvature: L,
-    /// What the hits were worked out from, see [`crate::primitive::SurfacePoint::size`].
-    pub size: L,
+    curvature: L,
+    /// How far off rays are that set out from numbers as large as the surface's.
+    own: Blur<L>,
 }
 
 impl<L: SimdFloat> Slant<L> {
-    /// How far hits may be off along the surface, and where that is so far that nothing can be told of rays that go on
-    /// from there.
+    /// Of rays that have come so far, and meet the surface with this cosine between them and its normal.
     #[inline(always)]
-    fn off(&self) -> (L, L::Mask) {
-        let cosine = self.cosine.abs();
-        let least = cosine.like_f64(LEAST_COSINE);
-        let aside = self.blur.at(self.t) + Blur::of_sizes(self.size).start;
-        (aside / cosine, cosine.less(least))
+    pub fn new(blur: &Blur<L>, (t, cosine): (L, L), surface: &SurfacePoint<L>) -> Self {
+        let own = Blur::of_sizes(surface.size);
+        let cosine = cosine.abs();
+        Self {
+            off: (blur.at(t) + own.start) / cosine,
+            is_lost: cosine.less(cosine.like_f64(LEAST_COSINE)),
+            spread: blur.spread,
+            curvature: surface.curvature,
+            own,
+        }
     }
 
     /// Where light, whose angle from the normal has this cosine, may come from either side of the surface; given one over
-    /// its distance.
+    /// its distance. It shows where there are highlights: they may end sharply there.
     #[inline(always)]
-    pub fn grazes(&self, (cosine, per_length): (L, L)) -> L::Mask {
-        let (off, _) = self.off();
-        let turn = off * (self.curvature + per_length);
-        let own = Blur::of_sizes(self.size);
-        let rounded = own.spread + per_length * own.start;
-        cosine.abs().at_most(turn + rounded)
+    pub fn grazes(&self, (cosine, per_length): (L, L), shiny: Option<L::Mask>) -> L::Mask {
+        let Some(shiny) = shiny else {
+            return cosine.less(cosine);
+        };
+        let turn = self.off * (self.curvature + per_length);
+        let rounded = self.own.spread + per_length * self.own.start;
+        shiny & cosine.abs().at_most(turn + rounded)
     }
 
-    /// How far rays that go on to a light, which is so far away, may be off, and where nothing can be told of them.
+    /// How far rays that go on to a light, which is so far away, may be off, where something can be told of them; given
+    /// one over that distance.
     #[inline(always)]
-    pub fn onwards(&self, distance: L) -> (Blur<L>, L::Mask) {
-        let (off, is_lost) = self.off();
-        let own = Blur::of_sizes(self.size);
-        let off = L::select(is_lost, own.start, off);
-        (own.towards(off, distance), is_lost)
+    pub fn onwards(&self, distance: (L, L)) -> Blur<L> {
+        let off = L::select(self.is_lost, self.own.start, self.off);
+        self.own.towards(off, distance)
     }
 
     /// Notes what is known of the rays that a mirror sends on, where there are some, which bring back so much of what
     /// they see. Where they are too far off for anything to be told, all of it is in doubt.
     #[inline(always)]
     pub fn mirror(&self, (active, share): (L::Mask, L), own: &mut Uncertainty<L>) {
-        let (off, is_lost) = self.off();
+        let off = self.off;
         let weight = own.weight * share;
         let turn = off * self.curvature;
-        let blur = Blur::of_sizes(self.size).onwards(off, self.blur.spread + turn + turn);
-        let is_told = blur.spread.less(off.like_f64(WIDEST)) & !is_lost;
+        let blur = self.own.onwards(off, self.spread + turn + turn);
+        let is_told = blur.spread.less(off.like_f64(WIDEST)) & !self.is_lost;
         let counts = off.like_f64(FAINTEST).less(weight) & active;
         let none = Blur::splat(off.token(), Blur::NONE);
         let (other_blur, other_weight) = own.mirrored;

@@ -190,8 +190,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         Blocked {
             anywhere: wanted & (!way.free | way.passed | way.met),
             wide: wanted & !way.free,
-            // What may be behind the light is not looked for.
-            doubt: way.free & !way.passed & way.doubt.from.at_most(distance),
+            // What may be behind the light is not looked for. What is passed by says nothing of what is wide.
+            doubt: way.free & way.doubt.from.at_most(distance),
         }
     }
 
@@ -234,7 +234,7 @@ pub struct Blocked<L: SimdFloat> {
     pub anywhere: L::Mask,
     /// Where something does that is not passed by.
     pub wide: L::Mask,
-    /// Where it is in doubt whether anything does.
+    /// Where one of both is in doubt.
     pub doubt: L::Mask,
 }
 
@@ -339,10 +339,11 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
                 .doubt
                 .distance::<LISTED, P>(primitive, prepared, paths, asked);
             let Some((t, from)) = distance else { return };
-            // Where it is met for sure, doubts count no more.
-            way.doubt.from = way.doubt.from.min(from).min(t);
+            let is_met = t.less(self.sure) & self.distance.less(from);
+            let open = L::select(is_met, way.doubt.from, from.min(t));
+            way.doubt.from = way.doubt.from.min(open);
             way.met = way.met | t.less(self.distance);
-            t.less(self.sure) & self.distance.less(from)
+            is_met
         } else {
             let t = paths.distance::<LISTED, P>(primitive, prepared, number, self.methods);
             t.less(self.distance)

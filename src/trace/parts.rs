@@ -35,6 +35,8 @@ pub struct Parts<L: SimdFloat> {
     materials: Vec<(L::Mask, u32)>,
     /// The exponents of highlights.
     exponents: Vec<(L::Mask, Exponent)>,
+    /// Where there are any; known with the base colours.
+    pub shiny: Option<L::Mask>,
 }
 
 impl<L: SimdFloat> Parts<L> {
@@ -43,6 +45,7 @@ impl<L: SimdFloat> Parts<L> {
         Self {
             materials: Vec::with_capacity(MAX_LANES),
             exponents: Vec::with_capacity(MAX_LANES),
+            shiny: None,
         }
     }
 
@@ -50,6 +53,7 @@ impl<L: SimdFloat> Parts<L> {
     pub fn clear(&mut self) {
         self.materials.clear();
         self.exponents.clear();
+        self.shiny = None;
     }
 
     /// Adds hits on a material.
@@ -76,6 +80,7 @@ impl<L: SimdFloat> Parts<L> {
             #[inline(always)]
             || {
                 let mut lit: Option<L::Mask> = None;
+                let mut shiny = color.x.less(color.x);
                 for &(here, material) in &self.materials {
                     let Material { base, surface } = &materials[material as usize];
                     let base = instead.unwrap_or(color.like(*base));
@@ -88,12 +93,14 @@ impl<L: SimdFloat> Parts<L> {
                     let Some(exponent) = surface.exponent else {
                         continue;
                     };
+                    shiny = shiny | here;
                     let mut known = self.exponents.iter_mut();
                     match known.find(|(_, other)| *other == exponent) {
                         Some((others, _)) => *others = *others | here,
                         None => self.exponents.push((here, exponent)),
                     }
                 }
+                self.shiny = Some(shiny);
                 lit
             },
         )

@@ -215,13 +215,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let away = self.kernel.splat(0.0).less(along);
         hit.surface.normal = Vec3::select(away, -normal, normal);
         let slant = match uncertainty {
-            Some(own) => Some(Slant {
-                blur: own.blur,
-                t: packet.near.t,
-                cosine: along,
-                curvature: hit.surface.curvature,
-                size: hit.surface.size,
-            }),
+            Some(own) => Some(Slant::new(&own.blur, (packet.near.t, along), &hit.surface)),
             None => None,
         };
         let footprint = match edge {
@@ -332,19 +326,21 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             zero
         };
         let lit_side = hit.here & lowest.less(cosine);
-        if let Some(slant) = point.slant.as_ref().filter(|_| !light.may_touch) {
-            let mut doubt = cosine.abs().at_most(lowest);
-            // Highlights may end sharply where light comes from the side.
-            if !matches!(point.coat, Coat::One(surface) if surface.exponent.is_none()) {
-                doubt = doubt | slant.grazes((cosine, shrink));
-            }
-            arriving.doubt = arriving.doubt | hit.here & doubt;
-        }
         let facing = if kernel.plan.shadows_behind {
             hit.here
         } else {
             lit_side
         };
+        if let Some(slant) = &point.slant {
+            // Also where nothing was found that may be in the way: what is found depends on the rays beside these.
+            let mut doubt = facing & slant.is_lost;
+            if !light.may_touch {
+                let shiny = point.coat.shiny(hit.here);
+                doubt =
+                    doubt | cosine.abs().at_most(lowest) | slant.grazes((cosine, shrink), shiny);
+            }
+            arriving.doubt = arriving.doubt | hit.here & doubt;
+        }
         if !facing.any() {
             return;
         }
@@ -365,7 +361,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             if candidates.is_umbra && thick.is_none() {
                 return;
             }
-            let ways = (&paths, reach, facing, thick);
+            let ways = (&paths, (reach, shrink), facing, thick);
             let blocked = self.shadow(point, source, ways, (arriving, stack));
             if let Some((edge, footprint)) = beside {
                 // What is in the shadow of something wide is not seen to be in that of something thin as well.
@@ -422,7 +418,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         &self,
         point: &ShadingPoint<L>,
         source: &LightSource<L::Real>,
-        (paths, reach, facing, thick): (&Paths<L>, L, L::Mask, Option<L>),
+        (paths, (reach, shrink), facing, thick): (&Paths<L>, (L, L), L::Mask, Option<L>),
         (arriving, stack): (&mut Arriving<L>, &mut Stack<L::Real>),
     ) -> Blocked<L> {
         let (kernel, light) = (self.kernel, source.light);
@@ -432,16 +428,16 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             light: Some(light),
             idle: &light.idle_faces,
         };
-        let (onwards, is_lost) = match &point.slant {
-            None => (Blur::splat(kernel.token, Blur::NONE), reach.less(reach)),
-            Some(slant) => slant.onwards(reach),
+        let onwards = match &point.slant {
+            None => Blur::splat(kernel.token, Blur::NONE),
+            Some(slant) => slant.onwards((reach, shrink)),
         };
         // What a light is on does not stand before it.
         let doubt = Doubt::new(onwards, (point.slant.is_some(), !light.may_touch));
         let wanted = (reach, facing, thick);
         let blocked = kernel.blocked(among, (paths, doubt), wanted, stack);
         if point.slant.is_some() {
-            arriving.doubt = arriving.doubt | facing & (blocked.doubt | is_lost);
+            arriving.doubt = arriving.doubt | facing & blocked.doubt;
         }
         blocked
     }

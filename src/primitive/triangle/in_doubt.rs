@@ -7,10 +7,10 @@ use crate::primitive::bounding_box::BoundingBox;
 use crate::primitive::ray::Ray;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
-/// How much an edge function changes at most where the ray is moved aside, as a multiple of how far and of the longest
-/// edge: 3 where its corners move as one, the shear stretching both by up to √3, and half as much again since they are
-/// rounded one by one.
-const STEEPNESS: f64 = 4.5;
+/// How much an edge function changes at most where the ray is moved aside, as a multiple of how far, of the longest edge
+/// and of how much the shear stretches areas, which is one over the direction along its axis: once where its corners move
+/// as one, and half as much again since they are rounded one by one.
+const STEEPNESS: f64 = 1.5;
 
 /// The watertight test, and from where on its answer is undecided: where some edge function may have either sign and
 /// the others do not say that the triangle is missed, and where it is met at the very start. `None` if no ray that is
@@ -26,7 +26,7 @@ pub fn watertight_in_doubt<L: SimdFloat>(
     let ([a, b, c], [u, v, w]) = (corners, edges);
     let longest = u.like(triangle.longest);
     let width = blur.at((a[2] * shear.z).abs() + longest);
-    let bound = width * longest * u.like_f64(STEEPNESS);
+    let bound = width * longest * shear.z.abs() * u.like_f64(STEEPNESS);
     let (low, high) = (u.min(v).min(w), u.max(v).max(w));
     let is_missed = low.less(-bound) & bound.less(high);
     let (zero, infinity) = (u.like(L::Real::ZERO), u.like(L::Real::INFINITY));
