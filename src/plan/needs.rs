@@ -87,7 +87,7 @@ fn precision(scene: &Scene, request: &RenderRequest) -> Need {
             } else {
                 (
                     "single precision",
-                    "time: a vector holds twice as many numbers, and what rounding decides on a few edges stays",
+                    "time: a vector holds twice as many numbers, and what rounding decides on edges is not traced again",
                 )
             };
             let why =

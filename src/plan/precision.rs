@@ -54,12 +54,12 @@ const MAX_NUMBER: usize = 1 << 24;
 /// open. A million faces, of which few are met by rays that have met their neighbours, take as long in double precision
 /// alone, and two thirds of the room.
 const MOST_FILTERED: usize = 300_000;
-/// Up to so many objects have so few edges that rounding shows on none of them in a picture of the usual size: of 1,000
-/// random scenes at 200 × 200 pixels, not one pixel is off by more than a step, where 3 of 10 such scenes with meshes have
-/// some. To trace again what it may decide takes 1.4 times as long there, and in larger pictures ...
+/// Up to so many objects have so few edges that rounding hardly shows: of 1,000 random scenes at 200 × 200 pixels, not one
+/// pixel is off by more than a step, where 3 of 10 such scenes with meshes have some. To trace again what it may decide
+/// takes them 1.4 times as long.
 const FEWEST_FILTERED: usize = 32;
-/// ... it decides more: of the demo one pixel in three million, of mirror balls two in a million. A picture of more pixels
-/// than this, of which 3840 × 2160 is none, is not looked at while it is traced.
+/// Most pixels that are not filtered for of so few objects, of which rounding decides some then: of the demo one in three
+/// million, of mirror balls two in a million. Larger pictures nobody waits for in the window; 3840 × 2160 is none.
 const MOST_UNFILTERED: u64 = 10_000_000;
 
 /// Whether a picture is traced in double precision.
@@ -84,14 +84,15 @@ pub fn is_too_much_twice(scene: &Scene, request: &RenderRequest) -> bool {
 
 /// Whether rounding to single precision is seen on edges, where nothing is done about it.
 fn is_rounding_seen(scene: &Scene, request: &RenderRequest) -> bool {
-    let visible = || scene.objects.iter().filter(|object| object.visible);
-    let has_many_edges = request.pixels() > MOST_UNFILTERED
-        || visible().count() > FEWEST_FILTERED
-        || visible().any(|object| object.faces() > 0);
     request.precision == Precision::Auto
         && matches!(request.model, Model::Needed | Model::Unculled)
         && request.methods.is_tight()
-        && has_many_edges
+        && (has_many_edges(scene) || request.pixels() > MOST_UNFILTERED)
+}
+
+fn has_many_edges(scene: &Scene) -> bool {
+    let visible = || scene.objects.iter().filter(|object| object.visible);
+    visible().count() > FEWEST_FILTERED || visible().any(|object| object.faces() > 0)
 }
 
 /// How many objects and faces are visible.
@@ -120,7 +121,8 @@ pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
     if extent < MIN_EXTENT || is_just_above(scene, extent) || has_twins(scene, extent) {
         return true;
     }
-    let smaller = if is_filtered(scene, request) {
+    // Of the same things in a picture of any size.
+    let smaller = if is_filtered(scene, request) && has_many_edges(scene) {
         SMALLER_WHEN_FILTERED
     } else {
         1.0

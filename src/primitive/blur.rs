@@ -78,8 +78,8 @@ impl<L: SimdFloat> Blur<L> {
         }
     }
 
-    /// Of rays that go on from there to a point that is known, so far away: they come together there. Given with the
-    /// distance is one over it.
+    /// Of rays that go on from there, so far, to a point that is known: they come together there. Given with the distance
+    /// is one over that of the point, which may be a little farther away.
     #[inline(always)]
     #[must_use]
     pub fn towards(&self, off: L, (distance, per_length): (L, L)) -> Self {
@@ -99,6 +99,12 @@ impl<L: SimdFloat> Blur<L> {
     #[inline(always)]
     pub fn between(&self, from: L, to: L) -> L {
         self.at(from).max(self.at(to))
+    }
+
+    /// How far at most within so much of a distance.
+    #[inline(always)]
+    pub fn around(&self, t: L, reach: L) -> L {
+        self.between((t - reach).max(t.like(L::Real::ZERO)), t + reach)
     }
 
     /// So many times as much.
@@ -145,6 +151,9 @@ mod tests {
         let onwards = own.onwards(off, 1e-4);
         assert_eq!(onwards.at(0.0), off + own.start);
         assert!(onwards.at(distance) > off + 1.9);
+        assert_eq!(blur.around(2.0 * off, off), blur.at(off));
+        assert_eq!(blur.around(off, 2.0 * off), blur.at(0.0));
+        assert_eq!(onwards.around(2.0 * off, off), onwards.at(3.0 * off));
         // The widest of a way is at its start for the one, and at its end for the other.
         assert_eq!(blur.between(0.0, distance), blur.at(0.0));
         assert_eq!(onwards.between(0.0, distance), onwards.at(distance));

@@ -96,7 +96,7 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
         let radius = from.x.like(self.radius);
         let b = -rays.direction.dot(from);
         let perpendicular = from + rays.direction * b;
-        let width = blur.at(b.abs() + radius);
+        let width = blur.around(b.abs(), radius);
         let reach = radius + width;
         let comes_near = perpendicular.dot(perpendicular).at_most(reach * reach);
         if !(wanted & comes_near).any() {
@@ -108,7 +108,7 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
         let aside = width / speed.abs();
         let bound = aside * (radius + radius + aside);
         let passes_rim = (off.dot(off) - radius * radius).abs().at_most(bound);
-        let is_open = passes_rim | speed.abs().at_most(blur.spread);
+        let is_open = passes_rim | speed.abs().at_most(blur.spread.abs());
         let is_open = comes_near & (is_open | height.abs().at_most(blur.at(radius)));
         let distance = self.intersect(rays, &(), methods);
         if !(wanted & is_open).any() {

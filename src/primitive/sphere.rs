@@ -137,7 +137,7 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
         let (b, inside) = perpendicular(x, rays.direction, radius);
         let square_of = |width: L| width * (radius + radius + width);
         // Its middle is no farther from where rays start that come near it.
-        let width = blur.at(b.abs() + radius);
+        let width = blur.around(b.abs(), radius);
         let bound = square_of(width);
         let passes_by = inside.less(-bound);
         if !(wanted & !passes_by).any() {

@@ -11,8 +11,8 @@ use crate::simd::{Mask as _, Real, SimdFloat};
 /// meets at up to 89 degrees from their normals.
 const SLANT: f64 = 64.0;
 
-/// Whether kernels tell what is in doubt. Those for plans without a tree do not, and lose no time by it: a few things
-/// have few edges.
+/// Whether kernels tell what is in doubt. Those without `TREE` do not, and lose no time by it: a few things have few edges.
+/// Where those are filtered all the same, the others trace them.
 pub const fn is_filtered<L: SimdFloat, const TREE: bool>() -> bool {
     TREE && L::Real::IS_FILTERED
 }
@@ -125,7 +125,7 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
 
 /// The smallest cosine between rays and a surface's normal at which hits are told: the smaller it is, the more is
 /// looked for around hits, and the larger, the more is traced again.
-const LEAST_COSINE: f64 = 1e-3;
+const LEAST_COSINE: f64 = 4e-3;
 /// How much farther off at distance 1 mirrored rays may be.
 const WIDEST: f64 = 1e-3;
 /// Rays that bring back no more than this are not doubted, nor is what they see in mirrors: less than a step of 8 bits.

@@ -51,9 +51,9 @@ impl<L: SimdFloat> Bounce<L> {
             self.packets.push(Packet::new(kernel, rays, active));
         }
         // What looks for an edge inside of a pixel is not doubted: of what rounding may decide there, both sides are as
-        // near to it, and the pixel is the same but for a step of the finest grid. To doubt it makes the picture that of
-        // double precision to a level, where 1 scene of 30 has a pixel or some that are off by 2 to 7; meshes take 1.2 times
-        // as long then, and a mirror with a mesh 1.4 times.
+        // near to it, and the pixel changes by a step of the finest grid, or by what is left of a cell that is not divided.
+        // That is more than a level in a pixel or some of 1 scene in 30, 7 at most; to doubt it takes meshes 1.2 times as
+        // long, and a mirror with a mesh 1.4 times.
         let is_doubted = edges != Edges::Signed && kernel.plan.is_doubted();
         if is_filtered::<L, TREE>() && is_doubted {
             let uncertainty = Uncertainty::new(token, kernel.plan);

@@ -176,7 +176,6 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             way: Way {
                 free: wanted,
                 met: none,
-                passed: none,
                 doubt,
             },
         };
@@ -188,7 +187,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             way = self.way_in(&thicket, paths, (distance, thick, way), stack);
         }
         Blocked {
-            anywhere: wanted & (!way.free | way.passed | way.met),
+            anywhere: wanted & (!way.free | way.met),
             wide: wanted & !way.free,
             // What may be behind the light is not looked for. What is passed by says nothing of what is wide.
             doubt: way.free & way.doubt.from.at_most(distance),
@@ -304,10 +303,8 @@ struct BlockedTest<'a, L: SimdFloat, const TREE: bool, const LISTED: bool> {
 struct Way<L: SimdFloat, const TREE: bool> {
     /// Where nothing was met yet for sure, but what was passed by.
     free: L::Mask,
-    /// Where something was met, sure or not.
+    /// Where something was met, but not for sure, or passed by.
     met: L::Mask,
-    /// Where something was met for sure and passed by.
-    passed: L::Mask,
     doubt: Doubt<L, TREE>,
 }
 
@@ -339,6 +336,7 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
                 .doubt
                 .distance::<LISTED, P>(primitive, prepared, paths, asked);
             let Some((t, from)) = distance else { return };
+            // What is met for sure leaves no doubt of itself; there may be some of what is behind it, if it is passed by.
             let is_met = t.less(self.sure) & self.distance.less(from);
             let open = L::select(is_met, way.doubt.from, from.min(t));
             way.doubt.from = way.doubt.from.min(open);
@@ -351,7 +349,7 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
         let is_end = match self.thick {
             None => is_met,
             Some(thick) => {
-                way.passed = way.passed | way.free & is_met;
+                way.met = way.met | is_met;
                 is_met & thick.less(primitive.breadth(paths.rays.direction))
             }
         };

@@ -55,7 +55,11 @@ fn last_drag_id() -> Id {
 fn given_up(ui: &Ui, response: &Response, value: f64) -> Option<f64> {
     let frame = ui.cumulative_frame_nr();
     let last = ui.data(|data| data.get_temp::<LastDrag>(last_drag_id()));
-    let last = last.filter(|last| last.number == response.id && last.frame + 1 == frame);
+    // A frame may be laid out twice.
+    let is_own = |last: &LastDrag| {
+        last.number == response.id && (last.frame..=last.frame + 1).contains(&frame)
+    };
+    let last = last.filter(is_own);
     let is_let_go = !response.dragged() && last.is_some();
     let is_given_up =
         is_let_go && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
@@ -191,10 +195,10 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
             "" => widget,
             unit => widget.suffix(RichText::new(unit).weak()),
         };
-        let size = vec2(width.max(8.0), ROW);
+        let room = vec2(width.max(8.0), ROW);
         let layout = Layout::right_to_left(Align::Center).with_main_justify(true);
-        let placed = ui.allocate_ui_with_layout(size, layout, |ui| {
-            ui.add(widget.min_size(size)).accessible_name(name)
+        let placed = ui.allocate_ui_with_layout(room, layout, |ui| {
+            ui.add(widget.min_size(room)).accessible_name(name)
         });
         placed.inner
     };
@@ -223,7 +227,8 @@ fn enter(
     let shown = |value: f64| rounded(value, field.unit, most);
     let (own, refused) = (shown(*value), Cell::new(None));
     let parser = |text: &str| {
-        let text = text.trim().trim_end_matches(field.unit.trim());
+        let text = text.trim();
+        let text = text.strip_suffix(field.unit.trim()).unwrap_or(text);
         if let (Some(pasted), Some(whole)) = (pasted, parse_vec3(text)) {
             let parts = whole.to_array();
             refused.set(parts.iter().find_map(|part| out_of_range(field, *part)));
@@ -246,6 +251,7 @@ fn enter(
         .custom_parser(parser);
     let response = add(ui, widget);
     if let Some(start) = given_up(ui, &response, *value) {
+        // Of the scene, that is undone besides, see [`dragged`]; other numbers have this alone.
         *value = start;
         return response;
     }

@@ -136,6 +136,25 @@ fn boxes(seed: u64) -> Scene {
     scene
 }
 
+/// Large boards, as thin as paper, in each other's light and close to the lights.
+fn boards(seed: u64) -> Scene {
+    let mut scene = random::scene(seed);
+    let dice = &mut Dice(seed.wrapping_mul(6_007) + 11);
+    let mut vector = |reach: f64| DVec3::from([0; 3].map(|_| dice.real(-reach, reach)));
+    for number in 0..12 {
+        let mesh = Mesh {
+            position: vector(90.0),
+            rotation: vector(180.0),
+            scale: DVec3::new(8.0, 0.01, 8.0) + vector(4.0).abs() * DVec3::new(1.0, 0.0, 1.0),
+            ..Mesh::of((SOLIDS[0].make)(8.0))
+        };
+        let pack = format!("pack {}", number % 6);
+        let name = format!("Board {number}");
+        scene.objects.push(Object::new(name, pack, mesh));
+    }
+    scene
+}
+
 /// Many discs of several packs over a floor that ends at the horizon.
 fn discs(seed: u64) -> Scene {
     let mut scene = random::with_discs(seed);
@@ -199,12 +218,15 @@ fn ring(tube: f64) -> Triangles {
 
 #[test]
 fn the_filtered_picture_is_that_of_double_precision() {
-    let kinds: [fn(u64) -> Scene; 5] = [
+    let kinds: [fn(u64) -> Scene; 8] = [
         random::scene,
         |seed| mirroring(random::with_discs(seed)),
         |seed| mirroring(with_solids(seed)),
         |seed| mirroring(rings(seed)),
         |seed| mirroring(far_and_wide(seed)),
+        boxes,
+        discs,
+        boards,
     ];
     let alone = kinds.map(|kind| wrong((0..SCENES).map(kind)));
     // Single precision alone errs.
@@ -220,7 +242,7 @@ const DOUBTFUL: [fn(u64) -> Scene; 5] = [
     far_and_wide,
     discs,
 ];
-/// With clean edges, too, no pixel of this many kinds of them is off.
+/// With clean edges, too, no pixel of the first kinds is off; of the others one may be, in a scene or two.
 const CLEAN: usize = 3;
 
 #[test]
@@ -243,9 +265,10 @@ fn clean_edges_need_no_filter_inside_of_pixels() {
 
 #[test]
 fn what_is_traced_again_depends_on_no_lanes_and_no_tree() {
-    let mut again = 0;
+    let mut again = [0; DOUBTFUL.len()];
     for seed in 0..10 {
-        let scene = DOUBTFUL[seed as usize % DOUBTFUL.len()](seed);
+        let kind = seed as usize % DOUBTFUL.len();
+        let scene = DOUBTFUL[kind](seed);
         for sampling in [Sampling::Centres, Sampling::ADAPTIVE] {
             let pictures = Level::available().into_iter().map(|level| {
                 let request = RenderRequest {
@@ -256,7 +279,7 @@ fn what_is_traced_again_depends_on_no_lanes_and_no_tree() {
                 picture(&scene, &request)
             });
             let pictures: Vec<_> = pictures.collect();
-            again += pictures[0].1.again;
+            again[kind] += pictures[0].1.again;
             for (image, rays) in &pictures[1..] {
                 assert!(image.pixels == pictures[0].0.pixels, "{seed} {sampling:?}");
                 assert_eq!(rays.again, pictures[0].1.again, "{seed} {sampling:?}");
@@ -275,7 +298,7 @@ fn what_is_traced_again_depends_on_no_lanes_and_no_tree() {
             );
         }
     }
-    assert!(again > 1_000, "{again}");
+    assert!(again.iter().all(|&again| again > 50), "{again:?}");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::simd::{Mask as _, Real, SimdFloat};
 
 /// How much an edge function changes at most where the ray is moved aside, as a multiple of how far, of the longest edge
 /// and of how much the shear stretches areas, which is one over the direction along its axis: once where its corners move
-/// as one, and half as much again since they are rounded one by one.
+/// as one, and half as much again since they are rounded one by one, by no more than half of that blur.
 const STEEPNESS: f64 = 1.5;
 
 /// The watertight test, and from where on its answer is undecided: where some edge function may have either sign and
@@ -23,9 +23,10 @@ pub fn watertight_in_doubt<L: SimdFloat>(
     (blur, wanted): (&Blur<L>, L::Mask),
 ) -> Option<(L, L)> {
     let (corners, edges) = edges_of(ray, shear, triangle);
-    let ([a, b, c], [u, v, w]) = (corners, edges);
+    let ([a, ..], [u, v, w]) = (corners, edges);
     let longest = u.like(triangle.longest);
-    let width = blur.at((a[2] * shear.z).abs() + longest);
+    // Rays to a light come together there: they are farther off where the triangle begins.
+    let width = blur.around((a[2] * shear.z).abs(), longest);
     let bound = width * longest * shear.z.abs() * u.like_f64(STEEPNESS);
     let (low, high) = (u.min(v).min(w), u.max(v).max(w));
     let is_missed = low.less(-bound) & bound.less(high);
@@ -46,9 +47,8 @@ pub fn watertight_in_doubt<L: SimdFloat>(
     if !passes_edge.any() {
         return Some((distance, from));
     }
-    let last = (a[2] * shear.z).max(b[2] * shear.z).max(c[2] * shear.z);
     // A narrow one's edges are uncertain far beyond its corners: only rays count that pass the box around it.
     let around = BoundingBox::around(&triangle.corners);
-    let entry = around.entry(ray, blur.at(last.max(zero)));
+    let entry = around.entry(ray, width);
     Some((distance, L::select(passes_edge, entry.min(from), from)))
 }
