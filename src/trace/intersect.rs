@@ -176,6 +176,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             way: Way {
                 free: wanted,
                 met: none,
+                passed: none,
                 doubt,
             },
         };
@@ -187,7 +188,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             way = self.way_in(&thicket, paths, (distance, thick, way), stack);
         }
         Blocked {
-            anywhere: wanted & (!way.free | way.met),
+            anywhere: wanted & (!way.free | way.passed | way.met),
             wide: wanted & !way.free,
             // What may be behind the light is not looked for. What is passed by says nothing of what is wide.
             doubt: way.free & way.doubt.from.at_most(distance),
@@ -303,8 +304,10 @@ struct BlockedTest<'a, L: SimdFloat, const TREE: bool, const LISTED: bool> {
 struct Way<L: SimdFloat, const TREE: bool> {
     /// Where nothing was met yet for sure, but what was passed by.
     free: L::Mask,
-    /// Where something was met, but not for sure, or passed by.
+    /// Where something was met, sure or not.
     met: L::Mask,
+    /// Where something was met for sure and passed by. Noted in `met`, it makes plain pictures of lists 1.06 times as slow.
+    passed: L::Mask,
     doubt: Doubt<L, TREE>,
 }
 
@@ -349,7 +352,7 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
         let is_end = match self.thick {
             None => is_met,
             Some(thick) => {
-                way.met = way.met | is_met;
+                way.passed = way.passed | way.free & is_met;
                 is_met & thick.less(primitive.breadth(paths.rays.direction))
             }
         };
