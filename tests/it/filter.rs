@@ -242,6 +242,8 @@ const DOUBTFUL: [fn(u64) -> Scene; 5] = [
     far_and_wide,
     discs,
 ];
+/// Of the first kinds something is in doubt in every picture.
+const CROWDED: usize = 2;
 /// With clean edges, too, no pixel of the first kinds is off; of the others one may be, in a scene or two.
 const CLEAN: usize = 3;
 
@@ -267,7 +269,7 @@ fn clean_edges_need_no_filter_inside_of_pixels() {
 fn what_is_traced_again_depends_on_no_lanes_and_no_tree() {
     let mut again = [0; DOUBTFUL.len()];
     for seed in 0..10 {
-        let kind = seed as usize % DOUBTFUL.len();
+        let kind = seed as usize / 2;
         let scene = DOUBTFUL[kind](seed);
         for sampling in [Sampling::Centres, Sampling::ADAPTIVE] {
             let pictures = Level::available().into_iter().map(|level| {
@@ -279,7 +281,9 @@ fn what_is_traced_again_depends_on_no_lanes_and_no_tree() {
                 picture(&scene, &request)
             });
             let pictures: Vec<_> = pictures.collect();
-            again[kind] += pictures[0].1.again;
+            let traced_again = pictures[0].1.again;
+            assert!(traced_again > 0 || kind >= CROWDED, "{seed} {sampling:?}");
+            again[kind] += traced_again;
             for (image, rays) in &pictures[1..] {
                 assert!(image.pixels == pictures[0].0.pixels, "{seed} {sampling:?}");
                 assert_eq!(rays.again, pictures[0].1.again, "{seed} {sampling:?}");
@@ -298,7 +302,7 @@ fn what_is_traced_again_depends_on_no_lanes_and_no_tree() {
             );
         }
     }
-    assert!(again.iter().all(|&again| again > 50), "{again:?}");
+    assert!(again.iter().all(|&again| again > 0), "{again:?}");
 }
 
 #[test]
