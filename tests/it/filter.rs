@@ -6,7 +6,8 @@ use glint::image::{Image, render};
 use glint::mesh::{SOLIDS, Triangles};
 use glint::plan::RenderRequest;
 use glint::scene::{
-    Accelerator, Camera, Disc, List, Mesh, Object, Plane, Precision, Sampling, Scene, Sphere, check,
+    Accelerator, Camera, Disc, List, Mesh, Object, Plane, Precision, Sampling, Scene, Shape,
+    Sphere, check,
 };
 use glint::simd::Level;
 use glint::trace::{Rays, RenderControl};
@@ -116,61 +117,52 @@ fn rings(seed: u64) -> Scene {
     scene
 }
 
-/// Many boxes, a few pixels large, in each other's light.
-fn boxes(seed: u64) -> Scene {
-    let mut scene = random::scene(seed);
-    let dice = &mut Dice(seed.wrapping_mul(7_919) + 5);
+/// Adds so many things of six packs, which are made of vectors that reach as far as is asked for.
+fn scatter<S: Into<Shape>>(
+    mut scene: Scene,
+    (count, salt): (usize, u64),
+    mut shape: impl FnMut(&mut dyn FnMut(f64) -> DVec3) -> S,
+) -> Scene {
+    let dice = &mut Dice(salt);
     let mut vector = |reach: f64| DVec3::from([0; 3].map(|_| dice.real(-reach, reach)));
-    for number in 0..60 {
-        let mesh = Mesh {
-            position: vector(60.0),
-            rotation: vector(180.0),
-            scale: DVec3::splat(0.4) + vector(1.0).abs(),
-            ..Mesh::of((SOLIDS[0].make)(8.0))
-        };
-        let pack = format!("pack {}", number % 6);
-        scene
-            .objects
-            .push(Object::new(format!("Box {number}"), pack, mesh));
+    for number in 0..count {
+        let (name, pack) = (format!("Thing {number}"), format!("pack {}", number % 6));
+        let shape = shape(&mut vector);
+        scene.objects.push(Object::new(name, pack, shape));
     }
     scene
+}
+
+/// Many boxes, a few pixels large, in each other's light.
+fn boxes(seed: u64) -> Scene {
+    let salt = seed.wrapping_mul(7_919) + 5;
+    scatter(random::scene(seed), (60, salt), |vector| Mesh {
+        position: vector(60.0),
+        rotation: vector(180.0),
+        scale: DVec3::splat(0.4) + vector(1.0).abs(),
+        ..Mesh::of((SOLIDS[0].make)(8.0))
+    })
 }
 
 /// Large boards, as thin as paper, in each other's light and close to the lights.
 fn boards(seed: u64) -> Scene {
-    let mut scene = random::scene(seed);
-    let dice = &mut Dice(seed.wrapping_mul(6_007) + 11);
-    let mut vector = |reach: f64| DVec3::from([0; 3].map(|_| dice.real(-reach, reach)));
-    for number in 0..12 {
-        let mesh = Mesh {
-            position: vector(90.0),
-            rotation: vector(180.0),
-            scale: DVec3::new(8.0, 0.01, 8.0) + vector(4.0).abs() * DVec3::new(1.0, 0.0, 1.0),
-            ..Mesh::of((SOLIDS[0].make)(8.0))
-        };
-        let pack = format!("pack {}", number % 6);
-        let name = format!("Board {number}");
-        scene.objects.push(Object::new(name, pack, mesh));
-    }
-    scene
+    let salt = seed.wrapping_mul(6_007) + 11;
+    scatter(random::scene(seed), (12, salt), |vector| Mesh {
+        position: vector(90.0),
+        rotation: vector(180.0),
+        scale: DVec3::new(8.0, 0.01, 8.0) + vector(4.0).abs() * DVec3::new(1.0, 0.0, 1.0),
+        ..Mesh::of((SOLIDS[0].make)(8.0))
+    })
 }
 
 /// Many discs of several packs over a floor that ends at the horizon.
 fn discs(seed: u64) -> Scene {
-    let mut scene = random::with_discs(seed);
-    let dice = &mut Dice(seed.wrapping_mul(5_003) + 7);
-    let mut vector = |reach: f64| DVec3::from([0; 3].map(|_| dice.real(-reach, reach)));
-    for number in 0..30 {
-        let disc = Disc {
-            center: vector(60.0),
-            normal: vector(1.0) + DVec3::Y,
-            radius: 2.0 + vector(6.0).x.abs(),
-        };
-        let pack = format!("pack {}", number % 6);
-        scene
-            .objects
-            .push(Object::new(format!("Leaf {number}"), pack, disc));
-    }
+    let salt = seed.wrapping_mul(5_003) + 7;
+    let mut scene = scatter(random::with_discs(seed), (30, salt), |vector| Disc {
+        center: vector(60.0),
+        normal: vector(1.0) + DVec3::Y,
+        radius: 2.0 + vector(6.0).x.abs(),
+    });
     let floor = Plane {
         point: DVec3::new(0.0, -60.0, 0.0),
         normal: DVec3::Y,
