@@ -200,43 +200,42 @@ impl AnimationState {
         let scenes = [scene, &self.shown, &*next];
         let [in_scene, in_shown, in_next] = scenes.map(|scene| Owners::of(scene, &targets));
         // To put one value back may put others of the same object back: all are looked at before.
-        let values = |target: &Target| {
+        let values = |(track, target): (usize, &Target)| {
             let (own, new) = (in_scene.get(scene, target)?, in_next.get(next, target)?);
             let is_touched = new != own || replaced.holds(target, in_scene.index(target));
             let is_keyed = is_touched && Some(new) != in_shown.get(&self.shown, target);
-            Some((target.clone(), new, is_keyed, new != own))
+            Some((track, own, new, is_keyed))
         };
-        let values: Vec<_> = targets.iter().filter_map(values).collect();
-        for (target, new, is_keyed, is_other) in values {
+        let values: Vec<_> = targets.iter().enumerate().filter_map(values).collect();
+        for (track, own, new, is_keyed) in values {
             if is_keyed {
-                next.animation = Arc::new(next.animation.with_value(&target, time, new));
+                next.animation_mut().put_value(track, (time, new));
             }
-            if is_other {
-                restore(&target, scene, &self.shown, next);
+            let target = &targets[track];
+            let places = [&in_scene, &in_shown, &in_next].map(|owners| owners.index(target));
+            if new != own && !restore_shape(target, places, (scene, &self.shown), next) {
+                in_next.set(next, target, own);
             }
         }
     }
 }
 
-/// Puts the own value of `scene` back into `next`.
-fn restore(target: &Target, scene: &Scene, shown: &Scene, next: &mut Scene) {
-    if let Target::ObjectPosition(name) = target {
-        let shape = |scene: &Scene| {
-            let mut objects = scene.objects.iter();
-            let object = objects.find(|object| object.name == *name);
-            object.map(|object| object.shape.clone())
-        };
-        let is_only_moved = shape(next) == shape(shown);
-        if let (true, Some(own)) = (is_only_moved, shape(scene)) {
-            // Moved to and fro, its corners would be rounded.
-            let object = next.objects.find_mut(|object| object.name == *name);
-            if let Some(object) = object {
-                object.shape = own;
-            }
-            return;
-        }
+/// Puts the own shape of an object of `scene` back into `next`, where it is as shown but for its place: moved to and fro,
+/// its corners would be rounded. Whether that is so; given are its places in the three.
+fn restore_shape(
+    target: &Target,
+    places: [Option<usize>; 3],
+    (scene, shown): (&Scene, &Scene),
+    next: &mut Scene,
+) -> bool {
+    let (Target::ObjectPosition(_), [Some(own), Some(there), Some(here)]) = (target, places) else {
+        return false;
+    };
+    if next.objects[here].shape != shown.objects[there].shape {
+        return false;
     }
-    if let Some(own) = target.get(scene) {
-        target.set(next, own);
+    if let Some(object) = next.objects.get_mut(here) {
+        object.shape.clone_from(&scene.objects[own].shape);
     }
+    true
 }

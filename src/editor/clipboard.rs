@@ -7,7 +7,7 @@ use glam::DVec3;
 use indexmap::IndexMap;
 
 use super::item::{Item, Kind};
-use super::names::{Taken, copy_offset, free_light_name, free_pack_name};
+use super::names::{Taken, copy_offset};
 use super::selection::Selected;
 use crate::scene::{ColorPack, Document, List, Owners, Scene, SceneError, Track, names_field};
 
@@ -100,12 +100,13 @@ pub fn read(text: &str, scene: &Scene) -> Result<Scene, SceneError> {
 /// that is free.
 pub fn paste(scene: &mut Scene, pasted: &Scene) {
     let mut packs = IndexMap::new();
+    let mut taken = Taken::new(scene.color_packs.keys());
     for (name, pack) in pasted.color_packs.iter() {
         let is_there = scene.color_packs.get(name) == Some(pack);
         let free = if is_there {
             name.clone()
         } else {
-            free_pack_name(scene, name)
+            taken.take(name)
         };
         if !is_there {
             scene.packs_mut().insert(free.clone(), pack.clone());
@@ -130,13 +131,14 @@ pub fn paste(scene: &mut Scene, pasted: &Scene) {
         object.shape = object.shape.moved(by);
         scene.objects.push(object);
     }
+    let mut taken = Taken::new(scene.lights.iter().map(|light| &light.name));
     for light in &pasted.lights {
         let (mut light, own_name) = (light.clone(), light.name.clone());
         light.position += by;
         if let Some(marker) = &mut light.marker {
             known(&mut marker.color_pack);
         }
-        light.name = free_light_name(scene, &light.name);
+        light.name = taken.take(&light.name);
         names.insert((true, own_name), light.name.clone());
         scene.lights.push(light);
     }

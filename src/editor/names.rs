@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::scene::{Scene, Shape};
 
-/// `wanted`, or the first of `BASE 2`, `BASE 3`, … that is not taken, where BASE is `wanted`
+/// `wanted`, or the first of `BASE 1`, `BASE 2`, … that is not taken, where BASE is `wanted`
 /// without its number.
 fn free_name(wanted: &str, is_taken: impl Fn(&str) -> bool) -> String {
     if !is_taken(wanted) {

@@ -4,19 +4,16 @@ use std::borrow::Cow;
 use std::fs;
 use std::io::{self, Read as _, Write as _};
 use std::path::Path;
-use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
-use std::time::Duration;
 
 use super::error::{VideoError, last_lines};
 use super::frame_file::as_ppm;
+use super::program::end_of;
 use super::sequence::Sequence;
 use crate::image::Format;
-
-/// How often it is asked whether the video is still wanted.
-const TICK: Duration = Duration::from_millis(20);
 
 /// Has ffmpeg make a video in a file that is to be that of a path, with these words about the codec.
 ///
@@ -73,24 +70,6 @@ pub fn by_ffmpeg(
     };
     let said = format!("{why}{}", last_lines(&said));
     Err(VideoError::Ffmpeg { said })
-}
-
-/// Waits until a program ends. `None` where nobody wants that any more: it is killed.
-fn end_of(
-    program: &mut Child,
-    mut is_wanted: impl FnMut() -> bool,
-) -> io::Result<Option<ExitStatus>> {
-    let ended = loop {
-        match program.try_wait() {
-            Ok(None) if is_wanted() => thread::sleep(TICK),
-            ended => break ended,
-        }
-    };
-    if !matches!(ended, Ok(Some(_))) {
-        let _ = program.kill();
-        let _ = program.wait();
-    }
-    ended
 }
 
 fn start(sequence: &Sequence, unfinished: &Path, codec: &str) -> io::Result<Child> {

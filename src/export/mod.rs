@@ -22,6 +22,8 @@ mod frame_file;
 
 mod animated;
 
+mod program;
+
 mod ffmpeg;
 
 mod video;

@@ -1,17 +1,19 @@
 //! Scenes in the language of POV-Ray, an independent engine that draws the same pictures, and what it makes of
 //! them.
 
+use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use glam::DVec3;
 
 use super::error::last_lines;
+use super::program::end_of;
 use crate::image::Image;
 use crate::plan::PackedMesh;
 use crate::scene::{
@@ -22,9 +24,6 @@ use crate::trace::RenderControl;
 
 /// The least of a colour that light is multiplied with: what is added to it has to be divided by it first.
 const LEAST: f64 = 1e-6;
-
-/// Time between two looks at whether it is done.
-const LOOK: Duration = Duration::from_millis(3);
 
 /// Why POV-Ray has drawn no picture.
 #[derive(Debug, thiserror::Error)]
@@ -72,38 +71,37 @@ pub fn povray_text(scene: &Scene) -> String {
         &scene.camera,
         f64::from(width) / f64::from(height),
     );
-    for light in visible_lights(scene) {
+    for light in scene.visible_lights() {
         write_light(&mut pov, light, DVec3::ONE);
         write_marker(&mut pov, scene, light);
     }
-    let total: f64 = visible_lights(scene).map(|light| light.intensity).sum();
+    let total: f64 = scene.visible_lights().map(|light| light.intensity).sum();
+    let mut wearers: HashMap<&str, Vec<&Shape>> = HashMap::new();
+    for object in scene.visible_objects() {
+        let alike = wearers.entry(&object.color_pack).or_default();
+        alike.push(&object.shape);
+    }
     for (name, pack) in scene.color_packs.iter() {
-        let texture = texture(pack, total);
-        let objects = scene.objects.iter().filter(|object| object.visible);
-        let wearers = objects.filter(|object| object.color_pack == *name);
-        let mut shapes = String::new();
-        for object in wearers {
-            write_shape(&mut shapes, &object.shape, &texture);
-        }
-        if shapes.is_empty() {
+        let Some(worn) = wearers.get(name.as_str()) else {
             continue;
+        };
+        let texture = texture(pack, total);
+        let mut shapes = String::new();
+        for shape in worn {
+            write_shape(&mut shapes, shape, &texture);
         }
         let highlight = Highlight::of(pack);
         if highlight.is_white() {
             pov.push_str(&shapes);
         } else {
             pov.push_str("light_group {\n");
-            for light in visible_lights(scene) {
+            for light in scene.visible_lights() {
                 write_light(&mut pov, light, highlight.color);
             }
             let _ = writeln!(pov, "{shapes}global_lights off }}");
         }
     }
     pov
-}
-
-fn visible_lights(scene: &Scene) -> impl Iterator<Item = &Light> {
-    scene.lights.iter().filter(|light| light.visible)
 }
 
 /// How much of the light a highlight shows, and in which colour.
@@ -251,7 +249,7 @@ fn texture(pack: &ColorPack, total_intensity: f64) -> String {
 /// In what the pictures of a scene differ, beyond rounding, for people: what the model means by it, and POV-Ray does
 /// not.
 pub fn povray_differences(scene: &Scene) -> Vec<&'static str> {
-    let visible = || scene.objects.iter().filter(|object| object.visible);
+    let visible = || scene.visible_objects();
     let is_mirror = |object: &Object| {
         let pack = scene.color_packs.get(&object.color_pack);
         pack.is_some_and(|pack| pack.reflective)
@@ -330,11 +328,12 @@ pub fn by_povray(
         .stdout(Stdio::null())
         .stderr(said)
         .spawn();
-    let child = run.map_err(|source| match source.kind() {
+    let mut child = run.map_err(|source| match source.kind() {
         io::ErrorKind::NotFound => PovrayError::Missing,
         _ => disk(Path::new("povray"))(source),
     })?;
-    let status = end_of(child, control).map_err(disk(Path::new("povray")))?;
+    let is_wanted = || !control.stop.load(Ordering::Relaxed);
+    let status = end_of(&mut child, is_wanted).map_err(disk(Path::new("povray")))?;
     let status = status.ok_or(PovrayError::Stopped)?;
     let said = std::fs::read(&path).map_err(disk(&path))?;
     let failed = || PovrayError::Failed(last_lines(&said));
@@ -352,21 +351,6 @@ pub fn by_povray(
         time,
         rays,
     })
-}
-
-/// Waits for a program, and ends it when it is told to stop: `None`.
-fn end_of(mut child: Child, control: &RenderControl) -> io::Result<Option<ExitStatus>> {
-    loop {
-        if let Some(status) = child.try_wait()? {
-            return Ok(Some(status));
-        }
-        if control.stop.load(Ordering::Relaxed) {
-            child.kill()?;
-            child.wait()?;
-            return Ok(None);
-        }
-        std::thread::sleep(LOOK);
-    }
 }
 
 #[cfg(test)]
@@ -399,7 +383,7 @@ mod tests {
         }
         let text = povray_text(&scene);
         assert_eq!(text.matches("light_group").count(), 1);
-        let visible = visible_lights(&scene).count();
+        let visible = scene.visible_lights().count();
         assert_eq!(text.matches("light_source").count(), 2 * visible);
     }
 }

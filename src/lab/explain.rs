@@ -94,6 +94,16 @@ pub fn explain(scene: &Scene, origin: DVec3, direction: DVec3) -> Sight {
     look(scene, (origin, direction), 0)
 }
 
+/// The object that a ray with a unit direction meets first, by its place in the scene's list, and how far away; nothing
+/// if that is a light's marker. Of several in one surface it is any.
+pub fn first_met(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<(usize, f64)> {
+    let met = nearest(scene, origin, direction)?;
+    match met.what {
+        What::Object(index) => Some((index, met.t)),
+        What::Marker(..) => None,
+    }
+}
+
 /// Something that a ray has met.
 struct Met<'a> {
     t: f64,
@@ -115,6 +125,7 @@ fn look(scene: &Scene, (origin, direction): (DVec3, DVec3), bounces: u32) -> Sig
     let Some(met) = nearest(scene, origin, direction) else {
         return Sight::Sky(linear(scene.background));
     };
+    let met = in_its_place(scene, &met, (origin, direction)).unwrap_or(met);
     let pack_of = |name: &str| scene.color_packs.get(name).cloned().unwrap_or_default();
     let index = match met.what {
         What::Marker(light, pack) => {
@@ -130,7 +141,7 @@ fn look(scene: &Scene, (origin, direction): (DVec3, DVec3), bounces: u32) -> Sig
     } else {
         met.normal
     };
-    let shining = scene.lights.iter().filter(|light| light.visible);
+    let shining = scene.visible_lights();
     let lights = shining.clone().filter(|light| light.intensity > 0.0);
     let lights = lights.map(|light| share(scene, &pack, light, (point, normal, direction)));
     let mirror = (pack.reflective && bounces < scene.render.reflection_limit).then(|| {
@@ -200,10 +211,9 @@ fn nearest(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<Met<'_>> {
         let what = What::Marker(&light.name, &marker.color_pack);
         Some(Met { t, normal, what })
     });
-    let met = objects
+    objects
         .chain(markers)
-        .min_by(|one, other| one.t.total_cmp(&other.t))?;
-    Some(in_its_place(scene, &met, (origin, direction)).unwrap_or(met))
+        .min_by(|one, other| one.t.total_cmp(&other.t))
 }
 
 /// What lies in the surface that is met and comes before it in the list: that is seen.
@@ -233,7 +243,7 @@ fn in_its_place<'a>(
 
 /// The name of something that stands between a point and a light.
 fn blocker(scene: &Scene, point: DVec3, towards: DVec3, distance: f64) -> Option<String> {
-    let mut objects = scene.objects.iter().filter(|object| object.visible);
+    let mut objects = scene.visible_objects();
     let found = objects.find(|object| {
         let met = meet(&object.shape, point, towards);
         met.is_some_and(|(t, _)| t < distance * (1.0 - LEFT))

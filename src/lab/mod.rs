@@ -36,7 +36,7 @@ pub mod stability;
 pub use account::account;
 pub use candidates::{Candidate, Family, candidates};
 pub use clusters::{clusters, costs_of_dots};
-pub use explain::{Lit, Share, Sight, explain, meet};
+pub use explain::{Lit, Share, Sight, explain, first_met, meet};
 pub use finding::finding;
 pub use growth::{Cost, Crowd, Growth, Way};
 pub use kept::{keep, kept};

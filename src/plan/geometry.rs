@@ -220,7 +220,7 @@ impl<R: Real> Kept<R> {
 /// Whether the objects of a scene that end are kept in a tree: many of them, fewer where they fill a space or share few
 /// pixels, and any mesh.
 pub fn is_tree(scene: &Scene, request: &RenderRequest, may_cull: bool) -> bool {
-    let visible = || scene.objects.iter().filter(|object| object.visible);
+    let visible = || scene.visible_objects();
     let is_wanted = match request.accelerator {
         Accelerator::List => false,
         Accelerator::Bvh => true,

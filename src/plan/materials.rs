@@ -44,7 +44,7 @@ impl<R: Real> Surface<R> {
 
 /// One material per pack, then one per pack as a marker wears it.
 pub fn pack_materials<R: Real>(scene: &Scene, request: &RenderRequest) -> Vec<Material<R>> {
-    let lights = scene.lights.iter().filter(|light| light.visible);
+    let lights = scene.visible_lights();
     let total_intensity: f64 = lights.map(|light| light.intensity).sum();
     let lit = scene.color_packs.values().map(|pack| Material {
         base: linear(pack.ambient * scene.ambient_intensity),

@@ -99,7 +99,7 @@ fn precision(scene: &Scene, request: &RenderRequest) -> Need {
 
 fn reflections(scene: &Scene, plan: &Plan<f64>) -> Need {
     let rule = "reflections";
-    let visible = || scene.objects.iter().filter(|object| object.visible);
+    let visible = || scene.visible_objects();
     let is_mirror = |object: &&Object| {
         let place = scene.color_packs.get_index_of(&object.color_pack);
         let surface = place.and_then(|place| plan.materials[place].surface.as_ref());
@@ -331,18 +331,13 @@ fn normals(scene: &Scene) -> Need {
 }
 
 fn visible_faces(scene: &Scene) -> usize {
-    let visible = scene.objects.iter().filter(|object| object.visible);
-    let faces = visible.filter_map(|object| match &object.shape {
-        Shape::Mesh(mesh) => Some(mesh.source.triangles().faces().len()),
-        _ => None,
-    });
-    faces.sum()
+    scene.visible_objects().map(Object::faces).sum()
 }
 
 fn highlights(scene: &Scene, request: &RenderRequest, plan: &Plan<f64>) -> Need {
     let rule = "highlights";
     // Of packs that nothing wears, none is computed.
-    let visible = scene.objects.iter().filter(|object| object.visible);
+    let visible = scene.visible_objects();
     let worn: HashSet<&str> = visible.map(|object| &*object.color_pack).collect();
     let packs = plan.materials.iter().zip(scene.color_packs.keys());
     let surfaces = packs

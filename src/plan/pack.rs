@@ -147,7 +147,7 @@ impl<R: Real> Plan<R> {
             eye_on: None,
             ties: Vec::new(),
             clearance: R::ZERO,
-            things: scene.objects.iter().filter(|object| object.visible).count(),
+            things: scene.visible_objects().count(),
             farthest: R::from_f64(frame.farthest),
             extent: R::from_f64(frame.extent),
             blur: Blur::NONE,
@@ -277,7 +277,7 @@ impl<R: Real> Plan<R> {
 
     fn pack_markers(&mut self, scene: &Scene, packing: &Packing) {
         let first_marker_material = scene.color_packs.len() as u32;
-        for light in scene.lights.iter().filter(|light| light.visible) {
+        for light in scene.visible_lights() {
             let Some(LightObj { radius, color_pack }) = &light.marker else {
                 continue;
             };

@@ -29,7 +29,7 @@ pub fn classify_planes(scene: &Scene, request: &RenderRequest) -> Option<Vec<Pla
     if is_parallel || !request.methods.is_sound() || request.model == Model::Everything {
         return None;
     }
-    let visible = scene.objects.iter().filter(|object| object.visible);
+    let visible = scene.visible_objects();
     let pieces = visible.filter_map(|object| object.shape.plane_piece());
     let planes = pieces.filter(|piece| piece.outline == Outline::Endless);
     planes

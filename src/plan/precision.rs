@@ -91,13 +91,13 @@ fn is_rounding_seen(scene: &Scene, request: &RenderRequest) -> bool {
 }
 
 fn has_many_edges(scene: &Scene) -> bool {
-    let visible = || scene.objects.iter().filter(|object| object.visible);
+    let visible = || scene.visible_objects();
     visible().count() > FEWEST_FILTERED || visible().any(|object| object.faces() > 0)
 }
 
 /// How many objects and faces are visible.
 fn primitives(scene: &Scene) -> usize {
-    let visible = scene.objects.iter().filter(|object| object.visible);
+    let visible = scene.visible_objects();
     visible.map(|object| object.faces() + 1).sum()
 }
 
@@ -132,7 +132,7 @@ pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
     } else {
         farthest_wall(scene)
     };
-    let visible = scene.objects.iter().filter(|object| object.visible);
+    let visible = scene.visible_objects();
     visible.map(|object| &object.shape).any(|shape| {
         shape.height_per_radius(eye) < MIN_HEIGHT_PER_RADIUS
             || match shape.feature() {
@@ -152,7 +152,7 @@ fn farthest_wall(scene: &Scene) -> f64 {
         scene.camera.position,
         unit(scene.camera.look_at).unwrap_or_default(),
     );
-    let visible = scene.objects.iter().filter(|object| object.visible);
+    let visible = scene.visible_objects();
     let planes = visible.filter_map(|object| match &object.shape {
         shape @ Shape::Plane(_) => shape.plane_piece(),
         _ => None,
@@ -173,7 +173,7 @@ fn is_just_above(scene: &Scene, extent: f64) -> bool {
         0..=MOST_PAIRS => &scene.lights,
         _ => &List::new(),
     };
-    let visible = scene.objects.iter().filter(|object| object.visible);
+    let visible = scene.visible_objects();
     let shapes = visible.map(|object| &object.shape);
     // Without lights only planes count: many objects are not worth a closer look.
     let mut looked_at =
@@ -199,7 +199,7 @@ fn is_just_above(scene: &Scene, extent: f64) -> bool {
 
 /// Whether two spheres all but fill the same surface. Those that do fill it are one.
 fn has_twins(scene: &Scene, extent: f64) -> bool {
-    let visible = scene.objects.iter().filter(|object| object.visible);
+    let visible = scene.visible_objects();
     let spheres = visible.filter_map(|object| match &object.shape {
         Shape::Sphere(sphere) => Some((sphere.center.dot(ASKEW), sphere)),
         _ => None,
@@ -238,7 +238,7 @@ fn is_far_in_parallel(scene: &Scene) -> bool {
             }
         }),
     };
-    let visible = scene.objects.iter().filter(|object| object.visible);
+    let visible = scene.visible_objects();
     let farthest = visible.map(distance).fold(0.0, f64::max);
     farthest > MAX_DISTANCE_PER_HEIGHT * camera.orthographic_height
 }

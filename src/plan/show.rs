@@ -43,7 +43,7 @@ impl<R: Real> Show<R> {
                 }
             }
             Aspect::Shadows => {
-                let shining = scene.lights.iter().filter(|light| light.visible);
+                let shining = scene.visible_lights();
                 Self::Shadows(R::from_f64(1.0 / shining.count().max(1) as f64))
             }
             Aspect::Mirrors => Self::Mirrors,

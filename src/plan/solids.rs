@@ -64,7 +64,7 @@ impl Solids {
 
 /// The corners of the faces of all solids that are made of the visible triangles of a scene.
 pub fn faces_of_solids(scene: &Scene) -> HashSet<[Corner; 3]> {
-    let visible = scene.objects.iter().filter(|object| object.visible);
+    let visible = scene.visible_objects();
     let triangles = visible.filter_map(|object| match &object.shape {
         Shape::Triangle(triangle) => Some(triangle.corners()),
         _ => None,

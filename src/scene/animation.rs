@@ -304,7 +304,8 @@ impl Take {
     /// The camera of a sample; `None` if there is no such sample.
     pub fn camera(&self, index: usize) -> Option<Camera> {
         let &Sample(_, position, yaw, pitch, roll) = self.samples.get(index)?;
-        let lens = self.lenses.iter().rev().find(|lens| lens.from <= index)?;
+        let after = self.lenses.partition_point(|lens| lens.from <= index);
+        let lens = &self.lenses[after.checked_sub(1)?];
         let (look_at, up) = Orientation { yaw, pitch, roll }.vectors();
         Some(Camera {
             position,

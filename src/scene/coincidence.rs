@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::list::List;
-use super::mesh_coincidence::mesh_coincidences;
 pub use super::mesh_coincidence::{Coincidence, Extent};
+use super::mesh_coincidence::{counts_down, meet, mesh_coincidences, widened};
 use super::object::Object;
 use super::shape::{Outline, PlanePiece, Shape};
 
@@ -48,7 +48,7 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
                 Some(bounds) => pieces.push(Piece {
                     index,
                     flat,
-                    bounds,
+                    around: widened(bounds),
                 }),
                 None => endless.push((index, flat)),
             }
@@ -78,14 +78,12 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
             add((*index, flat), other);
         }
     }
-    pieces.sort_by(|a, b| a.bounds.0.x.total_cmp(&b.bounds.0.x));
-    let little = pieces.iter().map(Piece::little).fold(0.0, f64::max);
+    pieces.sort_by(|a, b| a.around.0.x.total_cmp(&b.around.0.x));
     for (place, one) in pieces.iter().enumerate() {
         let others = pieces[place + 1..].iter();
-        let end = one.bounds.1.x + little;
-        let near = others.take_while(|other| other.bounds.0.x <= end);
+        let near = others.take_while(|other| other.around.0.x <= one.around.1.x);
         for other in near.take_while(|_| counts_down(&mut pairs)) {
-            if one.meets(other) && counts_down(&mut left) {
+            if meet(one.around, other.around) && counts_down(&mut left) {
                 add((one.index, &one.flat), (other.index, &other.flat));
             }
         }
@@ -95,33 +93,12 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     found
 }
 
-/// One less, if there is any.
-fn counts_down(left: &mut usize) -> bool {
-    let is_left = *left > 0;
-    *left = left.saturating_sub(1);
-    is_left
-}
-
 /// A flat object that ends.
 struct Piece {
     index: usize,
     flat: PlanePiece,
-    /// The box around it.
-    bounds: (DVec3, DVec3),
-}
-
-impl Piece {
-    /// How near what fills its surface is, at most.
-    fn little(&self) -> f64 {
-        1e-6 * (self.bounds.1 - self.bounds.0).max_element()
-    }
-
-    /// Whether the boxes meet, or would if they were a little wider: flat ones have no height.
-    fn meets(&self, other: &Self) -> bool {
-        let little = DVec3::splat(self.little().max(other.little()));
-        self.bounds.0.cmple(other.bounds.1 + little).all()
-            && other.bounds.0.cmple(self.bounds.1 + little).all()
-    }
+    /// The box around it, a little wider than it is.
+    around: (DVec3, DVec3),
 }
 
 #[cfg(test)]

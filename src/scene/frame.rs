@@ -30,7 +30,7 @@ impl Frame {
         let (low, high) = scene.objects_bounds()?;
         let (middle, half) = (low * 0.5 + high * 0.5, high * 0.5 - low * 0.5);
         let half = half.max_element();
-        let visible = scene.objects.iter().filter(|object| object.visible);
+        let visible = scene.visible_objects();
         let boxes = visible.filter_map(|object| object.shape.bounds());
         let step = scene.objects.len().div_ceil(LOOKED_AT);
         let boxes: Vec<_> = boxes.step_by(step).collect();

@@ -60,8 +60,9 @@ impl Scene {
         let first = self.objects.len();
         let mut names = Names::new(self.objects.iter().map(|object| object.name.as_str()));
         let mut packs = PacksOfParts::default();
+        let mut pack_names = Names::new(self.color_packs.keys().map(String::as_str));
         for part in parts {
-            let color_pack = self.pack_of(part.colors.as_ref(), &mut packs);
+            let color_pack = self.pack_of(part.colors.as_ref(), (&mut packs, &mut pack_names));
             let Part {
                 name, triangles, ..
             } = part;
@@ -75,7 +76,11 @@ impl Scene {
     }
 
     /// The pack of a part: that of its colours, which may be there already.
-    fn pack_of(&mut self, colors: Option<&PartColors>, packs: &mut PacksOfParts) -> String {
+    fn pack_of(
+        &mut self,
+        colors: Option<&PartColors>,
+        (packs, names): (&mut PacksOfParts, &mut Names),
+    ) -> String {
         let (wanted, pack) = match colors {
             None => (PLAIN.to_owned(), plain_pack()),
             Some(colors) => (tidy(&colors.name), color_pack(colors)),
@@ -87,7 +92,7 @@ impl Scene {
         if let Some((_, name)) = given.iter().find(|(other, _)| *other == pack) {
             return name.clone();
         }
-        let name = Names::new(self.color_packs.keys().map(String::as_str)).take(&wanted);
+        let name = names.take(&wanted);
         given.push((pack.clone(), name.clone()));
         self.packs_mut().insert(name.clone(), pack);
         name

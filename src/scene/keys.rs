@@ -60,12 +60,7 @@ impl Animation {
     /// With a camera key at this time, in place of one that is there; and its place.
     pub fn with_key(&self, time: f64, camera: Camera) -> (Self, usize) {
         let mut animation = self.clone();
-        if let Some(index) = self.key_at(time) {
-            animation.keys[index].value = camera;
-            return (animation, index);
-        }
-        let index = self.keys.partition_point(|key| key.time < time);
-        animation.keys.insert(index, Key::new(time, camera));
+        let index = put(&mut animation.keys, self.key_at(time), (time, camera));
         (animation, index)
     }
 
@@ -182,7 +177,6 @@ impl Animation {
 
     /// With a key of a track at this time, in place of one that is there.
     pub fn with_value(&self, target: &Target, time: f64, value: Value) -> Self {
-        let there = self.value_at(target, time);
         let mut animation = self.clone();
         let tracks = &mut animation.tracks;
         let index = tracks.iter().position(|track| track.target == *target);
@@ -193,14 +187,14 @@ impl Animation {
             });
             tracks.len() - 1
         });
-        let keys = &mut tracks[index].keys;
-        if let Some(there) = there {
-            keys[there.index].value = value;
-        } else {
-            let at = keys.partition_point(|key| key.time < time);
-            keys.insert(at, Key::new(time, value));
-        }
+        animation.put_value(index, (time, value));
         animation
+    }
+
+    /// Puts a key into the track in a place, instead of one that is there at this time.
+    pub fn put_value(&mut self, track: usize, key: (f64, Value)) {
+        let there = self.place_at(&self.tracks[track].keys, key.0);
+        put(&mut self.tracks[track].keys, there, key);
     }
 
     /// What belongs to a light or object follows its new name, or goes with it.
@@ -242,6 +236,17 @@ impl Track {
             }
         }
     }
+}
+
+/// Puts a value at a time: in place of that of a key which is there, or as a new key. Its place.
+fn put<T>(keys: &mut Vec<Key<T>>, there: Option<usize>, (time, value): (f64, T)) -> usize {
+    if let Some(there) = there {
+        keys[there].value = value;
+        return there;
+    }
+    let at = keys.partition_point(|key| key.time < time);
+    keys.insert(at, Key::new(time, value));
+    at
 }
 
 fn time_and_pace<T>(key: &Key<T>) -> (f64, Pace) {

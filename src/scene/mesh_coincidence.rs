@@ -9,10 +9,11 @@ use super::shape::{Mesh, Outline, PlanePiece, Shape};
 /// Most faces that are held against what is around them, of all pairs of objects.
 const MOST_FACES: usize = 200_000;
 
-/// Most pairs of faces that are: some ten milliseconds.
+/// Most pairs of objects whose boxes are held against each other, and of faces that are: some ten milliseconds.
+const MOST_BOXES: usize = 4_000_000;
 const MOST_PAIRS: usize = 2_000_000;
 
-/// Share of its size by which a box is widened: flat ones have no height.
+/// Share of its size by which a box is widened.
 const LITTLE: f64 = 1e-6;
 
 /// Two visible objects, by their places in the list, that fill the same surface, in part or wholly.
@@ -70,11 +71,21 @@ pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coinciden
         faces: MOST_FACES,
         pairs: MOST_PAIRS,
     };
+    let all: Vec<&Placed> = ended.iter().collect();
+    let meshes: Vec<&Placed> = ended.iter().filter(|one| one.is_mesh()).collect();
+    let (mut seen, mut boxes) = (0, MOST_BOXES);
     for (place, one) in ended.iter().enumerate() {
+        seen += usize::from(one.is_mesh());
+        // Of two that are no meshes others know, and there may be a wall of them.
+        let others = if one.is_mesh() {
+            &all[place + 1..]
+        } else {
+            &meshes[seen..]
+        };
         let end = one.bounds.map_or(0.0, |(_, high)| high.x);
-        let others = ended[place + 1..].iter();
-        for other in others.take_while(|other| other.start() <= end) {
-            if (one.is_mesh() || other.is_mesh()) && search.coincide(one, other) {
+        let near = others.iter().take_while(|other| other.start() <= end);
+        for other in near.take_while(|_| counts_down(&mut boxes)) {
+            if search.coincide(one, other) {
                 add(one, other, Extent::Faces);
             }
         }
@@ -133,13 +144,21 @@ impl<'a> Placed<'a> {
     }
 }
 
-fn widened((low, high): (DVec3, DVec3)) -> (DVec3, DVec3) {
+/// One less, if there is any.
+pub fn counts_down(left: &mut usize) -> bool {
+    let is_left = *left > 0;
+    *left = left.saturating_sub(1);
+    is_left
+}
+
+/// A box, a little wider: flat ones have no height.
+pub fn widened((low, high): (DVec3, DVec3)) -> (DVec3, DVec3) {
     let little = DVec3::splat(LITTLE * (high - low).max_element());
     (low - little, high + little)
 }
 
 /// Whether two boxes meet.
-fn meet(one: (DVec3, DVec3), other: (DVec3, DVec3)) -> bool {
+pub fn meet(one: (DVec3, DVec3), other: (DVec3, DVec3)) -> bool {
     one.0.cmple(other.1).all() && other.0.cmple(one.1).all()
 }
 
@@ -232,8 +251,7 @@ impl Search {
             let others = others[from..].iter();
             let mut near = others.take_while(|(_, other)| other.0.x <= around.1.x);
             near.any(|(other, other_around)| {
-                self.pairs = self.pairs.saturating_sub(1);
-                self.pairs > 0
+                counts_down(&mut self.pairs)
                     && meet(*around, *other_around)
                     && piece.coincides(other, self.centre)
             })

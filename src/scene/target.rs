@@ -10,19 +10,7 @@ impl Target {
     /// The value in a scene; `None` if the scene has no such light or object, or it
     /// has no such property.
     pub fn get(&self, scene: &Scene) -> Option<Value> {
-        let name = self.owner();
-        let index = match self {
-            Self::AmbientIntensity => None,
-            Self::LightIntensity(_) | Self::LightPosition(_) => scene
-                .lights
-                .iter()
-                .position(|light| Some(&*light.name) == name),
-            Self::ObjectPosition(_) | Self::ObjectRotation(_) => scene
-                .objects
-                .iter()
-                .position(|object| Some(&*object.name) == name),
-        };
-        self.get_at(scene, index)
+        Owners::of(scene, [self]).get(scene, self)
     }
 
     /// The value in a scene, where its owner is at `index`.

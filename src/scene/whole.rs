@@ -94,6 +94,16 @@ impl Scene {
         Arc::make_mut(&mut self.animation)
     }
 
+    /// The objects that are seen, in order.
+    pub fn visible_objects(&self) -> impl Iterator<Item = &Object> + Clone {
+        self.objects.iter().filter(|object| object.visible)
+    }
+
+    /// The lights that shine, in order.
+    pub fn visible_lights(&self) -> impl Iterator<Item = &Light> + Clone {
+        self.lights.iter().filter(|light| light.visible)
+    }
+
     /// About how many bytes this scene has that another one does not share.
     pub fn bytes_apart(&self, other: &Self) -> usize {
         let packs = if Arc::ptr_eq(&self.color_packs, &other.color_packs) {
@@ -114,14 +124,14 @@ impl Scene {
     /// Smallest and largest corner of the box around everything visible that has an end, lights
     /// included; `None` if there is nothing.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        let lights = self.lights.iter().filter(|light| light.visible);
+        let lights = self.visible_lights();
         let lights = lights.map(|light| (light.position, light.position));
         around(self.objects_bounds().into_iter().chain(lights))
     }
 
     /// The same without lights.
     pub fn objects_bounds(&self) -> Option<(DVec3, DVec3)> {
-        let visible = self.objects.iter().filter(|object| object.visible);
+        let visible = self.visible_objects();
         around(visible.filter_map(|object| object.shape.bounds()))
     }
 

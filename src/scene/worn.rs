@@ -2,7 +2,6 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::material::ColorPack;
 use super::whole::Scene;
 
 impl Scene {
@@ -33,16 +32,23 @@ impl Scene {
         }
     }
 
+    /// Whether two packs are equal.
+    pub fn has_equal_packs(&self) -> bool {
+        let mut keys = HashSet::new();
+        !self
+            .color_packs
+            .values()
+            .all(|pack| keys.insert(pack.key()))
+    }
+
     /// Takes away each pack that is equal to one before it, which is worn in its place.
     pub fn merge_equal_packs(&mut self) {
-        let mut kept: Vec<(&String, &ColorPack)> = Vec::new();
+        let mut kept = HashMap::new();
         let mut instead = HashMap::new();
         for (name, pack) in self.color_packs.iter() {
-            match kept.iter().find(|(_, other)| *other == pack) {
-                Some((first, _)) => {
-                    instead.insert(name.clone(), (*first).clone());
-                }
-                None => kept.push((name, pack)),
+            let first = *kept.entry(pack.key()).or_insert(name);
+            if first != name {
+                instead.insert(name.clone(), first.clone());
             }
         }
         if instead.is_empty() {

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::icons;
 use super::requests::UiRequests;
 use crate::editor::Edit;
-use crate::lab::{Sight, explain};
+use crate::lab::first_met;
 use crate::mesh::SOLIDS;
 use crate::scene::{Mesh, Object, Projection, Scene, Shape};
 
@@ -204,11 +204,11 @@ fn usual_distance(scene: &Scene) -> f64 {
         let has_floor = planes(scene).next().is_some();
         let ahead = camera.framing().filter(|_| has_floor).map(|framing| {
             let (origin, direction) = framing.ray([0.0, 0.0]);
-            explain(scene, origin, direction)
+            first_met(scene, origin, direction)
         });
-        return match ahead {
-            Some(Sight::Surface(lit)) => lit.distance.min(FARTHEST_GROUND),
-            _ => 100.0,
+        return match ahead.flatten() {
+            Some((_, distance)) => distance.min(FARTHEST_GROUND),
+            None => 100.0,
         };
     };
     let (reach, middle) = ((high - low).length() / 2.0, (low + high) / 2.0);
@@ -236,15 +236,13 @@ fn free_place(
     let (origin, direction) = ray;
     let (mut at, mut size) = (origin + direction * usual, size_at(scene, usual) * share);
     let mut is_on_floor = false;
-    if let Sight::Surface(lit) = explain(scene, origin, direction) {
-        let mut objects = scene.objects.iter();
-        let seen = objects.find(|object| object.name == lit.object);
-        let is_floor = seen.is_some_and(|object| matches!(object.shape, Shape::Plane(_)));
-        is_on_floor = is_floor && lit.distance < usual * FARTHEST_FLOOR;
+    if let Some((seen, distance)) = first_met(scene, origin, direction) {
+        let is_floor = matches!(scene.objects[seen].shape, Shape::Plane(_));
+        is_on_floor = is_floor && distance < usual * FARTHEST_FLOOR;
         if is_on_floor {
-            size = size.min(size_at(scene, lit.distance) * NEARER * share);
-            at = lit.point;
-        } else if lit.distance < usual + size {
+            size = size.min(size_at(scene, distance) * NEARER * share);
+            at = origin + direction * distance;
+        } else if distance < usual + size {
             return None;
         }
     }
@@ -261,7 +259,7 @@ fn free_place(
     }
     let is_in_the_way =
         |(low, high): (DVec3, DVec3)| (at.clamp(low, high) - at).length() < size * ROOM;
-    let visible = scene.objects.iter().filter(|object| object.visible);
+    let visible = scene.visible_objects();
     let mut bounds = visible.filter_map(|object| object.shape.bounds());
     (!bounds.any(is_in_the_way)).then_some((at, size))
 }
@@ -270,8 +268,8 @@ fn free_place(
 fn before_what_is_seen(scene: &Scene, ray: (DVec3, DVec3), usual: f64) -> (DVec3, f64) {
     let (origin, direction) = ray;
     // What is close to the eye fills the picture anyway.
-    let seen = match explain(scene, origin, direction) {
-        Sight::Surface(lit) if lit.distance > NEAREST * usual => lit.distance,
+    let seen = match first_met(scene, origin, direction) {
+        Some((_, distance)) if distance > NEAREST * usual => distance,
         _ => f64::INFINITY,
     };
     // Half of it is between its middle and what is seen; the farther, the larger.
@@ -303,8 +301,7 @@ mod tests {
                     .flat_map(|y| (-20..=20).map(move |x| [x, y].map(|at| f64::from(at) / 40.0)));
                 let mut grid = grid.map(|place| framing.ray(place));
                 let seen = grid.any(|(origin, direction)| {
-                    let sight = explain(&with, origin, direction);
-                    matches!(sight, Sight::Surface(lit) if lit.object == with.objects[9].name)
+                    first_met(&with, origin, direction).is_some_and(|(seen, _)| seen == 9)
                 });
                 assert!(seen, "{projection:?}: {name}");
             }

@@ -392,7 +392,7 @@ impl eframe::App for App {
             || self.timeline.is_dragging();
         let messages = std::mem::take(&mut self.editor.messages);
         self.toasts.push(&ctx, messages);
-        self.toasts.show(&ctx, place.rect);
+        self.toasts.show(&ctx, place.rect, self.exports.place());
         self.pictures
             .submit(&self.editor, place.pixels, self.layout.aspect);
         if let Some(wishes) = self.thumbs.wishes(&ctx, &self.editor, place.rect) {

@@ -374,9 +374,7 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             (!has).then_some("nothing in a group is selected")
         }
         Command::MergePacks => {
-            let packs = &editor.scene().color_packs;
-            let mut pairs = (0..packs.len()).flat_map(|n| (0..n).map(move |m| (n, m)));
-            let has = pairs.any(|(n, m)| packs[n] == packs[m]);
+            let has = editor.scene().has_equal_packs();
             (!has).then_some("no two color packs are equal")
         }
         Command::Rename if editor.selected().group(editor.scene()).is_some() => None,

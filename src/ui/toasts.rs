@@ -12,6 +12,9 @@ const PER_LETTER: f64 = 0.06;
 const LONGEST: f64 = 30.0;
 /// Width of a message in points: the excerpt of a refused file fits in.
 const WIDTH: f32 = 560.0;
+/// The least width of one that makes room for a window, and what is left free beside that: margins and gaps.
+const LEAST_WIDTH: f32 = 200.0;
+const BESIDE: f32 = 6.0 * GRID;
 /// Height of the sentence of a message, in parts of that of the window.
 const HIGHEST: f32 = 0.25;
 /// Most messages on screen; older ones make room.
@@ -56,8 +59,8 @@ impl Toasts {
         self.shown.drain(..excess);
     }
 
-    /// Draws them at the lower edge of the picture area.
-    pub fn show(&mut self, ctx: &Context, area: Rect) {
+    /// Draws them at the lower edge of the picture area, beside a window in it if there is room.
+    pub fn show(&mut self, ctx: &Context, area: Rect, window: Option<Rect>) {
         let now = ctx.input(|input| input.time);
         self.shown
             .retain(|toast| toast.message.is_error || now < toast.end());
@@ -69,6 +72,13 @@ impl Toasts {
         if let Some(seconds) = next.reduce(f64::min) {
             ctx.request_repaint_after_secs(seconds as f32);
         }
+        let most = WIDTH.min(ctx.content_rect().width() * 0.45);
+        let room = window.map_or(most, |window| area.right() - window.right() - BESIDE);
+        let width = if room < LEAST_WIDTH {
+            most
+        } else {
+            room.min(most)
+        };
         let mut height = 2.0 * GRID;
         let mut dismissed = None;
         for (index, toast) in self.shown.iter().enumerate().rev() {
@@ -76,7 +86,7 @@ impl Toasts {
                 .pivot(Align2::RIGHT_BOTTOM)
                 .fixed_pos(area.max - vec2(2.0 * GRID, height))
                 .order(egui::Order::Foreground)
-                .show(ctx, |ui| draw(ui, &toast.message));
+                .show(ctx, |ui| draw(ui, width, &toast.message));
             if shown.inner {
                 dismissed = Some(index);
             }
@@ -88,8 +98,8 @@ impl Toasts {
     }
 }
 
-/// Draws one message; true if it was dismissed.
-fn draw(ui: &mut egui::Ui, message: &Message) -> bool {
+/// Draws one message as wide as this; true if it was dismissed.
+fn draw(ui: &mut egui::Ui, width: f32, message: &Message) -> bool {
     let colors = palette(ui.ctx());
     let (icon, color) = if message.is_error {
         (icons::ERROR, colors.error)
@@ -110,7 +120,7 @@ fn draw(ui: &mut egui::Ui, message: &Message) -> bool {
         .inner_margin(Margin::same(10));
     frame
         .show(ui, |ui| {
-            ui.set_width(WIDTH.min(ui.ctx().content_rect().width() * 0.45));
+            ui.set_width(width);
             ui.horizontal_top(|ui| {
                 ui.label(icons::text(icon).color(color));
                 ui.vertical(|ui| {

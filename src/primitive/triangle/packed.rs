@@ -106,7 +106,7 @@ pub fn number_corners<R: Real>(triangles: &[PackedTriangle<R>]) -> Vec<[u32; 3]>
 /// How many visible triangles meet at each corner.
 pub fn count_corner_users(scene: &Scene) -> HashMap<Corner, usize> {
     let mut users = HashMap::new();
-    for object in scene.objects.iter().filter(|object| object.visible) {
+    for object in scene.visible_objects() {
         if let Shape::Triangle(triangle) = &object.shape {
             for point in triangle.corners() {
                 *users.entry(corner(point)).or_insert(0) += 1;

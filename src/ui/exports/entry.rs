@@ -46,6 +46,11 @@ impl Entry {
         self.order.is_none()
     }
 
+    /// What was ordered, until it is over.
+    pub fn order(&self) -> Option<&Order> {
+        self.order.as_ref()
+    }
+
     /// What it does after its frames, in words.
     pub fn describe_video(&self) -> Option<String> {
         let video = self.video.as_ref()?;

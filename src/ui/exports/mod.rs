@@ -13,10 +13,11 @@ mod progress;
 mod entry;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::Duration;
 
-use egui::{Button, Context, Grid, RichText, Ui, Window};
+use egui::{Button, Context, Grid, Rect, RichText, Ui, Window};
 
 use self::entry::Entry;
 use self::fields::{Found, Settings, fields, forecast, presets};
@@ -48,6 +49,8 @@ struct Shown {
 pub struct Exports {
     /// Whether the window is shown.
     pub is_open: bool,
+    /// Where it is on the screen, if it is shown.
+    place: Option<Rect>,
     /// The folder of the program's data, if there is one.
     folder: Option<PathBuf>,
     /// What is asked for.
@@ -145,6 +148,11 @@ impl Exports {
         Some(format!("export {done}/{}{left}{more}", state.done.total))
     }
 
+    /// Where the window is on the screen, if it is shown.
+    pub fn place(&self) -> Option<Rect> {
+        self.place
+    }
+
     /// Whether there is something that the window should be drawn again for.
     pub fn is_busy(&self, pictures: &Pictures) -> bool {
         pictures.is_exporting()
@@ -164,7 +172,7 @@ impl Exports {
             ctx.request_repaint_after(Duration::from_millis(100));
         }
         let mut is_open = self.is_open;
-        Window::new("Export animation")
+        let shown = Window::new("Export animation")
             .open(&mut is_open)
             .collapsible(false)
             .resizable(false)
@@ -174,6 +182,7 @@ impl Exports {
                 self.show_list(ui, editor, pictures);
                 self.show_interrupted(ui, editor, pictures);
             });
+        self.place = shown.map(|shown| shown.response.rect);
         self.is_open = is_open && self.is_open;
         if !self.is_open
             && let Some(shown) = self.shown.take()
@@ -227,6 +236,9 @@ impl Exports {
             Err(error) => {
                 ui.colored_label(colors.error, error.to_string());
             }
+            Ok(_) if self.is_making(&settings, editor) => {
+                ui.label("These frames are being made: see below");
+            }
             Ok(sequence) => {
                 self.look(editor, &settings, sequence);
                 let found = self.found.as_ref().and_then(|(.., found)| found.as_ref());
@@ -249,6 +261,13 @@ impl Exports {
             owner: Owner::of(editor),
             settings,
         });
+    }
+
+    /// Whether the frames of these settings are ordered, of the scene as it is.
+    fn is_making(&self, settings: &Settings, editor: &Editor) -> bool {
+        let settings = settings.clone().at_home();
+        let mut orders = self.entries.iter().filter_map(Entry::order);
+        orders.any(|order| order.settings == settings && Arc::ptr_eq(&order.scene, editor.scene()))
     }
 
     /// Puts an order into the queue.

@@ -175,7 +175,7 @@ impl Outliner {
     fn revealed(&self, editor: &Editor, listed: Listed) -> Option<usize> {
         let is_new = self.reveals || self.listed != (editor.documents(), editor.selection);
         let is_item = matches!(editor.selection, Selection::Item(_));
-        listed.row_of(editor).filter(|_| is_new && is_item)
+        (is_new && is_item).then(|| listed.row_of(editor)).flatten()
     }
 
     /// Where to scroll to, so that a row is seen; nothing where it is.

@@ -151,9 +151,12 @@ impl Tools {
         if !is_busy && self.drag.is_none() {
             self.wheel = None;
         }
-        if response.clicked() {
+        let modifiers = ui.input(|input| input.modifiers);
+        // The first click of two may have been on something before the picture, which is gone.
+        let is_second = response.double_clicked() && modifiers.is_none();
+        if response.clicked() && !is_second {
             let (at, revision) = (response.interact_pointer_pos(), editor.shown_revision());
-            self.click = at.map(|at| (at, ui.input(|input| input.modifiers), revision));
+            self.click = at.map(|at| (at, modifiers, revision));
         }
         self.select(&view, out);
         self.take_pack(ui, &view, response, out);
