@@ -122,8 +122,14 @@ fn run_words(words: Vec<OsString>) -> CliAction {
             let sentence = format!("the window opens one scene: leave out what follows {name:?}");
             return done(Err(CliError::usage(sentence)));
         }
+        let commands = CliArgs::command();
+        let there: Vec<&str> = commands
+            .get_subcommands()
+            .map(clap::Command::get_name)
+            .collect();
+        let there = there.join(", ");
         return done(Err(CliError::usage(format!(
-            "there is no command {name:?}; there are render, export, job, check, convert, plan, chart, stability and referee, and `glint SCENE` opens the editor"
+            "there is no command {name:?}; there are {there}, and `glint SCENE` opens the editor"
         ))));
     }
     let words = match CliArgs::try_parse_from(words) {

@@ -3,7 +3,7 @@
 use super::candidates::{Candidate, Family, UNCULLED};
 use super::look::capitalised;
 use super::study::{Measurement, Study};
-use crate::scene::{Method, Render, Setting, SphereMethod, VisitSetting};
+use crate::scene::{Chosen, SphereMethod};
 
 /// Ratios closer to one than this are none.
 const ALIKE: f64 = 0.05;
@@ -44,12 +44,12 @@ fn what(candidate: &Candidate, default: &Candidate) -> String {
         return "Every primitive is tested for every ray, as if nobody knew where they are."
             .to_owned();
     }
-    let (own, usual) = (methods(&candidate.render), methods(&default.render));
+    let (own, usual) = (candidate.render.chosen(), default.render.chosen());
     let differing = own
         .into_iter()
         .zip(usual)
         .filter(|(own, usual)| own.id != usual.id);
-    let mut parts: Vec<String> = differing.map(|(own, _)| own.words()).collect();
+    let mut parts: Vec<String> = differing.map(|(own, _)| words(&own)).collect();
     let (bounces, usual) = (
         candidate.render.reflection_limit,
         default.render.reflection_limit,
@@ -107,48 +107,14 @@ fn times(ratio: f64) -> String {
     }
 }
 
-/// A method that a setting stands at.
-struct Chosen {
-    label: &'static str,
-    id: String,
-    what: &'static str,
-    source: &'static str,
-}
-
-impl Chosen {
-    fn words(&self) -> String {
-        let Self {
-            label,
-            id,
-            what,
-            source,
-        } = self;
-        format!("{label} {id}: {what} ({source})")
-    }
-}
-
-fn methods(render: &Render) -> Vec<Chosen> {
-    let mut list = ChosenList(Vec::new());
-    render.clone().visit_settings(&mut list);
-    list.0
-}
-
-struct ChosenList(Vec<Chosen>);
-
-impl VisitSetting for ChosenList {
-    fn visit<M: Method>(&mut self, setting: Setting, value: &mut M) {
-        let id = value.id();
-        // Numbers differ, and the method is the same: `grid:4` and `grid:8`.
-        let name = |id: &str| id.split(':').next().map(str::to_owned);
-        let mut methods = M::ALL.iter();
-        let method = methods.find(|method| name(method.id) == name(&id));
-        self.0.push(Chosen {
-            label: setting.label,
-            what: method.map_or("", |method| method.what),
-            source: method.map_or("", |method| method.source),
-            id,
-        });
-    }
+fn words(chosen: &Chosen) -> String {
+    let Chosen {
+        setting,
+        id,
+        what,
+        source,
+    } = chosen;
+    format!("{} {id}: {what} ({source})", setting.label)
 }
 
 #[cfg(test)]

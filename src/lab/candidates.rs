@@ -216,15 +216,6 @@ impl VisitSetting for MethodList {
     }
 }
 
-/// The settings in the words of the command line.
-struct Ids(Vec<String>);
-
-impl VisitSetting for Ids {
-    fn visit<M: Method>(&mut self, setting: Setting, value: &mut M) {
-        self.0.push(format!("{} {}", setting.name, value.id()));
-    }
-}
-
 impl Candidate {
     /// What is traced, before it is scaled up.
     pub fn request(&self, scene: &Scene) -> RenderRequest {
@@ -249,9 +240,9 @@ impl Candidate {
         if self.family == Family::Referee {
             return "one ray per pixel, double precision; the time it takes to start and to read the scene is left out".to_owned();
         }
-        let mut ids = Ids(Vec::new());
-        self.render.clone().visit_settings(&mut ids);
-        let mut words = ids.0;
+        let chosen = self.render.chosen().into_iter();
+        let ids = chosen.map(|chosen| format!("{} {}", chosen.setting.name, chosen.id));
+        let mut words: Vec<String> = ids.collect();
         words.push(counted(self.render.reflection_limit, "bounce"));
         match self.model {
             Model::Everything => words.push("nothing left out".to_owned()),

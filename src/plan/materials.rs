@@ -68,13 +68,18 @@ fn pack_surface<R: Real>(
     (all || shines || pack.diffuse.abs().max_element() > 0.0).then(|| Surface {
         diffuse: linear(pack.diffuse),
         specular: linear(pack.specular),
-        exponent: (all || shines).then(|| match request.methods.highlight {
-            HighlightMethod::Auto => Exponent::new(pack.phong_exponent),
-            HighlightMethod::Power => Exponent::power(pack.phong_exponent),
-            HighlightMethod::Log1p => Exponent::Large(pack.phong_exponent),
-        }),
+        exponent: (all || shines).then(|| exponent(request.methods.highlight, pack.phong_exponent)),
         mirror: mirrors.then(|| linear(pack.specular * total_intensity)),
     })
+}
+
+/// How an exponent is raised to by a method.
+pub fn exponent(method: HighlightMethod, exponent: f64) -> Exponent {
+    match method {
+        HighlightMethod::Auto => Exponent::new(exponent),
+        HighlightMethod::Power => Exponent::power(exponent),
+        HighlightMethod::Log1p => Exponent::Large(exponent),
+    }
 }
 
 /// 0–255 to 0–1.

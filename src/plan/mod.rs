@@ -69,7 +69,7 @@ pub use geometry::{Geometry, Kept, Planner};
 pub use hit_order::HitOrder;
 pub use idle::IdleFaces;
 pub use lights::PointLight;
-pub use materials::{Material, Surface};
+pub use materials::{Material, Surface, exponent};
 pub use needs::{ACCELERATOR, Need, needs};
 pub use pack::Plan;
 pub use packed_mesh::{MeshInstance, PackedMesh};

@@ -3,13 +3,13 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use glam::DVec3;
 
 use super::camera::{Camera, Projection};
-use super::notation;
+pub use super::notation::vector::Value;
+use super::notation::{self, vector::NumberOrPoint};
 use super::orientation::Orientation;
 
 /// Frames per second that there may be.
@@ -109,15 +109,6 @@ pub enum Target {
     ObjectPosition(String),
     /// How the named object is turned, which must be a mesh: degrees about x, then y, then z.
     ObjectRotation(String),
-}
-
-/// What a key of a track holds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Value {
-    /// For intensities.
-    Number(f64),
-    /// For positions, in world units, and rotations, in degrees.
-    Point(DVec3),
 }
 
 /// A recorded flight: what the camera did, at the times when it was seen doing it.
@@ -362,41 +353,6 @@ impl Serialize for Value {
 
 impl<'de> Deserialize<'de> for Value {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(NumberOrPoint)
-    }
-}
-
-struct NumberOrPoint;
-
-impl<'de> Visitor<'de> for NumberOrPoint {
-    type Value = Value;
-
-    fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        f.write_str("a number or a point such as (1, 2, 3)")
-    }
-
-    fn visit_f64<E: Error>(self, number: f64) -> Result<Value, E> {
-        Ok(Value::Number(number))
-    }
-
-    fn visit_i64<E: Error>(self, number: i64) -> Result<Value, E> {
-        Ok(Value::Number(number as f64))
-    }
-
-    fn visit_u64<E: Error>(self, number: u64) -> Result<Value, E> {
-        Ok(Value::Number(number as f64))
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut parts: A) -> Result<Value, A::Error> {
-        let mut point = [0.0; 3];
-        for (index, part) in point.iter_mut().enumerate() {
-            *part = parts
-                .next_element()?
-                .ok_or_else(|| A::Error::invalid_length(index, &self))?;
-        }
-        match parts.next_element::<f64>()? {
-            Some(_) => Err(A::Error::invalid_length(4, &self)),
-            None => Ok(Value::Point(DVec3::from(point))),
-        }
+        deserializer.deserialize_any(NumberOrPoint("a number or a point such as (1, 2, 3)"))
     }
 }

@@ -65,12 +65,6 @@ impl<T: Clone> List<T> {
         Arc::make_mut(&mut chunk.items).get_mut(index - chunk.start)
     }
 
-    /// The first item that is wanted, to be changed: no other chunk is copied.
-    pub fn find_mut(&mut self, is_wanted: impl FnMut(&T) -> bool) -> Option<&mut T> {
-        let index = self.iter().position(is_wanted)?;
-        self.get_mut(index)
-    }
-
     /// The chunk that an index is in, or would be.
     fn chunk_of(&self, index: usize) -> Option<usize> {
         let after = self.chunks.partition_point(|chunk| chunk.start <= index);
@@ -378,7 +372,7 @@ mod tests {
     fn a_change_touches_one_chunk() {
         let before: List<u32> = (0..100_000).collect();
         let mut after = before.clone();
-        *after.find_mut(|item| *item == 77_777).expect("an item") = 0;
+        *after.get_mut(77_777).expect("an item") = 0;
         let changes = after.changes(&before).expect("laid out alike");
         assert!(changes.len() <= MOST && changes.contains(&(77_777, &0)));
         let shared = after.chunks.iter().zip(before.chunks.iter());

@@ -94,7 +94,7 @@ pub use notation::{format_number, parse_vec3};
 pub use object::{Light, LightObj, Object};
 pub use orientation::Orientation;
 pub use recovery::{Leftover, Recovery};
-pub use render::{MAX_REFLECTIONS, MAX_SIDE, Render, Setting, VisitSetting};
+pub use render::{Chosen, MAX_REFLECTIONS, MAX_SIDE, Render, Setting, VisitSetting};
 pub use shape::{
     Describe, Disc, Field, FieldValue, Mesh, MeshSource, Outline, Plane, PlanePiece, Shape, Sphere,
     Triangle,

@@ -104,7 +104,45 @@ impl VisitSetting for Choose<'_> {
     }
 }
 
+/// A method that a setting stands at.
+#[derive(Clone, Debug)]
+pub struct Chosen {
+    /// The setting.
+    pub setting: Setting,
+    /// The method's id, with its number if it has one.
+    pub id: String,
+    /// What the method does, in a phrase.
+    pub what: &'static str,
+    /// Whose it is.
+    pub source: &'static str,
+}
+
+struct AllChosen(Vec<Chosen>);
+
+impl VisitSetting for AllChosen {
+    fn visit<M: Method>(&mut self, setting: Setting, value: &mut M) {
+        let id = value.id();
+        // Numbers differ, and the method is the same: `grid:4` and `grid:8`.
+        let name = |id: &str| id.split(':').next().map(str::to_owned);
+        let mut methods = M::ALL.iter();
+        let method = methods.find(|method| name(method.id) == name(&id));
+        self.0.push(Chosen {
+            setting,
+            what: method.map_or("", |method| method.what),
+            source: method.map_or("", |method| method.source),
+            id,
+        });
+    }
+}
+
 impl Render {
+    /// What all settings stand at.
+    pub fn chosen(&self) -> Vec<Chosen> {
+        let mut all = AllChosen(Vec::new());
+        self.clone().visit_settings(&mut all);
+        all.0
+    }
+
     /// Width over height of the picture.
     pub fn aspect(&self) -> f64 {
         f64::from(self.width) / f64::from(self.height)

@@ -193,7 +193,7 @@ impl App {
             },
             Some(FileOutcome::Leave) => {
                 self.closing = Some(self.editor.revision());
-                if self.pictures.is_saving() {
+                if self.pictures.worker().is_saving() {
                     self.editor
                         .notify("Glint closes when the picture is written".to_owned());
                 }
@@ -212,7 +212,7 @@ impl App {
     fn close_if_meant(&mut self, ctx: &Context) {
         match self.closing {
             Some(revision) if revision != self.editor.revision() => self.closing = None,
-            Some(_) if !self.pictures.is_saving() => {
+            Some(_) if !self.pictures.worker().is_saving() => {
                 ctx.send_viewport_cmd(ViewportCommand::Close);
             }
             _ => {}
@@ -247,16 +247,17 @@ impl App {
 impl eframe::App for App {
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
         self.pictures.poll(ctx, &mut self.editor);
-        let is_measuring = self.pictures.is_measuring();
-        self.lab.update(is_measuring, self.pictures.take_study());
-        let mut small = self.pictures.take_thumbnails();
+        let is_measuring = self.pictures.worker().is_measuring();
+        self.lab
+            .update(is_measuring, self.pictures.worker().take_study());
+        let mut small = self.pictures.worker().take_thumbnails();
         self.examples.take(ctx, &mut small);
         self.thumbs.take(ctx, small);
         let wishes = self.examples.wishes(ctx.pixels_per_point());
         if !wishes.is_empty() {
-            self.pictures.request_thumbnails(wishes);
+            self.pictures.worker().request_thumbnails(wishes);
         }
-        for answer in self.pictures.take_answers() {
+        for answer in self.pictures.worker().take_answers() {
             match answer {
                 Answer::Survey(take, seen) => {
                     self.editor.apply(Action::Time(Time::Surveyed(take, seen)));
@@ -396,7 +397,7 @@ impl eframe::App for App {
         self.pictures
             .submit(&self.editor, place.pixels, self.layout.aspect);
         if let Some(wishes) = self.thumbs.wishes(&ctx, &self.editor, place.rect) {
-            self.pictures.request_thumbnails(wishes);
+            self.pictures.worker().request_thumbnails(wishes);
         }
         // A question would keep the live view waiting.
         self.pictures.ask(&self.editor, questions);

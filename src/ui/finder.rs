@@ -11,7 +11,7 @@ use super::layout::Part;
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW};
 use crate::editor::{Editor, Item, Selection};
-use crate::scene::{Aspect, EXAMPLES, Method, Setting, VisitSetting};
+use crate::scene::{Aspect, EXAMPLES};
 
 /// Width of the window in points.
 const WIDTH: f32 = 460.0;
@@ -243,25 +243,15 @@ fn settings(editor: &Editor) -> impl Iterator<Item = Find> {
             Selection::Render,
         ),
     ];
-    let mut labels = Labels(Vec::new());
-    editor.scene().render.clone().visit_settings(&mut labels);
-    let labels = labels.0.into_iter();
-    names.extend(labels.map(|label| (format!("Picture: {label}"), Selection::Render)));
+    let chosen = editor.scene().render.chosen().into_iter();
+    let labels = chosen.map(|chosen| format!("Picture: {}", chosen.setting.label));
+    names.extend(labels.map(|label| (label, Selection::Render)));
     names.into_iter().map(|(name, selection)| Find {
         name,
         aside: "setting".to_owned(),
         what: Target::Selection(selection),
         is_enabled: true,
     })
-}
-
-/// What the inspector calls the settings.
-struct Labels(Vec<&'static str>);
-
-impl VisitSetting for Labels {
-    fn visit<M: Method>(&mut self, setting: Setting, _: &mut M) {
-        self.0.push(setting.label);
-    }
 }
 
 fn things<'a>(

@@ -126,7 +126,14 @@ impl App {
             let note = reading.or_else(|| self.exports.describe(&self.pictures));
             let note = note.or_else(|| kept.map(status::autosaved));
             let check = (&self.check, &**self.editor.shown());
-            status::show(ui, picture, &self.pictures.activity(), note, check, out);
+            status::show(
+                ui,
+                picture,
+                &self.pictures.worker().activity(),
+                note,
+                check,
+                out,
+            );
         });
         if self.lab.is_open {
             let panel = Panel::bottom("lab").frame(side(ui)).resizable(true);

@@ -11,14 +11,11 @@ use super::dialogs::Ask;
 use super::lab::LabRequest;
 use super::viewport::{Display, low_res};
 use crate::editor::{Editor, Mode};
-use crate::export::{ExportError, Sequence};
-use crate::image::Image;
-use crate::lab::Study;
 use crate::plan::{Region, RenderRequest};
 use crate::scene::{Aspect, Sampling, Scene, Take};
 use crate::worker::{
-    Activity, Answer, BUDGET, Event, ExportState, Frame, LiveJob, Pace, QueryJob, Question,
-    RenderThreadError, StillJob, ThumbnailJob, Worker,
+    Activity, BUDGET, Event, Frame, LiveJob, Pace, QueryJob, Question, RenderThreadError, StillJob,
+    Worker,
 };
 
 /// Time over which pictures per second are counted.
@@ -112,14 +109,14 @@ impl Pictures {
         }
     }
 
+    /// What traces them.
+    pub fn worker(&self) -> &Worker {
+        &self.worker
+    }
+
     /// How many different pictures a second have been on screen lately.
     pub fn per_second(&self) -> f64 {
         self.rhythm.per_second(Instant::now())
-    }
-
-    /// Asks for small pictures, each in place of one of its name that waits.
-    pub fn request_thumbnails(&self, jobs: Vec<ThumbnailJob>) {
-        self.worker.request_thumbnails(jobs);
     }
 
     /// Asks what takes rays to answer: the panels' questions, and what a recorded flight has seen.
@@ -145,44 +142,6 @@ impl Pictures {
         }
     }
 
-    /// The answers that have come.
-    pub fn take_answers(&self) -> Vec<Answer> {
-        self.worker.take_answers()
-    }
-
-    /// The small pictures that are finished.
-    pub fn take_thumbnails(&self) -> Vec<(u64, Image)> {
-        self.worker.take_thumbnails()
-    }
-
-    /// Puts an export into the queue.
-    ///
-    /// # Errors
-    /// [`ExportError`], if its folder cannot be made or read.
-    pub fn export(&self, sequence: Sequence) -> Result<u64, ExportError> {
-        self.worker.export(sequence)
-    }
-
-    /// All exports.
-    pub fn exports(&self) -> Vec<ExportState> {
-        self.worker.exports()
-    }
-
-    /// Whether an export is not done yet.
-    pub fn is_exporting(&self) -> bool {
-        self.worker.is_exporting()
-    }
-
-    /// Lets an export wait, or go on.
-    pub fn pause_export(&self, id: u64, is_paused: bool) {
-        self.worker.pause_export(id, is_paused);
-    }
-
-    /// Gives an export up, or takes it out of the list.
-    pub fn forget_export(&self, id: u64) {
-        self.worker.forget_export(id);
-    }
-
     /// What a pixel of the finished picture on screen took, in milliseconds.
     pub fn millis_per_pixel(&self, editor: &Editor) -> Option<f64> {
         let is_whole = |frame: &&Frame| frame.step == 1 && frame.region.is_none();
@@ -204,26 +163,6 @@ impl Pictures {
             LabRequest::Measure(study) => self.worker.measure(*study),
             LabRequest::Stop => self.worker.stop_measuring(),
         }
-    }
-
-    /// Whether the render thread is measuring, or will be.
-    pub fn is_measuring(&self) -> bool {
-        self.worker.is_measuring()
-    }
-
-    /// What the render thread has measured since the last call.
-    pub fn take_study(&self) -> Option<Study> {
-        self.worker.take_study()
-    }
-
-    /// What the render thread is doing.
-    pub fn activity(&self) -> Activity {
-        self.worker.activity()
-    }
-
-    /// Whether a picture is being written.
-    pub fn is_saving(&self) -> bool {
-        self.worker.is_saving()
     }
 
     /// The picture on screen.

@@ -228,7 +228,7 @@ fn wrong_words_and_wrong_files_exit_with_2() {
         ),
         (
             &["chek", DEMO],
-            "there is no command \"chek\"; there are render, export, job, check, convert, plan, chart, stability and referee",
+            "there is no command \"chek\"; there are render, export, job, check, convert, plan, chart, stability, referee, and",
         ),
     ];
     for (words, expected) in cases {

@@ -21,10 +21,7 @@ const CROOKED: f64 = 1e-4;
 
 /// One map for each way of keeping a camera level at the pole, and of keeping it through turns.
 pub fn maps(effort: u32) -> Vec<Map> {
-    let across = || Axis {
-        name: "degrees from the pole",
-        values: FROM_POLE.to_vec(),
-    };
+    let across = || Axis::new("degrees from the pole", &FROM_POLE);
     let pole = |name: &'static str, is_default, right: fn(f64, f64) -> Option<DVec3>| {
         Map::measure(
             (Subject::CameraPole, "leans by more than a thousandth"),
@@ -36,10 +33,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
             },
         )
     };
-    let frames = || Axis {
-        name: "frames",
-        values: FRAMES.to_vec(),
-    };
+    let frames = || Axis::new("frames", &FRAMES);
     let drift = |name: &'static str, is_default, turned: fn(u64) -> DMat3| {
         Map::measure(
             (Subject::CameraTurns, "is no orthonormal basis any more"),

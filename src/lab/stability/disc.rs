@@ -18,10 +18,7 @@ const BESIDE: f64 = 0.006;
 
 /// The one formula: hits where the ray passes by, misses where it does not.
 pub fn map(effort: u32) -> Map {
-    let across = Axis {
-        name: "radii away",
-        values: DISTANCES.to_vec(),
-    };
+    let across = Axis::new("radii away", &DISTANCES);
     Map::measure(
         (
             Subject::Disc,

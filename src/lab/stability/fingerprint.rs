@@ -25,10 +25,7 @@ const SIZE: (u32, u32) = (32, 24);
 
 /// The one rule.
 pub fn map(effort: u32) -> Map {
-    let across = Axis {
-        name: "units moved",
-        values: MOVES.to_vec(),
-    };
+    let across = Axis::new("units moved", &MOVES);
     Map::measure(
         (Subject::Fingerprint, "changed frame that is not made again"),
         ("all that decides it".to_owned(), true),

@@ -4,8 +4,9 @@ use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scattered};
 use super::subject::Subject;
+use crate::plan::exponent;
 use crate::scene::{HighlightMethod, Method as _};
-use crate::simd::{Exponent, Vec3};
+use crate::simd::Vec3;
 
 const EXPONENTS: [f64; 7] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
 /// Tries in each cell for a first look.
@@ -18,10 +19,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     HighlightMethod::ALL
         .iter()
         .map(|method| {
-            let across = Axis {
-                name: "exponent",
-                values: EXPONENTS.to_vec(),
-            };
+            let across = Axis::new("exponent", &EXPONENTS);
             Map::measure(
                 (Subject::Highlight, "off by more than half a level of 255"),
                 (
@@ -40,11 +38,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
 }
 
 fn fails(method: HighlightMethod, number: u64, p: f64) -> Option<bool> {
-    let exponent = match method {
-        HighlightMethod::Auto => Exponent::new(p),
-        HighlightMethod::Power => Exponent::power(p),
-        HighlightMethod::Log1p => Exponent::Large(p),
-    };
+    let exponent = exponent(method, p);
     let random = |stream| scattered(number, stream) * 2.0 - 1.0;
     let normal = DVec3::new(random(0), random(1), random(2)).try_normalize()?;
     let aside = normal

@@ -24,14 +24,8 @@ const CROOKED: f64 = 1e-6;
 /// One map for each way through points on a line, and for each way between two directions.
 pub fn maps(effort: u32) -> Vec<Map> {
     let tries = || 0..TRIES * u64::from(effort);
-    let ratios = Axis {
-        name: "longest to shortest segment",
-        values: RATIOS.to_vec(),
-    };
-    let angles = Axis {
-        name: "degrees between keys",
-        values: ANGLES.to_vec(),
-    };
+    let ratios = Axis::new("longest to shortest segment", &RATIOS);
+    let angles = Axis::new("degrees between keys", &ANGLES);
     let method = |name: &'static str, is_default, leaves: fn(&[f64; 4]) -> bool| {
         Map::measure(
             (Subject::Path, "overshoots a key"),

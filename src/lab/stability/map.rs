@@ -1,5 +1,7 @@
 //! Maps of failure rates, and what they are measured over.
 
+use std::iter::Sum;
+
 use super::subject::Subject;
 
 /// Scales of a scene whose size is one.
@@ -19,6 +21,12 @@ pub struct Axis {
 }
 
 impl Axis {
+    /// The one of this name, with these marks.
+    pub fn new(name: &'static str, values: &[f64]) -> Self {
+        let values = values.to_vec();
+        Self { name, values }
+    }
+
     /// That of maps over one axis: there is one of it.
     pub fn one(name: &'static str) -> Self {
         let values = vec![1.0];
@@ -33,6 +41,15 @@ pub struct Tries {
     pub tries: u64,
     /// How many failed.
     pub failures: u64,
+}
+
+impl Sum for Tries {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |sum, tries| Self {
+            tries: sum.tries + tries.tries,
+            failures: sum.failures + tries.failures,
+        })
+    }
 }
 
 impl Tries {
@@ -114,12 +131,7 @@ impl Map {
 
     /// All tries together.
     pub fn total(&self) -> Tries {
-        let mut sum = Tries::default();
-        for cell in &self.cells {
-            sum.tries += cell.tries;
-            sum.failures += cell.failures;
-        }
-        sum
+        self.cells.iter().copied().sum()
     }
 
     /// The cell with the highest rate, and where it is.
@@ -139,17 +151,11 @@ impl Map {
 }
 
 pub fn scales() -> Axis {
-    Axis {
-        name: "scale",
-        values: SCALES.to_vec(),
-    }
+    Axis::new("scale", &SCALES)
 }
 
 pub fn places() -> Axis {
-    Axis {
-        name: "sizes away",
-        values: PLACES.to_vec(),
-    }
+    Axis::new("sizes away", &PLACES)
 }
 
 /// Directions and shares without a pattern, the same every time.

@@ -15,10 +15,7 @@ const TRIES: u64 = 200;
 
 /// The one formula: off by more than the rounding of the ray must cost, 8u / sin(angle).
 pub fn map(effort: u32) -> Map {
-    let across = Axis {
-        name: "degrees",
-        values: ANGLES.to_vec(),
-    };
+    let across = Axis::new("degrees", &ANGLES);
     Map::measure(
         (Subject::Plane, "distance off by more than 8u / sin(angle)"),
         ("plane".to_owned(), true),

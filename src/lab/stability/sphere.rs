@@ -19,10 +19,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     let methods = SphereMethod::ALL.iter();
     methods
         .map(|method| {
-            let across = Axis {
-                name: "radii away",
-                values: DISTANCES.to_vec(),
-            };
+            let across = Axis::new("radii away", &DISTANCES);
             Map::measure(
                 (
                     Subject::Sphere,

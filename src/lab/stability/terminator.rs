@@ -33,10 +33,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
                 .map(|ball| ball.triangles.len() as f64)
                 .collect(),
         };
-        let up = Axis {
-            name: "degrees of light",
-            values: HEIGHTS.to_vec(),
-        };
+        let up = Axis::new("degrees of light", &HEIGHTS);
         Map::measure(
             (Subject::Terminator, "lit point that is dark"),
             (method.to_owned(), is_lifted),

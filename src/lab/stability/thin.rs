@@ -44,14 +44,8 @@ pub fn maps(effort: u32) -> Vec<Map> {
             method: sampling.id(),
             is_default: *sampling == Sampling::default(),
             failure: "pixel that shows nothing of it",
-            across: Axis {
-                name: "pixels wide",
-                values: WIDTHS.to_vec(),
-            },
-            up: Axis {
-                name: "away",
-                values: DISTANCES.to_vec(),
-            },
+            across: Axis::new("pixels wide", &WIDTHS),
+            up: Axis::new("away", &DISTANCES),
             cells: Vec::new(),
         })
         .collect();
@@ -79,8 +73,7 @@ fn missed((first, effort): (u64, u32), width: f64, distance: f64) -> [Tries; SAM
             let shown = brightness(&scene, sampling);
             let tried = truth.iter().zip(shown).filter(|(truth, _)| **truth >= SEEN);
             let tries = Tries::count(tried.map(|(_, shown)| shown < NOTHING));
-            sum.tries += tries.tries;
-            sum.failures += tries.failures;
+            *sum = [*sum, tries].into_iter().sum();
         }
     }
     sums

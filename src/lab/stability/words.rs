@@ -28,8 +28,7 @@ impl Map {
         let mut sums = vec![Tries::default(); count];
         for (index, cell) in self.cells.iter().enumerate() {
             let sum = &mut sums[mark(index % width, index / width)];
-            sum.tries += cell.tries;
-            sum.failures += cell.failures;
+            *sum = [*sum, *cell].into_iter().sum();
         }
         sums
     }
@@ -57,12 +56,7 @@ fn part(axis: &Axis, sums: &[Tries]) -> Option<(String, Tries)> {
         (false, false) if first == last => format!("at {}", at(first)),
         (false, false) => format!("from {} to {}", at(first), at(last)),
     };
-    let there = sums[first..=last].iter();
-    let tries = there.fold(Tries::default(), |sum, tries| Tries {
-        tries: sum.tries + tries.tries,
-        failures: sum.failures + tries.failures,
-    });
-    Some((words, tries))
+    Some((words, sums[first..=last].iter().copied().sum()))
 }
 
 /// A number as on an axis.

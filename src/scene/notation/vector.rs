@@ -23,35 +23,54 @@ pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DVec3, 
 
 /// Reads three numbers, or one for all three.
 pub fn one_or_three<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DVec3, D::Error> {
-    deserializer.deserialize_any(OneOrThree)
+    let read = deserializer.deserialize_any(NumberOrPoint("a number or three numbers"))?;
+    Ok(match read {
+        Value::Number(number) => DVec3::splat(number),
+        Value::Point(point) => point,
+    })
 }
 
-struct OneOrThree;
+/// One number or three: what a key of a track holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// For intensities.
+    Number(f64),
+    /// For positions, in world units, and rotations, in degrees.
+    Point(DVec3),
+}
 
-impl<'de> Visitor<'de> for OneOrThree {
-    type Value = DVec3;
+/// Reads one number or three, which are called so.
+pub struct NumberOrPoint(pub &'static str);
+
+impl<'de> Visitor<'de> for NumberOrPoint {
+    type Value = Value;
 
     fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        f.write_str("a number or three numbers")
+        f.write_str(self.0)
     }
 
-    fn visit_f64<E: Error>(self, value: f64) -> Result<DVec3, E> {
-        Ok(DVec3::splat(value))
+    fn visit_f64<E: Error>(self, number: f64) -> Result<Value, E> {
+        Ok(Value::Number(number))
     }
 
-    fn visit_i64<E: Error>(self, value: i64) -> Result<DVec3, E> {
-        Ok(DVec3::splat(value as f64))
+    fn visit_i64<E: Error>(self, number: i64) -> Result<Value, E> {
+        Ok(Value::Number(number as f64))
     }
 
-    fn visit_u64<E: Error>(self, value: u64) -> Result<DVec3, E> {
-        Ok(DVec3::splat(value as f64))
+    fn visit_u64<E: Error>(self, number: u64) -> Result<Value, E> {
+        Ok(Value::Number(number as f64))
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut values: A) -> Result<DVec3, A::Error> {
-        let mut next = |index| {
-            let value = values.next_element()?;
-            value.ok_or_else(|| Error::invalid_length(index, &self))
-        };
-        Ok(DVec3::new(next(0)?, next(1)?, next(2)?))
+    fn visit_seq<A: SeqAccess<'de>>(self, mut parts: A) -> Result<Value, A::Error> {
+        let mut point = [0.0; 3];
+        for (index, part) in point.iter_mut().enumerate() {
+            *part = parts
+                .next_element()?
+                .ok_or_else(|| A::Error::invalid_length(index, &self))?;
+        }
+        match parts.next_element::<f64>()? {
+            Some(_) => Err(A::Error::invalid_length(4, &self)),
+            None => Ok(Value::Point(DVec3::from(point))),
+        }
     }
 }

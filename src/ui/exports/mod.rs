@@ -113,13 +113,13 @@ impl Exports {
 
     /// Tells of exports that have ended, and makes their videos.
     pub fn update(&mut self, editor: &mut Editor, pictures: &Pictures) {
-        let states = pictures.exports();
+        let states = pictures.worker().exports();
         for entry in &mut self.entries {
             let state = states.iter().find(|state| state.id == entry.id);
             let was_over = entry.is_over();
             if let Some(left) = entry.update(state, editor) {
                 // It is listed with what can be taken up.
-                pictures.forget_export(entry.id);
+                pictures.worker().forget_export(entry.id);
                 self.interrupted.push(left);
             }
             self.ended += usize::from(entry.is_over() && !was_over);
@@ -131,7 +131,7 @@ impl Exports {
 
     /// What is going on, in words; `None` if nothing is.
     pub fn describe(&self, pictures: &Pictures) -> Option<String> {
-        let states = pictures.exports();
+        let states = pictures.worker().exports();
         let mut going = states.iter().filter(|state| state.ended.is_none());
         let Some(state) = going.next() else {
             return self.entries.iter().find_map(Entry::describe_video);
@@ -155,7 +155,7 @@ impl Exports {
 
     /// Whether there is something that the window should be drawn again for.
     pub fn is_busy(&self, pictures: &Pictures) -> bool {
-        pictures.is_exporting()
+        pictures.worker().is_exporting()
             || self.entries.iter().any(|entry| !entry.is_over())
             || self.looking.is_some()
     }
@@ -280,7 +280,7 @@ impl Exports {
     ) {
         self.found = None;
         editor.begin(EXPORT);
-        match pictures.export(sequence.clone()) {
+        match pictures.worker().export(sequence.clone()) {
             Ok(id) => {
                 let entry = Entry::new(id, order, sequence);
                 self.entries.push(entry);
@@ -330,7 +330,7 @@ impl Exports {
     }
 
     fn show_list(&mut self, ui: &mut Ui, editor: &mut Editor, pictures: &Pictures) {
-        let states = pictures.exports();
+        let states = pictures.worker().exports();
         for entry in &mut self.entries {
             if let Some(state) = states.iter().find(|state| state.id == entry.id) {
                 ui.separator();

@@ -82,7 +82,7 @@ pub fn show_state(
         if state.ended.is_some() {
             let making = video.filter(|video| matches!(video.state, VideoState::Making(_)));
             if making.is_none() && ui.button("Remove").clicked() {
-                pictures.forget_export(state.id);
+                pictures.worker().forget_export(state.id);
             }
             let is_asked = ui.button("Open folder").clicked();
             // Not where *Remove* comes when it is made.
@@ -95,13 +95,13 @@ pub fn show_state(
         }
         let word = if state.is_paused { "Resume" } else { "Pause" };
         if ui.button(word).clicked() {
-            pictures.pause_export(state.id, !state.is_paused);
+            pictures.worker().pause_export(state.id, !state.is_paused);
         }
         let cancel = ui
             .button("Cancel")
             .hint("What is written stays; exporting again goes on from there");
         if cancel.clicked() {
-            pictures.forget_export(state.id);
+            pictures.worker().forget_export(state.id);
         }
         false
     });
