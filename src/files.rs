@@ -294,6 +294,12 @@ pub fn is_same_file(one: &Path, other: &Path) -> bool {
     one == other || found(one) == found(other)
 }
 
+/// Whether the system says that there is nothing at a path: what is out of reach may be there.
+pub fn is_missing(path: &Path) -> bool {
+    let found = fs::metadata(path);
+    found.is_err_and(|error| error.kind() == io::ErrorKind::NotFound)
+}
+
 /// What a file held when it was read or written last.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stamp {

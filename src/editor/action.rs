@@ -46,6 +46,9 @@ pub enum Action {
     Time(Time),
 }
 
+/// What messages about what the last step has done are about.
+pub const STEP: &str = "step";
+
 /// Something the user should read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Message {
@@ -53,6 +56,6 @@ pub struct Message {
     pub is_error: bool,
     /// What happened and, for errors, what to do; nothing, where an action was only begun again.
     pub text: String,
-    /// The action that it is about: what went wrong in it is forgotten when it is begun again. Empty for none.
+    /// The action that it is about: what was said of it is forgotten when it is begun again. Empty for none.
     pub about: &'static str,
 }

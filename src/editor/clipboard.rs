@@ -122,6 +122,7 @@ pub fn paste(scene: &mut Scene, pasted: &Scene) {
     // What they are called here: whether it is a light, and its name there.
     let mut names = HashMap::new();
     let mut taken = Taken::new(scene.objects.iter().map(|object| &object.name));
+    let groups = new_groups(scene, pasted);
     for object in &pasted.objects {
         let mut object = object.clone();
         known(&mut object.color_pack);
@@ -129,6 +130,9 @@ pub fn paste(scene: &mut Scene, pasted: &Scene) {
         names.insert((false, object.name), name.clone());
         object.name = name;
         object.shape = object.shape.moved(by);
+        if let Some(group) = groups.get(&object.group) {
+            object.group.clone_from(group);
+        }
         scene.objects.push(object);
     }
     let mut taken = Taken::new(scene.lights.iter().map(|light| &light.name));
@@ -151,6 +155,32 @@ pub fn paste(scene: &mut Scene, pasted: &Scene) {
     if !tracks.is_empty() {
         scene.animation_mut().tracks.extend(tracks);
     }
+}
+
+/// What groups are called of which all is pasted once more: the copy is a group of its own. Alone, a member stays in its
+/// group.
+fn new_groups(scene: &Scene, pasted: &Scene) -> HashMap<String, String> {
+    let sizes = |scene: &Scene| {
+        let mut sizes: HashMap<String, usize> = HashMap::new();
+        for object in scene
+            .objects
+            .iter()
+            .filter(|object| !object.group.is_empty())
+        {
+            *sizes.entry(object.group.clone()).or_default() += 1;
+        }
+        sizes
+    };
+    let there = sizes(scene);
+    let mut taken = Taken::new(there.keys());
+    let whole = sizes(pasted).into_iter();
+    let whole = whole.filter(|(group, size)| *size > 1 && there.get(group) == Some(size));
+    whole
+        .map(|(group, _)| {
+            let new = taken.take(&group);
+            (group, new)
+        })
+        .collect()
 }
 
 /// From where things were copied to where they do not stand in each other: two things in one place would
@@ -194,6 +224,38 @@ mod tests {
     use super::*;
     use crate::editor::edit::Edit;
     use crate::scene::{Sphere, Target, check};
+
+    #[test]
+    fn a_copy_of_a_whole_group_is_one_of_its_own() {
+        let mut scene = Scene::demo();
+        let members: Vec<usize> = (0..3).collect();
+        Edit::Group(members.clone(), "Group 1".to_owned())
+            .apply(&mut scene)
+            .expect("grouped");
+        let groups = |scene: &Scene, from: usize| -> Vec<String> {
+            scene
+                .objects
+                .iter()
+                .skip(from)
+                .map(|o| o.group.clone())
+                .collect()
+        };
+        let end = scene.objects.len();
+        let all = excerpt(
+            &scene,
+            &Selected::all(members.into_iter().map(Item::object)),
+        );
+        for group in ["Group 2", "Group 3"] {
+            let end = scene.objects.len();
+            paste(&mut scene, &all);
+            assert_eq!(groups(&scene, end), [group; 3]);
+        }
+        let one = excerpt(&scene, &Selected::all([Item::object(1)]));
+        let last = scene.objects.len();
+        paste(&mut scene, &one);
+        assert_eq!(groups(&scene, last), ["Group 1"]);
+        assert_eq!(groups(&scene, end).len(), 7);
+    }
 
     #[test]
     fn copies_of_a_row_stand_before_it_and_those_of_anything_else_beside_it() {

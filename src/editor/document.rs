@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::action::{Action, Message, Mode};
+use super::action::{Action, Message, Mode, STEP};
 use super::animation_state::AnimationState;
 use super::edit::Edit;
 use super::fly::Flight;
@@ -30,9 +30,10 @@ pub struct Editor {
     pub(super) saved: Arc<Scene>,
     /// What its file held when this window read or wrote it last.
     pub(super) stamp: Option<Stamp>,
-    pub(super) saves: u64,
     documents: u64,
     pub(super) is_dirty: bool,
+    /// Whether its file is not there any more.
+    pub(super) is_gone: bool,
     /// Mesh files that other programs have written since the document was opened, as they are now.
     pub(super) reread: Vec<MeshSource>,
     /// Mesh files that were read, and hold something else now that cannot be.
@@ -72,9 +73,9 @@ impl Editor {
             path,
             name: "untitled",
             stamp: None,
-            saves: 0,
             documents: 0,
             is_dirty: false,
+            is_gone: false,
             reread: Vec::new(),
             broken: BTreeSet::new(),
             history: History::default(),
@@ -135,7 +136,7 @@ impl Editor {
 
     /// Whether there are changes that no file has.
     pub fn is_dirty(&self) -> bool {
-        self.is_dirty || self.is_making_keys() || self.has_broken_meshes()
+        self.is_dirty || self.is_gone || self.is_making_keys() || self.has_broken_meshes()
     }
 
     /// What the document is called: its file name, or `demo` or `untitled`.
@@ -211,7 +212,10 @@ impl Editor {
                     self.return_to(before);
                 }
             }
-            Action::Undo => self.travel(History::undo),
+            Action::Undo => {
+                self.begin(STEP);
+                self.travel(History::undo);
+            }
             Action::Redo => self.travel(History::redo),
             Action::Show(mode) => {
                 if mode == Mode::HighRes {
@@ -252,11 +256,6 @@ impl Editor {
         self.stamp = Some(stamp);
     }
 
-    /// Grows when the file and the scene become one: by opening, saving, or taking up what is there.
-    pub fn saves(&self) -> u64 {
-        self.saves
-    }
-
     /// Grows when another document takes the place of the one that was open.
     pub fn documents(&self) -> u64 {
         self.documents
@@ -277,9 +276,8 @@ impl Editor {
         }
         self.path = Some(absolute(path));
         self.stamp = Some(stamp);
-        self.saves += 1;
         self.saved = Arc::clone(&self.scene);
-        self.is_dirty = false;
+        (self.is_dirty, self.is_gone) = (false, false);
         let kept = backup.map_or(String::new(), |backup| {
             format!(
                 "; the file had comments inside, so it was kept as {}",
@@ -327,12 +325,11 @@ impl Editor {
     /// Takes another document's place; what is traced and what is said goes on.
     fn become_other(&mut self, other: Self) {
         let revision = self.revision + 1;
-        let (saves, documents) = (self.saves + 1, self.documents + 1);
+        let documents = self.documents + 1;
         let messages = std::mem::take(&mut self.messages);
         let animation_state = self.animation_state.start_again(&other.scene);
         *self = Self {
             revision,
-            saves,
             documents,
             animation_state,
             messages,

@@ -70,6 +70,8 @@ pub enum Edit {
     MergePacks,
     /// The objects in these places are listed in the group of this name; in none, if it is empty.
     Group(Vec<usize>, String),
+    /// Another name for a group, which no other has.
+    RenameGroup(String, String),
     /// Other bookmarks; the name is what was done to them.
     Bookmarks(Vec<Bookmark>, &'static str),
     /// All of these, one after the other, in one step of this name.
@@ -90,6 +92,9 @@ pub enum EditError {
     /// Two packs would have one name.
     #[error("There is another color pack named “{0}”; choose another name")]
     PackNameTaken(String),
+    /// Two groups would become one.
+    #[error("There is another group named “{0}”; choose another name, or drag its objects there")]
+    GroupNameTaken(String),
 }
 
 /// What an edit puts in place of what is on show, wherever its keys have brought that: objects and lights by their
@@ -207,6 +212,7 @@ impl Edit {
                 format!("{}: own color pack", name(Item::object(*index)))
             }
             Self::MergePacks => "Merge equal packs".to_owned(),
+            Self::RenameGroup(from, to) => format!("Rename {from} to {to}"),
             Self::Group(_, name) if name.is_empty() => "Ungroup".to_owned(),
             Self::Group(_, name) => format!("Group {name}"),
             Self::Each(_, label) => label.clone(),
@@ -253,6 +259,7 @@ impl Edit {
             Self::Move(item, to) => return Ok(select(move_item(scene, item, to))),
             Self::MakePackUnique(index) => make_pack_unique(scene, index),
             Self::MergePacks => scene.merge_equal_packs(),
+            Self::RenameGroup(from, to) => rename_group(scene, &from, &to)?,
             Self::Group(members, name) => {
                 for index in members {
                     if let Some(object) = scene.objects.get_mut(index) {
@@ -377,6 +384,21 @@ fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), EditError> {
                 .packs_mut()
                 .shift_insert(item.index, to.to_owned(), pack);
             scene.wear_instead(|name| (name == from).then_some(to));
+        }
+    }
+    Ok(())
+}
+
+fn rename_group(scene: &mut Scene, from: &str, to: &str) -> Result<(), EditError> {
+    if from == to {
+        return Ok(());
+    }
+    if scene.objects.iter().any(|object| object.group == to) {
+        return Err(EditError::GroupNameTaken(to.to_owned()));
+    }
+    for index in 0..scene.objects.len() {
+        if scene.objects[index].group == from {
+            to.clone_into(&mut scene.objects[index].group);
         }
     }
     Ok(())

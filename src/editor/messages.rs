@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::action::Message;
+use super::action::{Message, STEP};
 use super::document::Editor;
 use crate::scene::{Scene, Target};
 
@@ -22,6 +22,15 @@ impl Editor {
             is_error: false,
             text,
             about: "",
+        });
+    }
+
+    /// Tells the user what the last step has done; nothing any more once that is undone.
+    pub fn notify_of_step(&mut self, text: String) {
+        self.messages.push(Message {
+            is_error: false,
+            text,
+            about: STEP,
         });
     }
 

@@ -18,6 +18,16 @@ impl Editor {
         self.is_dirty = true;
     }
 
+    /// Whether the document's file is not there any more, as far as is known.
+    pub fn is_gone(&self) -> bool {
+        self.is_gone
+    }
+
+    /// Whether it is: what no file has counts as unsaved.
+    pub fn set_gone(&mut self, is_gone: bool) {
+        self.is_gone = is_gone;
+    }
+
     /// Whether another program has written the document's file since this window read or wrote it.
     pub fn is_changed_outside(&self) -> bool {
         match (&self.path, &self.stamp) {
@@ -41,7 +51,6 @@ impl Editor {
         let theirs = Arc::new(document.scene);
         self.header = document.header;
         self.stamp = Some(stamp);
-        self.saves += 1;
         self.saved = Arc::clone(&theirs);
         if theirs == self.scene {
             // Other words for the same.
@@ -53,7 +62,7 @@ impl Editor {
         self.history.end_gesture(&theirs);
         self.follow(&theirs);
         self.set_scene(theirs);
-        self.notify(format!(
+        self.notify_of_step(format!(
             "{} was changed by another program and read anew; undo brings yours back",
             self.title()
         ));
@@ -150,7 +159,6 @@ impl Editor {
     /// Keeps the scene beside what another program has written, if it can be read; the next save replaces
     /// that.
     pub fn keep_mine(&mut self, theirs: Option<(Document, Stamp)>) {
-        self.saves += 1;
         let (theirs, stamp) = theirs.map_or((None, None), |(theirs, stamp)| {
             (Some(Arc::new(theirs.scene)), Some(stamp))
         });

@@ -188,7 +188,7 @@ impl App {
         match outcome {
             None => {}
             Some(FileOutcome::Quit) => match self.exports.describe(&self.pictures) {
-                Some(going) => self.files.ask_to_leave(going),
+                Some(_) => self.files.ask_to_leave(),
                 None => self.act_on(ctx, Some(FileOutcome::Leave)),
             },
             Some(FileOutcome::Leave) => {
@@ -377,7 +377,8 @@ impl eframe::App for App {
             // What was measured before is not what is edited.
             self.lab.leave();
         }
-        let outcome = self.files.show(ui, &mut self.editor);
+        let going = self.exports.describe(&self.pictures);
+        let outcome = self.files.show(ui, &mut self.editor, going.as_deref());
         self.act_on(&ctx, outcome);
         help::show(&ctx, &mut self.shortcuts_open);
         let is_gesture = ui.input(|input| input.pointer.any_down()) || self.flying.is_gesture(&ctx);

@@ -3,8 +3,7 @@
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, TryRecvError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use egui::{Context, Ui};
 
@@ -14,13 +13,11 @@ use super::interchange::{export_job, export_path, export_povray, import_path, im
 use super::outside::{OUTSIDE, Theirs, Watch};
 use super::prompts::{Answer, PathPrompt, ask_about_changes, ask_to_leave, ask_to_quit};
 use super::reading::{Read, Reading};
-use super::wishes::{FileOutcome, Next, PathRequest};
+use super::wishes::{Answered, FileOutcome, Next, PathRequest, Waiting};
 use crate::editor::{Action, Editor, Time};
 use crate::files::Stamp;
 use crate::scene::{Document, EXAMPLES, SceneError};
 
-/// A dialog that comes back empty sooner than a hand can cancel it was never shown.
-const NO_DIALOG: Duration = Duration::from_millis(400);
 /// How long a file that is read may hold the window up, so that small ones are there at once.
 const AT_ONCE: Duration = Duration::from_millis(30);
 /// Files that "Open recent" remembers.
@@ -40,13 +37,6 @@ pub struct Files {
     pub folders: Folders,
 }
 
-/// A desktop dialog that is open.
-struct Waiting {
-    wish: PathRequest,
-    answer: Receiver<Option<PathBuf>>,
-    since: Instant,
-}
-
 /// A question over the window.
 enum Question {
     Unsaved(Next),
@@ -54,8 +44,8 @@ enum Question {
     Saving(Next),
     Quit,
     Path(PathRequest, PathPrompt),
-    /// Exports are going on, in words.
-    Exports(String),
+    /// Exports are going on.
+    Exports,
     /// Another program has written the file; the wish is to save, if it is one.
     Outside(Box<Theirs>, Option<PathRequest>),
 }
@@ -101,8 +91,8 @@ impl Files {
     }
 
     /// Closes the window, after asking whether what is going on is to be given up.
-    pub fn ask_to_leave(&mut self, going: String) {
-        self.question = Some(Question::Exports(going));
+    pub fn ask_to_leave(&mut self) {
+        self.question = Some(Question::Exports);
     }
 
     /// Writes the document to its file, or asks for one.
@@ -135,11 +125,7 @@ impl Files {
         if self.waiting.is_none() {
             let suggested = self.folders.suggest(editor, &wish.ask);
             let answer = self.dialogs.ask(ctx, &wish.ask, suggested);
-            self.waiting = Some(Waiting {
-                wish,
-                answer,
-                since: Instant::now(),
-            });
+            self.waiting = Some(Waiting::new(wish, answer));
         }
     }
 
@@ -173,19 +159,15 @@ impl Files {
             ctx.request_repaint_after(AT_ONCE);
             self.take_read(ctx, editor, Duration::ZERO);
         } else if self.is_free() && self.watch.is_due(ctx, editor) {
-            if !self.watch.is_left(editor) {
-                self.look_outside(editor);
-            }
+            self.look_outside(editor);
             let changed = self.watch.changed_meshes(editor);
             self.reading.extend(Reading::again(editor, changed));
         }
-        let Waiting {
-            wish,
-            answer,
-            since,
-        } = self.waiting.take()?;
-        match answer.try_recv() {
-            Ok(Some(path)) => {
+        let waiting = self.waiting.take()?;
+        match waiting.answered() {
+            Answered::NotYet => self.waiting = Some(waiting),
+            Answered::Path(path) => {
+                let wish = waiting.wish;
                 let full = wish.ask.with_ending(path.clone());
                 let is_unasked = wish.ask.writes() && full != path && full.exists();
                 if is_unasked || !wish.ask.takes(&full) {
@@ -195,22 +177,12 @@ impl Files {
                 }
                 return self.answered(ctx, editor, wish, full);
             }
-            Err(TryRecvError::Empty) => {
-                self.waiting = Some(Waiting {
-                    wish,
-                    answer,
-                    since,
-                });
+            Answered::NoDialog => {
+                let suggested = self.folders.suggest(editor, &waiting.wish.ask);
+                let label = "Path (this desktop offers no file dialog)";
+                self.prompt(waiting.wish, &suggested, label);
             }
-            Ok(None) | Err(TryRecvError::Disconnected) if since.elapsed() < NO_DIALOG => {
-                let suggested = self.folders.suggest(editor, &wish.ask);
-                self.prompt(
-                    wish,
-                    &suggested,
-                    "Path (this desktop offers no file dialog)",
-                );
-            }
-            Ok(None) | Err(TryRecvError::Disconnected) => {}
+            Answered::Cancelled => {}
         }
         None
     }
@@ -221,14 +193,21 @@ impl Files {
     }
 
     /// Draws what is being asked.
-    pub fn show(&mut self, ui: &Ui, editor: &mut Editor) -> Option<FileOutcome> {
+    /// Exports that go on are told in words.
+    pub fn show(
+        &mut self,
+        ui: &Ui,
+        editor: &mut Editor,
+        exports: Option<&str>,
+    ) -> Option<FileOutcome> {
         let ctx = ui.ctx().clone();
         let answer = match self.question.as_mut()? {
             Question::Unsaved(_) => ask_about_changes(&ctx, &editor.title()),
             Question::Saving(_) if editor.is_making_keys() => Answer::Open,
             Question::Saving(_) => Answer::Yes,
             Question::Quit => ask_to_quit(&ctx),
-            Question::Exports(going) => ask_to_leave(&ctx, going),
+            // Nothing is given up where they have ended meanwhile.
+            Question::Exports => exports.map_or(Answer::No, |going| ask_to_leave(&ctx, going)),
             Question::Path(_, prompt) => prompt.show(&ctx),
             Question::Outside(theirs, _) => theirs.ask(&ctx, &editor.title()),
         };
@@ -246,7 +225,7 @@ impl Files {
             }
             (Question::Unsaved(next), Answer::No) => self.go_on(&ctx, editor, next),
             (Question::Quit, Answer::Yes) => Some(FileOutcome::Quit),
-            (Question::Exports(_), Answer::No) => Some(FileOutcome::Leave),
+            (Question::Exports, Answer::No) => Some(FileOutcome::Leave),
             (Question::Path(wish, prompt), Answer::Yes) => {
                 self.answered(&ctx, editor, wish, prompt.path())
             }
@@ -284,8 +263,10 @@ impl Files {
             Ask::ExportJob => export_job(editor, &path),
             Ask::ExportPovray => export_povray(editor, &path),
             Ask::SaveScene if editor.would_lose(&path) => {
-                let theirs = Theirs::new(editor, Document::load_stamped(&path));
-                self.question = Some(Question::Outside(Box::new(theirs), Some(wish)));
+                let (theirs, then) = (Document::load_stamped(&path), wish.then.clone());
+                if self.meet_theirs(editor, theirs, Some(wish)) {
+                    return self.go_on(ctx, editor, then?);
+                }
             }
             Ask::SaveScene => match editor.save(&path) {
                 Ok(()) => {
@@ -303,12 +284,17 @@ impl Files {
         let Some(path) = editor.path().map(Path::to_owned) else {
             return;
         };
+        let is_gone = self.watch.note_gone(editor, &path);
         let (is_news, broken) = (self.watch.is_news(&path), self.watch.take_broken());
         if let Some(why) = broken.filter(|_| !is_news) {
             editor.report_error_in(OUTSIDE, why);
         }
-        if !is_news || !editor.is_changed_outside() {
+        if !is_news || is_gone {
             return;
+        }
+        if !editor.is_changed_outside() {
+            // If something was wrong with it, that is over.
+            return editor.begin(OUTSIDE);
         }
         // What cannot be read may be half written: when more is, the next look tells, or the next save.
         let theirs = match Document::load_stamped(&path) {
@@ -316,13 +302,28 @@ impl Files {
             Err(SceneError::Disk { .. }) => return self.watch.look_again(),
             Err(error) => return self.watch.note_broken(error.to_string()),
         };
+        self.meet_theirs(editor, Ok(theirs), None);
+    }
+
+    /// Takes what another program has written, if nothing is lost by that; asks otherwise. Whether it was taken.
+    fn meet_theirs(
+        &mut self,
+        editor: &mut Editor,
+        theirs: Result<(Document, Stamp), SceneError>,
+        wish: Option<PathRequest>,
+    ) -> bool {
         editor.begin(OUTSIDE);
-        if editor.is_dirty() && theirs.0.scene != **editor.scene() {
-            let theirs = Theirs::new(editor, Ok(theirs));
-            self.question = Some(Question::Outside(Box::new(theirs), None));
-        } else {
-            editor.take_theirs(theirs);
+        match theirs {
+            Ok(theirs) if !editor.is_dirty() || theirs.0.scene == **editor.scene() => {
+                editor.take_theirs(theirs);
+                return true;
+            }
+            theirs => {
+                let theirs = Box::new(Theirs::new(editor, theirs));
+                self.question = Some(Question::Outside(theirs, wish));
+            }
         }
+        false
     }
 
     fn settle_outside(
@@ -333,6 +334,7 @@ impl Files {
         wish: Option<PathRequest>,
     ) -> Option<FileOutcome> {
         let then = wish.as_ref().and_then(|wish| wish.then.clone());
+        editor.begin(OUTSIDE);
         match (theirs.document, answer) {
             (theirs, Answer::Yes) => {
                 editor.keep_mine(theirs.ok());

@@ -163,5 +163,5 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
     let count = counted(count, "triangle");
     let notes = notes.iter().map(|note| format!("; {note}"));
     let notes: String = notes.collect();
-    editor.notify(format!("{count} from {path}{how}{notes}"));
+    editor.notify_of_step(format!("{count} from {path}{how}{notes}"));
 }

@@ -104,6 +104,13 @@ pub fn take_refused(ctx: &Context) -> Option<String> {
 fn refusal(field: &Field, text: &str) -> Option<String> {
     match read(text) {
         None if text.is_empty() => None,
+        None if is_ambiguous(text) => {
+            let (short, long) = (text.replace(',', "."), text.replace(',', ""));
+            let text = quoted(text);
+            Some(format!(
+                "{text} may be {short} or {long}: write one of them"
+            ))
+        }
         None => Some(format!("{} is no number", quoted(text))),
         Some(number) => out_of_range(field, number),
     }
@@ -123,8 +130,22 @@ fn out_of_range(field: &Field, number: f64) -> Option<String> {
     })
 }
 
-/// The number that a text is.
+/// Whether a comma stands before three digits, which may be decimals or thousands.
+fn is_ambiguous(text: &str) -> bool {
+    let Some((before, after)) = text.split_once(',') else {
+        return false;
+    };
+    let whole = before.trim_start_matches(['-', '+']);
+    let are_digits = |text: &str| text.bytes().all(|letter| letter.is_ascii_digit());
+    let is_group = (1..=3).contains(&whole.len()) && !whole.starts_with('0');
+    is_group && after.len() == 3 && are_digits(whole) && are_digits(after)
+}
+
+/// The number that a text is, if it is one and no other.
 fn read(text: &str) -> Option<f64> {
+    if is_ambiguous(text) {
+        return None;
+    }
     // Half of the world writes a comma before decimals.
     let number: Option<f64> = text.parse().ok();
     let number = number.or_else(|| text.replacen(',', ".", 1).parse().ok());
@@ -315,6 +336,28 @@ fn rounded(value: f64, unit: &str, most: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_comma_that_may_be_either_is_not_taken() {
+        for text in ["1,000", "-2,500", "12,345", "999,999"] {
+            assert_eq!(read(text), None, "{text}");
+        }
+        let field = coordinate("x", "");
+        let told = refusal(&field, "1,000");
+        assert_eq!(
+            told.as_deref(),
+            Some("\"1,000\" may be 1.000 or 1000: write one of them")
+        );
+        for (text, number) in [
+            ("1,5", 1.5),
+            ("0,125", 0.125),
+            ("1,0000", 1.0),
+            ("1234,567", 1234.567),
+            ("-0,5", -0.5),
+        ] {
+            assert_eq!(read(text), Some(number), "{text}");
+        }
+    }
 
     #[test]
     fn numbers_stay_within_their_fields() {

@@ -9,7 +9,7 @@ use egui::{Context, Ui};
 use super::prompts::{Answer, primary, question};
 use super::theme::GRID;
 use crate::editor::Editor;
-use crate::files::{Marks, Stamp, marks_of, time_of};
+use crate::files::{Marks, Stamp, is_missing, marks_of, time_of};
 use crate::scene::{Document, List, Object, SceneError, differences};
 
 /// What messages are about that tell of it.
@@ -27,8 +27,8 @@ pub struct Watch {
     found: Option<(PathBuf, SystemTime)>,
     /// Why it could not be read: told if it is still so at the next look, since it may be half written.
     broken: Option<String>,
-    /// The state of the editor that was left as it was: the file is not brought up again before the next save.
-    left: Option<u64>,
+    /// What was not there at the last look.
+    missing: Option<PathBuf>,
     /// The objects that were looked at last, and the files of their meshes.
     shown: Option<(List<Object>, Vec<MeshFile>)>,
     /// What marked those files at the last look, and when they were last to be read.
@@ -49,9 +49,19 @@ impl Watch {
         is_due
     }
 
-    /// Whether the file of the document is not brought up again before it is saved.
-    pub fn is_left(&self, editor: &Editor) -> bool {
-        self.left == Some(editor.saves())
+    /// Tells if the file is not there, and was not at the last look either: whoever writes it anew may take it away first.
+    /// Whether that is so.
+    pub fn note_gone(&mut self, editor: &mut Editor, path: &Path) -> bool {
+        let is_missing = is_missing(path);
+        let was_missing = self.missing.as_deref() == Some(path);
+        self.missing = is_missing.then(|| path.to_owned());
+        let is_gone = is_missing && was_missing;
+        if is_gone && !editor.is_gone() {
+            let path = path.display();
+            editor.report_error_in(OUTSIDE, format!("{path} is not there any more: it was moved or deleted. What is open here is in no file until it is saved again"));
+        }
+        editor.set_gone(is_gone);
+        is_gone
     }
 
     /// The files of meshes that were written since they were read, and are the same at two looks: they may have been
@@ -110,9 +120,11 @@ impl Watch {
         self.broken.take()
     }
 
-    /// Says nothing more of the file as it is, until the document is saved or another one is open.
+    /// The file as it is was seen: nothing more is said of it until it is another.
     pub fn leave(&mut self, editor: &Editor) {
-        self.left = Some(editor.saves());
+        if let Some(path) = editor.path() {
+            self.is_news(path);
+        }
     }
 }
 

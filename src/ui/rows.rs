@@ -104,10 +104,10 @@ impl<'u> Rows<'u> {
         self.note(field.name, *value != before);
     }
 
-    /// A colour: a swatch that opens a picker, and its channels 0–255.
+    /// A colour: a swatch that opens a picker, and its channels 0–255, of which each has a name too.
     pub fn color(
         &mut self,
-        name: &'static str,
+        (name, channels): (&'static str, [&'static str; 3]),
         hint: &'static str,
         default: DVec3,
         value: &mut DVec3,
@@ -121,6 +121,7 @@ impl<'u> Rows<'u> {
             range: 0.0..=255.0,
             speed: Some(1.0),
         };
+        let mut changed = name;
         row(self.ui, &field, &format_vec3(default), |ui, reset| {
             if reset {
                 *value = default;
@@ -130,28 +131,32 @@ impl<'u> Rows<'u> {
             let gaps = 3.0 * ui.spacing().item_spacing.x;
             let width = (ui.available_width() - HEX - gaps) / 3.0;
             let pasted = Cell::new(None);
-            for (channel, part) in [
-                ("red", &mut value.x),
-                ("green", &mut value.y),
-                ("blue", &mut value.z),
-            ] {
-                let name = format!("{name} {channel}");
+            let parts = [&mut value.x, &mut value.y, &mut value.z];
+            for (name, part) in channels.into_iter().zip(parts) {
+                let own = *part;
                 let number = Number {
                     field: &field,
-                    name: &name,
+                    name,
                     width,
                     size: 0.0,
                     pasted: Some(&pasted),
                     axis: None,
                 };
                 drag(ui, &number, part);
+                if *part != own {
+                    changed = name;
+                }
             }
             if let Some(whole) = pasted.get() {
-                *value = whole;
+                (*value, changed) = (whole, name);
             }
+            let own = *value;
             hex(ui, name, value);
+            if *value != own {
+                changed = name;
+            }
         });
-        self.note(name, *value != before);
+        self.note(changed, *value != before);
     }
 
     /// A tick box.
@@ -202,6 +207,21 @@ impl<'u> Rows<'u> {
         }
     }
 }
+
+/// The name of a colour, and those of its channels.
+macro_rules! color_names {
+    ($name:literal) => {
+        (
+            $name,
+            [
+                concat!($name, " red"),
+                concat!($name, " green"),
+                concat!($name, " blue"),
+            ],
+        )
+    };
+}
+pub(crate) use color_names;
 
 /// A row whose label resets it.
 fn row(ui: &mut Ui, field: &Field, default: &str, add: impl FnOnce(&mut Ui, bool)) {

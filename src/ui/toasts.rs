@@ -47,9 +47,8 @@ impl Toasts {
         let since = ctx.input(|input| input.time);
         for message in messages {
             if message.text.is_empty() {
-                let is_it = |toast: &Toast| toast.message.about == message.about;
                 self.shown
-                    .retain(|toast| !(toast.message.is_error && is_it(toast)));
+                    .retain(|toast| toast.message.about != message.about);
                 continue;
             }
             self.shown.retain(|toast| toast.message != message);

@@ -1,9 +1,14 @@
 //! What is wished of files, and what comes of it.
 
 use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, TryRecvError};
+use std::time::{Duration, Instant};
 
 use super::dialogs::Ask;
 use crate::editor::Editor;
+
+/// A dialog that comes back empty sooner than a hand can cancel it was never shown.
+const NO_DIALOG: Duration = Duration::from_millis(400);
 
 /// What is done once unsaved changes are out of the way.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -54,6 +59,50 @@ impl PathRequest {
             then,
             document: editor.documents(),
             revision: editor.revision(),
+        }
+    }
+}
+
+/// A desktop dialog that is open.
+pub struct Waiting {
+    /// What it asks for.
+    pub wish: PathRequest,
+    answer: Receiver<Option<PathBuf>>,
+    since: Instant,
+}
+
+/// What a desktop dialog has answered.
+pub enum Answered {
+    /// Nothing yet.
+    NotYet,
+    /// A path.
+    Path(PathBuf),
+    /// That there is none.
+    Cancelled,
+    /// Nothing: this desktop has no dialogs.
+    NoDialog,
+}
+
+impl Waiting {
+    /// One that has just been opened.
+    pub fn new(wish: PathRequest, answer: Receiver<Option<PathBuf>>) -> Self {
+        let since = Instant::now();
+        Self {
+            wish,
+            answer,
+            since,
+        }
+    }
+
+    /// What it has answered.
+    pub fn answered(&self) -> Answered {
+        match self.answer.try_recv() {
+            Ok(Some(path)) => Answered::Path(path),
+            Err(TryRecvError::Empty) => Answered::NotYet,
+            Ok(None) | Err(TryRecvError::Disconnected) if self.since.elapsed() < NO_DIALOG => {
+                Answered::NoDialog
+            }
+            Ok(None) | Err(TryRecvError::Disconnected) => Answered::Cancelled,
         }
     }
 }

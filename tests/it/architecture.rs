@@ -29,7 +29,7 @@ const HOMES: &[(&[&str], &[&str])] = &[
             "export/exporting",
             "export/writers",
             "export/ffmpeg",
-            "export/povray",
+            "export/program",
             "plan/grouping",
             "plan/borders",
             "plan/idle",

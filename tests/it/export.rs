@@ -932,8 +932,16 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
     harness.click("Remove");
     // With the lights' markers off, the frames that show one are others.
     see(&mut harness, "replace older files");
-    harness.click("Start export");
+    harness.window.get_by_label("Start export").click();
+    harness.window.step();
+    // A second click asks for nothing more.
+    see(&mut harness, "These frames are being made");
+    harness.window.get_by_label("Start export").click();
     finish(&mut harness);
+    let rows = harness
+        .window
+        .query_all_by_label_contains("14 frames and frames.gif");
+    assert_eq!(rows.count(), 1);
     see(&mut harness, "all 14 frames are there, then frames.gif");
     harness.type_name("frames", "nonsense");
     harness

@@ -506,6 +506,24 @@ fn a_hand_on_the_shot_moves_nothing_behind_it_and_a_click_looks_through_it() {
     harness.click("Shot");
     assert!(harness.editor().looks_through());
     assert!(harness.window.query_by_label("Shot").is_none());
+    // The second click of two is not one on what is behind it.
+    let before = harness.editor().selected().clone();
+    harness.press(Modifiers::NONE, Key::Escape);
+    while harness.window.query_by_label("Shot").is_none() {
+        assert!(steps.next().is_some(), "it never came again");
+        std::thread::sleep(std::time::Duration::from_millis(2));
+        harness.window.step();
+    }
+    (0..60).for_each(|_| harness.window.step());
+    for _ in 0..2 {
+        harness.window.drag_at(place.center());
+        harness.window.step();
+        harness.window.drop_at(place.center());
+        harness.window.step();
+    }
+    harness.settle();
+    assert!(harness.editor().looks_through());
+    assert_eq!(harness.editor().selected(), &before);
 }
 
 #[test]

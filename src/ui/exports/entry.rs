@@ -142,9 +142,12 @@ impl Entry {
         let is_asked = row.inner;
         let beside = self.video.as_ref().and_then(|video| video.path.parent());
         let folder = beside.unwrap_or(&state.folder);
-        if is_asked && let Err(error) = open::that_detached(folder) {
+        if is_asked && open::that_detached(folder).is_err() {
             let folder = folder.display();
-            editor.report_error_in(EXPORT, format!("{folder} could not be opened: {error}"));
+            editor.report_error_in(
+                EXPORT,
+                format!("This desktop has no program that shows {folder}"),
+            );
         }
     }
 

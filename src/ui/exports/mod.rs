@@ -139,6 +139,7 @@ impl Exports {
         let done = state.done.kept + state.done.written;
         let left = match seconds_left(state) {
             Some(seconds) => format!(" · {} left", in_words(seconds)),
+            None if state.is_paused => " · paused".to_owned(),
             None => String::new(),
         };
         let more = match going.count() {
@@ -248,7 +249,8 @@ impl Exports {
         }
         let colors = palette(ui.ctx());
         let text = RichText::new("Export").color(colors.on_accent);
-        let start = ui.add_enabled(sequence.is_ok(), Button::new(text).fill(colors.accent));
+        let can_start = sequence.is_ok() && !self.is_making(&settings, editor);
+        let start = ui.add_enabled(can_start, Button::new(text).fill(colors.accent));
         if start.accessible_name("Start export").clicked()
             && let Ok(sequence) = sequence
         {
@@ -282,6 +284,7 @@ impl Exports {
         editor.begin(EXPORT);
         match pictures.worker().export(sequence.clone()) {
             Ok(id) => {
+                self.forget_replaced(&sequence, pictures);
                 let entry = Entry::new(id, order, sequence);
                 self.entries.push(entry);
             }
@@ -290,6 +293,19 @@ impl Exports {
                 let why = error.to_string();
                 editor.report_error_in(EXPORT, why.clone());
                 self.interrupted.push(order.failed(why));
+            }
+        }
+    }
+
+    /// Takes what has ended out of the list, where these frames go to the same folder: it may not be there any more.
+    fn forget_replaced(&self, sequence: &Sequence, pictures: &Pictures) {
+        let place = |folder: &Path| std::path::absolute(folder).ok();
+        let worker = pictures.worker();
+        for state in worker.exports() {
+            let mut entries = self.entries.iter().filter(|entry| entry.id == state.id);
+            let is_over = state.ended.is_some() && entries.all(Entry::is_over);
+            if is_over && place(&state.folder) == place(&sequence.folder) {
+                worker.forget_export(state.id);
             }
         }
     }

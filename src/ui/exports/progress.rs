@@ -1,6 +1,6 @@
 //! How far an export is.
 
-use egui::{ProgressBar, RichText, Ui};
+use egui::{Button, ProgressBar, RichText, Ui};
 
 use super::fields::FIELDS;
 use super::video_maker::{VideoMaker, VideoState};
@@ -37,7 +37,8 @@ fn progress(state: &ExportState, video: Option<&VideoMaker>) -> (f64, String) {
             None => format!("{done} of {total}"),
             Some(left) => {
                 let rate = state.done.written as f64 / busy.max(1e-3);
-                format!("{done} of {total} · {rate:.0} frames/s · {left} left")
+                let decimals = usize::from(rate < 10.0);
+                format!("{done} of {total} · {rate:.decimals$} frames/s · {left} left")
             }
         },
     };
@@ -79,19 +80,20 @@ pub fn show_state(
         let buttons = if state.ended.is_some() { 150.0 } else { 120.0 };
         let bar = ProgressBar::new(share as f32).desired_width(FIELDS - buttons);
         ui.add(bar.text(RichText::new(text).small().color(palette(ui.ctx()).text)));
-        if state.ended.is_some() {
-            let making = video.filter(|video| matches!(video.state, VideoState::Making(_)));
-            if making.is_none() && ui.button("Remove").clicked() {
-                pictures.worker().forget_export(state.id);
-            }
-            let is_asked = ui.button("Open folder").clicked();
-            // Not where *Remove* comes when it is made.
-            if let Some(video) = making
-                && ui.button("Cancel").hint("Its frames stay").clicked()
-            {
+        let is_making = |video: &&VideoMaker| matches!(video.state, VideoState::Making(_));
+        if let Some(video) = video.filter(is_making) {
+            // As while its frames were made: a click then meets nothing else now.
+            ui.add_enabled(false, Button::new("Pause"));
+            if ui.button("Cancel").hint("Its frames stay").clicked() {
                 video.stop();
             }
-            return is_asked;
+            return false;
+        }
+        if state.ended.is_some() {
+            if ui.button("Remove").clicked() {
+                pictures.worker().forget_export(state.id);
+            }
+            return ui.button("Open folder").clicked();
         }
         let word = if state.is_paused { "Resume" } else { "Pause" };
         if ui.button(word).clicked() {

@@ -4,8 +4,12 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 
+use super::items::BOTH;
 use crate::editor::{Edit, Item, Kind};
 use crate::scene::{ColorPack, FieldValue, Light, Object, Scene, Shape};
+
+/// The ends of the names of a colour's channels.
+const CHANNELS: [&str; 3] = [" red", " green", " blue"];
 
 /// A point of something that a change moves.
 struct MovedPoint {
@@ -127,10 +131,7 @@ pub fn for_all(scene: &Scene, selected: &[Item], edit: Edit, is_together: bool) 
             };
             let edits = packs_of(scene, selected).filter_map(|index| {
                 let (_, own) = scene.color_packs.get_index(index)?;
-                let mut pack = like_pack(own, (old, &new));
-                if field == "color" {
-                    (pack.ambient, pack.diffuse) = (new.ambient, new.diffuse);
-                }
+                let pack = like_pack(own, (old, &new), field);
                 Some(Edit::Pack(index, pack, field))
             });
             (edits.collect(), field)
@@ -140,22 +141,39 @@ pub fn for_all(scene: &Scene, selected: &[Item], edit: Edit, is_together: bool) 
     Edit::Each(edits, format!("{count} items: {field}"))
 }
 
-/// The packs that the selected objects wear, each once.
-fn packs_of(scene: &Scene, selected: &[Item]) -> impl Iterator<Item = usize> {
-    let objects = selected.iter().filter(|item| item.kind == Kind::Object);
-    let worn = objects.filter_map(|item| {
-        let object = scene.objects.get(item.index)?;
-        scene.color_packs.get_index_of(&object.color_pack)
+/// The packs that are selected, and those that the selected objects wear, each once.
+pub fn packs_of(scene: &Scene, selected: &[Item]) -> impl Iterator<Item = usize> {
+    let packs = selected.iter().filter_map(|item| match item.kind {
+        Kind::Object => {
+            let object = scene.objects.get(item.index)?;
+            scene.color_packs.get_index_of(&object.color_pack)
+        }
+        Kind::Pack => Some(item.index),
+        Kind::Light => None,
     });
-    worn.collect::<BTreeSet<_>>().into_iter()
+    packs.collect::<BTreeSet<_>>().into_iter()
 }
 
-/// A pack with what of another one has changed.
-fn like_pack(own: &ColorPack, (old, new): (&ColorPack, &ColorPack)) -> ColorPack {
+/// A pack with what of another one has changed: a colour, or one channel of it.
+fn like_pack(own: &ColorPack, (old, new): (&ColorPack, &ColorPack), field: &str) -> ColorPack {
     let mut pack = own.clone();
-    take(&mut pack.ambient, &old.ambient, &new.ambient);
-    take(&mut pack.diffuse, &old.diffuse, &new.diffuse);
-    take(&mut pack.specular, &old.specular, &new.specular);
+    let is_channel = CHANNELS.iter().any(|channel| field.ends_with(channel));
+    let take_color = |own: &mut DVec3, old: DVec3, new: DVec3| {
+        *own = match is_channel {
+            true => changed(*own, old, new),
+            false if old != new => new,
+            false => *own,
+        };
+    };
+    if field.starts_with(BOTH) {
+        // Whatever it was painted in besides, as where one is changed alone.
+        take_color(&mut pack.diffuse, old.diffuse, new.diffuse);
+        pack.ambient = pack.diffuse;
+    } else {
+        take_color(&mut pack.ambient, old.ambient, new.ambient);
+        take_color(&mut pack.diffuse, old.diffuse, new.diffuse);
+        take_color(&mut pack.specular, old.specular, new.specular);
+    }
     take(
         &mut pack.phong_exponent,
         &old.phong_exponent,

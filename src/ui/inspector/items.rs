@@ -12,8 +12,11 @@ use crate::scene::{
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
-use crate::ui::rows::{Field, Rows, coordinate, fraction};
+use crate::ui::rows::{Field, Rows, color_names, coordinate, fraction};
 use crate::words::counted;
+
+/// What ambient and diffuse colour are called at once.
+pub const BOTH: &str = "color";
 
 /// A light and its marker.
 pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut UiRequests) {
@@ -226,7 +229,7 @@ pub fn pack(ui: &mut Ui, index: usize, before: &ColorPack, out: &mut UiRequests)
     let mut rows = Rows::new(ui);
     let mut both = pack.diffuse;
     rows.color(
-        "color",
+        color_names!("color"),
         "Ambient and diffuse at once: what most things are painted in",
         defaults.diffuse,
         &mut both,
@@ -235,19 +238,19 @@ pub fn pack(ui: &mut Ui, index: usize, before: &ColorPack, out: &mut UiRequests)
         (pack.ambient, pack.diffuse) = (both, both);
     }
     rows.color(
-        "ambient",
+        color_names!("ambient"),
         "Colour without any light, scaled by the ambient intensity",
         defaults.ambient,
         &mut pack.ambient,
     );
     rows.color(
-        "diffuse",
+        color_names!("diffuse"),
         "Colour of matte reflection",
         defaults.diffuse,
         &mut pack.diffuse,
     );
     rows.color(
-        "specular",
+        color_names!("specular"),
         "Colour of the highlight, and of the mirror image",
         defaults.specular,
         &mut pack.specular,

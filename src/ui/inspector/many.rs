@@ -1,12 +1,13 @@
 //! Several things at once: what they have in common is changed for all.
 
 use egui::{Id, Ui};
+use glam::DVec3;
 
-use super::alike::{for_all, values};
+use super::alike::{for_all, packs_of, values};
 use super::items;
-use super::title::{name_field, title};
+use super::title::{name_field, title, title_field};
 use crate::editor::{Action, Edit, Editor, Item, Kind};
-use crate::scene::{Light, Object, Scene, Shape};
+use crate::scene::{ColorPack, Light, Object, Scene, Shape};
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
@@ -21,7 +22,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let objects = editor.selected().places(Kind::Object);
     let group = editor.selected().group(scene);
     if let Some(group) = group {
-        group_title(ui, group, &objects, out);
+        group_title(ui, group, out);
     } else {
         title(ui, icons::SELECTED, &format!("{} items", selected.len()));
     }
@@ -58,7 +59,12 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
                 items::light(ui, scene, last.index, light, &mut own);
             }
         }
-        Kind::Pack => {}
+        Kind::Pack => {
+            if let Some((name, pack)) = scene.color_packs.get_index(last.index) {
+                title_field(ui, icons::PACK, last, name, &mut own);
+                items::pack(ui, last.index, pack, &mut own);
+            }
+        }
     }
     // A group stays what it is; and it is not the click elsewhere that ends what was typed.
     let is_together = group.is_some() || ui.input(|input| input.pointer.is_decidedly_dragging());
@@ -71,7 +77,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
 }
 
 /// The name of a group, which can be edited.
-fn group_title(ui: &mut Ui, group: &str, members: &[usize], out: &mut UiRequests) {
+fn group_title(ui: &mut Ui, group: &str, out: &mut UiRequests) {
     ui.horizontal(|ui| {
         ui.set_min_height(ROW);
         ui.label(icons::text(icons::GROUP));
@@ -79,16 +85,46 @@ fn group_title(ui: &mut Ui, group: &str, members: &[usize], out: &mut UiRequests
         let name = name_field(ui, "group", id, group);
         let name = name.map(|name| name.trim().to_owned());
         if let Some(name) = name.filter(|name| !name.is_empty()) {
-            out.edit(Edit::Group(members.to_vec(), name));
+            out.edit(Edit::RenameGroup(group.to_owned(), name));
         }
     });
 }
 
-/// The properties of `last` that others of its kind do not have, or have otherwise.
+/// The properties of `last` that others have otherwise.
 fn differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'static str> {
-    if last.kind == Kind::Light {
-        return light_differences(scene, selected, last.index);
-    }
+    let mut names = match last.kind {
+        Kind::Light => light_differences(scene, selected, last.index),
+        Kind::Object => object_differences(scene, selected, last),
+        Kind::Pack => Vec::new(),
+    };
+    names.extend(pack_differences(scene, selected));
+    names
+}
+
+/// The same of the packs that are selected or worn.
+fn pack_differences(scene: &Scene, selected: &[Item]) -> Vec<&'static str> {
+    let selected = &selected[selected.len().saturating_sub(MOST)..];
+    let packs = packs_of(scene, selected).filter_map(|place| scene.color_packs.get_index(place));
+    let packs: Vec<&ColorPack> = packs.map(|(_, pack)| pack).collect();
+    let differ = |alike: &dyn Fn(&ColorPack, &ColorPack) -> bool| {
+        packs.windows(2).any(|pair| !alike(pair[0], pair[1]))
+    };
+    let mut names = Vec::new();
+    let mut note = |name, alike: &dyn Fn(&ColorPack, &ColorPack) -> bool| {
+        if differ(alike) {
+            names.push(name);
+        }
+    };
+    note("ambient", &|a, b| a.ambient == b.ambient);
+    note("diffuse", &|a, b| a.diffuse == b.diffuse);
+    note("specular", &|a, b| a.specular == b.specular);
+    note("phong", &|a, b| a.phong_exponent == b.phong_exponent);
+    note("reflective", &|a, b| a.reflective == b.reflective);
+    names
+}
+
+/// The same of an object.
+fn object_differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'static str> {
     let of = |item: &Item| scene.objects.get(item.index);
     let Some(object) = of(&last) else {
         return Vec::new();
@@ -102,7 +138,8 @@ fn differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'static str
     let theirs: Vec<_> = others.iter().map(|other| values(&other.shape)).collect();
     let mut names = Vec::new();
     for (name, value) in values(&object.shape) {
-        if !theirs.iter().all(|values| values.contains(&(name, value))) {
+        let is_other = |(own, other): &(&str, DVec3)| *own == name && *other != value;
+        if theirs.iter().flatten().any(is_other) {
             names.push(name);
         }
     }

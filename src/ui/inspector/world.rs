@@ -10,7 +10,7 @@ use crate::editor::{Edit, Editor};
 use crate::scene::{MAX_REFLECTIONS, MAX_SIDE, Method, Render, Scene, Setting, VisitSetting};
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
-use crate::ui::rows::{Field, Rows, fraction};
+use crate::ui::rows::{Field, Rows, color_names, fraction};
 
 /// What belongs to the scene as a whole.
 pub fn show(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
         &mut ambient,
     );
     rows.color(
-        "background",
+        color_names!("background"),
         "Colour of a ray that hits nothing, 0–255",
         DVec3::new(0.0, 0.0, 0.0),
         &mut background,

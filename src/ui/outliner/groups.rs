@@ -123,7 +123,7 @@ impl GroupRows {
                 Renaming::To(new) if new.trim().is_empty() => {}
                 Renaming::To(new) => {
                     let name = new.trim().to_owned();
-                    out.edit(Edit::Group(group.members.clone(), name));
+                    out.edit(Edit::RenameGroup(group.name.clone(), name));
                 }
             }
             self.renaming = None;

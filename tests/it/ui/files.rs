@@ -182,8 +182,11 @@ fn the_first_things_of_a_scene_are_brought_into_the_picture_in_the_step_that_imp
         assert!(is_seen, "{corner:?}: {place:?}");
     }
     assert_eq!(harness.scene().objects.len(), 2);
+    harness.window.get_by_label_contains("near.obj; F brings");
     // The camera stays where the first import put it, and goes back with it.
     harness.press(Modifiers::COMMAND, Key::Z);
+    let told = harness.window.query_by_label_contains("near.obj; F brings");
+    assert!(told.is_none(), "it is undone");
     assert_ne!(harness.scene().camera, before.camera);
     harness.press(Modifiers::COMMAND, Key::Z);
     assert_eq!(harness.scene(), &before);
@@ -495,6 +498,55 @@ fn a_save_replaces_nothing_that_was_not_seen() {
     let on_disk = Document::load(&path).expect("valid").scene;
     assert_eq!(radius(&on_disk, 0), 20.0);
     assert!(!harness.editor().is_dirty());
+}
+
+#[test]
+fn a_file_that_is_gone_is_told_and_what_is_open_counts_as_unsaved() {
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&demo_text(20.0)));
+    let path = harness.folder.path().join("given.ron");
+    let elsewhere = harness.folder.path().join("moved.ron");
+    let is_told = |harness: &EditorHarness| {
+        let told = harness
+            .window
+            .query_by_label_contains("is not there any more");
+        told.is_some()
+    };
+    std::fs::rename(&path, &elsewhere).expect("moved");
+    wait_for(&mut harness, is_told);
+    assert!(harness.editor().is_dirty());
+    // It is there again.
+    std::fs::rename(&elsewhere, &path).expect("moved");
+    wait_for(&mut harness, |harness| !is_told(harness));
+    assert!(!harness.editor().is_dirty());
+    std::fs::remove_file(&path).expect("removed");
+    wait_for(&mut harness, is_told);
+    harness.press(CTRL, Key::S);
+    assert!(!harness.editor().is_dirty());
+    assert_eq!(
+        radius(&Document::load(&path).expect("saved").scene, 0),
+        20.0
+    );
+}
+
+#[test]
+fn a_question_that_is_left_open_does_not_end_the_watch() {
+    let (mut harness, path) = changed_outside(|_| {});
+    std::fs::write(&path, "Scene(").expect("written");
+    harness.press(CTRL, Key::S);
+    harness.window.get_by_label("Keep mine");
+    harness.press(Modifiers::NONE, Key::Escape);
+    assert!(harness.window.query_by_label("Keep mine").is_none());
+    std::fs::write(&path, demo_text(31.5)).expect("written");
+    wait_for(&mut harness, |harness| radius(harness.scene(), 0) == 31.5);
+    // Nothing of one's own is to be saved: theirs is taken.
+    std::fs::write(&path, demo_text(12.5)).expect("written");
+    harness.press(CTRL, Key::S);
+    assert!(harness.window.query_by_label("Keep mine").is_none());
+    assert_eq!(radius(harness.scene(), 0), 12.5);
+    assert_eq!(
+        radius(&Document::load(&path).expect("valid").scene, 0),
+        12.5
+    );
 }
 
 #[test]

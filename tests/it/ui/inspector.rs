@@ -6,6 +6,7 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
+use glint::editor::Kind;
 use glint::scene::{Sampling, Scene, Shape, Sphere};
 
 use super::tools::{center, click, drop_at, place, pull};
@@ -390,6 +391,46 @@ fn a_change_of_a_pack_is_for_the_packs_of_all() {
         assert_eq!(pack.diffuse, before[name].diffuse, "{name}");
     }
     assert_eq!(harness.scene().color_packs["plane"], before["plane"]);
+    // What differs is told, and only what differs.
+    harness
+        .window
+        .get_by_label("Not the same for all: center, radius, color pack, ambient, diffuse");
+    // A channel alone is one alone for the others, too; a colour that is pasted is for all.
+    harness.type_into("ambient red", "10");
+    for name in ["sphere 1", "sphere 2"] {
+        let own = before[name].ambient;
+        let pack = &harness.scene().color_packs[name];
+        assert_eq!(pack.ambient, DVec3::new(10.0, own.y, own.z), "{name}");
+        assert_eq!(pack.diffuse, before[name].diffuse, "{name}");
+    }
+    harness.type_into("color green", "20");
+    for name in ["sphere 1", "sphere 2"] {
+        let own = before[name].diffuse;
+        let pack = &harness.scene().color_packs[name];
+        assert_eq!(pack.diffuse, DVec3::new(own.x, 20.0, own.z), "{name}");
+        assert_eq!(pack.ambient, pack.diffuse, "{name}");
+    }
+    harness.type_into("specular red", "1, 2, 3");
+    for name in ["sphere 1", "sphere 2"] {
+        let pack = &harness.scene().color_packs[name];
+        assert_eq!(pack.specular, DVec3::new(1.0, 2.0, 3.0), "{name}");
+    }
+}
+
+#[test]
+fn several_packs_are_changed_as_one() {
+    let mut harness = EditorHarness::new();
+    harness.click("sphere 1");
+    let last = harness.window.get_by_label("plane");
+    last.click_modifiers(CTRL);
+    harness.settle();
+    assert_eq!(harness.editor().selected().places(Kind::Pack).len(), 2);
+    harness.type_into("phong", "64");
+    for (name, exponent) in [("sphere 1", 64.0), ("plane", 64.0)] {
+        let pack = &harness.scene().color_packs[name];
+        assert_eq!(pack.phong_exponent, exponent, "{name}");
+    }
+    assert_ne!(harness.scene().color_packs["sphere 2"].phong_exponent, 64.0);
 }
 
 #[test]

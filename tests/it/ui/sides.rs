@@ -87,6 +87,19 @@ fn a_group_is_listed_hidden_renamed_and_moved_as_one() {
     harness.press(NONE, Key::Enter);
     assert_eq!(groups(&harness), ["Toys", "Toys", ""]);
     harness.press(CTRL, Key::Z);
+    // Two groups do not become one by a name.
+    harness.click("Triangle 1");
+    let second = harness.window.get_by_label("Triangle 2");
+    second.click_modifiers(Modifiers::SHIFT);
+    harness.settle();
+    harness.press(CTRL, Key::G);
+    harness.type_name("group", "Balls");
+    harness
+        .window
+        .get_by_label_contains("There is another group named “Balls”");
+    assert_eq!(groups(&harness), ["Balls", "Balls", "Group 1"]);
+    harness.click("Dismiss");
+    harness.press(CTRL, Key::Z);
     // What is dropped on it is in it.
     let (from, to) = (middle(&harness, "Plane"), middle(&harness, "Balls"));
     carry(&mut harness, from, to);
