@@ -346,7 +346,7 @@ mod tests {
         let told = refusal(&field, "1,000");
         assert_eq!(
             told.as_deref(),
-            Some("\"1,000\" may be 1.000 or 1000: write one of them")
+            Some("“1,000” may be 1.000 or 1000: write one of them")
         );
         for (text, number) in [
             ("1,5", 1.5),

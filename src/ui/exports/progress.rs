@@ -77,11 +77,13 @@ pub fn show_state(
     ui.label(name).hint(place.display().to_string());
     let row = ui.horizontal(|ui| {
         let (share, text) = progress(state, video);
-        let buttons = if state.ended.is_some() { 150.0 } else { 120.0 };
+        let is_making = |video: &&VideoMaker| matches!(video.state, VideoState::Making(_));
+        let making = video.filter(is_making);
+        let is_over = state.ended.is_some() && making.is_none();
+        let buttons = if is_over { 150.0 } else { 120.0 };
         let bar = ProgressBar::new(share as f32).desired_width(FIELDS - buttons);
         ui.add(bar.text(RichText::new(text).small().color(palette(ui.ctx()).text)));
-        let is_making = |video: &&VideoMaker| matches!(video.state, VideoState::Making(_));
-        if let Some(video) = video.filter(is_making) {
+        if let Some(video) = making {
             // As while its frames were made: a click then meets nothing else now.
             ui.add_enabled(false, Button::new("Pause"));
             if ui.button("Cancel").hint("Its frames stay").clicked() {
@@ -89,7 +91,7 @@ pub fn show_state(
             }
             return false;
         }
-        if state.ended.is_some() {
+        if is_over {
             if ui.button("Remove").clicked() {
                 pictures.worker().forget_export(state.id);
             }

@@ -1,6 +1,6 @@
 //! What is measured and shown, and which dot is asked for, in a line above the chart.
 
-use egui::{Button, DragValue, Ui};
+use egui::{Button, DragValue, Label, RichText, Ui};
 
 use super::super::commands::Command;
 use super::super::requests::UiRequests;
@@ -61,6 +61,11 @@ impl Lab {
             let hint = "Put POV-Ray, an independent engine, among the ways, where it is installed";
             ui.checkbox(&mut self.asks_povray, "POV-Ray").hint(hint);
         }
+        if self.is_stale(editor) {
+            let stale = RichText::new("stale").color(palette(ui.ctx()).accent);
+            ui.add(Label::new(stale).extend())
+                .hint("The scene has changed since; measure again");
+        }
         ui.separator();
         for (cost, name, hint) in [
             (
@@ -98,18 +103,13 @@ impl Lab {
         }
         ui.separator();
         self.show_bounds(ui);
-        ui.weak(self.notice);
+        ui.add(Label::new(RichText::new(self.notice).weak()).extend());
         let obstacle = self
             .study
             .as_ref()
             .and_then(|study| study.obstacle.as_ref());
         if let Some(obstacle) = obstacle {
             ui.weak("no POV-Ray").hint(obstacle);
-        }
-        if self.is_stale(editor) {
-            let hint = "The scene has changed since; measure again";
-            ui.colored_label(palette(ui.ctx()).accent, "stale")
-                .hint(hint);
         }
         wish
     }

@@ -224,7 +224,7 @@ impl Lab {
             return self.show_invitation(ui, editor).or(wish);
         };
         ui.horizontal_top(|ui| {
-            let width = (ui.available_width() - DETAILS - GRID).max(120.0);
+            let width = (ui.available_width() - DETAILS - 3.0 * GRID).max(120.0);
             let size = egui::vec2(width, ui.available_height());
             ui.allocate_ui_with_layout(size, Layout::top_down(Align::Min), |ui| {
                 if let Some(chosen) = chart.show(ui) {
