@@ -49,7 +49,7 @@ pub struct ChartArgs {
     /// Write all figures to this file
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Draw the chart into this picture (PNG or PPM)
+    /// Draw the chart into this picture (PNG, PPM or EXR)
     #[arg(long, value_name = "IMAGE")]
     png: Option<PathBuf>,
     /// Colours of the picture

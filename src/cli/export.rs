@@ -14,6 +14,7 @@ use super::error::{CliError, report_warning, say};
 use super::scene::read_whole_scene;
 use crate::export::{ExportError, ExportStep, Exported, Exporting};
 use crate::export::{Frames, Pattern, Sequence, Video, check_place, write_job};
+use crate::files::is_same_file;
 use crate::image::Format;
 use crate::scene::{Document, Method as _, Sampling};
 use crate::trace::{RenderControl, Threads};
@@ -30,7 +31,7 @@ struct What {
     /// Names of the frames, with %d where the number goes, or %05d for five digits
     #[arg(long, value_name = "PATTERN", default_value = "rayTrace%d", value_parser = Pattern::parse)]
     name: Pattern,
-    /// Format of the frames: ppm, png or exr (linear light)
+    /// Format of the frames: ppm, png or exr (the same numbers, 0–1, not rounded)
     #[arg(long, default_value = "ppm", value_parser = format_of)]
     format: Format,
     #[command(flatten)]
@@ -68,7 +69,7 @@ pub struct ExportArgs {
 pub struct JobArgs {
     #[command(flatten)]
     what: What,
-    /// The template to write; the scene is copied beside it if it is elsewhere
+    /// The template to write (YAML); the scene is copied beside it if it is elsewhere, or has meshes that are files
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 }
@@ -137,6 +138,10 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
         made.map_err(CliError::failed)?;
     }
     let seconds = start.elapsed().as_secs_f64();
+    if let Some((path, _)) = video {
+        let frames = counted(sequence.frames.count(), "frame");
+        say(&format!("{}: a video of {frames}", path.display()));
+    }
     say(&format!(
         "{}: {} written, {} there already, {seconds:.1} s, {:.1} frames/s",
         args.output.display(),
@@ -241,12 +246,19 @@ pub fn run_job(args: &JobArgs) -> Result<(), CliError> {
     let (file, path) = (&args.what.scene, &args.output);
     let job = write_job(&Document::load(file)?, Some(file), &sequence, path);
     let job = job.map_err(CliError::failed)?;
+    let is_copied = !is_same_file(file, &job.scene);
     let frames = counted(sequence.frames.count(), "frame");
     say(&format!("{}: a job of {frames}", path.display()));
-    if let Some(backup) = job.backup {
-        let (scene, backup) = (job.scene.display(), backup.display());
+    if is_copied {
+        let scene = job.scene.display();
         say(&format!(
-            "{scene} held something else, which is kept as {backup}"
+            "{scene}: the scene, with everything that it needs"
+        ));
+    }
+    for (file, backup) in job.replaced {
+        let (file, backup) = (file.display(), backup.display());
+        say(&format!(
+            "{file} held something else, which is kept as {backup}"
         ));
     }
     Ok(())

@@ -23,7 +23,7 @@ pub struct RefereeArgs {
     scene: PathBuf,
     #[command(flatten)]
     size: SizeArgs,
-    /// Write the differences, 64 times enlarged, to this picture (PNG or PPM)
+    /// Write the differences, 64 times enlarged, to this picture (PNG, PPM or EXR)
     #[arg(short, long, value_name = "IMAGE")]
     output: Option<PathBuf>,
     #[command(flatten)]

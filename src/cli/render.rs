@@ -40,7 +40,7 @@ pub struct RenderArgs {
     camera: Option<CameraArg>,
     #[command(flatten)]
     settings: SettingArgs,
-    /// Measure samplings on this picture, and take the cheapest whose error is at most this: 55dB, or an RMSE (linear, 0–1)
+    /// Measure samplings on this picture, and take the cheapest whose error is at most this: 55dB, or an RMSE (linear, 0–1); another time it may be another one
     #[arg(long, value_name = "ERROR", value_parser = error, conflicts_with_all = ["antialias", "budget", "show"])]
     within: Option<f64>,
     /// Measure samplings on this picture, and take the closest that takes at most so long: 16ms, 2s, or a number of milliseconds; the measuring takes time of its own

@@ -26,7 +26,7 @@ pub fn read_whole_scene(path: &Path) -> Result<Scene, CliError> {
     match missing_meshes(path, &scene).first() {
         None => Ok(scene),
         Some(problem) => {
-            let sentence = format!("{problem}; no frame is made without it");
+            let sentence = format!("{problem}, and no frame is made without it");
             Err(CliError::failed(sentence))
         }
     }
@@ -36,7 +36,7 @@ pub fn read_whole_scene(path: &Path) -> Result<Scene, CliError> {
 pub fn missing_meshes(path: &Path, scene: &Scene) -> Vec<String> {
     let said = |(index, why): (usize, &str)| {
         let name = &scene.objects[index].name;
-        format!("{}: {name:?} is left out: {why}", path.display())
+        format!("{}: {name:?} cannot be shown: {why}", path.display())
     };
     scene.mesh_problems().map(said).collect()
 }

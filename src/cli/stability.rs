@@ -16,7 +16,7 @@ pub struct StabilityArgs {
     /// Write every cell of every map to this file
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Draw the maps into this picture (PNG or PPM)
+    /// Draw the maps into this picture (PNG, PPM or EXR)
     #[arg(long, value_name = "IMAGE")]
     png: Option<PathBuf>,
     /// Try so many times more rays than for a first look

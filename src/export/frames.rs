@@ -79,6 +79,13 @@ impl Frames {
         self.0.iter().copied()
     }
 
+    /// Whether they are equally far apart.
+    pub fn are_even(&self) -> bool {
+        let mut apart = self.0.windows(2).map(|pair| pair[1] - pair[0]);
+        let first = apart.next();
+        apart.all(|step| Some(step) == first)
+    }
+
     /// How many there are.
     pub fn count(&self) -> usize {
         self.0.len()

@@ -20,6 +20,9 @@ const CHUNK: u32 = 10;
 /// The template, with a name between @ signs for each value.
 const TEMPLATE: &str = include_str!("../../assets/job_template.yaml");
 
+/// What every template begins with.
+const TEMPLATE_BEGINS: &str = "specificationVersion:";
+
 /// Why a job could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum JobError {
@@ -52,8 +55,8 @@ const LONGEST: usize = 1024;
 pub struct Job {
     /// The scene that is rendered, beside the template.
     pub scene: PathBuf,
-    /// Where what was there under its name is now, if it was something else.
-    pub backup: Option<PathBuf>,
+    /// Files that held something else, and where that is kept.
+    pub replaced: Vec<(PathBuf, PathBuf)>,
 }
 
 /// Writes the template of a job to `path`, and the scene beside it, unless `file`, which holds this document, is
@@ -82,8 +85,18 @@ pub fn write_job(
         return Err(JobError::TooManyPieces(frames));
     }
     let backup = write_scene(document, file.filter(|_| !has_files), &scene)?;
+    let mut replaced: Vec<_> = backup
+        .map(|backup| (scene.clone(), backup))
+        .into_iter()
+        .collect();
+    // An older template may go.
+    let is_template = |there: &[u8]| there.starts_with(TEMPLATE_BEGINS.as_bytes());
+    if read_file(path).is_ok_and(|there| !is_template(&there)) {
+        let backup = back_up(path).map_err(|source| disk(path, source))?;
+        replaced.push((path.to_owned(), backup));
+    }
     write_text(path, &job_template(sequence, &stem, &name))?;
-    Ok(Job { scene, backup })
+    Ok(Job { scene, replaced })
 }
 
 /// Writes a document to `path`: as `file` has it, if it has one. Where what was there is now, if it was something

@@ -8,9 +8,10 @@ use super::ffmpeg::by_ffmpeg;
 use super::sequence::Sequence;
 use crate::files::NewFile;
 
-/// What ffmpeg is told about the codec: both sides even, as H.264 needs them.
-const H264: &str = "-c:v libx264 -crf 25 -vf scale=trunc(iw/2)*2:trunc(ih/2)*2,format=yuv420p -movflags +faststart";
-const PRORES: &str = "-c:v prores_ks -profile:v 4444 -pix_fmt yuv444p10le";
+/// What ffmpeg is told about the codec: both sides even, as H.264 needs them. How red, green and blue become what these
+/// hold is said in the file: players guess by the size otherwise.
+const H264: &str = "-c:v libx264 -crf 25 -vf scale=trunc(iw/2)*2:trunc(ih/2)*2:out_color_matrix=bt709:out_range=tv,format=yuv420p -colorspace bt709 -color_primaries bt709 -color_trc bt709 -color_range tv -movflags +faststart";
+const PRORES: &str = "-c:v prores_ks -profile:v 4444 -vf scale=out_color_matrix=bt709:out_range=tv,format=yuv444p10le -colorspace bt709 -color_primaries bt709 -color_trc bt709 -color_range tv";
 /// Exact to the bit: without the number drawn by lot that tells one file from another.
 const LOSSLESS: &str = "-c:v ffv1 -level 3 -pix_fmt bgr0 -fflags +bitexact";
 
@@ -90,6 +91,10 @@ impl Video {
                 "{kind} shows a frame for at most {longest} seconds, not for {seconds:.0}; choose more frames per second, or .mkv"
             ))
         };
+        let uneven = (!sequence.frames.are_even()).then(|| {
+            "the frames are not equally far apart: the video shows each of them for as long"
+                .to_owned()
+        });
         match self {
             Self::H264 | Self::Lossless if width.min(height) < 2 => unfit(format!(
                 "an .mp4 or .mkv is at least 2 × 2 pixels large, not {width} × {height}; .gif, .apng and .mov are as large as the frames"
@@ -103,12 +108,12 @@ impl Video {
             Self::Gif if 1.0 / fps > LONGEST_IN_GIF => too_long("a .gif", LONGEST_IN_GIF),
             Self::Apng if 1.0 / fps > LONGEST_IN_APNG => too_long("an .apng", LONGEST_IN_APNG),
             Self::Gif => Ok(match left_out(fps, count) {
-                0 => None,
+                0 => uneven,
                 out => Some(format!(
                     "a .gif shows at most 50 frames a second: it leaves out {out} of {count}"
                 )),
             }),
-            _ => Ok(None),
+            _ => Ok(uneven),
         }
     }
 }

@@ -20,11 +20,11 @@ const SHORTEST: usize = 80;
 /// Reads an STL file; several solids are one part.
 pub(super) fn read(mut bytes: Vec<u8>, stem: &str) -> Result<MeshFile, Fault> {
     let is_text = is_text(&bytes);
-    let (name, loaded) = if is_text {
-        (prepare_text(&mut bytes)?, load_text(&bytes))
+    let (name, note, loaded) = if is_text {
+        (prepare_text(&mut bytes)?, None, load_text(&bytes))
     } else {
-        prepare_binary(&mut bytes)?;
-        (None, mesh_loader::stl::from_slice(&bytes))
+        let note = prepare_binary(&mut bytes)?;
+        (None, note, mesh_loader::stl::from_slice(&bytes))
     };
     let scene = loaded.map_err(|error| fault_of(&error, is_text))?;
     drop(bytes);
@@ -42,7 +42,9 @@ pub(super) fn read(mut bytes: Vec<u8>, stem: &str) -> Result<MeshFile, Fault> {
         (0..points.len() as u32 / 3).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]),
     )?;
     let name = name.unwrap_or_else(|| stem.to_owned());
-    Ok(MeshFile::of_one(name, triangles))
+    let mut file = MeshFile::of_one(name, triangles);
+    file.notes.extend(note);
+    Ok(file)
 }
 
 /// Whether this is the text form. The header of a binary file may begin with the same word.
@@ -62,7 +64,8 @@ fn promised(bytes: &[u8]) -> Option<(usize, u64)> {
     Some((count, HEADER as u64 + count as u64 * TRIANGLE as u64))
 }
 
-fn prepare_binary(bytes: &mut Vec<u8>) -> Result<(), Fault> {
+/// Leaves what the header promises; what there is to say of the rest.
+fn prepare_binary(bytes: &mut Vec<u8>) -> Result<Option<String>, Fault> {
     let found = bytes.len();
     let Some((count, length)) = promised(bytes) else {
         return Err(Fault::new(format!(
@@ -75,10 +78,15 @@ fn prepare_binary(bytes: &mut Vec<u8>) -> Result<(), Fault> {
         )));
     }
     check_faces(count)?;
+    let more = found as u64 - length;
+    // Some programs write a few bytes of their own there.
+    let note = (more >= TRIANGLE as u64).then(|| {
+        format!("{more} bytes behind the {count} triangles that the header promises are not read")
+    });
     bytes.truncate(HEADER + count * TRIANGLE);
     // So that no header is taken for text.
     bytes[..HEADER].fill(0);
-    Ok(())
+    Ok(note)
 }
 
 /// Makes the text what the reader wants: keywords small, everything else ASCII, a space behind

@@ -173,7 +173,7 @@ fn not_a_place(point: usize) -> String {
 /// The sentence for a face that names a point that is not there; both are counted as in the file.
 pub(super) fn out_of_range(face: usize, point: impl std::fmt::Display, count: usize) -> Fault {
     Fault::new(format!(
-        "face {face} names point {point}, and there are only {count}"
+        "face {face} names point {point}, and there are only {count}, counted from 0"
     ))
 }
 
@@ -282,7 +282,7 @@ mod tests {
         let points = [DVec3::ZERO, DVec3::X, DVec3::NAN];
         assert_eq!(
             said(&points, &[[0, 1, 9]]),
-            "face 1 names point 9, and there are only 3"
+            "face 1 names point 9, and there are only 3, counted from 0"
         );
         assert_eq!(
             said(&points, &[[0, 1, 2]]),

@@ -77,10 +77,11 @@ pub fn export_povray(editor: &mut Editor, path: &Path) {
 /// The template of a job, and the scene as it is now beside it.
 pub fn export_job(editor: &mut Editor, path: &Path) {
     match write(editor, path) {
-        Ok(Job { scene, backup }) => {
-            let kept = backup.map_or(String::new(), |backup| {
-                format!("; what was there is kept as {}", backup.display())
-            });
+        Ok(Job { scene, replaced }) => {
+            let kept = replaced
+                .iter()
+                .map(|(_, backup)| format!("; what was there is kept as {}", backup.display()));
+            let kept: String = kept.collect();
             let (path, scene) = (path.display(), scene.display());
             editor.notify(format!("Saved {path} and {scene}{kept}"));
         }

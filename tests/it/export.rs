@@ -711,6 +711,14 @@ fn ffmpeg_makes_videos_of_all_frames() {
         let said = done(probe.args(["-of", "csv=p=0", path]));
         assert_eq!(said.trim(), "14/1,28", "{name}");
     }
+    // Players guess by the size how colours are meant where nothing is said.
+    for name in ["a.mp4", "b.mov"] {
+        let mut probe = Command::new("ffprobe");
+        probe.args(["-v", "error", "-show_entries"]);
+        probe.args(["stream=color_range,color_space,color_transfer,color_primaries"]);
+        let said = done(probe.args(["-of", "csv=p=0"]).arg(folder.path().join(name)));
+        assert_eq!(said.trim(), "tv,bt709,bt709,bt709", "{name}");
+    }
     // Byte by byte the same every time.
     let path = |name: &str| folder.path().join(name).to_str().expect("plain").to_owned();
     for name in ["a.mp4", "b.mov", "c.mkv"] {
@@ -724,6 +732,13 @@ fn ffmpeg_makes_videos_of_all_frames() {
             "{name}"
         );
     }
+    // What was left out is not waited for.
+    let uneven = export(
+        &frames,
+        &["--frames", "1,5,6", "--video", &path("uneven.gif")],
+    );
+    let said = warned(&mut { uneven });
+    assert!(said.contains("not equally far apart"), "{said}");
     // H.264 has even sides.
     let odd = ["--frames", "1-2", "--video", &path("odd.mp4")];
     let said = warned(&mut at_rate(folder.path(), "14", (31, 17), &odd));
@@ -1244,6 +1259,16 @@ fn a_job_brings_its_meshes_and_keeps_what_was_there() {
     let kept = fs::read_to_string(folder.path().join("flight.ron.bak")).expect("kept");
     assert_eq!(kept, "what somebody else made");
     assert!(fs::read(&other).expect("copied") == fs::read(FLIGHT).expect("there"));
+
+    // An older template goes; what is none does not.
+    assert!(!folder.path().join("job.yaml.bak").exists());
+    let notes = folder.path().join("notes.txt");
+    fs::write(&notes, "what to buy").expect("written");
+    let path = notes.to_str().expect("plain");
+    let said = done(&mut glint(&["job", FLIGHT, "-o", path]));
+    assert!(said.contains("notes.txt.bak"), "{said}");
+    let kept = fs::read_to_string(folder.path().join("notes.txt.bak"));
+    assert_eq!(kept.expect("kept"), "what to buy");
 }
 
 #[test]

@@ -109,11 +109,11 @@ fn broken_ply() {
         ),
         (
             text.replace("\n3 0 ", "\n3 12 ").into(),
-            ":24: face 1 names point 12, and there are only 12",
+            ":24: face 1 names point 12, and there are only 12, counted from 0",
         ),
         (
             text.replace("\n3 0 ", "\n3 -1 ").into(),
-            ":24: face 1 names point -1, and there are only 12",
+            ":24: face 1 names point -1, and there are only 12, counted from 0",
         ),
         (
             text.replace("\n3 0 ", "\n3 zero ").into(),
@@ -170,7 +170,7 @@ fn broken_gltf() {
         (
             "\"count\":12",
             "\"count\":4",
-            ": face 2 names point 7, and there are only 4",
+            ": face 2 names point 7, and there are only 4, counted from 0",
         ),
         (
             "\"count\":12",

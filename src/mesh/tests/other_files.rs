@@ -30,7 +30,14 @@ fn stl_texts_differ() {
     // Some programs write more behind the triangles.
     let longer = [binary_stl(), b"behind".to_vec()].concat();
     let header: Vec<u8> = [vec![0; 80], longer[80..].to_vec()].concat();
-    assert_eq!(Sample::new("m.stl", header).triangles(), expected);
+    assert_eq!(Sample::new("m.stl", header.clone()).triangles(), expected);
+    // Where it may be a triangle, that is said.
+    let notes = |more: usize| {
+        let bytes = [header.clone(), vec![0; more]].concat();
+        Sample::new("m.stl", bytes).notes().concat()
+    };
+    assert_eq!(notes(10), "");
+    assert!(notes(60).contains("66 bytes behind the 20 triangles"));
 }
 
 #[test]
