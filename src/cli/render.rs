@@ -30,7 +30,7 @@ use crate::worker::run_in_background;
 pub struct RenderArgs {
     /// The scene file (RON)
     scene: PathBuf,
-    /// The picture to write; ends in .png, .ppm or .exr (linear light)
+    /// The picture to write; ends in .png, .ppm or .exr (the same numbers, 0–1, not rounded). With --stats there need be none
     #[arg(short, long, value_name = "IMAGE", required_unless_present = "stats")]
     output: Option<PathBuf>,
     #[command(flatten)]

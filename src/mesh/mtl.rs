@@ -21,6 +21,9 @@ const MIRRORING: RangeInclusive<u8> = 3..=7;
 /// Most characters of a file's name in a sentence.
 const LONGEST_NAME: usize = 80;
 
+/// What exporters write where there is no material.
+const NO_MATERIAL: [&str; 2] = ["None", "(null)"];
+
 /// Reads the material files that one OBJ file names.
 pub(super) struct Libraries<'a> {
     folder: &'a Path,
@@ -30,6 +33,8 @@ pub(super) struct Libraries<'a> {
     names: RefCell<HashSet<String>>,
     /// The first file that was named and could not be read.
     missing: RefCell<Option<String>>,
+    /// The first material that was named and is in no file.
+    unknown: RefCell<Option<String>>,
 }
 
 impl<'a> Libraries<'a> {
@@ -40,15 +45,22 @@ impl<'a> Libraries<'a> {
             left: Cell::new(MAX_BYTES),
             names: RefCell::default(),
             missing: RefCell::default(),
+            unknown: RefCell::default(),
         }
     }
 
-    /// What is to be said about files that could not be read.
+    /// What is to be said about files that could not be read, or materials that are not in them.
     pub(super) fn note(&self) -> Option<String> {
-        let missing = self.missing.take()?;
-        let name = excerpt(&missing, LONGEST_NAME);
+        if let Some(missing) = self.missing.take() {
+            let name = excerpt(&missing, LONGEST_NAME);
+            return Some(format!(
+                "its colours are missing: there is no readable file {name} beside it"
+            ));
+        }
+        let unknown = self.unknown.take()?;
+        let name = excerpt(&unknown, LONGEST_NAME);
         Some(format!(
-            "its colours are missing: there is no readable file {name} beside it"
+            "no material file of it has {name}, which faces name"
         ))
     }
 
@@ -58,10 +70,19 @@ impl<'a> Libraries<'a> {
         let names = self.names.borrow();
         let is_known = |line: &'t str| name(line).is_some_and(|name| names.contains(name));
         let without = line.split_once('#').map(|(before, _)| before.trim_end());
-        match without {
-            Some(without) if !is_known(line) && is_known(without) => without,
-            _ => line,
+        if is_known(line) {
+            return line;
         }
+        if let Some(without) = without.filter(|without| is_known(without)) {
+            return without;
+        }
+        // Without a file that is said already, and some names mean none.
+        let is_meant = |name: &&str| !names.is_empty() && !NO_MATERIAL.contains(name);
+        if let Some(name) = name(line).filter(is_meant) {
+            let mut unknown = self.unknown.borrow_mut();
+            unknown.get_or_insert_with(|| name.to_owned());
+        }
+        line
     }
 
     /// Reads one. One that is not there or not in the folder, or cannot be read, only means that there are no colours.

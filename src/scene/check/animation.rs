@@ -3,12 +3,13 @@
 use std::collections::HashSet;
 
 use super::camera::{PROJECTION_DISTANCES, check_camera};
-use super::place::{At, Check};
+use super::place::{At, Check, no_such};
 use crate::scene::animation::{
     Animation, FRAME_RATES, Interpolation, Key, Lens, MAX_KEYS, MAX_SECONDS, Take, Target, Track,
     Value,
 };
 use crate::scene::notation::format_number;
+use crate::scene::shape::Shape;
 use crate::scene::target::Owners;
 use crate::scene::whole::Scene;
 
@@ -39,7 +40,10 @@ pub fn check_animation(at: &At, scene: &Scene) -> Check {
                 .field("target")
                 .refuse(format!("there is another track for {name:?}"));
         }
-        check_track(&at, owners.get(scene, &track.target), track)?;
+        let Some(now) = owners.get(scene, &track.target) else {
+            return at.field("target").refuse(no_owner(scene, &track.target));
+        };
+        check_track(&at, now, track)?;
     }
     match &animation.take {
         Some(take) => check_take(&at.field("take"), take),
@@ -71,18 +75,25 @@ fn check_keys<T>(at: &At, keys: &[Key<T>]) -> Check {
     Ok(())
 }
 
-fn check_track(at: &At, now: Option<Value>, track: &Track) -> Check {
-    let Some(sample) = now else {
-        let owner = track.target.owner().unwrap_or_default();
-        let kind = match track.target {
-            Target::ObjectPosition(_) => "object",
-            Target::ObjectRotation(_) => "mesh",
-            _ => "light",
-        };
-        return at
-            .field("target")
-            .refuse(format!("there is no {kind} named {owner:?}"));
-    };
+/// Says that what a track moves is not there.
+fn no_owner(scene: &Scene, target: &Target) -> String {
+    let owner = target.owner().unwrap_or_default();
+    let objects = scene.objects.iter();
+    let meshes = objects
+        .clone()
+        .filter(|object| matches!(object.shape, Shape::Mesh(_)));
+    match target {
+        Target::ObjectPosition(_) => no_such("object", owner, objects.map(|one| &*one.name)),
+        Target::ObjectRotation(_) => no_such("mesh", owner, meshes.map(|one| &*one.name)),
+        _ => no_such(
+            "light",
+            owner,
+            scene.lights.iter().map(|light| &*light.name),
+        ),
+    }
+}
+
+fn check_track(at: &At, sample: Value, track: &Track) -> Check {
     let at = at.field("keys");
     if track.keys.is_empty() {
         return at.refuse("a track needs at least one key".to_owned());

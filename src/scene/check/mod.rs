@@ -13,7 +13,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use camera::check_camera;
-use place::{At, Check};
+use place::{At, Check, no_such};
 
 use super::material::MAX_EXPONENT;
 use super::object::{LightObj, Object};
@@ -243,22 +243,6 @@ fn check_pack_exists(at: &At, scene: &Scene, name: &str) -> Check {
     if scene.color_packs.contains_key(name) {
         return Ok(());
     }
-    let known: Vec<String> = scene
-        .color_packs
-        .keys()
-        .take(8)
-        .map(|k| format!("{k:?}"))
-        .collect();
-    let more = if scene.color_packs.len() > known.len() {
-        ", …"
-    } else {
-        ""
-    };
-    at.refuse(match known.len() {
-        0 => format!("there is no color pack named {name:?}: the scene has none"),
-        _ => format!(
-            "there is no color pack named {name:?}; there are {}{more}",
-            known.join(", ")
-        ),
-    })
+    let known = scene.color_packs.keys().map(String::as_str);
+    at.refuse(no_such("color pack", name, known))
 }

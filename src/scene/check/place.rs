@@ -207,3 +207,18 @@ impl<'a> At<'a> {
         }
     }
 }
+
+/// Most names that a sentence lists.
+const MOST_NAMES: usize = 8;
+
+/// Says that nothing of a kind has a name, and which names there are.
+pub fn no_such<'a>(kind: &str, name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let mut known = known.map(|name| format!("{name:?}"));
+    let first: Vec<String> = known.by_ref().take(MOST_NAMES).collect();
+    if first.is_empty() {
+        return format!("there is no {kind} named {name:?}: the scene has none");
+    }
+    let more = if known.next().is_some() { ", …" } else { "" };
+    let first = first.join(", ");
+    format!("there is no {kind} named {name:?}; there are {first}{more}")
+}
