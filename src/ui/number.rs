@@ -16,6 +16,8 @@ use crate::words::quoted;
 
 /// Letters that one of three fields in a row has room for.
 const NARROW: usize = 7;
+/// The end of a range that is no larger is only there to be above 0.
+const SMALL: f64 = 0.5;
 /// Letters that a field by itself has room for.
 const WIDE: usize = 16;
 
@@ -122,10 +124,10 @@ fn out_of_range(field: &Field, number: f64) -> Option<String> {
         return None;
     }
     let (name, least, most) = (field.name, *field.range.start(), *field.range.end());
-    Some(if number <= 0.0 && 0.0 < least {
+    Some(if number <= 0.0 && 0.0 < least && least < SMALL {
         format!("{name} is above 0")
     } else {
-        let [least, most] = [least, most].map(|end| rounded(end, "", NARROW));
+        let [least, most] = [least, most].map(|end| rounded(end, "", WIDE));
         format!("{name} goes from {least} to {most}")
     })
 }

@@ -171,7 +171,7 @@ impl App {
         );
         if let Some(response) = self.lab.show_picture(ui, place) {
             self.tools.rest();
-            if badge(ui, place, &self.lab.name()) {
+            if badge(ui, place, &self.lab.name(ui)) {
                 self.lab.leave();
             }
             return (place, response);

@@ -227,9 +227,11 @@ impl PathPrompt {
             });
         }
         if !self.ask.writes() && Path::new(self.text.trim()).is_dir() {
-            // Its name is not typed yet.
+            // Its name may not be typed yet.
+            let is_begun = self.text.trim().ends_with(std::path::is_separator);
+            let words = if is_begun { "" } else { "This is a folder" };
             return Some(Warning {
-                words: String::new(),
+                words: words.to_owned(),
                 is_possible: false,
             });
         }

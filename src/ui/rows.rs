@@ -19,17 +19,28 @@ pub struct Rows<'u> {
     /// Where the rows go.
     pub ui: &'u mut Ui,
     changed: Option<&'static str>,
+    picked: Option<&'static str>,
 }
 
 impl<'u> Rows<'u> {
     /// No rows yet.
     pub fn new(ui: &'u mut Ui) -> Self {
-        Self { ui, changed: None }
+        let (changed, picked) = (None, None);
+        Self {
+            ui,
+            changed,
+            picked,
+        }
     }
 
     /// The field that changed in this frame, if one did.
     pub fn changed(&self) -> Option<&'static str> {
         self.changed
+    }
+
+    /// The choice that was made in this frame, if one was, whether or not it was made before.
+    pub fn picked(&self) -> Option<&'static str> {
+        self.picked
     }
 
     fn note(&mut self, name: &'static str, changed: bool) {
@@ -204,6 +215,7 @@ impl<'u> Rows<'u> {
             let changed = option != *value;
             *value = option;
             self.note(name, changed);
+            self.picked = Some(name);
         }
     }
 }

@@ -88,11 +88,11 @@ impl App {
         }
     }
 
-    /// Whether all keys are meant where all is to be selected: some are, or the pointer is over the line of time.
+    /// Whether all keys are meant where all is to be selected: the pointer is over the line of time.
     fn means_keys(&self, ctx: &Context) -> bool {
         let is_over = self.timeline.is_hovered(ctx.cumulative_frame_nr());
         let has_keys = !self.editor.scene().animation.is_still();
-        has_keys && (is_over || self.editor.selection == Selection::Keys)
+        has_keys && is_over
     }
 
     /// Puts what is selected on the clipboard. Whether it is there.

@@ -157,3 +157,26 @@ fn what_is_just_above_an_eye_on_a_face_is_seen() {
     assert_eq!(blue_and_red(&double), (ALL, 0));
     assert_same_but_for_edges(&automatic, &double, "under a roof");
 }
+
+#[test]
+fn what_is_smooth_and_what_is_flat_in_one_place_do_not_look_alike() {
+    // The sides of the boxes that are seen lie in each other.
+    let smooth = |wide: f64| {
+        let mut shape = block(DVec3::new(wide, 1.0, 1.0), (HERE, DVec3::Z * 5.0));
+        if let Shape::Mesh(mesh) = &mut shape {
+            mesh.smooth = 180.0;
+        }
+        shape
+    };
+    let mut of_two = scene([block(DVec3::ONE, (HERE, DVec3::Z * 5.0)), smooth(2.0)]);
+    let red = of_two.color_packs["red"].clone();
+    if let Some(blue) = of_two.packs_mut().get_mut("blue") {
+        *blue = red;
+    }
+    let mut of_one = of_two.clone();
+    if let Some(object) = of_one.objects.get_mut(1) {
+        object.color_pack = "red".to_owned();
+    }
+    let two = steady_mesh(&of_two, "two packs");
+    assert!(two == steady_mesh(&of_one, "one pack"));
+}

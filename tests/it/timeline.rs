@@ -910,4 +910,14 @@ fn a_pace_for_several_keys_leaves_their_ways() {
     assert_eq!(left, ways);
     assert!(keys.iter().all(|key| key.easing == keys[0].easing));
     assert_eq!(harness.editor().undo_label(), Some("Key: pace"));
+    // What the first has already may be picked for all.
+    harness.window.get_by_label("Not the same for all: way");
+    harness
+        .window
+        .get_by_role_and_label(Role::ComboBox, "way")
+        .click();
+    harness.settle();
+    harness.click(ways[0].name());
+    let keys = &harness.scene().animation.keys;
+    assert!(keys.iter().all(|key| key.interpolation == ways[0]));
 }

@@ -6,7 +6,7 @@ use egui::{Button, Id, Ui};
 use glam::DVec3;
 
 use super::camera::place_rows;
-use super::title::title;
+use super::title::{tell_different, title};
 use crate::editor::{Edit, Editor, Time};
 use crate::scene::{
     Animation, Easing, Interpolation, KeyPlace, Keys, MAX_SECONDS, Orientation, Target, Value,
@@ -41,6 +41,18 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         None => format!("{} keys", places.len()),
     };
     title(ui, icons::KEY, &name);
+    let paces = places.iter().filter_map(|place| animation.at_place(*place));
+    let paces: Vec<_> = paces.map(|(_, pace)| pace).collect();
+    let different = [
+        ("way", paces.iter().any(|(way, _)| *way != pace.0)),
+        ("pace", paces.iter().any(|(_, easing)| *easing != pace.1)),
+    ];
+    tell_different(
+        ui,
+        different
+            .into_iter()
+            .filter_map(|(name, is_so)| is_so.then_some(name)),
+    );
     let (mut new_time, mut new_pace) = (time, pace);
     let mut rows = Rows::new(ui);
     if only.is_some() {
@@ -48,13 +60,14 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
     pace_rows(&mut rows, editor, &mut new_pace);
     let new_value = only.and_then(|only| value_rows(&mut rows, animation, only));
-    let changed = rows.changed();
+    // Of several, what all of them have may be picked for those that have not.
+    let changed = rows.changed().or(rows.picked().filter(|_| only.is_none()));
     ui.horizontal_wrapped(|ui| buttons(ui, editor, out));
     if new_time != time {
         move_key(ui, editor, new_time, out);
     } else if let Some(value) = new_value {
         out.edit(Edit::animation(value, "Key: value"));
-    } else if new_pace != pace {
+    } else if new_pace != pace || only.is_none() && changed.is_some() {
         // Of several, what was not changed stays as it is in each.
         let (way, easing) = new_pace;
         let (changed, label) = if changed == Some("pace") {

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::alike::{for_all, packs_of, values};
 use super::items;
-use super::title::{name_field, title, title_field};
+use super::title::{name_field, tell_different, title, title_field};
 use crate::editor::{Action, Edit, Editor, Item, Kind};
 use crate::scene::{ColorPack, Light, Object, Scene, Shape};
 use crate::ui::hint::Hint as _;
@@ -27,10 +27,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         title(ui, icons::SELECTED, &format!("{} items", selected.len()));
     }
     let Some(&last) = selected.last() else { return };
-    let different = differences(scene, selected, last);
-    if !different.is_empty() {
-        ui.weak(format!("Not the same for all: {}", different.join(", ")));
-    }
+    tell_different(ui, differences(scene, selected, last).into_iter());
     ui.weak(if group.is_some() {
         "A change is made to all that have the property; a position moves the group."
     } else {

@@ -54,3 +54,11 @@ pub fn name_field(ui: &mut Ui, label: &str, id: Id, name: &str) -> Option<String
     }
     None
 }
+
+/// Tells what several things that are selected have otherwise.
+pub fn tell_different(ui: &mut Ui, names: impl Iterator<Item = &'static str>) {
+    let names: Vec<&str> = names.collect();
+    if !names.is_empty() {
+        ui.weak(format!("Not the same for all: {}", names.join(", ")));
+    }
+}

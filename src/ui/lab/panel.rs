@@ -194,7 +194,10 @@ impl Lab {
     }
 
     /// What is looked at in place of the live view.
-    pub fn name(&self) -> String {
+    pub fn name(&self, ui: &Ui) -> String {
+        if asks_for_reference(ui) {
+            return "Lab: the reference".to_owned();
+        }
         let measured = self.study.as_ref().map(|study| &study.measurements);
         let dot = self.chosen.and_then(|place| measured?.get(place));
         dot.map_or(String::new(), |dot| format!("Lab: {}", dot.candidate.name))
@@ -261,10 +264,10 @@ impl Lab {
         ui.vertical_centered(|ui| {
             ui.take_available_height();
             ui.add_space((ui.available_height() / 2.0 - 2.0 * ROW).max(0.0));
-            ui.weak("Every way of tracing this scene, each a dot: how long it takes, and how far it is off.");
+            ui.weak("Every way of tracing this scene, each a dot: how long it takes, and how far it is off. The demo takes half a minute.");
             ui.add_space(GRID);
             let colors = palette(ui.ctx());
-            let text = RichText::new("Measure (about 30 s)").color(colors.on_accent);
+            let text = RichText::new("Measure").color(colors.on_accent);
             let start = ui.add(Button::new(text).fill(colors.accent));
             if start.clicked() {
                 wish = Some(self.measure(editor));
@@ -279,8 +282,7 @@ impl Lab {
         let study = self.study.as_ref()?;
         let picture = study.measurements.get(place_of_dot)?.picture.as_ref()?;
         let reference = &study.reference.as_ref()?.picture;
-        let is_flipped = !ui.text_edit_focused() && ui.input(|input| input.key_down(Key::B));
-        let face = if is_flipped {
+        let face = if asks_for_reference(ui) {
             Face::Reference
         } else {
             self.face
@@ -315,4 +317,9 @@ impl Lab {
         };
         Some(chart(self.study.as_deref()?, &view))
     }
+}
+
+/// Whether the key is held with which the reference is seen.
+fn asks_for_reference(ui: &Ui) -> bool {
+    !ui.text_edit_focused() && ui.input(|input| input.key_down(Key::B))
 }

@@ -93,6 +93,14 @@ impl Grip {
         }
     }
 
+    /// What becomes round: the position as it is written, of one thing.
+    fn place(&self) -> DVec3 {
+        match &self.before[..] {
+            [only] => only.position(),
+            _ => self.middle,
+        }
+    }
+
     fn corner(&self, corner: usize) -> Option<DVec3> {
         match self.before.first()?.shape()? {
             Shape::Triangle(triangle) => Some(triangle.corners()[corner]),
@@ -109,7 +117,7 @@ impl Grip {
             Handle::Along(axis) => {
                 let (direction, name) = AXES[axis];
                 let to = self.pointed_at(lens, pull.at)?;
-                let start = self.middle.dot(direction);
+                let start = self.place().dot(direction);
                 let pulled = (to - self.from.1).dot(direction);
                 let by = typed.unwrap_or_else(|| round(start + pulled) - start);
                 let words = format!("{name} {}", signed(by));
@@ -127,7 +135,7 @@ impl Grip {
                     _ => pull.is_level && axis == 1,
                 };
                 let part = |axis: usize| {
-                    let start = self.middle[axis];
+                    let start = self.place()[axis];
                     if fixed(axis) {
                         0.0
                     } else {

@@ -64,6 +64,14 @@ impl Subject {
         }
     }
 
+    /// Its position as it is written: of a mesh, where its file has its origin.
+    pub fn position(&self) -> DVec3 {
+        match self.shape() {
+            Some(Shape::Mesh(mesh)) => mesh.position,
+            _ => self.middle(),
+        }
+    }
+
     /// The change that moves it.
     pub fn moved(&self, by: DVec3) -> Edit {
         match self {
