@@ -5,7 +5,7 @@ use std::process::Command;
 use std::sync::Arc;
 
 use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, Pos2, vec2};
+use egui::{Event, Key, Modifiers, Pos2, pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 use glint::animate::{CameraPath, Preset, shot};
@@ -698,6 +698,19 @@ fn keys_of_values_are_edited_like_those_of_the_camera() {
     assert!(harness.scene().animation.is_still());
     harness.press(CTRL, Key::Z);
     assert_eq!(of_value(&harness), [0.0, 2.0]);
+    // A click on what a row is about selects its keys, and a frame may begin there.
+    let row = place_of(&harness, &format!("{track} key 1"));
+    let at = pos2(30.0, row.y);
+    harness.window.drag_at(at);
+    harness.window.drop_at(at);
+    harness.settle();
+    let all = [0, 1].map(|index| KeyPlace {
+        track: Some(0),
+        index,
+    });
+    assert_eq!(harness.editor().timeline().selected, all.into());
+    drag(&mut harness, at, vec2(row.x - 20.0, 2.0), Modifiers::NONE);
+    assert_eq!(harness.editor().timeline().selected, [all[0]].into());
 }
 
 #[test]

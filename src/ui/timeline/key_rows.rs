@@ -12,7 +12,7 @@ use crate::editor::{Action, Edit, Editor, Selected, Selection, Time};
 use crate::scene::{Animation, Interpolation, Key, KeyPlace, Keys};
 use crate::ui::hint::Hint as _;
 use crate::ui::requests::UiRequests;
-use crate::ui::theme::{TRACK, palette};
+use crate::ui::theme::{GRID, TRACK, palette};
 
 /// What the pointer does to the rows from when it is pressed to when it is let go.
 #[derive(Default)]
@@ -142,10 +142,23 @@ impl KeyRows {
         self.press(ui, &response, editor, out);
         self.note_framed(ui, (scale, rect), (track, keys));
         let tracks = &editor.scene().animation.tracks;
-        match track.and_then(|track| tracks.get(track)) {
-            Some(track) => label(ui, rect, &track.target.name()),
-            None => label(ui, rect, "Camera"),
+        let of = track.and_then(|track| tracks.get(track));
+        let name = of.map_or("Camera".to_owned(), |track| track.target.name());
+        label(ui, rect, &name);
+        // A frame may begin there, too.
+        let room = Rect::from_min_max(
+            pos2(ui.max_rect().left(), rect.top()),
+            rect.left_bottom() - vec2(GRID, 0.0),
+        );
+        let id = ui.scope_id().with(("label", track));
+        let beside = ui.interact(room, id, Sense::click_and_drag());
+        if beside.clicked() {
+            let all = (0..keys.len()).map(|index| KeyPlace { track, index });
+            out.time(Time::SelectKeys(all.collect()));
+        } else {
+            self.press(ui, &beside, editor, out);
         }
+        beside.hint(format!("{name}\nClick to select its keys"));
         ways(ui, scale, rect, keys);
         playhead(ui, scale, rect, editor);
         for (index, key) in keys.iter().enumerate() {
