@@ -157,30 +157,36 @@ pub fn paste(scene: &mut Scene, pasted: &Scene) {
     }
 }
 
-/// What groups are called of which all is pasted once more: the copy is a group of its own. Alone, a member stays in its
-/// group.
+/// What groups are called of which all is pasted once more, or that are others of the same name: each is a group of its
+/// own. Alone, a member stays in its group.
 fn new_groups(scene: &Scene, pasted: &Scene) -> HashMap<String, String> {
-    let sizes = |scene: &Scene| {
-        let mut sizes: HashMap<String, usize> = HashMap::new();
-        for object in scene
-            .objects
-            .iter()
-            .filter(|object| !object.group.is_empty())
-        {
-            *sizes.entry(object.group.clone()).or_default() += 1;
+    let there = members(scene);
+    let names: Vec<String> = there.keys().map(|&group| group.to_owned()).collect();
+    let mut taken = Taken::new(names.iter());
+    let mut new = HashMap::new();
+    for (group, own) in members(pasted) {
+        let is_other = |others: &HashSet<&str>| own == *others || own.is_disjoint(others);
+        if own.len() > 1 && there.get(group).is_some_and(is_other) {
+            new.insert(group.to_owned(), taken.take(group));
         }
-        sizes
-    };
-    let there = sizes(scene);
-    let mut taken = Taken::new(there.keys());
-    let whole = sizes(pasted).into_iter();
-    let whole = whole.filter(|(group, size)| *size > 1 && there.get(group) == Some(size));
-    whole
-        .map(|(group, _)| {
-            let new = taken.take(&group);
-            (group, new)
-        })
-        .collect()
+    }
+    new
+}
+
+/// The groups of a scene, and the names of what is in them.
+fn members(scene: &Scene) -> IndexMap<&str, HashSet<&str>> {
+    let mut members: IndexMap<&str, HashSet<&str>> = IndexMap::new();
+    for object in scene
+        .objects
+        .iter()
+        .filter(|object| !object.group.is_empty())
+    {
+        members
+            .entry(&object.group)
+            .or_default()
+            .insert(&object.name);
+    }
+    members
 }
 
 /// From where things were copied to where they do not stand in each other: two things in one place would
@@ -240,7 +246,6 @@ mod tests {
                 .map(|o| o.group.clone())
                 .collect()
         };
-        let end = scene.objects.len();
         let all = excerpt(
             &scene,
             &Selected::all(members.into_iter().map(Item::object)),
@@ -254,7 +259,14 @@ mod tests {
         let last = scene.objects.len();
         paste(&mut scene, &one);
         assert_eq!(groups(&scene, last), ["Group 1"]);
-        assert_eq!(groups(&scene, end).len(), 7);
+        // What comes from elsewhere and has the same name is another group.
+        let mut other = all.clone();
+        for object in other.objects.iter_mut() {
+            object.name.push_str(" elsewhere");
+        }
+        let last = scene.objects.len();
+        paste(&mut scene, &other);
+        assert_eq!(groups(&scene, last), ["Group 4"; 3]);
     }
 
     #[test]

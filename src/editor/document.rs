@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::action::{Action, Message, Mode, STEP};
+use super::action::{Action, Message, Mode};
 use super::animation_state::AnimationState;
 use super::edit::Edit;
 use super::fly::Flight;
@@ -31,6 +31,8 @@ pub struct Editor {
     /// What its file held when this window read or wrote it last.
     pub(super) stamp: Option<Stamp>,
     documents: u64,
+    /// The state that the last message about a step was told in.
+    pub(super) told_of: u64,
     pub(super) is_dirty: bool,
     /// Whether its file is not there any more.
     pub(super) is_gone: bool,
@@ -74,6 +76,7 @@ impl Editor {
             name: "untitled",
             stamp: None,
             documents: 0,
+            told_of: 0,
             is_dirty: false,
             is_gone: false,
             reread: Vec::new(),
@@ -213,7 +216,7 @@ impl Editor {
                 }
             }
             Action::Undo => {
-                self.begin(STEP);
+                self.forget_step();
                 self.travel(History::undo);
             }
             Action::Redo => self.travel(History::redo),

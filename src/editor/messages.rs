@@ -27,6 +27,7 @@ impl Editor {
 
     /// Tells the user what the last step has done; nothing any more once that is undone.
     pub fn notify_of_step(&mut self, text: String) {
+        self.told_of = self.revision();
         self.messages.push(Message {
             is_error: false,
             text,
@@ -34,7 +35,14 @@ impl Editor {
         });
     }
 
-    /// An action is begun: what went wrong in it before is forgotten.
+    /// What was said of the last step is forgotten, if there was no other since: it is undone.
+    pub(super) fn forget_step(&mut self) {
+        if self.told_of == self.revision() {
+            self.begin(STEP);
+        }
+    }
+
+    /// An action is begun: what was said of it before is forgotten.
     pub fn begin(&mut self, about: &'static str) {
         self.messages.push(Message {
             is_error: false,

@@ -90,6 +90,9 @@ pub fn povray_text(scene: &Scene) -> String {
         for shape in worn {
             write_shape(&mut shapes, shape, &texture);
         }
+        if shapes.is_empty() {
+            continue; // A mesh may have no faces.
+        }
         let highlight = Highlight::of(pack);
         if highlight.is_white() {
             pov.push_str(&shapes);

@@ -95,25 +95,29 @@ impl Video {
             "the frames are not equally far apart: the video shows each of them for as long"
                 .to_owned()
         });
+        let with = |remark: Option<String>| {
+            let remarks: Vec<String> = remark.into_iter().chain(uneven).collect();
+            Ok((!remarks.is_empty()).then(|| remarks.join("; ")))
+        };
         match self {
             Self::H264 | Self::Lossless if width.min(height) < 2 => unfit(format!(
                 "an .mp4 or .mkv is at least 2 × 2 pixels large, not {width} × {height}; .gif, .apng and .mov are as large as the frames"
             )),
             Self::H264 if width % 2 + height % 2 > 0 => {
                 let [width, height] = [width, height].map(|side| side / 2 * 2);
-                Ok(Some(format!(
+                with(Some(format!(
                     "the sides of an .mp4 are even: it shows {width} × {height} pixels"
                 )))
             }
             Self::Gif if 1.0 / fps > LONGEST_IN_GIF => too_long("a .gif", LONGEST_IN_GIF),
             Self::Apng if 1.0 / fps > LONGEST_IN_APNG => too_long("an .apng", LONGEST_IN_APNG),
-            Self::Gif => Ok(match left_out(fps, count) {
-                0 => uneven,
+            Self::Gif => with(match left_out(fps, count) {
+                0 => None,
                 out => Some(format!(
                     "a .gif shows at most 50 frames a second: it leaves out {out} of {count}"
                 )),
             }),
-            _ => Ok(uneven),
+            _ => with(None),
         }
     }
 }

@@ -59,9 +59,7 @@ impl<'a> Libraries<'a> {
         }
         let unknown = self.unknown.take()?;
         let name = excerpt(&unknown, LONGEST_NAME);
-        Some(format!(
-            "no material file of it has {name}, which faces name"
-        ))
+        Some(format!("no material file of it has {name}, which it names"))
     }
 
     /// A line that names a material, without a remark behind the name: there may be a `#` in it.
@@ -76,7 +74,7 @@ impl<'a> Libraries<'a> {
         if let Some(without) = without.filter(|without| is_known(without)) {
             return without;
         }
-        // Without a file that is said already, and some names mean none.
+        // Where none was read, nobody expects colours, or it is said already; and some names mean none.
         let is_meant = |name: &&str| !names.is_empty() && !NO_MATERIAL.contains(name);
         if let Some(name) = name(line).filter(is_meant) {
             let mut unknown = self.unknown.borrow_mut();

@@ -7,7 +7,7 @@ use super::contacts::{Contacts, Tie};
 use super::pack::Plan;
 use super::packed_mesh::MeshInstance;
 use super::request::RenderRequest;
-use crate::scene::{Coincidence, Extent, Projection, Scene, Shape};
+use crate::scene::{Coincidence, Extent, Projection, Scene};
 use crate::simd::Real;
 
 /// How far apart surfaces may be that count as one, twice: their own numbers are rounded too. What counts as that is
@@ -25,14 +25,8 @@ impl<R: Real> Plan<R> {
         let is_perspective = request.projection_of(&scene.camera) == Projection::Perspective;
         let is_met = |found: &&Coincidence| !(is_perspective && self.hides(scene, found));
         let met: Vec<&Coincidence> = contacts.shared.iter().filter(is_met).collect();
-        // Where all that is in one place looks alike, nobody sees which of it is in front. What is smooth has normals of
-        // its own.
-        let pack = |place: usize| &scene.objects[place].color_pack;
-        let is_smooth = |place: usize| matches!(&scene.objects[place].shape, Shape::Mesh(mesh) if mesh.smooth > 0.0);
-        let look_alike = |found: &Coincidence| {
-            let places = [found.later, found.earlier];
-            pack(found.later) == pack(found.earlier) && !places.into_iter().any(is_smooth)
-        };
+        // Where all that is in one place looks alike, nobody sees which of it is in front.
+        let look_alike = |found: &Coincidence| scene.look_alike(found.later, found.earlier);
         let unlike = met.iter().filter(|found| !look_alike(found));
         let unlike: HashSet<usize> = unlike.flat_map(|f| [f.later, f.earlier]).collect();
         let is_seen =

@@ -18,8 +18,8 @@ const MOST_PAIRS: usize = 4_000_000;
 const MOST_COMPARED: usize = 200_000;
 
 /// All pairs of visible objects that fill the same surface, sorted; coordinates count from `centre`. Where there are
-/// hundreds of thousands of objects, none is looked at; of thousands of flat ones in the same place, or faces of large
-/// meshes, some may be missed.
+/// hundreds of thousands of objects, none is looked at; of thousands of flat ones in the same place, faces of large
+/// meshes, or hundreds of meshes across tens of thousands of others, some may be missed.
 pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     if objects.len() > MOST_OBJECTS {
         return Vec::new();

@@ -106,7 +106,7 @@ fn add_coincident(scene: &Scene, centre: DVec3, add: &mut impl FnMut(String, Abo
             earlier,
             extent,
         } = found;
-        let looks_alike = scene.objects[later].color_pack == scene.objects[earlier].color_pack;
+        let looks_alike = scene.look_alike(later, earlier);
         if extent == Extent::Standing || (extent == Extent::Faces && looks_alike) {
             continue; // Nobody sees which of them is in front.
         }

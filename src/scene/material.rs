@@ -36,24 +36,16 @@ pub struct ColorPack {
 impl ColorPack {
     /// Equal where packs are.
     pub fn key(&self) -> ([u64; 10], bool) {
-        let [a, d, s] = [self.ambient, self.diffuse, self.specular];
-        let numbers = [
-            a.x,
-            a.y,
-            a.z,
-            d.x,
-            d.y,
-            d.z,
-            s.x,
-            s.y,
-            s.z,
-            self.phong_exponent,
-        ];
+        let Self {
+            ambient: a,
+            diffuse: d,
+            specular: s,
+            phong_exponent,
+            reflective,
+        } = self;
+        let numbers = [a.x, a.y, a.z, d.x, d.y, d.z, s.x, s.y, s.z, *phong_exponent];
         // There are two zeros, which are equal.
-        (
-            numbers.map(|number| (number + 0.0).to_bits()),
-            self.reflective,
-        )
+        (numbers.map(|number| (number + 0.0).to_bits()), *reflective)
     }
 }
 

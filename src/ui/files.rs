@@ -206,8 +206,8 @@ impl Files {
             Question::Saving(_) if editor.is_making_keys() => Answer::Open,
             Question::Saving(_) => Answer::Yes,
             Question::Quit => ask_to_quit(&ctx),
-            // Nothing is given up where they have ended meanwhile.
-            Question::Exports => exports.map_or(Answer::No, |going| ask_to_leave(&ctx, going)),
+            // Where they have ended meanwhile, what came of them is to be seen.
+            Question::Exports => exports.map_or(Answer::Cancel, |going| ask_to_leave(&ctx, going)),
             Question::Path(_, prompt) => prompt.show(&ctx),
             Question::Outside(theirs, _) => theirs.ask(&ctx, &editor.title()),
         };
@@ -263,6 +263,8 @@ impl Files {
             Ask::ExportJob => export_job(editor, &path),
             Ask::ExportPovray => export_povray(editor, &path),
             Ask::SaveScene if editor.would_lose(&path) => {
+                // As it is now it is seen, whatever the answer is.
+                self.watch.is_news(&path);
                 let (theirs, then) = (Document::load_stamped(&path), wish.then.clone());
                 if self.meet_theirs(editor, theirs, Some(wish)) {
                     return self.go_on(ctx, editor, then?);
@@ -338,7 +340,6 @@ impl Files {
         match (theirs.document, answer) {
             (theirs, Answer::Yes) => {
                 editor.keep_mine(theirs.ok());
-                self.watch.leave(editor);
                 return wish.and_then(|_| self.save_then(ctx, editor, then));
             }
             (Ok(theirs), Answer::No) => {
@@ -349,7 +350,7 @@ impl Files {
                 let wish = PathRequest::new(editor, Ask::SaveScene, then);
                 self.wish(ctx, editor, wish);
             }
-            _ => self.watch.leave(editor),
+            _ => {}
         }
         None
     }
@@ -357,6 +358,7 @@ impl Files {
     fn go_on(&mut self, ctx: &Context, editor: &mut Editor, next: Next) -> Option<FileOutcome> {
         // What was wrong with another file is over.
         editor.begin(Ask::OpenScene.title());
+        editor.begin(OUTSIDE);
         match next {
             Next::New => editor.start_new(),
             Next::Example(place) => EXAMPLES.get(place).into_iter().for_each(|example| {

@@ -78,9 +78,10 @@ pub fn export_povray(editor: &mut Editor, path: &Path) {
 pub fn export_job(editor: &mut Editor, path: &Path) {
     match write(editor, path) {
         Ok(Job { scene, replaced }) => {
-            let kept = replaced
-                .iter()
-                .map(|(_, backup)| format!("; what was there is kept as {}", backup.display()));
+            let kept = replaced.iter().map(|(file, backup)| {
+                let (file, backup) = (file.display(), backup.display());
+                format!("; {file} held something else, which is kept as {backup}")
+            });
             let kept: String = kept.collect();
             let (path, scene) = (path.display(), scene.display());
             editor.notify(format!("Saved {path} and {scene}{kept}"));

@@ -19,7 +19,7 @@ const RHYTHM: Duration = Duration::from_secs(1);
 /// Most lines of differences that are shown.
 const MOST_LINES: usize = 8;
 
-/// When the open file was looked at last, and what is known not to be wanted of it.
+/// When the open file was looked at last, and how it was.
 #[derive(Default)]
 pub struct Watch {
     looked: Option<Instant>,
@@ -118,13 +118,6 @@ impl Watch {
     /// Why what was found before could not be read, once.
     pub fn take_broken(&mut self) -> Option<String> {
         self.broken.take()
-    }
-
-    /// The file as it is was seen: nothing more is said of it until it is another.
-    pub fn leave(&mut self, editor: &Editor) {
-        if let Some(path) = editor.path() {
-            self.is_news(path);
-        }
     }
 }
 

@@ -195,7 +195,7 @@ fn colours_that_are_not_found_are_told_and_those_that_can_be_are_found() {
     assert_eq!(colors, [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]);
     assert!(sample.notes().is_empty());
     sample.beside("some.mtl", "newmtl red\nKd 1 0 0\n");
-    let unknown = "no material file of it has Material #25, which faces name";
+    let unknown = "no material file of it has Material #25, which it names";
     assert_eq!(sample.notes(), [unknown]);
     // What leads out of the folder is not followed, whatever its capitals.
     #[cfg(unix)]

@@ -1,5 +1,7 @@
 //! One export of the list: its frames, then its video.
 
+use std::path::PathBuf;
+
 use egui::{Image as Picture, TextureHandle, TextureOptions, Ui, vec2};
 
 use super::order::{EXPORT, Order};
@@ -23,6 +25,8 @@ pub struct Entry {
     order: Option<Order>,
     /// The video that follows its frames, if one shall.
     video: Option<VideoMaker>,
+    /// Where its frames are: their folder, and their names and ending.
+    files: (PathBuf, String),
     /// A small picture of the frame that was written last, and how many were before it.
     thumb: Option<(usize, TextureHandle)>,
 }
@@ -30,13 +34,14 @@ pub struct Entry {
 impl Entry {
     /// What was ordered, as these frames.
     pub fn new(id: u64, order: Order, sequence: Sequence) -> Self {
-        let video = order.settings.video(&sequence);
+        let (video, files) = (order.settings.video(&sequence), files_of(&sequence));
         let video = video.map(|(path, video)| VideoMaker::new(sequence, path, video));
         Self {
             id,
             name: order.name.clone(),
             order: Some(order),
             video,
+            files,
             thumb: None,
         }
     }
@@ -51,13 +56,22 @@ impl Entry {
         self.order.as_ref()
     }
 
-    /// What it does after its frames, in words.
-    pub fn describe_video(&self) -> Option<String> {
-        let video = self.video.as_ref()?;
-        let VideoState::Making(done) = video.state else {
-            return None;
+    /// What it does after its frames, in words; `None` if nothing more will happen.
+    pub fn describe_rest(&self) -> Option<String> {
+        self.order.as_ref()?;
+        let Some(video) = &self.video else {
+            return Some("export".to_owned());
+        };
+        let done = match video.state {
+            VideoState::Making(done) => done,
+            _ => 0,
         };
         Some(format!("video {done}/{}", video.frames()))
+    }
+
+    /// Whether it has ended, and these frames take the place of its own: they may not be there any more.
+    pub fn is_replaced_by(&self, sequence: &Sequence) -> bool {
+        self.is_over() && self.files == files_of(sequence)
     }
 
     /// Goes on to what is next, for what its frames are now; `None` if they were given up. The order, if it
@@ -171,4 +185,11 @@ impl Entry {
         }
         ui.add(Picture::new(&*texture).fit_to_exact_size(vec2(THUMB, THUMB)));
     }
+}
+
+/// Where the frames of a sequence are: their folder, and their names and ending.
+fn files_of(sequence: &Sequence) -> (PathBuf, String) {
+    let folder = std::path::absolute(&sequence.folder);
+    let names = format!("{}.{}", sequence.pattern.text(), sequence.format.ending());
+    (folder.unwrap_or_default(), names)
 }

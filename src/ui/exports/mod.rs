@@ -134,7 +134,7 @@ impl Exports {
         let states = pictures.worker().exports();
         let mut going = states.iter().filter(|state| state.ended.is_none());
         let Some(state) = going.next() else {
-            return self.entries.iter().find_map(Entry::describe_video);
+            return self.entries.iter().find_map(Entry::describe_rest);
         };
         let done = state.done.kept + state.done.written;
         let left = match seconds_left(state) {
@@ -284,28 +284,16 @@ impl Exports {
         editor.begin(EXPORT);
         match pictures.worker().export(sequence.clone()) {
             Ok(id) => {
-                self.forget_replaced(&sequence, pictures);
-                let entry = Entry::new(id, order, sequence);
-                self.entries.push(entry);
+                let replaced = self.entries.iter();
+                let replaced = replaced.filter(|entry| entry.is_replaced_by(&sequence));
+                replaced.for_each(|entry| pictures.worker().forget_export(entry.id));
+                self.entries.push(Entry::new(id, order, sequence));
             }
             Err(error) => {
                 // A folder that is not there now may be there later.
                 let why = error.to_string();
                 editor.report_error_in(EXPORT, why.clone());
                 self.interrupted.push(order.failed(why));
-            }
-        }
-    }
-
-    /// Takes what has ended out of the list, where these frames go to the same folder: it may not be there any more.
-    fn forget_replaced(&self, sequence: &Sequence, pictures: &Pictures) {
-        let place = |folder: &Path| std::path::absolute(folder).ok();
-        let worker = pictures.worker();
-        for state in worker.exports() {
-            let mut entries = self.entries.iter().filter(|entry| entry.id == state.id);
-            let is_over = state.ended.is_some() && entries.all(Entry::is_over);
-            if is_over && place(&state.folder) == place(&sequence.folder) {
-                worker.forget_export(state.id);
             }
         }
     }

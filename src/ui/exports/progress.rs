@@ -77,7 +77,12 @@ pub fn show_state(
     ui.label(name).hint(place.display().to_string());
     let row = ui.horizontal(|ui| {
         let (share, text) = progress(state, video);
-        let is_making = |video: &&VideoMaker| matches!(video.state, VideoState::Making(_));
+        let has_frames = matches!(state.ended, Some(Ok(())));
+        let is_making = |video: &&VideoMaker| match video.state {
+            VideoState::Making(_) => true,
+            VideoState::Waiting => has_frames,
+            _ => false,
+        };
         let making = video.filter(is_making);
         let is_over = state.ended.is_some() && making.is_none();
         let buttons = if is_over { 150.0 } else { 120.0 };

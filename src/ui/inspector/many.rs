@@ -94,7 +94,9 @@ fn differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'static str
         Kind::Object => object_differences(scene, selected, last),
         Kind::Pack => Vec::new(),
     };
-    names.extend(pack_differences(scene, selected));
+    if last.kind != Kind::Light {
+        names.extend(pack_differences(scene, selected));
+    }
     names
 }
 

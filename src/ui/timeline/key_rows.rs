@@ -153,8 +153,12 @@ impl KeyRows {
         let id = ui.scope_id().with(("label", track));
         let beside = ui.interact(room, id, Sense::click_and_drag());
         if beside.clicked() {
-            let all = (0..keys.len()).map(|index| KeyPlace { track, index });
-            out.time(Time::SelectKeys(all.collect()));
+            let mut all = Keys::new();
+            if ui.input(|input| input.modifiers.shift) {
+                all.clone_from(&editor.timeline().selected);
+            }
+            all.extend((0..keys.len()).map(|index| KeyPlace { track, index }));
+            out.time(Time::SelectKeys(all));
         } else {
             self.press(ui, &beside, editor, out);
         }

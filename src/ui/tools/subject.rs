@@ -64,7 +64,7 @@ impl Subject {
         }
     }
 
-    /// Its position as it is written: of a mesh, where its file has its origin.
+    /// What is to be round where it is moved: of a mesh its position, of all else the middle.
     pub fn position(&self) -> DVec3 {
         match self.shape() {
             Some(Shape::Mesh(mesh)) => mesh.position,

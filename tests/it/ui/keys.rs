@@ -203,6 +203,11 @@ fn all_that_is_selected_is_all_things_or_all_keys() {
     harness.settle();
     harness.press(CTRL, Key::A);
     assert_eq!(selected(&harness), (0, 3));
+    // Over the picture things are meant, whatever is selected.
+    harness.window.hover_at(harness.view().center());
+    harness.settle();
+    harness.press(CTRL, Key::A);
+    assert_eq!(selected(&harness), (11, 0));
     harness.click("Plane");
     harness.press(CTRL, Key::A);
     assert_eq!(selected(&harness), (11, 0));
