@@ -18,6 +18,8 @@ use crate::words::quoted;
 const NARROW: usize = 7;
 /// The end of a range that is no larger is only there to be above 0.
 const SMALL: f64 = 0.5;
+/// Letters of the ends of a range.
+const ENDS: usize = 9;
 /// Letters that a field by itself has room for.
 const WIDE: usize = 16;
 
@@ -127,7 +129,7 @@ fn out_of_range(field: &Field, number: f64) -> Option<String> {
     Some(if number <= 0.0 && 0.0 < least && least < SMALL {
         format!("{name} is above 0")
     } else {
-        let [least, most] = [least, most].map(|end| rounded(end, "", WIDE));
+        let [least, most] = [least, most].map(|end| rounded(end, "", ENDS));
         format!("{name} goes from {least} to {most}")
     })
 }

@@ -267,7 +267,7 @@ impl Lab {
             ui.weak("Every way of tracing this scene, each a dot: how long it takes, and how far it is off. The demo takes half a minute.");
             ui.add_space(GRID);
             let colors = palette(ui.ctx());
-            let text = RichText::new("Measure").color(colors.on_accent);
+            let text = RichText::new("Measure the scene").color(colors.on_accent);
             let start = ui.add(Button::new(text).fill(colors.accent));
             if start.clicked() {
                 wish = Some(self.measure(editor));

@@ -204,7 +204,9 @@ fn all_that_is_selected_is_all_things_or_all_keys() {
     harness.press(CTRL, Key::A);
     assert_eq!(selected(&harness), (0, 3));
     // Over the picture things are meant, whatever is selected.
-    harness.window.hover_at(harness.view().center());
+    harness
+        .window
+        .hover_at(harness.view().left_top() + egui::vec2(5.0, 5.0));
     harness.settle();
     harness.press(CTRL, Key::A);
     assert_eq!(selected(&harness), (11, 0));
