@@ -10,8 +10,8 @@ use crate::files::NewFile;
 
 /// What ffmpeg is told about the codec: both sides even, as H.264 needs them. How red, green and blue become what these
 /// hold is said in the file: players guess by the size otherwise.
-const H264: &str = "-c:v libx264 -crf 25 -vf scale=trunc(iw/2)*2:trunc(ih/2)*2:out_color_matrix=bt709:out_range=tv,format=yuv420p -colorspace bt709 -color_primaries bt709 -color_trc bt709 -color_range tv -movflags +faststart";
-const PRORES: &str = "-c:v prores_ks -profile:v 4444 -vf scale=out_color_matrix=bt709:out_range=tv,format=yuv444p10le -colorspace bt709 -color_primaries bt709 -color_trc bt709 -color_range tv";
+const H264: &str = "-c:v libx264 -crf 25 -vf scale=trunc(iw/2)*2:trunc(ih/2)*2:out_color_matrix=bt709:out_range=tv,format=yuv420p,setparams=color_primaries=bt709:color_trc=bt709:colorspace=bt709:range=tv -movflags +faststart";
+const PRORES: &str = "-c:v prores_ks -profile:v 4444 -vf scale=out_color_matrix=bt709:out_range=tv,format=yuv444p10le,setparams=color_primaries=bt709:color_trc=bt709:colorspace=bt709:range=tv";
 /// Exact to the bit: without the number drawn by lot that tells one file from another.
 const LOSSLESS: &str = "-c:v ffv1 -level 3 -pix_fmt bgr0 -fflags +bitexact";
 

@@ -691,7 +691,8 @@ fn keys_of_values_are_edited_like_those_of_the_camera() {
     harness.window.drop_at(to);
     harness.settle();
     assert_eq!(harness.editor().timeline().selected.len(), 3);
-    // All keys of both.
+    // All keys of both, where the pointer is over their line.
+    hover_over_line(&mut harness);
     harness.press(CTRL, Key::A);
     assert_eq!(harness.editor().timeline().selected.len(), 4);
     harness.press(Modifiers::NONE, Key::Delete);

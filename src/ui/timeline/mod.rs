@@ -162,14 +162,10 @@ impl TimelinePanel {
 
     /// Ctrl and the wheel show less or more of the line, the middle button moves it.
     fn zoom(&mut self, ui: &Ui, (scale, area): (&Scale, Rect), end: f64) {
-        // Over the labels beside it, too.
-        let whole = Rect::from_x_y_ranges(ui.max_rect().left()..=area.right(), area.y_range());
-        if ui.rect_contains_pointer(whole) {
-            self.hovered_in = self.frame;
-        }
         let at = ui.input(|input| input.pointer.hover_pos());
         let at = at.filter(|_| ui.rect_contains_pointer(area));
         let Some(at) = at else { return };
+        self.hovered_in = self.frame;
         let (factor, moved, is_middle) = ui.input(|input| {
             let pointer = &input.pointer;
             (input.zoom_delta(), pointer.delta().x, pointer.middle_down())

@@ -203,14 +203,18 @@ fn all_that_is_selected_is_all_things_or_all_keys() {
     harness.settle();
     harness.press(CTRL, Key::A);
     assert_eq!(selected(&harness), (0, 3));
-    // Over the picture things are meant, whatever is selected.
+    harness.click("Plane");
+    harness.press(CTRL, Key::A);
+    assert_eq!(selected(&harness), (11, 0));
+    // Where the pointer is over the picture as well, whatever is selected.
+    harness.window.hover_at(above);
+    harness.settle();
+    harness.press(CTRL, Key::A);
+    assert_eq!(selected(&harness), (0, 3));
     harness
         .window
         .hover_at(harness.view().left_top() + egui::vec2(5.0, 5.0));
     harness.settle();
-    harness.press(CTRL, Key::A);
-    assert_eq!(selected(&harness), (11, 0));
-    harness.click("Plane");
     harness.press(CTRL, Key::A);
     assert_eq!(selected(&harness), (11, 0));
     harness.press(CTRL, Key::H);
