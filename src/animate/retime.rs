@@ -27,6 +27,19 @@ pub enum Retime {
 }
 
 impl Retime {
+    /// Those that need no number.
+    pub const ALL: [Self; 3] = [Self::ConstantSpeed, Self::TrimPauses, Self::Smooth];
+
+    /// Name, and what it does.
+    pub fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Stretch(_) => ("Stretch", "The same flight within another time"),
+            Self::ConstantSpeed => ("Constant speed", "As far in each second as in any other"),
+            Self::TrimPauses => ("Trim pauses", "Without the time in which nothing moves"),
+            Self::Smooth => ("Smooth", "Takes corners off the flight"),
+        }
+    }
+
     /// The keys with the new timing. Cuts stay cuts.
     pub fn apply(self, keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
         if keys.len() < 2 {

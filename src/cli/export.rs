@@ -14,7 +14,6 @@ use super::error::{CliError, report_warning, say};
 use super::scene::read_whole_scene;
 use crate::export::{ExportError, ExportStep, Exported, Exporting};
 use crate::export::{Frames, Pattern, Sequence, Video, check_place, write_job};
-use crate::files::is_same_file;
 use crate::image::Format;
 use crate::scene::{Document, Method as _, Sampling};
 use crate::trace::{RenderControl, Threads};
@@ -246,10 +245,9 @@ pub fn run_job(args: &JobArgs) -> Result<(), CliError> {
     let (file, path) = (&args.what.scene, &args.output);
     let job = write_job(&Document::load(file)?, Some(file), &sequence, path);
     let job = job.map_err(CliError::failed)?;
-    let is_copied = !is_same_file(file, &job.scene);
     let frames = counted(sequence.frames.count(), "frame");
     say(&format!("{}: a job of {frames}", path.display()));
-    if is_copied {
+    if job.is_copied {
         let scene = job.scene.display();
         say(&format!(
             "{scene}: the scene, with everything that it needs"

@@ -55,6 +55,8 @@ const LONGEST: usize = 1024;
 pub struct Job {
     /// The scene that is rendered, beside the template.
     pub scene: PathBuf,
+    /// Whether that is a copy, of its own.
+    pub is_copied: bool,
     /// Files that held something else, and where that is kept.
     pub replaced: Vec<(PathBuf, PathBuf)>,
 }
@@ -84,7 +86,12 @@ pub fn write_job(
     if frames.len() > LONGEST {
         return Err(JobError::TooManyPieces(frames));
     }
-    let backup = write_scene(document, file.filter(|_| !has_files), &scene)?;
+    let is_copied = !file.is_some_and(|file| is_same_file(file, &scene));
+    let backup = if is_copied {
+        write_scene(document, file.filter(|_| !has_files), &scene)?
+    } else {
+        None
+    };
     let mut replaced: Vec<_> = backup
         .map(|backup| (scene.clone(), backup))
         .into_iter()
@@ -96,7 +103,11 @@ pub fn write_job(
         replaced.push((path.to_owned(), backup));
     }
     write_text(path, &job_template(sequence, &stem, &name))?;
-    Ok(Job { scene, replaced })
+    Ok(Job {
+        scene,
+        is_copied,
+        replaced,
+    })
 }
 
 /// Writes a document to `path`: as `file` has it, if it has one. Where what was there is now, if it was something
@@ -107,13 +118,11 @@ fn write_scene(
     path: &Path,
 ) -> Result<Option<PathBuf>, JobError> {
     let disk = |source| disk(path, source);
-    let text = match file {
-        Some(file) if is_same_file(file, path) => return Ok(None),
-        Some(file) => fs::read(file).map_err(disk)?,
-        None => {
-            let (header, scene) = (document.header.clone(), document.scene.taken_in());
-            Document { header, scene }.to_text()?.into_bytes()
-        }
+    let text = if let Some(file) = file {
+        fs::read(file).map_err(disk)?
+    } else {
+        let (header, scene) = (document.header.clone(), document.scene.taken_in());
+        Document { header, scene }.to_text()?.into_bytes()
     };
     let is_other = read_file(path).is_ok_and(|there| there != text);
     let backup = is_other.then(|| back_up(path)).transpose();

@@ -16,6 +16,13 @@ use crate::mesh::{Triangles, place_key};
 /// Most triangles that a mesh is taken apart into: each becomes an object with a name.
 pub const MOST_SEPARATE: usize = 10_000;
 
+impl Mesh {
+    /// Whether it has triangles, and few enough of them, to be taken apart.
+    pub fn is_separable(&self) -> bool {
+        (1..=MOST_SEPARATE).contains(&self.source.triangles().faces().len())
+    }
+}
+
 impl Scene {
     /// The triangles that hang together with the one at `index` by common corners, itself included, by
     /// their indices; none if that is no triangle.
@@ -121,19 +128,15 @@ impl Scene {
             .for_each(|track| track.shift(further));
     }
 
-    /// Puts triangles in place of the mesh at `index`, if there are no more than [`MOST_SEPARATE`]. Whether
-    /// it did.
+    /// Puts triangles in place of the mesh at `index`, if it is separable. Whether it did.
     pub fn separate(&mut self, index: usize) -> bool {
         let Some(object) = self.objects.get(index) else {
             return false;
         };
-        let Shape::Mesh(mesh) = &object.shape else {
-            return false;
+        let mesh = match &object.shape {
+            Shape::Mesh(mesh) if mesh.is_separable() => mesh,
+            _ => return false,
         };
-        let triangles = mesh.source.triangles();
-        if !(1..=MOST_SEPARATE).contains(&triangles.faces().len()) {
-            return false;
-        }
         let name = object.name.clone();
         let others = self
             .objects

@@ -377,7 +377,11 @@ impl eframe::App for App {
             // What was measured before is not what is edited.
             self.lab.leave();
         }
-        let going = self.exports.describe(&self.pictures);
+        let going = if self.files.is_asking() {
+            self.exports.describe(&self.pictures)
+        } else {
+            None
+        };
         let outcome = self.files.show(ui, &mut self.editor, going.as_deref());
         self.act_on(&ctx, outcome);
         help::show(&ctx, &mut self.shortcuts_open);

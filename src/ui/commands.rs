@@ -3,11 +3,11 @@
 
 use std::path::PathBuf;
 
-use egui::{Event, Key, KeyboardShortcut, Modifiers, Ui};
+use egui::{Event, Key, KeyboardShortcut, Modifiers, Theme, Ui};
 use glam::DVec3;
 
 use super::layout::Part;
-use crate::editor::{Editor, Item, Kind, Selection};
+use crate::animate::{Preset, Retime};
 use crate::scene::Aspect;
 
 /// Something the user asks of the window as a whole.
@@ -113,6 +113,14 @@ pub enum Command {
     LookThrough,
     /// Put what is selected on what is below it.
     PutDown,
+    /// Make one mesh of the selected triangles and meshes, or of a triangle and all that share corners with it.
+    Join,
+    /// Put triangles in place of the selected mesh.
+    Separate,
+    /// Replace the keys of the camera by a ready-made flight around or towards what is selected.
+    Preset(Preset),
+    /// Give the flight another timing.
+    Retime(Retime),
     /// Open the window of exports.
     Export,
     /// Choose a file and write a job for a render farm to it.
@@ -145,6 +153,8 @@ pub enum Command {
     Lab,
     /// Hide all panels, or show them again.
     PictureAlone,
+    /// Dark or light panels.
+    Theme(Theme),
     /// Explain what a ray sees: from where, and in which direction.
     Why(DVec3, DVec3),
     /// Hide or show what is selected.
@@ -258,6 +268,10 @@ pub const KEYLESS: &[(Command, &str)] = &[
     ),
     (Command::MergePacks, "Merge equal color packs"),
     (Command::PutDown, "Put what is selected on what is below"),
+    (Command::Join, "Join triangles to a mesh"),
+    (Command::Separate, "Separate a mesh into triangles"),
+    (Command::Theme(Theme::Dark), "Dark theme"),
+    (Command::Theme(Theme::Light), "Light theme"),
 ];
 
 /// The commands whose keys were pressed in this frame. A key that repeats because it is held
@@ -341,70 +355,6 @@ pub fn name_of(ui: &Ui, keys: KeyboardShortcut) -> String {
     printed
         .iter()
         .fold(name, |name, (word, sign)| name.replace(word, sign))
-}
-
-/// Why the command would do nothing now, if so.
-pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
-    let nothing = "nothing is selected";
-    match command {
-        Command::Undo => editor.undo_label().is_none().then_some("nothing to undo"),
-        Command::Redo => editor.redo_label().is_none().then_some("nothing to redo"),
-        Command::Delete => {
-            let has = matches!(editor.selection, Selection::Item(_) | Selection::Keys);
-            (!has).then_some(nothing)
-        }
-        Command::Duplicate
-        | Command::Copy
-        | Command::Cut
-        | Command::SelectSamePack
-        | Command::ToggleVisible => {
-            let has = matches!(editor.selection, Selection::Item(_));
-            (!has).then_some(nothing)
-        }
-        Command::Group | Command::PutDown => {
-            let mut items = editor.selected().items().iter();
-            let has = items.any(|item| item.kind == Kind::Object);
-            (!has).then_some("no object is selected")
-        }
-        Command::Ungroup => {
-            let items = editor.selected().items().iter();
-            let mut objects = items.filter(|item| item.kind == Kind::Object);
-            let group = |item: &Item| Some(&editor.scene().objects.get(item.index)?.group);
-            let has = objects.any(|item| group(item).is_some_and(|group| !group.is_empty()));
-            (!has).then_some("nothing in a group is selected")
-        }
-        Command::MergePacks => {
-            let has = editor.scene().has_equal_packs();
-            (!has).then_some("no two color packs are equal")
-        }
-        Command::Rename if editor.selected().group(editor.scene()).is_some() => None,
-        Command::Rename | Command::MoveUp | Command::MoveDown => match editor.selection {
-            Selection::Item(_) if editor.selected().items().len() > 1 => {
-                Some("several things are selected")
-            }
-            Selection::Item(_) => None,
-            _ => Some(nothing),
-        },
-        Command::Play if editor.scene().animation.is_still() => Some("nothing moves yet"),
-        Command::SelectKeys | Command::PreviousKey | Command::NextKey => {
-            let is_still = editor.scene().animation.is_still();
-            is_still.then_some("there are no keys yet")
-        }
-        Command::LookThrough | Command::ExportPath => {
-            let has = !editor.scene().animation.keys.is_empty();
-            (!has).then_some("the camera has no keys yet")
-        }
-        Command::Record if editor.timeline().recorded().is_some() => Some("it records already"),
-        Command::StopRecording if editor.timeline().recorded().is_none() => {
-            Some("nothing is recorded")
-        }
-        _ => None,
-    }
-}
-
-/// Whether the command would do anything now.
-pub fn is_enabled(command: &Command, editor: &Editor) -> bool {
-    obstacle(command, editor).is_none()
 }
 
 #[cfg(test)]

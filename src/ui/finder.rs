@@ -5,11 +5,13 @@ use egui::{
 };
 
 use super::add::Addition;
-use super::commands::{Command, KEYLESS, SHORTCUTS, name_of, obstacle};
+use super::commands::{Command, KEYLESS, SHORTCUTS, name_of};
 use super::hint::Hint as _;
 use super::layout::Part;
+use super::obstacles::obstacle;
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW};
+use crate::animate::{Preset, Retime};
 use crate::editor::{Editor, Item, Selection};
 use crate::scene::{Aspect, EXAMPLES};
 
@@ -222,8 +224,18 @@ fn choices(editor: &Editor) -> impl Iterator<Item = (Command, String, String)> {
             format!("Go to the bookmark: {}", bookmark.name),
         )
     });
+    let presets = Preset::ALL.map(|preset| {
+        let name = format!("Ready-made flight: {}", preset.words().0.to_lowercase());
+        (Command::Preset(preset), name)
+    });
+    let timings = Retime::ALL.map(|timing| {
+        let name = format!("Other timing: {}", timing.words().0.to_lowercase());
+        (Command::Retime(timing), name)
+    });
     let all = shown
         .into_iter()
+        .chain(presets)
+        .chain(timings)
         .chain(parts)
         .chain(examples)
         .chain(bookmarks);

@@ -77,7 +77,9 @@ pub fn export_povray(editor: &mut Editor, path: &Path) {
 /// The template of a job, and the scene as it is now beside it.
 pub fn export_job(editor: &mut Editor, path: &Path) {
     match write(editor, path) {
-        Ok(Job { scene, replaced }) => {
+        Ok(Job {
+            scene, replaced, ..
+        }) => {
             let kept = replaced.iter().map(|(file, backup)| {
                 let (file, backup) = (file.display(), backup.display());
                 format!("; {file} held something else, which is kept as {backup}")

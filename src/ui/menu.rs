@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use egui::containers::menu::{MenuConfig, SubMenuButton};
-use egui::{Button, Context, DragValue, MenuBar, PopupCloseBehavior, Theme, Ui};
+use egui::{Button, DragValue, MenuBar, PopupCloseBehavior, Theme, Ui};
 
 use super::add::add_menu;
 use super::commands::Command;
@@ -11,13 +11,12 @@ use super::examples::Examples;
 use super::flying::{FASTEST, SLOWEST};
 use super::hint::Hint as _;
 use super::icons;
-use super::inspector::target;
 use super::layout::{Layout, Panels, Part};
 use super::menu_entry::{ITEM_COMMANDS, entry, offer, switch, ticked};
 use super::requests::UiRequests;
 use crate::animate::{Preset, Retime};
-use crate::editor::{Edit, Editor, Mode, Selection, Time};
-use crate::scene::{Animation, Aspect, Projection};
+use crate::editor::{Editor, Mode, Selection};
+use crate::scene::{Aspect, Projection};
 
 /// Shows the bar.
 pub fn show(
@@ -183,7 +182,7 @@ fn view_menu(
                 .hint("The wheel changes it while the camera flies or looks around");
         });
     ui.separator();
-    theme_choice(ui);
+    theme_choice(ui, out);
 }
 
 fn panel_entries(ui: &mut Ui, (layout, panels): (&mut Layout, Panels), out: &mut UiRequests) {
@@ -220,69 +219,39 @@ fn animate_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         offer(ui, editor, text, command, out);
     }
     ui.separator();
-    ui.menu_button("Ready-made flight", |ui| preset_entries(ui, editor, out));
+    ui.menu_button("Ready-made flight", |ui| preset_entries(ui, out));
     ui.add_enabled_ui(editor.scene().animation.keys.len() > 1, |ui| {
-        ui.menu_button("Other timing", |ui| retime_entries(ui, editor, out));
+        ui.menu_button("Other timing", |ui| retime_entries(ui, out));
     });
     ui.separator();
     entry(ui, "Import path…", Command::ImportPath, true, out);
     offer(ui, editor, "Export path…", Command::ExportPath, out);
 }
 
-/// Seconds that a ready-made flight takes.
-const PRESET_SECONDS: f64 = 8.0;
-
-fn preset_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+fn preset_entries(ui: &mut Ui, out: &mut UiRequests) {
     for preset in Preset::ALL {
         let (name, hint) = preset.words();
         let hint = format!("{hint}. Replaces the camera's keys");
         if ui.button(name).hint(hint).clicked() {
-            let keys = preset.keys(&editor.shown().camera, target(editor), PRESET_SECONDS);
-            let changed = Animation {
-                keys,
-                take: None,
-                ..Animation::clone(&editor.scene().animation)
-            };
-            out.edit(Edit::animation(changed, name));
-            out.time(Time::Seek(0.0));
+            out.commands.push(Command::Preset(preset));
         }
     }
 }
 
-fn retime_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
-    let animation = &editor.scene().animation;
-    let mut retimed = None;
-    for (name, hint, retime) in [
-        (
-            "Constant speed",
-            "As far in each second as in any other",
-            Retime::ConstantSpeed,
-        ),
-        (
-            "Trim pauses",
-            "Without the time in which nothing moves",
-            Retime::TrimPauses,
-        ),
-        ("Smooth", "Takes corners off the flight", Retime::Smooth),
-    ] {
+fn retime_entries(ui: &mut Ui, out: &mut UiRequests) {
+    for retime in Retime::ALL {
+        let (name, hint) = retime.words();
         if ui.button(name).hint(hint).clicked() {
-            retimed = Some((retime, name));
+            out.commands.push(Command::Retime(retime));
         }
-    }
-    if let Some((retime, name)) = retimed {
-        let changed = Animation {
-            keys: retime.apply(&animation.keys),
-            ..Animation::clone(animation)
-        };
-        out.edit(Edit::animation(changed, name));
     }
 }
 
-fn theme_choice(ui: &mut Ui) {
-    let ctx: Context = ui.ctx().clone();
+fn theme_choice(ui: &mut Ui, out: &mut UiRequests) {
+    let shown = ui.ctx().theme();
     for (theme, name) in [(Theme::Dark, "Dark theme"), (Theme::Light, "Light theme")] {
-        if ticked(ui, ctx.theme() == theme, name, None).clicked() {
-            ctx.set_theme(theme);
+        if ticked(ui, shown == theme, name, None).clicked() {
+            out.commands.push(Command::Theme(theme));
         }
     }
 }

@@ -2,13 +2,14 @@
 
 use egui::{Button, Color32, Response, Role, Ui, WidgetInfo};
 
-use super::commands::{Command, is_enabled, key_of};
+use super::commands::{Command, key_of};
 use super::icons;
+use super::obstacles::is_enabled;
 use super::requests::UiRequests;
 use crate::editor::Editor;
 
 /// What can be done to the selected item.
-pub const ITEM_COMMANDS: [(&str, Command); 12] = [
+pub const ITEM_COMMANDS: [(&str, Command); 14] = [
     ("Cut", Command::Cut),
     ("Copy", Command::Copy),
     ("Hide or show", Command::ToggleVisible),
@@ -18,6 +19,8 @@ pub const ITEM_COMMANDS: [(&str, Command); 12] = [
     ("Ungroup", Command::Ungroup),
     ("Duplicate", Command::Duplicate),
     ("Put down", Command::PutDown),
+    ("Join", Command::Join),
+    ("Separate", Command::Separate),
     ("Move up", Command::MoveUp),
     ("Move down", Command::MoveDown),
     ("Delete", Command::Delete),

@@ -9,6 +9,8 @@ mod layout;
 
 mod commands;
 
+mod obstacles;
+
 mod dialogs;
 
 mod folders;

@@ -235,6 +235,12 @@ macro_rules! color_names {
 }
 pub(crate) use color_names;
 
+/// Whether this is the name of a channel of a colour.
+pub fn is_channel(name: &str) -> bool {
+    let (_, ends) = color_names!("");
+    ends.iter().any(|end| name.ends_with(end))
+}
+
 /// A row whose label resets it.
 fn row(ui: &mut Ui, field: &Field, default: &str, add: impl FnOnce(&mut Ui, bool)) {
     let hint = format!(

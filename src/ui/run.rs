@@ -6,8 +6,9 @@ use egui::{Context, ViewportCommand};
 use glam::DVec3;
 
 use super::app::App;
-use super::commands::{Command, is_enabled};
+use super::commands::Command;
 use super::dialogs::Ask;
+use super::obstacles::is_enabled;
 use super::put_down::put_down;
 use super::timeline::actions;
 use super::tools::{axis_camera, framing_camera, projected_camera};
@@ -68,6 +69,7 @@ impl App {
             Command::FrameAll if self.timeline.is_hovered(ctx.cumulative_frame_nr()) => {
                 self.timeline.fit();
             }
+            Command::Theme(theme) => ctx.set_theme(theme),
             Command::PictureAlone => self.is_alone = !self.is_alone,
             Command::Aspect(aspect) => self.layout.aspect = aspect,
             Command::Part(part) => {
@@ -185,6 +187,11 @@ impl App {
                 Action::Edit(Edit::Group(objects, String::new()))
             }
             Command::MergePacks => Action::Edit(Edit::MergePacks),
+            Command::Join => Action::Edit(Edit::Join(joined(editor))),
+            Command::Separate => match editor.selection {
+                Selection::Item(item) => Action::Edit(Edit::Separate(item.index)),
+                _ => return,
+            },
             Command::PutDown => match put_down(editor.shown(), editor.selected()) {
                 Ok(edit) => Action::Edit(edit),
                 Err(why) => return editor.notify(why.to_owned()),
@@ -305,6 +312,15 @@ fn toggle_visible(editor: &mut Editor) {
     let edits: Vec<Edit> = edits.collect();
     let label = format!("{field} {} items", edits.len());
     editor.apply(Action::Edit(Edit::Each(edits, label)));
+}
+
+/// The selected objects, or a triangle and all that share corners with it.
+fn joined(editor: &Editor) -> Vec<usize> {
+    let selected = editor.selected().places(Kind::Object);
+    match selected[..] {
+        [triangle] => editor.scene().connected_triangles(triangle),
+        _ => selected,
+    }
 }
 
 /// This view as one more bookmark.

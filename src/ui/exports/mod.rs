@@ -232,12 +232,13 @@ impl Exports {
             .spacing([GRID, GRID / 2.0])
             .show(ui, |ui| fields(ui, &mut settings, out));
         let sequence = settings.sequence(editor.scene());
+        let is_making = self.is_making(&settings, editor);
         let colors = palette(ui.ctx());
         match &sequence {
             Err(error) => {
                 ui.colored_label(colors.error, error.to_string());
             }
-            Ok(_) if self.is_making(&settings, editor) => {
+            Ok(_) if is_making => {
                 ui.label("These frames are being made: see below");
             }
             Ok(sequence) => {
@@ -247,10 +248,11 @@ impl Exports {
                 ui.label(forecast(&settings, sequence, found, millis));
             }
         }
-        let colors = palette(ui.ctx());
         let text = RichText::new("Export").color(colors.on_accent);
-        let can_start = sequence.is_ok() && !self.is_making(&settings, editor);
-        let start = ui.add_enabled(can_start, Button::new(text).fill(colors.accent));
+        let start = ui.add_enabled(
+            sequence.is_ok() && !is_making,
+            Button::new(text).fill(colors.accent),
+        );
         if start.accessible_name("Start export").clicked()
             && let Ok(sequence) = sequence
         {

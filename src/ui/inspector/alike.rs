@@ -7,9 +7,7 @@ use glam::DVec3;
 use super::items::BOTH;
 use crate::editor::{Edit, Item, Kind};
 use crate::scene::{ColorPack, FieldValue, Light, Object, Scene, Shape};
-
-/// The ends of the names of a colour's channels.
-const CHANNELS: [&str; 3] = [" red", " green", " blue"];
+use crate::ui::rows::is_channel;
 
 /// A point of something that a change moves.
 struct MovedPoint {
@@ -157,7 +155,7 @@ pub fn packs_of(scene: &Scene, selected: &[Item]) -> impl Iterator<Item = usize>
 /// A pack with what of another one has changed: a colour, or one channel of it.
 fn like_pack(own: &ColorPack, (old, new): (&ColorPack, &ColorPack), field: &str) -> ColorPack {
     let mut pack = own.clone();
-    let is_channel = CHANNELS.iter().any(|channel| field.ends_with(channel));
+    let is_channel = is_channel(field);
     let take_color = |own: &mut DVec3, old: DVec3, new: DVec3| {
         *own = match is_channel {
             true => changed(*own, old, new),
@@ -165,7 +163,7 @@ fn like_pack(own: &ColorPack, (old, new): (&ColorPack, &ColorPack), field: &str)
             false => *own,
         };
     };
-    if field.starts_with(BOTH) {
+    if field.starts_with(BOTH.0) {
         // Whatever it was painted in besides, as where one is changed alone.
         take_color(&mut pack.diffuse, old.diffuse, new.diffuse);
         pack.ambient = pack.diffuse;

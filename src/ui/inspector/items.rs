@@ -16,7 +16,7 @@ use crate::ui::rows::{Field, Rows, color_names, coordinate, fraction};
 use crate::words::counted;
 
 /// What ambient and diffuse colour are called at once.
-pub const BOTH: &str = "color";
+pub const BOTH: (&str, [&str; 3]) = color_names!("color");
 
 /// A light and its marker.
 pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut UiRequests) {
@@ -175,12 +175,7 @@ fn mesh_tools(
                 rows.ui.label(problem);
             }
             let hint = format!("Make an object of each triangle, up to {MOST_SEPARATE} of them");
-            if tool(
-                rows,
-                "Separate",
-                &hint,
-                (1..=MOST_SEPARATE).contains(&faces),
-            ) {
+            if tool(rows, "Separate", &hint, mesh.is_separable()) {
                 out.edit(Edit::Separate(index));
             }
         }
@@ -229,7 +224,7 @@ pub fn pack(ui: &mut Ui, index: usize, before: &ColorPack, out: &mut UiRequests)
     let mut rows = Rows::new(ui);
     let mut both = pack.diffuse;
     rows.color(
-        color_names!("color"),
+        BOTH,
         "Ambient and diffuse at once: what most things are painted in",
         defaults.diffuse,
         &mut both,

@@ -7,9 +7,11 @@ use super::alike::{for_all, packs_of, values};
 use super::items;
 use super::title::{name_field, tell_different, title, title_field};
 use crate::editor::{Action, Edit, Editor, Item, Kind};
-use crate::scene::{ColorPack, Light, Object, Scene, Shape};
+use crate::scene::{ColorPack, Light, Object, Scene};
+use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
+use crate::ui::obstacles::is_enabled;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, ROW};
 
@@ -19,7 +21,6 @@ const MOST: usize = 500;
 /// The properties of what was selected last; a change is made to all that have the property.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let (scene, selected) = (editor.shown(), editor.selected().items());
-    let objects = editor.selected().places(Kind::Object);
     let group = editor.selected().group(scene);
     if let Some(group) = group {
         group_title(ui, group, out);
@@ -33,15 +34,11 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     } else {
         "A change is made to all that have the property; a position that is dragged moves them together."
     });
-    let is_joinable = |index: &usize| {
-        let object = scene.objects.get(*index);
-        object.is_some_and(|object| matches!(object.shape, Shape::Triangle(_) | Shape::Mesh(_)))
-    };
-    let can_join = objects.len() == selected.len() && objects.iter().all(is_joinable);
+    let can_join = is_enabled(&Command::Join, editor);
     let join = ui.add_enabled(can_join, egui::Button::new("Join"));
     let hint = "Make one mesh of these triangles and meshes, with the name and the color pack of the first";
     if join.hint(hint).on_disabled_hover_text(hint).clicked() {
-        out.edit(Edit::Join(objects));
+        out.commands.push(Command::Join);
     }
     ui.add_space(GRID);
     let mut own = UiRequests::default();
@@ -89,8 +86,9 @@ fn group_title(ui: &mut Ui, group: &str, out: &mut UiRequests) {
 
 /// The properties of `last` that others have otherwise.
 fn differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'static str> {
+    let selected = &selected[selected.len().saturating_sub(MOST)..];
     let mut names = match last.kind {
-        Kind::Light => light_differences(scene, selected, last.index),
+        Kind::Light => light_differences(scene, selected),
         Kind::Object => object_differences(scene, selected, last),
         Kind::Pack => Vec::new(),
     };
@@ -100,26 +98,32 @@ fn differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'static str
     names
 }
 
+/// Which of these properties not all of them have in common: each with a name, and whether two have the same.
+fn differing<T>(all: &[&T], properties: &[(&'static str, IsAlike<T>)]) -> Vec<&'static str> {
+    let differ = properties.iter().filter(|(_, is_alike)| {
+        let mut pairs = all.windows(2);
+        pairs.any(|pair| !is_alike(pair[0], pair[1]))
+    });
+    differ.map(|(name, _)| *name).collect()
+}
+
+/// Whether two things have a property in common.
+type IsAlike<T> = fn(&T, &T) -> bool;
+
 /// The same of the packs that are selected or worn.
 fn pack_differences(scene: &Scene, selected: &[Item]) -> Vec<&'static str> {
-    let selected = &selected[selected.len().saturating_sub(MOST)..];
     let packs = packs_of(scene, selected).filter_map(|place| scene.color_packs.get_index(place));
     let packs: Vec<&ColorPack> = packs.map(|(_, pack)| pack).collect();
-    let differ = |alike: &dyn Fn(&ColorPack, &ColorPack) -> bool| {
-        packs.windows(2).any(|pair| !alike(pair[0], pair[1]))
-    };
-    let mut names = Vec::new();
-    let mut note = |name, alike: &dyn Fn(&ColorPack, &ColorPack) -> bool| {
-        if differ(alike) {
-            names.push(name);
-        }
-    };
-    note("ambient", &|a, b| a.ambient == b.ambient);
-    note("diffuse", &|a, b| a.diffuse == b.diffuse);
-    note("specular", &|a, b| a.specular == b.specular);
-    note("phong", &|a, b| a.phong_exponent == b.phong_exponent);
-    note("reflective", &|a, b| a.reflective == b.reflective);
-    names
+    differing(
+        &packs,
+        &[
+            ("ambient", |a, b| a.ambient == b.ambient),
+            ("diffuse", |a, b| a.diffuse == b.diffuse),
+            ("specular", |a, b| a.specular == b.specular),
+            ("phong", |a, b| a.phong_exponent == b.phong_exponent),
+            ("reflective", |a, b| a.reflective == b.reflective),
+        ],
+    )
 }
 
 /// The same of an object.
@@ -132,7 +136,6 @@ fn object_differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'sta
         .iter()
         .filter(|item| item.kind == Kind::Object)
         .filter_map(of)
-        .take(MOST)
         .collect();
     let theirs: Vec<_> = others.iter().map(|other| values(&other.shape)).collect();
     let mut names = Vec::new();
@@ -154,26 +157,20 @@ fn object_differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'sta
     names
 }
 
-/// The same of a light.
-fn light_differences(scene: &Scene, selected: &[Item], last: usize) -> Vec<&'static str> {
-    let Some(light) = scene.lights.get(last) else {
-        return Vec::new();
-    };
-    let others: Vec<&Light> = selected
+/// The same of the lights.
+fn light_differences(scene: &Scene, selected: &[Item]) -> Vec<&'static str> {
+    let lights: Vec<&Light> = selected
         .iter()
         .filter(|item| item.kind == Kind::Light)
         .filter_map(|item| scene.lights.get(item.index))
-        .take(MOST)
         .collect();
-    let mut names = Vec::new();
-    let mut note = |name, differs: &dyn Fn(&Light) -> bool| {
-        if others.iter().any(|other| differs(other)) {
-            names.push(name);
-        }
-    };
-    note("position", &|other| other.position != light.position);
-    note("intensity", &|other| other.intensity != light.intensity);
-    note("on", &|other| other.visible != light.visible);
-    note("marker", &|other| other.marker != light.marker);
-    names
+    differing(
+        &lights,
+        &[
+            ("position", |a, b| a.position == b.position),
+            ("intensity", |a, b| a.intensity == b.intensity),
+            ("on", |a, b| a.visible == b.visible),
+            ("marker", |a, b| a.marker == b.marker),
+        ],
+    )
 }

@@ -9,6 +9,7 @@ use crate::scene::{Animation, FRAME_RATES, KeyPlace, Keys, MAX_SECONDS};
 use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
+use crate::ui::inspector::target;
 use crate::ui::number::{Field, lone};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
@@ -18,6 +19,8 @@ use crate::words::counted;
 const WIDE: f32 = 1040.0;
 /// Width of a window in which all but the rates has its place, in points.
 const NARROW: f32 = 860.0;
+/// Seconds that a ready-made flight takes.
+const PRESET_SECONDS: f64 = 8.0;
 
 /// Playing, keys, and what time it is.
 pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out: &mut UiRequests) {
@@ -320,6 +323,23 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action>
                 Action::Edit(Edit::animation(changed, "Add key")),
                 Action::Time(Time::SelectKeys(Keys::from([KeyPlace::of_camera(place)]))),
             ]
+        }
+        Command::Preset(preset) => {
+            let keys = preset.keys(&editor.shown().camera, target(editor), PRESET_SECONDS);
+            let changed = Animation {
+                keys,
+                take: None,
+                ..Animation::clone(animation)
+            };
+            let edit = Edit::animation(changed, preset.words().0);
+            vec![Action::Edit(edit), Action::Time(Time::Seek(0.0))]
+        }
+        Command::Retime(retime) => {
+            let changed = Animation {
+                keys: retime.apply(&animation.keys),
+                ..Animation::clone(animation)
+            };
+            vec![Action::Edit(Edit::animation(changed, retime.words().0))]
         }
         _ => Vec::new(),
     }

@@ -1,0 +1,99 @@
+//! Why a command would do nothing now.
+
+use super::commands::Command;
+use crate::editor::{Editor, Item, Kind, Selection};
+use crate::scene::{Scene, Shape};
+
+/// Why the command would do nothing now, if so.
+pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
+    let nothing = "nothing is selected";
+    match command {
+        Command::Undo => editor.undo_label().is_none().then_some("nothing to undo"),
+        Command::Redo => editor.redo_label().is_none().then_some("nothing to redo"),
+        Command::Delete => {
+            let has = matches!(editor.selection, Selection::Item(_) | Selection::Keys);
+            (!has).then_some(nothing)
+        }
+        Command::Duplicate
+        | Command::Copy
+        | Command::Cut
+        | Command::SelectSamePack
+        | Command::ToggleVisible => {
+            let has = matches!(editor.selection, Selection::Item(_));
+            (!has).then_some(nothing)
+        }
+        Command::Join => {
+            let (scene, items) = (editor.scene(), editor.selected().items());
+            let mut shapes = items.iter().map(|item| shape_of(scene, *item));
+            let can = match items.len() {
+                1 => matches!(shapes.next(), Some(Some(Shape::Triangle(_)))),
+                _ => shapes.all(|shape| matches!(shape, Some(Shape::Triangle(_) | Shape::Mesh(_)))),
+            };
+            (!can || items.is_empty()).then_some("no triangles or several meshes are selected")
+        }
+        Command::Separate => {
+            let (scene, items) = (editor.scene(), editor.selected().items());
+            let shape = match items {
+                [item] => shape_of(scene, *item),
+                _ => None,
+            };
+            let can = matches!(shape, Some(Shape::Mesh(mesh)) if mesh.is_separable());
+            (!can).then_some("no mesh of so few triangles is selected")
+        }
+        Command::Retime(_) => {
+            let has = editor.scene().animation.keys.len() > 1;
+            (!has).then_some("the camera has fewer than two keys")
+        }
+        Command::Group | Command::PutDown => {
+            let mut items = editor.selected().items().iter();
+            let has = items.any(|item| item.kind == Kind::Object);
+            (!has).then_some("no object is selected")
+        }
+        Command::Ungroup => {
+            let items = editor.selected().items().iter();
+            let mut objects = items.filter(|item| item.kind == Kind::Object);
+            let group = |item: &Item| Some(&editor.scene().objects.get(item.index)?.group);
+            let has = objects.any(|item| group(item).is_some_and(|group| !group.is_empty()));
+            (!has).then_some("nothing in a group is selected")
+        }
+        Command::MergePacks => {
+            let has = editor.scene().has_equal_packs();
+            (!has).then_some("no two color packs are equal")
+        }
+        Command::Rename if editor.selected().group(editor.scene()).is_some() => None,
+        Command::Rename | Command::MoveUp | Command::MoveDown => match editor.selection {
+            Selection::Item(_) if editor.selected().items().len() > 1 => {
+                Some("several things are selected")
+            }
+            Selection::Item(_) => None,
+            _ => Some(nothing),
+        },
+        Command::Play if editor.scene().animation.is_still() => Some("nothing moves yet"),
+        Command::SelectKeys | Command::PreviousKey | Command::NextKey => {
+            let is_still = editor.scene().animation.is_still();
+            is_still.then_some("there are no keys yet")
+        }
+        Command::LookThrough | Command::ExportPath => {
+            let has = !editor.scene().animation.keys.is_empty();
+            (!has).then_some("the camera has no keys yet")
+        }
+        Command::Record if editor.timeline().recorded().is_some() => Some("it records already"),
+        Command::StopRecording if editor.timeline().recorded().is_none() => {
+            Some("nothing is recorded")
+        }
+        _ => None,
+    }
+}
+
+/// Whether the command would do anything now.
+pub fn is_enabled(command: &Command, editor: &Editor) -> bool {
+    obstacle(command, editor).is_none()
+}
+
+fn shape_of(scene: &Scene, item: Item) -> Option<&Shape> {
+    let object = match item.kind {
+        Kind::Object => scene.objects.get(item.index)?,
+        Kind::Light | Kind::Pack => return None,
+    };
+    Some(&object.shape)
+}
