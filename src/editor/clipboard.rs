@@ -7,9 +7,11 @@ use glam::DVec3;
 use indexmap::IndexMap;
 
 use super::item::{Item, Kind};
-use super::names::{Taken, copy_offset};
+use super::names::copy_offset;
 use super::selection::Selected;
-use crate::scene::{ColorPack, Document, List, Owners, Scene, SceneError, Track, names_field};
+use crate::scene::{
+    ColorPack, Document, List, Names, Owners, Scene, SceneError, Track, names_field,
+};
 
 /// How far a copy of a light alone is from it, in world units.
 const LIGHT_APART: f64 = 10.0;
@@ -100,7 +102,7 @@ pub fn read(text: &str, scene: &Scene) -> Result<Scene, SceneError> {
 /// that is free.
 pub fn paste(scene: &mut Scene, pasted: &Scene) {
     let mut packs = IndexMap::new();
-    let mut taken = Taken::new(scene.color_packs.keys());
+    let mut taken = Names::new(scene.color_packs.keys().map(String::as_str));
     for (name, pack) in pasted.color_packs.iter() {
         let is_there = scene.color_packs.get(name) == Some(pack);
         let free = if is_there {
@@ -121,7 +123,7 @@ pub fn paste(scene: &mut Scene, pasted: &Scene) {
     let by = way_aside(scene, pasted);
     // What they are called here: whether it is a light, and its name there.
     let mut names = HashMap::new();
-    let mut taken = Taken::new(scene.objects.iter().map(|object| &object.name));
+    let mut taken = Names::new(scene.objects.iter().map(|object| &*object.name));
     let groups = new_groups(scene, pasted);
     for object in &pasted.objects {
         let mut object = object.clone();
@@ -135,7 +137,7 @@ pub fn paste(scene: &mut Scene, pasted: &Scene) {
         }
         scene.objects.push(object);
     }
-    let mut taken = Taken::new(scene.lights.iter().map(|light| &light.name));
+    let mut taken = Names::new(scene.lights.iter().map(|light| &*light.name));
     for light in &pasted.lights {
         let (mut light, own_name) = (light.clone(), light.name.clone());
         light.position += by;
@@ -161,8 +163,7 @@ pub fn paste(scene: &mut Scene, pasted: &Scene) {
 /// own. Alone, a member stays in its group.
 fn new_groups(scene: &Scene, pasted: &Scene) -> HashMap<String, String> {
     let there = members(scene);
-    let names: Vec<String> = there.keys().map(|&group| group.to_owned()).collect();
-    let mut taken = Taken::new(names.iter());
+    let mut taken = Names::new(there.keys().copied());
     let mut new = HashMap::new();
     for (group, own) in members(pasted) {
         let is_other = |others: &HashSet<&str>| own == *others || own.is_disjoint(others);

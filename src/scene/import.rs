@@ -1,6 +1,6 @@
 //! Parts of a mesh file become objects of a scene.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::path::Path;
 
 use glam::DVec3;
@@ -8,6 +8,7 @@ use glam::DVec3;
 use super::camera::Camera;
 use super::list::List;
 use super::material::{ColorPack, MAX_EXPONENT};
+use super::names::Names;
 use super::object::{Light, LightObj, Object};
 use super::shape::{Mesh, MeshFiles, MeshSource, Shape};
 use super::whole::Scene;
@@ -67,7 +68,7 @@ impl Scene {
                 name, triangles, ..
             } = part;
             self.objects.push(Object::new(
-                names.take(&name),
+                names.take(&tidy(&name)),
                 color_pack,
                 Mesh::of(triangles).centred(),
             ));
@@ -159,40 +160,6 @@ fn tidy(name: &str) -> String {
     let plain: String = name.chars().filter(|c| !c.is_control()).take(100).collect();
     let plain = plain.trim();
     if plain.is_empty() { PLAIN } else { plain }.to_owned()
-}
-
-/// Names that are taken.
-#[derive(Debug, Default)]
-pub struct Names {
-    taken: HashSet<String>,
-    /// For names that were wanted the number to go on with.
-    next: HashMap<String, u64>,
-}
-
-impl Names {
-    /// These are taken.
-    pub fn new<'a>(taken: impl Iterator<Item = &'a str>) -> Self {
-        Self {
-            taken: taken.map(str::to_owned).collect(),
-            next: HashMap::new(),
-        }
-    }
-
-    /// `wanted`, or `wanted 2`, `wanted 3`, … which is then taken.
-    pub fn take(&mut self, wanted: &str) -> String {
-        let wanted = tidy(wanted);
-        if self.taken.insert(wanted.clone()) {
-            return wanted;
-        }
-        let next = self.next.entry(wanted.clone()).or_insert(2);
-        loop {
-            let name = format!("{wanted} {next}");
-            *next += 1;
-            if self.taken.insert(name.clone()) {
-                return name;
-            }
-        }
-    }
 }
 
 #[cfg(test)]

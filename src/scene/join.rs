@@ -6,8 +6,8 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::animation::{Target, Track};
-use super::import::Names;
 use super::list::List;
+use super::names::Names;
 use super::object::Object;
 use super::shape::{Mesh, Shape, Triangle};
 use super::whole::Scene;

@@ -10,6 +10,8 @@
 
 mod list;
 
+mod names;
+
 mod direction;
 
 mod methods;
@@ -89,6 +91,7 @@ pub use methods::{
     Accelerator, HighlightMethod, MAX_GRID, MAX_HALVINGS, Method, MethodInfo, Methods, Precision,
     RayOffset, Sampling, SphereMethod, TriangleMethod, UnknownMethod,
 };
+pub use names::Names;
 pub(crate) use notation::method;
 pub use notation::{format_number, parse_vec3};
 pub use object::{Light, LightObj, Object};

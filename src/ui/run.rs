@@ -326,7 +326,7 @@ fn joined(editor: &Editor) -> Vec<usize> {
 /// This view as one more bookmark.
 fn add_bookmark(editor: &mut Editor) -> Action {
     let mut bookmarks = editor.scene().bookmarks.clone();
-    let name = free_bookmark_name(editor.scene());
+    let name = free_bookmark_name(&bookmarks, "View 1");
     editor.notify(format!("{name} is a bookmark; the View menu goes there"));
     let camera = editor.shown().camera.clone();
     bookmarks.push(Bookmark { name, camera });

@@ -3,7 +3,7 @@
 use egui::{Align, Id, Layout, Ui, vec2};
 
 use super::title::{name_field, title};
-use crate::editor::{Edit, Editor};
+use crate::editor::{Edit, Editor, free_bookmark_name};
 use crate::scene::{Bookmark, Camera, Orientation, Projection};
 use crate::ui::commands::Command;
 use crate::ui::icons;
@@ -66,7 +66,9 @@ fn bookmarks(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
                 format!("bookmark {}", index + 1),
             );
             if let Some(name) = name_field(ui, &label, id, name) {
-                bookmarks[index].name = name;
+                let mut others = before.clone();
+                others.remove(index);
+                bookmarks[index].name = free_bookmark_name(&others, &name);
                 out.edit(Edit::Bookmarks(bookmarks, "Rename bookmark"));
             }
         });
