@@ -64,8 +64,6 @@ pub struct App {
     pub(super) flying: Flying,
     pub(super) layout: Layout,
     pub(super) shortcuts_open: bool,
-    /// Whether all panels are hidden.
-    pub(super) is_alone: bool,
     pub(super) finder: Finder,
     pub(super) why: Why,
     pub(super) examples: Examples,
@@ -109,7 +107,6 @@ impl App {
         });
         let recent = kept(cc, RECENT_KEY).unwrap_or_default();
         let folders = kept(cc, FOLDERS_KEY).unwrap_or_default();
-        let layout: Layout = kept(cc, LAYOUT_KEY).unwrap_or_default();
         let mut app = Self {
             editor: Editor::demo(),
             pictures: Pictures::new(&cc.egui_ctx)?,
@@ -124,9 +121,8 @@ impl App {
             thumbs: Thumbs::default(),
             toasts: Toasts::default(),
             flying: Flying::default(),
-            layout,
+            layout: kept(cc, LAYOUT_KEY).unwrap_or_default(),
             shortcuts_open: false,
-            is_alone: false,
             finder: Finder::default(),
             why: Why::default(),
             examples: Examples::default(),
@@ -148,7 +144,6 @@ impl App {
         let exports = kept(cc, EXPORTS_KEY).unwrap_or_default();
         app.exports = Exports::new(folder, exports, &mut app.editor);
         app.exports.is_open = setup.exports;
-        (app.timeline.is_open, app.lab.is_open) = (layout.timeline, layout.lab);
         if let Some(path) = setup.scene {
             app.files.open_now(&mut app.editor, &path);
         }
@@ -431,12 +426,7 @@ impl eframe::App for App {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         eframe::set_value(storage, RECENT_KEY, &self.files.recent);
         eframe::set_value(storage, THEME_KEY, &self.theme);
-        let layout = Layout {
-            timeline: self.timeline.is_open,
-            lab: self.lab.is_open,
-            ..self.layout
-        };
-        eframe::set_value(storage, LAYOUT_KEY, &layout);
+        eframe::set_value(storage, LAYOUT_KEY, &self.layout);
         eframe::set_value(storage, FOLDERS_KEY, &self.files.folders);
         eframe::set_value(storage, EXPORTS_KEY, &self.exports.kept_settings());
     }

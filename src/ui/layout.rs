@@ -19,10 +19,11 @@ pub struct Layout {
     pub shot: bool,
     /// Whether it is shown how bright the picture is.
     pub histogram: bool,
-    /// Whether the timeline was shown when the window was closed.
-    pub timeline: bool,
-    /// Whether the lab was.
-    pub lab: bool,
+    /// The panel below the picture.
+    pub below: Below,
+    /// Whether the picture is shown without any panel.
+    #[serde(skip)]
+    pub is_alone: bool,
     /// How many times faster than usual the camera flies.
     pub fly_speed: f64,
     /// What of the light the live view shows.
@@ -70,15 +71,16 @@ impl Layout {
     }
 }
 
-/// What is shown of the panels that commands show and hide.
-#[derive(Clone, Copy, Debug)]
-pub struct Panels {
+/// What is shown below the picture: there is room for one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Below {
+    /// Nothing but the status line.
+    Nothing,
     /// The timeline.
-    pub timeline: bool,
+    #[default]
+    Timeline,
     /// The lab.
-    pub lab: bool,
-    /// Nothing but the picture.
-    pub is_alone: bool,
+    Lab,
 }
 
 impl Default for Layout {
@@ -89,8 +91,8 @@ impl Default for Layout {
             flight: true,
             shot: true,
             histogram: false,
-            timeline: true,
-            lab: false,
+            below: Below::default(),
+            is_alone: false,
             fly_speed: 1.0,
             aspect: Aspect::All,
         }

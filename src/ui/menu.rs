@@ -11,7 +11,7 @@ use super::examples::Examples;
 use super::flying::{FASTEST, SLOWEST};
 use super::hint::Hint as _;
 use super::icons;
-use super::layout::{Layout, Panels, Part};
+use super::layout::{Below, Layout, Part};
 use super::menu_entry::{ITEM_COMMANDS, entry, offer, switch, ticked};
 use super::requests::UiRequests;
 use crate::animate::{Preset, Retime};
@@ -23,14 +23,14 @@ pub fn show(
     ui: &mut Ui,
     editor: &Editor,
     (recent, examples): (&[PathBuf], &mut Examples),
-    (layout, panels): (&mut Layout, Panels),
+    layout: &mut Layout,
     out: &mut UiRequests,
 ) {
     MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| file_menu(ui, (recent, examples), out));
         ui.menu_button("Edit", |ui| edit_menu(ui, editor, out));
         ui.menu_button("Add", |ui| add_menu(ui, editor.shown(), out));
-        ui.menu_button("View", |ui| view_menu(ui, editor, (layout, panels), out));
+        ui.menu_button("View", |ui| view_menu(ui, editor, layout, out));
         ui.menu_button("Render", |ui| {
             entry(ui, "High-res picture", Command::HighRes, true, out);
             entry(
@@ -118,12 +118,7 @@ fn bookmark_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
 }
 
-fn view_menu(
-    ui: &mut Ui,
-    editor: &Editor,
-    (layout, panels): (&mut Layout, Panels),
-    out: &mut UiRequests,
-) {
+fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequests) {
     mode_entries(ui, editor, out);
     ui.separator();
     let projection = editor.shown().camera.projection;
@@ -163,7 +158,7 @@ fn view_menu(
             }
         }
     });
-    ui.menu_button("Panels", |ui| panel_entries(ui, (layout, panels), out));
+    ui.menu_button("Panels", |ui| panel_entries(ui, layout, out));
     ui.separator();
     for (part, name) in Part::OVER_PICTURE {
         switch(ui, layout.part(part), name);
@@ -185,14 +180,18 @@ fn view_menu(
     theme_choice(ui, out);
 }
 
-fn panel_entries(ui: &mut Ui, (layout, panels): (&mut Layout, Panels), out: &mut UiRequests) {
+fn panel_entries(ui: &mut Ui, layout: &mut Layout, out: &mut UiRequests) {
     for (part, name) in Part::PANELS {
         switch(ui, layout.part(part), name);
     }
     for (is_on, name, command) in [
-        (panels.timeline, "Timeline", Command::Timeline),
-        (panels.lab, "Lab", Command::Lab),
-        (panels.is_alone, "Picture alone", Command::PictureAlone),
+        (
+            layout.below == Below::Timeline,
+            "Timeline",
+            Command::Timeline,
+        ),
+        (layout.below == Below::Lab, "Lab", Command::Lab),
+        (layout.is_alone, "Picture alone", Command::PictureAlone),
     ] {
         if ticked(ui, is_on, name, Some(&command)).clicked() {
             out.commands.push(command);

@@ -8,7 +8,7 @@ use egui::{
 
 use super::app::App;
 use super::commands::Command;
-use super::layout::Panels;
+use super::layout::Below;
 use super::requests::UiRequests;
 use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, TIMELINE, palette};
 use super::timeline::clock;
@@ -28,18 +28,12 @@ impl App {
         ui: &mut Ui,
         out: &mut UiRequests,
     ) -> (Place, egui::Response) {
-        if self.is_alone {
+        if self.layout.is_alone {
             return self.show_middle(ui, out);
         }
         Panel::top("menu").show(ui, |ui| {
             let files = (self.files.recent.as_slice(), &mut self.examples);
-            let panels = Panels {
-                timeline: self.timeline.is_open,
-                lab: self.lab.is_open,
-                is_alone: self.is_alone,
-            };
-            let layout = (&mut self.layout, panels);
-            menu::show(ui, &self.editor, files, layout, out);
+            menu::show(ui, &self.editor, files, &mut self.layout, out);
         });
         // What stands below is as high as in the frame before, and drawn last.
         let mut upper = ui.available_rect_before_wrap();
@@ -100,18 +94,13 @@ impl App {
 
     /// How high the timeline, the lab and the status line were in the last frame.
     fn height_below(&self, ui: &Ui) -> f32 {
-        let timeline = self.timeline_panel();
-        let panels = [
-            (true, "status", ROW),
-            (self.lab.is_open, "lab", LAB),
-            (self.timeline.is_open, timeline, TIMELINE),
-        ];
-        let open = panels.iter().filter(|(is_open, ..)| *is_open);
-        let heights = open.map(|(_, name, usual)| {
-            let size = size_of(ui, name);
-            size.map_or(*usual, |size| size.y)
-        });
-        heights.sum()
+        let height = |name, usual| size_of(ui, name).map_or(usual, |size| size.y);
+        let below = match self.layout.below {
+            Below::Nothing => 0.0,
+            Below::Timeline => height(self.timeline_panel(), TIMELINE),
+            Below::Lab => height("lab", LAB),
+        };
+        height("status", ROW) + below
     }
 
     /// The status line, the lab and the timeline, from below.
@@ -135,7 +124,7 @@ impl App {
                 out,
             );
         });
-        if self.lab.is_open {
+        if self.layout.below == Below::Lab {
             let panel = Panel::bottom("lab").frame(side(ui)).resizable(true);
             let shown = panel
                 .default_size(LAB)
@@ -145,7 +134,7 @@ impl App {
                 self.pictures.fulfil(wish);
             }
         }
-        if self.timeline.is_open {
+        if self.layout.below == Below::Timeline {
             let per_second = self.pictures.per_second();
             let panel = Panel::bottom(self.timeline_panel());
             let panel = if self.editor.scene().animation.is_still() {

@@ -8,6 +8,7 @@ use glam::DVec3;
 use super::app::App;
 use super::commands::Command;
 use super::dialogs::Ask;
+use super::layout::Below;
 use super::obstacles::is_enabled;
 use super::put_down::put_down;
 use super::timeline::actions;
@@ -52,15 +53,8 @@ impl App {
             }
             Command::RequestPaste => ctx.send_viewport_cmd(ViewportCommand::RequestPaste),
             Command::Paste(text) => self.paste(&text),
-            // The two share the room below the picture.
-            Command::Lab => {
-                self.lab.is_open = !self.lab.is_open;
-                self.timeline.is_open = !self.lab.is_open;
-            }
-            Command::Timeline => {
-                self.timeline.is_open = !self.timeline.is_open;
-                self.lab.is_open = false;
-            }
+            Command::Lab => self.toggle_below(Below::Lab),
+            Command::Timeline => self.toggle_below(Below::Timeline),
             Command::SelectAll if self.means_keys(ctx) => self.run(ctx, Command::SelectKeys),
             Command::SelectAll => {
                 let all = Action::SelectItems(Selected::all(Item::everything(self.editor.scene())));
@@ -70,7 +64,7 @@ impl App {
                 self.timeline.fit();
             }
             Command::Theme(theme) => ctx.set_theme(theme),
-            Command::PictureAlone => self.is_alone = !self.is_alone,
+            Command::PictureAlone => self.layout.is_alone = !self.layout.is_alone,
             Command::Aspect(aspect) => self.layout.aspect = aspect,
             Command::Part(part) => {
                 let is_shown = self.layout.part(part);
@@ -88,6 +82,16 @@ impl App {
                 self.run_on_scene(&other);
             }
         }
+    }
+
+    /// Shows this below the picture, or takes it away: the timeline comes back in place of the lab.
+    fn toggle_below(&mut self, panel: Below) {
+        self.lab.leave();
+        self.layout.below = match panel {
+            other if other != self.layout.below => other,
+            Below::Lab => Below::Timeline,
+            Below::Timeline | Below::Nothing => Below::Nothing,
+        };
     }
 
     /// Whether all keys are meant where all is to be selected: the pointer is over the line of time.
@@ -238,8 +242,8 @@ impl App {
     fn escape(&mut self, ctx: &Context) {
         let time = ctx.input(|input| input.time);
         let last = self.escaped.take();
-        if self.is_alone {
-            self.is_alone = false;
+        if self.layout.is_alone {
+            self.layout.is_alone = false;
         } else if self.shortcuts_open {
             self.shortcuts_open = false;
         } else if self.why.is_open() {

@@ -48,8 +48,6 @@ pub(super) enum Tab {
 
 /// The lab's state.
 pub struct Lab {
-    /// Whether it is shown.
-    pub is_open: bool,
     pub(super) study: Option<Box<Study>>,
     /// Whether the render thread is at it.
     pub(super) is_running: bool,
@@ -83,7 +81,6 @@ pub struct Lab {
 impl Default for Lab {
     fn default() -> Self {
         Self {
-            is_open: false,
             study: None,
             is_running: false,
             number: 0,
@@ -178,12 +175,12 @@ impl Lab {
 
     /// Whether a dot is looked at in place of the live view.
     pub fn is_looking(&self) -> bool {
-        self.is_open && self.chosen.is_some()
+        self.chosen.is_some()
     }
 
     /// What the status line says about the dot that is looked at, if one is.
     pub fn describe(&self) -> Option<String> {
-        let place = self.chosen.filter(|_| self.is_open)?;
+        let place = self.chosen?;
         let dot = self.study.as_ref()?.measurements.get(place)?;
         let image = dot.picture.as_ref()?;
         let (name, words) = (&dot.candidate.name, dot.candidate.words());
@@ -205,7 +202,7 @@ impl Lab {
 
     /// Leaves the dot that is looked at; whether there was one.
     pub fn leave(&mut self) -> bool {
-        self.is_open && self.chosen.take().is_some()
+        self.chosen.take().is_some()
     }
 
     /// Shows the panel.
@@ -278,7 +275,7 @@ impl Lab {
 
     /// Draws what is looked at into the place of the live view; `None` if nothing is.
     pub fn show_picture(&mut self, ui: &mut Ui, place: Place) -> Option<Response> {
-        let place_of_dot = self.chosen.filter(|_| self.is_open)?;
+        let place_of_dot = self.chosen?;
         let study = self.study.as_ref()?;
         let picture = study.measurements.get(place_of_dot)?.picture.as_ref()?;
         let reference = &study.reference.as_ref()?.picture;

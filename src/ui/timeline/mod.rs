@@ -40,8 +40,6 @@ const BEHIND: f64 = 0.08;
 
 /// What the panel remembers.
 pub struct TimelinePanel {
-    /// Whether it is shown.
-    pub is_open: bool,
     /// Whether speed and turns are shown below the keys.
     shows_graph: bool,
     /// First and last time that the line shows; they stay while something is dragged on it.
@@ -61,7 +59,6 @@ pub struct TimelinePanel {
 impl Default for TimelinePanel {
     fn default() -> Self {
         Self {
-            is_open: true,
             shows_graph: true,
             span: (0.0, LEAST),
             chosen: None,
@@ -157,7 +154,7 @@ impl TimelinePanel {
 
     /// Whether the pointer is over the line, in this frame of the window.
     pub fn is_hovered(&self, frame: u64) -> bool {
-        self.hovered_in == frame && self.is_open
+        self.hovered_in == frame
     }
 
     /// Ctrl and the wheel show less or more of the line, the middle button moves it.
