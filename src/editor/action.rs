@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::edit::Edit;
 use super::fly::Motion;
-use super::selection::{Selected, Selection};
+use super::selection::Selected;
 use super::timeline::Time;
 
 /// What the picture area shows.
@@ -28,10 +28,8 @@ pub enum Action {
     Fly(Motion),
     /// Move the camera around a point, turned to the right and upwards by so many radians.
     Orbit(DVec3, (f64, f64)),
-    /// Show something in the inspector.
-    Select(Selection),
-    /// Select these items, and show the last of them in the inspector.
-    SelectItems(Selected),
+    /// Select something, and show it, or the last of it, in the inspector.
+    Select(Selected),
     /// What comes is a step of its own in the history.
     BeginGesture,
     /// Take back what was done since the gesture began.

@@ -43,8 +43,6 @@ pub struct Editor {
     pub(super) history: History,
     flight: Flight,
     pub(super) animation_state: AnimationState,
-    /// What the inspector shows.
-    pub selection: Selection,
     selected: Selected,
     /// What the picture area shows.
     pub mode: Mode,
@@ -83,7 +81,6 @@ impl Editor {
             broken: BTreeSet::new(),
             history: History::default(),
             flight: Flight::default(),
-            selection: Selection::default(),
             selected: Selected::default(),
             mode: Mode::default(),
             messages: Vec::new(),
@@ -167,9 +164,14 @@ impl Editor {
         self.history.redo_label()
     }
 
-    /// The items that are selected.
+    /// What is selected.
     pub fn selected(&self) -> &Selected {
         &self.selected
+    }
+
+    /// What the inspector shows.
+    pub fn selection(&self) -> Selection {
+        self.selected.selection()
     }
 
     /// Selects the objects and lights of these names.
@@ -180,7 +182,7 @@ impl Editor {
         };
         let items = Selected::all(Item::everything(&self.scene).filter(is_named));
         if !items.items().is_empty() {
-            self.apply(Action::SelectItems(items));
+            self.apply(Action::Select(items));
         }
     }
 
@@ -204,11 +206,7 @@ impl Editor {
                 let camera = self.flight.orbit(camera, about, turn);
                 self.edit(Edit::Camera(camera, "move"));
             }
-            Action::Select(selection) => self.select(Selected::only(selection), selection),
-            Action::SelectItems(selected) => {
-                let selection = selected.selection();
-                self.select(selected, selection);
-            }
+            Action::Select(selected) => self.select(selected),
             Action::BeginGesture => self.end_gesture(),
             Action::CancelGesture => {
                 if let Some(before) = self.history.cancel_gesture() {
@@ -230,8 +228,8 @@ impl Editor {
             Action::Time(time) => self.apply_time(time),
         }
         self.animation_state.update(&self.scene);
-        if matches!(self.selection, Selection::Keys) && self.timeline().selected.is_empty() {
-            self.select(Selected::default(), Selection::Camera);
+        if self.selected == Selected::Keys && self.timeline().selected.is_empty() {
+            self.select(Selected::Camera);
         }
     }
 
@@ -350,8 +348,8 @@ impl Editor {
         let replaced = edit.replaced();
         let posed = self.animation_state.posed(&self.scene, edit.joined());
         let mut next = posed.clone();
-        let selection = match edit.apply(&mut next) {
-            Ok(selection) => selection,
+        let new = match edit.apply(&mut next) {
+            Ok(new) => new,
             Err(error) => {
                 self.refuse(error.to_string());
                 return false;
@@ -377,8 +375,8 @@ impl Editor {
         }
         let before = self.here();
         self.history.record(label, before, &next);
-        match selection {
-            Some(selection) => self.select(Selected::only(selection), selection),
+        match new {
+            Some(item) => self.select(Selected::all([item])),
             None => self.follow(&next),
         }
         self.set_scene(Arc::new(next));
@@ -395,14 +393,13 @@ impl Editor {
     pub(super) fn here(&self) -> Snapshot {
         Snapshot {
             scene: Arc::clone(&self.scene),
-            selection: self.selection,
             selected: self.selected.clone(),
             keys: self.timeline().selected.clone(),
         }
     }
 
     fn return_to(&mut self, there: Snapshot) {
-        self.select(there.selected, there.selection);
+        self.select(there.selected);
         self.set_scene(self.refreshed(&there.scene));
         self.animation_state.timeline.selected = there.keys;
     }
@@ -415,14 +412,13 @@ impl Editor {
         }
         // Where the only one is gone, what is in its place is next.
         if !selected.items().is_empty() || self.selected.items().len() > 1 {
-            let selection = selected.selection();
-            self.select(selected, selection);
+            self.select(selected);
         }
     }
 
-    pub(super) fn select(&mut self, selected: Selected, selection: Selection) {
-        (self.selected, self.selection) = (selected, selection);
-        if selection != Selection::Keys {
+    pub(super) fn select(&mut self, selected: Selected) {
+        self.selected = selected;
+        if self.selected != Selected::Keys {
             self.animation_state.timeline.selected.clear();
         }
     }
@@ -431,10 +427,10 @@ impl Editor {
         self.is_dirty = *scene != *self.saved;
         self.scene = scene;
         self.revision += 1;
-        let items = self.selected.items().iter();
-        if items.clone().any(|item| item.name(&self.scene).is_none()) {
-            self.selection = self.selection.within(&self.scene);
-            self.selected = Selected::only(self.selection);
+        let is_there = |item: &Item| item.name(&self.scene).is_some();
+        if !self.selected.items().iter().all(is_there) {
+            let last = self.selected.items().last().copied();
+            self.selected = Selected::all(last.filter(is_there));
         }
         if self.mode == Mode::HighRes {
             self.mode = Mode::Live;

@@ -15,7 +15,6 @@ use super::adding::{add_light, add_object, add_pack};
 use super::clipboard::paste;
 use super::item::{Item, Kind};
 use super::names::{copy_offset, free_light_name, free_object_name, free_pack_name};
-use super::selection::Selection;
 
 /// A change of the scene. The `&'static str` names the field that changed: edits of one field
 /// during one gesture are one step in the history.
@@ -219,12 +218,12 @@ impl Edit {
         }
     }
 
-    /// Changes the scene; returns what shall be selected, if that changes too.
+    /// Changes the scene; returns the item that shall be selected, if that changes too.
     ///
     /// # Errors
     /// [`EditError`]: why the change is refused; the scene is then half-changed and to be
     /// thrown away.
-    pub fn apply(self, scene: &mut Scene) -> Result<Option<Selection>, EditError> {
+    pub fn apply(self, scene: &mut Scene) -> Result<Option<Item>, EditError> {
         match self {
             Self::Camera(camera, _) => scene.camera = camera,
             Self::Background(color) => scene.background = color,
@@ -240,23 +239,23 @@ impl Edit {
                 }
             }
             Self::AddObject(shape) => {
-                return Ok(select(add_object(scene, shape.kind(), shape)));
+                return Ok(Some(add_object(scene, shape.kind(), shape)));
             }
-            Self::AddMesh(name, mesh) => return Ok(select(add_object(scene, name, mesh.into()))),
-            Self::Import(parts) => return Ok(select(Item::object(scene.add_parts(parts)))),
+            Self::AddMesh(name, mesh) => return Ok(Some(add_object(scene, name, mesh.into()))),
+            Self::Import(parts) => return Ok(Some(Item::object(scene.add_parts(parts)))),
             Self::Join(joined) => {
-                return Ok(scene.join(joined).map(Item::object).and_then(select));
+                return Ok(scene.join(joined).map(Item::object));
             }
             Self::Paste(pasted, _) => paste(scene, &pasted),
             Self::Separate(index) => {
                 scene.separate(index);
             }
-            Self::AddLight(position) => return Ok(select(add_light(scene, position))),
-            Self::AddPack => return Ok(select(add_pack(scene))),
+            Self::AddLight(position) => return Ok(Some(add_light(scene, position))),
+            Self::AddPack => return Ok(Some(add_pack(scene))),
             Self::Rename(item, name) => rename(scene, item, name.trim())?,
-            Self::Duplicate(item) => return Ok(duplicate(scene, item).and_then(select)),
+            Self::Duplicate(item) => return Ok(duplicate(scene, item)),
             Self::Delete(item) => delete(scene, item)?,
-            Self::Move(item, to) => return Ok(select(move_item(scene, item, to))),
+            Self::Move(item, to) => return Ok(Some(move_item(scene, item, to))),
             Self::MakePackUnique(index) => make_pack_unique(scene, index),
             Self::MergePacks => scene.merge_equal_packs(),
             Self::RenameGroup(from, to) => rename_group(scene, &from, &to)?,
@@ -276,11 +275,6 @@ impl Edit {
         }
         Ok(None)
     }
-}
-
-#[expect(clippy::unnecessary_wraps, reason = "the shape that apply returns")]
-fn select(item: Item) -> Option<Selection> {
-    Some(Selection::Item(item))
 }
 
 fn replace<T: Clone>(list: &mut List<T>, index: usize, value: T) {

@@ -6,7 +6,7 @@ use super::action::Mode;
 use super::animation_state::Pending;
 use super::document::Editor;
 use super::edit::Edit;
-use super::selection::{Selected, Selection};
+use super::selection::Selected;
 use super::timeline::{MEASURED_AT, Recording, Time};
 use crate::animate::{Seen, Worst, resampled, simplify};
 use crate::scene::{Animation, Camera, Key, MAX_SECONDS, Sample, Take};
@@ -57,13 +57,13 @@ impl Editor {
             Time::SelectKeys(mut places) => {
                 // What was to move them may have been refused.
                 places.retain(|place| animation.at_place(*place).is_some());
-                let selection = if places.is_empty() {
-                    Selection::Camera
+                let selected = if places.is_empty() {
+                    Selected::Camera
                 } else {
-                    Selection::Keys
+                    Selected::Keys
                 };
                 timeline.selected = places;
-                self.select(Selected::default(), selection);
+                self.select(selected);
             }
             Time::Record if is_making_keys => {
                 self.notify("The last flight is still becoming keys".to_owned());

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::selection::{Selected, Selection};
+use super::selection::Selected;
 use crate::scene::{Keys, Scene};
 
 /// Steps that can be taken back; older ones are forgotten.
@@ -16,8 +16,6 @@ const MOST_BYTES: usize = 128 << 20;
 pub struct Snapshot {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// What the inspector showed.
-    pub selection: Selection,
     /// What was selected.
     pub selected: Selected,
     /// The keys that were selected.
@@ -131,7 +129,6 @@ mod tests {
     fn snapshot(scene: &Scene) -> Snapshot {
         Snapshot {
             scene: Arc::new(scene.clone()),
-            selection: Selection::default(),
             selected: Selected::default(),
             keys: Keys::default(),
         }

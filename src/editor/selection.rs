@@ -23,19 +23,33 @@ pub enum Selection {
     Keys,
 }
 
-impl Selection {
-    /// The selection, or the camera if the scene has no such item.
-    pub fn within(self, scene: &Scene) -> Self {
-        match self {
-            Self::Item(item) if item.name(scene).is_none() => Self::Camera,
-            valid => valid,
+/// All that is selected.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Selected {
+    /// The camera.
+    #[default]
+    Camera,
+    /// Ambient intensity, background, light visualization.
+    World,
+    /// The still picture's size and reflections.
+    Render,
+    /// Items, at least one: the one that the inspector shows comes last.
+    Items(Vec<Item>),
+    /// The keys that the timeline knows.
+    Keys,
+}
+
+impl From<Selection> for Selected {
+    fn from(selection: Selection) -> Self {
+        match selection {
+            Selection::Camera => Self::Camera,
+            Selection::World => Self::World,
+            Selection::Render => Self::Render,
+            Selection::Item(item) => Self::Items(vec![item]),
+            Selection::Keys => Self::Keys,
         }
     }
 }
-
-/// The items that are selected: the one that the inspector shows comes last.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Selected(Vec<Item>);
 
 impl Selected {
     /// The group that is selected: all of its objects, of which there are several, and nothing else.
@@ -45,40 +59,39 @@ impl Selected {
             let object = objects.filter(|_| item.kind == Kind::Object)?;
             Some(object.group.as_str()).filter(|group| !group.is_empty())
         };
-        let [first, _, ..] = &self.0[..] else {
+        let [first, _, ..] = self.items() else {
             return None;
         };
         let group = group_of(first)?;
         let is_in_it = |item: &Item| group_of(item) == Some(group);
         let members = scene.objects.iter().filter(|object| object.group == group);
-        let is_whole = self.0.iter().all(is_in_it) && members.count() == self.0.len();
+        let is_whole = self.items().iter().all(is_in_it) && members.count() == self.items().len();
         is_whole.then_some(group)
     }
 
-    /// What `selection` is by itself.
-    pub fn only(selection: Selection) -> Self {
-        Self(match selection {
-            Selection::Item(item) => vec![item],
-            _ => Vec::new(),
-        })
-    }
-
-    /// These, each of them once.
+    /// These, each of them once; the camera if there are none.
     pub fn all(items: impl IntoIterator<Item = Item>) -> Self {
         let mut all = Vec::new();
         let mut known = HashSet::new();
         all.extend(items.into_iter().filter(|item| known.insert(*item)));
-        Self(all)
+        if all.is_empty() {
+            Self::Camera
+        } else {
+            Self::Items(all)
+        }
     }
 
     /// All items; the one that the inspector shows comes last.
     pub fn items(&self) -> &[Item] {
-        &self.0
+        match self {
+            Self::Items(items) => items,
+            _ => &[],
+        }
     }
 
     /// The places of those of a kind, in ascending order.
     pub fn places(&self, kind: Kind) -> Vec<usize> {
-        let own = self.0.iter().filter(|item| item.kind == kind);
+        let own = self.items().iter().filter(|item| item.kind == kind);
         let mut places: Vec<usize> = own.map(|item| item.index).collect();
         places.sort_unstable();
         places
@@ -86,23 +99,23 @@ impl Selected {
 
     /// Whether it is among them.
     pub fn has(&self, item: Item) -> bool {
-        self.0.contains(&item)
+        self.items().contains(&item)
     }
 
     /// Whether all of these are among them.
     pub fn has_all(&self, items: impl ExactSizeIterator<Item = Item>) -> bool {
         // Mostly, fewer are selected.
-        if self.0.len() < items.len() {
+        if self.items().len() < items.len() {
             return false;
         }
-        let selected: HashSet<&Item> = self.0.iter().collect();
+        let selected: HashSet<&Item> = self.items().iter().collect();
         let mut items = items;
         items.all(|item| selected.contains(&item))
     }
 
     /// The middle of all that have a place; `None` if nothing has.
     pub fn middle(&self, scene: &Scene) -> Option<DVec3> {
-        let middles = self.0.iter().filter_map(|item| match item.kind {
+        let middles = self.items().iter().filter_map(|item| match item.kind {
             Kind::Object => Some(scene.objects.get(item.index)?.shape.middle()),
             Kind::Light => Some(scene.lights.get(item.index)?.position),
             Kind::Pack => None,
@@ -114,14 +127,10 @@ impl Selected {
     /// The same with `item`, or without it if it was among them.
     #[must_use]
     pub fn toggled(&self, item: Item) -> Self {
-        let mut items = self.0.clone();
-        match items.iter().position(|other| *other == item) {
-            Some(place) => {
-                items.remove(place);
-            }
-            None => items.push(item),
-        }
-        Self(items)
+        let others = self.items().iter().copied();
+        let others = others.filter(|other| *other != item);
+        let new = (!self.has(item)).then_some(item);
+        Self::all(others.chain(new))
     }
 
     /// The same things in another state of the scene, by their names; without those that are not there. A
@@ -129,7 +138,7 @@ impl Selected {
     #[must_use]
     pub fn followed(&self, from: &Scene, to: &Scene) -> Self {
         let stays = |item: &Item| item.name(from) == item.name(to);
-        if self.0.iter().all(stays) {
+        if self.items().iter().all(stays) {
             return self.clone();
         }
         let mut places: HashMap<(Kind, &str), Item> = HashMap::new();
@@ -140,7 +149,7 @@ impl Selected {
             }
         }
         let same_length = |kind: Kind| kind.count(from) == kind.count(to);
-        let followed = self.0.iter().filter_map(|item| {
+        let followed = self.items().iter().filter_map(|item| {
             let name = item.name(from)?;
             let found = places.get(&(item.kind, name)).copied();
             found.or_else(|| same_length(item.kind).then_some(*item))
@@ -148,11 +157,17 @@ impl Selected {
         Self::all(followed)
     }
 
-    /// What the inspector shows of them.
+    /// What the inspector shows of it.
     pub fn selection(&self) -> Selection {
-        self.0
-            .last()
-            .copied()
-            .map_or_else(Selection::default, Selection::Item)
+        match self {
+            Self::Camera => Selection::Camera,
+            Self::World => Selection::World,
+            Self::Render => Selection::Render,
+            Self::Items(items) => items
+                .last()
+                .copied()
+                .map_or_else(Selection::default, Selection::Item),
+            Self::Keys => Selection::Keys,
+        }
     }
 }

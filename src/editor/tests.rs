@@ -218,12 +218,12 @@ fn what_is_selected_is_followed_by_its_name() {
         names.map(str::to_owned).collect()
     };
     let three = [Item::object(8), Item::object(4), Item::object(3)];
-    editor.apply(Action::SelectItems(Selected::all(three)));
+    editor.apply(Action::Select(Selected::all(three)));
     editor.apply(Action::Edit(Edit::Delete(Item::object(0))));
     assert_eq!(names(&editor), ["Plane", "Triangle 3", "Triangle 2"]);
     editor.apply(Action::Edit(Edit::Delete(Item::object(3))));
     assert_eq!(names(&editor), ["Plane", "Triangle 2"]);
-    assert_eq!(editor.selection, Selection::Item(Item::object(2)));
+    assert_eq!(editor.selection(), Selection::Item(Item::object(2)));
     let renamed = Edit::Rename(Item::object(2), "Roof".to_owned());
     editor.apply(Action::Edit(renamed));
     assert_eq!(names(&editor), ["Plane", "Roof"]);

@@ -261,7 +261,7 @@ impl eframe::App for App {
                 Answer::Objects(revision, map, without) => {
                     let selected = self.tools.take(revision, map, &without);
                     if let Some(selected) = selected {
-                        self.editor.apply(Action::SelectItems(selected));
+                        self.editor.apply(Action::Select(selected));
                     }
                 }
                 Answer::Quality(choice) => {

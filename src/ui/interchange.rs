@@ -162,7 +162,7 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
         return;
     }
     let parts = Selected::all((first..last).map(Item::object));
-    editor.apply(Action::SelectItems(parts));
+    editor.apply(Action::Select(parts));
     let path = path.display();
     let count = counted(count, "triangle");
     let notes = notes.iter().map(|note| format!("; {note}"));

@@ -11,7 +11,7 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
         Command::Undo => editor.undo_label().is_none().then_some("nothing to undo"),
         Command::Redo => editor.redo_label().is_none().then_some("nothing to redo"),
         Command::Delete => {
-            let has = matches!(editor.selection, Selection::Item(_) | Selection::Keys);
+            let has = matches!(editor.selection(), Selection::Item(_) | Selection::Keys);
             (!has).then_some(nothing)
         }
         Command::Duplicate
@@ -19,7 +19,7 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
         | Command::Cut
         | Command::SelectSamePack
         | Command::ToggleVisible => {
-            let has = matches!(editor.selection, Selection::Item(_));
+            let has = matches!(editor.selection(), Selection::Item(_));
             (!has).then_some(nothing)
         }
         Command::Join => {
@@ -61,7 +61,7 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             (!has).then_some("no two color packs are equal")
         }
         Command::Rename if editor.selected().group(editor.scene()).is_some() => None,
-        Command::Rename | Command::MoveUp | Command::MoveDown => match editor.selection {
+        Command::Rename | Command::MoveUp | Command::MoveDown => match editor.selection() {
             Selection::Item(_) if editor.selected().items().len() > 1 => {
                 Some("several things are selected")
             }

@@ -28,6 +28,6 @@ impl UiRequests {
 
     /// Asks for something to be shown in the inspector.
     pub fn select(&mut self, selection: Selection) {
-        self.actions.push(Action::Select(selection));
+        self.actions.push(Action::Select(selection.into()));
     }
 }

@@ -57,7 +57,7 @@ impl App {
             Command::Timeline => self.toggle_below(Below::Timeline),
             Command::SelectAll if self.means_keys(ctx) => self.run(ctx, Command::SelectKeys),
             Command::SelectAll => {
-                let all = Action::SelectItems(Selected::all(Item::everything(self.editor.scene())));
+                let all = Action::Select(Selected::all(Item::everything(self.editor.scene())));
                 self.editor.apply(all);
             }
             Command::FrameAll if self.timeline.is_hovered(ctx.cumulative_frame_nr()) => {
@@ -174,7 +174,7 @@ impl App {
             Command::Orthographic => projected(editor, Projection::Orthographic),
             Command::MarkersOn => Action::Edit(Edit::LightVisualization(true)),
             Command::MarkersOff => Action::Edit(Edit::LightVisualization(false)),
-            Command::Delete if editor.selection == Selection::Keys => {
+            Command::Delete if editor.selection() == Selection::Keys => {
                 let kept = editor
                     .scene()
                     .animation
@@ -192,7 +192,7 @@ impl App {
             }
             Command::MergePacks => Action::Edit(Edit::MergePacks),
             Command::Join => Action::Edit(Edit::Join(joined(editor))),
-            Command::Separate => match editor.selection {
+            Command::Separate => match editor.selection() {
                 Selection::Item(item) => Action::Edit(Edit::Separate(item.index)),
                 _ => return,
             },
@@ -208,10 +208,10 @@ impl App {
                 Action::Edit(Edit::Camera(bookmark.camera.clone(), "bookmark"))
             }
             Command::SelectSamePack => {
-                let Selection::Item(item) = editor.selection else {
+                let Selection::Item(item) = editor.selection() else {
                     return;
                 };
-                Action::SelectItems(with_same_pack(editor.scene(), item))
+                Action::Select(with_same_pack(editor.scene(), item))
             }
             Command::Rename if editor.selected().items().len() > 1 => {
                 self.layout.outliner = true;
@@ -219,7 +219,7 @@ impl App {
                 return self.outliner.rename_group(group.map(str::to_owned));
             }
             many if editor.selected().items().len() > 1 => return on_many(editor, many),
-            on_item => match (on_item, editor.selection) {
+            on_item => match (on_item, editor.selection()) {
                 (Command::Rename, Selection::Item(item)) => {
                     self.layout.outliner = true;
                     return self.outliner.rename(editor.scene(), item);
@@ -265,8 +265,8 @@ impl App {
             self.editor.apply(Action::Show(Mode::Live));
         } else if self.editor.looks_through() {
             self.editor.apply(Action::Time(Time::LookThrough(false)));
-        } else if self.editor.selection != Selection::Camera {
-            self.editor.apply(Action::Select(Selection::Camera));
+        } else if self.editor.selection() != Selection::Camera {
+            self.editor.apply(Action::Select(Selected::Camera));
         } else if last.is_some_and(|last| time - last < TWICE) {
             self.files.ask_to_quit(&mut self.editor);
         } else {
@@ -374,7 +374,7 @@ fn add(editor: &mut Editor, part: Scene, word: &'static str) {
         let (all_lights, all_objects) = (scene.lights.len(), scene.objects.len());
         let new = (all_lights - lights..all_lights).map(Item::light);
         let new = new.chain((all_objects - objects..all_objects).map(Item::object));
-        editor.apply(Action::SelectItems(Selected::all(new)));
+        editor.apply(Action::Select(Selected::all(new)));
     }
 }
 
@@ -392,7 +392,7 @@ fn on_many(editor: &mut Editor, command: &Command) {
             let edit = Edit::Each(edits.collect(), format!("Delete {count} items"));
             editor.apply(Action::Edit(edit));
             if editor.revision() != before {
-                editor.apply(Action::Select(Selection::Camera));
+                editor.apply(Action::Select(Selected::Camera));
             }
         }
         Command::Duplicate => {

@@ -9,7 +9,7 @@ use egui::{Event, Key, Modifiers, Pos2, pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 use glint::animate::{CameraPath, Preset, shot};
-use glint::editor::{Action, Edit, Editor, Repeat, Selection, Time};
+use glint::editor::{Action, Edit, Editor, Repeat, Selected, Time};
 use glint::image::render;
 use glint::plan::RenderRequest;
 use glint::scene::{
@@ -254,7 +254,7 @@ fn keys_made_anew_keep_the_time_that_the_flight_was_given() {
     let before = editor.scene().clone();
     let fourth: Keys = [KeyPlace::of_camera(3)].into();
     editor.apply(Action::Time(Time::SelectKeys(fourth.clone())));
-    editor.apply(Action::Select(Selection::Camera));
+    editor.apply(Action::Select(Selected::Camera));
     assert!(editor.timeline().selected.is_empty(), "something else is");
     editor.apply(Action::Time(Time::SelectKeys(fourth.clone())));
     editor.apply(Action::Time(Time::Simplify(5.0)));

@@ -34,11 +34,11 @@ use crate::scene::{Shape, Target};
 /// Shows the selection and pushes its changes.
 pub fn show(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiRequests) {
     // Each thing is read from its top.
-    let area = ScrollArea::vertical().id_salt(format!("{:?}", editor.selection));
+    let area = ScrollArea::vertical().id_salt(format!("{:?}", editor.selection()));
     area.auto_shrink(false).show(ui, |ui| {
         ui.add_space(GRID / 2.0);
         let scene = editor.shown();
-        match editor.selection {
+        match editor.selection() {
             Selection::Item(_) if editor.selected().items().len() > 1 => {
                 many::show(ui, editor, out);
             }

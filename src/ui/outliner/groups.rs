@@ -49,10 +49,10 @@ impl GroupRows {
             is_selected: editor.selected().has_all(members()),
         };
         let response = entry(ui, rect, look, &group.name);
-        let all = || Action::SelectItems(Selected::all(members()));
+        let all = || Action::Select(Selected::all(members()));
         if response.clicked() {
             let selected = selected_with(ui, editor.selected(), members());
-            out.actions.push(Action::SelectItems(selected));
+            out.actions.push(Action::Select(selected));
         }
         if response.double_clicked() {
             self.renaming = Some(group.name.clone());

@@ -124,7 +124,7 @@ impl Outliner {
         if let Some(to) = revealed.and_then(|row| self.to_reveal(row)) {
             area = area.vertical_scroll_offset(to);
         }
-        self.listed = (editor.documents(), editor.selection);
+        self.listed = (editor.documents(), editor.selection());
         self.reveals = false;
         let shown = area.show_rows(ui, ROW, lines.len(), |ui, range| {
             for index in range {
@@ -134,7 +134,7 @@ impl Outliner {
                         let look = RowStyle {
                             icon,
                             is_bright: true,
-                            is_selected: editor.selection == selection,
+                            is_selected: editor.selection() == selection,
                         };
                         let response = entry(ui, rect, look, name);
                         self.walk.attend(ui, index, &response);
@@ -173,8 +173,8 @@ impl Outliner {
 
     /// The row of what was just selected elsewhere.
     fn revealed(&self, editor: &Editor, listed: Listed) -> Option<usize> {
-        let is_new = self.reveals || self.listed != (editor.documents(), editor.selection);
-        let is_item = matches!(editor.selection, Selection::Item(_));
+        let is_new = self.reveals || self.listed != (editor.documents(), editor.selection());
+        let is_item = matches!(editor.selection(), Selection::Item(_));
         (is_new && is_item).then(|| listed.row_of(editor)).flatten()
     }
 
@@ -372,5 +372,5 @@ fn select_clicked(ui: &Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
     } else {
         Selected::all([item])
     };
-    out.actions.push(Action::SelectItems(selected));
+    out.actions.push(Action::Select(selected));
 }

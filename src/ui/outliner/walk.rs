@@ -59,21 +59,21 @@ impl Walk {
         let from = focused.or(last).or_else(|| listed.row_of(editor));
         let count = listed.lines.len();
         let mut row = from;
-        let (row, action) = loop {
+        let (row, selected) = loop {
             let next = match (row, is_down) {
                 (None, true) => 0,
                 (None, false) => count - 1,
                 (Some(row), true) => row + 1,
                 (Some(row), false) => row.checked_sub(1)?,
             };
-            if let Some(action) = listed.action(next) {
-                break (next, action);
+            if let Some(selected) = listed.selects(next) {
+                break (next, selected);
             }
             row = (next < count).then_some(Some(next))?;
         };
         self.last = Some(row);
         self.goal = focused.map(|_| row);
-        Some((row, action))
+        Some((row, Action::Select(selected)))
     }
 
     /// Whether Down was pressed, or Up; also again and again, if that began here.
@@ -117,9 +117,9 @@ impl Walk {
 impl Listed<'_> {
     /// The row of what is selected, if it is listed: that of its group, if all of that is, or if the group is folded.
     pub fn row_of(&self, editor: &Editor) -> Option<usize> {
-        let Selection::Item(item) = editor.selection else {
+        let Selection::Item(item) = editor.selection() else {
             let mut singles = SINGLES.iter();
-            return singles.position(|(single, ..)| *single == editor.selection);
+            return singles.position(|(single, ..)| *single == editor.selection());
         };
         match editor.selected().group(editor.scene()) {
             Some(group) => self.row_of_group(group),
@@ -138,13 +138,13 @@ impl Listed<'_> {
     }
 
     /// What selects what is in a row, if anything is.
-    fn action(&self, row: usize) -> Option<Action> {
+    fn selects(&self, row: usize) -> Option<Selected> {
         Some(match self.lines.get(row)? {
-            Line::Single(selection, ..) => Action::Select(selection),
-            Line::Entry(item, _) => Action::SelectItems(Selected::all([item])),
+            Line::Single(selection, ..) => selection.into(),
+            Line::Entry(item, _) => Selected::all([item]),
             Line::Group(place) => {
                 let members = self.groups[place].members.iter();
-                Action::SelectItems(Selected::all(members.map(|index| Item::object(*index))))
+                Selected::all(members.map(|index| Item::object(*index)))
             }
             Line::Kind(..) => return None,
         })
@@ -152,10 +152,6 @@ impl Listed<'_> {
 
     /// Whether what is in a row is what is selected.
     fn is_selected(&self, editor: &Editor, row: usize) -> bool {
-        match self.action(row) {
-            Some(Action::Select(selection)) => selection == editor.selection,
-            Some(Action::SelectItems(items)) => items == *editor.selected(),
-            _ => false,
-        }
+        self.selects(row).as_ref() == Some(editor.selected())
     }
 }

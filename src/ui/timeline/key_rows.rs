@@ -8,7 +8,7 @@ use super::key_menu::menu;
 use super::ruler::playhead;
 use super::scale::Scale;
 use super::strip::{KEY, band, diamond, label};
-use crate::editor::{Action, Edit, Editor, Selected, Selection, Time};
+use crate::editor::{Action, Edit, Editor, Selected, Time};
 use crate::scene::{Animation, Interpolation, Key, KeyPlace, Keys};
 use crate::ui::hint::Hint as _;
 use crate::ui::requests::UiRequests;
@@ -26,7 +26,7 @@ struct Frame {
     /// Where no key was, when it began.
     from: Pos2,
     /// What was selected then.
-    before: (Selected, Selection, Keys),
+    before: (Selected, Keys),
     /// Whether those keys stay so.
     adds: bool,
     /// What is in it.
@@ -53,13 +53,9 @@ impl KeyRows {
     /// Gives up what the pointer does.
     pub fn give_up(&mut self, editor: &Editor, out: &mut UiRequests) {
         if let Some(Frame { before, .. }) = self.frame.take() {
-            let (selected, selection, keys) = before;
-            if selection != Selection::Keys && selection != editor.selection {
-                out.actions.push(if selected.items().is_empty() {
-                    Action::Select(selection)
-                } else {
-                    Action::SelectItems(selected)
-                });
+            let (selected, keys) = before;
+            if selected != Selected::Keys && selected != *editor.selected() {
+                out.actions.push(Action::Select(selected));
             } else if keys != editor.timeline().selected {
                 out.time(Time::SelectKeys(keys));
             }
@@ -120,11 +116,7 @@ impl KeyRows {
                 ui.input(|input| (input.pointer.press_origin(), input.modifiers.shift));
             self.frame = from.map(|from| Frame {
                 from,
-                before: (
-                    editor.selected().clone(),
-                    editor.selection,
-                    selected.clone(),
-                ),
+                before: (editor.selected().clone(), selected.clone()),
                 adds,
                 within: Keys::new(),
             });
@@ -298,7 +290,7 @@ impl KeyRows {
         let Some(frame) = &self.frame else { return };
         let mut places = frame.within.clone();
         if frame.adds {
-            places.extend(&frame.before.2);
+            places.extend(&frame.before.1);
         }
         if places != editor.timeline().selected {
             out.time(Time::SelectKeys(places));

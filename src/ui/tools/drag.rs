@@ -122,7 +122,7 @@ impl Drag {
             let mut selected = editor.selected().clone();
             if !selected.has(item) {
                 selected = Selected::all([item]);
-                out.actions.push(Action::SelectItems(selected.clone()));
+                out.actions.push(Action::Select(selected.clone()));
             }
             let before = Subject::of(&selected, editor.shown());
             let grip = Grip::body(before, at, view.point_at(sight, at));
@@ -184,7 +184,7 @@ impl Drag {
                 let found = sight.within(view.editor, view.place.rect, part);
                 if !response.dragged() {
                     let items = before.items().iter().copied().chain(found);
-                    out.actions.push(Action::SelectItems(Selected::all(items)));
+                    out.actions.push(Action::Select(Selected::all(items)));
                     return false;
                 }
                 show_frame(view, part, (at, found.len()));

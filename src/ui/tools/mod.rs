@@ -194,7 +194,7 @@ impl Tools {
             if let Some(item) = seen.map(item_of)
                 && !view.editor.selected().has(item)
             {
-                out.actions.push(Action::SelectItems(Selected::all([item])));
+                out.actions.push(Action::Select(Selected::all([item])));
             }
         }
         response.context_menu(|ui| {
@@ -311,7 +311,7 @@ impl Tools {
             (None, true) => return,
             (item, false) => Selected::all(item),
         };
-        out.actions.push(Action::SelectItems(selected));
+        out.actions.push(Action::Select(selected));
     }
 
     fn select_behind(&mut self, view: &View, at: Pos2, seen: Option<Thing>, out: &mut UiRequests) {

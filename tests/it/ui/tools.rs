@@ -100,7 +100,10 @@ fn a_click_selects_what_is_seen_there() {
     let ball = place(&harness, center(harness.scene(), 0));
     click(&mut harness, ball, NONE);
     assert_eq!(names(&harness), ["Sphere 1"]);
-    assert_eq!(harness.editor().selection, Selection::Item(Item::object(0)));
+    assert_eq!(
+        harness.editor().selection(),
+        Selection::Item(Item::object(0))
+    );
     let lamp = place(&harness, harness.scene().lights[0].position);
     click(&mut harness, lamp, SHIFT);
     assert_eq!(names(&harness), ["Sphere 1", "Light 1"]);
@@ -108,7 +111,7 @@ fn a_click_selects_what_is_seen_there() {
     assert_eq!(names(&harness), ["Light 1"]);
     let sky = place(&harness, DVec3::new(60.0, 190.0, -300.0));
     click(&mut harness, sky, NONE);
-    assert_eq!(harness.editor().selection, Selection::Camera);
+    assert_eq!(harness.editor().selection(), Selection::Camera);
     assert_eq!(harness.scene(), &Scene::demo(), "to look changes nothing");
     assert!(!harness.editor().is_dirty());
 }
@@ -267,7 +270,7 @@ fn several_are_moved_turned_copied_and_deleted_as_one() {
     assert_eq!(names(&harness), ["Sphere 3", "Sphere 4"]);
     harness.press(NONE, Key::Delete);
     assert_eq!(harness.scene(), &Scene::demo());
-    assert_eq!(harness.editor().selection, Selection::Camera);
+    assert_eq!(harness.editor().selection(), Selection::Camera);
     harness.press(CTRL, Key::Z);
     assert_eq!(harness.scene().objects.len(), 11);
 }
@@ -340,7 +343,7 @@ fn escape_leaves_one_thing_after_the_other() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
     harness.press(NONE, Key::Escape);
-    assert_eq!(harness.editor().selection, Selection::Camera);
+    assert_eq!(harness.editor().selection(), Selection::Camera);
     harness.press(NONE, Key::Escape);
     assert!(harness.window.query_by_label("Quit now").is_none());
     harness.window.get_by_label_contains("Ctrl+Q quits");
