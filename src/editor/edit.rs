@@ -59,8 +59,8 @@ pub enum Edit {
     Rename(Item, String),
     /// A copy behind the original in its list, and beside it in the scene.
     Duplicate(Item),
-    /// Away with it; a pack that is in use stays.
-    Delete(Item),
+    /// Away with these; a pack that is in use stays.
+    Delete(Vec<Item>),
     /// To another place in its list, counted without it.
     Move(Item, usize),
     /// A copy of its pack for this object alone.
@@ -205,7 +205,10 @@ impl Edit {
             Self::Rename(item, to) if to.is_empty() => format!("Rename {}", name(*item)),
             Self::Rename(item, to) => format!("Rename {} to {to}", name(*item)),
             Self::Duplicate(item) => format!("Duplicate {}", name(*item)),
-            Self::Delete(item) => format!("Delete {}", name(*item)),
+            Self::Delete(items) => match items[..] {
+                [item] => format!("Delete {}", name(item)),
+                _ => format!("Delete {} items", items.len()),
+            },
             Self::Move(item, _) => format!("Move {}", name(*item)),
             Self::MakePackUnique(index) => {
                 format!("{}: own color pack", name(Item::object(*index)))
@@ -254,7 +257,7 @@ impl Edit {
             Self::AddPack => return Ok(Some(add_pack(scene))),
             Self::Rename(item, name) => rename(scene, item, name.trim())?,
             Self::Duplicate(item) => return Ok(duplicate(scene, item)),
-            Self::Delete(item) => delete(scene, item)?,
+            Self::Delete(items) => delete(scene, items)?,
             Self::Move(item, to) => return Ok(Some(move_item(scene, item, to))),
             Self::MakePackUnique(index) => make_pack_unique(scene, index),
             Self::MergePacks => scene.merge_equal_packs(),
@@ -327,27 +330,42 @@ fn copy_tracks(scene: &mut Scene, (is_light, name): (bool, &str), copy: &str, by
     }
 }
 
-fn delete(scene: &mut Scene, item: Item) -> Result<(), EditError> {
-    let Item { kind, index } = item;
-    match kind {
-        Kind::Object if index < scene.objects.len() => {
-            let name = scene.objects.remove(index).name;
-            scene.animation_mut().follow_name(false, &name, None);
-        }
-        Kind::Light if index < scene.lights.len() => {
-            let name = scene.lights.remove(index).name;
-            scene.animation_mut().follow_name(true, &name, None);
-        }
-        Kind::Pack => {
-            let name = item.name(scene).unwrap_or_default().to_owned();
-            let users = scene.users_of_pack(&name);
-            if !users.is_empty() {
-                let users = users.join(", ");
-                return Err(EditError::PackInUse { name, users });
+/// Packs go last: what wears them may go with them.
+fn delete(scene: &mut Scene, mut items: Vec<Item>) -> Result<(), EditError> {
+    // From the last on: what is deleted does not move those before it.
+    items.sort_unstable_by(|a, b| b.cmp(a));
+    items.dedup();
+    let mut names = Vec::new();
+    for &Item { kind, index } in &items {
+        match kind {
+            Kind::Object if index < scene.objects.len() => {
+                names.push((false, scene.objects.remove(index).name));
             }
-            scene.packs_mut().shift_remove_index(index);
+            Kind::Light if index < scene.lights.len() => {
+                names.push((true, scene.lights.remove(index).name));
+            }
+            _ => {}
         }
-        Kind::Object | Kind::Light => {}
+    }
+    if !scene.animation.tracks.is_empty() {
+        let gone = names.iter().map(|(is_light, name)| (*is_light, &**name));
+        scene.animation_mut().forget(&gone.collect());
+    }
+    let packs = items.iter().filter(|item| item.kind == Kind::Pack);
+    let packs: Vec<usize> = packs.map(|item| item.index).collect();
+    if packs.is_empty() {
+        return Ok(());
+    }
+    let worn = scene.worn_packs();
+    let names = packs
+        .iter()
+        .map(|&index| scene.color_packs.get_index(index));
+    if let Some((name, _)) = names.flatten().find(|(name, _)| worn.contains(&***name)) {
+        let (name, users) = (name.clone(), scene.users_of_pack(name).join(", "));
+        return Err(EditError::PackInUse { name, users });
+    }
+    for index in packs {
+        scene.packs_mut().shift_remove_index(index);
     }
     Ok(())
 }
@@ -363,11 +381,11 @@ fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), EditError> {
     match item.kind {
         Kind::Object => {
             to.clone_into(&mut scene.objects[item.index].name);
-            scene.animation_mut().follow_name(false, &from, Some(to));
+            scene.animation_mut().follow_name(false, &from, to);
         }
         Kind::Light => {
             to.clone_into(&mut scene.lights[item.index].name);
-            scene.animation_mut().follow_name(true, &from, Some(to));
+            scene.animation_mut().follow_name(true, &from, to);
         }
         Kind::Pack if scene.color_packs.contains_key(to) => {
             return Err(EditError::PackNameTaken(to.to_owned()));

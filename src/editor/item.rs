@@ -3,7 +3,7 @@
 use crate::scene::Scene;
 
 /// A list of the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {
     /// [`Scene::lights`].
     Light,
@@ -25,7 +25,7 @@ impl Kind {
 }
 
 /// One entry of a list of the scene, by its place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Item {
     /// Which list.
     pub kind: Kind,

@@ -123,7 +123,7 @@ fn an_invalid_edit_changes_nothing_and_says_why() {
 #[test]
 fn a_pack_in_use_stays_and_a_renamed_one_is_followed() {
     let mut editor = Editor::demo();
-    editor.apply(Action::Edit(Edit::Delete(Item::pack(2))));
+    editor.apply(Action::Edit(Edit::Delete(vec![Item::pack(2)])));
     assert!(
         editor.messages[0]
             .text
@@ -154,7 +154,7 @@ fn a_unique_pack_leaves_the_others_alone() {
 fn what_is_not_there_does_not_move() {
     let mut editor = Editor::demo();
     for _ in 0..2 {
-        editor.apply(Action::Edit(Edit::Delete(Item::light(0))));
+        editor.apply(Action::Edit(Edit::Delete(vec![Item::light(0)])));
     }
     editor.apply(Action::Edit(Edit::Move(Item::light(0), 0)));
     assert!(editor.scene().lights.is_empty());
@@ -182,7 +182,7 @@ fn any_edit() -> impl Strategy<Value = Action> {
         (0..3_usize).prop_map(|kind| {
             Edit::AddObject(Shape::examples(DVec3::new(0.0, 0.0, 0.0), 10.0)[kind].clone())
         }),
-        item.clone().prop_map(Edit::Delete),
+        prop::collection::vec(item.clone(), 1..4).prop_map(Edit::Delete),
         item.clone().prop_map(Edit::Duplicate),
         (item, 0..12_usize).prop_map(|(item, to)| Edit::Move(item, to)),
         (0..12_usize).prop_map(Edit::MakePackUnique),
@@ -219,9 +219,9 @@ fn what_is_selected_is_followed_by_its_name() {
     };
     let three = [Item::object(8), Item::object(4), Item::object(3)];
     editor.apply(Action::Select(Selected::all(three)));
-    editor.apply(Action::Edit(Edit::Delete(Item::object(0))));
+    editor.apply(Action::Edit(Edit::Delete(vec![Item::object(0)])));
     assert_eq!(names(&editor), ["Plane", "Triangle 3", "Triangle 2"]);
-    editor.apply(Action::Edit(Edit::Delete(Item::object(3))));
+    editor.apply(Action::Edit(Edit::Delete(vec![Item::object(3)])));
     assert_eq!(names(&editor), ["Plane", "Triangle 2"]);
     assert_eq!(editor.selection(), Selection::Item(Item::object(2)));
     let renamed = Edit::Rename(Item::object(2), "Roof".to_owned());

@@ -1,6 +1,6 @@
 //! Triangles that become one mesh, and a mesh that becomes triangles.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -117,7 +117,7 @@ impl Scene {
             return;
         }
         let animation = Arc::make_mut(&mut self.animation);
-        gone.for_each(|object| animation.follow_name(false, &object.name, None));
+        animation.forget(&gone.map(|object| (false, object.name.as_str())).collect());
         let turns = Target::ObjectRotation(object.name.clone());
         animation.tracks.retain(|track| track.target != turns);
         let moves = Target::ObjectPosition(object.name.clone());
@@ -162,7 +162,7 @@ impl Scene {
         // What moved it would move one of them.
         let is_moved = |track: &Track| track.target.is_of(false, &name);
         if self.animation.tracks.iter().any(is_moved) {
-            Arc::make_mut(&mut self.animation).follow_name(false, &name, None);
+            Arc::make_mut(&mut self.animation).forget(&HashSet::from([(false, name.as_str())]));
         }
         true
     }

@@ -1,6 +1,6 @@
 //! What can be done to keys: each gives a changed animation, for one step in the history.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
 use glam::DVec3;
 
@@ -197,18 +197,20 @@ impl Animation {
         put(&mut self.tracks[track].keys, there, key);
     }
 
-    /// What belongs to a light or object follows its new name, or goes with it.
-    pub fn follow_name(&mut self, is_light: bool, name: &str, to: Option<&str>) {
-        let is_meant = |target: &Target| target.is_of(is_light, name);
-        match to {
-            Some(to) => {
-                let tracks = self.tracks.iter_mut();
-                for track in tracks.filter(|track| is_meant(&track.target)) {
-                    track.target = track.target.renamed(to);
-                }
-            }
-            None => self.tracks.retain(|track| !is_meant(&track.target)),
+    /// What belongs to a light or object follows its new name.
+    pub fn follow_name(&mut self, is_light: bool, name: &str, to: &str) {
+        let tracks = self.tracks.iter_mut();
+        for track in tracks.filter(|track| track.target.is_of(is_light, name)) {
+            track.target = track.target.renamed(to);
         }
+    }
+
+    /// What belongs to those that are gone goes, too: each is a light or not, and has a name.
+    pub fn forget(&mut self, gone: &HashSet<(bool, &str)>) {
+        self.tracks.retain(|track| {
+            let owner = track.target.owner();
+            !owner.is_some_and(|owner| gone.contains(&(track.target.is_of_light(), owner)))
+        });
     }
 }
 

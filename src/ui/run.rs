@@ -174,7 +174,7 @@ impl App {
             Command::Orthographic => projected(editor, Projection::Orthographic),
             Command::MarkersOn => Action::Edit(Edit::LightVisualization(true)),
             Command::MarkersOff => Action::Edit(Edit::LightVisualization(false)),
-            Command::Delete if editor.selection() == Selection::Keys => {
+            Command::Delete if *editor.selected() == Selected::Keys => {
                 let kept = editor
                     .scene()
                     .animation
@@ -225,7 +225,7 @@ impl App {
                     return self.outliner.rename(editor.scene(), item);
                 }
                 (Command::Duplicate, Selection::Item(item)) => Action::Edit(Edit::Duplicate(item)),
-                (Command::Delete, Selection::Item(item)) => Action::Edit(Edit::Delete(item)),
+                (Command::Delete, Selection::Item(item)) => Action::Edit(Edit::Delete(vec![item])),
                 (Command::MoveUp, Selection::Item(item)) => {
                     Action::Edit(Edit::Move(item, item.index.saturating_sub(1)))
                 }
@@ -380,25 +380,23 @@ fn add(editor: &mut Editor, part: Scene, word: &'static str) {
 
 /// Does to everything that is selected what can be done to more than one thing.
 fn on_many(editor: &mut Editor, command: &Command) {
-    let mut items = editor.selected().items().to_vec();
-    // Packs first: what wears them is deleted before them.
-    items.sort_unstable_by_key(|item| (item.kind != Kind::Pack, item.index));
-    let count = items.len();
+    let items = editor.selected().items().to_vec();
     let before = editor.revision();
     match command {
         Command::Delete => {
-            // From the last on: what is done to one does not move those before it.
-            let edits = items.iter().rev().map(|item| Edit::Delete(*item));
-            let edit = Edit::Each(edits.collect(), format!("Delete {count} items"));
-            editor.apply(Action::Edit(edit));
+            editor.apply(Action::Edit(Edit::Delete(items)));
             if editor.revision() != before {
                 editor.apply(Action::Select(Selected::Camera));
             }
         }
         Command::Duplicate => {
             if items.iter().all(|item| item.kind == Kind::Pack) {
+                let label = format!("Duplicate {} items", items.len());
+                let mut items = items;
+                items.sort_unstable();
+                // From the last on: a copy does not move those before it.
                 let edits = items.iter().rev().map(|item| Edit::Duplicate(*item));
-                let edit = Edit::Each(edits.collect(), format!("Duplicate {count} items"));
+                let edit = Edit::Each(edits.collect(), label);
                 return editor.apply(Action::Edit(edit));
             }
             let part = excerpt(editor.scene(), editor.selected());

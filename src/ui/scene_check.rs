@@ -104,7 +104,7 @@ fn selection(about: About) -> Selection {
 /// What would mend it: packs that nothing wears can go, and what is there twice can be hidden.
 fn way_out(scene: &Scene, hint: &Hint) -> Option<(&'static str, Edit)> {
     match hint.about {
-        About::Pack(index) => Some(("Delete", Edit::Delete(Item::pack(index)))),
+        About::Pack(index) => Some(("Delete", Edit::Delete(vec![Item::pack(index)]))),
         About::Object(index) if hint.is_twice => {
             Some(("Hide", Edit::visible(scene, Item::object(index), false)?))
         }
