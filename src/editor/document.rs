@@ -1,4 +1,4 @@
-//! The open document: [`Editor::apply`] is the one place that changes it.
+//! The open document: what changes it goes through [`Editor::apply`].
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -139,7 +139,7 @@ impl Editor {
         self.is_dirty || self.is_gone || self.is_making_keys() || self.has_broken_meshes()
     }
 
-    /// What the document is called: its file name, or `demo` or `untitled`.
+    /// What the document is called: its file name, that of its example, or `untitled`.
     pub fn title(&self) -> String {
         let Some(path) = &self.path else {
             return self.name.to_owned();

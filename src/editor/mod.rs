@@ -1,6 +1,6 @@
 //! What matters between frames but is lost on quitting: the open document, the selection, the
-//! history, the flight. Panels read this state and push [`Action`]s; [`Editor::apply`] is the one
-//! place that changes anything. Knows no widgets.
+//! history, the flight. Panels read this state and push [`Action`]s, which [`Editor::apply`] carries out;
+//! documents are opened and saved by methods of their own. Knows no widgets.
 
 mod item;
 

@@ -174,6 +174,11 @@ impl App {
         self.exports.is_busy(&self.pictures)
     }
 
+    /// Whether something is dragged, or flown.
+    pub(super) fn is_gesture(&mut self, ctx: &Context) -> bool {
+        ctx.input(|input| input.pointer.any_down()) || self.flying.is_gesture(ctx)
+    }
+
     /// The picture on screen.
     pub fn shown_picture(&self) -> Option<&Image> {
         self.pictures.shown(&self.editor).map(|frame| &*frame.image)
@@ -292,8 +297,7 @@ impl eframe::App for App {
             self.act_on(ctx, outcome);
         }
         self.autosave.tick(ctx, &mut self.editor);
-        let is_busy = ctx.input(|input| input.pointer.any_down());
-        let is_busy = is_busy || self.flying.is_gesture(ctx);
+        let is_busy = self.is_gesture(ctx);
         self.check.update(&self.editor, is_busy);
         if let Some(frame) = self.pictures.shown(&self.editor).filter(|_| !is_busy)
             && let Some(clipped) = self.levels.update(frame, self.editor.shown())
@@ -380,8 +384,7 @@ impl eframe::App for App {
         let outcome = self.files.show(ui, &mut self.editor, going.as_deref());
         self.act_on(&ctx, outcome);
         help::show(&ctx, &mut self.shortcuts_open);
-        let is_gesture = ui.input(|input| input.pointer.any_down()) || self.flying.is_gesture(&ctx);
-        if !is_gesture {
+        if !self.is_gesture(&ctx) {
             self.editor.end_gesture();
         }
         self.keys_are_taken = ui.text_edit_focused()

@@ -57,11 +57,11 @@ pub enum Command {
     AddBookmark,
     /// Look from the bookmark in this place.
     GoToBookmark(usize),
-    /// Copy the selected item.
+    /// Copy what is selected, beside it.
     Duplicate,
-    /// Delete the selected item.
+    /// Delete what is selected: items or keys.
     Delete,
-    /// Edit the name of the selected item.
+    /// Edit the name of the selected item or group.
     Rename,
     /// Move the selected item up in its list.
     MoveUp,
@@ -85,7 +85,7 @@ pub enum Command {
     MarkersOn,
     /// Hide the markers of lights.
     MarkersOff,
-    /// Leave the current mode; in none, quit.
+    /// Leave what is going on, then deselect; with nothing to leave, twice asks to quit.
     Escape,
     /// Play or pause.
     Play,
@@ -121,7 +121,7 @@ pub enum Command {
     Preset(Preset),
     /// Give the flight another timing.
     Retime(Retime),
-    /// Open the window of exports.
+    /// Open the window of exports, or close it.
     Export,
     /// Choose a file and write a job for a render farm to it.
     ExportJob,

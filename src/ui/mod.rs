@@ -1,5 +1,6 @@
-//! The window: egui panels that read the editor's state and push actions. One file per panel;
-//! `theme.rs` has every colour and spacing, `commands.rs` every key.
+//! The window: egui panels that read the editor's state and push actions. One file or folder
+//! for each panel; `theme.rs` has every colour and spacing, `commands.rs` every key but those that fly
+//! (`flight_keys.rs`) and walk through lists.
 
 mod autosave;
 

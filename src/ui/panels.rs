@@ -212,9 +212,7 @@ impl App {
                 let words = format!("Flying speed {:.2}×", self.layout.fly_speed);
                 label(&painter, at.unwrap_or(place.rect.min), &words);
             }
-            let is_busy = ui.input(|input| input.pointer.any_down())
-                || self.flying.is_gesture(ui.ctx())
-                || self.editor.timeline().is_playing;
+            let is_busy = self.is_gesture(ui.ctx()) || self.editor.timeline().is_playing;
             let picture = (place, &response);
             self.tools
                 .show(ui, &self.editor, picture, (wheel, is_busy), out);

@@ -34,7 +34,7 @@ use super::requests::UiRequests;
 use super::viewport::Place;
 use crate::editor::{Action, Edit, Editor, Item, Kind, Selected};
 use crate::image::{ObjectMap, Thing};
-use crate::scene::{Camera, Projection};
+use crate::scene::{Camera, Projection, around};
 
 /// Seconds that the pointer rests before it is told what it is over.
 const PATIENCE: f32 = 0.3;
@@ -332,10 +332,9 @@ impl Tools {
 pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
     let scene = editor.shown();
     let selected = Subject::of(editor.selected(), scene);
-    let bounds = selected.iter().filter_map(Subject::bounds);
-    let around = bounds.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)));
+    let bounds = around(selected.iter().filter_map(Subject::bounds));
     let all = surroundings(scene);
-    let (low, high) = around.filter(|_| only_selected).or(all)?;
+    let (low, high) = bounds.filter(|_| only_selected).or(all)?;
     // A light without a marker is a point: some of what is around it is to be seen.
     let size = all.map_or(0.0, |(low, high)| (high - low).length());
     let least = match (low != high, size > 0.0) {
@@ -352,8 +351,7 @@ pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
 /// The camera that looks along a direction at what is selected, or at everything.
 pub fn axis_camera(editor: &Editor, direction: DVec3) -> Camera {
     let scene = editor.shown();
-    let selected = Subject::of(editor.selected(), scene);
-    let middle = Subject::middle_of(&selected);
+    let middle = editor.selected().middle(scene);
     let about = middle.or_else(|| middle_of(scene)).unwrap_or_default();
     along(&scene.camera, about, direction)
 }
