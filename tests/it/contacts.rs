@@ -10,7 +10,8 @@ use glint::scene::{
     Projection, Scene, Shape, Sphere, Triangle,
 };
 
-use crate::image_model::{assert_same_but_for_edges, picture};
+use crate::image_model::assert_same_but_for_edges;
+use crate::pictures::picture;
 
 pub const SIDE: u32 = 160;
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io::Cursor;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::sleep;
@@ -24,14 +24,7 @@ use glint::worker::Worker;
 use image::AnimationDecoder as _;
 
 use crate::harness::{CTRL, EditorHarness};
-
-const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
-
-fn glint(words: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_glint"));
-    command.args(words);
-    command
-}
+use crate::program::{FLIGHT, done, glint, names, run};
 
 /// Exports small frames of the published flight into a folder.
 fn export(folder: &Path, more: &[&str]) -> Command {
@@ -48,17 +41,6 @@ fn export(folder: &Path, more: &[&str]) -> Command {
     ]);
     command.args(more);
     command
-}
-
-fn run(command: &mut Command) -> Output {
-    command.output().expect("it runs")
-}
-
-fn done(command: &mut Command) -> String {
-    let output = run(command);
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
-    String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
 /// What a command that does its work says on stderr.
@@ -675,16 +657,7 @@ fn videos_without_ffmpeg_hold_every_frame() {
         said.contains("ffmpeg -framerate 7") || said.contains("ffmpeg -f image2pipe"),
         "{said}"
     );
-    let left = fs::read_dir(folder.path()).expect("there");
-    let left: Vec<String> = left
-        .map(|entry| {
-            entry
-                .expect("an entry")
-                .file_name()
-                .to_string_lossy()
-                .into_owned()
-        })
-        .collect();
+    let left = names(folder.path());
     assert!(left.iter().all(|name| !name.contains("part")), "{left:?}");
 }
 

@@ -4,29 +4,17 @@
 use std::collections::HashSet;
 
 use glam::DVec3;
-use glint::image::{Image, render};
 use glint::mesh::SOLIDS;
 use glint::plan::RenderRequest;
 use glint::scene::{
     Accelerator, Camera, ColorPack, Light, List, MAX_REFLECTIONS, MAX_SIDE, Mesh, Object, Plane,
     Sampling, Scene, Shape, Sphere, Triangle, check, hints,
 };
-use glint::trace::{RenderControl, Threads};
+use glint::trace::Threads;
 
+use crate::pictures::{differing, picture};
 use crate::random::Dice;
 use crate::scalar::assert_agreed;
-
-fn drawn(scene: &Scene, request: &RenderRequest) -> Image {
-    let traced = render(scene, request, &RenderControl::default());
-    traced.expect("not stopped").0
-}
-
-/// How many pixels of two pictures differ by more than one level.
-fn differing(one: &Image, other: &Image) -> usize {
-    let pairs = one.pixels.iter().zip(&other.pixels);
-    let is_off = |(a, b): &(&[u8; 4], &[u8; 4])| (0..3).any(|c| a[c].abs_diff(b[c]) > 1);
-    pairs.filter(is_off).count()
-}
 
 /// The demo so many times as large, and elsewhere.
 fn demo(scale: f64, by: DVec3) -> Scene {
@@ -65,7 +53,7 @@ fn something_very_far_away_changes_nothing_else() {
         .objects
         .push(Object::new("Torus", "tetrahedron", torus));
     let request = RenderRequest::sized(200, 150);
-    let known = drawn(&scene, &request);
+    let known = picture(&scene, &request).0;
     for place in [
         DVec3::X * 1e9,
         DVec3::new(3e7, 1e8, 2e9),
@@ -77,7 +65,7 @@ fn something_very_far_away_changes_nothing_else() {
             radius: 20.0,
         };
         scene.objects.push(Object::new("Far", "sphere 2", far));
-        let off = differing(&known, &drawn(&scene, &request));
+        let off = differing(&known, &picture(&scene, &request).0, 1);
         assert!(off <= 3, "{off} pixels with a ball at {place}");
         // What is said of it is that it is small, at most.
         let said = hints(&scene).len();
@@ -88,7 +76,7 @@ fn something_very_far_away_changes_nothing_else() {
 #[test]
 fn a_scene_of_any_size_anywhere_shows_the_same() {
     let request = RenderRequest::sized(200, 150);
-    let known = drawn(&demo(1.0, DVec3::ZERO), &request);
+    let known = picture(&demo(1.0, DVec3::ZERO), &request).0;
     let far = DVec3::new(0.8, -0.5, 0.3);
     for (scale, away) in [
         (1e-9, 0.0),
@@ -102,8 +90,8 @@ fn a_scene_of_any_size_anywhere_shows_the_same() {
     ] {
         let scene = demo(scale, far * away);
         assert_eq!(check(&scene), Ok(()));
-        let other = drawn(&scene, &request);
-        let differ = differing(&known, &other);
+        let other = picture(&scene, &request).0;
+        let differ = differing(&known, &other, 1);
         assert!(
             differ * 500 <= known.pixels.len(),
             "{scale:e} times as large, {away:e} away: {differ} pixels"
@@ -122,7 +110,7 @@ fn nothing_at_all_is_a_picture_of_the_background() {
             sampling,
             ..RenderRequest::sized(70, 50)
         };
-        let pixels: HashSet<[u8; 4]> = drawn(&scene, &request).pixels.into_iter().collect();
+        let pixels: HashSet<[u8; 4]> = picture(&scene, &request).0.pixels.into_iter().collect();
         assert_eq!(pixels, HashSet::from([[10, 20, 30, 255]]));
     }
     scene = Scene::demo();
@@ -210,7 +198,7 @@ fn pictures_of_any_shape_are_whole() {
             };
             let pictures = [1, 64].map(|count| {
                 let threads = Threads::new(Some(count)).expect("threads");
-                threads.run(|| drawn(&scene, &request))
+                threads.run(|| picture(&scene, &request).0)
             });
             assert!(pictures[0] == pictures[1], "{width}×{height}");
             assert_eq!(pictures[0].pixels.len(), (width * height) as usize);
@@ -244,7 +232,7 @@ fn very_many_things_are_seen_as_one_by_one() {
             accelerator,
             ..RenderRequest::sized(40, 30)
         };
-        drawn(&scene, &request).pixels
+        picture(&scene, &request).0.pixels
     };
     assert!(with(Accelerator::Bvh) == with(Accelerator::List));
 }

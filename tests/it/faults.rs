@@ -7,33 +7,23 @@ use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use glint::scene::{Document, Object, Recovery, Scene, Sphere};
 
+use crate::program::{self, FLIGHT, done, names, run};
 use crate::random::Dice;
 
-const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
 /// Programs that are killed while they save.
 const KILLS: usize = 300;
 
 fn glint(folder: &Path, words: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_glint"));
-    command.args(words).current_dir(folder);
+    let mut command = program::glint(words);
+    command.current_dir(folder);
     command
-}
-
-fn run(command: &mut Command) -> Output {
-    command.output().expect("it runs")
-}
-
-fn succeed(command: &mut Command) {
-    let output = run(command);
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
 }
 
 /// What a program says that fails.
@@ -61,22 +51,6 @@ fn write_mesh(path: &Path, faces: usize) {
     fs::write(path, text).expect("written");
 }
 
-/// The names of what is in a folder, hidden files too.
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("a folder");
-    let mut names: Vec<String> = entries
-        .map(|entry| {
-            entry
-                .expect("an entry")
-                .file_name()
-                .to_string_lossy()
-                .into_owned()
-        })
-        .collect();
-    names.sort();
-    names
-}
-
 #[test]
 fn whoever_is_killed_while_saving_leaves_the_old_file_or_the_new_one() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -88,7 +62,7 @@ fn whoever_is_killed_while_saving_leaves_the_old_file_or_the_new_one() {
     for (mesh, faces) in [("one.obj", 2000), ("other.obj", 3000)] {
         write_mesh(&folder.join(mesh), faces);
         let start = Instant::now();
-        succeed(&mut save(mesh));
+        done(&mut save(mesh));
         longest = longest.max(start.elapsed());
         whole.push(fs::read(&saved).expect("saved"));
     }
@@ -114,7 +88,7 @@ fn whoever_is_killed_while_saving_leaves_the_old_file_or_the_new_one() {
         );
     }
     assert!(left > 3, "no program was killed while it wrote");
-    succeed(&mut save("one.obj"));
+    done(&mut save("one.obj"));
     assert_eq!(
         names(folder),
         ["one.obj", "other.obj", "scene.ron"],
@@ -217,7 +191,7 @@ fn a_program_that_sleeps_goes_on_where_it_was() {
             "export", FLIGHT, "-o", to, "--frames", "1-60", "--width", "96",
         ]
     };
-    succeed(&mut glint(folder.path(), &words("whole")));
+    done(&mut glint(folder.path(), &words("whole")));
     let mut child = glint(folder.path(), &words("slept"))
         .stdout(Stdio::null())
         .spawn()
@@ -326,13 +300,13 @@ fn a_full_disk_loses_nothing_that_was_on_it() {
     }
     let disk = Disk::new(folder.path(), 256 << 10);
     let place = |words: &[&str]| glint(folder.path(), words);
-    succeed(&mut place(&[
+    done(&mut place(&[
         "convert",
         "small.obj",
         "-o",
         "disk/scene.ron",
     ]));
-    succeed(&mut place(&[
+    done(&mut place(&[
         "render",
         FLIGHT,
         "-o",
@@ -390,6 +364,6 @@ fn a_full_disk_loses_nothing_that_was_on_it() {
         .arg(&disk.0)
         .status();
     assert!(status.expect("mount").success());
-    succeed(&mut place(&export));
+    done(&mut place(&export));
     assert_eq!(names(&disk.0.join("frames")).len(), 31);
 }

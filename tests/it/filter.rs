@@ -2,7 +2,6 @@
 //! that of double precision.
 
 use glam::DVec3;
-use glint::image::{Image, render};
 use glint::mesh::{SOLIDS, Triangles};
 use glint::plan::RenderRequest;
 use glint::scene::{
@@ -10,8 +9,8 @@ use glint::scene::{
     Shape, Sphere, check,
 };
 use glint::simd::Level;
-use glint::trace::{Rays, RenderControl};
 
+use crate::pictures::{differing, picture};
 use crate::random::{self, Dice};
 
 const WIDTH: u32 = 160;
@@ -19,27 +18,11 @@ const HEIGHT: u32 = 120;
 /// Random scenes of each kind.
 const SCENES: u64 = 24;
 
-fn picture(scene: &Scene, request: &RenderRequest) -> (Image, Rays) {
-    let picture = render(scene, request, &RenderControl::default());
-    let (image, cost) = picture.expect("nobody stops it");
-    (image, cost.rays)
-}
-
 fn with(precision: Precision) -> RenderRequest {
     RenderRequest {
         precision,
         ..RenderRequest::sized(WIDTH, HEIGHT)
     }
-}
-
-/// Pixels that differ by more than a step of 8 bits.
-fn differing(one: &Image, other: &Image) -> usize {
-    let pixels = one.pixels.iter().zip(&other.pixels);
-    let differ = pixels.filter(|(one, other)| {
-        let mut channels = one.iter().zip(other.iter());
-        channels.any(|(one, other)| one.abs_diff(*other) > 1)
-    });
-    differ.count()
 }
 
 /// How many pixels of scenes are other than in double precision with single precision alone; with the filter none may be.
@@ -51,9 +34,9 @@ fn wrong(scenes: impl Iterator<Item = Scene>) -> usize {
         let (filtered, rays) = picture(&scene, &with(Precision::Auto));
         let share = rays.again as f64 / rays.camera as f64;
         assert!(share < 0.25, "{number}: {share} are traced again");
-        let off = differing(&filtered, &exact);
+        let off = differing(&filtered, &exact, 1);
         assert_eq!(off, 0, "scene {number}");
-        alone += differing(&picture(&scene, &with(Precision::Single)).0, &exact);
+        alone += differing(&picture(&scene, &with(Precision::Single)).0, &exact, 1);
     }
     alone
 }
@@ -251,7 +234,7 @@ fn clean_edges_need_no_filter_inside_of_pixels() {
                 };
                 picture(&scene, &request).0
             };
-            let off = differing(&clean(Precision::Auto), &clean(Precision::Double));
+            let off = differing(&clean(Precision::Auto), &clean(Precision::Double), 1);
             assert_eq!(off, 0, "scene {seed} of kind {kind}");
         }
     }
@@ -272,7 +255,7 @@ fn what_is_wide_is_in_doubt_behind_what_is_thin() {
         };
         picture(&scene, &request).0
     });
-    assert_eq!(differing(&found, &exact), 0);
+    assert_eq!(differing(&found, &exact, 1), 0);
 }
 
 #[test]

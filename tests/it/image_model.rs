@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use glam::DVec3;
-use glint::image::{Image, render};
+use glint::image::Image;
 use glint::plan::RenderRequest;
 use glint::scene::{
     Disc, Document, HighlightMethod, Mesh, Method as _, Methods, Plane, Precision, Projection,
@@ -12,14 +12,10 @@ use glint::scene::{
 use glint::simd::Level;
 use glint::trace::{Grid, Pass, Rays, RenderControl, Threads, Tracer};
 
+use crate::pictures::{differing, picture};
 use crate::random;
 
 /// A picture, and the rays that it took.
-pub fn picture(scene: &Scene, picture: &RenderRequest) -> (Image, Rays) {
-    let (image, cost) = render(scene, picture, &RenderControl::default()).expect("not stopped");
-    (image, cost.rays)
-}
-
 fn small(scene: &Scene) -> Image {
     picture(scene, &RenderRequest::sized(160, 120)).0
 }
@@ -231,10 +227,7 @@ fn the_classic_formulas_show_the_same_where_they_work() {
         },
     )
     .0;
-    let differ = robust.pixels.iter().zip(&classic.pixels);
-    let differ = differ
-        .filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 2))
-        .count();
+    let differ = differing(&robust, &classic, 2);
     assert!(differ <= 100, "{differ} of 19200");
 }
 
@@ -251,10 +244,7 @@ fn every_formula_draws_the_demo() {
             ..RenderRequest::sized(160, 120)
         };
         let other = picture(&scene, &wanted).0;
-        let differ = robust.pixels.iter().zip(&other.pixels);
-        let differ = differ
-            .filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 2))
-            .count();
+        let differ = differing(&robust, &other, 2);
         assert!(differ <= 60, "{word}: {differ} of 19200");
     }
 }
@@ -361,10 +351,7 @@ fn changed_ppm(scale: f64, by: DVec3, methods: Methods, precision: Precision) ->
         at(&Scene::demo(), Methods::default()),
         at(&placed(scale, by), methods),
     );
-    let differ = here.pixels.iter().zip(&there.pixels);
-    let differ = differ
-        .filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 1))
-        .count();
+    let differ = differing(&here, &there, 1);
     differ * 1_000_000 / here.pixels.len()
 }
 

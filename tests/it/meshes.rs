@@ -4,20 +4,14 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 use glint::animate::pose;
-use glint::image::{Image, render};
 use glint::mesh::{Triangles, icosphere};
 use glint::plan::{Model, RenderRequest};
 use glint::scene::{
     Accelerator, Document, Mesh, Object, Precision, Sampling, Scene, Shape, Sphere, Triangle,
 };
-use glint::trace::{Rays, RenderControl};
 
+use crate::pictures::{differing, picture};
 use crate::random;
-
-fn picture(scene: &Scene, wanted: &RenderRequest) -> (Image, Rays) {
-    let (image, cost) = render(scene, wanted, &RenderControl::default()).expect("not stopped");
-    (image, cost.rays)
-}
 
 /// A ball with bumps around the origin, closed, of about so many triangles.
 fn bumpy(triangles: f64) -> Triangles {
@@ -172,14 +166,6 @@ fn a_tree_changes_no_bit_and_no_ray() {
             }
         }
     }
-}
-
-/// How many pixels differ by more than so many levels of 255.
-fn differing(a: &Image, b: &Image, levels: u8) -> usize {
-    let pairs = a.pixels.iter().zip(&b.pixels);
-    pairs
-        .filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > levels))
-        .count()
 }
 
 #[test]

@@ -9,15 +9,15 @@ use glint::scene::{
 };
 use glint::trace::{Rays, RenderControl};
 
+use crate::pictures::picture;
 use crate::random;
 
-fn picture(scene: &Scene, model: Model) -> (Image, Rays) {
+fn picture_of(scene: &Scene, model: Model) -> (Image, Rays) {
     let wanted = RenderRequest {
         model,
         ..RenderRequest::sized(160, 120)
     };
-    let (image, cost) = render(scene, &wanted, &RenderControl::default()).expect("not stopped");
-    (image, cost.rays)
+    picture(scene, &wanted)
 }
 
 /// What the plan says of one rule.
@@ -48,8 +48,8 @@ fn what_is_left_out_is_not_missed() {
         }),
     ]);
     for (index, scene) in scenes.enumerate() {
-        let (needed, few) = picture(&scene, Model::Needed);
-        let (everything, many) = picture(&scene, Model::Everything);
+        let (needed, few) = picture_of(&scene, Model::Needed);
+        let (everything, many) = picture_of(&scene, Model::Everything);
         let differ = needed
             .pixels
             .iter()
@@ -107,8 +107,8 @@ fn what_is_culled_is_not_missed() {
 #[test]
 fn surfaces_that_face_away_cast_no_shadow_rays() {
     let scene = demo(|scene| scene.light_visualization = false);
-    let (_, few) = picture(&scene, Model::Needed);
-    let (_, many) = picture(&scene, Model::Everything);
+    let (_, few) = picture_of(&scene, Model::Needed);
+    let (_, many) = picture_of(&scene, Model::Everything);
     let spared = 1.0 - few.total() as f64 / many.total() as f64;
     assert!((0.02..0.3).contains(&spared), "{spared}");
     assert_eq!(few.reflected, many.reflected);
@@ -116,11 +116,11 @@ fn surfaces_that_face_away_cast_no_shadow_rays() {
 
 #[test]
 fn a_dark_or_hidden_light_costs_no_ray() {
-    let bright = picture(&Scene::demo(), Model::Needed).1;
+    let bright = picture_of(&Scene::demo(), Model::Needed).1;
     let dark = demo(|scene| scene.lights[0].intensity = 0.0);
     let below = demo(|scene| scene.lights[0].position = DVec3::new(100.0, -20.0, -50.0));
     for scene in [&dark, &below] {
-        let rays = picture(scene, Model::Needed).1;
+        let rays = picture_of(scene, Model::Needed).1;
         assert!(rays.shadow < bright.shadow * 2 / 3, "{rays:?} {bright:?}");
         assert!(said(scene, "shadows").starts_with("shadow rays to 1 of 2 lights"));
     }
@@ -134,15 +134,15 @@ fn without_mirrors_nothing_is_reflected_and_one_brings_it_back() {
             .values_mut()
             .for_each(|pack| pack.reflective = false);
     });
-    assert_eq!(picture(&matte, Model::Needed).1.reflected, 0);
+    assert_eq!(picture_of(&matte, Model::Needed).1.reflected, 0);
     assert_eq!(said(&matte, "reflections"), "no reflected rays");
     let black = demo(|scene| {
         for pack in scene.packs_mut().values_mut() {
             pack.specular = DVec3::new(0.0, 0.0, 0.0);
         }
     });
-    assert_eq!(picture(&black, Model::Needed).1.reflected, 0);
-    assert!(picture(&black, Model::Everything).1.reflected > 0);
+    assert_eq!(picture_of(&black, Model::Needed).1.reflected, 0);
+    assert!(picture_of(&black, Model::Everything).1.reflected > 0);
     let flat = demo(|scene| scene.render.reflection_limit = 0);
     assert_eq!(said(&flat, "reflections"), "no reflected rays");
     let one = demo(|scene| {
@@ -152,7 +152,7 @@ fn without_mirrors_nothing_is_reflected_and_one_brings_it_back() {
             .for_each(|pack| pack.reflective = false);
         scene.packs_mut()["sphere 1"].reflective = true;
     });
-    assert!(picture(&one, Model::Needed).1.reflected > 0);
+    assert!(picture_of(&one, Model::Needed).1.reflected > 0);
     assert!(said(&one, "reflections").starts_with("reflected rays"));
 }
 
@@ -248,8 +248,8 @@ fn far_faces_of_solids_are_left_out_and_of_open_meshes_are_not() {
     assert_eq!(left_out(&inside).0, 0);
     for scene in [closed, open, inside] {
         let (needed, everything) = (
-            picture(&scene, Model::Needed).0,
-            picture(&scene, Model::Everything).0,
+            picture_of(&scene, Model::Needed).0,
+            picture_of(&scene, Model::Everything).0,
         );
         assert!(needed == everything);
     }

@@ -17,6 +17,8 @@ use glint::scene::{
 use glint::simd::{Real, Vec3};
 use glint::trace::RenderControl;
 
+use crate::pictures::differing;
+
 /// The t > 0 at which the ray meets the sphere; infinity if it does not.
 fn meet_sphere<R: Real>(method: SphereMethod, ray: &Ray<R>, sphere: &PackedSphere<R>) -> R {
     let methods = Methods {
@@ -478,8 +480,6 @@ fn many_mirrors(_: u32) {
         plain(&scene, picture)
     };
     let (single, double) = (at(Precision::Single), at(Precision::Double));
-    let pairs = single.pixels.iter().zip(&double.pixels);
-    let far_off = pairs.filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 1));
-    let far_off = far_off.count();
+    let far_off = differing(&single, &double, 1);
     assert!(far_off <= 8 * 128 * 128 / 1000, "{far_off} pixels differ");
 }

@@ -1,27 +1,25 @@
 //! The referee: POV-Ray, an engine with which Glint shares no code, draws the same pictures.
 
 use glint::export::{by_povray, povray_differences};
-use glint::image::{Image, render};
+use glint::image::Image;
 use glint::plan::RenderRequest;
 use glint::scene::{EXAMPLES, Methods, Projection, RayOffset, Scene, Shape};
 use glint::trace::RenderControl;
 
+use crate::pictures::{differing, picture};
 use crate::random;
 
 fn by_glint(scene: &Scene, methods: Methods) -> Image {
-    let picture = RenderRequest {
+    let wanted = RenderRequest {
         methods,
         ..RenderRequest::sized(scene.render.width, scene.render.height)
     };
-    render(scene, &picture, &RenderControl::default())
-        .expect("not stopped")
-        .0
+    picture(scene, &wanted).0
 }
 
 /// How many of a million pixels differ by more than one level of 255 in some channel.
 fn different_ppm(a: &Image, b: &Image) -> usize {
-    let differ = |(a, b): &(&[u8; 4], &[u8; 4])| (0..3).any(|c| a[c].abs_diff(b[c]) > 1);
-    a.pixels.iter().zip(&b.pixels).filter(differ).count() * 1_000_000 / a.pixels.len()
+    differing(a, b, 1) * 1_000_000 / a.pixels.len()
 }
 
 /// Takes from a scene what POV-Ray means something else by: colours above white, and smooth meshes.

@@ -21,8 +21,7 @@ use glint::ui::Ask;
 use glint::worker::{ThumbnailJob, Worker};
 
 use crate::harness::{CTRL, EditorHarness, survey_flight};
-
-const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
+use crate::program::FLIGHT;
 
 /// Work that a program has left behind.
 fn unsaved(document: Document) -> Leftover {
@@ -38,7 +37,8 @@ fn flight() -> Scene {
 }
 
 /// A window on a demo whose camera moves from key to key: so many seconds, so far to the right.
-fn animation(keys: &[(f64, f64)]) -> EditorHarness {
+/// A window on a demo whose camera moves at ten frames a second, with keys at these times so far to the right.
+pub fn animation(keys: &[(f64, f64)]) -> EditorHarness {
     let mut scene = Scene::demo();
     let key = |&(time, right): &(f64, f64)| {
         let mut camera = scene.camera.clone();
@@ -51,7 +51,8 @@ fn animation(keys: &[(f64, f64)]) -> EditorHarness {
     EditorHarness::with(|_| Vec::new(), Some(&document.to_text().expect("a text")))
 }
 
-fn times(harness: &EditorHarness) -> Vec<f64> {
+/// The times of the keys of the camera, in seconds.
+pub fn times(harness: &EditorHarness) -> Vec<f64> {
     let keys = harness.scene().animation.keys.iter();
     keys.map(|key| (key.time * 1e3).round() / 1e3).collect()
 }

@@ -4,28 +4,14 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, Pos2};
 use egui_kittest::kittest::Queryable as _;
 use glint::editor::Mode;
-use glint::scene::{Document, Key as SceneKey, Scene};
 
 use crate::harness::{CTRL, EditorHarness};
+use crate::timeline::{animation, times};
 
 /// A window on a demo whose camera moves at ten frames a second, with keys at these times.
 fn window(times: &[f64]) -> EditorHarness {
-    let mut scene = Scene::demo();
-    let key = |&time: &f64| {
-        let mut camera = scene.camera.clone();
-        camera.position.x += time;
-        SceneKey::new(time, camera)
-    };
-    scene.animation_mut().keys = times.iter().map(key).collect();
-    scene.animation_mut().frames_per_second = 10.0;
-    let header = String::new();
-    let text = Document { header, scene }.to_text().expect("a text");
-    EditorHarness::with(|_| Vec::new(), Some(&text))
-}
-
-fn times(harness: &EditorHarness) -> Vec<f64> {
-    let keys = harness.scene().animation.keys.iter();
-    keys.map(|key| (key.time * 1e3).round() / 1e3).collect()
+    let keys: Vec<(f64, f64)> = times.iter().map(|time| (*time, *time)).collect();
+    animation(&keys)
 }
 
 /// Where a time is on the ruler, which shows four seconds.

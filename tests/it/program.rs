@@ -1,0 +1,39 @@
+//! The program itself, and what it leaves in folders.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// The published flight.
+pub const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
+
+/// The program with these words.
+pub fn glint(words: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_glint"));
+    command.args(words);
+    command
+}
+
+/// Runs a command to its end.
+pub fn run(command: &mut Command) -> Output {
+    command.output().expect("it runs")
+}
+
+/// What a command that does its work says on stdout.
+pub fn done(command: &mut Command) -> String {
+    let output = run(command);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// The names of what is in a folder, in order, hidden files too.
+pub fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let entries = entries.map(|entry| entry.expect("an entry").file_name());
+    let mut names: Vec<String> = entries
+        .map(|name| name.to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
