@@ -142,9 +142,9 @@ fn a_unique_pack_leaves_the_others_alone() {
     let mut editor = Editor::demo();
     editor.apply(Action::Edit(Edit::MakePackUnique(2)));
     let scene = editor.scene();
-    assert_eq!(scene.objects[2].color_pack, "tetrahedron 1");
+    assert_eq!(scene.objects[2].color_pack, "tetrahedron 2");
     assert_eq!(
-        scene.color_packs["tetrahedron 1"],
+        scene.color_packs["tetrahedron 2"],
         scene.color_packs["tetrahedron"]
     );
     assert_eq!(scene.users_of_pack("tetrahedron").len(), 5);

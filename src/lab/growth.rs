@@ -178,7 +178,8 @@ impl Crowd {
         }
     }
 
-    fn scene(self, count: u32) -> Scene {
+    /// A scene of so many of them, or about so many.
+    pub fn scene(self, count: u32) -> Scene {
         match self {
             Self::Mesh => mesh(count),
             Self::Balls => balls(count),

@@ -1,0 +1,246 @@
+//! Glint beside Embree 3, where it is installed: `cargo bench --bench embree`. The same scenes, the same shading, two
+//! threads each; Embree's rays in packets of 8 and of 16 (`peer.cpp`, which a C++ compiler builds here and now).
+//! Compare columns of one row. After `--` other scenes can be named, by their files.
+
+#![allow(
+    clippy::expect_used,
+    clippy::print_stdout,
+    reason = "a benchmark that cannot go on has failed, and the table is what it is for"
+)]
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+use std::time::Instant;
+
+use glam::DVec3;
+use glint::image::{Image, render_into};
+use glint::lab::Crowd;
+use glint::plan::{Planner, RenderRequest};
+use glint::scene::{Document, EXAMPLES, Plane, Projection, Sampling, Scene, Shape};
+use glint::trace::{RenderControl, Threads};
+
+/// Side of the pictures in pixels.
+const SIDE: u32 = 1024;
+/// Threads of both.
+const THREADS: usize = 2;
+/// Pictures of each, of which the fastest counts.
+const ROUNDS: usize = 10;
+/// Half the side of the square that stands for a plane, which Embree does not have: as far as the last row below
+/// most horizons, and near enough for mirrors, where it is as inexact as it is large.
+const ENDLESS: f64 = 1e5;
+
+fn main() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let peer = folder.path().join("peer");
+    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/embree/peer.cpp");
+    let flags = [
+        "-O3",
+        "-march=native",
+        "-ffast-math",
+        "-fopenmp-simd",
+        "-mprefer-vector-width=512",
+        "-std=c++17",
+        "-o",
+    ];
+    let built = Command::new("c++")
+        .args(flags)
+        .args([peer.as_os_str(), source.as_ref()])
+        .args(["-lembree3", "-lpthread"])
+        .output();
+    if !built.is_ok_and(|built| built.status.success()) {
+        println!("Embree 3 or a C++ compiler is not here (Debian: libembree-dev, g++)");
+        return;
+    }
+    println!(
+        "{:<22} {:>9} {:>9} {:>11} {:>12} {:>10} {:>9}",
+        "scene", "things", "Glint ms", "Embree 8 ms", "Embree 16 ms", "of faster", "alike"
+    );
+    // `cargo bench` itself adds an option.
+    let mut files = std::env::args()
+        .skip(1)
+        .filter(|word| !word.starts_with('-'))
+        .peekable();
+    if files.peek().is_some() {
+        for file in files {
+            let document = Document::load(file.as_ref()).expect("a scene");
+            print_row(&file, document.scene, &peer);
+        }
+        return;
+    }
+    for (name, scene) in scenes() {
+        print_row(&name, scene, &peer);
+    }
+}
+
+fn scenes() -> impl Iterator<Item = (String, Scene)> {
+    let published = EXAMPLES
+        .iter()
+        .filter(|example| ["demo", "mirrors"].contains(&example.name));
+    let published = published.map(|example| (example.name.to_owned(), example.document().scene));
+    let crowds = [
+        (
+            Crowd::Mesh,
+            "mesh",
+            &[100, 1_000, 10_000, 100_000, 1_000_000][..],
+        ),
+        (Crowd::Balls, "balls", &[100, 1_000, 10_000, 100_000]),
+    ];
+    let crowds = crowds.into_iter().flat_map(|(crowd, name, counts)| {
+        let scenes = counts.iter().map(move |&count| crowd.scene(count));
+        scenes.map(move |scene| (name.to_owned(), scene))
+    });
+    published.chain(crowds)
+}
+
+fn print_row(name: &str, mut scene: Scene, peer: &Path) {
+    (scene.render.width, scene.render.height) = (SIDE, SIDE);
+    scene.light_visualization = false;
+    let folder = tempfile::tempdir().expect("a folder");
+    let (file, picture) = (folder.path().join("scene"), folder.path().join("picture"));
+    let numbers = numbers_of(&scene);
+    let bytes: Vec<u8> = numbers.iter().flat_map(|it| it.to_le_bytes()).collect();
+    fs::write(&file, bytes).expect("written");
+    let (before, image) = by_glint(&scene);
+    let output = Command::new(peer).args([&file, &picture]).output();
+    let output = output.expect("it was built");
+    assert!(output.status.success(), "{output:?}");
+    let times = String::from_utf8_lossy(&output.stdout);
+    let times = times.split_whitespace().map(str::parse::<f64>);
+    let times: Vec<f64> = times.map(|time| time.expect("a time")).collect();
+    let ours = before.min(by_glint(&scene).0);
+    let theirs = fs::read(&picture).expect("written");
+    let is_alike = |(ours, theirs): &(&[u8; 4], &[u8])| {
+        ours.iter().zip(*theirs).all(|(a, b)| a.abs_diff(*b) <= 1)
+    };
+    let alike = image
+        .pixels
+        .iter()
+        .zip(theirs.chunks(3))
+        .filter(is_alike)
+        .count();
+    println!(
+        "{name:<22} {:>9} {ours:>9.2} {:>11.2} {:>12.2} {:>10.2} {:>7.3} %",
+        scene.objects.len() + scene.faces(),
+        times[0],
+        times[1],
+        ours / times[0].min(times[1]),
+        alike as f64 / f64::from(SIDE * SIDE) * 100.0
+    );
+}
+
+/// The picture, and the milliseconds of the fastest of a few.
+fn by_glint(scene: &Scene) -> (f64, Image) {
+    let request = RenderRequest {
+        sampling: Sampling::Centres,
+        ..RenderRequest::still(scene)
+    };
+    let threads = Threads::new(Some(THREADS)).expect("threads");
+    // Over the last picture, as the window does.
+    let (mut image, mut planner) = (Image::default(), Planner::default());
+    let mut draw = || {
+        let since = Instant::now();
+        let control = RenderControl::default();
+        let drawn =
+            threads.run(|| render_into(&mut image, &mut planner, scene, &request, &control));
+        drawn.expect("not stopped");
+        since.elapsed().as_secs_f64() * 1e3
+    };
+    draw();
+    let milliseconds = (0..ROUNDS).map(|_| draw()).fold(f64::INFINITY, f64::min);
+    (milliseconds, image)
+}
+
+/// The scene as `peer.cpp` reads it.
+fn numbers_of(scene: &Scene) -> Vec<f32> {
+    let camera = &scene.camera;
+    assert_eq!(camera.projection, Projection::Perspective);
+    let back = -camera.look_at.normalize();
+    let right = camera.up.cross(back).normalize();
+    let (up, forward) = (back.cross(right), -back * camera.projection_distance);
+    let counts = [
+        SIDE as usize,
+        SIDE as usize,
+        scene.render.reflection_limit as usize,
+        THREADS,
+        ROUNDS,
+    ];
+    let mut numbers: Vec<f32> = counts.map(|count| count as f32).to_vec();
+    for vector in [camera.position, right, up, forward, scene.background] {
+        numbers.extend(vector.as_vec3().to_array());
+    }
+    numbers.push(scene.color_packs.len() as f32);
+    for pack in scene.color_packs.values() {
+        for color in [
+            pack.ambient * scene.ambient_intensity,
+            pack.diffuse,
+            pack.specular,
+        ] {
+            numbers.extend(color.as_vec3().to_array());
+        }
+        numbers.extend([
+            pack.phong_exponent as f32,
+            f32::from(u8::from(pack.reflective)),
+        ]);
+    }
+    let lights: Vec<_> = scene.lights.iter().filter(|light| light.visible).collect();
+    numbers.push(lights.len() as f32);
+    for light in lights {
+        numbers.extend(light.position.as_vec3().to_array());
+        numbers.push(light.intensity as f32);
+    }
+    numbers.extend(shapes_of(scene));
+    numbers
+}
+
+/// Balls, then points, then the faces between them, each with its material.
+fn shapes_of(scene: &Scene) -> Vec<f32> {
+    let (mut balls, mut points, mut faces) = (Vec::new(), Vec::new(), Vec::new());
+    for object in scene.objects.iter().filter(|object| object.visible) {
+        let pack = scene
+            .color_packs
+            .get_index_of(&object.color_pack)
+            .expect("a checked scene");
+        let mut add = |corners: [DVec3; 3]| {
+            let first = points.len() as u32;
+            points.extend(corners);
+            faces.push(([first, first + 1, first + 2], pack));
+        };
+        match &object.shape {
+            Shape::Sphere(ball) => balls.push((ball.center, ball.radius, pack)),
+            Shape::Triangle(triangle) => add(triangle.corners()),
+            Shape::Plane(plane) => square(plane).into_iter().for_each(add),
+            Shape::Mesh(mesh) => {
+                let first = points.len() as u32;
+                let triangles = mesh.source.triangles();
+                let transform = mesh.transform();
+                let places = triangles.points().iter();
+                points.extend(places.map(|&point| transform.transform_point3(point)));
+                let own = triangles.faces().iter();
+                faces.extend(own.map(|face| (face.map(|corner| corner + first), pack)));
+            }
+            Shape::Disc(_) => unimplemented!("discs are not for this benchmark"),
+        }
+    }
+    let mut numbers = vec![balls.len() as f32];
+    for (center, radius, pack) in balls {
+        numbers.extend(center.as_vec3().to_array());
+        numbers.extend([radius as f32, pack as f32]);
+    }
+    numbers.extend([points.len() as f32, faces.len() as f32]);
+    numbers.extend(points.iter().flat_map(|point| point.as_vec3().to_array()));
+    for (corners, pack) in faces {
+        numbers.extend(corners.map(|corner| corner as f32));
+        numbers.push(pack as f32);
+    }
+    numbers
+}
+
+/// A large square in place of a plane.
+fn square(plane: &Plane) -> [[DVec3; 3]; 2] {
+    let (aside, along) = plane.normal.normalize().any_orthonormal_pair();
+    let signs = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let corner = |(x, y): (f64, f64)| plane.point + (aside * x + along * y) * ENDLESS;
+    let [a, b, c, d] = signs.map(corner);
+    [[a, b, c], [a, c, d]]
+}
