@@ -2,7 +2,7 @@
 
 use super::path::nearest;
 use super::{CameraPath, motion_between};
-use crate::scene::{Camera, Interpolation, Key, MAX_SECONDS, Orientation};
+use crate::scene::{Animation, Camera, Interpolation, Key, MAX_SECONDS, Orientation, Track};
 
 /// Steps within a segment in which its length is measured.
 const STEPS: usize = 16;
@@ -14,10 +14,8 @@ const PAUSE_SHARE: f64 = 0.05;
 const TURN_SHARE: f64 = 0.2;
 
 /// Another timing.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Retime {
-    /// As long as this, in seconds.
-    Stretch(f64),
     /// As far in each second as in any other; as long as before.
     ConstantSpeed,
     /// Without the stretches in which nothing moves.
@@ -27,13 +25,12 @@ pub enum Retime {
 }
 
 impl Retime {
-    /// Those that need no number.
+    /// All of them.
     pub const ALL: [Self; 3] = [Self::ConstantSpeed, Self::TrimPauses, Self::Smooth];
 
     /// Name, and what it does.
     pub fn words(self) -> (&'static str, &'static str) {
         match self {
-            Self::Stretch(_) => ("Stretch", "The same flight within another time"),
             Self::ConstantSpeed => ("Constant speed", "As far in each second as in any other"),
             Self::TrimPauses => ("Trim pauses", "Without the time in which nothing moves"),
             Self::Smooth => ("Smooth", "Takes corners off the flight"),
@@ -46,7 +43,6 @@ impl Retime {
             return keys.to_vec();
         }
         match self {
-            Self::Stretch(seconds) => stretched(keys, seconds),
             Self::ConstantSpeed => constant_speed(keys),
             Self::TrimPauses => trimmed(keys),
             Self::Smooth => smoothed(keys),
@@ -54,11 +50,39 @@ impl Retime {
     }
 }
 
-fn stretched(keys: &[Key<Camera>], seconds: f64) -> Vec<Key<Camera>> {
-    let (start, end) = (keys[0].time, keys[keys.len() - 1].time);
-    let scale = seconds.max(CLOSEST).min(MAX_SECONDS - start) / (end - start);
-    let later = |key: &Key<Camera>| Key {
-        time: start + (key.time - start) * scale,
+/// The same animation with a flight of the camera of so many seconds: from its start on, keys of values go with it.
+#[must_use]
+pub fn stretched(animation: &Animation, seconds: f64) -> Animation {
+    let [first, .., last] = &animation.keys[..] else {
+        return animation.clone();
+    };
+    let (start, end) = (first.time, last.time);
+    let tracks = animation.tracks.iter();
+    let ends = tracks
+        .clone()
+        .filter_map(|track| Some(track.keys.last()?.time));
+    let latest = ends.fold(end, f64::max);
+    let scale = seconds.max(CLOSEST) / (end - start);
+    let scale = scale.min((MAX_SECONDS - start) / (latest - start));
+    let tracks = tracks.map(|track| Track {
+        target: track.target.clone(),
+        keys: scaled(&track.keys, start, scale),
+    });
+    Animation {
+        keys: scaled(&animation.keys, start, scale),
+        tracks: tracks.collect(),
+        ..animation.clone()
+    }
+}
+
+/// Keys behind the start so many times as far behind it.
+fn scaled<T: Clone>(keys: &[Key<T>], start: f64, scale: f64) -> Vec<Key<T>> {
+    let later = |key: &Key<T>| Key {
+        time: if key.time > start {
+            start + (key.time - start) * scale
+        } else {
+            key.time
+        },
         ..key.clone()
     };
     keys.iter().map(later).collect()
@@ -113,7 +137,8 @@ fn constant_speed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
     };
     let retimed = with_steps(keys, step);
     // What the shortest steps were given is taken from all.
-    stretched(&retimed, end - start)
+    let last = retimed.last().map_or(end, |key| key.time);
+    scaled(&retimed, start, (end - start) / (last - start))
 }
 
 /// Stretches, as places of segments, in which next to nothing moves.

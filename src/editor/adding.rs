@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::item::Item;
-use super::names::{free_light_name, free_object_name, free_pack_name};
-use crate::scene::{ColorPack, Light, LightObj, Object, Scene, Shape, light_pack};
+use super::item::{Item, Kind};
+use super::names::{copy_offset, free_light_name, free_object_name, free_pack_name};
+use crate::scene::{ColorPack, Light, LightObj, Object, Scene, Shape, Track, light_pack};
 
 /// Colours that new things wear, one after the other: told apart from each other, and from a grey floor.
 const COLORS: [[f64; 3]; 8] = [
@@ -59,6 +59,11 @@ pub fn add_light(scene: &mut Scene, position: DVec3) -> Item {
     } else {
         insert_pack(scene, "light", light_pack()).1
     };
+    // Two in one place would look like one.
+    let mut position = position;
+    while scene.lights.iter().any(|light| light.position == position) {
+        position.x += 4.0 * radius;
+    }
     scene.lights.push(Light {
         name,
         position,
@@ -72,6 +77,65 @@ pub fn add_light(scene: &mut Scene, position: DVec3) -> Item {
 /// Adds a pack.
 pub fn add_pack(scene: &mut Scene) -> Item {
     Item::pack(insert_pack(scene, "pack 1", ColorPack::default()).0)
+}
+
+/// A copy behind the original in its list, and beside it in the scene.
+pub fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
+    let Item { kind, index } = item;
+    match kind {
+        Kind::Object => {
+            let original = scene.objects.get(index)?.clone();
+            let mut copy = original.clone();
+            copy.name = free_object_name(scene, &copy.name);
+            let by = copy_offset(scene, &copy.shape);
+            copy.shape = copy.shape.moved(by);
+            copy_tracks(scene, (false, &original.name), &copy.name, by);
+            scene.objects.insert(index + 1, copy);
+        }
+        Kind::Light => {
+            let original = scene.lights.get(index)?.clone();
+            let mut copy = original.clone();
+            copy.name = free_light_name(scene, &copy.name);
+            let marker = copy.marker.as_ref();
+            let by = DVec3::X * marker.map_or(1.0, |marker| marker.radius * 2.0);
+            copy.position += by;
+            copy_tracks(scene, (true, &original.name), &copy.name, by);
+            scene.lights.insert(index + 1, copy);
+        }
+        Kind::Pack => {
+            let (name, pack) = scene.color_packs.get_index(index)?;
+            let (name, pack) = (free_pack_name(scene, name), pack.clone());
+            scene.packs_mut().shift_insert(index + 1, name, pack);
+        }
+    }
+    Some(Item {
+        kind,
+        index: index + 1,
+    })
+}
+
+/// A copy of a light or object, so far from it, has the keys of its values.
+fn copy_tracks(scene: &mut Scene, (is_light, name): (bool, &str), copy: &str, by: DVec3) {
+    let tracks = scene.animation.tracks.iter();
+    let own = tracks.filter(|track| track.target.is_of(is_light, name));
+    let copies: Vec<Track> = own.map(|track| track.for_copy(copy, by)).collect();
+    if !copies.is_empty() {
+        scene.animation_mut().tracks.extend(copies);
+    }
+}
+
+/// A copy of its pack for the object in this place alone.
+pub fn make_pack_unique(scene: &mut Scene, index: usize) {
+    let Some(object) = scene.objects.get(index) else {
+        return;
+    };
+    let Some(place) = scene.color_packs.get_index_of(&object.color_pack) else {
+        return;
+    };
+    if let Some(copy) = duplicate(scene, Item::pack(place)) {
+        let name = copy.name(scene).unwrap_or_default().to_owned();
+        scene.objects[index].color_pack = name;
+    }
 }
 
 /// A pack that nothing wears; not the one that is kept for lights.

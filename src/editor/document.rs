@@ -344,9 +344,9 @@ impl Editor {
         let label = edit.label(&self.scene);
         let is_camera = edit.moves_view();
         // What moves the joined things is taken along by it.
-        let is_join = !edit.joined().is_empty();
+        let joined = edit.joined().to_vec();
         let replaced = edit.replaced();
-        let posed = self.animation_state.posed(&self.scene, edit.joined());
+        let posed = self.animation_state.posed(&self.scene, &joined);
         let mut next = posed.clone();
         let new = match edit.apply(&mut next) {
             Ok(new) => new,
@@ -355,7 +355,7 @@ impl Editor {
                 return false;
             }
         };
-        if !is_join {
+        if joined.is_empty() {
             let state = &self.animation_state;
             state.key_tracked(&self.scene, &mut next, &replaced);
         }
@@ -370,16 +370,19 @@ impl Editor {
             return false;
         }
         self.forget_refusal();
-        if is_join {
-            self.tell_lost_keys(&label, &next);
-        }
+        let lost = self.lost_by_joining(&joined, &next);
+        let lost = lost.map(|lost| format!("{label}: {lost}"));
         let before = self.here();
         self.history.record(label, before, &next);
-        match new {
-            Some(item) => self.select(Selected::all([item])),
-            None => self.follow(&next),
+        if new.is_empty() {
+            self.follow(&next);
+        } else {
+            self.select(Selected::all(new));
         }
         self.set_scene(Arc::new(next));
+        if let Some(lost) = lost {
+            self.notify_of_step(lost);
+        }
         true
     }
 

@@ -7,14 +7,12 @@ use glam::DVec3;
 
 use crate::mesh::Part;
 use crate::scene::{
-    Animation, Bookmark, Camera, ColorPack, Light, List, Mesh, Object, Render, Scene, Shape,
-    Target, Track,
+    Animation, Bookmark, Camera, ColorPack, Light, List, Mesh, Object, Render, Scene, Shape, Target,
 };
 
-use super::adding::{add_light, add_object, add_pack};
+use super::adding::{add_light, add_object, add_pack, duplicate, make_pack_unique};
 use super::clipboard::paste;
 use super::item::{Item, Kind};
-use super::names::{copy_offset, free_light_name, free_object_name, free_pack_name};
 
 /// A change of the scene. The `&'static str` names the field that changed: edits of one field
 /// during one gesture are one step in the history.
@@ -221,12 +219,12 @@ impl Edit {
         }
     }
 
-    /// Changes the scene; returns the item that shall be selected, if that changes too.
+    /// Changes the scene; returns the items that shall be selected; none leaves that as it is.
     ///
     /// # Errors
     /// [`EditError`]: why the change is refused; the scene is then half-changed and to be
     /// thrown away.
-    pub fn apply(self, scene: &mut Scene) -> Result<Option<Item>, EditError> {
+    pub fn apply(self, scene: &mut Scene) -> Result<Vec<Item>, EditError> {
         match self {
             Self::Camera(camera, _) => scene.camera = camera,
             Self::Background(color) => scene.background = color,
@@ -242,23 +240,23 @@ impl Edit {
                 }
             }
             Self::AddObject(shape) => {
-                return Ok(Some(add_object(scene, shape.kind(), shape)));
+                return Ok(vec![add_object(scene, shape.kind(), shape)]);
             }
-            Self::AddMesh(name, mesh) => return Ok(Some(add_object(scene, name, mesh.into()))),
-            Self::Import(parts) => return Ok(Some(Item::object(scene.add_parts(parts)))),
+            Self::AddMesh(name, mesh) => return Ok(vec![add_object(scene, name, mesh.into())]),
+            Self::Import(parts) => return Ok(vec![Item::object(scene.add_parts(parts))]),
             Self::Join(joined) => {
-                return Ok(scene.join(joined).map(Item::object));
+                return Ok(scene.join(joined).map(Item::object).into_iter().collect());
             }
             Self::Paste(pasted, _) => paste(scene, &pasted),
             Self::Separate(index) => {
-                scene.separate(index);
+                return Ok(scene.separate(index).map(Item::object).collect());
             }
-            Self::AddLight(position) => return Ok(Some(add_light(scene, position))),
-            Self::AddPack => return Ok(Some(add_pack(scene))),
+            Self::AddLight(position) => return Ok(vec![add_light(scene, position)]),
+            Self::AddPack => return Ok(vec![add_pack(scene)]),
             Self::Rename(item, name) => rename(scene, item, name.trim())?,
-            Self::Duplicate(item) => return Ok(duplicate(scene, item)),
+            Self::Duplicate(item) => return Ok(duplicate(scene, item).into_iter().collect()),
             Self::Delete(items) => delete(scene, items)?,
-            Self::Move(item, to) => return Ok(Some(move_item(scene, item, to))),
+            Self::Move(item, to) => return Ok(vec![move_item(scene, item, to)]),
             Self::MakePackUnique(index) => make_pack_unique(scene, index),
             Self::MergePacks => scene.merge_equal_packs(),
             Self::RenameGroup(from, to) => rename_group(scene, &from, &to)?,
@@ -276,57 +274,13 @@ impl Edit {
                 }
             }
         }
-        Ok(None)
+        Ok(Vec::new())
     }
 }
 
 fn replace<T: Clone>(list: &mut List<T>, index: usize, value: T) {
     if let Some(place) = list.get_mut(index) {
         *place = value;
-    }
-}
-
-fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
-    let Item { kind, index } = item;
-    match kind {
-        Kind::Object => {
-            let original = scene.objects.get(index)?.clone();
-            let mut copy = original.clone();
-            copy.name = free_object_name(scene, &copy.name);
-            let by = copy_offset(scene, &copy.shape);
-            copy.shape = copy.shape.moved(by);
-            copy_tracks(scene, (false, &original.name), &copy.name, by);
-            scene.objects.insert(index + 1, copy);
-        }
-        Kind::Light => {
-            let original = scene.lights.get(index)?.clone();
-            let mut copy = original.clone();
-            copy.name = free_light_name(scene, &copy.name);
-            let marker = copy.marker.as_ref();
-            let by = DVec3::X * marker.map_or(1.0, |marker| marker.radius * 2.0);
-            copy.position += by;
-            copy_tracks(scene, (true, &original.name), &copy.name, by);
-            scene.lights.insert(index + 1, copy);
-        }
-        Kind::Pack => {
-            let (name, pack) = scene.color_packs.get_index(index)?;
-            let (name, pack) = (free_pack_name(scene, name), pack.clone());
-            scene.packs_mut().shift_insert(index + 1, name, pack);
-        }
-    }
-    Some(Item {
-        kind,
-        index: index + 1,
-    })
-}
-
-/// A copy of a light or object, so far from it, has the keys of its values.
-fn copy_tracks(scene: &mut Scene, (is_light, name): (bool, &str), copy: &str, by: DVec3) {
-    let tracks = scene.animation.tracks.iter();
-    let own = tracks.filter(|track| track.target.is_of(is_light, name));
-    let copies: Vec<Track> = own.map(|track| track.for_copy(copy, by)).collect();
-    if !copies.is_empty() {
-        scene.animation_mut().tracks.extend(copies);
     }
 }
 
@@ -435,17 +389,4 @@ fn move_item(scene: &mut Scene, item: Item, to: usize) -> Item {
         Kind::Pack => scene.packs_mut().move_index(index, to),
     }
     Item { kind, index: to }
-}
-
-fn make_pack_unique(scene: &mut Scene, index: usize) {
-    let Some(object) = scene.objects.get(index) else {
-        return;
-    };
-    let Some(place) = scene.color_packs.get_index_of(&object.color_pack) else {
-        return;
-    };
-    if let Some(copy) = duplicate(scene, Item::pack(place)) {
-        let name = copy.name(scene).unwrap_or_default().to_owned();
-        scene.objects[index].color_pack = name;
-    }
 }

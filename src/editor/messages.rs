@@ -2,6 +2,8 @@
 
 use std::collections::HashSet;
 
+use indexmap::IndexSet;
+
 use super::action::{Message, STEP};
 use super::document::Editor;
 use crate::scene::{Scene, Target};
@@ -92,28 +94,25 @@ impl Editor {
         self.begin(BROKEN);
     }
 
-    /// Says which values have no keys any more after an edit of this name.
-    pub(super) fn tell_lost_keys(&mut self, label: &str, next: &Scene) {
+    /// What is not there any more after these objects were joined or taken apart: keys of values, and color packs that
+    /// all but the first wore.
+    pub(super) fn lost_by_joining(&self, joined: &[usize], next: &Scene) -> Option<String> {
+        let (first, others) = joined.split_first()?;
         let kept = next.animation.tracks.iter().map(|track| &track.target);
         let kept: HashSet<&Target> = kept.collect();
-        let targets = self
-            .scene
-            .animation
-            .tracks
-            .iter()
-            .map(|track| &track.target);
-        let mut lost = targets.filter(|target| !kept.contains(target));
-        let names: Vec<String> = lost.by_ref().take(MOST_NAMES).map(Target::name).collect();
-        let more = match lost.count() {
-            0 => String::new(),
-            more => format!(" and {more} more"),
-        };
-        if !names.is_empty() {
-            let names = names.join(", ");
-            self.notify(format!(
-                "{label}: there are no keys of {names}{more} any more"
-            ));
-        }
+        let tracks = self.scene.animation.tracks.iter();
+        let targets = tracks.map(|track| &track.target);
+        let lost = targets.filter(|target| !kept.contains(target));
+        let keys = listed(lost.map(Target::name));
+        let keys = keys.map(|names| format!("there are no keys of {names} any more"));
+        let pack = |index: &usize| Some(&self.scene.objects.get(*index)?.color_pack);
+        let own = pack(first)?;
+        let packs: IndexSet<&String> = others.iter().filter_map(pack).collect();
+        let packs = packs.into_iter().filter(|pack| *pack != own).cloned();
+        let packs =
+            listed(packs).map(|names| format!("all of it wears {own}, what wore {names} too"));
+        let lost: Vec<String> = keys.into_iter().chain(packs).collect();
+        (!lost.is_empty()).then(|| lost.join("; "))
     }
 
     /// Tells why an edit is not made.
@@ -128,4 +127,14 @@ impl Editor {
             self.begin(EDIT);
         }
     }
+}
+
+/// The first few of some names, and how many more there are; `None` if there are none.
+fn listed(mut names: impl Iterator<Item = String>) -> Option<String> {
+    let first: Vec<String> = names.by_ref().take(MOST_NAMES).collect();
+    let more = match names.count() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    (!first.is_empty()).then(|| format!("{}{more}", first.join(", ")))
 }

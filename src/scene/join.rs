@@ -1,6 +1,7 @@
 //! Triangles that become one mesh, and a mesh that becomes triangles.
 
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -128,14 +129,21 @@ impl Scene {
             .for_each(|track| track.shift(further));
     }
 
-    /// Puts triangles in place of the mesh at `index`, if it is separable. Whether it did.
-    pub fn separate(&mut self, index: usize) -> bool {
-        let Some(object) = self.objects.get(index) else {
-            return false;
+    /// Puts triangles in place of the mesh at `index`, if it is separable: a group of its name, if it is in none.
+    /// Where they are in the list.
+    pub fn separate(&mut self, index: usize) -> Range<usize> {
+        let object = self.objects.get(index);
+        let Some((object, Shape::Mesh(mesh))) = object.map(|object| (object, &object.shape)) else {
+            return 0..0;
         };
-        let mesh = match &object.shape {
-            Shape::Mesh(mesh) if mesh.is_separable() => mesh,
-            _ => return false,
+        if !mesh.is_separable() {
+            return 0..0;
+        }
+        let group = if object.group.is_empty() {
+            let groups = self.objects.iter().map(|object| object.group.as_str());
+            Names::new(groups).take(&object.name)
+        } else {
+            object.group.clone()
         };
         let name = object.name.clone();
         let others = self
@@ -150,12 +158,14 @@ impl Scene {
             .map(|triangle| Object {
                 name: names.take(&object.name),
                 shape: triangle,
+                group: group.clone(),
                 ..object.clone()
             })
             .collect();
         if pieces.is_empty() {
-            return false;
+            return 0..0;
         }
+        let places = index..index + pieces.len();
         let before = self.objects.iter().take(index).cloned();
         let after = self.objects.iter().skip(index + 1).cloned();
         self.objects = before.chain(pieces).chain(after).collect::<List<_>>();
@@ -164,7 +174,7 @@ impl Scene {
         if self.animation.tracks.iter().any(is_moved) {
             Arc::make_mut(&mut self.animation).forget(&HashSet::from([(false, name.as_str())]));
         }
-        true
+        places
     }
 }
 
@@ -197,7 +207,7 @@ mod tests {
         assert_eq!(check(&scene), Ok(()));
         assert_eq!(scene.objects[first].name, demo.objects[first].name);
         assert_eq!(scene.faces(), 6);
-        assert!(scene.separate(first));
+        assert!(!scene.separate(first).is_empty());
         assert_eq!(check(&scene), Ok(()));
         let shapes = |scene: &Scene| -> Vec<_> {
             scene
@@ -222,7 +232,7 @@ mod tests {
         }]
         .into_iter()
         .collect();
-        assert!(scene.separate(0));
+        assert!(!scene.separate(0).is_empty());
         assert_eq!(scene.objects.len(), 1);
         assert_eq!(check(&scene), Ok(()));
     }
@@ -254,7 +264,7 @@ mod tests {
             };
             assert!((key - there).length() < 1e-9, "{key} {there}");
         }
-        assert!(scene.separate(2));
+        assert!(!scene.separate(2).is_empty());
         assert_eq!(check(&scene), Ok(()));
         assert!(scene.animation.tracks.is_empty());
     }

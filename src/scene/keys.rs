@@ -114,7 +114,7 @@ impl Animation {
         animation
     }
 
-    /// With these keys, or copies of them, so many seconds later; they replace what they land on, and none goes before
+    /// With these keys, or copies of them, so many seconds later; each replaces what it lands on, and none goes before
     /// the start or behind [`MAX_SECONDS`]. Also their new places.
     pub fn with_moved(&self, places: &Keys, later: f64, are_copies: bool) -> (Self, Keys) {
         let times = places.iter().filter_map(|place| self.at_place(*place));
@@ -294,25 +294,28 @@ fn move_row<T: Clone>(
     if moved.is_empty() {
         return Vec::new();
     }
-    let near = SAME / animation.frames_per_second;
-    let is_free = |key: &Key<T>| {
-        let first = moved.partition_point(|moved| moved.time < key.time - near);
-        let close = moved[first..].iter();
-        let mut close = close.take_while(|moved| moved.time <= key.time + near);
-        !close.any(|moved| {
-            // A copy was nowhere before.
-            let from = if are_copies {
-                f64::INFINITY
-            } else {
-                moved.time - later
-            };
-            animation.replaces((from, moved.time), key.time)
-        })
-    };
     let others = keys.iter().enumerate();
     let others = others.filter(|(index, _)| are_copies || indices.binary_search(index).is_err());
-    let others = others.map(|(_, key)| key).filter(|key| is_free(key));
-    let mut all: Vec<(Key<T>, bool)> = others.map(|key| (key.clone(), false)).collect();
+    let others: Vec<&Key<T>> = others.map(|(_, key)| key).collect();
+    let near = SAME / animation.frames_per_second;
+    // The nearest of those that a key might replace: recorded keys may be much closer together than frames.
+    let replaced = |key: &Key<T>| {
+        // A copy was nowhere before.
+        let from = if are_copies {
+            f64::INFINITY
+        } else {
+            key.time - later
+        };
+        let off = |other: &usize| (others[*other].time - key.time).abs();
+        let first = others.partition_point(|other| other.time < key.time - near);
+        let close = (first..others.len()).take_while(|other| off(other) <= near);
+        let close = close.filter(|&other| animation.replaces((from, key.time), others[other].time));
+        close.min_by(|a, b| off(a).total_cmp(&off(b)))
+    };
+    let replaced: HashSet<usize> = moved.iter().filter_map(replaced).collect();
+    let others = others.iter().enumerate();
+    let others = others.filter(|(other, _)| !replaced.contains(other));
+    let mut all: Vec<(Key<T>, bool)> = others.map(|(_, key)| (Key::clone(key), false)).collect();
     all.extend(moved.iter().map(|key| (key.clone(), true)));
     all.sort_by(|(a, _), (b, _)| a.time.total_cmp(&b.time));
     let new = (0..all.len()).filter(|&index| all[index].1).collect();
@@ -400,7 +403,7 @@ mod tests {
             (0.01, false, 4),
             (0.02, false, 3),
             (1.0, false, 3),
-            (0.01, true, 3),
+            (0.01, true, 4),
         ] {
             let (moved, _) = animation.with_moved(&one, later, are_copies);
             assert_eq!(moved.keys.len(), count, "{later} {are_copies}");

@@ -1,7 +1,7 @@
 //! The window's frame: reads input, shows the panels, applies what they asked for, and hands the
 //! scene to the render thread.
 
-use egui::{Context, Event, SurrenderFocusOn, Theme, Ui, ViewportCommand};
+use egui::{Context, Event, Popup, SurrenderFocusOn, Theme, Ui, ViewportCommand};
 use serde::de::DeserializeOwned;
 
 use super::autosave::Autosave;
@@ -184,6 +184,22 @@ impl App {
         self.pictures.shown(&self.editor).map(|frame| &*frame.image)
     }
 
+    /// The commands whose keys were pressed, if keys are free for that.
+    fn commanded(&mut self, ui: &Ui, keys_are_free: bool) -> Vec<Command> {
+        let mut commands = std::mem::take(&mut self.deferred);
+        if keys_are_free {
+            commands.extend(pressed(ui, self.flying.is_flying(), |_| true));
+        } else if ui.text_edit_focused() && !self.files.is_asking() {
+            // The text is taken over first, and the command runs when that is done.
+            self.deferred = pressed(ui, false, is_about_files);
+            if !self.deferred.is_empty() {
+                ui.memory_mut(egui::Memory::stop_text_input);
+                ui.request_repaint();
+            }
+        }
+        commands
+    }
+
     pub(super) fn act_on(&mut self, ctx: &Context, outcome: Option<FileOutcome>) {
         match outcome {
             None => {}
@@ -310,22 +326,13 @@ impl eframe::App for App {
     }
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
-        let mut out = UiRequests::default();
         // What had the keys when this frame's were pressed: a field loses its focus to Escape, and a
         // menu closes, before this is asked.
         let keys_are_free = !self.keys_are_taken && !ui.text_edit_focused();
-        out.commands = std::mem::take(&mut self.deferred);
-        if keys_are_free {
-            let pressed = pressed(ui, self.flying.is_flying(), |_| true);
-            out.commands.extend(pressed);
-        } else if ui.text_edit_focused() && !self.files.is_asking() {
-            // The text is taken over first, and the command runs when that is done.
-            self.deferred = pressed(ui, false, is_about_files);
-            if !self.deferred.is_empty() {
-                ui.memory_mut(egui::Memory::stop_text_input);
-                ui.request_repaint();
-            }
-        }
+        let mut out = UiRequests {
+            commands: self.commanded(ui, keys_are_free),
+            ..UiRequests::default()
+        };
         let picture = self.show_panels(ui, &mut out);
         let ctx = ui.ctx().clone();
         if let Some(words) = take_refused(&ctx) {
@@ -340,7 +347,8 @@ impl eframe::App for App {
             // Its field would have the keys of the question.
             self.finder.is_open = false;
         }
-        self.finder.show(&ctx, &self.editor, &mut out);
+        self.finder
+            .show(&ctx, &self.editor, &self.files.recent, &mut out);
         self.why.show(&ctx);
         // Still pictures are looked at, not flown through: they would be gone.
         let (place, flown) = picture;
@@ -360,22 +368,7 @@ impl eframe::App for App {
         let motion = self.flying.step(ui, flown, flies, speed);
         out.actions.extend(motion.map(Action::Fly));
         let questions = std::mem::take(&mut out.questions);
-        let before = self.editor.revision();
-        for action in out.actions {
-            self.editor.apply(action);
-        }
-        if self.editor.timeline().recorded().is_some() {
-            let now = ui.input(|input| input.time);
-            self.editor.apply(Action::Time(Time::Sample(now)));
-            ctx.request_repaint();
-        }
-        for command in out.commands {
-            self.run(&ctx, command);
-        }
-        if self.editor.revision() != before {
-            // What was measured before is not what is edited.
-            self.lab.leave();
-        }
+        self.carry_out(&ctx, out);
         let going = if self.files.is_asking() {
             self.exports.describe(&self.pictures)
         } else {
@@ -388,7 +381,7 @@ impl eframe::App for App {
             self.editor.end_gesture();
         }
         self.keys_are_taken = ui.text_edit_focused()
-            || egui::Popup::is_any_open(&ctx)
+            || Popup::is_any_open(&ctx)
             || self.files.is_asking()
             || self.finder.is_open
             || dragged(&ctx).is_some()

@@ -308,6 +308,7 @@ pub fn pressed(ui: &Ui, is_flying: bool, is_heard: impl Fn(&Command) -> bool) ->
             let is_meant = |keys: &KeyboardShortcut| {
                 keys.logical_key == *key
                     && modifiers.matches_logically(keys.modifiers)
+                    && modifiers.alt == keys.modifiers.alt
                     && !(is_flying && keys.modifiers.command)
             };
             let Some(shortcut) = SHORTCUTS

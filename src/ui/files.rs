@@ -226,6 +226,10 @@ impl Files {
             (Question::Unsaved(next), Answer::No) => self.go_on(&ctx, editor, next),
             (Question::Quit, Answer::Yes) => Some(FileOutcome::Quit),
             (Question::Exports, Answer::No) => Some(FileOutcome::Leave),
+            (Question::Exports, Answer::Cancel) if exports.is_none() => {
+                editor.notify("The export has ended; Ctrl+Q quits".to_owned());
+                None
+            }
             (Question::Path(wish, prompt), Answer::Yes) => {
                 self.answered(&ctx, editor, wish, prompt.path())
             }

@@ -1,5 +1,7 @@
 //! Everything by its name: commands, things of the scene, settings.
 
+use std::path::PathBuf;
+
 use egui::{
     AtomExt as _, Button, Context, Frame, Id, Key, Modal, Modifiers, ScrollArea, TextEdit, Ui,
 };
@@ -68,7 +70,13 @@ impl Finder {
     }
 
     /// Shows the field and what it finds, while it is open.
-    pub fn show(&mut self, ctx: &Context, editor: &Editor, out: &mut UiRequests) {
+    pub fn show(
+        &mut self,
+        ctx: &Context,
+        editor: &Editor,
+        recent: &[PathBuf],
+        out: &mut UiRequests,
+    ) {
         if !self.is_open {
             return;
         }
@@ -76,7 +84,7 @@ impl Finder {
         let modal = Modal::new(Id::unique("finder")).frame(frame);
         let shown = modal.show(ctx, |ui| {
             ui.set_width(WIDTH);
-            self.ask(ui, editor)
+            self.ask(ui, (editor, recent))
         });
         if let Some(target) = shown.inner {
             self.is_open = false;
@@ -90,7 +98,7 @@ impl Finder {
         }
     }
 
-    fn ask(&mut self, ui: &mut Ui, editor: &Editor) -> Option<Target> {
+    fn ask(&mut self, ui: &mut Ui, known: (&Editor, &[PathBuf])) -> Option<Target> {
         let step = |ui: &mut Ui, key: Key| {
             ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key))
         };
@@ -103,7 +111,7 @@ impl Finder {
         if field.changed() {
             self.meant = 0;
         }
-        let finds = finds(ui, editor, &self.text);
+        let finds = finds(ui, known, &self.text);
         let last = finds.len().saturating_sub(1);
         self.meant = (self.meant + down).saturating_sub(up).min(last);
         let is_entered = ui.input(|input| input.key_pressed(Key::Enter));
@@ -139,14 +147,14 @@ impl Finder {
 }
 
 /// Everything whose name has all the words, first what begins with them.
-fn finds(ui: &Ui, editor: &Editor, text: &str) -> Vec<Find> {
+fn finds(ui: &Ui, (editor, recent): (&Editor, &[PathBuf]), text: &str) -> Vec<Find> {
     let text = text.trim().to_lowercase();
     let words: Vec<&str> = text.split_whitespace().collect();
     let has = |name: &str| {
         let name = name.to_lowercase();
         words.iter().all(|word| name.contains(word))
     };
-    let mut finds: Vec<Find> = commands(ui, editor)
+    let mut finds: Vec<Find> = commands(ui, editor, recent)
         .filter(|find| has(&find.name) || has(also(&find.what)))
         .collect();
     finds.extend(additions().filter(|find| has(&find.name)));
@@ -158,7 +166,11 @@ fn finds(ui: &Ui, editor: &Editor, text: &str) -> Vec<Find> {
     finds
 }
 
-fn commands<'a>(ui: &'a Ui, editor: &'a Editor) -> impl Iterator<Item = Find> + 'a {
+fn commands<'a>(
+    ui: &'a Ui,
+    editor: &'a Editor,
+    recent: &'a [PathBuf],
+) -> impl Iterator<Item = Find> + 'a {
     let keyed = SHORTCUTS.iter().map(|shortcut| {
         let keys = name_of(ui, shortcut.keys[0]);
         (shortcut.command.clone(), shortcut.what, keys)
@@ -169,15 +181,16 @@ fn commands<'a>(ui: &'a Ui, editor: &'a Editor) -> impl Iterator<Item = Find> + 
     let all = keyed.chain(keyless);
     let all = all.filter(|(command, ..)| !matches!(command, Command::Find | Command::Escape));
     let all = all.map(|(command, what, keys)| (command, what.to_owned(), keys));
-    all.chain(choices(editor)).map(|(command, name, keys)| {
-        let obstacle = obstacle(&command, editor);
-        Find {
-            name,
-            aside: obstacle.map_or(keys, str::to_owned),
-            is_enabled: obstacle.is_none(),
-            what: Target::Command(command),
-        }
-    })
+    all.chain(choices(editor, recent))
+        .map(|(command, name, keys)| {
+            let obstacle = obstacle(&command, editor);
+            Find {
+                name,
+                aside: obstacle.map_or(keys, str::to_owned),
+                is_enabled: obstacle.is_none(),
+                what: Target::Command(command),
+            }
+        })
 }
 
 /// What else a command is called.
@@ -199,17 +212,21 @@ fn additions() -> impl Iterator<Item = Find> {
 }
 
 /// What is chosen in menus below the menus.
-fn choices(editor: &Editor) -> impl Iterator<Item = (Command, String, String)> {
+fn choices<'a>(
+    editor: &'a Editor,
+    recent: &'a [PathBuf],
+) -> impl Iterator<Item = (Command, String, String)> + 'a {
     let shown = Aspect::EACH.map(|(aspect, name, _)| {
         let name = format!("Show: {}", name.to_lowercase());
         (Command::Aspect(aspect), name)
     });
-    let parts = Part::PANELS.into_iter().chain(Part::OVER_PICTURE);
-    let parts = parts.map(|(part, name)| {
-        (
-            Command::Part(part),
-            format!("Show or hide: {}", name.to_lowercase()),
-        )
+    let panels = Part::PANELS.map(|(part, name)| {
+        let name = format!("Show or hide the panel: {}", name.to_lowercase());
+        (Command::Part(part), name)
+    });
+    let parts = Part::OVER_PICTURE.map(|(part, name)| {
+        let name = format!("Show or hide: {}", name.to_lowercase());
+        (Command::Part(part), name)
     });
     let examples = EXAMPLES.iter().enumerate().map(|(place, example)| {
         (
@@ -236,10 +253,20 @@ fn choices(editor: &Editor) -> impl Iterator<Item = (Command, String, String)> {
         .into_iter()
         .chain(presets)
         .chain(timings)
+        .chain(panels)
         .chain(parts)
         .chain(examples)
         .chain(bookmarks);
-    all.map(|(command, name)| (command, name, String::new()))
+    let all = all.map(|(command, name)| (command, name, String::new()));
+    let recent = recent.iter().map(|path| {
+        let name = path.file_name().unwrap_or(path.as_os_str());
+        let name = format!("Open recent: {}", name.to_string_lossy());
+        let folder = path
+            .parent()
+            .map_or(String::new(), |it| it.display().to_string());
+        (Command::OpenRecent(path.clone()), name, folder)
+    });
+    all.chain(recent)
 }
 
 /// What stands on top of the outliner, and the settings of the picture.

@@ -62,6 +62,8 @@ mod examples;
 
 mod raster;
 
+mod arithmetic;
+
 mod number;
 
 mod rows;

@@ -9,6 +9,7 @@ use egui::{
 };
 use glam::DVec3;
 
+use super::arithmetic::calculate;
 use super::hint::Hint as _;
 use super::theme::ROW;
 use crate::scene::parse_vec3;
@@ -145,8 +146,13 @@ fn is_ambiguous(text: &str) -> bool {
     is_group && after.len() == 3 && are_digits(whole) && are_digits(after)
 }
 
-/// The number that a text is, if it is one and no other.
+/// The number that a text is, or the sum of it; `None` if it is neither.
 fn read(text: &str) -> Option<f64> {
+    read_number(text).or_else(|| calculate(text, read_number))
+}
+
+/// The number that a text is, if it is one and no other.
+fn read_number(text: &str) -> Option<f64> {
     if is_ambiguous(text) {
         return None;
     }
@@ -354,6 +360,7 @@ mod tests {
         );
         for (text, number) in [
             ("1,5", 1.5),
+            ("1,5 * 2", 3.0),
             ("0,125", 0.125),
             ("1,0000", 1.0),
             ("1234,567", 1234.567),

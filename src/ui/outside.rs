@@ -6,7 +6,7 @@ use std::time::{Duration, Instant, SystemTime};
 
 use egui::{Context, Ui};
 
-use super::prompts::{Answer, primary, question};
+use super::prompts::{Answer, question};
 use super::theme::GRID;
 use crate::editor::Editor;
 use crate::files::{Marks, Stamp, is_missing, marks_of, time_of};
@@ -157,7 +157,8 @@ impl Theirs {
                 self.describe(ui);
                 ui.add_space(2.0 * GRID);
                 ui.horizontal(|ui| {
-                    if primary(ui, "Keep mine").clicked() {
+                    // None of them is what Enter means.
+                    if ui.button("Keep mine").clicked() {
                         *answer = Answer::Yes;
                     }
                     let can_take = self.document.is_ok();

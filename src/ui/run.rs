@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use egui::{Context, ViewportCommand};
+use egui::{Context, Key, Popup, ViewportCommand};
 use glam::DVec3;
 
 use super::app::App;
@@ -11,6 +11,7 @@ use super::dialogs::Ask;
 use super::layout::Below;
 use super::obstacles::is_enabled;
 use super::put_down::put_down;
+use super::requests::UiRequests;
 use super::timeline::actions;
 use super::tools::{axis_camera, framing_camera, projected_camera};
 use super::wishes::Next;
@@ -27,6 +28,31 @@ const TWICE: f64 = 3.0;
 const PASTE: &str = "paste";
 
 impl App {
+    /// Does what panels and keys have asked for.
+    pub(super) fn carry_out(&mut self, ctx: &Context, out: UiRequests) {
+        let is_entered = ctx.input(|input| input.key_pressed(Key::Enter));
+        if is_entered && !(out.commands.is_empty() && out.actions.is_empty()) {
+            // By itself, a menu closes only where its entry was chosen with the mouse.
+            Popup::close_all(ctx);
+        }
+        let before = self.editor.revision();
+        for action in out.actions {
+            self.editor.apply(action);
+        }
+        if self.editor.timeline().recorded().is_some() {
+            let now = ctx.input(|input| input.time);
+            self.editor.apply(Action::Time(Time::Sample(now)));
+            ctx.request_repaint();
+        }
+        for command in out.commands {
+            self.run(ctx, command);
+        }
+        if self.editor.revision() != before {
+            // What was measured before is not what is edited.
+            self.lab.leave();
+        }
+    }
+
     pub(super) fn run(&mut self, ctx: &Context, command: Command) {
         if let Some(next) = next_document(&command) {
             let outcome = self.files.start(ctx, &mut self.editor, next);

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use glam::DVec3;
 
 use super::*;
-use crate::scene::{Camera, Easing, Interpolation, Key, Orientation, Projection, Scene};
+use crate::scene::{Animation, Camera, Easing, Interpolation, Key, Orientation, Projection, Scene};
 
 fn camera(position: DVec3, yaw: f64, pitch: f64) -> Camera {
     let angles = Orientation {
@@ -31,6 +31,15 @@ fn at(path: &CameraPath, time: f64) -> Camera {
 }
 
 /// Times at even steps from the first key to the last.
+fn stretched_keys(keys: &[Key<Camera>], seconds: f64) -> Vec<Key<Camera>> {
+    let keys = keys.to_vec();
+    let animation = Animation {
+        keys,
+        ..Animation::default()
+    };
+    stretched(&animation, seconds).keys
+}
+
 fn times(path: &CameraPath, steps: u32) -> Vec<f64> {
     let (first, last) = (path.keys()[0].time, path.keys().last().expect("a key").time);
     let time = |n| first + (last - first) * f64::from(n) / f64::from(steps);
@@ -320,11 +329,12 @@ proptest! {
 
     #[test]
     fn retimed_keys_are_keys(keys in any_keys(), seconds in 0.1..100.0_f64) {
-        for retime in [Retime::Stretch(seconds), Retime::ConstantSpeed, Retime::TrimPauses, Retime::Smooth] {
-            let new = retime.apply(&keys);
+        let retimed = Retime::ALL.map(|retime| (retime.words().0, retime.apply(&keys)));
+        let all = retimed.into_iter().chain([("stretched", stretched_keys(&keys, seconds))]);
+        for (retime, new) in all {
             prop_assert!(!new.is_empty());
             for pair in new.windows(2) {
-                prop_assert!(pair[1].time > pair[0].time, "{retime:?}: {} {}", pair[0].time, pair[1].time);
+                prop_assert!(pair[1].time > pair[0].time, "{retime}: {} {}", pair[0].time, pair[1].time);
             }
             for key in &new {
                 prop_assert!(key.value.basis().is_some() && key.time.is_finite());

@@ -49,7 +49,9 @@ impl Lab {
             .chosen
             .and_then(|place| self.study.as_ref()?.measurements.get(place));
         let Some(dot) = chosen else {
-            ui.weak("Click a dot to look at its picture.");
+            if !dots.is_empty() {
+                ui.weak("Click a dot to look at its picture.");
+            }
             return;
         };
         let equals = self.equals_of_chosen(dots);

@@ -3,7 +3,7 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, PopupCloseBehavior, RichText, Slider, Ui};
 
-use crate::animate::{Retime, paused_seconds};
+use crate::animate::{paused_seconds, stretched};
 use crate::editor::{Edit, Editor, Repeat, Time};
 use crate::scene::{Animation, FRAME_RATES, KeyPlace, Keys, MAX_SECONDS};
 use crate::ui::commands::Command;
@@ -200,7 +200,7 @@ fn length(ui: &mut Ui, animation: &Animation, out: &mut UiRequests) {
     let mut seconds = before;
     let field = Field {
         name: "length of the flight",
-        hint: "Length of the flight; another one stretches it",
+        hint: "Length of the flight; another one stretches it, and the keys of values with it",
         unit: " s",
         default: before,
         range: 0.1..=MAX_SECONDS,
@@ -208,11 +208,7 @@ fn length(ui: &mut Ui, animation: &Animation, out: &mut UiRequests) {
     };
     lone(ui, &field, &mut seconds);
     if seconds != before {
-        let changed = Animation {
-            keys: Retime::Stretch(seconds).apply(&animation.keys),
-            ..Animation::clone(animation)
-        };
-        out.edit(Edit::animation(changed, "Stretch"));
+        out.edit(Edit::animation(stretched(animation, seconds), "Stretch"));
     }
 }
 
