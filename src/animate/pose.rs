@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::path::{eased, orbit};
 use super::{ArcLengthSpline, CameraPath, Closing, Curve};
-use crate::scene::{Camera, Interpolation, Key, Orientation, Owners, Scene, Value};
+use crate::scene::{Camera, Interpolation, Key, Owners, Scene, Value};
 
 /// The scene as it is at `time` in seconds, seen by its own camera: every track has set its value.
 pub fn pose(scene: &Arc<Scene>, time: f64) -> Arc<Scene> {
@@ -115,7 +115,7 @@ fn point(value: Value) -> DVec3 {
 pub struct CameraChange {
     /// World units.
     pub distance: f64,
-    /// Degrees between the viewing directions, or of roll if that is more.
+    /// Degrees that it turns by, about whatever axis.
     pub turn: f64,
 }
 
@@ -124,14 +124,19 @@ pub fn motion_between(from: &Camera, to: &Camera) -> CameraChange {
     let (Some(a), Some(b)) = (from.basis(), to.basis()) else {
         return CameraChange::default();
     };
-    // Accurate for small angles and for opposite directions: Kahan, "How futile are mindless
-    // assessments of roundoff in floating-point computation?", 2006, §12.
-    let angle = |a: DVec3, b: DVec3| 2.0 * (a - b).length().atan2((a + b).length());
-    let roll = Orientation::of(to).roll - Orientation::of(from).roll;
-    let roll = (roll.to_degrees() + 180.0).rem_euclid(360.0) - 180.0;
+    // Where axes turn by an angle about any line, the squares of their differences add up to 8 sin² of its half, and
+    // those of their sums to 8 cos² of it and 4. Accurate for small angles too, where a trace is not.
+    let axes = [
+        (a.x_axis, b.x_axis),
+        (a.y_axis, b.y_axis),
+        (a.z_axis, b.z_axis),
+    ];
+    let apart: f64 = axes.iter().map(|(a, b)| (*a - *b).length_squared()).sum();
+    let along: f64 = axes.iter().map(|(a, b)| (*a + *b).length_squared()).sum();
+    let half = apart.sqrt().atan2((along - 4.0).max(0.0).sqrt());
     CameraChange {
         distance: (to.position - from.position).length(),
-        turn: angle(a.z_axis, b.z_axis).to_degrees().max(roll.abs()),
+        turn: (2.0 * half).to_degrees(),
     }
 }
 

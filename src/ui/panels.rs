@@ -2,15 +2,17 @@
 
 use egui::containers::panel::PanelState;
 use egui::{
-    Align2, CentralPanel, Frame, IdSalt, Margin, Panel, Stroke, StrokeKind, TextStyle, Ui,
-    UiBuilder, Vec2,
+    Align2, AsIdSalt, CentralPanel, Frame, IdSalt, Margin, Panel, Stroke, StrokeKind, TextStyle,
+    Ui, UiBuilder, Vec2,
 };
 
 use super::app::App;
 use super::commands::Command;
 use super::layout::Below;
 use super::requests::UiRequests;
-use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, TIMELINE, palette};
+use super::theme::{
+    GRID, INSPECTOR, LAB, MOST_TRACKS, OUTLINER, ROW, TIMELINE, TRACK, WIDE, palette,
+};
 use super::timeline::clock;
 use super::tools::label;
 use super::viewport::{Place, badge, describe, fit};
@@ -50,8 +52,8 @@ impl App {
         if self.layout.outliner {
             Panel::left("outliner")
                 .frame(side(ui))
-                .default_size(OUTLINER)
-                .size_range(160.0..=420.0)
+                .default_size(usual(ui, OUTLINER))
+                .size_range(OUTLINER.0..=420.0)
                 .show(ui, |ui| {
                     let keys_are_free = !self.keys_are_taken;
                     self.outliner.show(ui, &self.editor, keys_are_free, out);
@@ -59,15 +61,16 @@ impl App {
         }
         let mut middle = ui.available_rect_before_wrap();
         if self.layout.inspector {
-            middle.max.x -= size_of(ui, "inspector").map_or(INSPECTOR, |size| size.x);
+            let usual = usual(ui, INSPECTOR);
+            middle.max.x -= size_of(ui, "inspector").map_or(usual, |size| size.x);
         }
         let mut between = ui.new_child(UiBuilder::new().max_rect(middle));
         let picture = self.show_middle(&mut between, out);
         if self.layout.inspector {
             Panel::right("inspector")
                 .frame(side(ui))
-                .default_size(INSPECTOR)
-                .size_range(INSPECTOR..=480.0)
+                .default_size(usual(ui, INSPECTOR))
+                .size_range(INSPECTOR.0..=480.0)
                 .show(ui, |ui| {
                     inspector::show(ui, &self.editor, &mut self.quality, out);
                 });
@@ -83,24 +86,26 @@ impl App {
             .inner
     }
 
-    /// The panel of the timeline: where nothing moves, the room is the picture's.
-    fn timeline_panel(&self) -> &'static str {
-        if self.editor.scene().animation.is_still() {
-            "timeline without keys"
+    /// The panel of the timeline, whose height is remembered for each number of tracks: where nothing moves, the room
+    /// is the picture's.
+    fn timeline_panel(&self) -> (&'static str, usize) {
+        let animation = &self.editor.scene().animation;
+        if animation.is_still() {
+            ("timeline without keys", 0)
         } else {
-            "timeline"
+            ("timeline", animation.tracks.len().min(MOST_TRACKS))
         }
     }
 
     /// How high the timeline, the lab and the status line were in the last frame.
     fn height_below(&self, ui: &Ui) -> f32 {
-        let height = |name, usual| size_of(ui, name).map_or(usual, |size| size.y);
+        let height = |size: Option<Vec2>, usual| size.map_or(usual, |size| size.y);
         let below = match self.layout.below {
             Below::Nothing => 0.0,
-            Below::Timeline => height(self.timeline_panel(), TIMELINE),
-            Below::Lab => height("lab", LAB),
+            Below::Timeline => height(size_of(ui, self.timeline_panel()), TIMELINE),
+            Below::Lab => height(size_of(ui, "lab"), LAB),
         };
-        height("status", ROW) + below
+        height(size_of(ui, "status"), ROW) + below
     }
 
     /// The status line, the lab and the timeline, from below.
@@ -136,13 +141,15 @@ impl App {
         }
         if self.layout.below == Below::Timeline {
             let per_second = self.pictures.per_second();
-            let panel = Panel::bottom(self.timeline_panel());
+            let (name, tracks) = self.timeline_panel();
+            let panel = Panel::bottom((name, tracks));
             let panel = if self.editor.scene().animation.is_still() {
                 let has_take = self.editor.scene().animation.take.is_some();
                 panel.exact_size(if has_take { 4.5 * ROW } else { 3.0 * ROW })
             } else {
                 let panel = panel.resizable(true);
-                panel.default_size(TIMELINE).size_range(64.0..=600.0)
+                let usual = TIMELINE + TRACK * tracks as f32;
+                panel.default_size(usual).size_range(64.0..=600.0)
             };
             panel.frame(side(ui)).show(ui, |ui| {
                 self.timeline
@@ -233,13 +240,22 @@ impl App {
     }
 }
 
+/// How wide a panel is when it is first shown: in a narrow window as narrow as it can be.
+fn usual(ui: &Ui, (least, wide): (f32, f32)) -> f32 {
+    if ui.content_rect().width() < WIDE {
+        least
+    } else {
+        wide
+    }
+}
+
 /// The frame of the panels at the sides.
 fn side(ui: &Ui) -> Frame {
     Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(GRID as i8, 0))
 }
 
 /// How large a panel was in the last frame.
-fn size_of(ui: &Ui, panel: &'static str) -> Option<Vec2> {
+fn size_of(ui: &Ui, panel: impl AsIdSalt) -> Option<Vec2> {
     let state = PanelState::load(ui.ctx(), ui.scope_id().with_salt(IdSalt::new(panel)));
     state.map(|state| state.size())
 }

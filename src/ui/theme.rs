@@ -14,14 +14,18 @@ pub const ROW: f32 = 24.0;
 pub const GRID: f32 = 8.0;
 /// Width of the labels in the inspector.
 pub const LABEL: f32 = 80.0;
-/// Width of the outliner when it is first shown.
-pub const OUTLINER: f32 = 224.0;
-/// Width of the inspector; it does not follow its content.
-pub const INSPECTOR: f32 = 332.0;
+/// Widths of the outliner: the least, and the one when it is first shown in a wide window.
+pub const OUTLINER: (f32, f32) = (160.0, 224.0);
+/// The same of the inspector; it does not follow its content.
+pub const INSPECTOR: (f32, f32) = (300.0, 332.0);
+/// Width of a window in which panels at the sides are first shown as wide as they like.
+pub const WIDE: f32 = 960.0;
 /// Height of the lab when it is first shown.
 pub const LAB: f32 = 280.0;
-/// Height of the timeline when it is first shown.
+/// Height of the timeline when it is first shown, without tracks.
 pub const TIMELINE: f32 = 216.0;
+/// Tracks that have room in it then.
+pub const MOST_TRACKS: usize = 5;
 /// Width of the labels of the timeline's tracks.
 pub const TRACK_LABEL: f32 = 112.0;
 /// Height of a track of the timeline.

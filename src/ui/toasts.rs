@@ -71,8 +71,15 @@ impl Toasts {
         if let Some(seconds) = next.reduce(f64::min) {
             ctx.request_repaint_after_secs(seconds as f32);
         }
-        let most = WIDTH.min(ctx.content_rect().width() * 0.45);
-        let room = window.map_or(most, |window| area.right() - window.right() - BESIDE);
+        let whole = ctx.content_rect();
+        let most = WIDTH.min(whole.width() * 0.45);
+        let beside = |right: f32| window.map_or(most, |window| right - window.right() - BESIDE);
+        // Where the picture has no room beside the window, the panel at the right has.
+        let mut corner = area.max;
+        if beside(corner.x) < LEAST_WIDTH && beside(whole.right()) >= LEAST_WIDTH {
+            corner.x = whole.right();
+        }
+        let room = beside(corner.x);
         let width = if room < LEAST_WIDTH {
             most
         } else {
@@ -83,7 +90,7 @@ impl Toasts {
         for (index, toast) in self.shown.iter().enumerate().rev() {
             let shown = Area::new(Id::unique(("toast", index)))
                 .pivot(Align2::RIGHT_BOTTOM)
-                .fixed_pos(area.max - vec2(2.0 * GRID, height))
+                .fixed_pos(corner - vec2(2.0 * GRID, height))
                 .order(egui::Order::Foreground)
                 .show(ctx, |ui| draw(ui, width, &toast.message));
             if shown.inner {
