@@ -1,5 +1,6 @@
 use glam::DVec3;
 
+use super::action::STEP;
 use super::*;
 use crate::scene::{Animation, Scene, Target, Value, check};
 use crate::scene::{Shape, Sphere};
@@ -105,6 +106,25 @@ fn hiding_leaves_keys_alone_and_joining_takes_them_along() {
         };
         assert!((key - there).length() < 1e-9, "{key} {there}");
     }
+}
+
+#[test]
+fn colors_that_joining_loses_are_said_until_it_is_undone() {
+    let mut editor = Editor::demo();
+    editor.apply(Action::Edit(Edit::MakePackUnique(3)));
+    editor.end_gesture();
+    editor.apply(Action::Edit(Edit::Join(vec![2, 3])));
+    let said = editor.messages.last().expect("a message");
+    assert_eq!(
+        (said.text.as_str(), said.about),
+        (
+            "Join 2 objects: all of it wears tetrahedron, what wore tetrahedron 2 too",
+            STEP
+        )
+    );
+    editor.apply(Action::Undo);
+    let said = editor.messages.last().expect("a message");
+    assert_eq!((said.text.as_str(), said.about), ("", STEP));
 }
 
 #[test]

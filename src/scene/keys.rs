@@ -391,6 +391,21 @@ mod tests {
     }
 
     #[test]
+    fn a_key_among_many_takes_the_place_of_one() {
+        let key = |time: f64| Key::new(time, Camera::default());
+        let animation = Animation {
+            frames_per_second: 5.0,
+            keys: [0.0, 1.0, 1.02, 1.04, 3.0].map(key).into(),
+            ..Animation::default()
+        };
+        let last = Keys::from([KeyPlace::of_camera(4)]);
+        let (moved, new) = animation.with_moved(&last, -1.975, false);
+        let times: Vec<f64> = moved.keys.iter().map(|key| key.time).collect();
+        assert_eq!(times, [0.0, 1.0, 1.025, 1.04]);
+        assert_eq!(new, [KeyPlace::of_camera(2)].into());
+    }
+
+    #[test]
     fn both_sides_of_a_jump_stay_two_keys() {
         let key = |time: f64| Key::new(time, Camera::default());
         let animation = Animation {

@@ -132,6 +132,20 @@ fn turns_take_the_shorter_way_at_an_even_pace() {
 }
 
 #[test]
+fn turns_count_about_every_axis() {
+    let from = camera(DVec3::ZERO, 0.0, -80.0);
+    for (yaw, pitch, turn) in [
+        (30.0, -80.0, 30.0),
+        (0.0, -50.0, 30.0),
+        (180.0, -80.0, 180.0),
+    ] {
+        let to = camera(DVec3::ZERO, yaw, pitch);
+        let found = motion_between(&from, &to).turn;
+        assert!((found - turn).abs() < 1e-6, "{found} of {turn}");
+    }
+}
+
+#[test]
 fn a_camera_that_tips_over_the_top_keeps_its_basis() {
     let here = DVec3::splat(0.0);
     let keys = [

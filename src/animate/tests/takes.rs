@@ -231,6 +231,23 @@ fn pauses_are_trimmed_and_flights_stretched() {
 }
 
 #[test]
+fn a_stretched_flight_takes_the_keys_of_values_along() {
+    let path = on_x(&[(1.0, 0.0), (3.0, 30.0)]);
+    let target = Target::AmbientIntensity;
+    let mut animation = Animation {
+        keys: path.keys().to_vec(),
+        ..Animation::default()
+    };
+    for time in [0.5, 2.0, 4.0] {
+        animation = animation.with_value(&target, time, Value::Number(time));
+    }
+    let longer = stretched(&animation, 4.0);
+    assert_eq!(longer.keys[1].time, 5.0);
+    let times: Vec<f64> = longer.tracks[0].keys.iter().map(|key| key.time).collect();
+    assert_eq!(times, [0.5, 3.0, 7.0], "what is before it stays");
+}
+
+#[test]
 fn smoothing_takes_corners_off_and_keeps_the_ends() {
     let path = on_x(&[(0.0, 0.0), (1.0, 30.0), (2.0, 20.0), (3.0, 30.0)]);
     let smooth = Retime::Smooth.apply(path.keys());

@@ -453,3 +453,28 @@ fn triangles_that_are_dragged_together_stay_as_they_are() {
         assert!((less - low - by).length() < 1e-9 && (more - high - by).length() < 1e-9);
     }
 }
+
+#[test]
+fn a_sum_may_be_typed() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    harness.type_into("radius", "(2 + 1,5) * 4");
+    assert_eq!(radius(harness.scene(), 0), 14.0);
+    harness.type_into("radius", "7 *");
+    harness.window.get_by_label_contains("“7 *” is no number");
+    assert_eq!(radius(harness.scene(), 0), 14.0);
+}
+
+#[test]
+fn bookmarks_have_names_of_their_own() {
+    let mut harness = EditorHarness::new();
+    harness.press(CTRL, Key::B);
+    harness.press(CTRL, Key::B);
+    harness.click("Camera");
+    harness.type_name("bookmark 2", "View 1");
+    let names = harness.scene().bookmarks.iter();
+    let names: Vec<&str> = names.map(|bookmark| &*bookmark.name).collect();
+    assert_eq!(names, ["View 1", "View 2"]);
+    harness.type_name("bookmark 2", "Front");
+    assert_eq!(harness.scene().bookmarks[1].name, "Front");
+}

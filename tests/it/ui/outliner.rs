@@ -196,3 +196,16 @@ fn things_are_deleted_with_the_packs_that_they_wear() {
     harness.press(CTRL, Key::D);
     assert_eq!(harness.scene().color_packs.len(), packs + 2);
 }
+
+#[test]
+fn lights_that_are_added_stand_beside_each_other() {
+    let mut harness = EditorHarness::new();
+    for _ in 0..3 {
+        harness.choose("Add", "Add Light");
+    }
+    let lights = &harness.scene().lights;
+    let places: Vec<DVec3> = lights.iter().map(|light| light.position).collect();
+    for (place, own) in places.iter().enumerate() {
+        assert!(!places[..place].contains(own), "{places:?}");
+    }
+}

@@ -1,7 +1,7 @@
 //! Keys: who gets them, and what Escape leaves.
 
 use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers};
+use egui::{Event, Key, Modifiers, Theme};
 use egui_kittest::kittest::Queryable as _;
 use glint::editor::Mode;
 use glint::scene::{Scene, Shape, Sphere};
@@ -146,4 +146,49 @@ fn a_shortcut_is_one_however_long_control_was_held_before() {
         .event(Event::ModifiersChanged(Modifiers::NONE));
     harness.settle();
     assert_eq!(harness.scene().camera, there, "and nothing flies meanwhile");
+}
+
+/// Types into the finder, and takes what is first.
+fn find(harness: &mut EditorHarness, text: &str) {
+    harness.press(CTRL, Key::K);
+    harness.window.event(Event::Text(text.to_owned()));
+    harness.settle();
+    harness.press(Modifiers::NONE, Key::Enter);
+}
+
+#[test]
+fn the_finder_knows_what_menus_and_panels_do() {
+    let mut harness = EditorHarness::new();
+    find(&mut harness, "light theme");
+    assert_eq!(harness.window.ctx.theme(), Theme::Light);
+    find(&mut harness, "turntable");
+    assert_eq!(harness.editor().undo_label(), Some("Turntable"));
+    find(&mut harness, "constant speed");
+    assert_eq!(harness.editor().undo_label(), Some("Constant speed"));
+    let before = harness.scene().objects.len();
+    harness.click("Triangle 1");
+    find(&mut harness, "join");
+    assert_eq!(harness.scene().objects.len(), before - 5);
+    find(&mut harness, "separate a mesh");
+    assert_eq!(harness.scene().objects.len(), before);
+    let group = harness.editor().selected().group(harness.scene());
+    assert_eq!(group, Some("Triangle 1"), "all pieces, as a group");
+}
+
+#[test]
+fn a_menu_closes_when_its_entry_is_chosen_by_a_key() {
+    let mut harness = EditorHarness::new();
+    harness
+        .window
+        .get_by_role_and_label(Role::Button, "Edit")
+        .click();
+    harness.settle();
+    harness.window.get_by_label("Select all").focus();
+    harness.press(Modifiers::NONE, Key::Enter);
+    assert!(harness.editor().selected().items().len() > 1);
+    assert!(harness.window.query_by_label("Select all").is_none());
+    // Keys with Alt are others.
+    let before = harness.scene().camera.clone();
+    harness.press(Modifiers::ALT, Key::F);
+    assert_eq!(harness.scene().camera, before);
 }
