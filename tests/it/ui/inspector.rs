@@ -470,7 +470,6 @@ fn bookmarks_have_names_of_their_own() {
     let mut harness = EditorHarness::new();
     harness.press(CTRL, Key::B);
     harness.press(CTRL, Key::B);
-    harness.click("Camera");
     harness.type_name("bookmark 2", "View 1");
     let names = harness.scene().bookmarks.iter();
     let names: Vec<&str> = names.map(|bookmark| &*bookmark.name).collect();
