@@ -50,7 +50,7 @@ impl App {
     /// The outliner, the picture and the inspector.
     fn show_upper(&mut self, ui: &mut Ui, out: &mut UiRequests) -> (Place, egui::Response) {
         if self.layout.outliner {
-            Panel::left("outliner")
+            Panel::left(("outliner", is_narrow(ui)))
                 .frame(side(ui))
                 .default_size(usual(ui, OUTLINER))
                 .size_range(OUTLINER.0..=420.0)
@@ -62,12 +62,13 @@ impl App {
         let mut middle = ui.available_rect_before_wrap();
         if self.layout.inspector {
             let usual = usual(ui, INSPECTOR);
-            middle.max.x -= size_of(ui, "inspector").map_or(usual, |size| size.x);
+            let size = size_of(ui, ("inspector", is_narrow(ui)));
+            middle.max.x -= size.map_or(usual, |size| size.x);
         }
         let mut between = ui.new_child(UiBuilder::new().max_rect(middle));
         let picture = self.show_middle(&mut between, out);
         if self.layout.inspector {
-            Panel::right("inspector")
+            Panel::right(("inspector", is_narrow(ui)))
                 .frame(side(ui))
                 .default_size(usual(ui, INSPECTOR))
                 .size_range(INSPECTOR.0..=480.0)
@@ -240,13 +241,14 @@ impl App {
     }
 }
 
+/// Whether the window is narrow: panels at its sides have other widths then, which are remembered by themselves.
+fn is_narrow(ui: &Ui) -> bool {
+    ui.content_rect().width() < WIDE
+}
+
 /// How wide a panel is when it is first shown: in a narrow window as narrow as it can be.
 fn usual(ui: &Ui, (least, wide): (f32, f32)) -> f32 {
-    if ui.content_rect().width() < WIDE {
-        least
-    } else {
-        wide
-    }
+    if is_narrow(ui) { least } else { wide }
 }
 
 /// The frame of the panels at the sides.

@@ -15,7 +15,7 @@ pub const GRID: f32 = 8.0;
 /// Width of the labels in the inspector.
 pub const LABEL: f32 = 80.0;
 /// Widths of the outliner: the least, and the one when it is first shown in a wide window.
-pub const OUTLINER: (f32, f32) = (160.0, 224.0);
+pub const OUTLINER: (f32, f32) = (188.0, 224.0);
 /// The same of the inspector; it does not follow its content.
 pub const INSPECTOR: (f32, f32) = (300.0, 332.0);
 /// Width of a window in which panels at the sides are first shown as wide as they like.
