@@ -124,6 +124,8 @@ pub struct StillJob {
     pub scene: Arc<Scene>,
     /// The picture.
     pub request: RenderRequest,
+    /// The picture itself, if it is on screen: formats of 8 bits are written without tracing it again.
+    pub traced: Option<Arc<Image>>,
     /// Where to write it. A picture that is to be written outlives edits: it is started again when
     /// the live view is done.
     pub save_to: Option<PathBuf>,

@@ -245,6 +245,7 @@ mod tests {
             revision,
             scene: Arc::new(Scene::empty()),
             request: RenderRequest::sized(8, 8),
+            traced: None,
             save_to: save_to.map(PathBuf::from),
         })
     }

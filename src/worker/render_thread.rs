@@ -1,6 +1,7 @@
 //! The thread itself: takes the most urgent job, traces, publishes.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -11,7 +12,7 @@ use super::live::Live;
 use super::mailbox::Job;
 use super::shared::Shared;
 use super::task::panic_text;
-use crate::export::{ExportStep, Exporting, save_image};
+use crate::export::{ExportError, ExportStep, Exporting, save_image};
 use crate::image::{Film, Format, Image, ObjectMapper, render_into};
 use crate::lab::{Study, choose};
 use crate::plan::{Planner, RenderRequest};
@@ -235,6 +236,11 @@ fn still(
     let path = job.save_to.as_deref();
     let format = path.and_then(|path| Format::of_path(path).ok());
     let mut film = Film::new(format.unwrap_or(Format::Png));
+    if let (Some(path), Some(traced), Film::Levels(image)) = (path, &job.traced, &mut film) {
+        image.clone_from(traced);
+        tell_written(shared, path, save_image(&film, path));
+        return JobOutcome::Ended;
+    }
     let Some(cost) = film.expose(planner, &job.scene, &job.request, control) else {
         return JobOutcome::Unfinished;
     };
@@ -251,10 +257,14 @@ fn still(
         cost,
     });
     if let Some((path, written)) = written {
-        shared.tell(match written {
-            Ok(()) => Event::Saved(path.to_owned()),
-            Err(error) => Event::Failed(error.to_string()),
-        });
+        tell_written(shared, path, written);
     }
     JobOutcome::Ended
+}
+
+fn tell_written(shared: &Shared, path: &Path, written: Result<(), ExportError>) {
+    shared.tell(match written {
+        Ok(()) => Event::Saved(path.to_owned()),
+        Err(error) => Event::Failed(error.to_string()),
+    });
 }

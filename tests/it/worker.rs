@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use glint::image::render;
+use glint::image::{Image, render};
 use glint::lab::Study;
 use glint::plan::RenderRequest;
 use glint::scene::{MAX_GRID, Object, Sampling, Scene, Sphere};
@@ -30,6 +30,7 @@ fn still(revision: u64, scene: &Arc<Scene>, side: u32) -> StillJob {
         revision,
         scene: Arc::clone(scene),
         request: picture,
+        traced: None,
         save_to: None,
     }
 }
@@ -212,7 +213,7 @@ fn a_picture_that_is_to_be_saved_outlives_edits() {
         !events.is_empty()
     });
     assert_eq!(events, [Event::Saved(path.clone())]);
-    let saved = image::open(&path).expect("a picture").to_rgba8();
+    let saved = ::image::open(&path).expect("a picture").to_rgba8();
     let direct = render(
         &slow,
         &RenderRequest::sized(256, 256),
@@ -225,6 +226,28 @@ fn a_picture_that_is_to_be_saved_outlives_edits() {
         direct.pixels.concat(),
         "it shows the scene as it was asked for"
     );
+}
+
+#[test]
+fn a_picture_that_is_on_screen_is_written_as_it_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let worker = Worker::new(Some(1), || {}).expect("a render thread");
+    // As no ray would paint it.
+    let mut image = Image::new(16, 16);
+    image.pixels.fill([1, 2, 3, 255]);
+    let image = Arc::new(image);
+    for (name, is_as_it_is) in [("a.png", true), ("a.exr", false)] {
+        let path = folder.path().join(name);
+        worker.request_still(StillJob {
+            traced: Some(Arc::clone(&image)),
+            save_to: Some(path.clone()),
+            ..still(1, &Arc::new(Scene::demo()), 16)
+        });
+        wait_until("the file", || !worker.take_events().is_empty());
+        let decoded = ::image::open(&path).expect("a picture").to_rgb8();
+        let is_all = decoded.pixels().all(|pixel| pixel.0 == [1, 2, 3]);
+        assert_eq!(is_all, is_as_it_is, "{name}: light is traced");
+    }
 }
 
 #[test]
