@@ -30,6 +30,9 @@ const ROUNDS: usize = 10;
 /// most horizons, and near enough for mirrors, where it is as inexact as it is large.
 const ENDLESS: f64 = 1e5;
 
+/// Most points: their numbers are single-precision numbers, too.
+const MOST_POINTS: usize = 1 << 24;
+
 fn main() {
     let folder = tempfile::tempdir().expect("a folder");
     let peer = folder.path().join("peer");
@@ -98,7 +101,10 @@ fn print_row(name: &str, mut scene: Scene, peer: &Path) {
     scene.light_visualization = false;
     let folder = tempfile::tempdir().expect("a folder");
     let (file, picture) = (folder.path().join("scene"), folder.path().join("picture"));
-    let numbers = numbers_of(&scene);
+    let Some(numbers) = numbers_of(&scene) else {
+        println!("{name:<22} is not for this benchmark: discs, parallel rays, or too many points");
+        return;
+    };
     let bytes: Vec<u8> = numbers.iter().flat_map(|it| it.to_le_bytes()).collect();
     fs::write(&file, bytes).expect("written");
     let (before, image) = by_glint(&scene);
@@ -151,10 +157,12 @@ fn by_glint(scene: &Scene) -> (f64, Image) {
     (milliseconds, image)
 }
 
-/// The scene as `peer.cpp` reads it.
-fn numbers_of(scene: &Scene) -> Vec<f32> {
+/// The scene as `peer.cpp` reads it, if that knows all of it.
+fn numbers_of(scene: &Scene) -> Option<Vec<f32>> {
     let camera = &scene.camera;
-    assert_eq!(camera.projection, Projection::Perspective);
+    if camera.projection != Projection::Perspective {
+        return None;
+    }
     let back = -camera.look_at.normalize();
     let right = camera.up.cross(back).normalize();
     let (up, forward) = (back.cross(right), -back * camera.projection_distance);
@@ -189,12 +197,12 @@ fn numbers_of(scene: &Scene) -> Vec<f32> {
         numbers.extend(light.position.as_vec3().to_array());
         numbers.push(light.intensity as f32);
     }
-    numbers.extend(shapes_of(scene));
-    numbers
+    numbers.extend(shapes_of(scene)?);
+    Some(numbers)
 }
 
 /// Balls, then points, then the faces between them, each with its material.
-fn shapes_of(scene: &Scene) -> Vec<f32> {
+fn shapes_of(scene: &Scene) -> Option<Vec<f32>> {
     let (mut balls, mut points, mut faces) = (Vec::new(), Vec::new(), Vec::new());
     for object in scene.objects.iter().filter(|object| object.visible) {
         let pack = scene
@@ -219,8 +227,11 @@ fn shapes_of(scene: &Scene) -> Vec<f32> {
                 let own = triangles.faces().iter();
                 faces.extend(own.map(|face| (face.map(|corner| corner + first), pack)));
             }
-            Shape::Disc(_) => unimplemented!("discs are not for this benchmark"),
+            Shape::Disc(_) => return None,
         }
+    }
+    if points.len() > MOST_POINTS {
+        return None;
     }
     let mut numbers = vec![balls.len() as f32];
     for (center, radius, pack) in balls {
@@ -233,7 +244,7 @@ fn shapes_of(scene: &Scene) -> Vec<f32> {
         numbers.extend(corners.map(|corner| corner as f32));
         numbers.push(pack as f32);
     }
-    numbers
+    Some(numbers)
 }
 
 /// A large square in place of a plane.

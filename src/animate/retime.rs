@@ -1,4 +1,4 @@
-//! Other timing for the same way: all of it works on keys and gives new ones.
+//! Other timing for the same way.
 
 use super::path::nearest;
 use super::{CameraPath, motion_between};
@@ -6,7 +6,7 @@ use crate::scene::{Animation, Camera, Interpolation, Key, MAX_SECONDS, Orientati
 
 /// Steps within a segment in which its length is measured.
 const STEPS: usize = 16;
-/// Closest that two keys may be after a pause was taken out, in seconds.
+/// Closest that two keys may be after a pause was taken out, and the shortest flight, in seconds.
 const CLOSEST: f64 = 1.0 / 240.0;
 /// A segment with less than this share of the flight's mean speed is a pause.
 const PAUSE_SHARE: f64 = 0.05;
@@ -56,15 +56,10 @@ pub fn stretched(animation: &Animation, seconds: f64) -> Animation {
     let [first, .., last] = &animation.keys[..] else {
         return animation.clone();
     };
-    let (start, end) = (first.time, last.time);
-    let tracks = animation.tracks.iter();
-    let ends = tracks
-        .clone()
-        .filter_map(|track| Some(track.keys.last()?.time));
-    let latest = ends.fold(end, f64::max);
-    let scale = seconds.max(CLOSEST) / (end - start);
-    let scale = scale.min((MAX_SECONDS - start) / (latest - start));
-    let tracks = tracks.map(|track| Track {
+    let start = first.time;
+    let seconds = seconds.min(longest_flight(animation));
+    let scale = seconds.max(CLOSEST) / (last.time - start);
+    let tracks = animation.tracks.iter().map(|track| Track {
         target: track.target.clone(),
         keys: scaled(&track.keys, start, scale),
     });
@@ -75,11 +70,22 @@ pub fn stretched(animation: &Animation, seconds: f64) -> Animation {
     }
 }
 
+/// The most seconds of a flight with which no key comes behind [`MAX_SECONDS`].
+pub fn longest_flight(animation: &Animation) -> f64 {
+    let [first, .., last] = &animation.keys[..] else {
+        return MAX_SECONDS;
+    };
+    let tracks = animation.tracks.iter();
+    let ends = tracks.filter_map(|track| Some(track.keys.last()?.time));
+    let latest = ends.fold(last.time, f64::max);
+    (MAX_SECONDS - first.time) * (last.time - first.time) / (latest - first.time)
+}
+
 /// Keys behind the start so many times as far behind it.
 fn scaled<T: Clone>(keys: &[Key<T>], start: f64, scale: f64) -> Vec<Key<T>> {
     let later = |key: &Key<T>| Key {
         time: if key.time > start {
-            start + (key.time - start) * scale
+            (start + (key.time - start) * scale).min(MAX_SECONDS)
         } else {
             key.time
         },

@@ -62,7 +62,8 @@ pub fn add_light(scene: &mut Scene, position: DVec3) -> Item {
     // Two in one place would look like one.
     let mut position = position;
     while scene.lights.iter().any(|light| light.position == position) {
-        position.x += 4.0 * radius;
+        // Far away, the radius of a marker may be less than a rounding.
+        position.x += (4.0 * radius).max(position.x.abs() * 1e-9);
     }
     scene.lights.push(Light {
         name,

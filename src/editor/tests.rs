@@ -158,6 +158,29 @@ fn a_pack_in_use_stays_and_a_renamed_one_is_followed() {
 }
 
 #[test]
+fn lights_beside_each_other_are_so_anywhere() {
+    let mut scene = Scene::demo();
+    for light in scene.lights.iter_mut() {
+        light.marker.as_mut().expect("a marker").radius = 1e-9;
+    }
+    let mut editor = Editor::demo();
+    let place = DVec3::splat(1e9);
+    for index in 0..2 {
+        let light = scene.lights[index].clone();
+        editor.apply(Action::Edit(Edit::Light(index, light, "marker")));
+    }
+    for _ in 0..3 {
+        editor.apply(Action::Edit(Edit::AddLight(place)));
+    }
+    let lights = editor.scene().lights.iter().skip(2);
+    let across: Vec<f64> = lights.map(|light| light.position.x).collect();
+    assert!(
+        across.len() == 3 && across.is_sorted_by(|a, b| a < b),
+        "{across:?}"
+    );
+}
+
+#[test]
 fn a_unique_pack_leaves_the_others_alone() {
     let mut editor = Editor::demo();
     editor.apply(Action::Edit(Edit::MakePackUnique(2)));

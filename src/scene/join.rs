@@ -139,7 +139,8 @@ impl Scene {
         if !mesh.is_separable() {
             return 0..0;
         }
-        let group = if object.group.is_empty() {
+        let is_lone = mesh.source.triangles().faces().len() == 1;
+        let group = if object.group.is_empty() && !is_lone {
             let groups = self.objects.iter().map(|object| object.group.as_str());
             Names::new(groups).take(&object.name)
         } else {

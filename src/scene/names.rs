@@ -37,10 +37,33 @@ impl Names {
     }
 }
 
-/// A name without its number.
+/// A name without the number that is a word of its own.
 fn base(name: &str) -> &str {
-    let base = name
-        .trim_end_matches(|c: char| c.is_ascii_digit())
-        .trim_end();
-    if base.is_empty() { name } else { base }
+    let is_number = |word: &str| word.bytes().all(|letter| letter.is_ascii_digit());
+    match name.rsplit_once(' ') {
+        Some((base, number)) if is_number(number) => base.trim_end(),
+        _ => name,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_go_on_counting() {
+        let mut names = Names::new(["Ball 1", "left", "Cube.001", "7"].into_iter());
+        for (wanted, taken) in [
+            ("Ball 1", "Ball 2"),
+            ("Ball 1", "Ball 3"),
+            ("Ball 9", "Ball 9"),
+            ("left", "left 2"),
+            ("left 2", "left 3"),
+            ("Cube.001", "Cube.001 2"),
+            ("7", "7 2"),
+            ("new", "new"),
+        ] {
+            assert_eq!(names.take(wanted), taken, "{wanted}");
+        }
+    }
 }

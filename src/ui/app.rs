@@ -328,7 +328,8 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         // What had the keys when this frame's were pressed: a field loses its focus to Escape, and a
         // menu closes, before this is asked.
-        let keys_are_free = !self.keys_are_taken && !ui.text_edit_focused();
+        let was_typing = ui.text_edit_focused();
+        let keys_are_free = !self.keys_are_taken && !was_typing;
         let mut out = UiRequests {
             commands: self.commanded(ui, keys_are_free),
             ..UiRequests::default()
@@ -368,7 +369,7 @@ impl eframe::App for App {
         let motion = self.flying.step(ui, flown, flies, speed);
         out.actions.extend(motion.map(Action::Fly));
         let questions = std::mem::take(&mut out.questions);
-        self.carry_out(&ctx, out);
+        self.carry_out(&ctx, out, was_typing);
         let going = if self.files.is_asking() {
             self.exports.describe(&self.pictures)
         } else {

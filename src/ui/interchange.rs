@@ -78,15 +78,21 @@ pub fn export_povray(editor: &mut Editor, path: &Path) {
 pub fn export_job(editor: &mut Editor, path: &Path) {
     match write(editor, path) {
         Ok(Job {
-            scene, replaced, ..
+            scene,
+            is_copied,
+            replaced,
         }) => {
             let kept = replaced.iter().map(|(file, backup)| {
                 let (file, backup) = (file.display(), backup.display());
                 format!("; {file} held something else, which is kept as {backup}")
             });
             let kept: String = kept.collect();
-            let (path, scene) = (path.display(), scene.display());
-            editor.notify(format!("Saved {path} and {scene}{kept}"));
+            let scene = if is_copied {
+                format!(" and {}", scene.display())
+            } else {
+                String::new()
+            };
+            editor.notify(format!("Saved {}{scene}{kept}", path.display()));
         }
         Err(error) => editor.report_error_in(Ask::ExportJob.title(), error.to_string()),
     }

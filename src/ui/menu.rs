@@ -12,7 +12,8 @@ use super::flying::{FASTEST, SLOWEST};
 use super::hint::Hint as _;
 use super::icons;
 use super::layout::{Below, Layout, Part};
-use super::menu_entry::{ITEM_COMMANDS, entry, offer, switch, ticked};
+use super::menu_entry::{ITEM_COMMANDS, entry, offer, ticked};
+use super::obstacles::is_enabled;
 use super::requests::UiRequests;
 use crate::animate::{Preset, Retime};
 use crate::editor::{Editor, Mode, Selection};
@@ -154,15 +155,13 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
     ui.menu_button("Show", |ui| {
         for (aspect, name, hint) in Aspect::EACH {
             if ui.radio(layout.aspect == aspect, name).hint(hint).clicked() {
-                layout.aspect = aspect;
+                out.commands.push(Command::Aspect(aspect));
             }
         }
     });
     ui.menu_button("Panels", |ui| panel_entries(ui, layout, out));
     ui.separator();
-    for (part, name) in Part::OVER_PICTURE {
-        switch(ui, layout.part(part), name);
-    }
+    part_entries(ui, layout, &Part::OVER_PICTURE, out);
     let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     SubMenuButton::new("Flying speed")
         .config(stays)
@@ -180,10 +179,16 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
     theme_choice(ui, out);
 }
 
-fn panel_entries(ui: &mut Ui, layout: &mut Layout, out: &mut UiRequests) {
-    for (part, name) in Part::PANELS {
-        switch(ui, layout.part(part), name);
+fn part_entries(ui: &mut Ui, layout: &mut Layout, parts: &[(Part, &str)], out: &mut UiRequests) {
+    for &(part, name) in parts {
+        if ticked(ui, *layout.part(part), name, None).clicked() {
+            out.commands.push(Command::Part(part));
+        }
     }
+}
+
+fn panel_entries(ui: &mut Ui, layout: &mut Layout, out: &mut UiRequests) {
+    part_entries(ui, layout, &Part::PANELS, out);
     for (is_on, name, command) in [
         (
             layout.below == Below::Timeline,
@@ -219,7 +224,8 @@ fn animate_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
     ui.separator();
     ui.menu_button("Ready-made flight", |ui| preset_entries(ui, out));
-    ui.add_enabled_ui(editor.scene().animation.keys.len() > 1, |ui| {
+    let can_retime = is_enabled(&Command::Retime(Retime::Smooth), editor);
+    ui.add_enabled_ui(can_retime, |ui| {
         ui.menu_button("Other timing", |ui| retime_entries(ui, out));
     });
     ui.separator();

@@ -65,10 +65,3 @@ pub fn ticked(ui: &mut Ui, is_on: bool, text: &str, command: Option<&Command>) -
     entry.widget_info(|| WidgetInfo::selected(role, true, is_on, text));
     entry
 }
-
-/// An entry that switches something on or off.
-pub fn switch(ui: &mut Ui, is_on: &mut bool, text: &str) {
-    if ticked(ui, *is_on, text, None).clicked() {
-        *is_on = !*is_on;
-    }
-}

@@ -10,9 +10,7 @@ use super::app::App;
 use super::commands::Command;
 use super::layout::Below;
 use super::requests::UiRequests;
-use super::theme::{
-    GRID, INSPECTOR, LAB, MOST_TRACKS, OUTLINER, ROW, TIMELINE, TRACK, WIDE, palette,
-};
+use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, TIMELINE, TRACKS, WIDE, palette};
 use super::timeline::clock;
 use super::tools::label;
 use super::viewport::{Place, badge, describe, fit};
@@ -87,14 +85,17 @@ impl App {
             .inner
     }
 
-    /// The panel of the timeline, whose height is remembered for each number of tracks: where nothing moves, the room
-    /// is the picture's.
-    fn timeline_panel(&self) -> (&'static str, usize) {
+    /// The panel of the timeline, and its usual height: where nothing moves, the room is the picture's, and where
+    /// values do, they have rows.
+    fn timeline_panel(&self) -> (&'static str, f32) {
         let animation = &self.editor.scene().animation;
         if animation.is_still() {
-            ("timeline without keys", 0)
+            let rows = if animation.take.is_some() { 4.5 } else { 3.0 };
+            ("timeline without keys", rows * ROW)
+        } else if animation.tracks.is_empty() {
+            ("timeline", TIMELINE)
         } else {
-            ("timeline", animation.tracks.len().min(MOST_TRACKS))
+            ("timeline with tracks", TIMELINE + TRACKS)
         }
     }
 
@@ -103,7 +104,10 @@ impl App {
         let height = |size: Option<Vec2>, usual| size.map_or(usual, |size| size.y);
         let below = match self.layout.below {
             Below::Nothing => 0.0,
-            Below::Timeline => height(size_of(ui, self.timeline_panel()), TIMELINE),
+            Below::Timeline => {
+                let (name, usual) = self.timeline_panel();
+                height(size_of(ui, name), usual)
+            }
             Below::Lab => height(size_of(ui, "lab"), LAB),
         };
         height(size_of(ui, "status"), ROW) + below
@@ -142,14 +146,12 @@ impl App {
         }
         if self.layout.below == Below::Timeline {
             let per_second = self.pictures.per_second();
-            let (name, tracks) = self.timeline_panel();
-            let panel = Panel::bottom((name, tracks));
+            let (name, usual) = self.timeline_panel();
+            let panel = Panel::bottom(name);
             let panel = if self.editor.scene().animation.is_still() {
-                let has_take = self.editor.scene().animation.take.is_some();
-                panel.exact_size(if has_take { 4.5 * ROW } else { 3.0 * ROW })
+                panel.exact_size(usual)
             } else {
                 let panel = panel.resizable(true);
-                let usual = TIMELINE + TRACK * tracks as f32;
                 panel.default_size(usual).size_range(64.0..=600.0)
             };
             panel.frame(side(ui)).show(ui, |ui| {

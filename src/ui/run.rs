@@ -28,10 +28,10 @@ const TWICE: f64 = 3.0;
 const PASTE: &str = "paste";
 
 impl App {
-    /// Does what panels and keys have asked for.
-    pub(super) fn carry_out(&mut self, ctx: &Context, out: UiRequests) {
+    /// Does what panels and keys have asked for; whether a text was edited when the frame began.
+    pub(super) fn carry_out(&mut self, ctx: &Context, out: UiRequests, was_typing: bool) {
         let is_entered = ctx.input(|input| input.key_pressed(Key::Enter));
-        if is_entered && !(out.commands.is_empty() && out.actions.is_empty()) {
+        if is_entered && !was_typing && !(out.commands.is_empty() && out.actions.is_empty()) {
             // By itself, a menu closes only where its entry was chosen with the mouse.
             Popup::close_all(ctx);
         }

@@ -24,8 +24,8 @@ pub const WIDE: f32 = 960.0;
 pub const LAB: f32 = 280.0;
 /// Height of the timeline when it is first shown, without tracks.
 pub const TIMELINE: f32 = 216.0;
-/// Tracks that have room in it then.
-pub const MOST_TRACKS: usize = 5;
+/// Height of a few of them, which are in sight at first.
+pub const TRACKS: f32 = 3.0 * TRACK;
 /// Width of the labels of the timeline's tracks.
 pub const TRACK_LABEL: f32 = 112.0;
 /// Height of a track of the timeline.

@@ -15,7 +15,6 @@ use glint::trace::{Grid, Pass, Rays, RenderControl, Threads, Tracer};
 use crate::pictures::{differing, picture};
 use crate::random;
 
-/// A picture, and the rays that it took.
 fn small(scene: &Scene) -> Image {
     picture(scene, &RenderRequest::sized(160, 120)).0
 }

@@ -36,7 +36,6 @@ fn flight() -> Scene {
     Document::load(FLIGHT.as_ref()).expect("a scene").scene
 }
 
-/// A window on a demo whose camera moves from key to key: so many seconds, so far to the right.
 /// A window on a demo whose camera moves at ten frames a second, with keys at these times so far to the right.
 pub fn animation(keys: &[(f64, f64)]) -> EditorHarness {
     let mut scene = Scene::demo();

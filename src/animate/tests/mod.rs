@@ -30,7 +30,6 @@ fn at(path: &CameraPath, time: f64) -> Camera {
     path.at(time).expect("a camera")
 }
 
-/// Times at even steps from the first key to the last.
 fn stretched_keys(keys: &[Key<Camera>], seconds: f64) -> Vec<Key<Camera>> {
     let keys = keys.to_vec();
     let animation = Animation {
@@ -40,6 +39,7 @@ fn stretched_keys(keys: &[Key<Camera>], seconds: f64) -> Vec<Key<Camera>> {
     stretched(&animation, seconds).keys
 }
 
+/// Times at even steps from the first key to the last.
 fn times(path: &CameraPath, steps: u32) -> Vec<f64> {
     let (first, last) = (path.keys()[0].time, path.keys().last().expect("a key").time);
     let time = |n| first + (last - first) * f64::from(n) / f64::from(steps);

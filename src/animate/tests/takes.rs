@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::*;
-use crate::scene::{Animation, Document, Take, Target, Track, Value};
+use crate::scene::{Animation, Document, MAX_SECONDS, Take, Target, Track, Value};
 
 /// A flight by hand: uneven times, pauses, a wobble.
 fn take() -> Take {
@@ -245,6 +245,10 @@ fn a_stretched_flight_takes_the_keys_of_values_along() {
     assert_eq!(longer.keys[1].time, 5.0);
     let times: Vec<f64> = longer.tracks[0].keys.iter().map(|key| key.time).collect();
     assert_eq!(times, [0.5, 3.0, 7.0], "what is before it stays");
+    let longest = longest_flight(&animation);
+    assert_eq!(longest, (MAX_SECONDS - 1.0) * 2.0 / 3.0);
+    let longest = stretched(&animation, 2.0 * longest);
+    assert_eq!(longest.tracks[0].keys[2].time, MAX_SECONDS);
 }
 
 #[test]

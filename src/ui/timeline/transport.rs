@@ -3,9 +3,9 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, PopupCloseBehavior, RichText, Slider, Ui};
 
-use crate::animate::{paused_seconds, stretched};
+use crate::animate::{longest_flight, paused_seconds, stretched};
 use crate::editor::{Edit, Editor, Repeat, Time};
-use crate::scene::{Animation, FRAME_RATES, KeyPlace, Keys, MAX_SECONDS};
+use crate::scene::{Animation, FRAME_RATES, KeyPlace, Keys};
 use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
@@ -203,7 +203,7 @@ fn length(ui: &mut Ui, animation: &Animation, out: &mut UiRequests) {
         hint: "Length of the flight; another one stretches it, and the keys of values with it",
         unit: " s",
         default: before,
-        range: 0.1..=MAX_SECONDS,
+        range: 0.1..=longest_flight(animation),
         speed: Some(0.05),
     };
     lone(ui, &field, &mut seconds);
