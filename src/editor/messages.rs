@@ -6,7 +6,7 @@ use indexmap::IndexSet;
 
 use super::action::{Message, STEP};
 use super::document::Editor;
-use crate::scene::{Scene, Target};
+use crate::scene::{Scene, Shape, Target};
 
 /// What messages about edits are about.
 const EDIT: &str = "edit";
@@ -111,7 +111,12 @@ impl Editor {
         let packs = packs.into_iter().filter(|pack| *pack != own).cloned();
         let packs =
             listed(packs).map(|names| format!("all of it wears {own}, what wore {names} too"));
-        let lost: Vec<String> = keys.into_iter().chain(packs).collect();
+        let flat = others.is_empty().then_some(*first).filter(|&index| {
+            let shape = self.scene.objects.get(index).map(|object| &object.shape);
+            matches!(shape, Some(Shape::Mesh(mesh)) if mesh.smooth > 0.0)
+        });
+        let flat = flat.map(|_| "its faces are shaded flat now".to_owned());
+        let lost: Vec<String> = keys.into_iter().chain(packs).chain(flat).collect();
         (!lost.is_empty()).then(|| lost.join("; "))
     }
 

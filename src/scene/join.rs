@@ -85,6 +85,16 @@ impl Scene {
             ..Mesh::of(Triangles::new(points, faces).ok()?).centred()
         };
         let gone = joined[1..].to_vec();
+        // A whole group that is one thing now is none.
+        let group = &self.objects[first].group;
+        let is_in_it = |object: &&Object| object.group == *group;
+        let members = self.objects.iter().filter(is_in_it).count();
+        let own = joined.iter().filter_map(|&index| self.objects.get(index));
+        let group = if own.filter(is_in_it).count() < members {
+            group.clone()
+        } else {
+            String::new()
+        };
         let mut rest = joined.into_iter().peekable();
         let objects = self
             .objects
@@ -96,6 +106,7 @@ impl Scene {
                 }
                 (index == first).then(|| Object {
                     shape: mesh.clone().into(),
+                    group: group.clone(),
                     ..object.clone()
                 })
             });

@@ -50,7 +50,7 @@ enum Target {
 }
 
 /// What menus and buttons call commands whose names here say more, in small letters.
-const ALSO: [(Command, &str); 7] = [
+const ALSO: [(Command, &str); 9] = [
     (Command::SaveAs, "save as"),
     (Command::SaveImage, "save image"),
     (Command::ExportJob, "export farm job"),
@@ -58,6 +58,8 @@ const ALSO: [(Command, &str); 7] = [
     (Command::AddBookmark, "add this view"),
     (Command::FrameSelected, "frame what is selected"),
     (Command::FrameAll, "frame everything"),
+    (Command::Timeline, "panel"),
+    (Command::Lab, "panel"),
 ];
 
 impl Finder {

@@ -108,6 +108,8 @@ mod app;
 
 mod panels;
 
+mod on_selected;
+
 mod run;
 
 mod window;

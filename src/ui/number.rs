@@ -128,7 +128,7 @@ fn out_of_range(field: &Field, number: f64) -> Option<String> {
     }
     let (name, least, most) = (field.name, *field.range.start(), *field.range.end());
     Some(if number <= 0.0 && 0.0 < least && least < SMALL {
-        format!("{name} is above 0")
+        format!("{name} must be above 0")
     } else {
         let [least, most] = [least, most].map(|end| rounded(end, "", ENDS));
         format!("{name} goes from {least} to {most}")

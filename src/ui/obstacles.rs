@@ -38,7 +38,7 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
                 _ => None,
             };
             let can = matches!(shape, Some(Shape::Mesh(mesh)) if mesh.is_separable());
-            (!can).then_some("no mesh of few enough triangles is selected")
+            (!can).then_some("no single mesh of few enough triangles is selected")
         }
         Command::Retime(_) => {
             let has = editor.scene().animation.keys.len() > 1;

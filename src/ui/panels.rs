@@ -188,7 +188,8 @@ impl App {
         if self.layout.histogram {
             self.levels.show(ui, place.rect);
         }
-        if self.editor.scene().objects.is_empty() {
+        let scene = self.editor.scene();
+        if scene.objects.is_empty() && scene.animation.is_still() {
             hint_at_beginning(ui, place);
         }
         if !is_still && self.layout.flight {

@@ -10,6 +10,7 @@ use super::commands::Command;
 use super::dialogs::Ask;
 use super::layout::Below;
 use super::obstacles::is_enabled;
+use super::on_selected::{add, joined, on_many, toggle_visible, with_same_pack};
 use super::put_down::put_down;
 use super::requests::UiRequests;
 use super::timeline::actions;
@@ -19,7 +20,8 @@ use crate::editor::{
     Action, Edit, Editor, Item, Kind, Mode, Selected, Selection, Time, excerpt, free_bookmark_name,
     free_group_name, read,
 };
-use crate::scene::{Aspect, Bookmark, Document, Projection, Scene};
+use crate::scene::{Aspect, Bookmark, Document, Projection};
+use crate::words::counted;
 
 /// Seconds within which Escape twice asks to quit.
 const TWICE: f64 = 3.0;
@@ -102,8 +104,12 @@ impl App {
             Command::Find => self.finder.open(),
             Command::Shortcuts => self.shortcuts_open = !self.shortcuts_open,
             other => {
+                let lost = lost_flight(&other, &self.editor);
                 for action in actions(&other, &self.editor) {
                     self.editor.apply(action);
+                }
+                if let Some(lost) = lost {
+                    self.editor.notify_of_step(lost);
                 }
                 self.run_on_scene(&other);
             }
@@ -303,6 +309,24 @@ impl App {
     }
 }
 
+/// What a ready-made flight replaces, in words.
+fn lost_flight(command: &Command, editor: &Editor) -> Option<String> {
+    let Command::Preset(preset) = command else {
+        return None;
+    };
+    let animation = &editor.scene().animation;
+    let keys = counted(animation.keys.len(), "key");
+    let recording = if animation.take.is_some() {
+        " and the recording"
+    } else {
+        ""
+    };
+    let name = preset.words().0;
+    let words =
+        format!("{name} has replaced {keys} of the camera{recording}; undo brings them back");
+    (!animation.keys.is_empty()).then_some(words)
+}
+
 /// What follows once unsaved changes are out of the way, if the command leaves the document.
 fn next_document(command: &Command) -> Option<Next> {
     Some(match command {
@@ -330,29 +354,6 @@ fn asked_for(command: &Command) -> Option<Ask> {
     })
 }
 
-/// Hides everything that is selected, or shows it if all of it is hidden.
-fn toggle_visible(editor: &mut Editor) {
-    let scene = editor.shown();
-    let items = editor.selected().items();
-    let mut visible = items.iter().filter_map(|item| item.is_visible(scene));
-    let visible = !visible.any(|visible| visible);
-    let field = if visible { "show" } else { "hide" };
-    let edits = items.iter();
-    let edits = edits.filter_map(|item| Edit::visible(scene, *item, visible));
-    let edits: Vec<Edit> = edits.collect();
-    let label = format!("{field} {} items", edits.len());
-    editor.apply(Action::Edit(Edit::Each(edits, label)));
-}
-
-/// The selected objects, or a triangle and all that share corners with it.
-fn joined(editor: &Editor) -> Vec<usize> {
-    let selected = editor.selected().places(Kind::Object);
-    match selected[..] {
-        [triangle] => editor.scene().connected_triangles(triangle),
-        _ => selected,
-    }
-}
-
 /// This view as one more bookmark.
 fn add_bookmark(editor: &mut Editor) -> Action {
     let mut bookmarks = editor.scene().bookmarks.clone();
@@ -361,75 +362,6 @@ fn add_bookmark(editor: &mut Editor) -> Action {
     let camera = editor.shown().camera.clone();
     bookmarks.push(Bookmark { name, camera });
     Action::Edit(Edit::Bookmarks(bookmarks, "Add bookmark"))
-}
-
-/// Every object that wears the pack of an object, or the pack that is the item.
-fn with_same_pack(scene: &Scene, item: Item) -> Selected {
-    let pack = match item.kind {
-        Kind::Object => scene
-            .objects
-            .get(item.index)
-            .map(|object| &object.color_pack),
-        Kind::Pack => scene
-            .color_packs
-            .get_index(item.index)
-            .map(|(name, _)| name),
-        Kind::Light => {
-            let light = scene.lights.get(item.index);
-            let marker = light.and_then(|light| light.marker.as_ref());
-            marker.map(|marker| &marker.color_pack)
-        }
-    };
-    let objects = scene.objects.iter().enumerate();
-    let wearing = objects.filter(|(_, object)| Some(&object.color_pack) == pack);
-    let others = wearing
-        .map(|(index, _)| Item::object(index))
-        .filter(|other| *other != item);
-    // What was selected stays so, and is what the inspector shows.
-    let own = Some(item);
-    Selected::all(others.chain(own))
-}
-
-/// Adds everything of a scene, and selects it.
-fn add(editor: &mut Editor, part: Scene, word: &'static str) {
-    let before = editor.revision();
-    let (lights, objects) = (part.lights.len(), part.objects.len());
-    editor.apply(Action::Edit(Edit::Paste(Box::new(part), word)));
-    if editor.revision() != before {
-        let scene = editor.scene();
-        let (all_lights, all_objects) = (scene.lights.len(), scene.objects.len());
-        let new = (all_lights - lights..all_lights).map(Item::light);
-        let new = new.chain((all_objects - objects..all_objects).map(Item::object));
-        editor.apply(Action::Select(Selected::all(new)));
-    }
-}
-
-/// Does to everything that is selected what can be done to more than one thing.
-fn on_many(editor: &mut Editor, command: &Command) {
-    let items = editor.selected().items().to_vec();
-    let before = editor.revision();
-    match command {
-        Command::Delete => {
-            editor.apply(Action::Edit(Edit::Delete(items)));
-            if editor.revision() != before {
-                editor.apply(Action::Select(Selected::Camera));
-            }
-        }
-        Command::Duplicate => {
-            if items.iter().all(|item| item.kind == Kind::Pack) {
-                let label = format!("Duplicate {} items", items.len());
-                let mut items = items;
-                items.sort_unstable();
-                // From the last on: a copy does not move those before it.
-                let edits = items.iter().rev().map(|item| Edit::Duplicate(*item));
-                let edit = Edit::Each(edits.collect(), label);
-                return editor.apply(Action::Edit(edit));
-            }
-            let part = excerpt(editor.scene(), editor.selected());
-            add(editor, part, "Duplicate");
-        }
-        _ => {}
-    }
 }
 
 fn seen_along(editor: &Editor, direction: DVec3) -> Action {

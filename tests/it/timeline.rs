@@ -425,7 +425,7 @@ fn what_the_timeline_cannot_be_is_told_and_not_taken() {
         (
             "length of the flight",
             "-1",
-            "length of the flight is above 0",
+            "length of the flight must be above 0",
         ),
         (
             "length of the flight",

@@ -113,8 +113,14 @@ fn pack_choice(rows: &mut Rows, scene: &Scene, name: &mut String) {
     );
 }
 
-/// An object: its shape and its pack.
-pub fn object(ui: &mut Ui, scene: &Scene, index: usize, before: &Object, out: &mut UiRequests) {
+/// An object: its shape and its pack; by itself it can be joined and taken apart besides.
+pub fn object(
+    ui: &mut Ui,
+    scene: &Scene,
+    (index, is_alone): (usize, bool),
+    before: &Object,
+    out: &mut UiRequests,
+) {
     title_field(
         ui,
         icons::of_shape(&before.shape),
@@ -131,7 +137,9 @@ pub fn object(ui: &mut Ui, scene: &Scene, index: usize, before: &Object, out: &m
         "An invisible object casts no shadow and no reflection",
         &mut object.visible,
     );
-    mesh_tools(&mut rows, (scene, index), &before.shape, out);
+    if is_alone {
+        mesh_tools(&mut rows, (scene, index), &before.shape, out);
+    }
     rows.heading("ColorPack");
     pack_choice(&mut rows, scene, &mut object.color_pack);
     if let Some(field) = rows.changed().filter(|_| object != *before) {

@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     match last.kind {
         Kind::Object => {
             if let Some(object) = scene.objects.get(last.index) {
-                items::object(ui, scene, last.index, object, &mut own);
+                items::object(ui, scene, (last.index, false), object, &mut own);
             }
         }
         Kind::Light => {

@@ -68,7 +68,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiReq
                 index,
             }) => {
                 if let Some(value) = scene.objects.get(index) {
-                    items::object(ui, scene, index, value, out);
+                    items::object(ui, scene, (index, true), value, out);
                     let owner = value.name.clone();
                     let mut tracks = vec![("position", Target::ObjectPosition(owner.clone()))];
                     if matches!(value.shape, Shape::Mesh(_)) {

@@ -20,8 +20,8 @@ pub fn band(ui: &mut Ui, scale: &Scale, sense: Sense) -> (Rect, Response) {
     (rect, response)
 }
 
-/// Writes to the left of a strip what it is about. What a name is too long for is cut from the name, and not from what
-/// stands behind it.
+/// Writes to the left of a strip what it is about. What a name is too long for is cut from the name, and not from its
+/// number and what stands behind it.
 pub fn label(ui: &Ui, rect: Rect, text: &str) {
     let colors = palette(ui.ctx());
     let room = Rect::from_min_max(pos2(ui.max_rect().left(), rect.top()), rect.left_bottom());
@@ -29,7 +29,7 @@ pub fn label(ui: &Ui, rect: Rect, text: &str) {
     let at = room.left_center() + vec2(GRID, 0.0);
     let font = FontId::proportional(SMALL + 1.0);
     let layout = |text: String| painter.layout_no_wrap(text, font.clone(), colors.muted);
-    let (name, what) = text.split_at(text.rfind(": ").unwrap_or(text.len()));
+    let (name, what) = text.split_at(end_of_name(text));
     let (mut galley, width) = (layout(text.to_owned()), room.width() - 3.0 * GRID);
     let mut kept = name.chars().count();
     while galley.size().x > width && kept > 1 {
@@ -40,6 +40,16 @@ pub fn label(ui: &Ui, rect: Rect, text: &str) {
     }
     let at = at - vec2(0.0, galley.size().y / 2.0);
     painter.galley(at, galley, colors.muted);
+}
+
+/// Where a name ends that may have a number, and its property behind it.
+fn end_of_name(text: &str) -> usize {
+    let end = text.rfind(": ").unwrap_or(text.len());
+    let is_number = |word: &str| word.bytes().all(|letter| letter.is_ascii_digit());
+    match text[..end].rsplit_once(' ') {
+        Some((name, number)) if is_number(number) => name.len(),
+        _ => end,
+    }
 }
 
 /// Draws a key: what is held is a square.
@@ -63,4 +73,22 @@ pub fn diamond(ui: &Ui, at: Pos2, fill: Color32, is_cut: bool) {
     let corners = corners.map(|corner| at + corner).to_vec();
     ui.painter()
         .add(Shape::convex_polygon(corners, fill, Stroke::NONE));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_names_stay() {
+        for (text, name) in [
+            ("Sphere 12: position", "Sphere"),
+            ("Roof: rotation", "Roof"),
+            ("Ambient intensity", "Ambient intensity"),
+            ("a: b 2", "a: b"),
+            ("Größe 3", "Größe"),
+        ] {
+            assert_eq!(&text[..end_of_name(text)], name);
+        }
+    }
 }

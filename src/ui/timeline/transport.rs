@@ -157,7 +157,7 @@ fn rates(ui: &mut Ui, editor: &Editor, graph: &mut bool, out: &mut UiRequests) {
     ui.toggle_value(graph, "Speed")
         .hint("Show speed and turn rate below the keys");
     let animation = &editor.scene().animation;
-    length(ui, animation, out);
+    length(ui, editor, out);
     let mut fps = animation.frames_per_second;
     let field = Field {
         name: "frames per second",
@@ -192,7 +192,8 @@ fn rates(ui: &mut Ui, editor: &Editor, graph: &mut bool, out: &mut UiRequests) {
 }
 
 /// How long the flight of the camera is; another length stretches it.
-fn length(ui: &mut Ui, animation: &Animation, out: &mut UiRequests) {
+fn length(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+    let (animation, time) = (&editor.scene().animation, editor.shown_time());
     let [first, .., last] = &animation.keys[..] else {
         return;
     };
@@ -209,6 +210,11 @@ fn length(ui: &mut Ui, animation: &Animation, out: &mut UiRequests) {
     lone(ui, &field, &mut seconds);
     if seconds != before {
         out.edit(Edit::animation(stretched(animation, seconds), "Stretch"));
+        // The playhead stays where it is in the flight.
+        if time > first.time {
+            let later = (time - first.time) * seconds / before;
+            out.time(Time::Seek(first.time + later));
+        }
     }
 }
 

@@ -308,7 +308,7 @@ fn what_is_typed_and_not_taken_is_told() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
     for (field, text, words) in [
-        ("radius", "-5", "radius is above 0"),
+        ("radius", "-5", "radius must be above 0"),
         ("radius", "big", "“big” is no number"),
         ("center y", "1e30", "center goes from -1.0e12 to 1.0e12"),
         (
