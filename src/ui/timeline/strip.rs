@@ -85,7 +85,6 @@ mod tests {
             ("Sphere 12: position", "Sphere"),
             ("Roof: rotation", "Roof"),
             ("Ambient intensity", "Ambient intensity"),
-            ("a: b 2", "a: b"),
             ("Größe 3", "Größe"),
         ] {
             assert_eq!(&text[..end_of_name(text)], name);

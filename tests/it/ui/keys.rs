@@ -1,7 +1,7 @@
 //! Keys on the line of time where hands are less tidy: between frames, beyond the end, onto each other.
 
 use egui::accesskit::Role;
-use egui::{Key, Modifiers, Pos2};
+use egui::{Event, Key, Modifiers, Pos2};
 use egui_kittest::kittest::Queryable as _;
 use glint::editor::Mode;
 
@@ -233,4 +233,32 @@ fn the_line_of_time_zooms_where_the_pointer_is() {
     assert!((zoomed - 1.5).abs() < 0.05, "{zoomed}");
     harness.press(Modifiers::NONE, Key::Home);
     assert!((apart(&harness) - before).abs() < 1.0, "all of it again");
+}
+
+#[test]
+fn a_ready_made_flight_says_what_it_replaces() {
+    let mut harness = window(&[0.0, 1.0]);
+    harness.press(CTRL, Key::K);
+    harness.window.event(Event::Text("turntable".to_owned()));
+    harness.settle();
+    harness.press(Modifiers::NONE, Key::Enter);
+    let words = "Turntable has replaced 2 keys of the camera; undo brings them back";
+    harness.window.get_by_label_contains(words);
+    harness.press(CTRL, Key::Z);
+    assert!(harness.window.query_by_label_contains(words).is_none());
+    assert_eq!(times(&harness), [0.0, 1.0]);
+}
+
+#[test]
+fn the_playhead_stays_where_it_is_in_a_flight_that_is_stretched() {
+    let mut harness = window(&[0.0, 4.0]);
+    let at = on_ruler(&harness, 1.0);
+    harness.window.drag_at(at);
+    harness.window.drop_at(at);
+    harness.settle();
+    let before = harness.editor().shown_time();
+    assert!((before - 1.0).abs() < 0.2, "{before}");
+    harness.type_into("length of the flight", "8");
+    let after = harness.editor().shown_time();
+    assert!((after - 2.0 * before).abs() < 1e-9, "{after}");
 }
