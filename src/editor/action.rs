@@ -42,6 +42,8 @@ pub enum Action {
     Show(Mode),
     /// Something about the timeline.
     Time(Time),
+    /// Say what the last step has done besides what it is called; taken back with it.
+    Tell(String),
 }
 
 /// What messages about what the last step has done are about.

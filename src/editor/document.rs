@@ -226,6 +226,7 @@ impl Editor {
                 self.mode = mode;
             }
             Action::Time(time) => self.apply_time(time),
+            Action::Tell(text) => self.notify_of_step(text),
         }
         self.animation_state.update(&self.scene);
         if self.selected == Selected::Keys && self.timeline().selected.is_empty() {

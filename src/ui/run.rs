@@ -105,11 +105,16 @@ impl App {
             Command::Shortcuts => self.shortcuts_open = !self.shortcuts_open,
             other => {
                 let lost = lost_flight(&other, &self.editor);
+                let before = self.editor.revision();
                 for action in actions(&other, &self.editor) {
                     self.editor.apply(action);
                 }
                 if let Some(lost) = lost {
                     self.editor.notify_of_step(lost);
+                }
+                if matches!(other, Command::Retime(_)) && self.editor.revision() == before {
+                    let words = "This changes nothing of the flight as it is";
+                    self.editor.notify(words.to_owned());
                 }
                 self.run_on_scene(&other);
             }

@@ -301,6 +301,8 @@ fn keys_are_dragged_copied_and_picked_with_the_mouse() {
     let at = place_of(&harness, "Key 2");
     drag(&mut harness, at, vec2(1.0 * second, 0.0), Modifiers::NONE);
     assert_eq!(times(&harness), [0.0, 2.5, 3.0, 4.0]);
+    let words = "This has replaced 1 key; undo brings it back";
+    harness.window.get_by_label_contains(words);
     // None goes before the start.
     let at = place_of(&harness, "Key 2");
     drag(&mut harness, at, vec2(-9.0 * second, 0.0), Modifiers::NONE);

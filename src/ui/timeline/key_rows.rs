@@ -13,6 +13,7 @@ use crate::scene::{Animation, Interpolation, Key, KeyPlace, Keys};
 use crate::ui::hint::Hint as _;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, TRACK, palette};
+use crate::words::counted;
 
 /// What the pointer does to the rows from when it is pressed to when it is let go.
 #[derive(Default)]
@@ -42,6 +43,23 @@ struct Drag {
     /// Time of the key that the pointer holds.
     from: f64,
     are_copies: bool,
+}
+
+impl Drag {
+    /// What is said where they have replaced others, now that they are let go.
+    fn told(&self, now: &Animation) -> Option<String> {
+        let copies = if self.are_copies {
+            self.places.len()
+        } else {
+            0
+        };
+        let before = self.before.places().len() + copies;
+        let replaced = before.saturating_sub(now.places().len());
+        let is_done = *now != *self.before && replaced > 0;
+        let them = if replaced == 1 { "it" } else { "them" };
+        let keys = counted(replaced, "key");
+        is_done.then(|| format!("This has replaced {keys}; undo brings {them} back"))
+    }
 }
 
 impl KeyRows {
@@ -245,6 +263,8 @@ impl KeyRows {
     ) {
         let Some(held) = &self.drag else { return };
         let Some(to) = pointed(ui, scale, &held.before) else {
+            let told = held.told(&editor.scene().animation);
+            out.actions.extend(told.map(Action::Tell));
             self.drag = None;
             return;
         };
