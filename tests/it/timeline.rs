@@ -13,8 +13,8 @@ use glint::editor::{Action, Edit, Editor, Repeat, Selected, Time};
 use glint::image::render;
 use glint::plan::RenderRequest;
 use glint::scene::{
-    Animation, Document, Interpolation, Key as SceneKey, KeyPlace, Keys, Leftover, Projection,
-    Scene, Value,
+    Animation, Document, Interpolation, Key as SceneKey, KeyPlace, Keys, Leftover, MAX_SECONDS,
+    Projection, Scene, Target, Value,
 };
 use glint::trace::RenderControl;
 use glint::ui::Ask;
@@ -484,6 +484,26 @@ fn a_length_that_only_a_file_can_have_is_left_in_silence() {
     assert_eq!(harness.scene(), &before);
     let words = "length of the flight goes from";
     assert!(harness.window.query_by_label_contains(words).is_none());
+}
+
+#[test]
+fn a_flight_that_nothing_can_stretch_stays_as_it_is() {
+    let mut scene = Scene::demo();
+    let camera = scene.camera.clone();
+    let keys = [0.0, 0.05].map(|time| SceneKey::new(time, camera.clone()));
+    scene.animation_mut().keys = keys.into();
+    let last = Value::Number(0.5);
+    let with_last = scene
+        .animation
+        .with_value(&Target::AmbientIntensity, MAX_SECONDS, last);
+    *scene.animation_mut() = with_last;
+    let mut harness = EditorHarness::on(scene);
+    let before = harness.scene().clone();
+    harness.type_into("length of the flight", "1");
+    harness
+        .window
+        .get_by_label_contains("length of the flight goes from");
+    assert_eq!(harness.scene(), &before);
 }
 
 #[test]

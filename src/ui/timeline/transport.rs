@@ -19,6 +19,8 @@ use crate::words::counted;
 const WIDE: f32 = 1040.0;
 /// Width of a window in which all but the rates has its place, in points.
 const NARROW: f32 = 860.0;
+/// The shortest flight that is asked for, in seconds.
+const SHORTEST: f64 = 0.1;
 /// Seconds that a ready-made flight takes.
 const PRESET_SECONDS: f64 = 8.0;
 
@@ -204,7 +206,8 @@ fn length(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         hint: "Length of the flight; another one stretches it, and the keys of values with it",
         unit: " s",
         default: before,
-        range: 0.1..=longest_flight(animation),
+        // Keys of values that are far behind it may leave it less.
+        range: SHORTEST..=longest_flight(animation).max(SHORTEST),
         speed: Some(0.05),
     };
     lone(ui, &field, &mut seconds);
