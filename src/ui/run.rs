@@ -21,7 +21,6 @@ use crate::editor::{
     free_group_name, read,
 };
 use crate::scene::{Aspect, Bookmark, Document, Projection};
-use crate::words::counted;
 
 /// Seconds within which Escape twice asks to quit.
 const TWICE: f64 = 3.0;
@@ -104,13 +103,9 @@ impl App {
             Command::Find => self.finder.open(),
             Command::Shortcuts => self.shortcuts_open = !self.shortcuts_open,
             other => {
-                let lost = lost_flight(&other, &self.editor);
                 let before = self.editor.revision();
                 for action in actions(&other, &self.editor) {
                     self.editor.apply(action);
-                }
-                if let Some(lost) = lost {
-                    self.editor.notify_of_step(lost);
                 }
                 if matches!(other, Command::Retime(_)) && self.editor.revision() == before {
                     let words = "This changes nothing of the flight as it is";
@@ -312,24 +307,6 @@ impl App {
                 .notify("Ctrl+Q quits; so does Esc once more".to_owned());
         }
     }
-}
-
-/// What a ready-made flight replaces, in words.
-fn lost_flight(command: &Command, editor: &Editor) -> Option<String> {
-    let Command::Preset(preset) = command else {
-        return None;
-    };
-    let animation = &editor.scene().animation;
-    let keys = counted(animation.keys.len(), "key");
-    let recording = if animation.take.is_some() {
-        " and the recording"
-    } else {
-        ""
-    };
-    let name = preset.words().0;
-    let words =
-        format!("{name} has replaced {keys} of the camera{recording}; undo brings them back");
-    (!animation.keys.is_empty()).then_some(words)
 }
 
 /// What follows once unsaved changes are out of the way, if the command leaves the document.

@@ -14,6 +14,6 @@ pub fn picture(scene: &Scene, request: &RenderRequest) -> (Image, Rays) {
 /// How many pixels differ by more than so many levels of 255 in some channel.
 pub fn differing(one: &Image, other: &Image, levels: u8) -> usize {
     assert_eq!(one.pixels.len(), other.pixels.len());
-    let is_off = |(a, b): &(&[u8; 4], &[u8; 4])| (0..3).any(|c| a[c].abs_diff(b[c]) > levels);
+    let is_off = |(a, b): &(&[u8; 4], &[u8; 4])| (0..4).any(|c| a[c].abs_diff(b[c]) > levels);
     one.pixels.iter().zip(&other.pixels).filter(is_off).count()
 }

@@ -9,6 +9,7 @@ use crate::editor::{Edit, Item, Selection};
 use crate::scene::{
     self, ColorPack, FieldValue, Light, LightObj, MAX_EXPONENT, MOST_SEPARATE, Object, Scene, Shape,
 };
+use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
@@ -138,7 +139,7 @@ pub fn object(
         &mut object.visible,
     );
     if is_alone {
-        mesh_tools(&mut rows, (scene, index), &before.shape, out);
+        mesh_tools(&mut rows, &before.shape, out);
     }
     rows.heading("ColorPack");
     pack_choice(&mut rows, scene, &mut object.color_pack);
@@ -162,18 +163,13 @@ pub fn object(
     });
 }
 
-/// What turns triangles into a mesh and back.
-fn mesh_tools(
-    rows: &mut Rows,
-    (scene, index): (&Scene, usize),
-    shape: &Shape,
-    out: &mut UiRequests,
-) {
+/// What turns triangles into a mesh and back: what is shown is all that is selected.
+fn mesh_tools(rows: &mut Rows, shape: &Shape, out: &mut UiRequests) {
     match shape {
         Shape::Triangle(_) => {
             let hint = "Make one mesh of this triangle and all that share corners with it";
             if tool(rows, "Join connected", hint, true) {
-                out.edit(Edit::Join(scene.connected_triangles(index)));
+                out.commands.push(Command::Join);
             }
         }
         Shape::Mesh(mesh) => {
@@ -184,7 +180,7 @@ fn mesh_tools(
             }
             let hint = format!("Make an object of each triangle, up to {MOST_SEPARATE} of them");
             if tool(rows, "Separate", &hint, mesh.is_separable()) {
-                out.edit(Edit::Separate(index));
+                out.commands.push(Command::Separate);
             }
         }
         _ => {}

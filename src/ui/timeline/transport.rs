@@ -285,6 +285,18 @@ pub fn clock(seconds: f64) -> String {
     )
 }
 
+/// What the ready-made flight of this name replaces, in words; `None` if nothing.
+fn replaced_flight(name: &str, animation: &Animation) -> Option<String> {
+    let keys = counted(animation.keys.len(), "key");
+    let recording = match animation.take {
+        Some(_) => " and the recording",
+        None => "",
+    };
+    let words =
+        format!("{name} has replaced {keys} of the camera{recording}; undo brings them back");
+    (!animation.keys.is_empty()).then_some(words)
+}
+
 /// What a command of the timeline comes to; nothing where it makes no sense.
 pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action> {
     use crate::editor::Action;
@@ -336,8 +348,11 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action>
                 take: None,
                 ..Animation::clone(animation)
             };
-            let edit = Edit::animation(changed, preset.words().0);
-            vec![Action::Edit(edit), Action::Time(Time::Seek(0.0))]
+            let name = preset.words().0;
+            let told = replaced_flight(name, animation).map(Action::Tell);
+            let edit = Action::Edit(Edit::animation(changed, name));
+            let made = [edit, Action::Time(Time::Seek(0.0))].into_iter();
+            made.chain(told).collect()
         }
         Command::Retime(retime) => {
             let changed = Animation {
