@@ -14,19 +14,7 @@ fn main() -> ExitCode {
     let since = Instant::now();
     let result = match cli::run(std::env::args_os()) {
         CliAction::Done(code) => return code,
-        CliAction::Chart {
-            studies,
-            machine,
-            look,
-            path,
-        } => save(ui::chart_picture(&studies, &machine, look), &path),
-        CliAction::Growth { growth, look, path } => save(ui::growth_picture(&growth, look), &path),
-        CliAction::Scaling {
-            pictures,
-            look,
-            path,
-        } => save(ui::scaling_picture(&pictures, look), &path),
-        CliAction::Stability { maps, path } => save(ui::stability_picture(&maps), &path),
+        CliAction::Draw { figure, path } => save(ui::drawn(&figure), &path),
         CliAction::TimeStart { scene } => time_start(scene, since),
         CliAction::Editor {
             scene,

@@ -1,6 +1,7 @@
 //! Glint beside Embree 3, where it is installed: `cargo bench --bench embree`. The same scenes, the same shading, two
 //! threads each; Embree's rays in packets of 8 and of 16 (`peer.cpp`, which a C++ compiler builds here and now).
-//! Compare columns of one row. After `--` other scenes can be named, by their files.
+//! Compare columns of one row. After `--` other scenes can be named, by their files; `--growth=FILE.png` makes the
+//! picture of how cost grows instead, with Embree and POV-Ray in it, and its figures beside it (FILE.csv).
 
 #![allow(
     clippy::expect_used,
@@ -10,16 +11,20 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Output};
 use std::time::Instant;
 
 use glam::DVec3;
-use glint::image::{Image, render_into};
-use glint::lab::Crowd;
+use glint::export::{save_image, write_text};
+use glint::image::{Film, Image, render_into};
+use glint::lab::{Crowd, Figure, Growth, PictureLook, Way};
 use glint::plan::{Planner, RenderRequest};
 use glint::scene::{Document, EXAMPLES, Plane, Projection, Sampling, Scene, Shape};
 use glint::trace::{RenderControl, Threads};
+use glint::ui::drawn;
 
+/// The program that draws by Embree.
+const PEER: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/embree");
 /// Side of the pictures in pixels.
 const SIDE: u32 = 1024;
 /// Threads of both.
@@ -34,8 +39,34 @@ const ENDLESS: f64 = 1e5;
 const MOST_POINTS: usize = 1 << 24;
 
 fn main() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let peer = folder.path().join("peer");
+    if !build_peer().is_ok_and(|built| built.status.success()) {
+        println!("Embree 3 or a C++ compiler is not here (Debian: libembree-dev, g++)");
+        return;
+    }
+    let words = || std::env::args().skip(1);
+    if let Some(file) = words().find_map(|word| word.strip_prefix("--growth=").map(str::to_owned)) {
+        chart_growth(file.as_ref());
+        return;
+    }
+    println!(
+        "{:<22} {:>9} {:>9} {:>11} {:>12} {:>10} {:>9}",
+        "scene", "things", "Glint ms", "Embree 8 ms", "Embree 16 ms", "of faster", "alike"
+    );
+    // `cargo bench` itself adds an option.
+    let mut files = words().filter(|word| !word.starts_with('-')).peekable();
+    if files.peek().is_some() {
+        for file in files {
+            let document = Document::load(file.as_ref()).expect("a scene");
+            print_row(&file, document.scene);
+        }
+        return;
+    }
+    for (name, scene) in scenes() {
+        print_row(&name, scene);
+    }
+}
+
+fn build_peer() -> std::io::Result<Output> {
     let source = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/embree/peer.cpp");
     let flags = [
         "-O3",
@@ -46,34 +77,35 @@ fn main() {
         "-std=c++17",
         "-o",
     ];
-    let built = Command::new("c++")
+    Command::new("c++")
         .args(flags)
-        .args([peer.as_os_str(), source.as_ref()])
-        .args(["-lembree3", "-lpthread"])
-        .output();
-    if !built.is_ok_and(|built| built.status.success()) {
-        println!("Embree 3 or a C++ compiler is not here (Debian: libembree-dev, g++)");
-        return;
+        .args([PEER, source, "-lembree3", "-lpthread"])
+        .output()
+}
+
+/// How cost grows, for all three.
+fn chart_growth(file: &Path) {
+    let threads = Threads::new(Some(THREADS)).expect("threads");
+    let most = 1_000_000;
+    let mut growth = Growth::new(SIDE, most)
+        .with_povray()
+        .with(Way::Embree, |scene| {
+            by_embree(scene).map(|drawn| drawn.fastest())
+        });
+    while threads.run(|| growth.step()) {
+        println!("{:.0} %", growth.progress() * 100.0);
     }
-    println!(
-        "{:<22} {:>9} {:>9} {:>11} {:>12} {:>10} {:>9}",
-        "scene", "things", "Glint ms", "Embree 8 ms", "Embree 16 ms", "of faster", "alike"
-    );
-    // `cargo bench` itself adds an option.
-    let mut files = std::env::args()
-        .skip(1)
-        .filter(|word| !word.starts_with('-'))
-        .peekable();
-    if files.peek().is_some() {
-        for file in files {
-            let document = Document::load(file.as_ref()).expect("a scene");
-            print_row(&file, document.scene, &peer);
-        }
-        return;
+    for obstacle in &growth.obstacles {
+        println!("{obstacle}");
     }
-    for (name, scene) in scenes() {
-        print_row(&name, scene, &peer);
-    }
+    let csv = growth.csv().expect("written");
+    write_text(&file.with_extension("csv"), &csv).expect("written");
+    let look = PictureLook {
+        is_light: false,
+        size: (1600, 960),
+    };
+    let picture = drawn(&Figure::Growth(growth, look));
+    save_image(&Film::Levels(picture), file).expect("written");
 }
 
 fn scenes() -> impl Iterator<Item = (String, Scene)> {
@@ -96,41 +128,66 @@ fn scenes() -> impl Iterator<Item = (String, Scene)> {
     published.chain(crowds)
 }
 
-fn print_row(name: &str, mut scene: Scene, peer: &Path) {
-    (scene.render.width, scene.render.height) = (SIDE, SIDE);
-    scene.light_visualization = false;
+/// What Embree made of a scene.
+struct Drawn {
+    /// Milliseconds by packets of 8 and of 16 rays.
+    times: [f64; 2],
+    /// Red, green and blue of the pixels.
+    picture: Vec<u8>,
+}
+
+impl Drawn {
+    fn fastest(&self) -> f64 {
+        self.times[0].min(self.times[1])
+    }
+}
+
+fn by_embree(scene: &Scene) -> Result<Drawn, String> {
+    let numbers = numbers_of(scene)
+        .ok_or("it is not for this benchmark: discs, parallel rays, or too many points")?;
     let folder = tempfile::tempdir().expect("a folder");
     let (file, picture) = (folder.path().join("scene"), folder.path().join("picture"));
-    let Some(numbers) = numbers_of(&scene) else {
-        println!("{name:<22} is not for this benchmark: discs, parallel rays, or too many points");
-        return;
-    };
     let bytes: Vec<u8> = numbers.iter().flat_map(|it| it.to_le_bytes()).collect();
     fs::write(&file, bytes).expect("written");
-    let (before, image) = by_glint(&scene);
-    let output = Command::new(peer).args([&file, &picture]).output();
+    let output = Command::new(PEER).args([&file, &picture]).output();
     let output = output.expect("it was built");
     assert!(output.status.success(), "{output:?}");
     let times = String::from_utf8_lossy(&output.stdout);
-    let times = times.split_whitespace().map(str::parse::<f64>);
-    let times: Vec<f64> = times.map(|time| time.expect("a time")).collect();
-    let ours = before.min(by_glint(&scene).0);
-    let theirs = fs::read(&picture).expect("written");
+    let mut times = times
+        .split_whitespace()
+        .map(|time| time.parse().expect("a time"));
+    Ok(Drawn {
+        times: [(); 2].map(|()| times.next().expect("two times")),
+        picture: fs::read(&picture).expect("written"),
+    })
+}
+
+fn print_row(name: &str, mut scene: Scene) {
+    (scene.render.width, scene.render.height) = (SIDE, SIDE);
+    scene.light_visualization = false;
+    let drawn = match by_embree(&scene) {
+        Ok(drawn) => drawn,
+        Err(obstacle) => {
+            println!("{name:<22} {obstacle}");
+            return;
+        }
+    };
+    let (ours, image) = by_glint(&scene);
     let is_alike = |(ours, theirs): &(&[u8; 4], &[u8])| {
         ours.iter().zip(*theirs).all(|(a, b)| a.abs_diff(*b) <= 1)
     };
     let alike = image
         .pixels
         .iter()
-        .zip(theirs.chunks(3))
+        .zip(drawn.picture.chunks(3))
         .filter(is_alike)
         .count();
     println!(
         "{name:<22} {:>9} {ours:>9.2} {:>11.2} {:>12.2} {:>10.2} {:>7.3} %",
         scene.objects.len() + scene.faces(),
-        times[0],
-        times[1],
-        ours / times[0].min(times[1]),
+        drawn.times[0],
+        drawn.times[1],
+        ours / drawn.fastest(),
         alike as f64 / f64::from(SIDE * SIDE) * 100.0
     );
 }

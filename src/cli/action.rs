@@ -3,8 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use crate::lab::stability::Map;
-use crate::lab::{Growth, PictureLook, SharedPicture, Study};
+use crate::lab::Figure;
 
 /// What the command line asked for.
 #[derive(Debug)]
@@ -25,39 +24,10 @@ pub enum CliAction {
         /// The scene file; the demo if there is none.
         scene: Option<PathBuf>,
     },
-    /// Draw the charts of studies into this file.
-    Chart {
-        /// The studies, each with the name of its scene.
-        studies: Vec<(String, Study)>,
-        /// What was measured on.
-        machine: String,
-        /// How the picture looks.
-        look: PictureLook,
-        /// The picture file; its ending is known to be good.
-        path: PathBuf,
-    },
-    /// Draw how cost grows into this file.
-    Growth {
+    /// Draw what was measured into this file.
+    Draw {
         /// What was measured.
-        growth: Growth,
-        /// How the picture looks.
-        look: PictureLook,
-        /// The picture file; its ending is known to be good.
-        path: PathBuf,
-    },
-    /// Draw how pictures would be shared between cores into this file.
-    Scaling {
-        /// What was simulated.
-        pictures: Vec<SharedPicture>,
-        /// How the picture looks.
-        look: PictureLook,
-        /// The picture file; its ending is known to be good.
-        path: PathBuf,
-    },
-    /// Draw these maps into this file.
-    Stability {
-        /// The maps.
-        maps: Vec<Map>,
+        figure: Figure,
         /// The picture file; its ending is known to be good.
         path: PathBuf,
     },

@@ -17,12 +17,13 @@ use super::target::{check_text, picture_format};
 use crate::export::write_text;
 use crate::files::processor;
 use crate::lab::{
-    Growth, PictureLook, Study, capitalised, cheapest_within, closest_within, csv, scaling,
+    Figure, Growth, PictureLook, Study, capitalised, cheapest_within, closest_within, csv, scaling,
     scaling_csv, table,
 };
 use crate::plan::RenderRequest;
 use crate::scene::Scene;
 use crate::trace::{RenderControl, Threads};
+use crate::words::counted;
 
 /// Primitives of the largest scene that growth is measured in.
 const MOST_PRIMITIVES: u32 = 1_000_000;
@@ -85,6 +86,12 @@ impl ChartArgs {
             size: self.size,
         }
     }
+
+    /// What is left to do with a figure, if a picture was asked for.
+    fn drawn(&self, figure: Figure) -> Option<CliAction> {
+        let path = self.png.clone();
+        path.map(|path| CliAction::Draw { figure, path })
+    }
 }
 
 /// Measures, prints the table, and writes what was asked for. The picture is left to whoever can draw.
@@ -129,14 +136,12 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
         let machine = format!("{}, {}", processor(), std::env::consts::ARCH);
         write_text(path, &csv(&studies, &machine, threads.count())?)?;
     }
-    let machine = format!("{} threads, {}", threads.count(), processor());
+    let machine = format!("{}, {}", counted(threads.count(), "thread"), processor());
     let look = args.look();
-    let path = args.png.clone();
-    Ok(path.map(|path| CliAction::Chart {
+    Ok(args.drawn(Figure::Chart {
         studies,
         machine,
         look,
-        path,
     }))
 }
 
@@ -160,7 +165,7 @@ fn grow(args: &ChartArgs, threads: &Threads) -> Result<Option<CliAction>, CliErr
         bar.set_position((growth.progress() * BAR as f64) as u64);
     }
     bar.finish_and_clear();
-    if let Some(obstacle) = &growth.obstacle {
+    for obstacle in &growth.obstacles {
         say(obstacle);
     }
     for cost in &growth.costs {
@@ -176,9 +181,7 @@ fn grow(args: &ChartArgs, threads: &Threads) -> Result<Option<CliAction>, CliErr
     if let Some(path) = &args.csv {
         write_text(path, &growth.csv()?)?;
     }
-    let look = args.look();
-    let path = args.png.clone();
-    Ok(path.map(|path| CliAction::Growth { growth, look, path }))
+    Ok(args.drawn(Figure::Growth(growth, args.look())))
 }
 
 /// What more cores would do for the scenes.
@@ -202,13 +205,7 @@ fn share(args: &ChartArgs, scenes: &[(&PathBuf, Scene)]) -> Result<Option<CliAct
     if let Some(path) = &args.csv {
         write_text(path, &scaling_csv(&pictures)?)?;
     }
-    let look = args.look();
-    let path = args.png.clone();
-    Ok(path.map(|path| CliAction::Scaling {
-        pictures,
-        look,
-        path,
-    }))
+    Ok(args.drawn(Figure::Scaling(pictures, args.look())))
 }
 
 fn measure(study: &mut Study, threads: &Threads) {

@@ -13,6 +13,7 @@ use crate::image::{Film, Image, render};
 use crate::plan::RenderRequest;
 use crate::scene::Sampling;
 use crate::trace::RenderControl;
+use crate::words::counted;
 
 /// How many times brighter differences are in their picture.
 const ENLARGED: u16 = 64;
@@ -64,10 +65,10 @@ pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
         offs.len() - same,
     ));
     say(&format!(
-        "Glint {:.1} ms, POV-Ray {:.0} ms without reading the scene, {} threads each",
+        "Glint {:.1} ms, POV-Ray {:.0} ms without reading the scene, {} each",
         cost.time.as_secs_f64() * 1e3,
         theirs.time.as_secs_f64() * 1e3,
-        threads.count()
+        counted(threads.count(), "thread")
     ));
     if share < 100.0 {
         for difference in povray_differences(&scene) {

@@ -9,6 +9,7 @@ use super::args::{MAX_TIMES, whole};
 use super::error::{CliError, say};
 use super::target::{check_text, picture_format};
 use crate::export::write_text;
+use crate::lab::Figure;
 use crate::lab::stability::{cells_csv, maps, summary};
 
 #[derive(Debug, Args)]
@@ -37,6 +38,6 @@ pub fn run(args: &StabilityArgs) -> Result<Option<CliAction>, CliError> {
     if let Some(path) = &args.csv {
         write_text(path, &cells_csv(&maps)?)?;
     }
-    let path = args.png.clone();
-    Ok(path.map(|path| CliAction::Stability { maps, path }))
+    let (figure, path) = (Figure::Stability(maps), args.png.clone());
+    Ok(path.map(|path| CliAction::Draw { figure, path }))
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::edit::Edit;
 use super::fly::Motion;
-use super::selection::Selected;
+use super::selection::Selection;
 use super::timeline::Time;
 
 /// What the picture area shows.
@@ -29,7 +29,7 @@ pub enum Action {
     /// Move the camera around a point, turned to the right and upwards by so many radians.
     Orbit(DVec3, (f64, f64)),
     /// Select something, and show it, or the last of it, in the inspector.
-    Select(Selected),
+    Select(Selection),
     /// What comes is a step of its own in the history.
     BeginGesture,
     /// Take back what was done since the gesture began.

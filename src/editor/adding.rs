@@ -3,8 +3,10 @@
 use glam::DVec3;
 
 use super::item::{Item, Kind};
-use super::names::{copy_offset, free_light_name, free_object_name, free_pack_name};
-use crate::scene::{ColorPack, Light, LightObj, Object, Scene, Shape, Track, light_pack};
+use super::names::{copy_offset, free_light_name, free_object_name, free_pack_name, past_lights};
+use crate::scene::{
+    ColorPack, Light, LightObj, Object, Owner, Scene, Shape, Track, default_intensity, light_pack,
+};
 
 /// Colours that new things wear, one after the other: told apart from each other, and from a grey floor.
 const COLORS: [[f64; 3]; 8] = [
@@ -68,7 +70,7 @@ pub fn add_light(scene: &mut Scene, position: DVec3) -> Item {
     scene.lights.push(Light {
         name,
         position,
-        intensity: 0.2,
+        intensity: default_intensity(),
         marker: Some(LightObj { radius, color_pack }),
         visible: true,
     });
@@ -90,7 +92,7 @@ pub fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
             copy.name = free_object_name(scene, &copy.name);
             let by = copy_offset(scene, &copy.shape);
             copy.shape = copy.shape.moved(by);
-            copy_tracks(scene, (false, &original.name), &copy.name, by);
+            copy_tracks(scene, Owner::Object(&original.name), &copy.name, by);
             scene.objects.insert(index + 1, copy);
         }
         Kind::Light => {
@@ -98,9 +100,10 @@ pub fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
             let mut copy = original.clone();
             copy.name = free_light_name(scene, &copy.name);
             let marker = copy.marker.as_ref();
-            let by = DVec3::X * marker.map_or(1.0, |marker| marker.radius * 2.0);
+            let step = DVec3::X * marker.map_or(1.0, |marker| marker.radius * 2.0);
+            let by = past_lights(scene, copy.position, (step, 1));
             copy.position += by;
-            copy_tracks(scene, (true, &original.name), &copy.name, by);
+            copy_tracks(scene, Owner::Light(&original.name), &copy.name, by);
             scene.lights.insert(index + 1, copy);
         }
         Kind::Pack => {
@@ -116,9 +119,9 @@ pub fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
 }
 
 /// A copy of a light or object, so far from it, has the keys of its values.
-fn copy_tracks(scene: &mut Scene, (is_light, name): (bool, &str), copy: &str, by: DVec3) {
+fn copy_tracks(scene: &mut Scene, owner: Owner, copy: &str, by: DVec3) {
     let tracks = scene.animation.tracks.iter();
-    let own = tracks.filter(|track| track.target.is_of(is_light, name));
+    let own = tracks.filter(|track| track.target.owner() == Some(owner));
     let copies: Vec<Track> = own.map(|track| track.for_copy(copy, by)).collect();
     if !copies.is_empty() {
         scene.animation_mut().tracks.extend(copies);

@@ -129,8 +129,8 @@ impl AnimationState {
     /// The picture is that of the view from now on.
     pub fn look_at_view(&mut self) {
         // From outside one may fly while it plays.
-        self.timeline.is_playing &= !self.timeline.looks_through;
-        self.timeline.looks_through = false;
+        self.timeline.is_playing &= !self.timeline.wants_shot;
+        self.timeline.wants_shot = false;
     }
 
     /// Takes up what has changed: the scene, the time, the camera that is looked through.
@@ -142,11 +142,6 @@ impl AnimationState {
             if new.keys != old.keys {
                 self.path = CameraPath::new(&new.keys);
             }
-            let is_other = !Arc::ptr_eq(new, old);
-            if is_other && !new.has_places_of(old) {
-                // In those places are others now; who moved them says where they are.
-                self.timeline.selected.clear();
-            }
             self.scene = Arc::clone(scene);
             if is_flown_otherwise {
                 self.measure();
@@ -154,7 +149,7 @@ impl AnimationState {
         }
         let animation = &scene.animation;
         let time = self.timeline.shown_time(animation);
-        let looks_through = self.timeline.looks_through && !animation.keys.is_empty();
+        let looks_through = self.timeline.looks_through(animation);
         if !is_new && self.made_for == (time, looks_through) {
             return;
         }

@@ -7,10 +7,10 @@ use glam::DVec3;
 use indexmap::IndexMap;
 
 use super::item::{Item, Kind};
-use super::names::copy_offset;
-use super::selection::Selected;
+use super::names::{past_lights, past_objects, step_aside};
+use super::selection::Selection;
 use crate::scene::{
-    ColorPack, Document, List, Names, Owners, Scene, SceneError, Track, names_field,
+    ColorPack, Document, List, Names, Owner, Owners, Scene, SceneError, Track, names_field,
 };
 
 /// How far a copy of a light alone is from it, in world units.
@@ -20,7 +20,7 @@ const LIGHT_APART: f64 = 10.0;
 const THINNEST: f64 = 0.05;
 
 /// The selected things alone, with the packs that they wear and the keys of their values.
-pub fn excerpt(scene: &Scene, selected: &Selected) -> Scene {
+pub fn excerpt(scene: &Scene, selected: &Selection) -> Scene {
     let of = |kind| selected.places(kind).into_iter();
     let objects = of(Kind::Object).filter_map(|index| scene.objects.get(index).cloned());
     let lights = of(Kind::Light).filter_map(|index| scene.lights.get(index).cloned());
@@ -78,7 +78,7 @@ pub fn read(text: &str, scene: &Scene) -> Result<Scene, SceneError> {
         if names_field(text, "color_packs") {
             return Ok(read);
         }
-        return Ok(excerpt(&read, &Selected::all(Item::everything(&read))));
+        return Ok(excerpt(&read, &Selection::all(Item::everything(&read))));
     }
     let mut packs = String::new();
     for name in scene.color_packs.keys() {
@@ -95,12 +95,13 @@ pub fn read(text: &str, scene: &Scene) -> Result<Scene, SceneError> {
     let mut read = Document::from_text(&whole)?.scene;
     // The scene has them as they are.
     read.color_packs = scene.color_packs.clone();
-    Ok(excerpt(&read, &Selected::all(Item::everything(&read))))
+    Ok(excerpt(&read, &Selection::all(Item::everything(&read))))
 }
 
 /// Adds everything in `pasted`, behind what is there: packs that are there already are used, others get a name
-/// that is free.
-pub fn paste(scene: &mut Scene, pasted: &Scene) {
+/// that is free. Returns the lights and objects that are new.
+pub fn paste(scene: &mut Scene, pasted: &Scene) -> Vec<Item> {
+    let (lights, objects) = (scene.lights.len(), scene.objects.len());
     let mut packs = IndexMap::new();
     let mut taken = Names::new(scene.color_packs.keys().map(String::as_str));
     for (name, pack) in pasted.color_packs.iter() {
@@ -121,16 +122,16 @@ pub fn paste(scene: &mut Scene, pasted: &Scene) {
         }
     };
     let by = way_aside(scene, pasted);
-    // What they are called here: whether it is a light, and its name there.
+    // What they are called here.
     let mut names = HashMap::new();
     let mut taken = Names::new(scene.objects.iter().map(|object| &*object.name));
     let groups = new_groups(scene, pasted);
     for object in &pasted.objects {
+        let own = Owner::Object(&object.name);
         let mut object = object.clone();
         known(&mut object.color_pack);
-        let name = taken.take(&object.name);
-        names.insert((false, object.name), name.clone());
-        object.name = name;
+        object.name = taken.take(&object.name);
+        names.insert(own, object.name.clone());
         object.shape = object.shape.moved(by);
         if let Some(group) = groups.get(&object.group) {
             object.group.clone_from(group);
@@ -139,24 +140,27 @@ pub fn paste(scene: &mut Scene, pasted: &Scene) {
     }
     let mut taken = Names::new(scene.lights.iter().map(|light| &*light.name));
     for light in &pasted.lights {
-        let (mut light, own_name) = (light.clone(), light.name.clone());
+        let own = Owner::Light(&light.name);
+        let mut light = light.clone();
         light.position += by;
         if let Some(marker) = &mut light.marker {
             known(&mut marker.color_pack);
         }
         light.name = taken.take(&light.name);
-        names.insert((true, own_name), light.name.clone());
+        names.insert(own, light.name.clone());
         scene.lights.push(light);
     }
     let tracks = pasted.animation.tracks.iter().filter_map(|track| {
-        let owner = track.target.owner()?.to_owned();
-        let name = names.get(&(track.target.is_of_light(), owner))?;
+        let name = names.get(&track.target.owner()?)?;
         Some(track.for_copy(name, by))
     });
     let tracks: Vec<Track> = tracks.collect();
     if !tracks.is_empty() {
         scene.animation_mut().tracks.extend(tracks);
     }
+    let lights = (lights..scene.lights.len()).map(Item::light);
+    let objects = (objects..scene.objects.len()).map(Item::object);
+    lights.chain(objects).collect()
 }
 
 /// What groups are called of which all is pasted once more, or that are others of the same name: each is a group of its
@@ -194,13 +198,11 @@ fn members(scene: &Scene) -> IndexMap<&str, HashSet<&str>> {
 /// shadow each other. All of them go the same way.
 fn way_aside(scene: &Scene, pasted: &Scene) -> DVec3 {
     let Some(first) = pasted.objects.first() else {
-        let lights = scene.lights.iter();
-        let mut places = lights.map(|light| light.position);
-        let is_there = pasted
-            .lights
-            .first()
-            .is_some_and(|light| places.any(|place| place == light.position));
-        return DVec3::X * if is_there { LIGHT_APART } else { 0.0 };
+        let step = (DVec3::X * LIGHT_APART, 0);
+        let first = pasted.lights.first();
+        return first.map_or(DVec3::ZERO, |light| {
+            past_lights(scene, light.position, step)
+        });
     };
     let step = match pasted.objects_bounds() {
         // What stands in a row has its copy before it, and not where the picture ends.
@@ -213,17 +215,9 @@ fn way_aside(scene: &Scene, pasted: &Scene) -> DVec3 {
                 DVec3::X * size.max_element()
             }
         }
-        None => copy_offset(scene, &first.shape),
+        None => step_aside(scene, &first.shape),
     };
-    let is_there = |by: DVec3| {
-        let shape = first.shape.moved(by);
-        scene.objects.iter().any(|other| other.shape == shape)
-    };
-    let mut by = DVec3::ZERO;
-    while step != DVec3::ZERO && is_there(by) {
-        by += step;
-    }
-    by
+    past_objects(scene, &first.shape, (step, 0))
 }
 
 #[cfg(test)]
@@ -249,14 +243,14 @@ mod tests {
         };
         let all = excerpt(
             &scene,
-            &Selected::all(members.into_iter().map(Item::object)),
+            &Selection::all(members.into_iter().map(Item::object)),
         );
         for group in ["Group 2", "Group 3"] {
             let end = scene.objects.len();
             paste(&mut scene, &all);
             assert_eq!(groups(&scene, end), [group; 3]);
         }
-        let one = excerpt(&scene, &Selected::all([Item::object(1)]));
+        let one = excerpt(&scene, &Selection::all([Item::object(1)]));
         let last = scene.objects.len();
         paste(&mut scene, &one);
         assert_eq!(groups(&scene, last), ["Group 1"]);
@@ -280,7 +274,7 @@ mod tests {
                 let radius = deep / 2.0;
                 scene.objects[place].shape = Sphere { center, radius }.into();
             }
-            let selected = Selected::all([0, 1].map(Item::object));
+            let selected = Selection::all([0, 1].map(Item::object));
             let part = excerpt(&scene, &selected);
             let by = way_aside(&scene, &part);
             assert_eq!(by.z > 0.0, along_z, "{by}");
@@ -291,7 +285,7 @@ mod tests {
     #[test]
     fn what_is_copied_is_pasted_beside_it_with_its_packs() {
         let mut scene = Scene::demo();
-        let selected = Selected::all([Item::object(1), Item::light(0), Item::object(0)]);
+        let selected = Selection::all([Item::object(1), Item::light(0), Item::object(0)]);
         let part = excerpt(&scene, &selected);
         let document = Document::of(part.clone());
         let text = document.to_text().expect("a text");
@@ -324,7 +318,7 @@ mod tests {
             let animation = scene.animation.with_value(target, 1.0, value);
             scene.animation = animation.into();
         }
-        let selected = Selected::all([Item::object(0), Item::light(0)]);
+        let selected = Selection::all([Item::object(0), Item::light(0)]);
         let part = excerpt(&scene, &selected);
         assert_eq!(part.animation.tracks.len(), 3);
         let document = Document::of(part);

@@ -4,13 +4,15 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::action::{Action, Message, Mode};
 use super::animation_state::AnimationState;
 use super::edit::Edit;
 use super::fly::Flight;
 use super::history::{History, Snapshot};
 use super::item::Item;
-use super::selection::{Selected, Selection};
+use super::selection::Selection;
 use super::timeline::{Time, Timeline};
 use crate::animate::CameraPath;
 use crate::files::Stamp;
@@ -43,7 +45,7 @@ pub struct Editor {
     pub(super) history: History,
     flight: Flight,
     pub(super) animation_state: AnimationState,
-    selected: Selected,
+    pub(super) selection: Selection,
     /// What the picture area shows.
     pub mode: Mode,
     /// What the user should read, oldest first; the window takes them away.
@@ -81,7 +83,7 @@ impl Editor {
             broken: BTreeSet::new(),
             history: History::default(),
             flight: Flight::default(),
-            selected: Selected::default(),
+            selection: Selection::default(),
             mode: Mode::default(),
             messages: Vec::new(),
             is_refused: false,
@@ -121,7 +123,7 @@ impl Editor {
 
     /// Whether the picture is that of the shot camera.
     pub fn looks_through(&self) -> bool {
-        self.timeline().looks_through && !self.scene.animation.keys.is_empty()
+        self.timeline().looks_through(&self.scene.animation)
     }
 
     /// Grows with every change of the scene.
@@ -165,13 +167,15 @@ impl Editor {
     }
 
     /// What is selected.
-    pub fn selected(&self) -> &Selected {
-        &self.selected
+    pub fn selection(&self) -> &Selection {
+        &self.selection
     }
 
-    /// What the inspector shows.
-    pub fn selection(&self) -> Selection {
-        self.selected.selection()
+    /// The middle of what is selected, or of everything; 0 where nothing is.
+    pub fn middle(&self) -> DVec3 {
+        let scene = self.shown();
+        let selected = self.selection.middle(scene);
+        selected.or_else(|| scene.middle()).unwrap_or_default()
     }
 
     /// Selects the objects and lights of these names.
@@ -180,7 +184,7 @@ impl Editor {
             let name = item.name(&self.scene);
             name.is_some_and(|name| names.iter().any(|wanted| wanted == name))
         };
-        let items = Selected::all(Item::everything(&self.scene).filter(is_named));
+        let items = Selection::all(Item::everything(&self.scene).filter(is_named));
         if !items.items().is_empty() {
             self.apply(Action::Select(items));
         }
@@ -206,7 +210,7 @@ impl Editor {
                 let camera = self.flight.orbit(camera, about, turn);
                 self.edit(Edit::Camera(camera, "move"));
             }
-            Action::Select(selected) => self.select(selected),
+            Action::Select(selection) => self.select(selection),
             Action::BeginGesture => self.end_gesture(),
             Action::CancelGesture => {
                 if let Some(before) = self.history.cancel_gesture() {
@@ -229,9 +233,6 @@ impl Editor {
             Action::Tell(text) => self.notify_of_step(text),
         }
         self.animation_state.update(&self.scene);
-        if self.selected == Selected::Keys && self.timeline().selected.is_empty() {
-            self.select(Selected::Camera);
-        }
     }
 
     /// Ends the gesture: the next edit is a step of its own in the history. What ends as it began is none.
@@ -269,8 +270,7 @@ impl Editor {
     /// Why it could not be written; the document then still counts as changed.
     pub fn save(&mut self, path: &Path) -> Result<(), SceneError> {
         let lost = self.lost_meshes();
-        let mut document = self.document();
-        document.scene = document.scene_at(path);
+        let document = self.document().at(path);
         let (backup, stamp) = document.save_stamped(path)?;
         // What is in the scene file now follows no other file.
         if document.scene != *self.scene {
@@ -347,6 +347,7 @@ impl Editor {
         // What moves the joined things is taken along by it.
         let joined = edit.joined().to_vec();
         let replaced = edit.replaced();
+        let is_less = !joined.is_empty() || matches!(edit, Edit::Delete(_));
         let posed = self.animation_state.posed(&self.scene, &joined);
         let mut next = posed.clone();
         let new = match edit.apply(&mut next) {
@@ -371,15 +372,15 @@ impl Editor {
             return false;
         }
         self.forget_refusal();
-        let lost = self.lost_by_joining(&joined, &next);
+        let lost = is_less.then(|| self.lost(&joined, &next)).flatten();
         let lost = lost.map(|lost| format!("{label}: {lost}"));
         let before = self.here();
         self.history.record(label, before, &next);
-        if new.is_empty() {
-            self.follow(&next);
+        self.selection = if new.is_empty() {
+            self.followed(&next)
         } else {
-            self.select(Selected::all(new));
-        }
+            Selection::all(new)
+        };
         self.set_scene(Arc::new(next));
         if let Some(lost) = lost {
             self.notify_of_step(lost);
@@ -397,45 +398,36 @@ impl Editor {
     pub(super) fn here(&self) -> Snapshot {
         Snapshot {
             scene: Arc::clone(&self.scene),
-            selected: self.selected.clone(),
-            keys: self.timeline().selected.clone(),
+            selection: self.selection.clone(),
         }
     }
 
     fn return_to(&mut self, there: Snapshot) {
-        self.select(there.selected);
+        self.selection = there.selection;
         self.set_scene(self.refreshed(&there.scene));
-        self.animation_state.timeline.selected = there.keys;
     }
 
     /// What is selected stays so, wherever it is in the lists of the scene that comes.
-    pub(super) fn follow(&mut self, next: &Scene) {
-        let selected = self.selected.followed(&self.scene, next);
-        if selected == self.selected {
-            return;
-        }
-        // Where the only one is gone, what is in its place is next.
-        if !selected.items().is_empty() || self.selected.items().len() > 1 {
-            self.select(selected);
+    pub(super) fn followed(&self, next: &Scene) -> Selection {
+        let followed = self.selection.followed(&self.scene, next);
+        match (self.selection.items(), followed.items()) {
+            // Where the only one is gone, what is in its place is next.
+            ([_], []) => self.selection.clone(),
+            _ => followed,
         }
     }
 
-    pub(super) fn select(&mut self, selected: Selected) {
-        self.selected = selected;
-        if self.selected != Selected::Keys {
-            self.animation_state.timeline.selected.clear();
-        }
+    /// Selects what is there of it.
+    fn select(&mut self, selection: Selection) {
+        self.selection = selection.within(&self.scene);
     }
 
     pub(super) fn set_scene(&mut self, scene: Arc<Scene>) {
         self.is_dirty = *scene != *self.saved;
         self.scene = scene;
         self.revision += 1;
-        let is_there = |item: &Item| item.name(&self.scene).is_some();
-        if !self.selected.items().iter().all(is_there) {
-            let last = self.selected.items().last().copied();
-            self.selected = Selected::all(last.filter(is_there));
-        }
+        let selection = std::mem::take(&mut self.selection);
+        self.select(selection);
         if self.mode == Mode::HighRes {
             self.mode = Mode::Live;
         }

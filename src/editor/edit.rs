@@ -7,10 +7,12 @@ use glam::DVec3;
 
 use crate::mesh::Part;
 use crate::scene::{
-    Animation, Bookmark, Camera, ColorPack, Light, List, Mesh, Object, Render, Scene, Shape, Target,
+    Animation, Bookmark, Camera, ColorPack, Light, List, Object, Owner, Render, Scene, Shape,
+    Target,
 };
 
 use super::adding::{add_light, add_object, add_pack, duplicate, make_pack_unique};
+use super::arrange::{Arrangement, arrange};
 use super::clipboard::paste;
 use super::item::{Item, Kind};
 
@@ -36,10 +38,8 @@ pub enum Edit {
     Light(usize, Light, &'static str),
     /// Another pack under the name in this place.
     Pack(usize, ColorPack, &'static str),
-    /// A new object of this shape.
-    AddObject(Shape),
-    /// A new object of this name, or one like it, and this mesh.
-    AddMesh(&'static str, Mesh),
+    /// A new object of this name, or one like it, and this shape.
+    AddObject(&'static str, Shape),
     /// The parts of a mesh file as new objects.
     Import(Vec<Part>),
     /// One mesh of these triangles and meshes, in ascending order.
@@ -61,6 +61,8 @@ pub enum Edit {
     Delete(Vec<Item>),
     /// To another place in its list, counted without it.
     Move(Item, usize),
+    /// Objects elsewhere in their list, and into another group.
+    Arrange(Arrangement),
     /// A copy of its pack for this object alone.
     MakePackUnique(usize),
     /// Each pack that is equal to one before it goes, and that one is worn in its place.
@@ -192,8 +194,7 @@ impl Edit {
             Self::Object(index, _, field) => format!("{}: {field}", name(Item::object(*index))),
             Self::Light(index, _, field) => format!("{}: {field}", name(Item::light(*index))),
             Self::Pack(index, _, field) => format!("{}: {field}", name(Item::pack(*index))),
-            Self::AddObject(shape) => format!("Add {}", shape.kind()),
-            Self::AddMesh(name, _) => format!("Add {name}"),
+            Self::AddObject(name, _) => format!("Add {name}"),
             Self::Import(_) => "Import mesh".to_owned(),
             Self::Join(joined) => format!("Join {} objects", joined.len()),
             Self::Paste(_, word) => (*word).to_owned(),
@@ -208,6 +209,10 @@ impl Edit {
                 _ => format!("Delete {} items", items.len()),
             },
             Self::Move(item, _) => format!("Move {}", name(*item)),
+            Self::Arrange(arrangement) => match arrangement.objects[..] {
+                [one] => format!("Move {}", name(Item::object(one))),
+                _ => format!("Move {} items", arrangement.objects.len()),
+            },
             Self::MakePackUnique(index) => {
                 format!("{}: own color pack", name(Item::object(*index)))
             }
@@ -239,15 +244,12 @@ impl Edit {
                     *place = pack;
                 }
             }
-            Self::AddObject(shape) => {
-                return Ok(vec![add_object(scene, shape.kind(), shape)]);
-            }
-            Self::AddMesh(name, mesh) => return Ok(vec![add_object(scene, name, mesh.into())]),
+            Self::AddObject(name, shape) => return Ok(vec![add_object(scene, name, shape)]),
             Self::Import(parts) => return Ok(vec![Item::object(scene.add_parts(parts))]),
             Self::Join(joined) => {
                 return Ok(scene.join(joined).map(Item::object).into_iter().collect());
             }
-            Self::Paste(pasted, _) => paste(scene, &pasted),
+            Self::Paste(pasted, _) => return Ok(paste(scene, &pasted)),
             Self::Separate(index) => {
                 return Ok(scene.separate(index).map(Item::object).collect());
             }
@@ -257,6 +259,7 @@ impl Edit {
             Self::Duplicate(item) => return Ok(duplicate(scene, item).into_iter().collect()),
             Self::Delete(items) => delete(scene, items)?,
             Self::Move(item, to) => return Ok(vec![move_item(scene, item, to)]),
+            Self::Arrange(arrangement) => return Ok(arrange(scene, arrangement)),
             Self::MakePackUnique(index) => make_pack_unique(scene, index),
             Self::MergePacks => scene.merge_equal_packs(),
             Self::RenameGroup(from, to) => rename_group(scene, &from, &to)?,
@@ -289,20 +292,21 @@ fn delete(scene: &mut Scene, mut items: Vec<Item>) -> Result<(), EditError> {
     // From the last on: what is deleted does not move those before it.
     items.sort_unstable_by(|a, b| b.cmp(a));
     items.dedup();
-    let mut names = Vec::new();
+    let (mut objects, mut lights) = (Vec::new(), Vec::new());
     for &Item { kind, index } in &items {
         match kind {
             Kind::Object if index < scene.objects.len() => {
-                names.push((false, scene.objects.remove(index).name));
+                objects.push(scene.objects.remove(index).name);
             }
             Kind::Light if index < scene.lights.len() => {
-                names.push((true, scene.lights.remove(index).name));
+                lights.push(scene.lights.remove(index).name);
             }
             _ => {}
         }
     }
     if !scene.animation.tracks.is_empty() {
-        let gone = names.iter().map(|(is_light, name)| (*is_light, &**name));
+        let gone = objects.iter().map(|name| Owner::Object(name));
+        let gone = gone.chain(lights.iter().map(|name| Owner::Light(name)));
         scene.animation_mut().forget(&gone.collect());
     }
     let packs = items.iter().filter(|item| item.kind == Kind::Pack);
@@ -315,8 +319,12 @@ fn delete(scene: &mut Scene, mut items: Vec<Item>) -> Result<(), EditError> {
         .iter()
         .map(|&index| scene.color_packs.get_index(index));
     if let Some((name, _)) = names.flatten().find(|(name, _)| worn.contains(&***name)) {
-        let (name, users) = (name.clone(), scene.users_of_pack(name).join(", "));
-        return Err(EditError::PackInUse { name, users });
+        let users = Item::wearing(scene, name);
+        let users: Vec<&str> = users.filter_map(|user| user.name(scene)).collect();
+        return Err(EditError::PackInUse {
+            name: name.clone(),
+            users: users.join(", "),
+        });
     }
     for index in packs {
         scene.packs_mut().shift_remove_index(index);
@@ -335,11 +343,11 @@ fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), EditError> {
     match item.kind {
         Kind::Object => {
             to.clone_into(&mut scene.objects[item.index].name);
-            scene.animation_mut().follow_name(false, &from, to);
+            scene.animation_mut().follow_name(Owner::Object(&from), to);
         }
         Kind::Light => {
             to.clone_into(&mut scene.lights[item.index].name);
-            scene.animation_mut().follow_name(true, &from, to);
+            scene.animation_mut().follow_name(Owner::Light(&from), to);
         }
         Kind::Pack if scene.color_packs.contains_key(to) => {
             return Err(EditError::PackNameTaken(to.to_owned()));

@@ -6,7 +6,6 @@ use super::action::Mode;
 use super::animation_state::Pending;
 use super::document::Editor;
 use super::edit::Edit;
-use super::selection::Selected;
 use super::timeline::{MEASURED_AT, Recording, Time};
 use crate::animate::{Seen, Worst, resampled, simplify};
 use crate::scene::{Animation, Camera, Key, MAX_SECONDS, Sample, Take};
@@ -50,20 +49,9 @@ impl Editor {
             Time::Repeat(repeat) => timeline.repeat = repeat,
             Time::Speed(speed) => timeline.speed = speed,
             Time::LookThrough(looks_through) => {
-                timeline.looks_through = looks_through;
+                timeline.wants_shot = looks_through;
                 timeline.stays_outside = !looks_through;
                 self.leave_still();
-            }
-            Time::SelectKeys(mut places) => {
-                // What was to move them may have been refused.
-                places.retain(|place| animation.at_place(*place).is_some());
-                let selected = if places.is_empty() {
-                    Selected::Camera
-                } else {
-                    Selected::Keys
-                };
-                timeline.selected = places;
-                self.select(selected);
             }
             Time::Record if is_making_keys => {
                 self.notify("The last flight is still becoming keys".to_owned());
@@ -108,7 +96,7 @@ impl Editor {
     /// What moves is looked at as it moves: through the shot camera, unless the user has chosen to
     /// stay outside.
     fn show_time(&mut self) {
-        self.animation_state.timeline.looks_through = !self.animation_state.timeline.stays_outside;
+        self.animation_state.timeline.wants_shot = !self.animation_state.timeline.stays_outside;
         self.leave_still();
     }
 

@@ -3,8 +3,8 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::selection::Selected;
-use crate::scene::{Keys, Scene};
+use super::selection::Selection;
+use crate::scene::Scene;
 
 /// Steps that can be taken back; older ones are forgotten.
 const MOST_STEPS: usize = 500;
@@ -17,9 +17,7 @@ pub struct Snapshot {
     /// The scene.
     pub scene: Arc<Scene>,
     /// What was selected.
-    pub selected: Selected,
-    /// The keys that were selected.
-    pub keys: Keys,
+    pub selection: Selection,
 }
 
 /// A step that was done, or taken back.
@@ -129,8 +127,7 @@ mod tests {
     fn snapshot(scene: &Scene) -> Snapshot {
         Snapshot {
             scene: Arc::new(scene.clone()),
-            selected: Selected::default(),
-            keys: Keys::default(),
+            selection: Selection::default(),
         }
     }
 

@@ -64,6 +64,18 @@ impl Item {
         lights.chain((0..scene.objects.len()).map(Self::object))
     }
 
+    /// The lights, by their markers, and the objects of a scene that wear a pack.
+    pub fn wearing<'a>(scene: &'a Scene, pack: &'a str) -> impl Iterator<Item = Self> + 'a {
+        let lights = scene.lights.iter().enumerate().filter(move |(_, light)| {
+            let marker = light.marker.as_ref();
+            marker.is_some_and(|marker| marker.color_pack == pack)
+        });
+        let objects = scene.objects.iter().enumerate();
+        let objects = objects.filter(move |(_, object)| object.color_pack == pack);
+        let lights = lights.map(|(index, _)| Self::light(index));
+        lights.chain(objects.map(|(index, _)| Self::object(index)))
+    }
+
     /// Whether it shines, or is visible; `None` for packs, and where there is none.
     pub fn is_visible(self, scene: &Scene) -> Option<bool> {
         match self.kind {

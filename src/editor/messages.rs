@@ -18,23 +18,23 @@ const BROKEN: &str = "broken meshes";
 const MOST_NAMES: usize = 3;
 
 impl Editor {
+    fn say(&mut self, is_error: bool, about: &'static str, text: String) {
+        self.messages.push(Message {
+            is_error,
+            text,
+            about,
+        });
+    }
+
     /// Tells the user something.
     pub fn notify(&mut self, text: String) {
-        self.messages.push(Message {
-            is_error: false,
-            text,
-            about: "",
-        });
+        self.say(false, "", text);
     }
 
     /// Tells the user what the last step has done; nothing any more once that is undone.
     pub fn notify_of_step(&mut self, text: String) {
         self.told_of = self.revision();
-        self.messages.push(Message {
-            is_error: false,
-            text,
-            about: STEP,
-        });
+        self.say(false, STEP, text);
     }
 
     /// What was said of the last step is forgotten, if there was no other since: it is undone.
@@ -46,11 +46,7 @@ impl Editor {
 
     /// An action is begun: what was said of it before is forgotten.
     pub fn begin(&mut self, about: &'static str) {
-        self.messages.push(Message {
-            is_error: false,
-            text: String::new(),
-            about,
-        });
+        self.say(false, about, String::new());
     }
 
     /// Tells the user that something went wrong.
@@ -60,11 +56,7 @@ impl Editor {
 
     /// Tells the user that something went wrong in an action, see [`Self::begin`].
     pub fn report_error_in(&mut self, about: &'static str, text: String) {
-        self.messages.push(Message {
-            is_error: true,
-            text,
-            about,
-        });
+        self.say(true, about, text);
     }
 
     /// Says which meshes could not be read.
@@ -94,19 +86,33 @@ impl Editor {
         self.begin(BROKEN);
     }
 
-    /// What is not there any more after these objects were joined or taken apart: keys of values, and color packs that
-    /// all but the first wore.
-    pub(super) fn lost_by_joining(&self, joined: &[usize], next: &Scene) -> Option<String> {
-        let (first, others) = joined.split_first()?;
+    /// What is not there any more after things were deleted, or these objects joined or taken apart.
+    pub(super) fn lost(&self, joined: &[usize], next: &Scene) -> Option<String> {
+        let lost: Vec<String> = self
+            .lost_keys(next)
+            .into_iter()
+            .chain(self.lost_looks(joined))
+            .collect();
+        (!lost.is_empty()).then(|| lost.join("; "))
+    }
+
+    fn lost_keys(&self, next: &Scene) -> Option<String> {
         let kept = next.animation.tracks.iter().map(|track| &track.target);
         let kept: HashSet<&Target> = kept.collect();
         let tracks = self.scene.animation.tracks.iter();
         let targets = tracks.map(|track| &track.target);
         let lost = targets.filter(|target| !kept.contains(target));
         let keys = listed(lost.map(Target::name));
-        let keys = keys.map(|names| format!("there are no keys of {names} any more"));
+        keys.map(|names| format!("there are no keys of {names} any more"))
+    }
+
+    /// Color packs that all but the first wore, and smoothness.
+    fn lost_looks(&self, joined: &[usize]) -> Vec<String> {
+        let Some((first, others)) = joined.split_first() else {
+            return Vec::new();
+        };
         let pack = |index: &usize| Some(&self.scene.objects.get(*index)?.color_pack);
-        let own = pack(first)?;
+        let own = pack(first).map_or("", String::as_str);
         let packs: IndexSet<&String> = others.iter().filter_map(pack).collect();
         let packs = packs.into_iter().filter(|pack| *pack != own).cloned();
         let packs =
@@ -116,8 +122,7 @@ impl Editor {
             matches!(shape, Some(Shape::Mesh(mesh)) if mesh.smooth > 0.0)
         });
         let flat = flat.map(|_| "its faces are shaded flat now".to_owned());
-        let lost: Vec<String> = keys.into_iter().chain(packs).chain(flat).collect();
-        (!lost.is_empty()).then(|| lost.join("; "))
+        packs.into_iter().chain(flat).collect()
     }
 
     /// Tells why an edit is not made.

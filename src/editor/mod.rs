@@ -8,6 +8,8 @@ mod selection;
 
 mod names;
 
+mod arrange;
+
 mod adding;
 
 mod clipboard;
@@ -33,13 +35,14 @@ mod outside;
 mod flight;
 
 pub use action::{Action, Message, Mode};
+pub use arrange::Arrangement;
 pub use clipboard::{excerpt, read};
 pub use document::Editor;
 pub use edit::{Edit, EditError};
 pub use fly::Motion;
 pub use item::{Item, Kind};
 pub use names::{free_bookmark_name, free_group_name};
-pub use selection::{Selected, Selection};
+pub use selection::Selection;
 pub use timeline::{MEASURED_AT, Repeat, Time, Timeline};
 
 #[cfg(test)]

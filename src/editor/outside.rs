@@ -60,7 +60,7 @@ impl Editor {
         self.history.end_gesture(&self.scene);
         self.history.record("Reload".to_owned(), before, &theirs);
         self.history.end_gesture(&theirs);
-        self.follow(&theirs);
+        self.selection = self.followed(&theirs);
         self.set_scene(theirs);
         self.notify_of_step(format!(
             "{} was changed by another program and read anew; undo brings yours back",

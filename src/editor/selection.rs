@@ -5,10 +5,10 @@ use std::collections::{HashMap, HashSet};
 use glam::DVec3;
 
 use super::item::{Item, Kind};
-use crate::scene::Scene;
+use crate::scene::{Keys, Scene};
 
-/// What the inspector shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// What is selected, and shown in the inspector.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Selection {
     /// The camera.
     #[default]
@@ -17,41 +17,33 @@ pub enum Selection {
     World,
     /// The still picture's size and reflections.
     Render,
-    /// One entry of a list of the scene.
-    Item(Item),
-    /// The selected keys.
-    Keys,
-}
-
-/// All that is selected.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum Selected {
-    /// The camera.
-    #[default]
-    Camera,
-    /// Ambient intensity, background, light visualization.
-    World,
-    /// The still picture's size and reflections.
-    Render,
-    /// Items, at least one: the one that the inspector shows comes last.
+    /// Items, at least one: the one that was selected last comes last.
     Items(Vec<Item>),
-    /// The keys that the timeline knows.
-    Keys,
+    /// Keys of the animation, at least one.
+    Keys(Keys),
 }
 
-impl From<Selection> for Selected {
-    fn from(selection: Selection) -> Self {
-        match selection {
-            Selection::Camera => Self::Camera,
-            Selection::World => Self::World,
-            Selection::Render => Self::Render,
-            Selection::Item(item) => Self::Items(vec![item]),
-            Selection::Keys => Self::Keys,
+/// What [`Selection::keys`] has where other things are selected.
+static NO_KEYS: Keys = Keys::new();
+
+impl From<Item> for Selection {
+    fn from(item: Item) -> Self {
+        Self::Items(vec![item])
+    }
+}
+
+/// The camera, if there are none.
+impl From<Keys> for Selection {
+    fn from(keys: Keys) -> Self {
+        if keys.is_empty() {
+            Self::Camera
+        } else {
+            Self::Keys(keys)
         }
     }
 }
 
-impl Selected {
+impl Selection {
     /// The group that is selected: all of its objects, of which there are several, and nothing else.
     pub fn group<'a>(&self, scene: &'a Scene) -> Option<&'a str> {
         let group_of = |item: &Item| {
@@ -81,11 +73,24 @@ impl Selected {
         }
     }
 
-    /// All items; the one that the inspector shows comes last.
+    /// All items; the one that was selected last comes last.
     pub fn items(&self) -> &[Item] {
         match self {
             Self::Items(items) => items,
             _ => &[],
+        }
+    }
+
+    /// The item that was selected last.
+    pub fn item(&self) -> Option<Item> {
+        self.items().last().copied()
+    }
+
+    /// All keys.
+    pub fn keys(&self) -> &Keys {
+        match self {
+            Self::Keys(keys) => keys,
+            _ => &NO_KEYS,
         }
     }
 
@@ -124,6 +129,16 @@ impl Selected {
         (!middles.is_empty()).then(|| middles.iter().sum::<DVec3>() / middles.len() as f64)
     }
 
+    /// What all that have a place are turned about: a single thing about a point of its own.
+    pub fn pivot(&self, scene: &Scene) -> Option<DVec3> {
+        match self.items() {
+            [item] if item.kind == Kind::Object => {
+                Some(scene.objects.get(item.index)?.shape.pivot())
+            }
+            _ => self.middle(scene),
+        }
+    }
+
     /// The same with `item`, or without it if it was among them.
     #[must_use]
     pub fn toggled(&self, item: Item) -> Self {
@@ -133,10 +148,30 @@ impl Selected {
         Self::all(others.chain(new))
     }
 
+    /// Without what is not in the scene; the last of several items, where others are gone.
+    #[must_use]
+    pub fn within(self, scene: &Scene) -> Self {
+        let is_there = |item: &Item| item.name(scene).is_some();
+        match self {
+            Self::Items(items) if !items.iter().all(is_there) => {
+                Self::all(items.last().copied().filter(is_there))
+            }
+            Self::Keys(mut keys) => {
+                keys.retain(|place| scene.animation.at_place(*place).is_some());
+                keys.into()
+            }
+            other => other,
+        }
+    }
+
     /// The same things in another state of the scene, by their names; without those that are not there. A
-    /// thing of another name in the same place is the same, if the old name is gone.
+    /// thing of another name in the same place is the same, if the old name is gone. Of keys in other places, only
+    /// who moved them knows where they are: the camera.
     #[must_use]
     pub fn followed(&self, from: &Scene, to: &Scene) -> Self {
+        if matches!(self, Self::Keys(_)) && !to.animation.has_places_of(&from.animation) {
+            return Self::Camera;
+        }
         let stays = |item: &Item| item.name(from) == item.name(to);
         if self.items().iter().all(stays) {
             return self.clone();
@@ -155,19 +190,5 @@ impl Selected {
             found.or_else(|| same_length(item.kind).then_some(*item))
         });
         Self::all(followed)
-    }
-
-    /// What the inspector shows of it.
-    pub fn selection(&self) -> Selection {
-        match self {
-            Self::Camera => Selection::Camera,
-            Self::World => Selection::World,
-            Self::Render => Selection::Render,
-            Self::Items(items) => items
-                .last()
-                .copied()
-                .map_or_else(Selection::default, Selection::Item),
-            Self::Keys => Selection::Keys,
-        }
     }
 }

@@ -154,7 +154,7 @@ fn a_pack_in_use_stays_and_a_renamed_one_is_followed() {
         "glass".to_owned(),
     )));
     assert_eq!(editor.scene().objects[3].color_pack, "glass");
-    assert_eq!(editor.scene().users_of_pack("glass").len(), 6);
+    assert_eq!(Item::wearing(editor.scene(), "glass").count(), 6);
 }
 
 #[test]
@@ -190,7 +190,7 @@ fn a_unique_pack_leaves_the_others_alone() {
         scene.color_packs["tetrahedron 2"],
         scene.color_packs["tetrahedron"]
     );
-    assert_eq!(scene.users_of_pack("tetrahedron").len(), 5);
+    assert_eq!(Item::wearing(scene, "tetrahedron").count(), 5);
 }
 
 #[test]
@@ -222,8 +222,9 @@ fn any_edit() -> impl Strategy<Value = Action> {
         any::<bool>().prop_map(Edit::LightVisualization),
         Just(Edit::AddPack),
         Just(Edit::AddLight(DVec3::new(1.0, 2.0, 3.0))),
-        (0..3_usize).prop_map(|kind| {
-            Edit::AddObject(Shape::examples(DVec3::new(0.0, 0.0, 0.0), 10.0)[kind].clone())
+        (0..5_usize).prop_map(|kind| {
+            let shape = Shape::examples(DVec3::ZERO, 10.0)[kind].clone();
+            Edit::AddObject(shape.kind(), shape)
         }),
         prop::collection::vec(item.clone(), 1..4).prop_map(Edit::Delete),
         item.clone().prop_map(Edit::Duplicate),
@@ -253,20 +254,54 @@ proptest! {
 }
 
 #[test]
+fn copies_stand_beside_each_other_however_they_were_made() {
+    let mut scene = Scene::demo();
+    scene.objects[0].shape = Sphere {
+        center: DVec3::new(34.7, 0.0, 0.0),
+        radius: 6.8,
+    }
+    .into();
+    let mut editor = Editor::demo();
+    let edit = Edit::object(0, scene.objects[0].clone(), "center");
+    editor.apply(Action::Edit(edit));
+    for place in [0, 1, 0] {
+        // A copy of a copy is rounded otherwise than the second one of the first.
+        editor.apply(Action::Edit(Edit::Duplicate(Item::object(place))));
+    }
+    for _ in 0..3 {
+        editor.apply(Action::Edit(Edit::Duplicate(Item::light(0))));
+    }
+    let scene = editor.scene();
+    let balls = scene.objects.iter().take(4);
+    let mut places: Vec<f64> = balls.map(|object| object.shape.middle().x).collect();
+    places.sort_by(f64::total_cmp);
+    assert!(
+        places.windows(2).all(|pair| pair[1] - pair[0] > 1.0),
+        "{places:?}"
+    );
+    let mut lights: Vec<f64> = scene.lights.iter().map(|light| light.position.x).collect();
+    lights.sort_by(f64::total_cmp);
+    assert!(
+        lights.windows(2).all(|pair| pair[1] - pair[0] > 1.0),
+        "{lights:?}"
+    );
+}
+
+#[test]
 fn what_is_selected_is_followed_by_its_name() {
     let mut editor = Editor::demo();
     let names = |editor: &Editor| -> Vec<String> {
-        let items = editor.selected().items().iter();
+        let items = editor.selection().items().iter();
         let names = items.filter_map(|item| item.name(editor.scene()));
         names.map(str::to_owned).collect()
     };
     let three = [Item::object(8), Item::object(4), Item::object(3)];
-    editor.apply(Action::Select(Selected::all(three)));
+    editor.apply(Action::Select(Selection::all(three)));
     editor.apply(Action::Edit(Edit::Delete(vec![Item::object(0)])));
     assert_eq!(names(&editor), ["Plane", "Triangle 3", "Triangle 2"]);
     editor.apply(Action::Edit(Edit::Delete(vec![Item::object(3)])));
     assert_eq!(names(&editor), ["Plane", "Triangle 2"]);
-    assert_eq!(editor.selection(), Selection::Item(Item::object(2)));
+    assert_eq!(editor.selection().item(), Some(Item::object(2)));
     let renamed = Edit::Rename(Item::object(2), "Roof".to_owned());
     editor.apply(Action::Edit(renamed));
     assert_eq!(names(&editor), ["Plane", "Roof"]);

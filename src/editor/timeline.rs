@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::animate::{Seen, Worst};
-use crate::scene::{Animation, Camera, Keys, MAX_KEYS, Orientation, Take};
+use crate::scene::{Animation, Camera, MAX_KEYS, Orientation, Take};
 
 /// The picture that a deviation is told for, in pixels.
 pub const MEASURED_AT: f64 = 1024.0;
@@ -37,8 +37,6 @@ pub enum Time {
     Speed(f64),
     /// Show the picture of the shot camera, or the one of the view.
     LookThrough(bool),
-    /// Select these keys.
-    SelectKeys(Keys),
     /// Start to record what the camera does.
     Record,
     /// The camera as it is, at this time of the clock in seconds, is part of the recording.
@@ -64,9 +62,7 @@ pub struct Timeline {
     /// 1 is real time.
     pub speed: f64,
     /// Whether the picture is that of the shot camera, if there are keys.
-    pub looks_through: bool,
-    /// The selected keys.
-    pub selected: Keys,
+    pub(super) wants_shot: bool,
     /// How far keys made of a take may be off, in pixels of a picture 1024 high.
     pub tolerance: f64,
     /// Where the keys are off the recording the most, in the same pixels; `None` without one.
@@ -96,8 +92,7 @@ impl Default for Timeline {
             is_playing: false,
             repeat: Repeat::default(),
             speed: 1.0,
-            looks_through: false,
-            selected: Keys::new(),
+            wants_shot: false,
             tolerance: 1.0,
             worst: None,
             jumps: 0,
@@ -110,6 +105,11 @@ impl Default for Timeline {
 }
 
 impl Timeline {
+    /// Whether the picture is that of the shot camera.
+    pub fn looks_through(&self, animation: &Animation) -> bool {
+        self.wants_shot && !animation.keys.is_empty()
+    }
+
     /// Samples recorded so far, and their seconds; `None` while nothing is recorded.
     pub fn recorded(&self) -> Option<(usize, f64)> {
         let take = &self.recording.as_ref()?.take;

@@ -102,21 +102,23 @@ pub fn write_light(
 /// Writes levels as a PNG or PPM file, without alpha.
 ///
 /// # Errors
-/// What the encoder says, or the system; [`io::ErrorKind::Interrupted`] once nobody wants the picture any more.
+/// What the encoder says, or the system; that the format holds light; [`io::ErrorKind::Interrupted`] once nobody wants the picture any more.
 pub fn write_levels(
     rows: &mut impl Rows<[u8; 4]>,
-    is_packed: bool,
+    format: Format,
     file: &mut impl Write,
 ) -> Result<(), ImageError> {
-    if is_packed {
-        write_png(rows, file).map_err(|error| match error {
+    match format {
+        Format::Png => write_png(rows, file).map_err(|error| match error {
             png::EncodingError::IoError(error) => error,
             other => io::Error::other(other),
-        })?;
-    } else {
-        let (width, height) = rows.size();
-        write!(file, "P6\n{width} {height} 255\n")?;
-        write_rows(rows, file)?;
+        })?,
+        Format::Ppm => {
+            let (width, height) = rows.size();
+            write!(file, "P6\n{width} {height} 255\n")?;
+            write_rows(rows, file)?;
+        }
+        Format::Exr => return Err(io::Error::other("EXR files hold light").into()),
     }
     Ok(())
 }
@@ -173,7 +175,7 @@ impl Image {
     /// What the encoder says, or the system.
     pub fn encode(&self, format: Format, file: &mut (impl Write + Seek)) -> Result<(), ImageError> {
         match format {
-            Format::Png | Format::Ppm => write_levels(&mut &*self, format == Format::Png, file),
+            Format::Png | Format::Ppm => write_levels(&mut &*self, format, file),
             Format::Exr => self.to_linear().encode(file),
         }
     }

@@ -131,7 +131,7 @@ impl Drawing<'_> {
         file: &mut (impl Write + Seek),
     ) -> Result<(), ImageError> {
         match self {
-            Self::Levels(strips) => write_levels(strips, format == Format::Png, file),
+            Self::Levels(strips) => write_levels(strips, format, file),
             Self::Linear(strips) => write_light(strips, file),
         }
     }

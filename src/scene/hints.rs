@@ -85,7 +85,9 @@ pub fn hints(scene: &Scene) -> Vec<Hint> {
         }
     }
     let worn = scene.worn_packs();
-    for (index, (name, _)) in scene.color_packs.iter().enumerate() {
+    // Where nothing is yet, the first thing is going to wear one.
+    let packs = scene.color_packs.iter().enumerate();
+    for (index, (name, _)) in packs.filter(|_| !scene.objects.is_empty()) {
         if !worn.contains(name.as_str()) {
             let words = format!("No object wears {name}");
             add(words, About::Pack(index), false);
@@ -182,6 +184,11 @@ mod tests {
 
     fn words(scene: &Scene) -> Vec<String> {
         hints(scene).into_iter().map(|hint| hint.words).collect()
+    }
+
+    #[test]
+    fn a_scene_of_nothing_has_nothing_to_mend() {
+        assert_eq!(hints(&Scene::empty()), []);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::animation::{Target, Track};
+use super::animation::{Owner, Target, Track};
 use super::list::List;
 use super::names::Names;
 use super::object::Object;
@@ -129,7 +129,7 @@ impl Scene {
             return;
         }
         let animation = Arc::make_mut(&mut self.animation);
-        animation.forget(&gone.map(|object| (false, object.name.as_str())).collect());
+        animation.forget(&gone.map(|object| Owner::Object(&object.name)).collect());
         let turns = Target::ObjectRotation(object.name.clone());
         animation.tracks.retain(|track| track.target != turns);
         let moves = Target::ObjectPosition(object.name.clone());
@@ -182,9 +182,10 @@ impl Scene {
         let after = self.objects.iter().skip(index + 1).cloned();
         self.objects = before.chain(pieces).chain(after).collect::<List<_>>();
         // What moved it would move one of them.
-        let is_moved = |track: &Track| track.target.is_of(false, &name);
+        let own = Owner::Object(&name);
+        let is_moved = |track: &Track| track.target.owner() == Some(own);
         if self.animation.tracks.iter().any(is_moved) {
-            Arc::make_mut(&mut self.animation).forget(&HashSet::from([(false, name.as_str())]));
+            Arc::make_mut(&mut self.animation).forget(&HashSet::from([own]));
         }
         places
     }

@@ -4,7 +4,9 @@ use std::collections::{BTreeSet, HashSet};
 
 use glam::DVec3;
 
-use super::animation::{Animation, Easing, Interpolation, Key, MAX_SECONDS, Target, Track, Value};
+use super::animation::{
+    Animation, Easing, Interpolation, Key, MAX_SECONDS, Owner, Target, Track, Value,
+};
 use super::camera::Camera;
 
 /// Keys nearer to each other than this share of a frame are one.
@@ -198,19 +200,17 @@ impl Animation {
     }
 
     /// What belongs to a light or object follows its new name.
-    pub fn follow_name(&mut self, is_light: bool, name: &str, to: &str) {
+    pub fn follow_name(&mut self, owner: Owner, to: &str) {
         let tracks = self.tracks.iter_mut();
-        for track in tracks.filter(|track| track.target.is_of(is_light, name)) {
+        for track in tracks.filter(|track| track.target.owner() == Some(owner)) {
             track.target = track.target.renamed(to);
         }
     }
 
-    /// What belongs to those that are gone goes, too: each is a light or not, and has a name.
-    pub fn forget(&mut self, gone: &HashSet<(bool, &str)>) {
-        self.tracks.retain(|track| {
-            let owner = track.target.owner();
-            !owner.is_some_and(|owner| gone.contains(&(track.target.is_of_light(), owner)))
-        });
+    /// What belongs to those that are gone goes, too.
+    pub fn forget(&mut self, gone: &HashSet<Owner>) {
+        let is_gone = |track: &Track| track.target.owner().is_some_and(|it| gone.contains(&it));
+        self.tracks.retain(|track| !is_gone(track));
     }
 }
 

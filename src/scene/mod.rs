@@ -69,12 +69,12 @@ mod examples;
 mod recovery;
 
 pub use animation::{
-    Animation, Easing, FRAME_RATES, Interpolation, Key, Lens, MAX_KEYS, MAX_SECONDS, Sample, Take,
-    Target, Track, Value,
+    Animation, Easing, FRAME_RATES, Interpolation, Key, Lens, MAX_KEYS, MAX_SECONDS, Owner, Sample,
+    Take, Target, Track, Value,
 };
 pub use aspect::Aspect;
 pub use camera::{Bookmark, Camera, Framing, Projection};
-pub use check::{Problem, check, check_edit};
+pub use check::{MAX_COORDINATE, MAX_FACTOR, PROJECTION_DISTANCES, Problem, check, check_edit};
 pub use coincidence::{Coincidence, Extent, coincidences};
 pub use differences::differences;
 pub use direction::unit;
@@ -94,7 +94,7 @@ pub use methods::{
 pub use names::Names;
 pub(crate) use notation::method;
 pub use notation::{format_number, parse_vec3};
-pub use object::{Light, LightObj, Object};
+pub use object::{Light, LightObj, Object, default_intensity};
 pub use orientation::Orientation;
 pub use recovery::{Leftover, Recovery};
 pub use render::{Chosen, MAX_REFLECTIONS, MAX_SIDE, Render, Setting, VisitSetting};
@@ -103,4 +103,4 @@ pub use shape::{
     Triangle,
 };
 pub use target::Owners;
-pub use whole::{Scene, VERSION, around, light_pack};
+pub use whole::{Scene, VERSION, around, default_ambient_intensity, light_pack};

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::animation::{Target, Value};
+use super::animation::{Owner, Target, Value};
 use super::shape::Shape;
 use super::whole::Scene;
 
@@ -83,12 +83,11 @@ impl<'a> Owners<'a> {
     pub fn of(scene: &Scene, targets: impl IntoIterator<Item = &'a Target>) -> Self {
         let (mut lights, mut objects) = (HashSet::new(), HashSet::new());
         for target in targets {
-            let wanted = if target.is_of_light() {
-                &mut lights
-            } else {
-                &mut objects
+            match target.owner() {
+                Some(Owner::Light(name)) => lights.insert(name),
+                Some(Owner::Object(name)) => objects.insert(name),
+                None => false,
             };
-            wanted.extend(target.owner());
         }
         Self {
             lights: places(lights, scene.lights.iter().map(|light| &*light.name)),
@@ -98,12 +97,11 @@ impl<'a> Owners<'a> {
 
     /// Where the one of this target is in its list.
     pub fn index(&self, target: &Target) -> Option<usize> {
-        let places = if target.is_of_light() {
-            &self.lights
-        } else {
-            &self.objects
-        };
-        places.get(target.owner()?).copied()
+        match target.owner()? {
+            Owner::Light(name) => self.lights.get(name),
+            Owner::Object(name) => self.objects.get(name),
+        }
+        .copied()
     }
 
     /// [`Target::get`] for one of the targets in this scene.

@@ -281,22 +281,14 @@ impl Scene {
         })
     }
 
-    /// The names of the objects and lights that use the pack `name`, in outliner order.
-    pub fn users_of_pack(&self, name: &str) -> Vec<&str> {
-        let lights = self.lights.iter().filter(|light| {
-            light
-                .marker
-                .as_ref()
-                .is_some_and(|marker| marker.color_pack == name)
-        });
-        let objects = self
-            .objects
-            .iter()
-            .filter(|object| object.color_pack == name);
-        lights
-            .map(|light| light.name.as_str())
-            .chain(objects.map(|o| o.name.as_str()))
-            .collect()
+    /// The box around everything that ends, or around where endless planes are known to be.
+    pub fn surroundings(&self) -> Option<(DVec3, DVec3)> {
+        self.objects_bounds().or_else(|| self.bounds())
+    }
+
+    /// The middle of that.
+    pub fn middle(&self) -> Option<DVec3> {
+        self.surroundings().map(|(low, high)| low.midpoint(high))
     }
 }
 
@@ -305,7 +297,8 @@ pub fn around(boxes: impl Iterator<Item = (DVec3, DVec3)>) -> Option<(DVec3, DVe
     boxes.reduce(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)))
 }
 
-fn default_ambient_intensity() -> f64 {
+/// Ambient intensity of a scene whose file says nothing about it.
+pub fn default_ambient_intensity() -> f64 {
     0.5
 }
 

@@ -39,9 +39,9 @@ impl Addition {
                     // What is there stands on it; where nothing is, it is the ground.
                     (Shape::Plane(_), Some(floor)) => {
                         let down = DVec3::Y * (floor - shape.position().y);
-                        Edit::AddObject(shape.moved(down))
+                        Edit::AddObject(shape.kind(), shape.moved(down))
                     }
-                    _ => Edit::AddObject(shape),
+                    _ => Edit::AddObject(shape.kind(), shape),
                 }
             }
             Self::Solid(place) => {
@@ -51,7 +51,7 @@ impl Addition {
                     smooth: solid.smooth,
                     ..Mesh::of((solid.make)(size))
                 };
-                Edit::AddMesh(solid.name, stood(scene, mesh, size))
+                Edit::AddObject(solid.name, stood(scene, mesh, size).into())
             }
             Self::Light => Edit::AddLight(at + DVec3::new(0.0, size, 0.0)),
             Self::Pack => Edit::AddPack,
@@ -290,7 +290,7 @@ mod tests {
             let mut scene = Scene::demo();
             scene.camera.projection = projection;
             for (addition, _, name) in Addition::all() {
-                let Edit::AddMesh(..) = addition.edit(&scene) else {
+                let Edit::AddObject(_, Shape::Mesh(_)) = addition.edit(&scene) else {
                     continue;
                 };
                 let mut with = scene.clone();

@@ -5,7 +5,7 @@ use egui::{Context, Event, Popup, SurrenderFocusOn, Theme, Ui, ViewportCommand};
 use serde::de::DeserializeOwned;
 
 use super::autosave::Autosave;
-use super::commands::{Command, is_about_files, pressed};
+use super::commands::{Command, Next, goes_beside_popups, is_about_files, pressed};
 use super::examples::Examples;
 use super::exports::Exports;
 use super::files::Files;
@@ -28,7 +28,7 @@ use super::timeline::{Overlay, Thumbs, TimelinePanel};
 use super::toasts::Toasts;
 use super::tools::{Lens, Tools};
 use super::why::Why;
-use super::wishes::{FileOutcome, Next};
+use super::wishes::FileOutcome;
 use super::{help, theme};
 use crate::editor::{Action, Editor, Mode, Time};
 use crate::image::Image;
@@ -189,6 +189,11 @@ impl App {
         let mut commands = std::mem::take(&mut self.deferred);
         if keys_are_free {
             commands.extend(pressed(ui, self.flying.is_flying(), |_| true));
+        } else if Popup::is_any_open(ui)
+            && !(ui.text_edit_focused() || self.is_asking() || self.is_gesture(ui))
+        {
+            // A color is picked in one, and a hint read.
+            commands.extend(pressed(ui, false, goes_beside_popups));
         } else if ui.text_edit_focused() && !self.files.is_asking() {
             // The text is taken over first, and the command runs when that is done.
             self.deferred = pressed(ui, false, is_about_files);

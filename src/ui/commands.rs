@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use egui::{Event, Key, KeyboardShortcut, Modifiers, Theme, Ui};
 use glam::DVec3;
 
+use super::dialogs::Ask;
 use super::layout::Part;
 use crate::animate::{Preset, Retime};
 use crate::scene::Aspect;
@@ -13,24 +14,12 @@ use crate::scene::Aspect;
 /// Something the user asks of the window as a whole.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
-    /// Start an empty document.
-    New,
-    /// Open the example in this place of [`crate::scene::EXAMPLES`].
-    OpenExample(usize),
-    /// Choose a file and open it.
-    Open,
-    /// Open this file.
-    OpenRecent(PathBuf),
-    /// Choose a mesh file and add it to the scene.
-    ImportMesh,
+    /// Leave the document, asking about unsaved changes.
+    Leave(Next),
+    /// Choose a file, or a folder, for this.
+    Ask(Ask),
     /// Write the document to its file.
     Save,
-    /// Choose a file and write the document to it.
-    SaveAs,
-    /// Choose a file and write the still picture to it.
-    SaveImage,
-    /// Leave, asking about unsaved changes.
-    Quit,
     /// Take the last step back.
     Undo,
     /// Bring the step taken back again.
@@ -123,16 +112,6 @@ pub enum Command {
     Retime(Retime),
     /// Open the window of exports, or close it.
     Export,
-    /// Choose a file and write a job for a render farm to it.
-    ExportJob,
-    /// Choose a file and write the scene for POV-Ray to it.
-    ExportPovray,
-    /// Choose the folder of an export.
-    ExportFolder,
-    /// Choose a file and take keys from it.
-    ImportPath,
-    /// Choose a file and write the keys to it.
-    ExportPath,
     /// Everything that is selected into the picture.
     FrameSelected,
     /// Everything into the picture.
@@ -155,6 +134,8 @@ pub enum Command {
     PictureAlone,
     /// Dark or light panels.
     Theme(Theme),
+    /// Larger or smaller letters and buttons.
+    Zoom(Zoom),
     /// Explain what a ray sees: from where, and in which direction.
     Why(DVec3, DVec3),
     /// Hide or show what is selected.
@@ -163,6 +144,32 @@ pub enum Command {
     Find,
     /// Show or hide the list of shortcuts.
     Shortcuts,
+}
+
+/// How large letters and buttons are to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Zoom {
+    /// A tenth larger.
+    In,
+    /// A tenth smaller.
+    Out,
+    /// As the desktop says.
+    Usual,
+}
+
+/// What is done once unsaved changes are out of the way.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Next {
+    /// Start an empty document.
+    New,
+    /// Start from the example in this place of [`crate::scene::EXAMPLES`].
+    Example(usize),
+    /// Choose a file and open it.
+    Choose,
+    /// Open this file.
+    Open(PathBuf),
+    /// Close the window.
+    Quit,
 }
 
 /// A key, what it does and in which words.
@@ -193,8 +200,8 @@ const fn alt(key: Key) -> KeyboardShortcut {
 }
 
 macro_rules! keys {
-    ($($command:ident [$($key:expr),+] $what:literal,)*) => {
-        &[$(Shortcut { command: Command::$command, keys: &[$($key),+], what: $what }),*]
+    ($($command:ident $(($with:expr))? [$($key:expr),+] $what:literal,)*) => {
+        &[$(Shortcut { command: Command::$command $(($with))?, keys: &[$($key),+], what: $what }),*]
     };
 }
 
@@ -213,13 +220,13 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     ViewRight [ctrl(Key::Num3)] "View from the right",
     ViewTop [ctrl(Key::Num7)] "View from above",
     Escape [plain(Key::Escape)] "Leave what is going on; then deselect",
-    New [ctrl(Key::N)] "New scene",
-    Open [ctrl(Key::O)] "Open a scene",
-    SaveAs [ctrl_shift(Key::S)] "Save under another name",
+    Leave(Next::New) [ctrl(Key::N)] "New scene",
+    Leave(Next::Choose) [ctrl(Key::O)] "Open a scene",
+    Ask(Ask::SaveScene) [ctrl_shift(Key::S)] "Save under another name",
     Save [ctrl(Key::S)] "Save the scene",
     Export [ctrl_shift(Key::E)] "Export the animation",
-    SaveImage [ctrl(Key::E)] "Save the high-res picture",
-    Quit [ctrl(Key::Q)] "Quit",
+    Ask(Ask::SaveImage) [ctrl(Key::E)] "Save the high-res picture",
+    Leave(Next::Quit) [ctrl(Key::Q)] "Quit",
     Redo [ctrl_shift(Key::Z), ctrl(Key::Y)] "Redo",
     Undo [ctrl(Key::Z)] "Undo",
     Copy [ctrl(Key::C)] "Copy what is selected, as text",
@@ -248,6 +255,9 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     FirstFrame [ctrl(Key::Home)] "First frame",
     LastFrame [ctrl(Key::End), plain(Key::End)] "Last frame",
     PictureAlone [plain(Key::F11)] "Hide or show everything but the picture",
+    Zoom(Zoom::In) [ctrl(Key::Plus)] "Larger letters and buttons",
+    Zoom(Zoom::Out) [ctrl(Key::Minus)] "Smaller letters and buttons",
+    Zoom(Zoom::Usual) [ctrl(Key::Num0)] "Letters and buttons of usual size",
     Find [ctrl(Key::K)] "Find a command or a thing by name",
     Shortcuts [plain(Key::F1)] "Show these shortcuts",
 };
@@ -257,11 +267,23 @@ pub const KEYLESS: &[(Command, &str)] = &[
     (Command::Live, "Live view"),
     (Command::SelectKeys, "Select all keys"),
     (Command::ActualSize, "High-res picture at actual size"),
-    (Command::ImportMesh, "Import a mesh"),
-    (Command::ExportJob, "Export a job for a render farm"),
-    (Command::ExportPovray, "Export the scene for POV-Ray"),
-    (Command::ImportPath, "Import the path of the camera"),
-    (Command::ExportPath, "Export the path of the camera"),
+    (Command::Ask(Ask::ImportMesh), "Import a mesh"),
+    (
+        Command::Ask(Ask::ExportJob),
+        "Export a job for a render farm",
+    ),
+    (
+        Command::Ask(Ask::ExportPovray),
+        "Export the scene for POV-Ray",
+    ),
+    (
+        Command::Ask(Ask::ImportPath),
+        "Import the path of the camera",
+    ),
+    (
+        Command::Ask(Ask::ExportPath),
+        "Export the path of the camera",
+    ),
     (
         Command::SelectSamePack,
         "Select all objects with the same color pack",
@@ -335,13 +357,21 @@ pub fn key_of(ui: &Ui, command: &Command) -> Option<String> {
     Some(name_of(ui, shortcut.keys[0]))
 }
 
+/// What a button says that does this, with its key.
+pub fn with_key(ui: &Ui, words: &str, command: &Command) -> String {
+    let key = key_of(ui, command);
+    key.map_or_else(|| words.to_owned(), |key| format!("{words} ({key})"))
+}
+
+/// Whether the command is heard while a popup is open, which stays so.
+pub fn goes_beside_popups(command: &Command) -> bool {
+    matches!(command, Command::Undo | Command::Redo | Command::Save)
+}
+
 /// Whether the command is heard while a text is edited, which then ends.
 pub fn is_about_files(command: &Command) -> bool {
-    use Command::{Export, New, Open, Quit, Save, SaveAs, SaveImage};
-    matches!(
-        command,
-        Export | New | Open | Quit | Save | SaveAs | SaveImage
-    )
+    use Command::{Ask, Export, Leave, Save};
+    matches!(command, Ask(_) | Export | Leave(_) | Save)
 }
 
 /// A key as it is printed on it.

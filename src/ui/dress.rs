@@ -17,7 +17,7 @@ pub fn dropped_pack(response: &Response) -> Option<Item> {
 pub fn dressed(editor: &Editor, pack: Item, item: Item) -> Option<Edit> {
     let scene = editor.shown();
     let name = pack.name(scene)?;
-    let selected = editor.selected();
+    let selected = editor.selection();
     let one = [item];
     let items = if selected.has(item) {
         selected.items()

@@ -2,7 +2,7 @@
 
 use egui::{Button, Context, Image, TextureHandle, TextureOptions, Ui, load::SizedTexture, vec2};
 
-use super::commands::Command;
+use super::commands::{Command, Next};
 use super::hint::Hint as _;
 use super::requests::UiRequests;
 use super::upload::whole;
@@ -65,7 +65,7 @@ impl Examples {
             };
             let entry = ui.add(button.min_size(vec2(2.0 * size.x, size.y)));
             if entry.accessible_name(name).hint(words).clicked() {
-                out.commands.push(Command::OpenExample(place));
+                out.commands.push(Command::Leave(Next::Example(place)));
                 ui.close();
             }
         }

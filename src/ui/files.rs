@@ -7,13 +7,14 @@ use std::time::Duration;
 
 use egui::{Context, Ui};
 
+use super::commands::Next;
 use super::dialogs::{Ask, Dialogs};
 use super::folders::Folders;
 use super::interchange::{export_job, export_path, export_povray, import_path, imported};
 use super::outside::{OUTSIDE, Theirs, Watch};
 use super::prompts::{Answer, PathPrompt, ask_about_changes, ask_to_leave, ask_to_quit};
 use super::reading::{Read, Reading};
-use super::wishes::{Answered, FileOutcome, Next, PathRequest, Waiting};
+use super::wishes::{Answered, FileOutcome, PathRequest, Waiting};
 use crate::editor::{Action, Editor, Time};
 use crate::files::Stamp;
 use crate::scene::{Document, EXAMPLES, SceneError};
@@ -407,9 +408,7 @@ impl Files {
                 self.start(ctx, editor, Next::Open(reading.path));
             }
             Read::Scene(document) => self.opened(editor, &reading.path, *document),
-            Read::Mesh(Ok(file)) => {
-                imported(editor, &reading.path, file);
-            }
+            Read::Mesh(Ok(file)) => imported(editor, &reading.path, file),
             Read::Mesh(Err(error)) => {
                 editor.report_error_in(Ask::ImportMesh.title(), error.to_string());
             }

@@ -7,7 +7,8 @@ use egui::{
 };
 
 use super::add::Addition;
-use super::commands::{Command, KEYLESS, SHORTCUTS, name_of};
+use super::commands::{Command, KEYLESS, Next, SHORTCUTS, Zoom, name_of};
+use super::dialogs::Ask;
 use super::hint::Hint as _;
 use super::layout::Part;
 use super::obstacles::obstacle;
@@ -50,16 +51,19 @@ enum Target {
 }
 
 /// What menus and buttons call commands whose names here say more, in small letters.
-const ALSO: [(Command, &str); 9] = [
-    (Command::SaveAs, "save as"),
-    (Command::SaveImage, "save image"),
-    (Command::ExportJob, "export farm job"),
+const ALSO: [(Command, &str); 12] = [
+    (Command::Ask(Ask::SaveScene), "save as"),
+    (Command::Ask(Ask::SaveImage), "save image"),
+    (Command::Ask(Ask::ExportJob), "export farm job"),
     (Command::AddKey, "add key"),
     (Command::AddBookmark, "add this view"),
     (Command::FrameSelected, "frame what is selected"),
     (Command::FrameAll, "frame everything"),
     (Command::Timeline, "panel"),
     (Command::Lab, "panel"),
+    (Command::Zoom(Zoom::In), "zoom in"),
+    (Command::Zoom(Zoom::Out), "zoom out"),
+    (Command::Zoom(Zoom::Usual), "reset zoom"),
 ];
 
 impl Finder {
@@ -107,7 +111,8 @@ impl Finder {
         let (down, up) = (step(ui, Key::ArrowDown), step(ui, Key::ArrowUp));
         let field = TextEdit::singleline(&mut self.text)
             .hint_text("A command, an object, a light, a color pack, a setting")
-            .desired_width(f32::INFINITY);
+            .desired_width(f32::INFINITY)
+            .align(egui::Align2::LEFT_CENTER);
         let field = ui.add(field).hint("Enter does what is marked");
         field.request_focus();
         if field.changed() {
@@ -232,7 +237,7 @@ fn choices<'a>(
     });
     let examples = EXAMPLES.iter().enumerate().map(|(place, example)| {
         (
-            Command::OpenExample(place),
+            Command::Leave(Next::Example(place)),
             format!("Open the example: {}", example.name),
         )
     });
@@ -266,7 +271,7 @@ fn choices<'a>(
         let folder = path
             .parent()
             .map_or(String::new(), |it| it.display().to_string());
-        (Command::OpenRecent(path.clone()), name, folder)
+        (Command::Leave(Next::Open(path.clone())), name, folder)
     });
     all.chain(recent)
 }
@@ -315,7 +320,7 @@ fn things<'a>(
         Some(Find {
             name: name.to_owned(),
             aside: kind.to_owned(),
-            what: Target::Selection(Selection::Item(item)),
+            what: Target::Selection(Selection::from(item)),
             is_enabled: true,
         })
     })

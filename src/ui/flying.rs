@@ -248,8 +248,9 @@ fn is_down(ctx: &Context, flight: &FlightKey) -> bool {
 
 /// Flying speed in world units per second: of what is to be seen, however far away its lights are.
 fn speed(scene: &Scene) -> f64 {
-    let bounds = scene.objects_bounds().or_else(|| scene.bounds());
-    let extent = bounds.map_or(0.0, |(low, high)| (high - low).length());
+    let extent = scene
+        .surroundings()
+        .map_or(0.0, |(low, high)| (high - low).length());
     if extent > 0.0 {
         extent * EXTENTS_PER_SECOND
     } else {

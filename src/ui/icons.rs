@@ -19,7 +19,8 @@ pub use egui_material_icons::icons::{
 
 use super::hint::Hint as _;
 use super::theme::{GRID, ICON};
-use crate::scene::Shape;
+use crate::editor::{Item, Kind};
+use crate::scene::{Scene, Shape};
 
 /// The symbol of a shape.
 pub fn of_shape(shape: &Shape) -> MaterialIcon {
@@ -45,4 +46,16 @@ pub fn button(ui: &mut Ui, icon: MaterialIcon, name: &str) -> Response {
         ui.add(button).accessible_name(name).hint(name)
     })
     .inner
+}
+
+/// The symbol of an item.
+pub fn of_item(scene: &Scene, item: Item) -> MaterialIcon {
+    match item.kind {
+        Kind::Light => LIGHT,
+        Kind::Object => {
+            let object = scene.objects.get(item.index);
+            object.map_or(SPHERE, |object| of_shape(&object.shape))
+        }
+        Kind::Pack => PACK,
+    }
 }

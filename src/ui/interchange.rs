@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::dialogs::Ask;
 use crate::animate::{from_table, from_text, to_table, to_text};
-use crate::editor::{Action, Edit, Editor, Item, Selected, free_group_name};
+use crate::editor::{Action, Edit, Editor, Item, Selection, free_group_name};
 use crate::export::{Job, Pattern, Sequence, povray_text, write_job, write_text};
 use crate::files::is_same_file;
 use crate::image::Format;
@@ -167,7 +167,7 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
     if !is_made(editor, Edit::Each(edits, label)) {
         return;
     }
-    let parts = Selected::all((first..last).map(Item::object));
+    let parts = Selection::all((first..last).map(Item::object));
     editor.apply(Action::Select(parts));
     let path = path.display();
     let count = counted(count, "triangle");

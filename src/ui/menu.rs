@@ -6,7 +6,8 @@ use egui::containers::menu::{MenuConfig, SubMenuButton};
 use egui::{Button, DragValue, MenuBar, PopupCloseBehavior, Theme, Ui};
 
 use super::add::add_menu;
-use super::commands::Command;
+use super::commands::{Command, Next, Zoom};
+use super::dialogs::Ask;
 use super::examples::Examples;
 use super::flying::{FASTEST, SLOWEST};
 use super::hint::Hint as _;
@@ -33,16 +34,10 @@ pub fn show(
         ui.menu_button("Add", |ui| add_menu(ui, editor.shown(), out));
         ui.menu_button("View", |ui| view_menu(ui, editor, layout, out));
         ui.menu_button("Render", |ui| {
-            entry(ui, "High-res picture", Command::HighRes, true, out);
-            entry(
-                ui,
-                "High-res at actual size",
-                Command::ActualSize,
-                true,
-                out,
-            );
-            entry(ui, "Save image…", Command::SaveImage, true, out);
-            entry(ui, "Export animation…", Command::Export, true, out);
+            entry(ui, "High-res picture", Command::HighRes, out);
+            entry(ui, "High-res at actual size", Command::ActualSize, out);
+            entry(ui, "Save image…", Command::Ask(Ask::SaveImage), out);
+            entry(ui, "Export animation…", Command::Export, out);
             ui.separator();
             if ui.button("Picture settings").clicked() {
                 out.select(Selection::Render);
@@ -50,8 +45,8 @@ pub fn show(
         });
         ui.menu_button("Animate", |ui| animate_menu(ui, editor, out));
         ui.menu_button("Help", |ui| {
-            entry(ui, "Find by name…", Command::Find, true, out);
-            entry(ui, "Shortcuts", Command::Shortcuts, true, out);
+            entry(ui, "Find by name…", Command::Find, out);
+            entry(ui, "Shortcuts", Command::Shortcuts, out);
             ui.separator();
             ui.weak(concat!("Glint ", env!("CARGO_PKG_VERSION")));
         });
@@ -62,8 +57,8 @@ pub fn show(
 }
 
 fn file_menu(ui: &mut Ui, (recent, examples): (&[PathBuf], &mut Examples), out: &mut UiRequests) {
-    entry(ui, "New", Command::New, true, out);
-    entry(ui, "Open…", Command::Open, true, out);
+    entry(ui, "New", Command::Leave(Next::New), out);
+    entry(ui, "Open…", Command::Leave(Next::Choose), out);
     ui.add_enabled_ui(!recent.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             for path in recent {
@@ -72,22 +67,27 @@ fn file_menu(ui: &mut Ui, (recent, examples): (&[PathBuf], &mut Examples), out: 
                     .unwrap_or(path.as_os_str())
                     .to_string_lossy();
                 if ui.button(name).hint(path.display().to_string()).clicked() {
-                    out.commands.push(Command::OpenRecent(path.clone()));
+                    out.commands.push(Command::Leave(Next::Open(path.clone())));
                 }
             }
         });
     });
     ui.menu_button("Open example", |ui| examples.menu(ui, out));
-    entry(ui, "Import mesh…", Command::ImportMesh, true, out);
+    entry(ui, "Import mesh…", Command::Ask(Ask::ImportMesh), out);
     ui.separator();
-    entry(ui, "Save", Command::Save, true, out);
-    entry(ui, "Save as…", Command::SaveAs, true, out);
-    entry(ui, "Save image…", Command::SaveImage, true, out);
-    entry(ui, "Export animation…", Command::Export, true, out);
-    entry(ui, "Export farm job…", Command::ExportJob, true, out);
-    entry(ui, "Export for POV-Ray…", Command::ExportPovray, true, out);
+    entry(ui, "Save", Command::Save, out);
+    entry(ui, "Save as…", Command::Ask(Ask::SaveScene), out);
+    entry(ui, "Save image…", Command::Ask(Ask::SaveImage), out);
+    entry(ui, "Export animation…", Command::Export, out);
+    entry(ui, "Export farm job…", Command::Ask(Ask::ExportJob), out);
+    entry(
+        ui,
+        "Export for POV-Ray…",
+        Command::Ask(Ask::ExportPovray),
+        out,
+    );
     ui.separator();
-    entry(ui, "Quit", Command::Quit, true, out);
+    entry(ui, "Quit", Command::Leave(Next::Quit), out);
 }
 
 fn edit_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
@@ -103,19 +103,19 @@ fn edit_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     for (text, command) in ITEM_COMMANDS {
         offer(ui, editor, text, command, out);
     }
-    entry(ui, "Paste", Command::RequestPaste, true, out);
-    entry(ui, "Select all", Command::SelectAll, true, out);
+    entry(ui, "Paste", Command::RequestPaste, out);
+    entry(ui, "Select all", Command::SelectAll, out);
     offer(ui, editor, "Merge equal packs", Command::MergePacks, out);
 }
 
 fn bookmark_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
-    entry(ui, "Add this view", Command::AddBookmark, true, out);
+    entry(ui, "Add this view", Command::AddBookmark, out);
     let bookmarks = &editor.scene().bookmarks;
     if !bookmarks.is_empty() {
         ui.separator();
     }
     for (index, bookmark) in bookmarks.iter().enumerate() {
-        entry(ui, &bookmark.name, Command::GoToBookmark(index), true, out);
+        entry(ui, &bookmark.name, Command::GoToBookmark(index), out);
     }
 }
 
@@ -133,21 +133,15 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
         }
     }
     ui.separator();
-    entry(
-        ui,
-        "Frame what is selected",
-        Command::FrameSelected,
-        true,
-        out,
-    );
-    entry(ui, "Frame everything", Command::FrameAll, true, out);
+    entry(ui, "Frame what is selected", Command::FrameSelected, out);
+    entry(ui, "Frame everything", Command::FrameAll, out);
     ui.menu_button("Look from", |ui| {
         for (text, command) in [
             ("The front", Command::ViewFront),
             ("The right", Command::ViewRight),
             ("Above", Command::ViewTop),
         ] {
-            entry(ui, text, command, true, out);
+            entry(ui, text, command, out);
         }
     });
     ui.menu_button("Go to bookmark", |ui| bookmark_entries(ui, editor, out));
@@ -175,6 +169,15 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
                 .accessible_name("flying speed")
                 .hint("The wheel changes it while the camera flies or looks around");
         });
+    ui.menu_button("Letters and buttons", |ui| {
+        for (text, zoom) in [
+            ("Larger", Zoom::In),
+            ("Smaller", Zoom::Out),
+            ("Usual size", Zoom::Usual),
+        ] {
+            entry(ui, text, Command::Zoom(zoom), out);
+        }
+    });
     ui.separator();
     theme_choice(ui, out);
 }
@@ -229,8 +232,14 @@ fn animate_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         ui.menu_button("Other timing", |ui| retime_entries(ui, out));
     });
     ui.separator();
-    entry(ui, "Import path…", Command::ImportPath, true, out);
-    offer(ui, editor, "Export path…", Command::ExportPath, out);
+    entry(ui, "Import path…", Command::Ask(Ask::ImportPath), out);
+    offer(
+        ui,
+        editor,
+        "Export path…",
+        Command::Ask(Ask::ExportPath),
+        out,
+    );
 }
 
 fn preset_entries(ui: &mut Ui, out: &mut UiRequests) {

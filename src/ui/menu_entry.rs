@@ -27,13 +27,17 @@ pub const ITEM_COMMANDS: [(&str, Command); 14] = [
 ];
 
 /// A menu entry with its key. Whether it was chosen.
-pub fn entry(
-    ui: &mut Ui,
-    text: &str,
-    command: Command,
-    enabled: bool,
-    out: &mut UiRequests,
-) -> bool {
+pub fn entry(ui: &mut Ui, text: &str, command: Command, out: &mut UiRequests) -> bool {
+    add(ui, (text, true), command, out)
+}
+
+/// The same where the command would do something now.
+pub fn offer(ui: &mut Ui, editor: &Editor, text: &str, command: Command, out: &mut UiRequests) {
+    let enabled = is_enabled(&command, editor);
+    add(ui, (text, enabled), command, out);
+}
+
+fn add(ui: &mut Ui, (text, enabled): (&str, bool), command: Command, out: &mut UiRequests) -> bool {
     let key = key_of(ui, &command).unwrap_or_default();
     let button = Button::new(text).shortcut_text(key);
     let entry = ui.add_enabled(enabled, button).accessible_name(text);
@@ -42,12 +46,6 @@ pub fn entry(
         out.commands.push(command);
     }
     is_chosen
-}
-
-/// The same where the command would do something now.
-pub fn offer(ui: &mut Ui, editor: &Editor, text: &str, command: Command, out: &mut UiRequests) {
-    let enabled = is_enabled(&command, editor);
-    entry(ui, text, command, enabled, out);
 }
 
 /// An entry that is on or off: a tick before it says that it is on.

@@ -8,11 +8,11 @@ mod flight_keys;
 
 mod layout;
 
+mod dialogs;
+
 mod commands;
 
 mod obstacles;
-
-mod dialogs;
 
 mod folders;
 
@@ -118,7 +118,7 @@ pub use app::App;
 pub use commands::{Command, SHORTCUTS};
 pub use dialogs::{Ask, Dialogs};
 pub use flight_keys::FLIGHT;
-pub use lab::{chart_picture, growth_picture, scaling_picture, stability_picture};
+pub use lab::drawn;
 pub use setup::Setup;
 pub use start::StartStats;
 pub use window::{NoWindow, run, time_start};

@@ -12,7 +12,7 @@ use glam::DVec3;
 use super::arithmetic::calculate;
 use super::hint::Hint as _;
 use super::theme::ROW;
-use crate::scene::parse_vec3;
+use crate::scene::{MAX_COORDINATE, parse_vec3};
 use crate::words::quoted;
 
 /// Letters that one of three fields in a row has room for.
@@ -169,7 +169,7 @@ pub fn coordinate(name: &'static str, hint: &'static str) -> Field {
         hint,
         unit: "",
         default: 0.0,
-        range: -1e12..=1e12,
+        range: -MAX_COORDINATE..=MAX_COORDINATE,
         speed: None,
     }
 }

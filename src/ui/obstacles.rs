@@ -1,6 +1,7 @@
 //! Why a command would do nothing now.
 
 use super::commands::Command;
+use super::dialogs::Ask;
 use crate::editor::{Editor, Item, Kind, Selection};
 use crate::scene::{Scene, Shape};
 
@@ -11,7 +12,7 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
         Command::Undo => editor.undo_label().is_none().then_some("nothing to undo"),
         Command::Redo => editor.redo_label().is_none().then_some("nothing to redo"),
         Command::Delete => {
-            let has = matches!(editor.selection(), Selection::Item(_) | Selection::Keys);
+            let has = matches!(editor.selection(), Selection::Items(_) | Selection::Keys(_));
             (!has).then_some(nothing)
         }
         Command::Duplicate
@@ -19,11 +20,11 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
         | Command::Cut
         | Command::SelectSamePack
         | Command::ToggleVisible => {
-            let has = matches!(editor.selection(), Selection::Item(_));
+            let has = editor.selection().item().is_some();
             (!has).then_some(nothing)
         }
         Command::Join => {
-            let (scene, items) = (editor.scene(), editor.selected().items());
+            let (scene, items) = (editor.scene(), editor.selection().items());
             let mut shapes = items.iter().map(|item| shape_of(scene, *item));
             let can = match items.len() {
                 1 => matches!(shapes.next(), Some(Some(Shape::Triangle(_)))),
@@ -32,7 +33,7 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             (!can || items.is_empty()).then_some("no triangles or several meshes are selected")
         }
         Command::Separate => {
-            let (scene, items) = (editor.scene(), editor.selected().items());
+            let (scene, items) = (editor.scene(), editor.selection().items());
             let shape = match items {
                 [item] => shape_of(scene, *item),
                 _ => None,
@@ -45,12 +46,12 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             (!has).then_some("the camera has fewer than two keys")
         }
         Command::Group | Command::PutDown => {
-            let mut items = editor.selected().items().iter();
+            let mut items = editor.selection().items().iter();
             let has = items.any(|item| item.kind == Kind::Object);
             (!has).then_some("no object is selected")
         }
         Command::Ungroup => {
-            let items = editor.selected().items().iter();
+            let items = editor.selection().items().iter();
             let mut objects = items.filter(|item| item.kind == Kind::Object);
             let group = |item: &Item| Some(&editor.scene().objects.get(item.index)?.group);
             let has = objects.any(|item| group(item).is_some_and(|group| !group.is_empty()));
@@ -60,20 +61,18 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             let has = editor.scene().has_equal_packs();
             (!has).then_some("no two color packs are equal")
         }
-        Command::Rename if editor.selected().group(editor.scene()).is_some() => None,
-        Command::Rename | Command::MoveUp | Command::MoveDown => match editor.selection() {
-            Selection::Item(_) if editor.selected().items().len() > 1 => {
-                Some("several things are selected")
-            }
-            Selection::Item(_) => None,
-            _ => Some(nothing),
+        Command::Rename if editor.selection().group(editor.scene()).is_some() => None,
+        Command::Rename | Command::MoveUp | Command::MoveDown => match editor.selection().items() {
+            [] => Some(nothing),
+            [_] => None,
+            _ => Some("several things are selected"),
         },
         Command::Play if editor.scene().animation.is_still() => Some("nothing moves yet"),
         Command::SelectKeys | Command::PreviousKey | Command::NextKey => {
             let is_still = editor.scene().animation.is_still();
             is_still.then_some("there are no keys yet")
         }
-        Command::LookThrough | Command::ExportPath => {
+        Command::LookThrough | Command::Ask(Ask::ExportPath) => {
             let has = !editor.scene().animation.keys.is_empty();
             (!has).then_some("the camera has no keys yet")
         }

@@ -1,13 +1,12 @@
 //! What commands do to everything that is selected.
 
-use super::commands::Command;
-use crate::editor::{Action, Edit, Editor, Item, Kind, Selected, excerpt};
+use crate::editor::{Action, Arrangement, Edit, Editor, Item, Kind, Selection, excerpt};
 use crate::scene::Scene;
 
 /// Hides everything that is selected, or shows it if all of it is hidden.
 pub fn toggle_visible(editor: &mut Editor) {
     let scene = editor.shown();
-    let items = editor.selected().items();
+    let items = editor.selection().items();
     let mut visible = items.iter().filter_map(|item| item.is_visible(scene));
     let visible = !visible.any(|visible| visible);
     let field = if visible { "show" } else { "hide" };
@@ -20,7 +19,7 @@ pub fn toggle_visible(editor: &mut Editor) {
 
 /// The selected objects, or a triangle and all that share corners with it.
 pub fn joined(editor: &Editor) -> Vec<usize> {
-    let selected = editor.selected().places(Kind::Object);
+    let selected = editor.selection().places(Kind::Object);
     match selected[..] {
         [triangle] => editor.scene().connected_triangles(triangle),
         _ => selected,
@@ -28,7 +27,7 @@ pub fn joined(editor: &Editor) -> Vec<usize> {
 }
 
 /// Every object that wears the pack of an object, or the pack that is the item.
-pub fn with_same_pack(scene: &Scene, item: Item) -> Selected {
+pub fn with_same_pack(scene: &Scene, item: Item) -> Selection {
     let pack = match item.kind {
         Kind::Object => scene
             .objects
@@ -44,54 +43,46 @@ pub fn with_same_pack(scene: &Scene, item: Item) -> Selected {
             marker.map(|marker| &marker.color_pack)
         }
     };
-    let objects = scene.objects.iter().enumerate();
-    let wearing = objects.filter(|(_, object)| Some(&object.color_pack) == pack);
-    let others = wearing
-        .map(|(index, _)| Item::object(index))
-        .filter(|other| *other != item);
+    let wearing = pack.into_iter().flat_map(|pack| Item::wearing(scene, pack));
+    let others = wearing.filter(|other| other.kind == Kind::Object && *other != item);
     // What was selected stays so, and is what the inspector shows.
     let own = Some(item);
-    Selected::all(others.chain(own))
+    Selection::all(others.chain(own))
 }
 
-/// Adds everything of a scene, and selects it.
-pub fn add(editor: &mut Editor, part: Scene, word: &'static str) {
-    let before = editor.revision();
-    let (lights, objects) = (part.lights.len(), part.objects.len());
-    editor.apply(Action::Edit(Edit::Paste(Box::new(part), word)));
-    if editor.revision() != before {
-        let scene = editor.scene();
-        let (all_lights, all_objects) = (scene.lights.len(), scene.objects.len());
-        let new = (all_lights - lights..all_lights).map(Item::light);
-        let new = new.chain((all_objects - objects..all_objects).map(Item::object));
-        editor.apply(Action::Select(Selected::all(new)));
+/// Deletes everything that is selected.
+pub fn delete(editor: &mut Editor) {
+    let edit = match editor.selection() {
+        Selection::Keys(keys) => {
+            Edit::animation(editor.scene().animation.without_keys(keys), "Delete keys")
+        }
+        Selection::Items(items) => Edit::Delete(items.clone()),
+        Selection::Camera | Selection::World | Selection::Render => return,
+    };
+    editor.apply(Action::Edit(edit));
+}
+
+/// Makes a copy of each of several things that are selected.
+pub fn duplicate_all(editor: &mut Editor) {
+    let mut items = editor.selection().items().to_vec();
+    if items.iter().any(|item| item.kind != Kind::Pack) {
+        let part = excerpt(editor.scene(), editor.selection());
+        let paste = Edit::Paste(Box::new(part), "Duplicate");
+        return editor.apply(Action::Edit(paste));
     }
+    let label = format!("Duplicate {} items", items.len());
+    items.sort_unstable();
+    // From the last on: a copy does not move those before it.
+    let edits = items.iter().rev().map(|item| Edit::Duplicate(*item));
+    editor.apply(Action::Edit(Edit::Each(edits.collect(), label)));
 }
 
-/// Does to everything that is selected what can be done to more than one thing.
-pub fn on_many(editor: &mut Editor, command: &Command) {
-    let items = editor.selected().items().to_vec();
-    let before = editor.revision();
-    match command {
-        Command::Delete => {
-            editor.apply(Action::Edit(Edit::Delete(items)));
-            if editor.revision() != before {
-                editor.apply(Action::Select(Selected::Camera));
-            }
-        }
-        Command::Duplicate => {
-            if items.iter().all(|item| item.kind == Kind::Pack) {
-                let label = format!("Duplicate {} items", items.len());
-                let mut items = items;
-                items.sort_unstable();
-                // From the last on: a copy does not move those before it.
-                let edits = items.iter().rev().map(|item| Edit::Duplicate(*item));
-                let edit = Edit::Each(edits.collect(), label);
-                return editor.apply(Action::Edit(edit));
-            }
-            let part = excerpt(editor.scene(), editor.selected());
-            add(editor, part, "Duplicate");
-        }
-        _ => {}
+/// One step up or down in its list.
+pub fn step(scene: &Scene, item: Item, is_down: bool) -> Option<Edit> {
+    let index = item.index;
+    match item.kind {
+        Kind::Object => Arrangement::step(&scene.objects, index, is_down).map(Edit::Arrange),
+        Kind::Light | Kind::Pack if is_down => Some(Edit::Move(item, index + 1)),
+        Kind::Light | Kind::Pack => Some(Edit::Move(item, index.checked_sub(1)?)),
     }
 }

@@ -92,6 +92,9 @@ impl App {
         if animation.is_still() {
             let rows = if animation.take.is_some() { 4.5 } else { 3.0 };
             ("timeline without keys", rows * ROW)
+        } else if animation.keys.is_empty() && animation.take.is_none() {
+            // No flight, of which there are a graph and small pictures.
+            ("timeline without flight", 3.0 * ROW + TRACKS)
         } else if animation.tracks.is_empty() {
             ("timeline", TIMELINE)
         } else {

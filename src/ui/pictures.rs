@@ -142,17 +142,18 @@ impl Pictures {
         }
     }
 
+    /// The picture on screen, if it is finished, and of all of the light.
+    pub fn whole(&self, editor: &Editor) -> Option<&Frame> {
+        let is_whole = |frame: &&Frame| frame.step == 1 && frame.region.is_none();
+        let submitted = self.submitted.as_ref();
+        let is_part = submitted.is_some_and(|(.., aspect)| *aspect != Aspect::All);
+        let frame = self.shown(editor).filter(is_whole);
+        frame.filter(|frame| frame.is_still || !is_part)
+    }
+
     /// What a pixel of the finished picture on screen took, in milliseconds.
     pub fn millis_per_pixel(&self, editor: &Editor) -> Option<f64> {
-        let is_whole = |frame: &&Frame| frame.step == 1 && frame.region.is_none();
-        let frame = self.shown(editor).filter(is_whole)?;
-        if !frame.is_still
-            && self
-                .submitted
-                .is_some_and(|(.., aspect)| aspect != Aspect::All)
-        {
-            return None;
-        }
+        let frame = self.whole(editor)?;
         let pixels = (frame.image.width * frame.image.height) as f64;
         Some(frame.cost.time.as_secs_f64() * 1e3 / pixels.max(1.0))
     }

@@ -1,6 +1,7 @@
 //! The questions over the window: about unsaved changes, about quitting, and for a path where the
 //! desktop offers no dialog.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use egui::text::{CCursor, CCursorRange};
@@ -129,14 +130,16 @@ impl PathPrompt {
             ui.heading(self.ask.title());
             ui.add_space(GRID);
             let label = ui.weak(self.label);
-            let field = TextEdit::singleline(&mut self.text).desired_width(f32::INFINITY);
+            let field = TextEdit::singleline(&mut self.text)
+                .desired_width(f32::INFINITY)
+                .align(egui::Align2::LEFT_CENTER);
             let field = ui.add(field).labelled_by(label.id);
             if field.changed() {
                 self.problem = None;
             }
             if self.is_new {
                 field.request_focus();
-                caret_to_end(ui, field.id, &self.text);
+                select_letters(ui, field.id, stem(&self.text));
                 self.is_new = false;
             }
             let warning = self.warning();
@@ -205,54 +208,45 @@ impl PathPrompt {
 
     fn warning(&self) -> Option<Warning> {
         let path = self.path();
-        let is_there = path.is_file() || self.ask == Ask::ExportFolder;
-        if let Some(words) = self.problem.clone() {
-            return Some(Warning {
+        let impossible = |words: String| {
+            Some(Warning {
                 words,
                 is_possible: false,
-            });
+            })
+        };
+        if let Some(words) = self.problem.clone() {
+            return impossible(words);
         }
         if let Some(folder) = self.missing_folder() {
-            let words = format!("There is no folder {}", folder.display());
-            return Some(Warning {
-                words,
-                is_possible: false,
-            });
+            return impossible(format!("There is no folder {}", folder.display()));
         }
         if !self.ask.takes(&path) {
             let endings = self.ask.endings().join(", .");
-            return Some(Warning {
-                words: format!("Its name has to end in one of these: .{endings}"),
-                is_possible: false,
-            });
+            return impossible(format!("Its name has to end in one of these: .{endings}"));
         }
         if !self.ask.writes() && Path::new(self.text.trim()).is_dir() {
             // Its name may not be typed yet.
             let is_begun = self.text.trim().ends_with(std::path::is_separator);
             let words = if is_begun { "" } else { "This is a folder" };
+            return impossible(words.to_owned());
+        }
+        if self.would_replace() {
+            let words = if self.is_asked() {
+                format!("{} is there already. Replace it?", path.display())
+            } else {
+                format!("Replaces {}", path.display())
+            };
             return Some(Warning {
-                words: words.to_owned(),
-                is_possible: false,
+                words,
+                is_possible: true,
             });
         }
-        match (self.ask.writes(), is_there) {
-            (true, true) if path.is_file() => Some(Warning {
-                words: if self.is_asked() {
-                    format!("{} is there already. Replace it?", path.display())
-                } else {
-                    format!("Replaces {}", path.display())
-                },
-                is_possible: true,
-            }),
-            (false, false) => Some(Warning {
-                words: format!(
-                    "There is no file {}",
-                    shortened(&path.to_string_lossy(), LONGEST_PATH)
-                ),
-                is_possible: false,
-            }),
-            _ => None,
+        let reads = !self.ask.writes() && self.ask != Ask::ExportFolder;
+        if reads && !path.is_file() {
+            let path = shortened(&path.to_string_lossy(), LONGEST_PATH);
+            return impossible(format!("There is no file {path}"));
         }
+        None
     }
 }
 
@@ -279,12 +273,22 @@ fn is_entered(input: &InputState) -> bool {
     input.events.iter().any(is_it)
 }
 
-/// Fields remember where the caret was in another text.
-fn caret_to_end(ui: &Ui, id: Id, text: &str) {
-    let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
-    let end = CCursorRange::one(CCursor::new(text.chars().count()));
-    state.cursor.set_char_range(Some(end));
-    state.store(ui.ctx(), id);
+/// The name of a file in its path, without its ending: from which letter to which. Typing shall replace that.
+fn stem(path: &str) -> Range<usize> {
+    let name = path.rsplit(std::path::is_separator).next().unwrap_or(path);
+    let stem = Path::new(name).file_stem().unwrap_or_default();
+    let length = |text: &str| text.chars().count();
+    let start = length(path) - length(name);
+    start..start + length(&stem.to_string_lossy())
+}
+
+/// Selects letters of a field, which remembers where the caret was in another text.
+pub fn select_letters(ui: &Ui, field: Id, letters: Range<usize>) {
+    let mut state = TextEdit::load_state(ui.ctx(), field).unwrap_or_default();
+    let [start, end] = [letters.start, letters.end].map(CCursor::new);
+    let range = CCursorRange::two(start, end);
+    state.cursor.set_char_range(Some(range));
+    state.store(ui.ctx(), field);
 }
 
 /// A question over the window, of a name, a width and what Enter answers; Escape answers it with
@@ -321,4 +325,29 @@ pub fn question(
 pub fn primary(ui: &mut Ui, text: &str) -> egui::Response {
     let colors = palette(ui.ctx());
     ui.add(Button::new(RichText::new(text).color(colors.on_accent)).fill(colors.accent))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_stem_of_a_path_is_its_name_without_folder_and_ending() {
+        let found = |path: &str| -> String {
+            let letters = stem(path);
+            path.chars()
+                .skip(letters.start)
+                .take(letters.len())
+                .collect()
+        };
+        for (path, expected) in [
+            ("/tmp/scénes/démo.ron", "démo"),
+            ("demo.ron", "demo"),
+            ("a.b/frames", "frames"),
+            ("/tmp/frames/", ""),
+            ("", ""),
+        ] {
+            assert_eq!(found(path), expected, "{path}");
+        }
+    }
 }

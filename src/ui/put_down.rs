@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::editor::{Edit, Kind, Selected};
+use crate::editor::{Edit, Kind, Selection};
 use crate::lab::meet;
 use crate::scene::{Scene, Shape, around};
 
@@ -27,7 +27,7 @@ struct Line {
 ///
 /// # Errors
 /// Why nothing moves, in words.
-pub fn put_down(scene: &Scene, selected: &Selected) -> Result<Edit, &'static str> {
+pub fn put_down(scene: &Scene, selected: &Selection) -> Result<Edit, &'static str> {
     let places = selected.places(Kind::Object);
     let mut bodies = match selected.group(scene) {
         Some(_) => vec![places],
@@ -200,7 +200,7 @@ mod tests {
     }
 
     fn put(scene: &mut Scene, places: &[usize]) -> bool {
-        let selected = Selected::all(places.iter().copied().map(Item::object));
+        let selected = Selection::all(places.iter().copied().map(Item::object));
         let Ok(edit) = put_down(scene, &selected) else {
             return false;
         };

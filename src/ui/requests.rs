@@ -27,7 +27,7 @@ impl UiRequests {
     }
 
     /// Asks for something to be shown in the inspector.
-    pub fn select(&mut self, selection: Selection) {
+    pub fn select(&mut self, selection: impl Into<Selection>) {
         self.actions.push(Action::Select(selection.into()));
     }
 }

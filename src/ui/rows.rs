@@ -267,7 +267,8 @@ fn labelled<T>(
             ui.add(
                 Label::new(RichText::new(name).weak())
                     .truncate()
-                    .sense(Sense::click()),
+                    // No stop for Tab: the next value is.
+                    .sense(Sense::CLICK),
             )
         });
         let label = label.inner;

@@ -2,22 +2,21 @@
 
 use std::path::Path;
 
+use egui::gui_zoom::{zoom_in, zoom_out};
 use egui::{Context, Key, Popup, ViewportCommand};
 use glam::DVec3;
 
 use super::app::App;
-use super::commands::Command;
-use super::dialogs::Ask;
+use super::commands::{Command, Zoom};
 use super::layout::Below;
 use super::obstacles::is_enabled;
-use super::on_selected::{add, joined, on_many, toggle_visible, with_same_pack};
+use super::on_selected::{delete, duplicate_all, joined, step, toggle_visible, with_same_pack};
 use super::put_down::put_down;
 use super::requests::UiRequests;
 use super::timeline::actions;
-use super::tools::{axis_camera, framing_camera, projected_camera};
-use super::wishes::Next;
+use super::tools::{axis_camera, framing_camera, is_selected_unseen, projected_camera};
 use crate::editor::{
-    Action, Edit, Editor, Item, Kind, Mode, Selected, Selection, Time, excerpt, free_bookmark_name,
+    Action, Edit, Editor, Item, Kind, Mode, Selection, Time, excerpt, free_bookmark_name,
     free_group_name, read,
 };
 use crate::scene::{Aspect, Bookmark, Document, Projection};
@@ -55,15 +54,13 @@ impl App {
     }
 
     pub(super) fn run(&mut self, ctx: &Context, command: Command) {
-        if let Some(next) = next_document(&command) {
-            let outcome = self.files.start(ctx, &mut self.editor, next);
-            return self.act_on(ctx, outcome);
-        }
-        if let Some(ask) = asked_for(&command) {
-            // Nothing comes of it before it is answered.
-            return self.files.ask(ctx, &self.editor, ask);
-        }
         match command {
+            Command::Leave(next) => {
+                let outcome = self.files.start(ctx, &mut self.editor, next);
+                self.act_on(ctx, outcome);
+            }
+            // Nothing comes of it before it is answered.
+            Command::Ask(ask) => self.files.ask(ctx, &self.editor, ask),
             Command::Save => {
                 let outcome = self.files.save(ctx, &mut self.editor);
                 self.act_on(ctx, outcome);
@@ -84,13 +81,16 @@ impl App {
             Command::Timeline => self.toggle_below(Below::Timeline),
             Command::SelectAll if self.means_keys(ctx) => self.run(ctx, Command::SelectKeys),
             Command::SelectAll => {
-                let all = Action::Select(Selected::all(Item::everything(self.editor.scene())));
+                let all = Action::Select(Selection::all(Item::everything(self.editor.scene())));
                 self.editor.apply(all);
             }
             Command::FrameAll if self.timeline.is_hovered(ctx.cumulative_frame_nr()) => {
                 self.timeline.fit();
             }
             Command::Theme(theme) => ctx.set_theme(theme),
+            Command::Zoom(Zoom::In) => zoom_in(ctx),
+            Command::Zoom(Zoom::Out) => zoom_out(ctx),
+            Command::Zoom(Zoom::Usual) => ctx.set_zoom_factor(1.0),
             Command::PictureAlone => self.layout.is_alone = !self.layout.is_alone,
             Command::Aspect(aspect) => self.layout.aspect = aspect,
             Command::Part(part) => {
@@ -103,16 +103,23 @@ impl App {
             Command::Find => self.finder.open(),
             Command::Shortcuts => self.shortcuts_open = !self.shortcuts_open,
             other => {
-                let before = self.editor.revision();
                 for action in actions(&other, &self.editor) {
                     self.editor.apply(action);
                 }
-                if matches!(other, Command::Retime(_)) && self.editor.revision() == before {
-                    let words = "This changes nothing of the flight as it is";
-                    self.editor.notify(words.to_owned());
-                }
+                let before = self.editor.revision();
                 self.run_on_scene(&other);
+                if other == Command::Duplicate && self.editor.revision() != before {
+                    self.tell_unseen("The copy");
+                }
             }
+        }
+    }
+
+    /// Says how to see what is selected, and new, if it is beside the picture.
+    fn tell_unseen(&mut self, what: &str) {
+        if is_selected_unseen(&self.editor) {
+            let text = format!("{what} is not in the picture; F brings it in");
+            self.editor.notify_of_step(text);
         }
     }
 
@@ -135,7 +142,7 @@ impl App {
 
     /// Puts what is selected on the clipboard. Whether it is there.
     fn copy(&mut self, ctx: &Context) -> bool {
-        let document = Document::of(excerpt(self.editor.scene(), self.editor.selected()));
+        let document = Document::of(excerpt(self.editor.scene(), self.editor.selection()));
         match document.to_text() {
             Ok(text) => {
                 ctx.copy_text(text.clone());
@@ -169,7 +176,12 @@ impl App {
             }
         };
         self.editor.begin(PASTE);
-        add(&mut self.editor, pasted, "Paste");
+        let paste = Edit::Paste(Box::new(pasted), "Paste");
+        let before = self.editor.revision();
+        self.editor.apply(Action::Edit(paste));
+        if self.editor.revision() != before {
+            self.tell_unseen("What was pasted");
+        }
     }
 
     /// The commands that are actions of the editor.
@@ -206,29 +218,23 @@ impl App {
             Command::Orthographic => projected(editor, Projection::Orthographic),
             Command::MarkersOn => Action::Edit(Edit::LightVisualization(true)),
             Command::MarkersOff => Action::Edit(Edit::LightVisualization(false)),
-            Command::Delete if *editor.selected() == Selected::Keys => {
-                let kept = editor
-                    .scene()
-                    .animation
-                    .without_keys(&editor.timeline().selected);
-                Action::Edit(Edit::animation(kept, "Delete keys"))
-            }
+            Command::Delete => return delete(editor),
             Command::ToggleVisible => return toggle_visible(editor),
             Command::Group => Action::Edit(Edit::Group(
-                editor.selected().places(Kind::Object),
+                editor.selection().places(Kind::Object),
                 free_group_name(editor.scene(), "Group 1"),
             )),
             Command::Ungroup => {
-                let objects = editor.selected().places(Kind::Object);
+                let objects = editor.selection().places(Kind::Object);
                 Action::Edit(Edit::Group(objects, String::new()))
             }
             Command::MergePacks => Action::Edit(Edit::MergePacks),
             Command::Join => Action::Edit(Edit::Join(joined(editor))),
-            Command::Separate => match editor.selection() {
-                Selection::Item(item) => Action::Edit(Edit::Separate(item.index)),
-                _ => return,
+            Command::Separate => match editor.selection().item() {
+                Some(item) => Action::Edit(Edit::Separate(item.index)),
+                None => return,
             },
-            Command::PutDown => match put_down(editor.shown(), editor.selected()) {
+            Command::PutDown => match put_down(editor.shown(), editor.selection()) {
                 Ok(edit) => Action::Edit(edit),
                 Err(why) => return editor.notify(why.to_owned()),
             },
@@ -240,29 +246,31 @@ impl App {
                 Action::Edit(Edit::Camera(bookmark.camera.clone(), "bookmark"))
             }
             Command::SelectSamePack => {
-                let Selection::Item(item) = editor.selection() else {
+                let Some(item) = editor.selection().item() else {
                     return;
                 };
                 Action::Select(with_same_pack(editor.scene(), item))
             }
-            Command::Rename if editor.selected().items().len() > 1 => {
+            Command::Rename if editor.selection().items().len() > 1 => {
                 self.layout.outliner = true;
-                let group = editor.selected().group(editor.scene());
+                let group = editor.selection().group(editor.scene());
                 return self.outliner.rename_group(group.map(str::to_owned));
             }
-            many if editor.selected().items().len() > 1 => return on_many(editor, many),
-            on_item => match (on_item, editor.selection()) {
-                (Command::Rename, Selection::Item(item)) => {
+            Command::Duplicate if editor.selection().items().len() > 1 => {
+                return duplicate_all(editor);
+            }
+            on_item => match (on_item, editor.selection().items()) {
+                (Command::Rename, [item]) => {
                     self.layout.outliner = true;
-                    return self.outliner.rename(editor.scene(), item);
+                    return self.outliner.rename(editor.scene(), *item);
                 }
-                (Command::Duplicate, Selection::Item(item)) => Action::Edit(Edit::Duplicate(item)),
-                (Command::Delete, Selection::Item(item)) => Action::Edit(Edit::Delete(vec![item])),
-                (Command::MoveUp, Selection::Item(item)) => {
-                    Action::Edit(Edit::Move(item, item.index.saturating_sub(1)))
-                }
-                (Command::MoveDown, Selection::Item(item)) => {
-                    Action::Edit(Edit::Move(item, item.index + 1))
+                (Command::Duplicate, [item]) => Action::Edit(Edit::Duplicate(*item)),
+                (Command::MoveUp | Command::MoveDown, [item]) => {
+                    let is_down = *on_item == Command::MoveDown;
+                    let Some(edit) = step(editor.scene(), *item, is_down) else {
+                        return;
+                    };
+                    Action::Edit(edit)
                 }
                 _ => return,
             },
@@ -297,43 +305,16 @@ impl App {
             self.editor.apply(Action::Show(Mode::Live));
         } else if self.editor.looks_through() {
             self.editor.apply(Action::Time(Time::LookThrough(false)));
-        } else if self.editor.selection() != Selection::Camera {
-            self.editor.apply(Action::Select(Selected::Camera));
+        } else if *self.editor.selection() != Selection::Camera {
+            self.editor.apply(Action::Select(Selection::Camera));
         } else if last.is_some_and(|last| time - last < TWICE) {
             self.files.ask_to_quit(&mut self.editor);
         } else {
             self.escaped = Some(time);
             self.editor
-                .notify("Ctrl+Q quits; so does Esc once more".to_owned());
+                .notify("Esc once more asks whether to quit".to_owned());
         }
     }
-}
-
-/// What follows once unsaved changes are out of the way, if the command leaves the document.
-fn next_document(command: &Command) -> Option<Next> {
-    Some(match command {
-        Command::New => Next::New,
-        Command::OpenExample(place) => Next::Example(*place),
-        Command::Open => Next::Choose,
-        Command::OpenRecent(path) => Next::Open(path.clone()),
-        Command::Quit => Next::Quit,
-        _ => return None,
-    })
-}
-
-/// Which path the command asks for, if it asks for one.
-fn asked_for(command: &Command) -> Option<Ask> {
-    Some(match command {
-        Command::SaveAs => Ask::SaveScene,
-        Command::SaveImage => Ask::SaveImage,
-        Command::ImportMesh => Ask::ImportMesh,
-        Command::ImportPath => Ask::ImportPath,
-        Command::ExportPath => Ask::ExportPath,
-        Command::ExportJob => Ask::ExportJob,
-        Command::ExportPovray => Ask::ExportPovray,
-        Command::ExportFolder => Ask::ExportFolder,
-        _ => return None,
-    })
 }
 
 /// This view as one more bookmark.

@@ -95,9 +95,9 @@ fn selection(about: About) -> Selection {
     match about {
         About::Camera => Selection::Camera,
         About::World => Selection::World,
-        About::Light(index) => Selection::Item(Item::light(index)),
-        About::Object(index) => Selection::Item(Item::object(index)),
-        About::Pack(index) => Selection::Item(Item::pack(index)),
+        About::Light(index) => Selection::from(Item::light(index)),
+        About::Object(index) => Selection::from(Item::object(index)),
+        About::Pack(index) => Selection::from(Item::pack(index)),
     }
 }
 

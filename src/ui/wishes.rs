@@ -4,26 +4,12 @@ use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::{Duration, Instant};
 
+use super::commands::Next;
 use super::dialogs::Ask;
 use crate::editor::Editor;
 
 /// A dialog that comes back empty sooner than a hand can cancel it was never shown.
 const NO_DIALOG: Duration = Duration::from_millis(400);
-
-/// What is done once unsaved changes are out of the way.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Next {
-    /// Start an empty document.
-    New,
-    /// Start from the example in this place.
-    Example(usize),
-    /// Choose a file and open it.
-    Choose,
-    /// Open this file.
-    Open(PathBuf),
-    /// Close the window.
-    Quit,
-}
 
 /// What became of the wishes, for the window to act on.
 #[derive(Clone, Debug, PartialEq, Eq)]

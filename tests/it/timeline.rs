@@ -9,12 +9,12 @@ use egui::{Event, Key, Modifiers, Pos2, pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 use glint::animate::{CameraPath, Preset, shot};
-use glint::editor::{Action, Edit, Editor, Repeat, Selected, Time};
+use glint::editor::{Action, Edit, Editor, Repeat, Selection, Time};
 use glint::image::render;
 use glint::plan::RenderRequest;
 use glint::scene::{
     Animation, Document, Interpolation, Key as SceneKey, KeyPlace, Keys, Leftover, MAX_SECONDS,
-    Projection, Scene, Target, Value,
+    Owner, Projection, Scene, Target, Value,
 };
 use glint::trace::RenderControl;
 use glint::ui::Ask;
@@ -253,10 +253,10 @@ fn keys_made_anew_keep_the_time_that_the_flight_was_given() {
     );
     let before = editor.scene().clone();
     let fourth: Keys = [KeyPlace::of_camera(3)].into();
-    editor.apply(Action::Time(Time::SelectKeys(fourth.clone())));
-    editor.apply(Action::Select(Selected::Camera));
-    assert!(editor.timeline().selected.is_empty(), "something else is");
-    editor.apply(Action::Time(Time::SelectKeys(fourth.clone())));
+    editor.apply(Action::Select(fourth.clone().into()));
+    editor.apply(Action::Select(Selection::Camera));
+    assert!(editor.selection().keys().is_empty(), "something else is");
+    editor.apply(Action::Select(fourth.clone().into()));
     editor.apply(Action::Time(Time::Simplify(5.0)));
     assert!(editor.scene().animation.keys.len() < before.animation.keys.len());
     assert_eq!(editor.scene().animation.frame_count(), 202);
@@ -270,7 +270,7 @@ fn keys_made_anew_keep_the_time_that_the_flight_was_given() {
         "what is said is true again"
     );
     assert_eq!(
-        editor.timeline().selected,
+        *editor.selection().keys(),
         fourth,
         "the same key is selected again"
     );
@@ -297,7 +297,7 @@ fn keys_are_dragged_copied_and_picked_with_the_mouse() {
         .get_by_label("Key 3")
         .click_modifiers(Modifiers::SHIFT);
     harness.settle();
-    assert_eq!(harness.editor().timeline().selected.len(), 2);
+    assert_eq!(harness.editor().selection().keys().len(), 2);
     let at = place_of(&harness, "Key 2");
     drag(&mut harness, at, vec2(1.0 * second, 0.0), Modifiers::NONE);
     assert_eq!(times(&harness), [0.0, 2.5, 3.0, 4.0]);
@@ -413,7 +413,7 @@ fn the_window_plays_and_pauses() {
     harness.window.key_up(Key::S);
     harness.window.step();
     let timeline = harness.editor().timeline();
-    assert!(timeline.is_playing && !timeline.looks_through);
+    assert!(timeline.is_playing && !harness.editor().looks_through());
     assert!(timeline.playhead > playhead);
     harness.press(Modifiers::NONE, Key::C);
     assert!(harness.editor().looks_through());
@@ -529,7 +529,7 @@ fn a_hand_on_the_shot_moves_nothing_behind_it_and_a_click_looks_through_it() {
     assert!(harness.editor().looks_through());
     assert!(harness.window.query_by_label("Shot").is_none());
     // The second click of two is not one on what is behind it.
-    let before = harness.editor().selected().clone();
+    let before = harness.editor().selection().clone();
     harness.press(Modifiers::NONE, Key::Escape);
     while harness.window.query_by_label("Shot").is_none() {
         assert!(steps.next().is_some(), "it never came again");
@@ -545,7 +545,7 @@ fn a_hand_on_the_shot_moves_nothing_behind_it_and_a_click_looks_through_it() {
     }
     harness.settle();
     assert!(harness.editor().looks_through());
-    assert_eq!(harness.editor().selected(), &before);
+    assert_eq!(harness.editor().selection(), &before);
 }
 
 #[test]
@@ -615,10 +615,12 @@ fn what_has_keys_is_keyed_by_changing_it() {
     harness.type_name("name", "Sun");
     assert_eq!(
         harness.scene().animation.tracks[0].target.owner(),
-        Some("Sun")
+        Some(Owner::Light("Sun"))
     );
     harness.press(Modifiers::NONE, Key::Delete);
     assert!(harness.scene().animation.tracks.is_empty());
+    let told = "Delete Sun: there are no keys of Sun: intensity any more";
+    harness.window.get_by_label_contains(told);
 }
 
 /// A window in which the camera has keys at 0 and 2 seconds, and so has the intensity of a light, from 0.2 to 0.8; and
@@ -665,7 +667,7 @@ fn keys_of_values_are_edited_like_those_of_the_camera() {
         .get_by_label("Key 2")
         .click_modifiers(Modifiers::SHIFT);
     harness.settle();
-    assert_eq!(harness.editor().timeline().selected.len(), 2);
+    assert_eq!(harness.editor().selection().keys().len(), 2);
     let at = place_of(&harness, "Key 2");
     let by = vec2(0.5 * points_per_second(&harness), 0.0);
     drag(&mut harness, at, by, Modifiers::NONE);
@@ -686,7 +688,7 @@ fn keys_of_values_are_edited_like_those_of_the_camera() {
         last - first + vec2(-24.0, 4.0),
         Modifiers::NONE,
     );
-    let selected = &harness.editor().timeline().selected;
+    let selected = harness.editor().selection().keys();
     assert_eq!(
         *selected,
         [None, Some(0)]
@@ -696,27 +698,27 @@ fn keys_of_values_are_edited_like_those_of_the_camera() {
     // Undo brings back what was selected when it was done; a frame with Shift adds, and Escape takes one back.
     harness.press(CTRL, Key::Z);
     assert_eq!(times(&harness), [0.0, 2.0]);
-    assert_eq!(harness.editor().timeline().selected.len(), 2);
+    assert_eq!(harness.editor().selection().keys().len(), 2);
     harness.press(CTRL.plus(Modifiers::SHIFT), Key::Z);
     harness.click("Key 2");
     let (from, to) = (last + vec2(30.0, 3.0), first - vec2(12.0, 3.0));
     drag(&mut harness, from, to - from, Modifiers::SHIFT);
-    assert_eq!(harness.editor().timeline().selected.len(), 3);
+    assert_eq!(harness.editor().selection().keys().len(), 3);
     harness.window.drag_at(from);
     harness.window.step();
     harness.window.hover_at(to);
     harness.window.step();
     harness.window.step();
-    assert_eq!(harness.editor().timeline().selected.len(), 2);
+    assert_eq!(harness.editor().selection().keys().len(), 2);
     harness.window.key_press(Key::Escape);
     harness.window.step();
     harness.window.drop_at(to);
     harness.settle();
-    assert_eq!(harness.editor().timeline().selected.len(), 3);
+    assert_eq!(harness.editor().selection().keys().len(), 3);
     // All keys of both, where the pointer is over their line.
     hover_over_line(&mut harness);
     harness.press(CTRL, Key::A);
-    assert_eq!(harness.editor().timeline().selected.len(), 4);
+    assert_eq!(harness.editor().selection().keys().len(), 4);
     harness.press(Modifiers::NONE, Key::Delete);
     assert!(harness.scene().animation.is_still());
     harness.press(CTRL, Key::Z);
@@ -731,9 +733,9 @@ fn keys_of_values_are_edited_like_those_of_the_camera() {
         track: Some(0),
         index,
     });
-    assert_eq!(harness.editor().timeline().selected, all.into());
+    assert_eq!(*harness.editor().selection().keys(), all.into());
     drag(&mut harness, at, vec2(row.x - 20.0, 2.0), Modifiers::NONE);
-    assert_eq!(harness.editor().timeline().selected, [all[0]].into());
+    assert_eq!(*harness.editor().selection().keys(), [all[0]].into());
 }
 
 #[test]
@@ -795,7 +797,7 @@ fn ready_made_flights_and_other_timings_are_one_step_each() {
     harness.press(Modifiers::COMMAND, Key::Z);
     hover_over_line(&mut harness);
     harness.press(CTRL, Key::A);
-    assert_eq!(harness.editor().timeline().selected.len(), 5);
+    assert_eq!(harness.editor().selection().keys().len(), 5);
     harness.press(Modifiers::COMMAND, Key::Z);
     assert!(harness.scene().animation.is_still());
 }

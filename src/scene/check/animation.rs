@@ -2,11 +2,10 @@
 
 use std::collections::HashSet;
 
-use super::camera::{PROJECTION_DISTANCES, check_camera};
+use super::camera::{check_camera, check_lens};
 use super::place::{At, Check, no_such};
 use crate::scene::animation::{
-    Animation, FRAME_RATES, Interpolation, Key, Lens, MAX_KEYS, MAX_SECONDS, Take, Target, Track,
-    Value,
+    Animation, FRAME_RATES, Interpolation, Key, MAX_KEYS, MAX_SECONDS, Take, Target, Track, Value,
 };
 use crate::scene::notation::format_number;
 use crate::scene::shape::Shape;
@@ -77,19 +76,19 @@ fn check_keys<T>(at: &At, keys: &[Key<T>]) -> Check {
 
 /// Says that what a track moves is not there.
 fn no_owner(scene: &Scene, target: &Target) -> String {
-    let owner = target.owner().unwrap_or_default();
     let objects = scene.objects.iter();
-    let meshes = objects
-        .clone()
-        .filter(|object| matches!(object.shape, Shape::Mesh(_)));
+    let lights = scene.lights.iter().map(|light| &*light.name);
     match target {
-        Target::ObjectPosition(_) => no_such("object", owner, objects.map(|one| &*one.name)),
-        Target::ObjectRotation(_) => no_such("mesh", owner, meshes.map(|one| &*one.name)),
-        _ => no_such(
-            "light",
-            owner,
-            scene.lights.iter().map(|light| &*light.name),
-        ),
+        // Every scene has one.
+        Target::AmbientIntensity => String::new(),
+        Target::LightIntensity(name) | Target::LightPosition(name) => {
+            no_such("light", name, lights)
+        }
+        Target::ObjectPosition(name) => no_such("object", name, objects.map(|one| &*one.name)),
+        Target::ObjectRotation(name) => {
+            let meshes = objects.filter(|object| matches!(object.shape, Shape::Mesh(_)));
+            no_such("mesh", name, meshes.map(|one| &*one.name))
+        }
     }
 }
 
@@ -160,18 +159,10 @@ fn check_take(at: &At, take: &Take) -> Check {
                 .refuse(format!("the last sample of this take is {most}"));
         }
         next = lens.from + 1;
-        check_lens(&at, lens)?;
+        check_lens(&at, lens.projection_distance, lens.orthographic_height)?;
     }
     if take.lenses.is_empty() {
         return here.refuse("a take needs a lens for its first sample".to_owned());
     }
     Ok(())
-}
-
-fn check_lens(at: &At, lens: &Lens) -> Check {
-    let (nearest, farthest) = PROJECTION_DISTANCES;
-    at.field("projection_distance")
-        .within(lens.projection_distance, nearest, farthest)?;
-    at.field("orthographic_height")
-        .positive(lens.orthographic_height)
 }

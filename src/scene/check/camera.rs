@@ -1,10 +1,12 @@
 //! Whether a camera means something.
 
+use std::ops::RangeInclusive;
+
 use super::place::{At, Check};
 use crate::scene::camera::Camera;
 
 /// Projection distances (image heights) between which directions keep single-precision meaning.
-pub const PROJECTION_DISTANCES: (f64, f64) = (1e-3, 1e5);
+pub const PROJECTION_DISTANCES: RangeInclusive<f64> = 1e-3..=1e5;
 
 /// Refuses a camera that sees nothing.
 pub fn check_camera(at: &At, camera: &Camera) -> Check {
@@ -16,9 +18,16 @@ pub fn check_camera(at: &At, camera: &Camera) -> Check {
             .field("up")
             .refuse("up must not be parallel to look_at".to_owned());
     }
-    let (nearest, farthest) = PROJECTION_DISTANCES;
-    at.field("projection_distance")
-        .within(camera.projection_distance, nearest, farthest)?;
+    check_lens(at, camera.projection_distance, camera.orthographic_height)
+}
+
+/// Refuses what would be seen of nothing, or of everything at once.
+pub fn check_lens(at: &At, projection_distance: f64, orthographic_height: f64) -> Check {
+    at.field("projection_distance").within(
+        projection_distance,
+        *PROJECTION_DISTANCES.start(),
+        *PROJECTION_DISTANCES.end(),
+    )?;
     at.field("orthographic_height")
-        .positive(camera.orthographic_height)
+        .positive(orthographic_height)
 }

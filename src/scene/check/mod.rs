@@ -7,7 +7,8 @@ mod camera;
 
 mod animation;
 
-pub use place::Problem;
+pub use camera::PROJECTION_DISTANCES;
+pub use place::{MAX_COORDINATE, MAX_FACTOR, Problem};
 
 use std::collections::HashSet;
 use std::sync::Arc;

@@ -2,15 +2,16 @@
 
 use glam::DVec3;
 
+use crate::mesh::FARTHEST;
 use crate::scene::direction::unit;
 use crate::scene::locate::PathStep;
 use crate::scene::notation::format_number;
 
-/// Largest coordinate or length, in world units: f32 squares of it are still finite.
-const MAX_COORDINATE: f64 = 1e12;
+/// Largest coordinate or length, in world units, and largest angle in degrees.
+pub const MAX_COORDINATE: f64 = FARTHEST;
 
-/// Smallest factor that something is scaled by.
-const MIN_FACTOR: f64 = 1e-6;
+/// Largest factor that something is scaled by; the smallest is as far below 1.
+pub const MAX_FACTOR: f64 = 1e6;
 
 /// Why a scene is refused, and where in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -163,7 +164,7 @@ impl<'a> At<'a> {
     /// Factors, none of which makes anything flat.
     pub fn factors(&self, value: DVec3) -> Check {
         self.finite(&value.to_array())?;
-        let is_factor = |factor: &f64| (MIN_FACTOR..=1.0 / MIN_FACTOR).contains(&factor.abs());
+        let is_factor = |factor: &f64| (1.0 / MAX_FACTOR..=MAX_FACTOR).contains(&factor.abs());
         match value
             .to_array()
             .into_iter()

@@ -114,6 +114,19 @@ macro_rules! shapes {
                 }
             }
 
+            /// What one is turned about, and grows from: of a mesh its position, if that is in the box around it; of
+            /// all else the middle.
+            pub fn pivot(&self) -> DVec3 {
+                let position = self.position();
+                let is_within = |(low, high): (DVec3, DVec3)| {
+                    position.cmpge(low).all() && position.cmple(high).all()
+                };
+                match self {
+                    Self::Mesh(_) if self.bounds().is_some_and(is_within) => position,
+                    _ => self.middle(),
+                }
+            }
+
             /// The same shape, moved.
             #[must_use]
             pub fn moved(&self, by: DVec3) -> Self {
@@ -166,7 +179,11 @@ shapes! {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
+    use crate::mesh::Triangles;
+    use crate::scene::MeshSource;
 
     #[test]
     fn what_is_scaled_is_as_many_times_as_large_and_as_far_away() {
@@ -187,5 +204,36 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn a_turn_about_its_own_point_moves_nothing_and_leaves_round_angles() {
+        let shape = Shape::from(Mesh {
+            position: DVec3::new(14.5, 13.0, 13.0),
+            ..Mesh::example(DVec3::ZERO, 30.0)
+        });
+        assert_eq!(shape.pivot(), DVec3::new(14.5, 13.0, 13.0));
+        let mut turned = shape.clone();
+        for degrees in [50.0_f64, -20.0, -10.0] {
+            let by = DQuat::from_axis_angle(DVec3::Y, degrees.to_radians());
+            turned = turned.turned(turned.pivot(), by);
+        }
+        let Shape::Mesh(mesh) = &turned else {
+            panic!("a mesh")
+        };
+        assert_eq!(mesh.position, shape.position());
+        assert_eq!(mesh.rotation, DVec3::new(0.0, 20.0, 0.0));
+        // Far from its triangles, it is no point to turn them about.
+        let away = shape.moved(DVec3::X);
+        let Shape::Mesh(mut mesh) = away else {
+            panic!("a mesh")
+        };
+        let far = DVec3::splat(1e3);
+        let points = mesh.source.triangles().points().iter();
+        let moved = points.map(|point| point + far).collect();
+        let faces = mesh.source.triangles().faces().to_vec();
+        mesh.source = MeshSource::Inline(Arc::new(Triangles::new(moved, faces).expect("faces")));
+        let shape = Shape::from(mesh);
+        assert_eq!(shape.pivot(), shape.middle());
     }
 }

@@ -243,10 +243,21 @@ fn angles_of(orientation: DQuat, before: DVec3) -> DVec3 {
         let turns = ((before - angles) / 360.0).round();
         angles + turns * 360.0
     });
-    if one.distance_squared(before) <= other.distance_squared(before) {
+    let nearer = if one.distance_squared(before) <= other.distance_squared(before) {
         one
     } else {
         other
+    };
+    DVec3::from(nearer.to_array().map(without_noise))
+}
+
+/// An angle of few digits as it was meant: -50, and not -50.00000000000001.
+fn without_noise(degrees: f64) -> f64 {
+    let round = (degrees * 1e9).round() / 1e9;
+    if (round - degrees).abs() < 1e-12 {
+        round
+    } else {
+        degrees
     }
 }
 

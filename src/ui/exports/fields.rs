@@ -13,6 +13,7 @@ use crate::export::{
 use crate::image::Format;
 use crate::scene::{Animation, FRAME_RATES, MAX_SIDE, Method as _, Problem, Sampling, Scene};
 use crate::ui::commands::Command;
+use crate::ui::dialogs::Ask;
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
 use crate::ui::number::{Field, lone};
@@ -28,10 +29,19 @@ pub type Found = Result<(usize, usize), String>;
 pub const FIELDS: f32 = 360.0;
 /// Videos that can be made beside the frames; the first is none.
 const VIDEOS: [&str; 6] = ["none", "mp4", "mov", "mkv", "gif", "apng"];
-/// Bytes of a PNG for each of a PPM, about.
+/// Bytes of a PNG for each of a PPM, about, where no picture says it.
 const PNG_SHARE: f64 = 0.35;
 /// Bytes of an EXR for each of its numbers as they are in memory, about.
 const EXR_SHARE: f64 = 0.6;
+
+/// What pixels of the picture on screen have cost.
+#[derive(Clone, Copy, Debug)]
+pub struct PerPixel {
+    /// Milliseconds of tracing, if that is known.
+    pub millis: Option<f64>,
+    /// Bytes of a PNG for each of a PPM.
+    pub png_share: Option<f64>,
+}
 
 /// What a scene asks for itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -282,7 +292,7 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
             .hint(whole.map_or(String::new(), |path| path.display().to_string()))
             .accessible_name("folder");
         if ui.button("Browse…").clicked() {
-            out.commands.push(Command::ExportFolder);
+            out.commands.push(Command::Ask(Ask::ExportFolder));
         }
     });
     ui.end_row();
@@ -381,7 +391,7 @@ pub fn forecast(
     settings: &Settings,
     sequence: &Sequence,
     found: Option<&Found>,
-    millis: Option<f64>,
+    per_pixel: PerPixel,
 ) -> String {
     let pixels = f64::from(settings.width) * f64::from(settings.height);
     let total = sequence.frames.count();
@@ -417,11 +427,13 @@ pub fn forecast(
     };
     let bytes = match settings.format {
         Format::Ppm => 3.0,
-        Format::Png => 3.0 * PNG_SHARE,
+        Format::Png => 3.0 * per_pixel.png_share.unwrap_or(PNG_SHARE),
         Format::Exr => 12.0 * EXR_SHARE,
     };
     let megabytes = pixels * bytes * missing as f64 / 1e6;
-    let seconds = millis.map(|millis| millis * pixels * missing as f64 / 1e3);
+    let seconds = per_pixel
+        .millis
+        .map(|millis| millis * pixels * missing as f64 / 1e3);
     let time = seconds.map_or(String::new(), |seconds| {
         format!(", about {}", in_words(seconds))
     });

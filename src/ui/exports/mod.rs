@@ -12,6 +12,7 @@ mod progress;
 
 mod entry;
 
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError};
@@ -20,7 +21,7 @@ use std::time::Duration;
 use egui::{Button, Context, Grid, Rect, RichText, Ui, Window};
 
 use self::entry::Entry;
-use self::fields::{Found, Settings, fields, forecast, presets};
+use self::fields::{Found, PerPixel, Settings, fields, forecast, presets};
 pub use self::kept::KeptSettings;
 use self::kept::Owner;
 use self::order::{EXPORT, Order};
@@ -29,8 +30,9 @@ use super::pictures::Pictures;
 use super::requests::UiRequests;
 use super::status::in_words;
 use super::theme::{GRID, palette};
-use crate::editor::Editor;
+use crate::editor::{Editor, Mode};
 use crate::export::Sequence;
+use crate::image::{Format, Image};
 use crate::ui::hint::Hint as _;
 use crate::worker::run_in_background;
 
@@ -66,6 +68,11 @@ pub struct Exports {
     /// that have ended.
     found: Option<(Settings, (u64, usize), Option<Found>)>,
     looking: Option<Receiver<Found>>,
+    /// How many bytes a PNG of the picture on screen has for each of a PPM.
+    png_share: Option<f64>,
+    /// Which picture that was, or is going to be: its revision and width.
+    packed: Option<(u64, usize)>,
+    packing: Option<Receiver<f64>>,
     /// Exports that have ended, of all.
     ended: usize,
 }
@@ -159,6 +166,7 @@ impl Exports {
         pictures.worker().is_exporting()
             || self.entries.iter().any(|entry| !entry.is_over())
             || self.looking.is_some()
+            || self.packing.is_some()
     }
 
     /// Draws the window, if it is open.
@@ -243,9 +251,13 @@ impl Exports {
             }
             Ok(sequence) => {
                 self.look(editor, &settings, sequence);
+                self.pack(editor, pictures);
                 let found = self.found.as_ref().and_then(|(.., found)| found.as_ref());
-                let millis = pictures.millis_per_pixel(editor);
-                ui.label(forecast(&settings, sequence, found, millis));
+                let per_pixel = PerPixel {
+                    millis: pictures.millis_per_pixel(editor),
+                    png_share: self.png_share,
+                };
+                ui.label(forecast(&settings, sequence, found, per_pixel));
             }
         }
         let text = RichText::new("Export").color(colors.on_accent);
@@ -297,6 +309,31 @@ impl Exports {
                 editor.report_error_in(EXPORT, why.clone());
                 self.interrupted.push(order.failed(why));
             }
+        }
+    }
+
+    /// Finds out, on a thread of its own, how small a PNG of the finished picture on screen is.
+    fn pack(&mut self, editor: &Editor, pictures: &Pictures) {
+        if let Some(packing) = &self.packing {
+            match packing.try_recv() {
+                Err(TryRecvError::Empty) => return,
+                Err(TryRecvError::Disconnected) => {}
+                Ok(share) => self.png_share = Some(share),
+            }
+            self.packing = None;
+        }
+        let frame = pictures.whole(editor);
+        // A picture of 64 pixels says little of larger ones, and there is no hurry while it plays.
+        let is_meant = editor.mode != Mode::LowRes && !editor.timeline().is_playing;
+        let Some(frame) = frame.filter(|_| is_meant) else {
+            return;
+        };
+        let of = (frame.revision, frame.image.width);
+        if self.packed.replace(of) != Some(of) {
+            let image = Arc::clone(&frame.image);
+            self.packing = Some(run_in_background("glint-pack", move || {
+                share_of_png(&image)
+            }));
         }
     }
 
@@ -380,5 +417,14 @@ impl Exports {
         } else if let Some(index) = removed {
             self.interrupted.remove(index).end();
         }
+    }
+}
+
+/// How many bytes a PNG of a picture has for each of a PPM.
+fn share_of_png(image: &Image) -> f64 {
+    let mut file = Cursor::new(Vec::new());
+    match image.encode(Format::Png, &mut file) {
+        Ok(()) => file.into_inner().len() as f64 / (3 * image.pixels.len()).max(1) as f64,
+        Err(_) => 1.0,
     }
 }

@@ -4,7 +4,9 @@ use egui::{Align, Id, Layout, Ui, vec2};
 
 use super::title::{name_field, title};
 use crate::editor::{Edit, Editor, free_bookmark_name};
-use crate::scene::{Bookmark, Camera, Orientation, Projection};
+use crate::scene::{
+    Bookmark, Camera, MAX_COORDINATE, Orientation, PROJECTION_DISTANCES, Projection,
+};
 use crate::ui::commands::Command;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
@@ -95,14 +97,15 @@ pub fn place_rows(rows: &mut Rows, angles: Orientation, camera: &mut Camera) {
 }
 
 fn projection_rows(rows: &mut Rows, camera: &mut Camera) {
+    let defaults = Camera::default();
     if camera.projection == Projection::Orthographic {
         rows.number(
             &Field {
                 name: "height",
                 hint: "Height of the view window, in world units",
                 unit: "",
-                default: 200.0,
-                range: 1e-6..=1e12,
+                default: defaults.orthographic_height,
+                range: 1e-6..=MAX_COORDINATE,
                 speed: None,
             },
             &mut camera.orthographic_height,
@@ -114,8 +117,8 @@ fn projection_rows(rows: &mut Rows, camera: &mut Camera) {
             name: "distance",
             hint: "Projection distance: from the eye to the image plane, in image heights (0.001–100000). Longer is a narrower view",
             unit: " h",
-            default: 0.5625,
-            range: 1e-3..=1e5,
+            default: defaults.projection_distance,
+            range: PROJECTION_DISTANCES,
             speed: None,
         },
         &mut camera.projection_distance,

@@ -5,9 +5,10 @@ use egui::{Id, Ui};
 use glam::DVec3;
 
 use super::title::title_field;
-use crate::editor::{Edit, Item, Selection};
+use crate::editor::{Edit, Item};
 use crate::scene::{
-    self, ColorPack, FieldValue, Light, LightObj, MAX_EXPONENT, MOST_SEPARATE, Object, Scene, Shape,
+    self, ColorPack, FieldValue, Light, LightObj, MAX_COORDINATE, MAX_EXPONENT, MAX_FACTOR,
+    MOST_SEPARATE, Object, Scene, Shape, default_intensity,
 };
 use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
@@ -33,7 +34,7 @@ pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut
         &fraction(
             "intensity",
             "Brightness, 0–1; it does not fall off with distance",
-            0.2,
+            default_intensity(),
         ),
         &mut light.intensity,
     );
@@ -57,7 +58,11 @@ pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut
         });
     }
     if let Some(marker) = &mut light.marker {
-        let radius = length("radius", "In world units, greater than 0", 5.0);
+        let radius = length(
+            "radius",
+            "In world units, greater than 0",
+            LightObj::default().radius,
+        );
         rows.number(&radius, &mut marker.radius);
         pack_choice(&mut rows, scene, &mut marker.color_pack);
     }
@@ -69,7 +74,7 @@ pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut
 fn length(name: &'static str, hint: &'static str, default: f64) -> Field {
     Field {
         default,
-        range: 1e-9..=1e12,
+        range: 1e-9..=MAX_COORDINATE,
         ..coordinate(name, hint)
     }
 }
@@ -78,7 +83,6 @@ fn length(name: &'static str, hint: &'static str, default: f64) -> Field {
 fn angle(name: &'static str, hint: &'static str) -> Field {
     Field {
         unit: "°",
-        range: -1e6..=1e6,
         speed: Some(0.5),
         ..coordinate(name, hint)
     }
@@ -96,7 +100,7 @@ fn half_turn(name: &'static str, hint: &'static str) -> Field {
 fn factor(name: &'static str, hint: &'static str) -> Field {
     Field {
         default: 1.0,
-        range: -1e6..=1e6,
+        range: -MAX_FACTOR..=MAX_FACTOR,
         ..coordinate(name, hint)
     }
 }
@@ -201,7 +205,7 @@ fn count_users(ui: &Ui, scene: &Scene, name: &str) -> usize {
     match known {
         Some((objects, users)) if is_dragging && objects == scene.objects.len() => users,
         _ => {
-            let users = scene.users_of_pack(name).len();
+            let users = Item::wearing(scene, name).count();
             ui.data_mut(|data| data.insert_temp(id, (scene.objects.len(), users)));
             users
         }
@@ -259,7 +263,7 @@ pub fn pack(ui: &mut Ui, index: usize, before: &ColorPack, out: &mut UiRequests)
             name: "phong",
             hint: "Phong exponent: sharpness of the highlight. 0 is flat, 16 soft, 1000 a pinpoint",
             unit: "",
-            default: 16.0,
+            default: defaults.phong_exponent,
             range: 0.0..=MAX_EXPONENT,
             speed: None,
         },
@@ -279,31 +283,13 @@ pub fn pack(ui: &mut Ui, index: usize, before: &ColorPack, out: &mut UiRequests)
 pub fn used_by(ui: &mut Ui, scene: &Scene, name: &str, out: &mut UiRequests) {
     let mut rows = Rows::new(ui);
     rows.heading("Used by");
-    let lights = scene.lights.iter().enumerate().filter(|(_, light)| {
-        light
-            .marker
-            .as_ref()
-            .is_some_and(|marker| marker.color_pack == name)
-    });
-    let lights = lights.map(|(index, light)| (icons::LIGHT, Item::light(index), &light.name));
-    let objects = scene
-        .objects
-        .iter()
-        .enumerate()
-        .filter(|(_, object)| object.color_pack == name);
-    let objects = objects.map(|(index, object)| {
-        (
-            icons::of_shape(&object.shape),
-            Item::object(index),
-            &object.name,
-        )
-    });
-    let users: Vec<_> = lights.chain(objects).collect();
+    let users: Vec<Item> = Item::wearing(scene, name).collect();
     if users.is_empty() {
         ui.weak("Nothing yet – choose it in an object's ColorPack");
     }
-    for (icon, item, name) in users {
-        let button = egui::Button::new((icons::text(icon), name))
+    for item in users {
+        let name = item.name(scene).unwrap_or_default();
+        let button = egui::Button::new((icons::text(icons::of_item(scene, item)), name))
             .frame_when_inactive(false)
             .truncate();
         if ui
@@ -311,7 +297,7 @@ pub fn used_by(ui: &mut Ui, scene: &Scene, name: &str, out: &mut UiRequests) {
             .accessible_name(format!("Go to {name}"))
             .clicked()
         {
-            out.select(Selection::Item(item));
+            out.select(item);
         }
     }
 }

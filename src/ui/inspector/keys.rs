@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use egui::{Button, Id, Ui};
-use glam::DVec3;
 
 use super::camera::place_rows;
 use super::title::{tell_different, title};
@@ -25,12 +24,11 @@ const STAYING: [Interpolation; 3] = [
 ];
 
 /// Time, way and value of the selected key; of several, way and pace of the first, which others take on.
-pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     if !ui.input(|input| input.pointer.any_down()) {
         ui.data_mut(|data| data.remove::<Moved>(drag_id()));
     }
     let animation = &editor.scene().animation;
-    let places = &editor.timeline().selected;
     let Some(&first) = places.first() else { return };
     let Some((time, pace)) = animation.at_place(first) else {
         return;
@@ -134,7 +132,7 @@ struct Moved {
 /// Moves the selected key to another time.
 fn move_key(ui: &Ui, editor: &Editor, to: f64, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
-    let places = &editor.timeline().selected;
+    let places = editor.selection().keys();
     let first = places.first().and_then(|place| animation.at_place(*place));
     let Some((time, _)) = first else { return };
     let now = || Moved {
@@ -147,7 +145,7 @@ fn move_key(ui: &Ui, editor: &Editor, to: f64, out: &mut UiRequests) {
     let later = to - before.time;
     let (moved, new) = before.animation.with_moved(&before.places, later, false);
     out.edit(Edit::animation(moved, "Key: time"));
-    out.time(Time::SelectKeys(new));
+    out.select(new);
 }
 
 /// Where the key that is dragged is remembered.
@@ -167,7 +165,7 @@ fn time_field() -> Field {
 }
 
 fn pace_rows(rows: &mut Rows, editor: &Editor, (way, pace): &mut (Interpolation, Easing)) {
-    let ways = key_ways(editor, &editor.timeline().selected, *way);
+    let ways = key_ways(editor, editor.selection().keys(), *way);
     let can_orbit = ways.len() > STAYING.len();
     rows.choice(
         "way",
@@ -199,7 +197,7 @@ pub fn key_ways(editor: &Editor, places: &Keys, own: Interpolation) -> Vec<Inter
     };
     let around = match own {
         Interpolation::Orbit { around } => around,
-        _ => target(editor),
+        _ => editor.middle(),
     };
     let mut ways = STAYING.to_vec();
     if places.iter().all(has_place) {
@@ -208,20 +206,9 @@ pub fn key_ways(editor: &Editor, places: &Keys, own: Interpolation) -> Vec<Inter
     ways
 }
 
-/// The middle of what is selected, or of everything that ends.
-pub fn target(editor: &Editor) -> DVec3 {
-    let scene = editor.shown();
-    let all = || scene.objects_bounds().map(|(low, high)| (low + high) * 0.5);
-    editor
-        .selected()
-        .middle(scene)
-        .or_else(all)
-        .unwrap_or_default()
-}
-
 fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
-    let places = &editor.timeline().selected;
+    let places = editor.selection().keys();
     let only = places.first().filter(|_| places.len() == 1);
     let is_of_camera = only.is_some_and(|only| only.track.is_none());
     let overwrite = ui.add_enabled(is_of_camera, Button::new("Overwrite with view"));

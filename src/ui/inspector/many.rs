@@ -20,8 +20,8 @@ const MOST: usize = 500;
 
 /// The properties of what was selected last; a change is made to all that have the property.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
-    let (scene, selected) = (editor.shown(), editor.selected().items());
-    let group = editor.selected().group(scene);
+    let (scene, selected) = (editor.shown(), editor.selection().items());
+    let group = editor.selection().group(scene);
     if let Some(group) = group {
         group_title(ui, group, out);
     } else {
@@ -29,11 +29,15 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
     let Some(&last) = selected.last() else { return };
     tell_different(ui, differences(scene, selected, last).into_iter());
-    ui.weak(if group.is_some() {
-        "A change is made to all that have the property; a position moves the group."
+    let name = last.name(scene).unwrap_or_default();
+    let moves = if group.is_some() {
+        "a position moves the group"
     } else {
-        "A change is made to all that have the property; a position that is dragged moves them together."
-    });
+        "a position that is dragged moves them together"
+    };
+    ui.weak(format!(
+        "These are the values of {name}. A change is made to all that have the property; {moves}."
+    ));
     let can_join = is_enabled(&Command::Join, editor);
     let join = ui.add_enabled(can_join, egui::Button::new("Join"));
     let hint = "Make one mesh of these triangles and meshes, with the name and the color pack of the first";

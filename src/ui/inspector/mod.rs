@@ -18,10 +18,12 @@ mod needs;
 
 mod world;
 
-pub use keys::{key_ways, target};
+pub use keys::key_ways;
 pub use quality::Quality;
 pub use title::name_field;
 use title::title_field;
+
+use std::mem::discriminant;
 
 use egui::{ScrollArea, Ui};
 
@@ -34,62 +36,65 @@ use crate::scene::{Shape, Target};
 /// Shows the selection and pushes its changes.
 pub fn show(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiRequests) {
     // Each thing is read from its top.
-    let area = ScrollArea::vertical().id_salt(format!("{:?}", editor.selection()));
+    let selection = editor.selection();
+    let area = ScrollArea::vertical().id_salt((discriminant(selection), selection.item()));
     area.auto_shrink(false).show(ui, |ui| {
         ui.add_space(GRID / 2.0);
         let scene = editor.shown();
-        match editor.selection() {
-            Selection::Item(_) if editor.selected().items().len() > 1 => {
-                many::show(ui, editor, out);
-            }
+        match selection {
             Selection::Camera => camera::show(ui, editor, out),
-            Selection::Keys => keys::show(ui, editor, out),
+            Selection::Keys(keys) => keys::show(ui, editor, keys, out),
             Selection::World => {
                 world::show(ui, scene, out);
                 keys::of_values(ui, editor, &[("ambient", Target::AmbientIntensity)], out);
             }
             Selection::Render => world::show_picture(ui, editor, quality, out),
-            Selection::Item(Item {
-                kind: Kind::Light,
-                index,
-            }) => {
-                if let Some(value) = scene.lights.get(index) {
-                    items::light(ui, scene, index, value, out);
-                    let owner = value.name.clone();
-                    let light = [
-                        ("position", Target::LightPosition(owner.clone())),
-                        ("intensity", Target::LightIntensity(owner)),
-                    ];
-                    keys::of_values(ui, editor, &light, out);
-                }
-            }
-            Selection::Item(Item {
-                kind: Kind::Object,
-                index,
-            }) => {
-                if let Some(value) = scene.objects.get(index) {
-                    items::object(ui, scene, (index, true), value, out);
-                    let owner = value.name.clone();
-                    let mut tracks = vec![("position", Target::ObjectPosition(owner.clone()))];
-                    if matches!(value.shape, Shape::Mesh(_)) {
-                        tracks.push(("rotation", Target::ObjectRotation(owner)));
-                    }
-                    keys::of_values(ui, editor, &tracks, out);
-                }
-            }
-            Selection::Item(Item {
-                kind: Kind::Pack,
-                index,
-            }) => {
-                if let Some((name, value)) = scene.color_packs.get_index(index) {
-                    title_field(ui, icons::PACK, Item::pack(index), name, out);
-                    items::pack(ui, index, value, out);
-                    items::used_by(ui, scene, name, out);
-                }
-            }
+            Selection::Items(items) => match items[..] {
+                [item] => item_rows(ui, editor, item, out),
+                _ => many::show(ui, editor, out),
+            },
         }
         ui.add_space(GRID);
         needs::show(ui, editor, quality.in_use(scene));
         ui.add_space(GRID);
     });
+}
+
+/// The values of one thing, and the keys that they can have.
+fn item_rows(ui: &mut Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
+    let scene = editor.shown();
+    let index = item.index;
+    match item.kind {
+        Kind::Light => {
+            let Some(value) = scene.lights.get(index) else {
+                return;
+            };
+            items::light(ui, scene, index, value, out);
+            let owner = value.name.clone();
+            let light = [
+                ("position", Target::LightPosition(owner.clone())),
+                ("intensity", Target::LightIntensity(owner)),
+            ];
+            keys::of_values(ui, editor, &light, out);
+        }
+        Kind::Object => {
+            let Some(value) = scene.objects.get(index) else {
+                return;
+            };
+            items::object(ui, scene, (index, true), value, out);
+            let owner = value.name.clone();
+            let mut tracks = vec![("position", Target::ObjectPosition(owner.clone()))];
+            if matches!(value.shape, Shape::Mesh(_)) {
+                tracks.push(("rotation", Target::ObjectRotation(owner)));
+            }
+            keys::of_values(ui, editor, &tracks, out);
+        }
+        Kind::Pack => {
+            if let Some((name, value)) = scene.color_packs.get_index(index) {
+                title_field(ui, icons::PACK, item, name, out);
+                items::pack(ui, index, value, out);
+                items::used_by(ui, scene, name, out);
+            }
+        }
+    }
 }

@@ -7,7 +7,10 @@ use glam::DVec3;
 use super::quality::Quality;
 use super::title::title;
 use crate::editor::{Edit, Editor};
-use crate::scene::{MAX_REFLECTIONS, MAX_SIDE, Method, Render, Scene, Setting, VisitSetting};
+use crate::scene::{
+    MAX_REFLECTIONS, MAX_SIDE, Method, Render, Scene, Setting, VisitSetting,
+    default_ambient_intensity,
+};
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, color_names, fraction};
@@ -23,7 +26,7 @@ pub fn show(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
         &fraction(
             "ambient",
             "Ambient intensity: how much of every ambient colour is seen without light, 0–1",
-            0.5,
+            default_ambient_intensity(),
         ),
         &mut ambient,
     );
@@ -56,19 +59,17 @@ pub fn show_picture(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &m
     let mut render = scene.render.clone();
     let defaults = Render::default();
     let mut rows = Rows::new(ui);
-    for (name, hint, default, limit, value) in [
+    for (name, hint, default, value) in [
         (
             "width",
             "Width of the high-res picture in pixels",
             defaults.width,
-            MAX_SIDE,
             &mut render.width,
         ),
         (
             "height",
             "Height of the high-res picture in pixels",
             defaults.height,
-            MAX_SIDE,
             &mut render.height,
         ),
     ] {
@@ -77,7 +78,7 @@ pub fn show_picture(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &m
             hint,
             unit: " px",
             default: f64::from(default),
-            range: 1.0..=f64::from(limit),
+            range: 1.0..=f64::from(MAX_SIDE),
             speed: Some(2.0),
         };
         whole(&mut rows, &field, value);

@@ -70,6 +70,7 @@ fn show(ui: &mut Ui, growth: &Growth) {
                     Way::Plain => LineStyle::Solid,
                     Way::Clean => LineStyle::dashed_loose(),
                     Way::Povray => LineStyle::dotted_dense(),
+                    Way::Embree => LineStyle::dotted_loose(),
                 };
                 let dots = Points::new(name.clone(), PlotPoints::from(points.clone()));
                 plot.points(dots.radius(4.0).color(color));

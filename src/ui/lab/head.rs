@@ -2,7 +2,7 @@
 
 use egui::{Button, DragValue, Label, RichText, Ui};
 
-use super::super::commands::Command;
+use super::super::commands::{Command, with_key};
 use super::super::requests::UiRequests;
 use super::super::theme::palette;
 use super::dots::{CostAxis, ErrorAxis};
@@ -20,7 +20,10 @@ impl Lab {
         out: &mut UiRequests,
     ) -> Option<LabRequest> {
         let timeline = ui.selectable_label(false, "Timeline");
-        if timeline.hint("Keys and playing (Ctrl+T)").clicked() {
+        if timeline
+            .hint(with_key(ui, "Keys and playing", &Command::Timeline))
+            .clicked()
+        {
             out.commands.push(Command::Timeline);
         }
         for (tab, name, hint) in [

@@ -35,8 +35,21 @@ mod head;
 
 mod details;
 
-pub use atlas::stability_picture;
-pub use growth::growth_picture;
 pub use panel::{Lab, LabRequest};
-pub use pictures::chart_picture;
-pub use scaling::scaling_picture;
+
+use crate::image::Image;
+use crate::lab::Figure;
+
+/// A figure as a picture.
+pub fn drawn(figure: &Figure) -> Image {
+    match figure {
+        Figure::Chart {
+            studies,
+            machine,
+            look,
+        } => pictures::chart_picture(studies, machine, *look),
+        Figure::Growth(growth, look) => growth::growth_picture(growth, *look),
+        Figure::Scaling(pictures, look) => scaling::scaling_picture(pictures, *look),
+        Figure::Stability(maps) => atlas::stability_picture(maps),
+    }
+}

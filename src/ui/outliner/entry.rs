@@ -1,32 +1,19 @@
 //! A row of the outliner.
 
-use egui::text::{CCursor, CCursorRange};
-use egui::{AtomExt as _, Button, Color32, Id, Key, Rect, Sense, StrokeKind, TextEdit, Ui, vec2};
+use egui::{AtomExt as _, Button, Color32, Id, Key, Rect, Sense, Ui, vec2};
 use egui_material_icons::MaterialIcon;
 
-use crate::editor::{Action, Edit, Editor, Item, Kind};
+use crate::editor::{Edit, Item, Kind};
 use crate::scene::Scene;
-use crate::ui::dress::dressed;
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
 use crate::ui::inspector::name_field;
+use crate::ui::prompts::select_letters;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{ROW, palette};
 
 /// Letters that a row has room for, about.
 const LONG: usize = 18;
-
-/// The symbol of an item.
-pub fn icon_of(scene: &Scene, item: Item) -> MaterialIcon {
-    match item.kind {
-        Kind::Light => icons::LIGHT,
-        Kind::Object => {
-            let object = scene.objects.get(item.index);
-            object.map_or(icons::SPHERE, |object| icons::of_shape(&object.shape))
-        }
-        Kind::Pack => icons::PACK,
-    }
-}
 
 /// The colour of an object or a pack: the matte one, or that without light where there is none.
 pub fn color_of(scene: &Scene, item: Item) -> Option<Color32> {
@@ -85,43 +72,6 @@ pub fn entry(ui: &mut Ui, rect: Rect, look: RowStyle, name: &str) -> egui::Respo
     shown
 }
 
-/// Drag a row onto another to put it there; a pack onto an object, to be worn by it.
-pub fn take_dropped(
-    ui: &Ui,
-    editor: &Editor,
-    response: &egui::Response,
-    item: Item,
-    out: &mut UiRequests,
-) {
-    response.dnd_set_drag_payload(item);
-    let accent = palette(ui.ctx()).accent;
-    let is_worn = |dragged: &Item| dragged.kind == Kind::Pack && item.kind == Kind::Object;
-    let fits = |dragged: &Item| dragged.kind == item.kind && dragged.index != item.index;
-    if let Some(dragged) = response.dnd_hover_payload::<Item>() {
-        let rect = response.rect;
-        if is_worn(&dragged) {
-            ui.painter()
-                .rect_stroke(rect, 2, (1.0, accent), StrokeKind::Inside);
-        } else if fits(&dragged) {
-            let y = if dragged.index < item.index {
-                rect.bottom()
-            } else {
-                rect.top()
-            };
-            ui.painter().hline(rect.x_range(), y, (2.0, accent));
-        }
-    }
-    let Some(dragged) = response.dnd_release_payload::<Item>() else {
-        return;
-    };
-    if is_worn(&dragged) {
-        let edit = dressed(editor, *dragged, item);
-        out.actions.extend(edit.map(Action::Edit));
-    } else if fits(&dragged) {
-        out.edit(Edit::Move(*dragged, item.index));
-    }
-}
-
 /// Shows or hides an item by this name.
 pub fn eye(ui: &mut Ui, scene: &Scene, item: Item, name: &str, out: &mut UiRequests) {
     let Some(visible) = item.is_visible(scene) else {
@@ -158,7 +108,8 @@ pub enum Renaming {
 pub fn rename_field(ui: &mut Ui, row: Rect, (label, id): (&str, Id), name: &str) -> Renaming {
     if !ui.memory(|memory| memory.has_focus(id)) {
         ui.memory_mut(|memory| memory.request_focus(id));
-        select_all(ui, id, name);
+        // Typing shall replace the old name.
+        select_letters(ui, id, 0..name.chars().count());
     }
     if let Some(new) = name_field(ui, label, id, name) {
         return Renaming::To(new);
@@ -175,14 +126,4 @@ pub fn rename_field(ui: &mut Ui, row: Rect, (label, id): (&str, Id), name: &str)
     } else {
         Renaming::Going
     }
-}
-
-/// Typing shall replace the old name.
-fn select_all(ui: &Ui, id: Id, text: &str) {
-    let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
-    let end = CCursor::new(text.chars().count());
-    state
-        .cursor
-        .set_char_range(Some(CCursorRange::two(CCursor::new(0), end)));
-    state.store(ui.ctx(), id);
 }

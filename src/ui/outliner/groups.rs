@@ -4,9 +4,10 @@ use std::collections::HashSet;
 
 use egui::{Id, Rect, Response, Ui, UiBuilder};
 
+use super::drop::take_dropped_on_group;
 use super::entry::{Renaming, RowStyle, entry, eye_button, rename_field, row};
 use super::lines::Group;
-use crate::editor::{Action, Edit, Editor, Item, Kind, Selected};
+use crate::editor::{Action, Edit, Editor, Item, Selection};
 use crate::ui::commands::Command;
 use crate::ui::icons;
 use crate::ui::menu_entry;
@@ -46,27 +47,19 @@ impl GroupRows {
         let look = RowStyle {
             icon: icons::GROUP,
             is_bright,
-            is_selected: editor.selected().has_all(members()),
+            is_selected: editor.selection().has_all(members()),
         };
         let response = entry(ui, rect, look, &group.name);
-        let all = || Action::Select(Selected::all(members()));
+        let all = || Action::Select(Selection::all(members()));
         if response.clicked() {
-            let selected = selected_with(ui, editor.selected(), members());
+            let selected = selected_with(ui, editor.selection(), members());
             out.actions.push(Action::Select(selected));
         }
         if response.double_clicked() {
             self.renaming = Some(group.name.clone());
         }
-        let dropped = response.dnd_release_payload::<Item>();
-        if let Some(item) = dropped.filter(|item| item.kind == Kind::Object) {
-            let selected = editor.selected();
-            let places = if selected.has(*item) {
-                selected.places(Kind::Object)
-            } else {
-                vec![item.index]
-            };
-            out.edit(Edit::Group(places, group.name.clone()));
-        }
+        let is_folded = self.folded.contains(&group.name);
+        take_dropped_on_group(ui, editor, &response, (group, is_folded), out);
         response.context_menu(|ui| {
             if ui.button("Rename").clicked() {
                 self.renaming = Some(group.name.clone());
@@ -76,7 +69,7 @@ impl GroupRows {
                 ("Duplicate", Command::Duplicate),
                 ("Delete", Command::Delete),
             ] {
-                if menu_entry::entry(ui, text, command, true, out) {
+                if menu_entry::entry(ui, text, command, out) {
                     out.actions.push(all());
                 }
             }
@@ -134,19 +127,19 @@ impl GroupRows {
 /// What is selected by a click on a group: with Shift or Ctrl besides the others, with Ctrl alone not if all of it was.
 fn selected_with(
     ui: &Ui,
-    selected: &Selected,
+    selected: &Selection,
     members: impl ExactSizeIterator<Item = Item> + Clone,
-) -> Selected {
+) -> Selection {
     let modifiers = ui.input(|input| input.modifiers);
     if !modifiers.shift && !modifiers.command {
-        return Selected::all(members);
+        return Selection::all(members);
     }
     let own: HashSet<Item> = members.clone().collect();
     let others = selected.items().iter().copied();
     let others = others.filter(|item| !own.contains(item));
     if !modifiers.shift && selected.has_all(members.clone()) {
-        Selected::all(others)
+        Selection::all(others)
     } else {
-        Selected::all(others.chain(members))
+        Selection::all(others.chain(members))
     }
 }

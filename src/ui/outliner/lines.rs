@@ -10,7 +10,7 @@ use crate::ui::icons;
 
 /// One line of the list.
 pub enum Line {
-    Single(Selection, MaterialIcon, &'static str),
+    Single(&'static Selection, MaterialIcon, &'static str),
     Kind(Kind, usize),
     /// A group of objects, by its place in [`Groups`].
     Group(usize),
@@ -105,7 +105,7 @@ pub enum Entries<'a> {
 pub struct Lines<'a>(pub [(Kind, usize, Entries<'a>); 3]);
 
 /// What is above the groups.
-pub const SINGLES: [(Selection, MaterialIcon, &str); 3] = [
+pub static SINGLES: [(Selection, MaterialIcon, &str); 3] = [
     (Selection::Camera, icons::CAMERA, "Camera"),
     (Selection::World, icons::WORLD, "World"),
     (Selection::Render, icons::IMAGE, "Picture"),
@@ -149,7 +149,7 @@ impl Lines<'_> {
 
     pub fn get(&self, index: usize) -> Option<Line> {
         if let Some((selection, icon, name)) = SINGLES.get(index) {
-            return Some(Line::Single(*selection, *icon, name));
+            return Some(Line::Single(selection, *icon, name));
         }
         let mut row = index - SINGLES.len();
         for (kind, count, entries) in &self.0 {

@@ -5,6 +5,8 @@ mod entry;
 
 mod lines;
 
+mod drop;
+
 mod groups;
 
 mod walk;
@@ -13,9 +15,8 @@ use egui::{
     Align, Id, Layout, Rect, Response, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2,
 };
 
-use self::entry::{
-    Renaming, RowStyle, color_of, entry, eye, icon_of, rename_field, row, take_dropped,
-};
+use self::drop::take_dropped;
+use self::entry::{Renaming, RowStyle, color_of, entry, eye, rename_field, row};
 use self::groups::GroupRows;
 use self::lines::{Entries, Groups, Line, Lines};
 use self::walk::{Listed, Walk};
@@ -24,7 +25,7 @@ use super::icons;
 use super::menu_entry::{ITEM_COMMANDS, entry as menu_entry};
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW, palette};
-use crate::editor::{Action, Edit, Editor, Item, Kind, Selected, Selection};
+use crate::editor::{Action, Edit, Editor, Item, Kind, Selection};
 use crate::scene::Scene;
 
 /// What the panel remembers between frames.
@@ -32,7 +33,7 @@ use crate::scene::Scene;
 pub struct Outliner {
     filter: String,
     /// Which of the documents it listed, see [`Editor::documents`], and what was selected in it.
-    listed: (u64, Selection),
+    listed: (u64, Option<Item>),
     /// Where the list is scrolled to, and how much of it is seen, in points.
     scrolled: (f32, f32),
     folded: Vec<Kind>,
@@ -124,7 +125,7 @@ impl Outliner {
         if let Some(to) = revealed.and_then(|row| self.to_reveal(row)) {
             area = area.vertical_scroll_offset(to);
         }
-        self.listed = (editor.documents(), editor.selection());
+        self.listed = (editor.documents(), editor.selection().item());
         self.reveals = false;
         let shown = area.show_rows(ui, ROW, lines.len(), |ui, range| {
             for index in range {
@@ -139,7 +140,7 @@ impl Outliner {
                         let response = entry(ui, rect, look, name);
                         self.walk.attend(ui, index, &response);
                         if response.clicked() {
-                            out.select(selection);
+                            out.select(selection.clone());
                         }
                     }
                     Some(Line::Kind(kind, count)) => {
@@ -173,9 +174,11 @@ impl Outliner {
 
     /// The row of what was just selected elsewhere.
     fn revealed(&self, editor: &Editor, listed: Listed) -> Option<usize> {
-        let is_new = self.reveals || self.listed != (editor.documents(), editor.selection());
-        let is_item = matches!(editor.selection(), Selection::Item(_));
-        (is_new && is_item).then(|| listed.row_of(editor)).flatten()
+        let item = editor.selection().item();
+        let is_new = self.reveals || self.listed != (editor.documents(), item);
+        (is_new && item.is_some())
+            .then(|| listed.row_of(editor))
+            .flatten()
     }
 
     /// Where to scroll to, so that a row is seen; nothing where it is.
@@ -276,8 +279,8 @@ impl Outliner {
             self.rename_row(ui, scene, (item, is_in_group), out);
             return None;
         }
-        let (icon, visible) = (icon_of(scene, item), item.is_visible(scene));
-        let is_selected = editor.selected().has(item);
+        let (icon, visible) = (icons::of_item(scene, item), item.is_visible(scene));
+        let is_selected = editor.selection().has(item);
         let (mut rect, mut eye_rect) = (row(ui), Rect::NOTHING);
         if is_in_group {
             rect.min.x += ROW;
@@ -310,10 +313,10 @@ impl Outliner {
         take_dropped(ui, editor, &response, item, out);
         response.context_menu(|ui| {
             if !is_selected {
-                out.select(Selection::Item(item));
+                out.select(item);
             }
             for (text, command) in ITEM_COMMANDS {
-                menu_entry(ui, text, command, true, out);
+                menu_entry(ui, text, command, out);
             }
         });
         if visible.is_some() {
@@ -342,7 +345,7 @@ impl Outliner {
                 .layout(Layout::left_to_right(Align::Center)),
             |ui| {
                 ui.add_space(GRID);
-                ui.label(icons::text(icon_of(scene, item)));
+                ui.label(icons::text(icons::of_item(scene, item)));
                 let id = Id::unique(("rename", item));
                 match rename_field(ui, rect, ("new name", id), name) {
                     Renaming::Going => return,
@@ -358,7 +361,7 @@ impl Outliner {
 /// Selects an item: with Ctrl besides the others, with Shift all from the last one on, if that is in the same list.
 fn select_clicked(ui: &Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
     let modifiers = ui.input(|input| input.modifiers);
-    let selected = editor.selected();
+    let selected = editor.selection();
     let selected = if modifiers.shift {
         let items = selected.items();
         let last = items.last().filter(|last| last.kind == item.kind);
@@ -366,11 +369,11 @@ fn select_clicked(ui: &Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
         let between = from.min(item.index)..=from.max(item.index);
         let between = between.map(|index| Item { index, ..item });
         let others = items.iter().copied().chain(between);
-        Selected::all(others.filter(|other| *other != item).chain([item]))
+        Selection::all(others.filter(|other| *other != item).chain([item]))
     } else if modifiers.command {
         selected.toggled(item)
     } else {
-        Selected::all([item])
+        Selection::all([item])
     };
     out.actions.push(Action::Select(selected));
 }

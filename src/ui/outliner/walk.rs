@@ -3,7 +3,7 @@
 use egui::{Event, EventFilter, Key, Modifiers, Response, Ui};
 
 use super::lines::{Group, Line, Lines, SINGLES};
-use crate::editor::{Action, Editor, Item, Selected, Selection};
+use crate::editor::{Action, Editor, Item, Selection};
 
 /// What has the arrow keys.
 #[derive(Debug, Default)]
@@ -117,11 +117,11 @@ impl Walk {
 impl Listed<'_> {
     /// The row of what is selected, if it is listed: that of its group, if all of that is, or if the group is folded.
     pub fn row_of(&self, editor: &Editor) -> Option<usize> {
-        let Selection::Item(item) = editor.selection() else {
+        let Some(item) = editor.selection().item() else {
             let mut singles = SINGLES.iter();
-            return singles.position(|(single, ..)| *single == editor.selection());
+            return singles.position(|(single, ..)| single == editor.selection());
         };
-        match editor.selected().group(editor.scene()) {
+        match editor.selection().group(editor.scene()) {
             Some(group) => self.row_of_group(group),
             None => self.lines.row_of(item).or_else(|| {
                 let object = editor.scene().objects.get(item.index)?;
@@ -138,13 +138,13 @@ impl Listed<'_> {
     }
 
     /// What selects what is in a row, if anything is.
-    fn selects(&self, row: usize) -> Option<Selected> {
+    fn selects(&self, row: usize) -> Option<Selection> {
         Some(match self.lines.get(row)? {
-            Line::Single(selection, ..) => selection.into(),
-            Line::Entry(item, _) => Selected::all([item]),
+            Line::Single(selection, ..) => selection.clone(),
+            Line::Entry(item, _) => Selection::all([item]),
             Line::Group(place) => {
                 let members = self.groups[place].members.iter();
-                Selected::all(members.map(|index| Item::object(*index)))
+                Selection::all(members.map(|index| Item::object(*index)))
             }
             Line::Kind(..) => return None,
         })
@@ -152,6 +152,6 @@ impl Listed<'_> {
 
     /// Whether what is in a row is what is selected.
     fn is_selected(&self, editor: &Editor, row: usize) -> bool {
-        self.selects(row).as_ref() == Some(editor.selected())
+        self.selects(row).as_ref() == Some(editor.selection())
     }
 }

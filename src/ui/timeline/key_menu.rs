@@ -11,7 +11,7 @@ use crate::ui::requests::UiRequests;
 /// Way and pace of the selected keys, of which this is one; and their end.
 pub fn menu(ui: &mut Ui, place: KeyPlace, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
-    let places = &editor.timeline().selected;
+    let places = editor.selection().keys();
     let Some((_, (own_way, own_pace))) = animation.at_place(place) else {
         return;
     };

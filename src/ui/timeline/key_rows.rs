@@ -8,7 +8,7 @@ use super::key_menu::menu;
 use super::ruler::playhead;
 use super::scale::Scale;
 use super::strip::{KEY, band, diamond, label};
-use crate::editor::{Action, Edit, Editor, Selected, Time};
+use crate::editor::{Action, Edit, Editor, Selection};
 use crate::scene::{Animation, Interpolation, Key, KeyPlace, Keys};
 use crate::ui::hint::Hint as _;
 use crate::ui::requests::UiRequests;
@@ -27,7 +27,7 @@ struct Frame {
     /// Where no key was, when it began.
     from: Pos2,
     /// What was selected then.
-    before: (Selected, Keys),
+    before: Selection,
     /// Whether those keys stay so.
     adds: bool,
     /// What is in it.
@@ -70,13 +70,10 @@ impl KeyRows {
 
     /// Gives up what the pointer does.
     pub fn give_up(&mut self, editor: &Editor, out: &mut UiRequests) {
-        if let Some(Frame { before, .. }) = self.frame.take() {
-            let (selected, keys) = before;
-            if selected != Selected::Keys && selected != *editor.selected() {
-                out.actions.push(Action::Select(selected));
-            } else if keys != editor.timeline().selected {
-                out.time(Time::SelectKeys(keys));
-            }
+        if let Some(Frame { before, .. }) = self.frame.take()
+            && before != *editor.selection()
+        {
+            out.select(before);
         }
         if self.drag.take().is_some() {
             out.actions.push(Action::CancelGesture);
@@ -124,17 +121,17 @@ impl KeyRows {
 
     /// A press where no key is.
     fn press(&mut self, ui: &Ui, response: &Response, editor: &Editor, out: &mut UiRequests) {
-        let selected = &editor.timeline().selected;
+        let selected = editor.selection().keys();
         // Where no key was selected, what else is stays so.
         if response.clicked() && !selected.is_empty() {
-            out.time(Time::SelectKeys(Keys::new()));
+            out.select(Keys::new());
         }
         if response.drag_started_by(PointerButton::Primary) {
             let (from, adds) =
                 ui.input(|input| (input.pointer.press_origin(), input.modifiers.shift));
             self.frame = from.map(|from| Frame {
                 from,
-                before: (editor.selected().clone(), selected.clone()),
+                before: editor.selection().clone(),
                 adds,
                 within: Keys::new(),
             });
@@ -165,10 +162,10 @@ impl KeyRows {
         if beside.clicked() {
             let mut all = Keys::new();
             if ui.input(|input| input.modifiers.shift) {
-                all.clone_from(&editor.timeline().selected);
+                all.clone_from(editor.selection().keys());
             }
             all.extend((0..keys.len()).map(|index| KeyPlace { track, index }));
-            out.time(Time::SelectKeys(all));
+            out.select(all);
         } else {
             self.press(ui, &beside, editor, out);
         }
@@ -199,7 +196,7 @@ impl KeyRows {
         let response = ui.interact(near, id, Sense::click_and_drag());
         let name = animation.name_of(place);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-        let is_on = editor.timeline().selected.contains(&place);
+        let is_on = editor.selection().keys().contains(&place);
         let colors = palette(ui.ctx());
         let fill = match (is_on, response.hovered()) {
             (true, _) => colors.accent,
@@ -223,10 +220,10 @@ impl KeyRows {
         editor: &Editor,
         out: &mut UiRequests,
     ) {
-        let selected = &editor.timeline().selected;
+        let selected = editor.selection().keys();
         let modifiers = response.ctx.input(|input| input.modifiers);
         if response.secondary_clicked() && !selected.contains(&place) {
-            out.time(Time::SelectKeys(Keys::from([place])));
+            out.select(Keys::from([place]));
         }
         if response.clicked() {
             let mut places = selected.clone();
@@ -235,7 +232,7 @@ impl KeyRows {
             } else if !places.remove(&place) {
                 places.insert(place);
             }
-            out.time(Time::SelectKeys(places));
+            out.select(places);
         }
         if response.drag_started() {
             let places = if selected.contains(&place) {
@@ -278,8 +275,8 @@ impl KeyRows {
             };
             out.edit(Edit::animation(moved, label));
         }
-        if new != editor.timeline().selected {
-            out.time(Time::SelectKeys(new));
+        if new != *editor.selection().keys() {
+            out.select(new);
         }
     }
 
@@ -310,10 +307,10 @@ impl KeyRows {
         let Some(frame) = &self.frame else { return };
         let mut places = frame.within.clone();
         if frame.adds {
-            places.extend(&frame.before.1);
+            places.extend(frame.before.keys());
         }
-        if places != editor.timeline().selected {
-            out.time(Time::SelectKeys(places));
+        if places != *editor.selection().keys() {
+            out.select(places);
         }
         if let Some(around) = frame.around(ui) {
             let fill = palette(ui.ctx()).accent.gamma_multiply(0.2);

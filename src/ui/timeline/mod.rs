@@ -26,7 +26,7 @@ pub use self::overlay::Overlay;
 use self::scale::Scale;
 pub use self::thumbs::Thumbs;
 pub use self::transport::{actions, clock};
-use super::commands::Command;
+use super::commands::{Command, with_key};
 use super::requests::UiRequests;
 use super::theme::{GRID, TRACK_LABEL};
 use crate::editor::Editor;
@@ -85,7 +85,10 @@ impl TimelinePanel {
         ui.horizontal(|ui| {
             let _ = ui.selectable_label(true, "Timeline");
             let lab = ui.selectable_label(false, "Lab");
-            if lab.hint("Speed against accuracy (Ctrl+L)").clicked() {
+            if lab
+                .hint(with_key(ui, "Speed against accuracy", &Command::Lab))
+                .clicked()
+            {
                 out.commands.push(Command::Lab);
             }
             ui.separator();

@@ -4,7 +4,7 @@ use egui::{Color32, Painter, Pos2, Rect, Sense, Stroke, Ui, vec2};
 
 use glam::DVec3;
 
-use crate::editor::{Edit, Editor, Time};
+use crate::editor::{Edit, Editor};
 use crate::scene::{Camera, KeyPlace, Keys, Projection};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
@@ -63,7 +63,7 @@ impl Overlay {
         }
         self.draw_way(&painter, &lens, colors.curve);
         let size = self.extent() * CAMERA_SHARE;
-        let selected = &editor.timeline().selected;
+        let selected = editor.selection().keys();
         let mut drawn: Vec<Pos2> = Vec::new();
         for (place, key) in animation.keys.iter().enumerate() {
             let is_selected = selected.contains(&KeyPlace::of_camera(place));
@@ -187,12 +187,12 @@ impl Overlay {
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
         let own = Keys::from([KeyPlace::of_camera(place)]);
         if response.clicked() {
-            out.time(Time::SelectKeys(own.clone()));
+            out.select(own.clone());
         }
         if response.drag_started_by(egui::PointerButton::Primary) {
             let (origin, direction) = lens.ray(at);
             self.dragged = Some((place, (position - origin).dot(direction)));
-            out.time(Time::SelectKeys(own.clone()));
+            out.select(own.clone());
         }
         let Some((dragged, depth)) = self.dragged.filter(|(dragged, _)| *dragged == place) else {
             return;

@@ -7,7 +7,7 @@ use crate::animate::shot;
 use crate::editor::Editor;
 use crate::image::Image;
 use crate::scene::Animation;
-use crate::ui::commands::Command;
+use crate::ui::commands::{Command, with_key};
 use crate::ui::hint::Hint as _;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, THUMB, palette};
@@ -134,7 +134,8 @@ impl Thumbs {
         let place = shot_place(view, size.x / size.y);
         paint(ui.painter(), texture, place);
         let response = ui.interact(place, Id::unique("shot"), Sense::click_and_drag());
-        let response = response.hint("A click looks through the shot camera (C)");
+        let words = "A click looks through the shot camera";
+        let response = response.hint(with_key(ui, words, &Command::LookThrough));
         if response.accessible_name("Shot").clicked() {
             out.commands.push(Command::LookThrough);
         }

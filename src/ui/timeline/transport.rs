@@ -6,10 +6,9 @@ use egui::{Button, PopupCloseBehavior, RichText, Slider, Ui};
 use crate::animate::{longest_flight, paused_seconds, stretched};
 use crate::editor::{Edit, Editor, Repeat, Time};
 use crate::scene::{Animation, FRAME_RATES, KeyPlace, Keys};
-use crate::ui::commands::Command;
+use crate::ui::commands::{Command, with_key};
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
-use crate::ui::inspector::target;
 use crate::ui::number::{Field, lone};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
@@ -29,32 +28,22 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
     let timeline = editor.timeline();
     let animation = &editor.scene().animation;
     let mut press = |ui: &mut Ui, icon, name: &str, command: Command| {
-        if icons::button(ui, icon, name).clicked() {
+        if icons::button(ui, icon, &with_key(ui, name, &command)).clicked() {
             out.commands.push(command);
         }
     };
-    press(
-        ui,
-        icons::FIRST,
-        "First frame (Ctrl+Home)",
-        Command::FirstFrame,
-    );
-    press(
-        ui,
-        icons::PREVIOUS,
-        "Previous key ([)",
-        Command::PreviousKey,
-    );
-    press(ui, icons::BACK, "One frame back (,)", Command::FrameBack);
+    press(ui, icons::FIRST, "First frame", Command::FirstFrame);
+    press(ui, icons::PREVIOUS, "Previous key", Command::PreviousKey);
+    press(ui, icons::BACK, "One frame back", Command::FrameBack);
     let (icon, name) = if timeline.is_playing {
-        (icons::PAUSE, "Pause (G)")
+        (icons::PAUSE, "Pause")
     } else {
-        (icons::PLAY, "Play (G)")
+        (icons::PLAY, "Play")
     };
     press(ui, icon, name, Command::Play);
-    press(ui, icons::FORTH, "One frame on (.)", Command::FrameOn);
-    press(ui, icons::NEXT, "Next key (])", Command::NextKey);
-    press(ui, icons::LAST, "Last frame (End)", Command::LastFrame);
+    press(ui, icons::FORTH, "One frame on", Command::FrameOn);
+    press(ui, icons::NEXT, "Next key", Command::NextKey);
+    press(ui, icons::LAST, "Last frame", Command::LastFrame);
     let (icon, name, next) = match timeline.repeat {
         Repeat::Once => (icons::ONCE, "Plays once; click for loop", Repeat::Loop),
         Repeat::Loop => (
@@ -82,7 +71,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
     if width >= NARROW {
         let frame = animation.frame_at(timeline.playhead);
         let frames = match animation.frame_count() {
-            count if count < frame => format!("{frame:>4}, after {count}"),
+            count if count < frame => format!("{frame:>4}, last {count}"),
             count => format!("{frame:>4}/{count}"),
         };
         let hint = "Frame, from 1; the number that glint render --frame takes";
@@ -91,10 +80,9 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
     }
     ui.separator();
     record_button(ui, editor, out);
-    let key = ui
-        .button("Add key")
-        .hint("Set a key at the playhead from the view, in place of one that is there (K)");
-    if key.clicked() {
+    let words = "Set a key at the playhead from the view, in place of one that is there";
+    let hint = with_key(ui, words, &Command::AddKey);
+    if ui.button("Add key").hint(hint).clicked() {
         out.commands.push(Command::AddKey);
     }
     if width >= NARROW {
@@ -130,7 +118,8 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
 fn through_shot(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let has_keys = !editor.scene().animation.keys.is_empty();
     let through = Button::selectable(editor.looks_through(), "Through shot");
-    let hint = "Look through the shot camera, or at it from the view (C)";
+    let words = "Look through the shot camera, or at it from the view";
+    let hint = with_key(ui, words, &Command::LookThrough);
     if ui.add_enabled(has_keys, through).hint(hint).clicked() {
         out.commands.push(Command::LookThrough);
     }
@@ -140,7 +129,8 @@ fn record_button(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let accent = palette(ui.ctx()).accent;
     if let Some((samples, seconds)) = editor.timeline().recorded() {
         let stop = Button::new((icons::text(icons::STOP).color(accent), "Stop"));
-        let stop = ui.add(stop).hint("Stop recording and make keys (T)");
+        let hint = with_key(ui, "Stop recording and make keys", &Command::StopRecording);
+        let stop = ui.add(stop).hint(hint);
         if stop.accessible_name("Stop recording").clicked() {
             out.commands.push(Command::StopRecording);
         }
@@ -149,7 +139,8 @@ fn record_button(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         return;
     }
     let record = Button::new((icons::text(icons::RECORD), "Record"));
-    let record = ui.add(record).hint("Record the flight of the camera (R)");
+    let hint = with_key(ui, "Record the flight of the camera", &Command::Record);
+    let record = ui.add(record).hint(hint);
     if record.accessible_name("Record").clicked() {
         out.commands.push(Command::Record);
     }
@@ -329,7 +320,7 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action>
         }
         Command::Record if editor.timeline().recorded().is_none() => timed(Time::Record),
         Command::StopRecording => timed(Time::Stop),
-        Command::SelectKeys => timed(Time::SelectKeys(animation.places())),
+        Command::SelectKeys => vec![Action::Select(animation.places().into())],
         Command::LookThrough if !animation.keys.is_empty() => {
             timed(Time::LookThrough(!editor.looks_through()))
         }
@@ -338,11 +329,11 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action>
             let (changed, place) = animation.with_key(time, view);
             vec![
                 Action::Edit(Edit::animation(changed, "Add key")),
-                Action::Time(Time::SelectKeys(Keys::from([KeyPlace::of_camera(place)]))),
+                Action::Select(Keys::from([KeyPlace::of_camera(place)]).into()),
             ]
         }
         Command::Preset(preset) => {
-            let keys = preset.keys(&editor.shown().camera, target(editor), PRESET_SECONDS);
+            let keys = preset.keys(&editor.shown().camera, editor.middle(), PRESET_SECONDS);
             let changed = Animation {
                 keys,
                 take: None,
@@ -359,6 +350,10 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action>
                 keys: retime.apply(&animation.keys),
                 ..Animation::clone(animation)
             };
+            if changed == **animation {
+                let told = "This changes nothing of the flight as it is";
+                return vec![Action::Tell(told.to_owned())];
+            }
             vec![Action::Edit(Edit::animation(changed, retime.words().0))]
         }
         _ => Vec::new(),

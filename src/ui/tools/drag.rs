@@ -6,10 +6,10 @@ use glam::DVec3;
 use super::gizmo::{Handle, label};
 use super::grip::{Grip, Pull};
 use super::lens::Lens;
-use super::navigate::{middle_of, panned, turn};
+use super::navigate::{panned, turn};
 use super::sight::{Sight, ends, item_of};
 use super::subject::Subject;
-use crate::editor::{Action, Edit, Editor, Selected};
+use crate::editor::{Action, Edit, Editor, Selection};
 use crate::image::Thing;
 use crate::scene::Shape;
 use crate::ui::requests::UiRequests;
@@ -27,7 +27,7 @@ pub enum Drag {
     /// The camera past a point.
     Pan(DVec3),
     /// A frame from here around what is to be selected, besides what is.
-    Frame(Pos2, Selected),
+    Frame(Pos2, Selection),
     /// What is selected.
     Grip(Box<Grip>),
     /// What is here, once it is known, while shift was held.
@@ -58,7 +58,7 @@ impl View<'_> {
         };
         let middle = match seen {
             Some(Thing::Light(index)) => scene.lights.get(index).map(|light| light.position),
-            _ => middle_of(scene),
+            _ => scene.middle(),
         };
         let on_shape = shape.and_then(|shape| self.lens.on_shape(at, shape));
         let forward = self.lens.forward();
@@ -72,7 +72,7 @@ impl View<'_> {
     /// What the camera is moved around: the middle of what is selected, if that is in the picture, or the
     /// point at a place of it.
     fn pivot(&self, sight: &Sight, at: Pos2) -> DVec3 {
-        let selected = Subject::of(self.editor.selected(), self.editor.shown());
+        let selected = Subject::of(self.editor.selection(), self.editor.shown());
         let has_end = selected.iter().all(|subject| subject.bounds().is_some());
         let middle = Subject::middle_of(&selected).filter(|middle| {
             let place = self.lens.place(*middle);
@@ -107,7 +107,7 @@ impl Drag {
     ) -> Option<Self> {
         let editor = view.editor;
         if let Some(handle) = handle {
-            let before = Subject::of(editor.selected(), editor.shown());
+            let before = Subject::of(editor.selection(), editor.shown());
             return Grip::new(&view.lens, before, handle, at)
                 .map(|grip| Self::Grip(Box::new(grip)));
         }
@@ -119,9 +119,9 @@ impl Drag {
         }
         if let Some(body) = view.body_at(sight, at) {
             let item = item_of(body);
-            let mut selected = editor.selected().clone();
+            let mut selected = editor.selection().clone();
             if !selected.has(item) {
-                selected = Selected::all([item]);
+                selected = Selection::all([item]);
                 out.actions.push(Action::Select(selected.clone()));
             }
             let before = Subject::of(&selected, editor.shown());
@@ -129,7 +129,7 @@ impl Drag {
             return grip.map(|grip| Self::Grip(Box::new(grip)));
         }
         Some(if is_shifted {
-            Self::Frame(at, editor.selected().clone())
+            Self::Frame(at, editor.selection().clone())
         } else {
             Self::Orbit(view.pivot(sight, at))
         })
@@ -184,7 +184,7 @@ impl Drag {
                 let found = sight.within(view.editor, view.place.rect, part);
                 if !response.dragged() {
                     let items = before.items().iter().copied().chain(found);
-                    out.actions.push(Action::Select(Selected::all(items)));
+                    out.actions.push(Action::Select(Selection::all(items)));
                     return false;
                 }
                 show_frame(view, part, (at, found.len()));

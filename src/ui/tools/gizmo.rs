@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::lens::Lens;
 use super::subject::Subject;
-use crate::editor::{Editor, Selected};
+use crate::editor::{Editor, Selection};
 use crate::scene::{Scene, Shape};
 use crate::ui::theme::{GRID, palette};
 
@@ -55,20 +55,15 @@ pub enum Handle {
     Turn(usize),
 }
 
-/// A handle as it is drawn: a line, closed where it is a surface.
+/// A handle as it is drawn: a dot, a line between two points, or around a surface.
 struct Drawn {
     handle: Handle,
     line: Vec<Pos2>,
-    is_closed: bool,
 }
 
 impl Drawn {
     fn distance(&self, at: Pos2) -> f32 {
-        let pairs = self.line.windows(2).map(|pair| (pair[0], pair[1]));
-        let last = self.line.last().zip(self.line.first());
-        let closing = last.filter(|_| self.is_closed).map(|(a, b)| (*a, *b));
-        let nearest = pairs
-            .chain(closing)
+        let nearest = sides(&self.line)
             .map(|(a, b)| {
                 let along = b - a;
                 let share = (at - a).dot(along) / along.length_sq().max(f32::EPSILON);
@@ -90,6 +85,12 @@ impl Drawn {
             _ => nearest,
         }
     }
+}
+
+/// From each point to the next one, and from the last to the first.
+fn sides(line: &[Pos2]) -> impl Iterator<Item = (Pos2, Pos2)> {
+    let next = line.iter().cycle().skip(1);
+    line.iter().zip(next).map(|(from, to)| (*from, *to))
 }
 
 fn is_inside(corners: &[Pos2], at: Pos2) -> bool {
@@ -135,8 +136,8 @@ fn rim(lens: &Lens, center: DVec3, radius: f64) -> Vec<Pos2> {
 }
 
 /// Everything that can be grabbed at what is selected.
-fn handles(lens: &Lens, selected: &Selected, scene: &Scene) -> Vec<Drawn> {
-    let Some(middle) = selected.middle(scene) else {
+fn handles(lens: &Lens, selected: &Selection, scene: &Scene) -> Vec<Drawn> {
+    let Some(middle) = selected.pivot(scene) else {
         return Vec::new();
     };
     // Of many, nothing is copied: this is done in every frame.
@@ -149,13 +150,9 @@ fn handles(lens: &Lens, selected: &Selected, scene: &Scene) -> Vec<Drawn> {
     };
     let length = lens.unit_at(middle) * LENGTH;
     let mut drawn = Vec::new();
-    let mut add = |handle: Handle, line: Option<Vec<Pos2>>, is_closed: bool| {
+    let mut add = |handle: Handle, line: Option<Vec<Pos2>>| {
         if let Some(line) = line.filter(|line| !line.is_empty()) {
-            drawn.push(Drawn {
-                handle,
-                line,
-                is_closed,
-            });
+            drawn.push(Drawn { handle, line });
         }
     };
     let at = |point: DVec3| lens.place(point);
@@ -165,11 +162,7 @@ fn handles(lens: &Lens, selected: &Selected, scene: &Scene) -> Vec<Drawn> {
     for (axis, (direction, _)) in AXES.iter().enumerate() {
         let line = at(middle + *direction * length * GAP).zip(at(middle + *direction * length));
         let line = line.filter(|(from, to)| (*to - *from).length() >= SHORTEST);
-        add(
-            Handle::Along(axis),
-            line.map(|(from, to)| vec![from, to]),
-            false,
-        );
+        add(Handle::Along(axis), line.map(|(from, to)| vec![from, to]));
         let (u, v) = (AXES[(axis + 1) % 3].0, AXES[(axis + 2) % 3].0);
         let corner = |a: f64, b: f64| at(middle + (u * a + v * b) * length);
         let (near, far) = SQUARE;
@@ -188,11 +181,10 @@ fn handles(lens: &Lens, selected: &Selected, scene: &Scene) -> Vec<Drawn> {
         add(
             Handle::Across(axis),
             square.filter(|line| !is_edge_on(line)),
-            true,
         );
         if only.as_ref().is_none_or(is_mesh) {
             let line = ring(lens, middle, *direction, length * RING);
-            add(Handle::Turn(axis), Some(line), true);
+            add(Handle::Turn(axis), Some(line));
         }
     }
     if only.as_ref().is_none_or(has_size) {
@@ -205,9 +197,9 @@ fn handles(lens: &Lens, selected: &Selected, scene: &Scene) -> Vec<Drawn> {
             place + way * from * LENGTH as f32,
             place + way * to * LENGTH as f32,
         ];
-        add(Handle::Size, Some(line), false);
+        add(Handle::Size, Some(line));
     }
-    add(Handle::Free, Some(vec![place]), false);
+    add(Handle::Free, Some(vec![place]));
     drawn
 }
 
@@ -226,7 +218,7 @@ fn own_handles(
     lens: &Lens,
     subject: &Subject,
     length: f64,
-    add: &mut impl FnMut(Handle, Option<Vec<Pos2>>, bool),
+    add: &mut impl FnMut(Handle, Option<Vec<Pos2>>),
 ) {
     let normal = |from: DVec3, normal: DVec3| {
         let tip = from + normal.normalize_or_zero() * length * RING;
@@ -236,30 +228,23 @@ fn own_handles(
         Subject::Light(_, light) => {
             let radius = light.marker.as_ref().map(|marker| marker.radius);
             let line = radius.map(|radius| rim(lens, light.position, radius));
-            add(Handle::Radius, line, true);
+            add(Handle::Radius, line);
         }
         Subject::Object(_, object) => match &object.shape {
             Shape::Sphere(ball) => {
-                add(
-                    Handle::Radius,
-                    Some(rim(lens, ball.center, ball.radius)),
-                    true,
-                );
+                add(Handle::Radius, Some(rim(lens, ball.center, ball.radius)));
             }
             Shape::Disc(disc) => {
                 let axis = disc.normal.normalize_or(DVec3::Y);
-                add(
-                    Handle::Radius,
-                    Some(ring(lens, disc.center, axis, disc.radius)),
-                    true,
-                );
-                add(Handle::Normal, normal(disc.center, disc.normal), false);
+                let rim = ring(lens, disc.center, axis, disc.radius);
+                add(Handle::Radius, Some(rim));
+                add(Handle::Normal, normal(disc.center, disc.normal));
             }
-            Shape::Plane(plane) => add(Handle::Normal, normal(plane.point, plane.normal), false),
+            Shape::Plane(plane) => add(Handle::Normal, normal(plane.point, plane.normal)),
             Shape::Triangle(triangle) => {
                 for (corner, point) in triangle.corners().into_iter().enumerate() {
                     let dot = lens.place(point).map(|dot| vec![dot]);
-                    add(Handle::Corner(corner), dot, false);
+                    add(Handle::Corner(corner), dot);
                 }
             }
             Shape::Mesh(_) => {}
@@ -268,7 +253,7 @@ fn own_handles(
 }
 
 /// The handle under the pointer.
-pub fn handle_at(lens: &Lens, selected: &Selected, scene: &Scene, at: Pos2) -> Option<Handle> {
+pub fn handle_at(lens: &Lens, selected: &Selection, scene: &Scene, at: Pos2) -> Option<Handle> {
     let drawn = handles(lens, selected, scene);
     let near = drawn.iter().map(|drawn| (drawn.distance(at), drawn.handle));
     let near = near.filter(|(distance, _)| *distance <= REACH);
@@ -279,13 +264,8 @@ pub fn handle_at(lens: &Lens, selected: &Selected, scene: &Scene, at: Pos2) -> O
 /// Draws the handles; the one that is meant is bright.
 pub fn show(painter: &Painter, lens: &Lens, editor: &Editor, meant: Option<Handle>) {
     let colors = palette(painter.ctx());
-    let (selected, scene) = (editor.selected(), editor.shown());
-    for Drawn {
-        handle,
-        line,
-        is_closed,
-    } in handles(lens, selected, scene)
-    {
+    let (selected, scene) = (editor.selection(), editor.shown());
+    for Drawn { handle, line } in handles(lens, selected, scene) {
         let is_meant = meant == Some(handle);
         let color = match handle {
             _ if is_meant => colors.accent,
@@ -293,15 +273,11 @@ pub fn show(painter: &Painter, lens: &Lens, editor: &Editor, meant: Option<Handl
             _ => colors.on_picture,
         };
         let width = if is_meant { 3.0 } else { 2.0 };
-        draw(
-            painter,
-            (handle, &line, is_closed),
-            Stroke::new(width, color),
-        );
+        draw(painter, (handle, &line), Stroke::new(width, color));
     }
 }
 
-fn draw(painter: &Painter, (handle, line, is_closed): (Handle, &[Pos2], bool), stroke: Stroke) {
+fn draw(painter: &Painter, (handle, line): (Handle, &[Pos2]), stroke: Stroke) {
     let halo = Stroke::new(stroke.width + 2.0, palette(painter.ctx()).halo);
     match (handle, line) {
         (Handle::Free | Handle::Corner(_), [dot]) => {
@@ -329,9 +305,8 @@ fn draw(painter: &Painter, (handle, line, is_closed): (Handle, &[Pos2], bool), s
         (_, points) => {
             // Thin lines one by one: corners of a line that turns back would be spikes.
             for stroke in [halo, stroke] {
-                for n in 0..points.len() - usize::from(!is_closed) {
-                    let next = points[(n + 1) % points.len()];
-                    painter.line_segment([points[n], next], stroke);
+                for (from, to) in sides(points) {
+                    painter.line_segment([from, to], stroke);
                 }
             }
         }

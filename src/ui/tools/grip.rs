@@ -18,7 +18,7 @@ pub struct Grip {
     handle: Handle,
     /// Everything as it was.
     before: Vec<Subject>,
-    /// The middle of it.
+    /// What it is turned about.
     middle: DVec3,
     /// Where it was grabbed: on the screen, and in the scene.
     from: (Pos2, DVec3),
@@ -40,7 +40,7 @@ pub struct Pull {
 impl Grip {
     /// Grabs a handle of these things at a place on the screen.
     pub fn new(lens: &Lens, before: Vec<Subject>, handle: Handle, at: Pos2) -> Option<Self> {
-        let middle = Subject::middle_of(&before)?;
+        let middle = Subject::pivot_of(&before)?;
         let mut grip = Self {
             handle,
             before,
@@ -56,7 +56,7 @@ impl Grip {
     pub fn body(before: Vec<Subject>, at: Pos2, point: DVec3) -> Option<Self> {
         Some(Self {
             handle: Handle::Free,
-            middle: Subject::middle_of(&before)?,
+            middle: Subject::pivot_of(&before)?,
             before,
             from: (at, point),
             typed: String::new(),

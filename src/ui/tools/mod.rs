@@ -24,7 +24,7 @@ use glam::DVec3;
 
 use self::drag::{Drag, View};
 use self::gizmo::{Handle, handle_at};
-use self::navigate::{along, dollied, middle_of, projected, surroundings};
+use self::navigate::{along, dollied, projected};
 use self::sight::{Sight, ends, item_of, pixel, question};
 use self::subject::Subject;
 use super::commands::Command;
@@ -32,7 +32,7 @@ use super::dress::{dressed, dropped_pack};
 use super::menu_entry::{ITEM_COMMANDS, entry, offer};
 use super::requests::UiRequests;
 use super::viewport::Place;
-use crate::editor::{Action, Edit, Editor, Item, Kind, Selected};
+use crate::editor::{Action, Edit, Editor, Item, Kind, Selection};
 use crate::image::{ObjectMap, Thing};
 use crate::scene::{Camera, Projection, around};
 
@@ -77,7 +77,7 @@ impl Tools {
 
     /// Takes up what is seen in the picture of a revision, as if nothing of `without` were there. What is to
     /// be selected, if that was asked for.
-    pub fn take(&mut self, revision: u64, map: ObjectMap, without: &[Thing]) -> Option<Selected> {
+    pub fn take(&mut self, revision: u64, map: ObjectMap, without: &[Thing]) -> Option<Selection> {
         if without.is_empty() {
             self.sight.take(revision, map);
             return None;
@@ -92,7 +92,7 @@ impl Tools {
             Some(next) => before.push(next),
             None => before.truncate(1),
         }
-        before.last().map(|thing| Selected::all([item_of(*thing)]))
+        before.last().map(|thing| Selection::all([item_of(*thing)]))
     }
 
     /// The tools over the picture at `place`, which `response` is of; `wheel` is how far the wheel was turned
@@ -123,7 +123,7 @@ impl Tools {
         let hovered = response.hover_pos().filter(|_| self.drag.is_none());
         let meant = hovered
             .filter(|_| has_gizmo)
-            .and_then(|at| handle_at(&view.lens, editor.selected(), editor.shown(), at));
+            .and_then(|at| handle_at(&view.lens, editor.selection(), editor.shown(), at));
         self.start(ui, &view, response, has_gizmo, out);
         let show_gizmo = |meant| {
             if has_gizmo {
@@ -192,9 +192,9 @@ impl Tools {
             let seen = self.menu_at;
             let seen = seen.and_then(|at| self.sight.at(view.editor, view.place.rect, at));
             if let Some(item) = seen.map(item_of)
-                && !view.editor.selected().has(item)
+                && !view.editor.selection().has(item)
             {
-                out.actions.push(Action::Select(Selected::all([item])));
+                out.actions.push(Action::Select(Selection::all([item])));
             }
         }
         response.context_menu(|ui| {
@@ -209,12 +209,12 @@ impl Tools {
                 offer(ui, view.editor, text, command, out);
             }
             ui.separator();
-            entry(ui, "Paste", Command::RequestPaste, true, out);
+            entry(ui, "Paste", Command::RequestPaste, out);
             for (text, command) in [
                 ("Frame what is selected", Command::FrameSelected),
                 ("Frame everything", Command::FrameAll),
             ] {
-                entry(ui, text, command, true, out);
+                entry(ui, text, command, out);
             }
         });
     }
@@ -232,7 +232,7 @@ impl Tools {
             return;
         };
         if response.drag_started_by(PointerButton::Primary) {
-            let handle = handle_at(&view.lens, view.editor.selected(), view.editor.shown(), at);
+            let handle = handle_at(&view.lens, view.editor.selection(), view.editor.shown(), at);
             let handle = handle.filter(|_| has_gizmo);
             let is_shifted = ui.input(|input| input.modifiers.shift);
             out.actions.push(Action::BeginGesture);
@@ -307,9 +307,9 @@ impl Tools {
         self.behind = None;
         let item = seen.map(item_of);
         let selected = match (item, modifiers.shift || modifiers.command) {
-            (Some(item), true) => view.editor.selected().toggled(item),
+            (Some(item), true) => view.editor.selection().toggled(item),
             (None, true) => return,
-            (item, false) => Selected::all(item),
+            (item, false) => Selection::all(item),
         };
         out.actions.push(Action::Select(selected));
     }
@@ -331,9 +331,9 @@ impl Tools {
 /// The camera with everything in its picture, or everything that is selected.
 pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
     let scene = editor.shown();
-    let selected = Subject::of(editor.selected(), scene);
+    let selected = Subject::of(editor.selection(), scene);
     let bounds = around(selected.iter().filter_map(Subject::bounds));
-    let all = surroundings(scene);
+    let all = scene.surroundings();
     let (low, high) = bounds.filter(|_| only_selected).or(all)?;
     // A light without a marker is a point: some of what is around it is to be seen.
     let size = all.map_or(0.0, |(low, high)| (high - low).length());
@@ -348,16 +348,39 @@ pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
     Some(scene.camera.around(scene.render.aspect(), bounds))
 }
 
+/// Whether what is selected is certainly not in the picture: beside it, or behind the camera.
+pub fn is_selected_unseen(editor: &Editor) -> bool {
+    let scene = editor.shown();
+    let selected = Subject::of(editor.selection(), scene);
+    let boxes: Option<Vec<_>> = selected.iter().map(Subject::bounds).collect();
+    let bounds = around(boxes.unwrap_or_default().into_iter());
+    let (Some((low, high)), Some(framing)) = (bounds, scene.camera.framing()) else {
+        return false;
+    };
+    let corners = (0..8).map(|corner| {
+        let part = |axis: usize| [low, high][corner >> axis & 1][axis];
+        framing.project(DVec3::new(part(0), part(1), part(2)))
+    });
+    let corners: Vec<_> = corners.collect();
+    let Some(places) = corners.iter().copied().collect::<Option<Vec<_>>>() else {
+        // What is only partly behind may be seen.
+        return corners.iter().all(Option::is_none);
+    };
+    let reach = [scene.render.aspect() / 2.0, 0.5];
+    let is_beside = |axis: usize| {
+        let is_out = |sign: f64| places.iter().all(|at| at[axis] * sign > reach[axis]);
+        is_out(1.0) || is_out(-1.0)
+    };
+    is_beside(0) || is_beside(1)
+}
+
 /// The camera that looks along a direction at what is selected, or at everything.
 pub fn axis_camera(editor: &Editor, direction: DVec3) -> Camera {
-    let scene = editor.shown();
-    let middle = editor.selected().middle(scene);
-    let about = middle.or_else(|| middle_of(scene)).unwrap_or_default();
-    along(&scene.camera, about, direction)
+    along(&editor.shown().camera, editor.middle(), direction)
 }
 
 /// The camera with another projection, in which the middle of the scene is about as large as before.
 pub fn projected_camera(editor: &Editor, projection: Projection) -> Camera {
     let scene = editor.shown();
-    projected(&scene.camera, middle_of(scene), projection)
+    projected(&scene.camera, scene.middle(), projection)
 }

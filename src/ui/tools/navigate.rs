@@ -4,7 +4,7 @@ use egui::Vec2;
 use glam::DVec3;
 
 use super::lens::Lens;
-use crate::scene::{Camera, Projection, Scene};
+use crate::scene::{Camera, Projection};
 
 /// Radians per point of mouse movement.
 const ORBIT: f64 = 0.008;
@@ -79,16 +79,6 @@ pub fn projected(camera: &Camera, about: Option<DVec3>, projection: Projection) 
         Projection::Perspective => next.position += forward * (depth - as_far),
     }
     next
-}
-
-/// The box around everything that ends, or around where endless planes are known to be.
-pub fn surroundings(scene: &Scene) -> Option<(DVec3, DVec3)> {
-    scene.objects_bounds().or_else(|| scene.bounds())
-}
-
-/// The middle of that.
-pub fn middle_of(scene: &Scene) -> Option<DVec3> {
-    surroundings(scene).map(|(low, high)| low * 0.5 + high * 0.5)
 }
 
 #[cfg(test)]

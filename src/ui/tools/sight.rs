@@ -108,7 +108,7 @@ impl Sight {
             return;
         }
         let colors = palette(painter.ctx());
-        let selected = editor.selected().items().to_vec();
+        let selected = editor.selection().items().to_vec();
         let hovered = hovered.filter(|item| !selected.contains(item));
         let wanted = [
             (colors.accent, selected),

@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 
-use crate::editor::{Edit, Item, Kind, Selected};
+use crate::editor::{Edit, Item, Kind, Selection};
 use crate::scene::{Light, Object, Scene, Shape};
 
 /// Something with a place.
@@ -25,7 +25,7 @@ impl Subject {
     }
 
     /// What of a selection has a place.
-    pub fn of(selected: &Selected, scene: &Scene) -> Vec<Self> {
+    pub fn of(selected: &Selection, scene: &Scene) -> Vec<Self> {
         let items = selected.items().iter();
         items.filter_map(|item| Self::new(scene, *item)).collect()
     }
@@ -34,6 +34,14 @@ impl Subject {
     pub fn middle_of(subjects: &[Self]) -> Option<DVec3> {
         let sum: DVec3 = subjects.iter().map(Self::middle).sum();
         (!subjects.is_empty()).then(|| sum / subjects.len() as f64)
+    }
+
+    /// What all are turned about, see [`Selection::pivot`].
+    pub fn pivot_of(subjects: &[Self]) -> Option<DVec3> {
+        match subjects {
+            [Self::Object(_, object)] => Some(object.shape.pivot()),
+            _ => Self::middle_of(subjects),
+        }
     }
 
     /// The box around it, if it ends.

@@ -420,7 +420,7 @@ fn a_mesh_file_that_another_program_writes_is_read_anew_before_and_after_what_is
     harness.window.event(Event::Copy);
     harness.settle();
     let editor = harness.editor();
-    let copied = Document::of(excerpt(editor.scene(), editor.selected()));
+    let copied = Document::of(excerpt(editor.scene(), editor.selection()));
     let copied = copied.to_text().expect("a text");
     wait(&mut harness, "roof.obj", 0, 8.0);
     harness.window.event(Event::Paste(copied));

@@ -241,7 +241,7 @@ fn both_balls(harness: &mut EditorHarness) -> [DVec3; 2] {
     let places = centers.map(|point| place(harness, point));
     click(harness, places[0], Modifiers::NONE);
     click(harness, places[1], Modifiers::SHIFT);
-    assert_eq!(harness.editor().selected().items().len(), 2);
+    assert_eq!(harness.editor().selection().items().len(), 2);
     centers
 }
 
@@ -359,7 +359,7 @@ fn escape_gives_the_drag_of_a_number_up() {
     harness.settle();
     assert_eq!(harness.scene(), &Scene::demo(), "it was let go");
     assert_eq!(harness.editor().undo_label(), None);
-    assert_eq!(harness.editor().selected().items().len(), 1);
+    assert_eq!(harness.editor().selection().items().len(), 1);
 }
 
 #[test]
@@ -424,7 +424,7 @@ fn several_packs_are_changed_as_one() {
     let last = harness.window.get_by_label("plane");
     last.click_modifiers(CTRL);
     harness.settle();
-    assert_eq!(harness.editor().selected().places(Kind::Pack).len(), 2);
+    assert_eq!(harness.editor().selection().places(Kind::Pack).len(), 2);
     harness.type_into("phong", "64");
     for (name, exponent) in [("sphere 1", 64.0), ("plane", 64.0)] {
         let pack = &harness.scene().color_packs[name];
@@ -440,7 +440,7 @@ fn triangles_that_are_dragged_together_stay_as_they_are() {
     let last = harness.window.get_by_label("Triangle 6");
     last.click_modifiers(Modifiers::SHIFT);
     harness.settle();
-    assert_eq!(harness.editor().selected().items().len(), 6);
+    assert_eq!(harness.editor().selection().items().len(), 6);
     harness.drag("b x", 20.0);
     let by = center(harness.scene(), 2) - center(&Scene::demo(), 2);
     assert!(by.x > 1.0, "{by}");

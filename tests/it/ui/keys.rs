@@ -181,8 +181,8 @@ fn all_that_is_selected_is_all_things_or_all_keys() {
     let mut harness = window(&[0.0, 1.0, 2.0]);
     let selected = |harness: &EditorHarness| {
         let editor = harness.editor();
-        let keys = editor.timeline().selected.len();
-        (editor.selected().items().len(), keys)
+        let keys = editor.selection().keys().len();
+        (editor.selection().items().len(), keys)
     };
     let above = on_ruler(&harness, 1.5);
     harness.window.hover_at(above);

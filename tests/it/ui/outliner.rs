@@ -37,7 +37,7 @@ fn the_outliner_filters_hides_renames_and_reorders() {
 
 /// The names of what is selected.
 fn selected(harness: &EditorHarness) -> Vec<&str> {
-    let items = harness.editor().selected().items().iter();
+    let items = harness.editor().selection().items().iter();
     items
         .filter_map(|item| item.name(harness.scene()))
         .collect()
@@ -189,7 +189,7 @@ fn things_are_deleted_with_the_packs_that_they_wear() {
     let shifted = harness.window.get_by_label("Sphere 2");
     shifted.click_modifiers(Modifiers::SHIFT);
     harness.settle();
-    assert_eq!(harness.editor().selected().items().len(), 2);
+    assert_eq!(harness.editor().selection().items().len(), 2);
     harness.click("sphere 2");
     with_control(&mut harness, "tetrahedron");
     let packs = harness.scene().color_packs.len();

@@ -171,7 +171,7 @@ fn the_finder_knows_what_menus_and_panels_do() {
     assert_eq!(harness.scene().objects.len(), before - 5);
     find(&mut harness, "separate a mesh");
     assert_eq!(harness.scene().objects.len(), before);
-    let group = harness.editor().selected().group(harness.scene());
+    let group = harness.editor().selection().group(harness.scene());
     assert_eq!(group, Some("Triangle 1"), "all pieces, as a group");
 }
 
@@ -185,7 +185,7 @@ fn a_menu_closes_when_its_entry_is_chosen_by_a_key() {
     harness.settle();
     harness.window.get_by_label("Select all").focus();
     harness.press(Modifiers::NONE, Key::Enter);
-    assert!(harness.editor().selected().items().len() > 1);
+    assert!(harness.editor().selection().items().len() > 1);
     assert!(harness.window.query_by_label("Select all").is_none());
     // Keys with Alt are others.
     let before = harness.scene().camera.clone();

@@ -1,9 +1,11 @@
 //! Groups, packs that are dragged, bookmarks, and the way of Tab through the panels.
 
 use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, PointerButton, Pos2};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use glint::scene::{ColorPack, Document, Scene};
+use glam::DVec3;
+use glint::editor::Item;
+use glint::scene::{ColorPack, Document, Scene, Sphere};
 
 use super::tools::{button, center, click, hover, place};
 use crate::harness::{CTRL, EditorHarness};
@@ -61,12 +63,12 @@ fn a_group_is_listed_hidden_renamed_and_moved_as_one() {
     // One click takes hold of both, besides others with Shift or Ctrl, with which another one lets go of them.
     harness.click("Sphere 1");
     harness.click("Group 1");
-    assert_eq!(harness.editor().selected().items().len(), 2);
+    assert_eq!(harness.editor().selection().items().len(), 2);
     harness.click("Triangle 1");
     for (modifiers, count) in [(Modifiers::SHIFT, 3), (CTRL, 1), (CTRL, 3)] {
         let group = middle(&harness, "Group 1");
         click(&mut harness, group, modifiers);
-        assert_eq!(harness.editor().selected().items().len(), count);
+        assert_eq!(harness.editor().selection().items().len(), count);
     }
     let at = middle(&harness, "Group 1");
     (0..60).for_each(|_| harness.window.step());
@@ -263,4 +265,145 @@ fn what_is_typed_counts_though_the_field_shows_less_of_it() {
         harness.type_into("center x", &typed.to_string());
         assert_eq!(center(harness.scene(), 0).x, typed);
     }
+}
+
+#[test]
+fn rows_are_dragged_out_of_groups_and_into_them_and_groups_go_with_all_members() {
+    let mut scene = Scene::demo();
+    for index in [0, 3] {
+        scene.objects[index].group = "Balls".to_owned();
+    }
+    let members: Vec<String> = [0, 3].map(|index| scene.objects[index].name.clone()).into();
+    let mut harness = EditorHarness::on(scene.clone());
+    let names = |harness: &EditorHarness, group: &str| -> Vec<String> {
+        let objects = harness.scene().objects.iter();
+        let own = objects.filter(|object| object.group == group);
+        own.map(|object| object.name.clone()).collect()
+    };
+    let half = |harness: &EditorHarness, name: &str, share: f32| {
+        let row = harness.window.get_by_label(name).rect();
+        pos2(row.center().x, row.top() + share * row.height())
+    };
+    // Below a row that is in no group: it leaves its own, which stays where it was.
+    let (from, to) = (
+        middle(&harness, &members[0]),
+        half(&harness, "Triangle 4", 0.8),
+    );
+    carry(&mut harness, from, to);
+    assert_eq!(names(&harness, "Balls"), members[1..]);
+    let objects = &harness.scene().objects;
+    assert_eq!(objects[0].name, members[1], "the group is first");
+    let there = objects.iter().position(|object| object.name == members[0]);
+    assert_eq!(objects[there.expect("it") - 1].name, "Triangle 4");
+    let item = harness.editor().selection().item();
+    assert_eq!(item, there.map(Item::object), "it is what is selected");
+    // Back, above the member that is left.
+    let (from, to) = (
+        middle(&harness, &members[0]),
+        half(&harness, &members[1], 0.2),
+    );
+    carry(&mut harness, from, to);
+    assert_eq!(names(&harness, "Balls"), members);
+    // The group itself, below a row; within another group it has no place.
+    let (from, to) = (middle(&harness, "Balls"), half(&harness, "Triangle 4", 0.8));
+    carry(&mut harness, from, to);
+    assert_eq!(names(&harness, "Balls"), members);
+    let objects = &harness.scene().objects;
+    let there = objects.iter().position(|object| object.name == members[0]);
+    assert_eq!(objects[there.expect("it") - 1].name, "Triangle 4");
+    // Above a group, on the edge of its row.
+    let (from, to) = (middle(&harness, "Triangle 1"), half(&harness, "Balls", 0.1));
+    carry(&mut harness, from, to);
+    let objects = &harness.scene().objects;
+    let there = objects
+        .iter()
+        .position(|object| object.name == "Triangle 1");
+    assert_eq!(objects[there.expect("it") + 1].name, members[0]);
+    assert_eq!(names(&harness, "Balls"), members);
+    // A light goes above or below another.
+    let (from, to) = (middle(&harness, "Light 1"), half(&harness, "Light 2", 0.2));
+    let before = harness.scene().clone();
+    carry(&mut harness, from, to);
+    assert_eq!(harness.scene(), &before, "it stands there");
+    let (from, to) = (middle(&harness, "Light 1"), half(&harness, "Light 2", 0.8));
+    carry(&mut harness, from, to);
+    assert_eq!(harness.scene().lights[0].name, "Light 2");
+}
+
+#[test]
+fn tab_goes_from_a_value_to_the_next_one() {
+    let mut harness = EditorHarness::new();
+    harness.click("Picture");
+    let width = harness
+        .window
+        .get_by_role_and_label(Role::SpinButton, "width");
+    width.click();
+    harness.settle();
+    for (text, key) in [("900", Key::Tab), ("700", Key::Enter)] {
+        harness.window.event(Event::Text(text.to_owned()));
+        harness.settle();
+        harness.press(NONE, key);
+    }
+    let render = &harness.scene().render;
+    assert_eq!((render.width, render.height), (900, 700));
+}
+
+#[test]
+fn undo_is_heard_beside_a_popup_which_stays() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    let before = harness.scene().clone();
+    harness.type_into("radius", "30");
+    harness.click("color swatch");
+    let is_open = |harness: &EditorHarness| egui::Popup::is_any_open(&harness.window.ctx);
+    assert!(is_open(&harness) && harness.scene() != &before);
+    harness.press(CTRL, Key::Z);
+    assert!(is_open(&harness));
+    assert_eq!(harness.scene(), &before);
+    // What is no step back or forth waits until it is closed.
+    harness.press(NONE, Key::O);
+    assert_eq!(harness.scene(), &before);
+}
+
+#[test]
+fn letters_and_buttons_are_larger_and_smaller_by_keys() {
+    let mut harness = EditorHarness::new();
+    let zoom = |harness: &EditorHarness| harness.window.ctx.zoom_factor();
+    harness.press(CTRL, Key::Plus);
+    assert!(zoom(&harness) > 1.05);
+    harness.press(CTRL, Key::Minus);
+    harness.press(CTRL, Key::Minus);
+    assert!(zoom(&harness) < 0.95);
+    harness.choose("View", "Letters and buttons");
+    harness.click("Usual size");
+    assert_eq!(zoom(&harness), 1.0);
+}
+
+#[test]
+fn copies_stand_beside_each_other_and_are_told_where_nobody_sees_them() {
+    let mut scene = Scene::demo();
+    let ball = Sphere {
+        center: DVec3::new(-600.0, 50.0, -300.0),
+        radius: 50.0,
+    };
+    scene.objects[1].shape = ball.into();
+    let mut harness = EditorHarness::on(scene);
+    let places = |harness: &EditorHarness, name: &str| {
+        let objects = harness.scene().objects.iter();
+        let own = objects.filter(|object| object.name.starts_with(name));
+        let mut places: Vec<f64> = own.map(|object| object.shape.middle().x).collect();
+        places.sort_by(f64::total_cmp);
+        places
+    };
+    for _ in 0..2 {
+        harness.click("Sphere 1");
+        harness.press(CTRL, Key::D);
+    }
+    let found = places(&harness, "Sphere");
+    assert_eq!(found, [-600.0, 125.0, 225.0, 325.0]);
+    let told = "The copy is not in the picture";
+    assert!(harness.window.query_by_label_contains(told).is_none());
+    harness.click("Sphere 2");
+    harness.press(CTRL, Key::D);
+    harness.window.get_by_label_contains(told);
 }

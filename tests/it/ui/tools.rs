@@ -88,7 +88,7 @@ pub fn center(scene: &Scene, object: usize) -> DVec3 {
 }
 
 fn names(harness: &EditorHarness) -> Vec<&str> {
-    let items = harness.editor().selected().items().iter();
+    let items = harness.editor().selection().items().iter();
     items
         .filter_map(|item| item.name(harness.scene()))
         .collect()
@@ -101,8 +101,8 @@ fn a_click_selects_what_is_seen_there() {
     click(&mut harness, ball, NONE);
     assert_eq!(names(&harness), ["Sphere 1"]);
     assert_eq!(
-        harness.editor().selection(),
-        Selection::Item(Item::object(0))
+        *harness.editor().selection(),
+        Selection::from(Item::object(0))
     );
     let lamp = place(&harness, harness.scene().lights[0].position);
     click(&mut harness, lamp, SHIFT);
@@ -111,7 +111,7 @@ fn a_click_selects_what_is_seen_there() {
     assert_eq!(names(&harness), ["Light 1"]);
     let sky = place(&harness, DVec3::new(60.0, 190.0, -300.0));
     click(&mut harness, sky, NONE);
-    assert_eq!(harness.editor().selection(), Selection::Camera);
+    assert_eq!(*harness.editor().selection(), Selection::Camera);
     assert_eq!(harness.scene(), &Scene::demo(), "to look changes nothing");
     assert!(!harness.editor().is_dirty());
 }
@@ -270,7 +270,7 @@ fn several_are_moved_turned_copied_and_deleted_as_one() {
     assert_eq!(names(&harness), ["Sphere 3", "Sphere 4"]);
     harness.press(NONE, Key::Delete);
     assert_eq!(harness.scene(), &Scene::demo());
-    assert_eq!(harness.editor().selection(), Selection::Camera);
+    assert_eq!(*harness.editor().selection(), Selection::Camera);
     harness.press(CTRL, Key::Z);
     assert_eq!(harness.scene().objects.len(), 11);
 }
@@ -343,10 +343,12 @@ fn escape_leaves_one_thing_after_the_other() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
     harness.press(NONE, Key::Escape);
-    assert_eq!(harness.editor().selection(), Selection::Camera);
+    assert_eq!(*harness.editor().selection(), Selection::Camera);
     harness.press(NONE, Key::Escape);
     assert!(harness.window.query_by_label("Quit now").is_none());
-    harness.window.get_by_label_contains("Ctrl+Q quits");
+    harness
+        .window
+        .get_by_label_contains("Esc once more asks whether to quit");
     harness.press(NONE, Key::Escape);
     harness.window.get_by_label("Quit now");
     harness.window.key_down(Key::Enter);

@@ -1,0 +1,194 @@
+//! The order of objects: groups are listed where their first members are, with all of them.
+
+use std::collections::{HashMap, HashSet};
+
+use super::item::Item;
+use crate::scene::{List, Object, Scene};
+
+/// Objects that go elsewhere in their list, which then is in the order in which it is shown.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Arrangement {
+    /// The places of those that go.
+    pub objects: Vec<usize>,
+    /// The place of the one beside which they go; it is none of them.
+    pub anchor: usize,
+    /// Whether they go behind it.
+    pub is_after: bool,
+    /// The group that they are in from then on, none if it is empty; `None` for the one that each is in.
+    pub group: Option<String>,
+}
+
+impl Arrangement {
+    /// One step up or down for an object: among the members of its group, or past what stands beside it, which may be a
+    /// group. `None` where there is nothing.
+    pub fn step(objects: &List<Object>, index: usize, is_down: bool) -> Option<Self> {
+        let own = &objects.get(index)?.group;
+        let mut order = listed(objects);
+        if is_down {
+            order.reverse();
+        }
+        let from = order.iter().position(|place| *place == index)?;
+        let before = &order[..from];
+        let next = *before.last()?;
+        let of_next = &objects[next].group;
+        if !own.is_empty() && own != of_next {
+            return None;
+        }
+        let is_past_group = own.is_empty() && !of_next.is_empty();
+        let mut passed = before.iter().copied();
+        let anchor = passed
+            .find(|&place| place == next || is_past_group && objects[place].group == *of_next)?;
+        Some(Self {
+            objects: vec![index],
+            anchor,
+            is_after: is_down,
+            group: None,
+        })
+    }
+}
+
+/// Puts objects elsewhere; returns where they are.
+pub fn arrange(scene: &mut Scene, arrangement: Arrangement) -> Vec<Item> {
+    let moved: HashSet<usize> = arrangement.objects.into_iter().collect();
+    let order = listed(&scene.objects);
+    let is_kept_so = order.is_sorted();
+    let (moved, mut order): (Vec<usize>, Vec<usize>) =
+        order.into_iter().partition(|place| moved.contains(place));
+    let anchor = order.iter().position(|place| *place == arrangement.anchor);
+    let Some(anchor) = anchor else {
+        return Vec::new();
+    };
+    let at = anchor + usize::from(arrangement.is_after);
+    let places = at..at + moved.len();
+    if is_kept_so {
+        // The rest of the list is shared with the one before, also in the history.
+        let taken = moved.iter().rev().map(|place| scene.objects.remove(*place));
+        for object in taken.collect::<Vec<_>>() {
+            scene.objects.insert(at, object);
+        }
+    } else {
+        order.splice(at..at, moved);
+        let objects = order.iter().map(|place| scene.objects[*place].clone());
+        scene.objects = objects.collect();
+    }
+    if let Some(group) = arrangement.group {
+        for place in places.clone() {
+            scene.objects[place].group.clone_from(&group);
+        }
+    }
+    places.map(Item::object).collect()
+}
+
+/// The places of objects in the order in which they are shown.
+fn listed(objects: &List<Object>) -> Vec<usize> {
+    let mut firsts: HashMap<&str, usize> = HashMap::new();
+    let keys = objects.iter().enumerate().map(|(place, object)| {
+        let first = match object.group.as_str() {
+            "" => place,
+            group => *firsts.entry(group).or_insert(place),
+        };
+        (first, place)
+    });
+    let mut keys: Vec<(usize, usize)> = keys.collect();
+    keys.sort_unstable();
+    keys.into_iter().map(|(_, place)| place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::scene::Sphere;
+
+    /// Objects by their names, the group in front: `g:a` is in one.
+    fn scene(names: &[&str]) -> Scene {
+        let mut scene = Scene::empty();
+        let ball = Sphere {
+            center: DVec3::ZERO,
+            radius: 1.0,
+        };
+        for name in names {
+            let (group, name) = name.split_once(':').unwrap_or(("", name));
+            let object = Object::new(name, "pack 1", ball);
+            scene.objects.push(Object {
+                group: group.to_owned(),
+                ..object
+            });
+        }
+        scene
+    }
+
+    fn names(scene: &Scene) -> Vec<String> {
+        let name = |object: &Object| match object.group.as_str() {
+            "" => object.name.clone(),
+            group => format!("{group}:{}", object.name),
+        };
+        scene.objects.iter().map(name).collect()
+    }
+
+    fn after(objects: &[usize], anchor: usize, group: Option<&str>) -> Arrangement {
+        Arrangement {
+            objects: objects.to_vec(),
+            anchor,
+            is_after: true,
+            group: group.map(str::to_owned),
+        }
+    }
+
+    #[test]
+    fn the_rest_of_a_group_stays_where_it_is_shown() {
+        // Shown: g (a, c), b, d.
+        let mut scene = scene(&["g:a", "b", "g:c", "d"]);
+        let moved = arrange(&mut scene, after(&[0], 1, Some("")));
+        assert_eq!(names(&scene), ["g:c", "b", "a", "d"]);
+        assert_eq!(moved, [Item::object(2)]);
+    }
+
+    #[test]
+    fn several_go_together_and_into_the_group_of_what_they_stand_beside() {
+        let mut scene = scene(&["a", "g:b", "c", "g:d"]);
+        let moved = arrange(&mut scene, after(&[2, 0], 1, Some("g")));
+        assert_eq!(names(&scene), ["g:b", "g:a", "g:c", "g:d"]);
+        assert_eq!(moved, [1, 2].map(Item::object));
+        // All of a group, which stays one.
+        let moved = arrange(&mut scene, after(&[0], 3, None));
+        assert_eq!(names(&scene), ["g:a", "g:c", "g:d", "g:b"]);
+        assert_eq!(moved, [Item::object(3)]);
+        assert!(arrange(&mut scene, after(&[0], 9, None)).is_empty());
+    }
+
+    #[test]
+    fn a_step_goes_past_a_group_and_stays_within_its_own() {
+        let mut scene = scene(&["g:a", "b", "g:c", "d"]);
+        let mut step = |index: usize, is_down: bool| {
+            let step = Arrangement::step(&scene.objects, index, is_down);
+            step.map(|step| arrange(&mut scene, step));
+            names(&scene).join(" ")
+        };
+        assert_eq!(step(1, false), "b g:a g:c d");
+        assert_eq!(step(0, false), "b g:a g:c d", "it is the first");
+        assert_eq!(
+            step(1, false),
+            "b g:a g:c d",
+            "it is the first of its group"
+        );
+        assert_eq!(step(1, true), "b g:c g:a d");
+        assert_eq!(step(2, true), "b g:c g:a d", "it is the last of its group");
+        assert_eq!(step(0, true), "g:c g:a b d");
+        assert_eq!(step(2, true), "g:c g:a d b");
+    }
+
+    #[test]
+    fn what_stays_in_its_place_is_shared_with_the_list_before() {
+        let names: Vec<String> = (0..10_000).map(|number| format!("Ball {number}")).collect();
+        let mut scene = scene(&names.iter().map(String::as_str).collect::<Vec<_>>());
+        let before = scene.objects.clone();
+        let moved = arrange(&mut scene, after(&[7, 3], 40, None));
+        assert_eq!(moved, [39, 40].map(Item::object));
+        let moved = [39, 40].map(|place| scene.objects[place].name.clone());
+        assert_eq!(moved, ["Ball 3", "Ball 7"]);
+        let all = scene.objects.bytes_apart(&List::new());
+        assert!(scene.objects.bytes_apart(&before) * 4 < all);
+    }
+}

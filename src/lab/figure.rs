@@ -1,0 +1,27 @@
+//! What can be drawn of what was measured.
+
+use super::growth::Growth;
+use super::look::PictureLook;
+use super::scaling::SharedPicture;
+use super::stability::Map;
+use super::study::Study;
+
+/// A picture of measurements that is to be drawn.
+#[derive(Debug)]
+pub enum Figure {
+    /// Charts of studies.
+    Chart {
+        /// The studies, each with the name of its scene.
+        studies: Vec<(String, Study)>,
+        /// What was measured on.
+        machine: String,
+        /// How the picture looks.
+        look: PictureLook,
+    },
+    /// How cost grows.
+    Growth(Growth, PictureLook),
+    /// How pictures would be shared between cores.
+    Scaling(Vec<SharedPicture>, PictureLook),
+    /// Where formulas break.
+    Stability(Vec<Map>),
+}

@@ -1,0 +1,194 @@
+//! What rows of the outliner do with what is dragged onto them.
+
+use egui::{DragAndDrop, Rect, Response, StrokeKind, Ui};
+
+use super::lines::Group;
+use crate::editor::{Arrangement, Edit, Editor, Item, Kind};
+use crate::ui::dress::dressed;
+use crate::ui::requests::UiRequests;
+use crate::ui::theme::palette;
+
+/// The share of the row of a group, from the top, where what is dropped stands above it.
+const EDGE: f32 = 0.3;
+
+/// A group whose row is dragged: the places of its members.
+#[derive(Clone, Debug)]
+struct DraggedGroup(Vec<usize>);
+
+/// What shows where something would be dropped.
+enum DropMark {
+    /// A frame around the row, which takes it in.
+    Frame,
+    /// A line above the row, or below it.
+    Line(bool),
+}
+
+/// Drag a row to the upper half of another to put it above that, or to the lower half to put it below; a pack onto an
+/// object, to be worn by it.
+pub fn take_dropped(
+    ui: &Ui,
+    editor: &Editor,
+    response: &Response,
+    item: Item,
+    out: &mut UiRequests,
+) {
+    response.dnd_set_drag_payload(item);
+    if !response.contains_pointer() {
+        return;
+    }
+    let is_after = share_of_row(ui, response.rect) > 0.5;
+    let to = (item, is_after);
+    let dragged = response.dnd_hover_payload::<Item>();
+    let group = response.dnd_hover_payload::<DraggedGroup>();
+    let is_worn = |dragged: &Item| dragged.kind == Kind::Pack && item.kind == Kind::Object;
+    let is_worn = dragged.as_ref().is_some_and(|dragged| is_worn(dragged));
+    let edit = match dragged {
+        Some(dragged) if is_worn => dressed(editor, *dragged, item),
+        Some(dragged) => put_beside(editor, *dragged, to),
+        None => group.and_then(|group| put_group_beside(editor, &group, to)),
+    };
+    let mark = if is_worn {
+        DropMark::Frame
+    } else {
+        DropMark::Line(is_after)
+    };
+    drop_or_mark(ui, response.rect, (edit, mark), out);
+}
+
+/// Objects that are dropped on a group are members of it, or stand above it where they are dropped on its upper edge;
+/// another group stands above it. Where its members are not listed, both may stand below it.
+pub fn take_dropped_on_group(
+    ui: &Ui,
+    editor: &Editor,
+    response: &Response,
+    (group, is_folded): (&Group, bool),
+    out: &mut UiRequests,
+) {
+    if response.dragged() {
+        response.dnd_set_drag_payload(DraggedGroup(group.members.clone()));
+    }
+    if !response.contains_pointer() {
+        return;
+    }
+    let share = share_of_row(ui, response.rect);
+    let beside = |objects: Vec<usize>, is_after: bool, to: Option<String>| {
+        let mut others = group.members.iter().filter(|it| !objects.contains(it));
+        let anchor = if is_after {
+            others.next_back()
+        } else {
+            others.next()
+        };
+        let anchor = *anchor?;
+        Some(Edit::Arrange(Arrangement {
+            objects,
+            anchor,
+            is_after,
+            group: to,
+        }))
+    };
+    let of_item = |item: Item| {
+        let objects = dragged_objects(editor, item);
+        let alone = Some(String::new());
+        match item.kind {
+            Kind::Object if share < EDGE => (beside(objects, false, alone), DropMark::Line(false)),
+            Kind::Object if is_folded && share > 1.0 - EDGE => {
+                (beside(objects, true, alone), DropMark::Line(true))
+            }
+            Kind::Object => {
+                let joins = Edit::Group(objects, group.name.clone());
+                (Some(joins), DropMark::Frame)
+            }
+            Kind::Light | Kind::Pack => (None, DropMark::Frame),
+        }
+    };
+    let of_group = |DraggedGroup(objects): &DraggedGroup| {
+        let is_after = share > 0.5;
+        let has_place = is_folded || !is_after;
+        let edit = has_place.then(|| beside(objects.clone(), is_after, None));
+        (edit.flatten(), DropMark::Line(is_after))
+    };
+    let item = response.dnd_hover_payload::<Item>();
+    let other = response.dnd_hover_payload::<DraggedGroup>();
+    let dropped = item.map(|item| of_item(*item));
+    if let Some(dropped) = dropped.or_else(|| Some(of_group(&*other?))) {
+        drop_or_mark(ui, response.rect, dropped, out);
+    }
+}
+
+/// The objects that are dragged with one: all that are selected, if it is among them.
+fn dragged_objects(editor: &Editor, item: Item) -> Vec<usize> {
+    let selected = editor.selection();
+    if selected.has(item) {
+        selected.places(Kind::Object)
+    } else {
+        vec![item.index]
+    }
+}
+
+/// What comes of an item that is dropped on the upper or the lower half of a row.
+fn put_beside(editor: &Editor, dragged: Item, (item, is_after): (Item, bool)) -> Option<Edit> {
+    if dragged.kind != item.kind || dragged.index == item.index {
+        return None;
+    }
+    if item.kind != Kind::Object {
+        // Counted without it.
+        let to = item.index + usize::from(is_after) - usize::from(dragged.index < item.index);
+        return Some(Edit::Move(dragged, to));
+    }
+    let objects = dragged_objects(editor, dragged);
+    let group = editor.scene().objects.get(item.index)?.group.clone();
+    (!objects.contains(&item.index)).then(|| {
+        Edit::Arrange(Arrangement {
+            objects,
+            anchor: item.index,
+            is_after,
+            group: Some(group),
+        })
+    })
+}
+
+/// What comes of a group that is dropped there: no group is in another.
+fn put_group_beside(
+    editor: &Editor,
+    DraggedGroup(objects): &DraggedGroup,
+    (item, is_after): (Item, bool),
+) -> Option<Edit> {
+    let object = editor.scene().objects.get(item.index)?;
+    (item.kind == Kind::Object && object.group.is_empty()).then(|| {
+        Edit::Arrange(Arrangement {
+            objects: objects.clone(),
+            anchor: item.index,
+            is_after,
+            group: None,
+        })
+    })
+}
+
+/// How far down in a row the pointer is, 0–1.
+fn share_of_row(ui: &Ui, rect: Rect) -> f32 {
+    let at = ui.input(|input| input.pointer.interact_pos());
+    at.map_or(0.0, |at| (at.y - rect.top()) / rect.height())
+}
+
+/// Makes the change that comes of what is dragged over a row where it is dropped now, or else shows that it would.
+fn drop_or_mark(ui: &Ui, rect: Rect, (edit, mark): (Option<Edit>, DropMark), out: &mut UiRequests) {
+    let Some(edit) = edit else { return };
+    let accent = palette(ui.ctx()).accent;
+    if ui.input(|input| input.pointer.any_released()) {
+        // Two rows share a border: one of them takes it.
+        DragAndDrop::clear_payload(ui.ctx());
+        out.edit(edit);
+        return;
+    }
+    match mark {
+        DropMark::Frame => {
+            let stroke = (1.0, accent);
+            ui.painter()
+                .rect_stroke(rect, 2, stroke, StrokeKind::Inside);
+        }
+        DropMark::Line(is_below) => {
+            let y = if is_below { rect.bottom() } else { rect.top() };
+            ui.painter().hline(rect.x_range(), y, (2.0, accent));
+        }
+    }
+}
