@@ -19,19 +19,37 @@ pub struct Arrangement {
 }
 
 impl Arrangement {
-    /// One step up or down for an object: among the members of its group, or past what stands beside it, which may be a
-    /// group. `None` where there is nothing.
-    pub fn step(objects: &List<Object>, index: usize, is_down: bool) -> Option<Self> {
-        let own = &objects.get(index)?.group;
+    /// Behind all others, in this group.
+    pub fn at_end(objects: &List<Object>, moved: &[usize], group: Option<String>) -> Option<Self> {
+        let own: HashSet<&usize> = moved.iter().collect();
+        let order = listed(objects);
+        let anchor = *order.iter().rfind(|place| !own.contains(place))?;
+        Some(Self {
+            objects: moved.to_vec(),
+            anchor,
+            is_after: true,
+            group,
+        })
+    }
+
+    /// One step up or down for an object, among the members of its group or past what stands beside it, which may be a
+    /// group; or for all that are in a group. `None` where there is nothing.
+    pub fn step(objects: &List<Object>, moved: &[usize], is_down: bool) -> Option<Self> {
+        let group = &objects.get(*moved.first()?)?.group;
+        let members = objects.iter().filter(|object| object.group == *group);
+        // What is alone in its group goes as the group does.
+        let is_alone = moved.len() > 1 || members.take(2).count() < 2;
+        let own = if is_alone { "" } else { group };
+        let all: HashSet<&usize> = moved.iter().collect();
         let mut order = listed(objects);
         if is_down {
             order.reverse();
         }
-        let from = order.iter().position(|place| *place == index)?;
+        let from = order.iter().position(|place| all.contains(place))?;
         let before = &order[..from];
         let next = *before.last()?;
         let of_next = &objects[next].group;
-        if !own.is_empty() && own != of_next {
+        if !own.is_empty() && own != of_next.as_str() {
             return None;
         }
         let is_past_group = own.is_empty() && !of_next.is_empty();
@@ -39,12 +57,57 @@ impl Arrangement {
         let anchor = passed
             .find(|&place| place == next || is_past_group && objects[place].group == *of_next)?;
         Some(Self {
-            objects: vec![index],
+            objects: moved.to_vec(),
             anchor,
             is_after: is_down,
             group: None,
         })
     }
+}
+
+/// Lists objects in a group: behind its members, or where the first of them is if it is new; or by themselves, if its
+/// name is empty. Returns where they are.
+pub fn group(scene: &mut Scene, members: &[usize], name: &str) -> Vec<Item> {
+    let mut members = put_in_order(scene, members);
+    if name.is_empty() {
+        for place in &members {
+            scene.objects[*place].group.clear();
+        }
+    } else if let Some((&first, others)) = members.split_first() {
+        let own: HashSet<&usize> = members.iter().collect();
+        let is_there = |place: &usize| scene.objects[*place].group == name && !own.contains(place);
+        let last = (0..scene.objects.len()).rfind(is_there);
+        if last.is_none() {
+            name.clone_into(&mut scene.objects[first].group);
+        }
+        let moved = Arrangement {
+            objects: if last.is_some() { &members } else { others }.to_vec(),
+            anchor: last.unwrap_or(first),
+            is_after: true,
+            group: Some(name.to_owned()),
+        };
+        let arranged = arrange(scene, moved).into_iter();
+        let first = last.is_none().then_some(first);
+        members = first
+            .into_iter()
+            .chain(arranged.map(|item| item.index))
+            .collect();
+    }
+    let places = put_in_order(scene, &members);
+    places.into_iter().map(Item::object).collect()
+}
+
+/// Puts all objects into the order in which they are shown; returns where some of them are then.
+fn put_in_order(scene: &mut Scene, some: &[usize]) -> Vec<usize> {
+    let order = listed(&scene.objects);
+    if !order.is_sorted() {
+        let objects = order.iter().map(|place| scene.objects[*place].clone());
+        scene.objects = objects.collect();
+    }
+    let some: HashSet<usize> = some.iter().copied().collect();
+    let places = order.iter().enumerate();
+    let places = places.filter(|(_, before)| some.contains(before));
+    places.map(|(place, _)| place).collect()
 }
 
 /// Puts objects elsewhere; returns where they are.
@@ -161,22 +224,30 @@ mod tests {
     #[test]
     fn a_step_goes_past_a_group_and_stays_within_its_own() {
         let mut scene = scene(&["g:a", "b", "g:c", "d"]);
-        let mut step = |index: usize, is_down: bool| {
-            let step = Arrangement::step(&scene.objects, index, is_down);
+        let mut step = |moved: &[usize], is_down: bool| {
+            let step = Arrangement::step(&scene.objects, moved, is_down);
             step.map(|step| arrange(&mut scene, step));
             names(&scene).join(" ")
         };
-        assert_eq!(step(1, false), "b g:a g:c d");
-        assert_eq!(step(0, false), "b g:a g:c d", "it is the first");
+        assert_eq!(step(&[1], false), "b g:a g:c d");
+        assert_eq!(step(&[0], false), "b g:a g:c d", "it is the first");
         assert_eq!(
-            step(1, false),
+            step(&[1], false),
             "b g:a g:c d",
             "it is the first of its group"
         );
-        assert_eq!(step(1, true), "b g:c g:a d");
-        assert_eq!(step(2, true), "b g:c g:a d", "it is the last of its group");
-        assert_eq!(step(0, true), "g:c g:a b d");
-        assert_eq!(step(2, true), "g:c g:a d b");
+        assert_eq!(step(&[1], true), "b g:c g:a d");
+        assert_eq!(
+            step(&[2], true),
+            "b g:c g:a d",
+            "it is the last of its group"
+        );
+        assert_eq!(step(&[0], true), "g:c g:a b d");
+        assert_eq!(step(&[2], true), "g:c g:a d b");
+        // A group goes with all of it.
+        assert_eq!(step(&[0, 1], true), "d g:c g:a b");
+        assert_eq!(step(&[1, 2], false), "g:c g:a d b");
+        assert_eq!(step(&[0, 1], false), "g:c g:a d b", "it is the first");
     }
 
     #[test]
@@ -190,5 +261,25 @@ mod tests {
         assert_eq!(moved, ["Ball 3", "Ball 7"]);
         let all = scene.objects.bytes_apart(&List::new());
         assert!(scene.objects.bytes_apart(&before) * 4 < all);
+        group(&mut scene, &[9_000, 20], "g");
+        assert_eq!(scene.objects[21].name, "Ball 9000");
+        assert!(scene.objects.bytes_apart(&before) * 4 < all);
+    }
+
+    #[test]
+    fn members_of_a_group_stand_where_they_are_listed() {
+        let mut scene = scene(&["a", "b", "c", "d"]);
+        assert_eq!(group(&mut scene, &[0, 2], "g"), [0, 1].map(Item::object));
+        assert_eq!(names(&scene), ["g:a", "g:c", "b", "d"]);
+        assert_eq!(group(&mut scene, &[3], "g"), [Item::object(2)]);
+        assert_eq!(names(&scene), ["g:a", "g:c", "g:d", "b"]);
+        assert_eq!(group(&mut scene, &[1], ""), [Item::object(2)]);
+        assert_eq!(names(&scene), ["g:a", "g:d", "c", "b"]);
+        assert_eq!(group(&mut scene, &[3, 1], "h"), [1, 2].map(Item::object));
+        assert_eq!(names(&scene), ["g:a", "h:d", "h:b", "c"]);
+        // A file may have them anywhere.
+        scene.objects[3].group = "g".to_owned();
+        assert_eq!(group(&mut scene, &[1], ""), [Item::object(2)]);
+        assert_eq!(names(&scene), ["g:a", "g:c", "d", "h:b"]);
     }
 }

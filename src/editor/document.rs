@@ -270,13 +270,14 @@ impl Editor {
     /// Why it could not be written; the document then still counts as changed.
     pub fn save(&mut self, path: &Path) -> Result<(), SceneError> {
         let lost = self.lost_meshes();
+        let path = &absolute(path);
         let document = self.document().at(path);
         let (backup, stamp) = document.save_stamped(path)?;
         // What is in the scene file now follows no other file.
         if document.scene != *self.scene {
             self.set_scene(Arc::new(document.scene));
         }
-        self.path = Some(absolute(path));
+        self.path = Some(path.clone());
         self.stamp = Some(stamp);
         self.saved = Arc::clone(&self.scene);
         (self.is_dirty, self.is_gone) = (false, false);

@@ -12,7 +12,7 @@ use crate::scene::{
 };
 
 use super::adding::{add_light, add_object, add_pack, duplicate, make_pack_unique};
-use super::arrange::{Arrangement, arrange};
+use super::arrange::{Arrangement, arrange, group};
 use super::clipboard::paste;
 use super::item::{Item, Kind};
 
@@ -219,7 +219,7 @@ impl Edit {
             Self::MergePacks => "Merge equal packs".to_owned(),
             Self::RenameGroup(from, to) => format!("Rename {from} to {to}"),
             Self::Group(_, name) if name.is_empty() => "Ungroup".to_owned(),
-            Self::Group(_, name) => format!("Group {name}"),
+            Self::Group(_, name) => format!("Group as {name}"),
             Self::Each(_, label) => label.clone(),
         }
     }
@@ -263,13 +263,7 @@ impl Edit {
             Self::MakePackUnique(index) => make_pack_unique(scene, index),
             Self::MergePacks => scene.merge_equal_packs(),
             Self::RenameGroup(from, to) => rename_group(scene, &from, &to)?,
-            Self::Group(members, name) => {
-                for index in members {
-                    if let Some(object) = scene.objects.get_mut(index) {
-                        object.group.clone_from(&name);
-                    }
-                }
-            }
+            Self::Group(members, name) => return Ok(group(scene, &members, &name)),
             Self::Bookmarks(bookmarks, _) => scene.bookmarks = bookmarks,
             Self::Each(edits, _) => {
                 for edit in edits {

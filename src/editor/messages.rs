@@ -103,7 +103,7 @@ impl Editor {
         let targets = tracks.map(|track| &track.target);
         let lost = targets.filter(|target| !kept.contains(target));
         let keys = listed(lost.map(Target::name));
-        keys.map(|names| format!("there are no keys of {names} any more"))
+        keys.map(|names| format!("keys have gone as well ({names}); undo brings them back"))
     }
 
     /// Color packs that all but the first wore, and smoothness.

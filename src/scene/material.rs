@@ -1,6 +1,7 @@
 //! Colour packs: the materials.
 
 use std::fmt;
+use std::ops::Deref;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -61,16 +62,54 @@ impl Default for ColorPack {
     }
 }
 
-/// Reads the map of colour packs, refusing a name that comes twice.
-pub fn read_packs<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<Arc<IndexMap<String, ColorPack>>, D::Error> {
-    deserializer.deserialize_map(Packs).map(Arc::new)
+/// Materials by name, in the order in which they are listed; a copy shares them.
+#[derive(Clone, Debug, Serialize)]
+#[serde(transparent)]
+pub struct Packs(Arc<IndexMap<String, ColorPack>>);
+
+impl Packs {
+    /// Whether both share their packs, which then are the same.
+    pub fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+
+    /// The packs, to be changed; copied if they are shared.
+    pub fn make_mut(&mut self) -> &mut IndexMap<String, ColorPack> {
+        Arc::make_mut(&mut self.0)
+    }
 }
 
-struct Packs;
+impl Deref for Packs {
+    type Target = IndexMap<String, ColorPack>;
 
-impl<'de> Visitor<'de> for Packs {
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+impl From<IndexMap<String, ColorPack>> for Packs {
+    fn from(packs: IndexMap<String, ColorPack>) -> Self {
+        Self(Arc::new(packs))
+    }
+}
+
+/// Maps are equal in any order; these are listed in one.
+impl PartialEq for Packs {
+    fn eq(&self, other: &Self) -> bool {
+        self.is_same(other) || self.as_slice() == other.as_slice()
+    }
+}
+
+/// Refuses a name that comes twice.
+impl<'de> Deserialize<'de> for Packs {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(ReadPacks).map(Self::from)
+    }
+}
+
+struct ReadPacks;
+
+impl<'de> Visitor<'de> for ReadPacks {
     type Value = IndexMap<String, ColorPack>;
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {

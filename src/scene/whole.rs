@@ -13,7 +13,7 @@ use crate::files::Marks;
 use super::animation::Animation;
 use super::camera::{Bookmark, Camera};
 use super::list::List;
-use super::material::{ColorPack, read_packs};
+use super::material::{ColorPack, Packs};
 use super::notation;
 use super::object::{Light, LightObj, Object, default_intensity, yes};
 use super::render::Render;
@@ -46,8 +46,8 @@ pub struct Scene {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bookmarks: Vec<Bookmark>,
     /// Materials by name, shared by the objects that name them; the order is the file's.
-    #[serde(default = "default_packs", deserialize_with = "read_packs")]
-    pub color_packs: Arc<IndexMap<String, ColorPack>>,
+    #[serde(default = "default_packs")]
+    pub color_packs: Packs,
     /// The things that are seen, mirrored and cast shadows.
     pub objects: List<Object>,
     /// The lights.
@@ -73,7 +73,7 @@ impl Scene {
             light_visualization: true,
             camera: Camera::default(),
             bookmarks: Vec::new(),
-            color_packs: Arc::new(IndexMap::from([
+            color_packs: Packs::from(IndexMap::from([
                 ("pack 1".to_owned(), ColorPack::default()),
                 ("light".to_owned(), light_pack()),
             ])),
@@ -86,7 +86,7 @@ impl Scene {
 
     /// The colour packs, to be changed; copied if they are shared.
     pub fn packs_mut(&mut self) -> &mut IndexMap<String, ColorPack> {
-        Arc::make_mut(&mut self.color_packs)
+        self.color_packs.make_mut()
     }
 
     /// What moves, to be changed; copied if it is shared.
@@ -106,7 +106,7 @@ impl Scene {
 
     /// About how many bytes this scene has that another one does not share.
     pub fn bytes_apart(&self, other: &Self) -> usize {
-        let packs = if Arc::ptr_eq(&self.color_packs, &other.color_packs) {
+        let packs = if self.color_packs.is_same(&other.color_packs) {
             0
         } else {
             self.color_packs.len() * size_of::<ColorPack>()
@@ -312,13 +312,13 @@ pub fn light_pack() -> ColorPack {
     }
 }
 
-fn default_packs() -> Arc<IndexMap<String, ColorPack>> {
+fn default_packs() -> Packs {
     let matte = |x, y, z| ColorPack {
         ambient: DVec3::new(x, y, z),
         diffuse: DVec3::new(x, y, z),
         ..ColorPack::default()
     };
-    Arc::new(IndexMap::from([
+    Packs::from(IndexMap::from([
         ("sphere 1".to_owned(), matte(255.0, 128.0, 255.0)),
         ("sphere 2".to_owned(), matte(255.0, 128.0, 128.0)),
         ("tetrahedron".to_owned(), matte(128.0, 255.0, 255.0)),

@@ -14,7 +14,7 @@ use super::flying::Flying;
 use super::histogram::Levels;
 use super::inspector::Quality;
 use super::lab::Lab;
-use super::layout::Layout;
+use super::layout::{Layout, keep_readable};
 use super::number::{dragged, take_refused};
 use super::outliner::Outliner;
 use super::pictures::Pictures;
@@ -190,7 +190,8 @@ impl App {
         if keys_are_free {
             commands.extend(pressed(ui, self.flying.is_flying(), |_| true));
         } else if Popup::is_any_open(ui)
-            && !(ui.text_edit_focused() || self.is_asking() || self.is_gesture(ui))
+            && !(ui.text_edit_focused() || self.is_asking())
+            && !ui.input(|input| input.pointer.any_down())
         {
             // A color is picked in one, and a hint read.
             commands.extend(pressed(ui, false, goes_beside_popups));
@@ -331,6 +332,7 @@ impl eframe::App for App {
     }
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        keep_readable(ui);
         // What had the keys when this frame's were pressed: a field loses its focus to Escape, and a
         // menu closes, before this is asked.
         let was_typing = ui.text_edit_focused();

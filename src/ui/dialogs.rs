@@ -55,11 +55,18 @@ impl Ask {
         )
     }
 
-    /// The path, with the ending that such files have if it has none.
-    pub fn with_ending(&self, path: PathBuf) -> PathBuf {
+    /// The path, with the ending that such files have if it has none; scenes have always that of scenes, whatever
+    /// stands before it.
+    pub fn with_ending(&self, mut path: PathBuf) -> PathBuf {
+        let own = self.endings()[0];
         match path.extension() {
+            Some(ending) if ending.is_empty() => path.with_extension(own),
+            Some(ending) if *self == Self::SaveScene && !ending.eq_ignore_ascii_case(own) => {
+                path.as_mut_os_string().push(format!(".{own}"));
+                path
+            }
             Some(_) => path,
-            None => path.with_extension(self.endings()[0]),
+            None => path.with_extension(own),
         }
     }
 

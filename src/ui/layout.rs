@@ -1,8 +1,15 @@
 //! What of the window is shown.
 
+use std::ops::RangeInclusive;
+
+use egui::Context;
 use serde::{Deserialize, Serialize};
 
 use crate::scene::Aspect;
+
+/// Factors by which letters and buttons can be other than usual: smaller ones nobody can read, and larger ones leave no
+/// room to the picture.
+const ZOOMS: RangeInclusive<f32> = 0.6..=3.0;
 
 /// What of the window can be shown or hidden.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -96,5 +103,14 @@ impl Default for Layout {
             fly_speed: 1.0,
             aspect: Aspect::All,
         }
+    }
+}
+
+/// Letters and buttons stay of a size that one can use.
+pub fn keep_readable(ctx: &Context) {
+    let zoom = ctx.zoom_factor();
+    let kept = zoom.clamp(*ZOOMS.start(), *ZOOMS.end());
+    if kept != zoom {
+        ctx.set_zoom_factor(kept);
     }
 }

@@ -61,7 +61,11 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             let has = editor.scene().has_equal_packs();
             (!has).then_some("no two color packs are equal")
         }
-        Command::Rename if editor.selection().group(editor.scene()).is_some() => None,
+        Command::Rename | Command::MoveUp | Command::MoveDown
+            if editor.selection().group(editor.scene()).is_some() =>
+        {
+            None
+        }
         Command::Rename | Command::MoveUp | Command::MoveDown => match editor.selection().items() {
             [] => Some(nothing),
             [_] => None,

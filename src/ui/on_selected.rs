@@ -77,12 +77,19 @@ pub fn duplicate_all(editor: &mut Editor) {
     editor.apply(Action::Edit(Edit::Each(edits.collect(), label)));
 }
 
-/// One step up or down in its list.
-pub fn step(scene: &Scene, item: Item, is_down: bool) -> Option<Edit> {
-    let index = item.index;
+/// One step up or down in its list for what is selected: one thing, or a group.
+pub fn step(editor: &Editor, is_down: bool) -> Option<Edit> {
+    let (scene, selection) = (editor.scene(), editor.selection());
+    let item = selection.item()?;
     match item.kind {
-        Kind::Object => Arrangement::step(&scene.objects, index, is_down).map(Edit::Arrange),
-        Kind::Light | Kind::Pack if is_down => Some(Edit::Move(item, index + 1)),
-        Kind::Light | Kind::Pack => Some(Edit::Move(item, index.checked_sub(1)?)),
+        Kind::Object => {
+            let moved = selection.places(Kind::Object);
+            Arrangement::step(&scene.objects, &moved, is_down).map(Edit::Arrange)
+        }
+        kind if is_down => {
+            let has_next = item.index + 1 < kind.count(scene);
+            has_next.then(|| Edit::Move(item, item.index + 1))
+        }
+        _ => Some(Edit::Move(item, item.index.checked_sub(1)?)),
     }
 }

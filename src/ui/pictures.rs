@@ -229,7 +229,7 @@ impl Pictures {
             *of == aspect
                 && from.objects.is_same(&scene.objects)
                 && from.lights.is_same(&scene.lights)
-                && Arc::ptr_eq(&from.color_packs, &scene.color_packs)
+                && from.color_packs.is_same(&scene.color_packs)
                 && from.background == scene.background
                 && from.ambient_intensity == scene.ambient_intensity
         });

@@ -116,12 +116,16 @@ impl PathPrompt {
 
     /// The path that was typed, with `~` for the home folder and the ending that files have.
     pub fn path(&self) -> PathBuf {
+        self.ask.with_ending(self.typed())
+    }
+
+    /// The same as it is typed.
+    fn typed(&self) -> PathBuf {
         let text = self.text.trim();
-        let path = match (text.strip_prefix("~/"), std::env::home_dir()) {
+        match (text.strip_prefix("~/"), std::env::home_dir()) {
             (Some(rest), Some(home)) => home.join(rest),
             _ => PathBuf::from(text),
-        };
-        self.ask.with_ending(path)
+        }
     }
 
     /// Draws the prompt.
@@ -224,9 +228,10 @@ impl PathPrompt {
             let endings = self.ask.endings().join(", .");
             return impossible(format!("Its name has to end in one of these: .{endings}"));
         }
-        if !self.ask.writes() && Path::new(self.text.trim()).is_dir() {
+        let takes_folder = self.ask == Ask::ExportFolder;
+        let is_begun = self.text.trim().ends_with(std::path::is_separator);
+        if !takes_folder && (is_begun || self.typed().is_dir() || path.is_dir()) {
             // Its name may not be typed yet.
-            let is_begun = self.text.trim().ends_with(std::path::is_separator);
             let words = if is_begun { "" } else { "This is a folder" };
             return impossible(words.to_owned());
         }
@@ -241,8 +246,7 @@ impl PathPrompt {
                 is_possible: true,
             });
         }
-        let reads = !self.ask.writes() && self.ask != Ask::ExportFolder;
-        if reads && !path.is_file() {
+        if !self.ask.writes() && !takes_folder && !path.is_file() {
             let path = shortened(&path.to_string_lossy(), LONGEST_PATH);
             return impossible(format!("There is no file {path}"));
         }

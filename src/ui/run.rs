@@ -256,6 +256,15 @@ impl App {
                 let group = editor.selection().group(editor.scene());
                 return self.outliner.rename_group(group.map(str::to_owned));
             }
+            Command::MoveUp | Command::MoveDown => {
+                let is_down = *command == Command::MoveDown;
+                let Some(edit) = step(editor, is_down) else {
+                    let side = if is_down { "below" } else { "above" };
+                    return editor
+                        .notify(format!("Nothing is {side} it in its list, or in its group"));
+                };
+                Action::Edit(edit)
+            }
             Command::Duplicate if editor.selection().items().len() > 1 => {
                 return duplicate_all(editor);
             }
@@ -265,13 +274,6 @@ impl App {
                     return self.outliner.rename(editor.scene(), *item);
                 }
                 (Command::Duplicate, [item]) => Action::Edit(Edit::Duplicate(*item)),
-                (Command::MoveUp | Command::MoveDown, [item]) => {
-                    let is_down = *on_item == Command::MoveDown;
-                    let Some(edit) = step(editor.scene(), *item, is_down) else {
-                        return;
-                    };
-                    Action::Edit(edit)
-                }
                 _ => return,
             },
         };

@@ -1,7 +1,6 @@
 //! Clean edges: against many samples per pixel, in double precision, on the published views.
 
 use std::f64::consts::FRAC_PI_2;
-use std::sync::Arc;
 
 use glam::DVec3;
 use glint::image::LinearRgb;
@@ -662,7 +661,7 @@ fn squares() -> Scene {
     scene.objects = List::default();
     let mut dark = scene.color_packs[0].clone();
     dark.ambient = DVec3::ZERO;
-    Arc::make_mut(&mut scene.color_packs).insert("dark".to_owned(), dark);
+    scene.packs_mut().insert("dark".to_owned(), dark);
     let bright = scene.color_packs.keys().next().cloned().unwrap_or_default();
     let at =
         |column: i32, row: i32| DVec3::new(f64::from(column) * 0.65, f64::from(row) * 0.63, -100.0);

@@ -619,7 +619,7 @@ fn what_has_keys_is_keyed_by_changing_it() {
     );
     harness.press(Modifiers::NONE, Key::Delete);
     assert!(harness.scene().animation.tracks.is_empty());
-    let told = "Delete Sun: there are no keys of Sun: intensity any more";
+    let told = "Delete Sun: keys have gone as well (Sun: intensity)";
     harness.window.get_by_label_contains(told);
 }
 

@@ -56,8 +56,7 @@ fn check_since(scene: &Scene, valid: Option<&Scene>) -> Result<(), Problem> {
         check_name(&at.field("name"), &bookmark.name)?;
         check_camera(&at.field("camera"), &bookmark.camera)?;
     }
-    let has_same_packs =
-        valid.is_some_and(|valid| Arc::ptr_eq(&valid.color_packs, &scene.color_packs));
+    let has_same_packs = valid.is_some_and(|valid| valid.color_packs.is_same(&scene.color_packs));
     if !has_same_packs {
         check_packs(&root.field("color_packs"), scene)?;
     }
@@ -140,7 +139,7 @@ fn check_object_names(at: &At, scene: &Scene) -> Check {
 impl Scene {
     /// Whether another scene has packs of the same names.
     fn has_packs_of(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.color_packs, &other.color_packs)
+        self.color_packs.is_same(&other.color_packs)
             || self.color_packs.keys().eq(other.color_packs.keys())
     }
 

@@ -1,5 +1,7 @@
 //! What rows of the outliner do with what is dragged onto them.
 
+use std::collections::HashSet;
+
 use egui::{DragAndDrop, Rect, Response, StrokeKind, Ui};
 
 use super::lines::Group;
@@ -33,10 +35,10 @@ pub fn take_dropped(
     out: &mut UiRequests,
 ) {
     response.dnd_set_drag_payload(item);
-    if !response.contains_pointer() {
+    let Some(share) = share_of_row(ui, response) else {
         return;
-    }
-    let is_after = share_of_row(ui, response.rect) > 0.5;
+    };
+    let is_after = share > 0.5;
     let to = (item, is_after);
     let dragged = response.dnd_hover_payload::<Item>();
     let group = response.dnd_hover_payload::<DraggedGroup>();
@@ -67,12 +69,12 @@ pub fn take_dropped_on_group(
     if response.dragged() {
         response.dnd_set_drag_payload(DraggedGroup(group.members.clone()));
     }
-    if !response.contains_pointer() {
+    let Some(share) = share_of_row(ui, response) else {
         return;
-    }
-    let share = share_of_row(ui, response.rect);
+    };
     let beside = |objects: Vec<usize>, is_after: bool, to: Option<String>| {
-        let mut others = group.members.iter().filter(|it| !objects.contains(it));
+        let moved: HashSet<&usize> = objects.iter().collect();
+        let mut others = group.members.iter().filter(|it| !moved.contains(it));
         let anchor = if is_after {
             others.next_back()
         } else {
@@ -95,8 +97,10 @@ pub fn take_dropped_on_group(
                 (beside(objects, true, alone), DropMark::Line(true))
             }
             Kind::Object => {
-                let joins = Edit::Group(objects, group.name.clone());
-                (Some(joins), DropMark::Frame)
+                let members: HashSet<&usize> = group.members.iter().collect();
+                let is_new = !objects.iter().all(|object| members.contains(object));
+                let joins = is_new.then(|| Edit::Group(objects, group.name.clone()));
+                (joins, DropMark::Frame)
             }
             Kind::Light | Kind::Pack => (None, DropMark::Frame),
         }
@@ -164,10 +168,32 @@ fn put_group_beside(
     })
 }
 
-/// How far down in a row the pointer is, 0–1.
-fn share_of_row(ui: &Ui, rect: Rect) -> f32 {
-    let at = ui.input(|input| input.pointer.interact_pos());
-    at.map_or(0.0, |at| (at.y - rect.top()) / rect.height())
+/// How far down in a row the pointer is, from 0 to less than 1, if it is there: two rows share a border.
+fn share_of_row(ui: &Ui, response: &Response) -> Option<f32> {
+    let at = ui.input(|input| input.pointer.interact_pos())?;
+    let rect = response.rect;
+    let share = (at.y - rect.top()) / rect.height();
+    (response.contains_pointer() && share < 1.0).then_some(share)
+}
+
+/// Objects and groups that are dropped on the title below their list come last in it.
+pub fn take_dropped_at_end(ui: &Ui, editor: &Editor, response: &Response, out: &mut UiRequests) {
+    if share_of_row(ui, response).is_none_or(|share| share > 0.5) {
+        return;
+    }
+    let item = response.dnd_hover_payload::<Item>();
+    let item = item.filter(|item| item.kind == Kind::Object);
+    let group = response.dnd_hover_payload::<DraggedGroup>();
+    let (objects, to) = match (item, group) {
+        (Some(item), _) => (dragged_objects(editor, *item), Some(String::new())),
+        (None, Some(group)) => (group.0.clone(), None),
+        (None, None) => return,
+    };
+    let at_end = Arrangement::at_end(&editor.scene().objects, &objects, to.clone());
+    let edit = at_end.map(Edit::Arrange);
+    // Where nothing else is, they leave their groups where they are.
+    let edit = edit.or_else(|| to.map(|none| Edit::Group(objects, none)));
+    drop_or_mark(ui, response.rect, (edit, DropMark::Line(false)), out);
 }
 
 /// Makes the change that comes of what is dragged over a row where it is dropped now, or else shows that it would.

@@ -15,14 +15,14 @@ use egui::{
     Align, Id, Layout, Rect, Response, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2,
 };
 
-use self::drop::take_dropped;
+use self::drop::{take_dropped, take_dropped_at_end};
 use self::entry::{Renaming, RowStyle, color_of, entry, eye, rename_field, row};
 use self::groups::GroupRows;
 use self::lines::{Entries, Groups, Line, Lines};
 use self::walk::{Listed, Walk};
 use super::add::add_menu;
 use super::icons;
-use super::menu_entry::{ITEM_COMMANDS, entry as menu_entry};
+use super::menu_entry::{ITEM_COMMANDS, offer};
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW, palette};
 use crate::editor::{Action, Edit, Editor, Item, Kind, Selection};
@@ -151,7 +151,7 @@ impl Outliner {
                         } else {
                             format!("{listed} of {count}")
                         };
-                        self.group(ui, kind, &words);
+                        self.title(ui, editor, (kind, &words), out);
                     }
                     Some(Line::Group(place)) => {
                         let group = &groups.all[place];
@@ -160,7 +160,8 @@ impl Outliner {
                         }
                     }
                     Some(Line::Entry(item, is_in)) => {
-                        if let Some(response) = self.item(ui, editor, (item, is_in), out) {
+                        let entry = (listed, item, is_in);
+                        if let Some(response) = self.item(ui, editor, entry, out) {
                             self.walk.attend(ui, index, &response);
                         }
                     }
@@ -219,7 +220,13 @@ impl Outliner {
         Lines(kinds.map(|(kind, count)| (kind, count, entries(kind, count))))
     }
 
-    fn group(&mut self, ui: &mut Ui, kind: Kind, words: &str) {
+    fn title(
+        &mut self,
+        ui: &mut Ui,
+        editor: &Editor,
+        (kind, words): (Kind, &str),
+        out: &mut UiRequests,
+    ) {
         let name = match kind {
             Kind::Light => "Lights",
             Kind::Object => "Objects",
@@ -257,6 +264,9 @@ impl Outliner {
             font,
             colors.muted,
         );
+        if kind == Kind::Pack {
+            take_dropped_at_end(ui, editor, &response, out);
+        }
         if response.clicked() {
             if is_folded {
                 self.folded.retain(|folded| *folded != kind);
@@ -270,7 +280,7 @@ impl Outliner {
         &mut self,
         ui: &mut Ui,
         editor: &Editor,
-        (item, is_in_group): (Item, bool),
+        (listed, item, is_in_group): (Listed, Item, bool),
         out: &mut UiRequests,
     ) -> Option<Response> {
         let scene = editor.shown();
@@ -305,7 +315,7 @@ impl Outliner {
             name,
         );
         if response.clicked() {
-            select_clicked(ui, editor, item, out);
+            select_clicked(ui, editor, (listed, item), out);
         }
         if response.double_clicked() {
             self.renaming = Some(item);
@@ -316,7 +326,7 @@ impl Outliner {
                 out.select(item);
             }
             for (text, command) in ITEM_COMMANDS {
-                menu_entry(ui, text, command, out);
+                offer(ui, editor, text, command, out);
             }
         });
         if visible.is_some() {
@@ -358,16 +368,16 @@ impl Outliner {
     }
 }
 
-/// Selects an item: with Ctrl besides the others, with Shift all from the last one on, if that is in the same list.
-fn select_clicked(ui: &Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
+/// Selects an item: with Ctrl besides the others, with Shift all that is listed from the last one on, if that is in the
+/// same list.
+fn select_clicked(ui: &Ui, editor: &Editor, (listed, item): (Listed, Item), out: &mut UiRequests) {
     let modifiers = ui.input(|input| input.modifiers);
     let selected = editor.selection();
     let selected = if modifiers.shift {
         let items = selected.items();
         let last = items.last().filter(|last| last.kind == item.kind);
-        let from = last.map_or(item.index, |last| last.index);
-        let between = from.min(item.index)..=from.max(item.index);
-        let between = between.map(|index| Item { index, ..item });
+        let between = last.and_then(|last| listed.between(editor.scene(), *last, item));
+        let between = between.into_iter().flatten();
         let others = items.iter().copied().chain(between);
         Selection::all(others.filter(|other| *other != item).chain([item]))
     } else if modifiers.command {

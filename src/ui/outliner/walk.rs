@@ -4,6 +4,7 @@ use egui::{Event, EventFilter, Key, Modifiers, Response, Ui};
 
 use super::lines::{Group, Line, Lines, SINGLES};
 use crate::editor::{Action, Editor, Item, Selection};
+use crate::scene::Scene;
 
 /// What has the arrow keys.
 #[derive(Debug, Default)]
@@ -123,11 +124,35 @@ impl Listed<'_> {
         };
         match editor.selection().group(editor.scene()) {
             Some(group) => self.row_of_group(group),
-            None => self.lines.row_of(item).or_else(|| {
-                let object = editor.scene().objects.get(item.index)?;
-                self.row_of_group(&object.group)
-            }),
+            None => self.row_of_item(editor.scene(), item),
         }
+    }
+
+    /// The row of an item, or of its group, if that is folded.
+    fn row_of_item(&self, scene: &Scene, item: Item) -> Option<usize> {
+        self.lines.row_of(item).or_else(|| {
+            let object = scene.objects.get(item.index)?;
+            self.row_of_group(&object.group)
+        })
+    }
+
+    /// What is listed between two entries of a list, and they; of groups that are folded, all members.
+    pub fn between(&self, scene: &Scene, one: Item, other: Item) -> Option<Vec<Item>> {
+        let (one, other) = (
+            self.row_of_item(scene, one)?,
+            self.row_of_item(scene, other)?,
+        );
+        let is_member = |row| matches!(self.lines.get(row), Some(Line::Entry(_, true)));
+        let entries = |row| match self.lines.get(row) {
+            Some(Line::Entry(item, _)) => vec![item],
+            Some(Line::Group(place)) if !is_member(row + 1) => {
+                let members = self.groups[place].members.iter();
+                members.map(|index| Item::object(*index)).collect()
+            }
+            _ => Vec::new(),
+        };
+        let rows = one.min(other)..=one.max(other);
+        Some(rows.flat_map(entries).collect())
     }
 
     fn row_of_group(&self, name: &str) -> Option<usize> {

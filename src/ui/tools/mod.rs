@@ -34,7 +34,7 @@ use super::requests::UiRequests;
 use super::viewport::Place;
 use crate::editor::{Action, Edit, Editor, Item, Kind, Selection};
 use crate::image::{ObjectMap, Thing};
-use crate::scene::{Camera, Projection, around};
+use crate::scene::{Camera, Framing, Projection, around};
 
 /// Seconds that the pointer rests before it is told what it is over.
 const PATIENCE: f32 = 0.3;
@@ -348,30 +348,37 @@ pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
     Some(scene.camera.around(scene.render.aspect(), bounds))
 }
 
-/// Whether what is selected is certainly not in the picture: beside it, or behind the camera.
+/// Whether nothing of what is selected can be in the picture: the ball around each thing is beside it, or behind the
+/// camera.
 pub fn is_selected_unseen(editor: &Editor) -> bool {
     let scene = editor.shown();
     let selected = Subject::of(editor.selection(), scene);
-    let boxes: Option<Vec<_>> = selected.iter().map(Subject::bounds).collect();
-    let bounds = around(boxes.unwrap_or_default().into_iter());
-    let (Some((low, high)), Some(framing)) = (bounds, scene.camera.framing()) else {
+    let Some(framing) = scene.camera.framing() else {
         return false;
     };
-    let corners = (0..8).map(|corner| {
-        let part = |axis: usize| [low, high][corner >> axis & 1][axis];
-        framing.project(DVec3::new(part(0), part(1), part(2)))
-    });
-    let corners: Vec<_> = corners.collect();
-    let Some(places) = corners.iter().copied().collect::<Option<Vec<_>>>() else {
-        // What is only partly behind may be seen.
-        return corners.iter().all(Option::is_none);
+    let sides = sides(&framing, scene.render.aspect());
+    let is_out = |(low, high): (DVec3, DVec3)| {
+        let (middle, radius) = (low.midpoint(high), (high - low).length() / 2.0);
+        let mut sides = sides.iter();
+        sides.any(|(on, inwards)| (middle - *on).dot(*inwards) < -radius)
     };
-    let reach = [scene.render.aspect() / 2.0, 0.5];
-    let is_beside = |axis: usize| {
-        let is_out = |sign: f64| places.iter().all(|at| at[axis] * sign > reach[axis]);
-        is_out(1.0) || is_out(-1.0)
+    let mut bounds = selected.iter().map(Subject::bounds);
+    !selected.is_empty() && bounds.all(|bounds| bounds.is_some_and(is_out))
+}
+
+/// The planes around what a picture shows: through the sides of the picture, and through its middle; each by a point on
+/// it and the unit normal that points to what is shown.
+fn sides(framing: &Framing, aspect: f64) -> [(DVec3, DVec3); 5] {
+    let (x, y) = (aspect / 2.0, 0.5);
+    let corners = [[-x, -y], [x, -y], [x, y], [-x, y]].map(|place| framing.ray(place));
+    let (middle, forward) = framing.ray([0.0, 0.0]);
+    let side = |n: usize| {
+        let ((a, along), (b, beside)) = (corners[n], corners[(n + 1) % 4]);
+        let normal = along.cross(b + beside - a).normalize_or_zero();
+        let is_inwards = normal.dot(middle + forward - a) > 0.0;
+        (a, if is_inwards { normal } else { -normal })
     };
-    is_beside(0) || is_beside(1)
+    [side(0), side(1), side(2), side(3), (middle, forward)]
 }
 
 /// The camera that looks along a direction at what is selected, or at everything.

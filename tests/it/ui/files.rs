@@ -81,6 +81,27 @@ fn a_file_that_is_there_is_replaced_once_that_is_meant() {
 }
 
 #[test]
+fn a_scene_has_its_ending_and_no_folder_for_a_name() {
+    let mut harness = EditorHarness::new();
+    let folder = harness.folder.path().to_owned();
+    let field = "Path (this desktop offers no file dialog)";
+    harness.press(Modifiers::COMMAND, Key::S);
+    for text in [
+        format!("{}/", folder.display()),
+        folder.display().to_string(),
+    ] {
+        harness.type_name(field, &text);
+        assert_eq!(harness.editor().path(), None, "{text}");
+        assert!(!folder.with_extension("ron").exists());
+    }
+    harness.window.get_by_label("This is a folder");
+    harness.type_name(field, &folder.join("view.1").display().to_string());
+    let path = folder.join("view.1.ron");
+    assert_eq!(harness.editor().path(), Some(path.as_path()));
+    assert!(path.exists());
+}
+
+#[test]
 fn the_still_picture_is_written_to_a_file() {
     let answers =
         |folder: &std::path::Path| vec![(Ask::SaveImage, Some(folder.join("picture.png")))];

@@ -398,6 +398,8 @@ fn copies_stand_beside_each_other_and_are_told_where_nobody_sees_them() {
     for _ in 0..2 {
         harness.click("Sphere 1");
         harness.press(CTRL, Key::D);
+        // Two clicks in a row would be one on its name.
+        (0..60).for_each(|_| harness.window.step());
     }
     let found = places(&harness, "Sphere");
     assert_eq!(found, [-600.0, 125.0, 225.0, 325.0]);
@@ -406,4 +408,50 @@ fn copies_stand_beside_each_other_and_are_told_where_nobody_sees_them() {
     harness.click("Sphere 2");
     harness.press(CTRL, Key::D);
     harness.window.get_by_label_contains(told);
+}
+
+#[test]
+fn shift_selects_what_is_listed_between_two_rows() {
+    let mut scene = Scene::demo();
+    for index in [0, 3] {
+        scene.objects[index].group = "Balls".to_owned();
+    }
+    // Shown: Balls (Sphere 1, Triangle 2), Sphere 2, Triangle 1, Triangle 3.
+    let mut harness = EditorHarness::on(scene);
+    let selected = |harness: &EditorHarness| -> Vec<String> {
+        let items = harness.editor().selection().items().iter();
+        let names = items.filter_map(|item| item.name(harness.scene()));
+        names.map(str::to_owned).collect()
+    };
+    let mut range = |from: &str, to: &str| {
+        let (from, to) = (middle(&harness, from), middle(&harness, to));
+        click(&mut harness, from, NONE);
+        click(&mut harness, to, Modifiers::SHIFT);
+        selected(&harness)
+    };
+    assert_eq!(range("Triangle 2", "Sphere 2"), ["Triangle 2", "Sphere 2"]);
+    let three = ["Triangle 1", "Sphere 2", "Triangle 3"];
+    let mut found = range("Sphere 2", "Triangle 3");
+    found.sort_by_key(|name| three.iter().position(|one| one == name));
+    assert_eq!(found, three);
+}
+
+#[test]
+fn packs_are_put_above_and_below_others() {
+    let mut harness = EditorHarness::new();
+    let before: Vec<String> = harness.scene().color_packs.keys().cloned().collect();
+    let row = harness.window.get_by_label("sphere 1").rect();
+    let (from, to) = (
+        middle(&harness, "plane"),
+        pos2(row.center().x, row.top() + 3.0),
+    );
+    carry(&mut harness, from, to);
+    assert_eq!(
+        harness.scene().color_packs.keys().next().expect("one"),
+        "plane"
+    );
+    assert!(harness.editor().is_dirty());
+    harness.press(CTRL, Key::Z);
+    let after: Vec<String> = harness.scene().color_packs.keys().cloned().collect();
+    assert_eq!(after, before);
 }
