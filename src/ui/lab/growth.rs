@@ -9,8 +9,10 @@ use super::pictures::picture;
 use crate::image::Image;
 use crate::lab::{Cost, Crowd, Growth, PictureLook, Way};
 
-/// How far the name of a line is above its end, in decades.
-const NAME_ABOVE: f64 = 0.06;
+/// How far the name of a line is above its end, or below it, in decades.
+const NAME_OFF: f64 = 0.06;
+/// How near the end of another line may be above that of a line whose name is above, too, in decades.
+const NAME_ROOM: f64 = 0.25;
 
 /// A picture of what was measured.
 pub fn growth_picture(growth: &Growth, look: PictureLook) -> Image {
@@ -23,17 +25,23 @@ pub fn growth_picture(growth: &Growth, look: PictureLook) -> Image {
 
 /// What the chart says, in a sentence.
 fn finding(growth: &Growth) -> String {
-    let mut plain: Vec<&Cost> = growth.costs.iter().collect();
-    plain.retain(|cost| cost.crowd == Crowd::Mesh && cost.way == Way::Plain);
-    match (plain.first(), plain.last()) {
-        (Some(first), Some(last)) if first.primitives < last.primitives => format!(
-            "From {} to {} faces, a picture takes {:.1} times as long",
-            first.primitives,
-            last.primitives,
-            last.ms / first.ms
-        ),
-        _ => "Time against primitives".to_owned(),
-    }
+    let ends = |way: Way| {
+        let mut costs = growth.costs.iter();
+        let is_one = |cost: &&Cost| cost.crowd == Crowd::Mesh && cost.way == way;
+        let first = costs.find(is_one)?;
+        let last = costs.rfind(is_one)?;
+        Some((first, last, last.ms / first.ms))
+    };
+    let Some((first, last, times)) = ends(Way::Plain) else {
+        return "Time against primitives".to_owned();
+    };
+    let theirs = ends(Way::Embree).map(|(.., times)| format!(", one by Embree {times:.1} times"));
+    format!(
+        "From {} to {} faces, a picture takes {times:.1} times as long{}",
+        first.primitives,
+        last.primitives,
+        theirs.unwrap_or_default()
+    )
 }
 
 fn show(ui: &mut Ui, growth: &Growth) {
@@ -60,6 +68,8 @@ fn show(ui: &mut Ui, growth: &Growth) {
         .y_axis_min_width(48.0)
         .set_margin_fraction(egui::vec2(0.06, 0.1))
         .show(ui, |plot| {
+            let ends = lines.iter().filter_map(|(_, points)| points.last());
+            let ends: Vec<[f64; 2]> = ends.copied().collect();
             for (cost, points) in lines {
                 let name = cost.name();
                 let color = match cost.crowd {
@@ -75,9 +85,16 @@ fn show(ui: &mut Ui, growth: &Growth) {
                 let dots = Points::new(name.clone(), PlotPoints::from(points.clone()));
                 plot.points(dots.radius(4.0).color(color));
                 if let Some([x, y]) = points.last() {
-                    let at = PlotPoint::new(*x, y + NAME_ABOVE);
+                    let is_under = |end: &&[f64; 2]| {
+                        end[0] == *x && (0.0..NAME_ROOM).contains(&(end[1] - y)) && end[1] != *y
+                    };
+                    let (off, anchor) = match ends.iter().find(is_under) {
+                        Some(_) => (-NAME_OFF, Align2::RIGHT_TOP),
+                        None => (NAME_OFF, Align2::RIGHT_BOTTOM),
+                    };
+                    let at = PlotPoint::new(*x, y + off);
                     let text = Text::new(name.clone(), at, RichText::new(&name).size(14.0));
-                    plot.text(text.color(color).anchor(Align2::RIGHT_BOTTOM));
+                    plot.text(text.color(color).anchor(anchor));
                 }
                 plot.line(Line::new(name, points).color(color).style(style).width(1.5));
             }
