@@ -73,25 +73,29 @@ pub fn group(scene: &mut Scene, members: &[usize], name: &str) -> Vec<Item> {
         for place in &members {
             scene.objects[*place].group.clear();
         }
-    } else if let Some((&first, others)) = members.split_first() {
+    } else {
         let own: HashSet<&usize> = members.iter().collect();
-        let is_there = |place: &usize| scene.objects[*place].group == name && !own.contains(place);
-        let last = (0..scene.objects.len()).rfind(is_there);
-        if last.is_none() {
-            name.clone_into(&mut scene.objects[first].group);
+        let is_other = |place: &usize| !own.contains(place);
+        let is_there = |place: &usize| is_other(place) && scene.objects[*place].group == name;
+        let count = scene.objects.len();
+        let last = (0..count).rfind(is_there);
+        let before = last.or_else(|| members.first()?.checked_sub(1));
+        if let Some(anchor) = before.or_else(|| (0..count).find(is_other)) {
+            let arranged = arrange(
+                scene,
+                Arrangement {
+                    objects: members,
+                    anchor,
+                    is_after: before.is_some(),
+                    group: Some(name.to_owned()),
+                },
+            );
+            members = arranged.into_iter().map(|item| item.index).collect();
+        } else {
+            for place in &members {
+                name.clone_into(&mut scene.objects[*place].group);
+            }
         }
-        let moved = Arrangement {
-            objects: if last.is_some() { &members } else { others }.to_vec(),
-            anchor: last.unwrap_or(first),
-            is_after: true,
-            group: Some(name.to_owned()),
-        };
-        let arranged = arrange(scene, moved).into_iter();
-        let first = last.is_none().then_some(first);
-        members = first
-            .into_iter()
-            .chain(arranged.map(|item| item.index))
-            .collect();
     }
     let places = put_in_order(scene, &members);
     places.into_iter().map(Item::object).collect()
@@ -268,6 +272,7 @@ mod tests {
 
     #[test]
     fn members_of_a_group_stand_where_they_are_listed() {
+        let mut other = scene(&["g:a", "g:b", "g:c", "g:d"]);
         let mut scene = scene(&["a", "b", "c", "d"]);
         assert_eq!(group(&mut scene, &[0, 2], "g"), [0, 1].map(Item::object));
         assert_eq!(names(&scene), ["g:a", "g:c", "b", "d"]);
@@ -277,6 +282,11 @@ mod tests {
         assert_eq!(names(&scene), ["g:a", "g:d", "c", "b"]);
         assert_eq!(group(&mut scene, &[3, 1], "h"), [1, 2].map(Item::object));
         assert_eq!(names(&scene), ["g:a", "h:d", "h:b", "c"]);
+        // Out of the middle of another group, behind that; and all there is.
+        assert_eq!(group(&mut other, &[1, 3], "h"), [2, 3].map(Item::object));
+        assert_eq!(names(&other), ["g:a", "g:c", "h:b", "h:d"]);
+        assert_eq!(group(&mut other, &[0, 1, 2, 3], "i").len(), 4);
+        assert_eq!(names(&other), ["i:a", "i:c", "i:b", "i:d"]);
         // A file may have them anywhere.
         scene.objects[3].group = "g".to_owned();
         assert_eq!(group(&mut scene, &[1], ""), [Item::object(2)]);
