@@ -61,12 +61,9 @@ pub fn add_light(scene: &mut Scene, position: DVec3) -> Item {
     } else {
         insert_pack(scene, "light", light_pack()).1
     };
-    // Two in one place would look like one.
-    let mut position = position;
-    while scene.lights.iter().any(|light| light.position == position) {
-        // Far away, the radius of a marker may be less than a rounding.
-        position.x += (4.0 * radius).max(position.x.abs() * 1e-9);
-    }
+    // Two in one place would look like one. Far away, the radius of a marker may be less than a rounding.
+    let step = DVec3::X * (4.0 * radius).max(position.x.abs() * 1e-9);
+    let position = position + past_lights(scene, position, (step, 0));
     scene.lights.push(Light {
         name,
         position,

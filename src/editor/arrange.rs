@@ -105,8 +105,7 @@ pub fn group(scene: &mut Scene, members: &[usize], name: &str) -> Vec<Item> {
 fn put_in_order(scene: &mut Scene, some: &[usize]) -> Vec<usize> {
     let order = listed(&scene.objects);
     if !order.is_sorted() {
-        let objects = order.iter().map(|place| scene.objects[*place].clone());
-        scene.objects = objects.collect();
+        reorder(scene, &order);
     }
     let some: HashSet<usize> = some.iter().copied().collect();
     let places = order.iter().enumerate();
@@ -135,8 +134,7 @@ pub fn arrange(scene: &mut Scene, arrangement: Arrangement) -> Vec<Item> {
         }
     } else {
         order.splice(at..at, moved);
-        let objects = order.iter().map(|place| scene.objects[*place].clone());
-        scene.objects = objects.collect();
+        reorder(scene, &order);
     }
     if let Some(group) = arrangement.group {
         for place in places.clone() {
@@ -144,6 +142,11 @@ pub fn arrange(scene: &mut Scene, arrangement: Arrangement) -> Vec<Item> {
         }
     }
     places.map(Item::object).collect()
+}
+
+fn reorder(scene: &mut Scene, order: &[usize]) {
+    let objects = order.iter().map(|place| scene.objects[*place].clone());
+    scene.objects = objects.collect();
 }
 
 /// The places of objects in the order in which they are shown.

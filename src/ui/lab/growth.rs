@@ -85,12 +85,12 @@ fn show(ui: &mut Ui, growth: &Growth) {
                 let dots = Points::new(name.clone(), PlotPoints::from(points.clone()));
                 plot.points(dots.radius(4.0).color(color));
                 if let Some([x, y]) = points.last() {
-                    let is_under = |end: &&[f64; 2]| {
-                        end[0] == *x && (0.0..NAME_ROOM).contains(&(end[1] - y)) && end[1] != *y
-                    };
-                    let (off, anchor) = match ends.iter().find(is_under) {
-                        Some(_) => (-NAME_OFF, Align2::RIGHT_TOP),
-                        None => (NAME_OFF, Align2::RIGHT_BOTTOM),
+                    let is_close_above =
+                        |end: &[f64; 2]| end[0] == *x && end[1] > *y && end[1] < y + NAME_ROOM;
+                    let (off, anchor) = if ends.iter().any(is_close_above) {
+                        (-NAME_OFF, Align2::RIGHT_TOP)
+                    } else {
+                        (NAME_OFF, Align2::RIGHT_BOTTOM)
                     };
                     let at = PlotPoint::new(*x, y + off);
                     let text = Text::new(name.clone(), at, RichText::new(&name).size(14.0));

@@ -81,12 +81,7 @@ pub fn take_dropped_on_group(
             others.next()
         };
         let anchor = *anchor?;
-        Some(Edit::Arrange(Arrangement {
-            objects,
-            anchor,
-            is_after,
-            group: to,
-        }))
+        Some(arranged(objects, (anchor, is_after), to))
     };
     let of_item = |item: Item| {
         let objects = dragged_objects(editor, item);
@@ -141,13 +136,16 @@ fn put_beside(editor: &Editor, dragged: Item, (item, is_after): (Item, bool)) ->
     }
     let objects = dragged_objects(editor, dragged);
     let group = editor.scene().objects.get(item.index)?.group.clone();
-    (!objects.contains(&item.index)).then(|| {
-        Edit::Arrange(Arrangement {
-            objects,
-            anchor: item.index,
-            is_after,
-            group: Some(group),
-        })
+    let is_beside = !objects.contains(&item.index);
+    is_beside.then(|| arranged(objects, (item.index, is_after), Some(group)))
+}
+
+fn arranged(objects: Vec<usize>, (anchor, is_after): (usize, bool), group: Option<String>) -> Edit {
+    Edit::Arrange(Arrangement {
+        objects,
+        anchor,
+        is_after,
+        group,
     })
 }
 
@@ -158,14 +156,8 @@ fn put_group_beside(
     (item, is_after): (Item, bool),
 ) -> Option<Edit> {
     let object = editor.scene().objects.get(item.index)?;
-    (item.kind == Kind::Object && object.group.is_empty()).then(|| {
-        Edit::Arrange(Arrangement {
-            objects: objects.clone(),
-            anchor: item.index,
-            is_after,
-            group: None,
-        })
-    })
+    let has_place = item.kind == Kind::Object && object.group.is_empty();
+    has_place.then(|| arranged(objects.clone(), (item.index, is_after), None))
 }
 
 /// How far down in a row the pointer is, from 0 to less than 1, if it is there: two rows share a border.
