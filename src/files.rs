@@ -239,11 +239,6 @@ pub fn read_at_most(file: File, most: u64) -> io::Result<Result<Vec<u8>, u64>> {
     Ok(if read > most { Err(read) } else { Ok(bytes) })
 }
 
-/// What a text file holds; `None` if it cannot be read.
-pub fn read_text(path: &Path) -> Option<String> {
-    fs::read_to_string(path).ok()
-}
-
 /// Removes files from a folder, those that were written first, until no more than `most` are left.
 pub fn remove_oldest(folder: &Path, most: usize) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();

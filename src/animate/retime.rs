@@ -31,8 +31,14 @@ impl Retime {
     /// Name, and what it does.
     pub fn words(self) -> (&'static str, &'static str) {
         match self {
-            Self::ConstantSpeed => ("Constant speed", "As far in each second as in any other"),
-            Self::TrimPauses => ("Trim pauses", "Without the time in which nothing moves"),
+            Self::ConstantSpeed => (
+                "Constant speed",
+                "The camera goes as far in each second as in any other; keys of values stay",
+            ),
+            Self::TrimPauses => (
+                "Trim pauses",
+                "Without the time in which the camera does not move; keys of values stay",
+            ),
             Self::Smooth => ("Smooth", "Takes corners off the flight"),
         }
     }
@@ -104,12 +110,15 @@ fn lengths(keys: &[Key<Camera>]) -> Vec<f64> {
         }
         let step = (pair[1].time - pair[0].time) / STEPS as f64;
         let at = |n: usize| path.at(pair[0].time + step * n as f64);
-        for n in 0..STEPS {
-            if let (Some(from), Some(to)) = (at(n), at(n + 1)) {
-                let motion = motion_between(&from, &to);
+        let mut before = at(0);
+        for n in 1..=STEPS {
+            let here = at(n);
+            if let (Some(from), Some(to)) = (&before, &here) {
+                let motion = motion_between(from, to);
                 sum.distance += motion.distance;
                 sum.turn += motion.turn;
             }
+            before = here;
         }
         sum
     };

@@ -120,8 +120,9 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
     let start = Instant::now();
     let reporter = ProgressReporter::new(&sequence, args.openjd);
     let done = export(sequence.clone(), &threads, &reporter)?;
-    reporter.end();
+    let seconds = start.elapsed().as_secs_f64();
     if let Some((path, video)) = video {
+        reporter.clear();
         reporter.say_status("encoding");
         let bar = bar(
             &sequence,
@@ -132,11 +133,11 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
             bar.set_position(frames as u64);
             true
         };
-        let made = video.make(&sequence, path, tell);
+        let made = threads.run(|| video.make(&sequence, path, tell));
         bar.finish_and_clear();
         made.map_err(CliError::failed)?;
     }
-    let seconds = start.elapsed().as_secs_f64();
+    reporter.end();
     if let Some((path, _)) = video {
         let frames = counted(sequence.frames.count(), "frame");
         say(&format!("{}: a video of {frames}", path.display()));
@@ -228,8 +229,13 @@ impl ProgressReporter {
         }
     }
 
-    fn end(&self) {
+    /// Makes room for another bar.
+    fn clear(&self) {
         self.bar.finish_and_clear();
+    }
+
+    fn end(&self) {
+        self.clear();
         if self.is_openjd {
             say("openjd_progress: 100");
         }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::{CliError, say};
 use super::scene::read_scene;
-use crate::export::{free_path, save_image};
+use crate::export::save_image;
 use crate::image::{Film, render};
 use crate::plan::RenderRequest;
 use crate::scene::Scene;
@@ -41,9 +41,23 @@ pub fn picture_instead_of_window(scene: Option<&Path>, reason: &str) -> Result<(
     let threads = Threads::new(None)?;
     let traced = threads.run(|| render(&scene, &request, &RenderControl::default()));
     let (image, _) = traced.ok_or_else(|| CliError::failed("the trace ended without a picture"))?;
-    let path = free_path(&name);
+    let path = free_path(name);
     let (width, height) = (image.width, image.height);
     save_image(&Film::Levels(image), &path)?;
     say(&format!("{}: {width}×{height}", path.display()));
     Ok(())
+}
+
+/// A picture's name, or the first of `NAME-2.png`, `NAME-3.png`, … that no file has yet.
+fn free_path(wanted: PathBuf) -> PathBuf {
+    let stem = wanted.file_stem().unwrap_or_default().to_owned();
+    let mut path = wanted;
+    let mut number = 2_u32;
+    while path.exists() {
+        let mut name = stem.clone();
+        name.push(format!("-{number}.png"));
+        path.set_file_name(name);
+        number += 1;
+    }
+    path
 }

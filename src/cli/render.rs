@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::sync::mpsc::RecvTimeoutError;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
@@ -24,7 +23,7 @@ use crate::plan::{Planner, RenderRequest};
 use crate::scene::{Aspect, Method as _, Projection, Scene};
 use crate::simd::Level;
 use crate::trace::{Rays, RenderControl, Threads};
-use crate::worker::run_in_background;
+use crate::worker::Background;
 
 #[derive(Debug, Args)]
 pub struct RenderArgs {
@@ -244,20 +243,17 @@ fn with_bar<T: Send + 'static>(
     work: impl FnOnce(&RenderControl) -> T + Send + 'static,
 ) -> Option<T> {
     let control = Arc::new(RenderControl::default());
-    let result = run_in_background("glint-render", {
+    let mut result = Background::start("glint-render", {
         let control = Arc::clone(&control);
         move || work(&control)
     });
     let mut bar = None;
     loop {
-        match result.recv_timeout(TICK) {
-            Ok(done) => return Some(done),
-            Err(RecvTimeoutError::Disconnected) => return None,
-            Err(RecvTimeoutError::Timeout) => {
-                let bar = bar.get_or_insert_with(|| progress_bar(total, SHARE));
-                bar.set_position(control.pixels.load(Ordering::Relaxed));
-            }
+        if let Some(done) = result.take_within(TICK) {
+            return done.ok();
         }
+        let bar = bar.get_or_insert_with(|| progress_bar(total, SHARE));
+        bar.set_position(control.pixels.load(Ordering::Relaxed));
     }
 }
 

@@ -117,9 +117,9 @@ fn put_in_order(scene: &mut Scene, some: &[usize]) -> Vec<usize> {
 pub fn arrange(scene: &mut Scene, arrangement: Arrangement) -> Vec<Item> {
     let moved: HashSet<usize> = arrangement.objects.into_iter().collect();
     let order = listed(&scene.objects);
-    let is_kept_so = order.is_sorted();
     let (moved, mut order): (Vec<usize>, Vec<usize>) =
         order.into_iter().partition(|place| moved.contains(place));
+    let is_kept_so = order.is_sorted() && moved.is_sorted();
     let anchor = order.iter().position(|place| *place == arrangement.anchor);
     let Some(anchor) = anchor else {
         return Vec::new();

@@ -2,10 +2,12 @@
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
+use std::ops::Range;
 
 use glam::DVec3;
 use indexmap::IndexMap;
 
+use super::arrange::{Arrangement, arrange};
 use super::item::{Item, Kind};
 use super::names::{past_lights, past_objects, step_aside};
 use super::selection::Selection;
@@ -98,8 +100,8 @@ pub fn read(text: &str, scene: &Scene) -> Result<Scene, SceneError> {
     Ok(excerpt(&read, &Selection::all(Item::everything(&read))))
 }
 
-/// Adds everything in `pasted`, behind what is there: packs that are there already are used, others get a name
-/// that is free. Returns the lights and objects that are new.
+/// Adds everything in `pasted`, objects behind those that they are copies of, and the rest behind what is there: packs
+/// that are there already are used, others get a name that is free. Returns the lights and objects that are new.
 pub fn paste(scene: &mut Scene, pasted: &Scene) -> Vec<Item> {
     let (lights, objects) = (scene.lights.len(), scene.objects.len());
     let mut packs = IndexMap::new();
@@ -159,8 +161,33 @@ pub fn paste(scene: &mut Scene, pasted: &Scene) -> Vec<Item> {
         scene.animation_mut().tracks.extend(tracks);
     }
     let lights = (lights..scene.lights.len()).map(Item::light);
-    let objects = (objects..scene.objects.len()).map(Item::object);
+    let objects = objects..scene.objects.len();
+    let objects = match behind_originals(scene, pasted, objects.clone()) {
+        Some(arrangement) => arrange(scene, arrangement),
+        None => objects.map(Item::object).collect(),
+    };
     lights.chain(objects).collect()
+}
+
+/// Puts new objects at the end of the list behind those of the same names in what is pasted, or behind their group; not
+/// between the members of another one. `None` where there are none.
+fn behind_originals(scene: &Scene, pasted: &Scene, new: Range<usize>) -> Option<Arrangement> {
+    let names = pasted.objects.iter().map(|object| &*object.name);
+    let names: HashSet<&str> = names.collect();
+    let group = |place: usize| scene.objects[place].group.as_str();
+    let own = group(new.clone().next()?);
+    let last_in =
+        |name: &str| (0..new.start).rfind(|place| !name.is_empty() && group(*place) == name);
+    let original = (0..new.start).rfind(|place| names.contains(&*scene.objects[*place].name));
+    let beside = original.or_else(|| last_in(own))?;
+    let is_of_group = new.clone().all(|place| group(place) == group(beside));
+    let around = last_in(group(beside)).filter(|_| !is_of_group);
+    Some(Arrangement {
+        objects: new.collect(),
+        anchor: around.unwrap_or(beside),
+        is_after: true,
+        group: None,
+    })
 }
 
 /// What groups are called of which all is pasted once more, or that are others of the same name: each is a group of its
@@ -246,14 +273,20 @@ mod tests {
             &Selection::all(members.into_iter().map(Item::object)),
         );
         for group in ["Group 2", "Group 3"] {
-            let end = scene.objects.len();
-            paste(&mut scene, &all);
-            assert_eq!(groups(&scene, end), [group; 3]);
+            let copies = paste(&mut scene, &all);
+            // Behind what they are copies of, which is the first group.
+            assert_eq!(copies, [3, 4, 5].map(Item::object));
+            assert_eq!(groups(&scene, 3)[..3], [group; 3]);
         }
         let one = excerpt(&scene, &Selection::all([Item::object(1)]));
-        let last = scene.objects.len();
-        paste(&mut scene, &one);
-        assert_eq!(groups(&scene, last), ["Group 1"]);
+        assert_eq!(paste(&mut scene, &one), [Item::object(2)]);
+        assert_eq!(
+            groups(&scene, 0)[..5],
+            ["Group 1", "Group 1", "Group 1", "Group 1", "Group 3"]
+        );
+        // Where that is gone, behind its group.
+        scene.objects.remove(1);
+        assert_eq!(paste(&mut scene, &one), [Item::object(3)]);
         // What comes from elsewhere and has the same name is another group.
         let mut other = all.clone();
         for object in other.objects.iter_mut() {
@@ -295,8 +328,8 @@ mod tests {
         paste(&mut scene, &found);
         assert_eq!((scene.objects.len(), scene.lights.len()), (11, 3));
         assert_eq!(scene.color_packs, packs);
-        assert_eq!(scene.objects[9].name, "Sphere 3");
-        assert_ne!(scene.objects[9].shape, scene.objects[0].shape);
+        assert_eq!(scene.objects[2].name, "Sphere 3");
+        assert_ne!(scene.objects[2].shape, scene.objects[0].shape);
         assert_eq!(check(&scene), Ok(()));
         // Elsewhere the packs come with it.
         let mut other = Scene::empty();

@@ -421,6 +421,7 @@ impl Editor {
     /// Selects what is there of it.
     fn select(&mut self, selection: Selection) {
         self.selection = selection.within(&self.scene);
+        self.history.note_selected(&self.selection);
     }
 
     pub(super) fn set_scene(&mut self, scene: Arc<Scene>) {

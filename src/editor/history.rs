@@ -26,6 +26,8 @@ struct Step {
     label: String,
     /// The state on the other side of it.
     there: Snapshot,
+    /// What was selected when it was done, if that was noted.
+    selected: Option<Selection>,
     /// What the two states do not share.
     bytes: usize,
 }
@@ -54,12 +56,20 @@ impl History {
         self.done.push_back(Step {
             label,
             there: before,
+            selected: None,
             bytes,
         });
         let mut bytes: usize = self.done.iter().map(|step| step.bytes).sum();
         while self.done.len() > MOST_STEPS || (bytes > MOST_BYTES && self.done.len() > 1) {
             let forgotten = self.done.pop_front();
             bytes -= forgotten.map_or(0, |step| step.bytes);
+        }
+    }
+
+    /// Notes what the step that goes on has selected: doing it again selects that.
+    pub fn note_selected(&mut self, selection: &Selection) {
+        if let Some(step) = self.done.back_mut().filter(|_| self.gesture.is_some()) {
+            step.selected = Some(selection.clone());
         }
     }
 
@@ -99,8 +109,10 @@ impl History {
     pub fn undo(&mut self, here: Snapshot) -> Option<Snapshot> {
         self.gesture = None;
         let step = self.done.pop_back()?;
+        let selection = step.selected.unwrap_or(here.selection);
         self.undone.push(Step {
-            there: here,
+            there: Snapshot { selection, ..here },
+            selected: None,
             ..step
         });
         Some(step.there)
@@ -112,6 +124,7 @@ impl History {
         let step = self.undone.pop()?;
         self.done.push_back(Step {
             there: here,
+            selected: Some(step.there.selection.clone()),
             ..step
         });
         Some(step.there)

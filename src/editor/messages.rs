@@ -34,6 +34,8 @@ impl Editor {
     /// Tells the user what the last step has done; nothing any more once that is undone.
     pub fn notify_of_step(&mut self, text: String) {
         self.told_of = self.revision();
+        // Of the step before it, nothing is to be undone at once.
+        self.begin(STEP);
         self.say(false, STEP, text);
     }
 
@@ -57,6 +59,13 @@ impl Editor {
     /// Tells the user that something went wrong in an action, see [`Self::begin`].
     pub fn report_error_in(&mut self, about: &'static str, text: String) {
         self.say(true, about, text);
+    }
+
+    /// The last error of an action, if nobody was told of it yet: nobody is, then.
+    pub fn take_error(&mut self, about: &str) -> Option<String> {
+        let is_it = |message: &Message| message.is_error && message.about == about;
+        let place = self.messages.iter().rposition(is_it)?;
+        Some(self.messages.remove(place).text)
     }
 
     /// Says which meshes could not be read.

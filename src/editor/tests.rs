@@ -254,6 +254,22 @@ proptest! {
 }
 
 #[test]
+fn what_is_taken_back_or_done_again_is_selected() {
+    let mut editor = Editor::demo();
+    let select = |item: Item| Action::Select(Selection::all([item]));
+    editor.apply(select(Item::object(1)));
+    editor.apply(Action::Edit(Edit::Duplicate(Item::object(1))));
+    editor.end_gesture();
+    for other in [Item::object(5), Item::light(0)] {
+        editor.apply(select(other));
+        editor.apply(Action::Undo);
+        assert_eq!(editor.selection().item(), Some(Item::object(1)));
+        editor.apply(Action::Redo);
+        assert_eq!(editor.selection().item(), Some(Item::object(2)));
+    }
+}
+
+#[test]
 fn copies_stand_beside_each_other_however_they_were_made() {
     let mut scene = Scene::demo();
     scene.objects[0].shape = Sphere {

@@ -144,7 +144,7 @@ impl Timeline {
         }
         let step = seconds * self.speed;
         match self.repeat {
-            _ if duration <= 0.0 => self.playhead = 0.0,
+            _ if duration <= 0.0 => (self.playhead, self.is_playing) = (0.0, false),
             Repeat::Once => {
                 self.playhead += step;
                 if self.playhead >= duration {

@@ -3,13 +3,15 @@
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::Path;
+use std::time::{Duration, Instant};
 
-use image::codecs::gif::{GifEncoder, Repeat};
-use image::{Delay, Frame};
+use gif::{DisposalMethod, Encoder, Frame, Repeat};
+use image::RgbaImage;
 
 use super::error::VideoError;
-use super::frame_file::read;
+use super::frame_file::{in_order, read};
 use super::sequence::Sequence;
+use crate::image::Image;
 
 /// Pixels of a frame that the colours of a GIF are learnt from: of so many more, one of so many is looked at, but of
 /// no more than ten.
@@ -24,7 +26,8 @@ pub const LONGEST_IN_GIF: f64 = 655.35;
 /// The longest seconds that an APNG shows a frame.
 pub const LONGEST_IN_APNG: f64 = 65_535.0;
 
-/// Writes a GIF into a file that is to be that of this path.
+/// Writes a GIF into a file that is to be that of this path. The frames, which take several times as long to become
+/// some of 256 colours as to be traced, are packed on the threads of the current rayon pool.
 ///
 /// # Errors
 /// [`VideoError`].
@@ -33,29 +36,63 @@ pub fn gif(
     (file, path): (&File, &Path),
     go_on: &mut impl FnMut(usize) -> bool,
 ) -> Result<(), VideoError> {
-    let mut file = BufWriter::new(file);
+    let wrong = |error: gif::EncodingError| VideoError::disk(path, &error);
+    let (width, height) = sequence.size();
+    let file = BufWriter::new(file);
+    let mut encoder = Encoder::new(file, width as u16, height as u16, &[]).map_err(wrong)?;
+    encoder.set_repeat(Repeat::Infinite).map_err(wrong)?;
+    let speed = speed_of(sequence);
+    let mut start = 0;
+    let ends = clock_ends(sequence.frames_per_second(), sequence.frames.count());
+    let frames = sequence.frames.iter().zip(ends).enumerate();
+    let shown = frames.filter_map(|(place, (frame, end))| {
+        let hundredths = end - std::mem::replace(&mut start, end);
+        (hundredths > 0).then_some((place + 1, (frame, hundredths)))
+    });
+    let pack = |(frame, hundredths)| {
+        let image = read(&sequence.path(frame))?;
+        Ok(gif_frame(image, speed, hundredths))
+    };
+    in_order(sequence, (shown, go_on), pack, |frame| {
+        encoder.write_lzw_pre_encoded_frame(&frame).map_err(wrong)
+    })?;
+    let mut file = encoder.into_inner().map_err(wrong)?;
+    file.flush().map_err(|error| VideoError::disk(path, &error))
+}
+
+/// About how long so many threads pack the frames of a sequence, if they are like this picture.
+pub fn time_of_gif(sequence: &Sequence, image: &Image, threads: usize) -> Duration {
+    let (width, height) = sequence.size();
+    // No larger than they are: what is learnt of small ones takes long for each of their pixels.
+    let step = (image.width / width as usize).max(1);
+    let small = image.decimated(step);
+    let size = (small.width as u32, small.height as u32);
+    let pixels = RgbaImage::from_raw(size.0, size.1, small.pixels.concat());
+    let start = Instant::now();
+    drop(gif_frame(pixels.unwrap_or_default(), speed_of(sequence), 1));
+    let of_pixel = start.elapsed().as_secs_f64() / f64::from(size.0 * size.1).max(1.0);
+    let count = sequence.frames.count();
+    let shown = count - left_out(sequence.frames_per_second(), count);
+    let rounds = shown as f64 / sequence.at_once(threads) as f64;
+    Duration::from_secs_f64(of_pixel * f64::from(width) * f64::from(height) * rounds)
+}
+
+/// Of how many pixels of the frames of a sequence one is looked at.
+fn speed_of(sequence: &Sequence) -> i32 {
     let (width, height) = sequence.size();
     let speed = (width.saturating_mul(height) / GIF_PIXELS).clamp(1, 10);
-    let mut encoder = GifEncoder::new_with_speed(&mut file, speed.cast_signed());
-    let wrong = |error: image::ImageError| VideoError::disk(path, &error);
-    encoder.set_repeat(Repeat::Infinite).map_err(wrong)?;
-    let ends = clock_ends(sequence.frames_per_second(), sequence.frames.count());
-    let mut start = 0;
-    for ((index, frame), end) in sequence.frames.iter().enumerate().zip(ends) {
-        if end > start {
-            let image = read(&sequence.path(frame))?;
-            let delay = Delay::from_numer_denom_ms((end - start) * 10, 1);
-            let frame = Frame::from_parts(image, 0, 0, delay);
-            encoder.encode_frame(frame).map_err(wrong)?;
-            start = end;
-        }
-        if !go_on(index + 1) {
-            return Err(VideoError::Stopped);
-        }
-    }
-    // It writes its end when it is dropped, and cannot tell then that the disk is full.
-    drop(encoder);
-    file.flush().map_err(|error| VideoError::disk(path, &error))
+    speed.cast_signed()
+}
+
+/// A frame of a GIF, packed, that is shown for so many hundredths of a second.
+fn gif_frame(image: RgbaImage, speed: i32, hundredths: u32) -> Frame<'static> {
+    let (width, height) = image.dimensions();
+    let mut pixels = image.into_raw();
+    let mut frame = Frame::from_rgba_speed(width as u16, height as u16, &mut pixels, speed);
+    frame.delay = u16::try_from(hundredths).unwrap_or(u16::MAX);
+    frame.dispose = DisposalMethod::Background;
+    frame.make_lzw_pre_encoded();
+    frame
 }
 
 /// How many frames of so many a GIF leaves out.
@@ -128,13 +165,15 @@ pub fn apng(
     let (part, whole) = nearest_fraction(1.0 / sequence.frames_per_second());
     encoder.set_frame_delay(part, whole).map_err(wrong)?;
     let mut writer = encoder.write_header().map_err(wrong)?;
-    for (index, frame) in sequence.frames.iter().enumerate() {
-        let image = image::DynamicImage::from(read(&sequence.path(frame))?).to_rgb8();
-        writer.write_image_data(&image).map_err(wrong)?;
-        if !go_on(index + 1) {
-            return Err(VideoError::Stopped);
-        }
-    }
+    let open = |frame| {
+        let image = read(&sequence.path(frame))?;
+        Ok(image::DynamicImage::from(image).to_rgb8())
+    };
+    let frames = sequence.frames.iter().enumerate();
+    let frames = frames.map(|(place, frame)| (place + 1, frame));
+    in_order(sequence, (frames, go_on), open, |image| {
+        writer.write_image_data(&image).map_err(wrong)
+    })?;
     writer.finish().map_err(wrong)?;
     file.flush().map_err(|error| VideoError::disk(path, &error))
 }

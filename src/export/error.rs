@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::image::FormatError;
+use crate::trace::PoolError;
 
 /// Why a picture could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -23,6 +24,14 @@ pub enum ExportError {
     /// The scene cannot be put into words, which its fingerprint is made of.
     #[error("the scene cannot be written: {0}")]
     Unwritable(#[from] ron::Error),
+    /// A file is there that cannot be read.
+    #[error("cannot read {path}: {source}", path = .path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system answered.
+        source: io::Error,
+    },
     /// The disk said no.
     #[error("cannot write {path}: {source}", path = .path.display())]
     Disk {
@@ -43,13 +52,16 @@ pub enum VideoError {
     /// It was not wanted any more.
     #[error("the video was stopped, and is not there; its frames are")]
     Stopped,
+    /// No threads could be had to make it.
+    #[error(transparent)]
+    Threads(#[from] PoolError),
     /// There is no ffmpeg.
     #[error(
-        "ffmpeg is not installed, or not on the PATH; the frames are there, and this makes the video of them:\n{command}\n.gif and .apng need no ffmpeg"
+        "ffmpeg is not installed, or not on the PATH; the frames are there, and {how}\n.gif and .apng need no ffmpeg"
     )]
     NoFfmpeg {
-        /// What to type.
-        command: String,
+        /// What makes the video of them.
+        how: String,
     },
     /// It ended with an error.
     #[error("ffmpeg failed:\n{said}")]

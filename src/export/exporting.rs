@@ -21,10 +21,6 @@ use crate::trace::{RenderControl, Threads};
 /// picture, so that every so many trace a frame of their own.
 const THREADS_PER_FRAME: usize = 8;
 
-/// Most pixels of frames that are traced side by side, and of those that are packed meanwhile: memory stays
-/// bounded, however large they are and however many threads there are.
-const MOST_PIXELS: usize = 1 << 26;
-
 /// Frames with more pixels than this are traced strip by strip while they are written.
 const LARGE: u64 = 1 << 24;
 
@@ -228,13 +224,6 @@ impl Exporting {
         Ok(step)
     }
 
-    /// How many frames of this size may be under way beside each other, for one reason or another.
-    fn at_once(&self, wanted: usize) -> usize {
-        let (width, height) = self.sequence.size();
-        let pixels = (width as usize * height as usize).max(1);
-        wanted.clamp(1, (MOST_PIXELS / pixels).max(1))
-    }
-
     /// The next frames that have to be traced, of as many as are traced side by side; the others are there.
     fn next_due(&mut self) -> Result<Vec<Due>, ExportError> {
         // The others share what the first one has planned.
@@ -244,7 +233,7 @@ impl Exporting {
         } else {
             1
         };
-        let count = self.at_once(wanted);
+        let count = self.sequence.at_once(wanted);
         let mut due: Vec<Due> = Vec::new();
         for frame in self.left.drain(..count.min(self.left.len())) {
             let shown = self.sequence.shown(frame);
@@ -274,7 +263,7 @@ impl Exporting {
         self.planner = due.planner;
         let step = due.film.size().1.div_ceil(SMALL as usize).max(1);
         self.last = Some(Arc::new(due.film.decimated(step)));
-        let count = self.at_once(Threads::current());
+        let count = self.sequence.at_once(Threads::current());
         let writers = match self.writers.take() {
             Some(writers) => writers,
             None => Writers::start(&self.sequence, count)?,

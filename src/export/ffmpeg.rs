@@ -28,8 +28,8 @@ pub fn by_ffmpeg(
     let mut ffmpeg = match start(sequence, unfinished, codec) {
         Ok(ffmpeg) => ffmpeg,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            let command = command(sequence, path, codec);
-            return Err(VideoError::NoFfmpeg { command });
+            let how = without_ffmpeg(sequence, path, codec);
+            return Err(VideoError::NoFfmpeg { how });
         }
         Err(error) => {
             let said = format!("it cannot be started: {error}");
@@ -117,26 +117,44 @@ fn feed(
     Ok(true)
 }
 
+/// How the video is made once ffmpeg is there: by hand, where one line does it.
+fn without_ffmpeg(sequence: &Sequence, path: &Path, codec: &str) -> String {
+    match command(sequence, path, codec) {
+        Some(command) => format!("this makes the video of them:\n{command}"),
+        None => "the same command makes the video of them once it is".to_owned(),
+    }
+}
+
 /// What one would type to make the video by hand.
-fn command(sequence: &Sequence, path: &Path, codec: &str) -> String {
+fn command(sequence: &Sequence, path: &Path, codec: &str) -> Option<String> {
+    // What a name may begin with or have in it means something else to ffmpeg.
+    let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let fps = sequence.frames_per_second();
     let codec: Vec<String> = codec.split(' ').map(quoted).collect();
-    let (codec, output) = (codec.join(" "), quoted(&path.display().to_string()));
+    let output = quoted(&absolute(path).display().to_string());
+    let codec = codec.join(" ");
     let first = sequence.frames.iter().next().unwrap_or(1);
     let in_a_row = first..first + sequence.frames.count() as u64;
     if sequence.frames.iter().eq(in_a_row) {
         // To ffmpeg, all of the path is a pattern.
-        let folder = sequence.folder.display().to_string().replace('%', "%%");
+        let folder = absolute(&sequence.folder).display().to_string();
+        let folder = folder.replace('%', "%%");
         let names = format!("{}.{}", sequence.pattern.text(), sequence.format.ending());
         let input = quoted(&Path::new(&folder).join(names).display().to_string());
-        return format!(
+        return Some(format!(
             "ffmpeg -framerate {fps} -start_number {first} -i {input} {codec} {output}"
-        );
+        ));
+    }
+    if sequence.format == Format::Exr {
+        // No pipe tells where one of these ends.
+        return None;
     }
     let files = sequence.frames.iter();
     let files = files.map(|frame| quoted(&sequence.path(frame).display().to_string()));
     let files = files.collect::<Vec<String>>().join(" ");
-    format!("cat {files} | ffmpeg -f image2pipe -framerate {fps} -i - {codec} {output}")
+    Some(format!(
+        "cat {files} | ffmpeg -f image2pipe -framerate {fps} -i - {codec} {output}"
+    ))
 }
 
 /// As a shell needs it. No path has a zero byte in it, which is all that cannot be quoted.

@@ -4,9 +4,43 @@ use std::io::Cursor;
 use std::path::Path;
 
 use image::{DynamicImage, ImageReader, ImageResult, RgbaImage};
+use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 
 use super::error::VideoError;
+use super::sequence::Sequence;
 use crate::image::{Format, Image, LinearImage};
+use crate::trace::Threads;
+
+/// Prepares frames of a sequence on the threads of the current rayon pool, and hands them on in their order. With each
+/// comes how many are done then, which `go_on` is told; it says whether more are wanted.
+///
+/// # Errors
+/// The first one that is met, after the frames before were handed on; [`VideoError::Stopped`].
+pub fn in_order<F: Send, P: Send>(
+    sequence: &Sequence,
+    (mut frames, go_on): (
+        impl Iterator<Item = (usize, F)>,
+        &mut impl FnMut(usize) -> bool,
+    ),
+    prepare: impl Fn(F) -> Result<P, VideoError> + Sync,
+    mut hand_on: impl FnMut(P) -> Result<(), VideoError>,
+) -> Result<(), VideoError> {
+    let at_once = sequence.at_once(Threads::current());
+    loop {
+        let some: Vec<(usize, F)> = frames.by_ref().take(at_once).collect();
+        if some.is_empty() {
+            return Ok(());
+        }
+        let prepare = |(done, frame)| (done, prepare(frame));
+        let prepared: Vec<_> = some.into_par_iter().map(prepare).collect();
+        for (done, frame) in prepared {
+            hand_on(frame?)?;
+            if !go_on(done) {
+                return Err(VideoError::Stopped);
+            }
+        }
+    }
+}
 
 /// A frame as PPM.
 ///

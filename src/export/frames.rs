@@ -64,7 +64,7 @@ impl Frames {
                     text: text.to_owned(),
                 });
             }
-            if (last - first) / step + frames.len() as u64 >= MOST {
+            if ((last - first) / step).saturating_add(frames.len() as u64) >= MOST {
                 return Err(FramesError::TooMany);
             }
             frames.extend((first..=last).step_by(usize::try_from(step).unwrap_or(usize::MAX)));
@@ -146,6 +146,7 @@ mod tests {
             "1-10:0",
             "5-3",
             "1-99999999999",
+            "1,2,1-18446744073709551615",
             "1;2",
         ] {
             assert!(Frames::parse(wrong).is_err(), "{wrong}");

@@ -37,6 +37,6 @@ pub use job::{Job, JobError, write_job};
 pub use manifest::{Hash, Manifest};
 pub use pattern::{Pattern, PatternError};
 pub use povray::{ByPovray, PovrayError, by_povray, povray_differences, povray_text};
-pub use save::{check_place, free_path, save_image, save_picture, write_text};
+pub use save::{check_place, save_image, save_picture, write_text};
 pub use sequence::{NoSuchFrame, Sequence, SequenceError, fingerprint};
 pub use video::Video;

@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use image::ImageError;
 
@@ -83,25 +83,4 @@ pub fn disk(path: &Path, source: io::Error) -> ExportError {
         path: path.to_owned(),
         source,
     }
-}
-
-/// `wanted`, or the first of `NAME-2`, `NAME-3`, … that no file has yet.
-pub fn free_path(wanted: &Path) -> PathBuf {
-    let stem = wanted
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
-    let ending = wanted
-        .extension()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
-    let mut path = wanted.to_owned();
-    let mut number = 2_u32;
-    while path.exists() {
-        path = wanted.with_file_name(format!("{stem}-{number}.{ending}"));
-        number += 1;
-    }
-    path
 }

@@ -19,6 +19,10 @@ use crate::image::Format;
 use crate::scene::{Method as _, Scene};
 use crate::words::counted;
 
+/// Most pixels of frames that are traced side by side, of those that are packed meanwhile, and of those that become a
+/// video: memory stays bounded, however large they are and however many threads there are.
+const MOST_PIXELS: usize = 1 << 26;
+
 /// What is exported, and where to.
 #[derive(Clone, Debug)]
 pub struct Sequence {
@@ -99,6 +103,13 @@ impl Sequence {
         (self.scene.render.width, self.scene.render.height)
     }
 
+    /// How many frames of this size may be under way beside each other, of so many that are wanted.
+    pub fn at_once(&self, wanted: usize) -> usize {
+        let (width, height) = self.size();
+        let pixels = (width as usize * height as usize).max(1);
+        wanted.clamp(1, (MOST_PIXELS / pixels).max(1))
+    }
+
     /// How edges are smoothed, by its word.
     pub fn antialias(&self) -> String {
         self.scene.render.antialias.id()
@@ -147,10 +158,13 @@ impl Sequence {
     /// Reads the notes of the folder.
     ///
     /// # Errors
-    /// [`ExportError::Disk`].
+    /// [`ExportError::Unreadable`].
     pub fn manifest(&self) -> Result<Manifest, ExportError> {
-        let wrong = |source| disk(&self.folder.join(MANIFEST), source);
-        Manifest::read(&self.folder).map_err(wrong)
+        let read = Manifest::read(&self.folder);
+        read.map_err(|source| ExportError::Unreadable {
+            path: self.folder.join(MANIFEST),
+            source,
+        })
     }
 
     /// Whether a frame is there, whole, and shows what it would show now.

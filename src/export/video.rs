@@ -1,12 +1,15 @@
 //! One file that moves, made of frames that are there: by ffmpeg, or as GIF or APNG without it.
 
+use std::ffi::OsStr;
 use std::path::Path;
+use std::time::Duration;
 
-use super::animated::{LONGEST_IN_APNG, LONGEST_IN_GIF, apng, gif, left_out};
+use super::animated::{LONGEST_IN_APNG, LONGEST_IN_GIF, apng, gif, left_out, time_of_gif};
 use super::error::VideoError;
 use super::ffmpeg::by_ffmpeg;
 use super::sequence::Sequence;
 use crate::files::NewFile;
+use crate::image::Image;
 
 /// What ffmpeg is told about the codec: both sides even, as H.264 needs them. How red, green and blue become what these
 /// hold is said in the file: players guess by the size otherwise.
@@ -31,22 +34,51 @@ pub enum Video {
 }
 
 impl Video {
+    /// All of them, as they are offered.
+    pub const ALL: [Self; 5] = [
+        Self::H264,
+        Self::ProRes,
+        Self::Lossless,
+        Self::Gif,
+        Self::Apng,
+    ];
+
+    /// The ending of such files.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::H264 => "mp4",
+            Self::ProRes => "mov",
+            Self::Lossless => "mkv",
+            Self::Gif => "gif",
+            Self::Apng => "apng",
+        }
+    }
+
+    /// Whether it takes another program.
+    pub fn needs_ffmpeg(self) -> bool {
+        !matches!(self, Self::Gif | Self::Apng)
+    }
+
+    /// The kind whose files end so.
+    pub fn of_ending(ending: &str) -> Option<Self> {
+        let is_it = |video: &Self| ending.eq_ignore_ascii_case(video.ending());
+        Self::ALL.into_iter().find(is_it)
+    }
+
     /// The kind that a file's ending asks for.
     ///
     /// # Errors
     /// [`VideoError::Unknown`].
     pub fn of_path(path: &Path) -> Result<Self, VideoError> {
-        let ending = path
-            .extension()
-            .map(|e| e.to_string_lossy().to_ascii_lowercase());
-        match ending.as_deref() {
-            Some("mp4") => Ok(Self::H264),
-            Some("mov") => Ok(Self::ProRes),
-            Some("mkv") => Ok(Self::Lossless),
-            Some("gif") => Ok(Self::Gif),
-            Some("apng") => Ok(Self::Apng),
-            _ => Err(VideoError::Unknown(path.display().to_string())),
-        }
+        let ending = path.extension().and_then(OsStr::to_str);
+        let video = ending.and_then(Self::of_ending);
+        video.ok_or_else(|| VideoError::Unknown(path.display().to_string()))
+    }
+
+    /// About how long so many threads make it of frames like this picture; `None` where another program does, or where
+    /// that is little beside tracing them.
+    pub fn forecast(self, sequence: &Sequence, image: &Image, threads: usize) -> Option<Duration> {
+        (self == Self::Gif).then(|| time_of_gif(sequence, image, threads))
     }
 
     /// Makes a video of the frames of a sequence, all of which must be there, and puts it in place

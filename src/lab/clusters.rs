@@ -30,15 +30,12 @@ pub fn clusters(study: &Study) -> Vec<Vec<usize>> {
 /// The places of the ways that nothing beats: those that nothing measured tells from another one are beaten by the
 /// first of them, and doubtful ones beat nobody.
 pub fn front_of(study: &Study) -> Vec<usize> {
-    front(&of_firsts(study, &study.certain_costs()))
+    front(&costs_of_dots(study))
 }
 
-/// Milliseconds and RMSE of the first way of each dot; NaN for the others.
+/// Milliseconds and RMSE of the first way of each dot; NaN for the others, and where they are doubtful.
 pub fn costs_of_dots(study: &Study) -> Vec<(f64, f64)> {
-    of_firsts(study, &study.costs())
-}
-
-fn of_firsts(study: &Study, all: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let all = study.certain_costs();
     let mut costs = vec![(f64::NAN, f64::NAN); all.len()];
     for cluster in clusters(study) {
         costs[cluster[0]] = all[cluster[0]];

@@ -9,9 +9,9 @@ use super::candidates::{OWN, POVRAY};
 use super::measure::ErrorMetrics;
 use super::study::{Measurement, Reference, Study};
 use crate::export::{fingerprint, save_image, write_text};
-use crate::files::{make_folder, read_text, remove_oldest};
+use crate::files::{make_folder, remove_oldest};
 use crate::image::{Film, Format, Image};
-use crate::scene::{Render, Scene};
+use crate::scene::{Render, Scene, read_text};
 
 /// So many studies are kept, each in two files; older ones are removed.
 const MOST: usize = 24;
@@ -103,7 +103,7 @@ fn try_keep(study: &Study, machine: &str, folder: &Path) -> Option<()> {
 /// What was measured of this scene before, on this machine; `None` if nothing was, or not in the same ways.
 pub fn kept(scene: &Arc<Scene>, side: u32, machine: &str, folder: &Path) -> Option<Study> {
     let (figures, pictures) = place(folder, scene)?;
-    let kept: Kept = ron::from_str(&read_text(&figures)?).ok()?;
+    let kept: Kept = ron::from_str(&read_text(&figures).ok()?).ok()?;
     let mut study = Study::of_side(Arc::clone(scene), side);
     if kept.dots.last().is_some_and(|dot| dot.name == POVRAY) {
         study = study.with_povray();

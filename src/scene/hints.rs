@@ -9,8 +9,8 @@ use super::frame::Frame;
 use super::shape::Shape;
 use super::whole::Scene;
 
-/// Most objects that lights are held against.
-const MOST_LIT: usize = 2_000;
+/// Most pairs of an object and a light that are held against each other.
+const MOST_LIT: usize = 20_000;
 
 /// How near to a surface a light counts as on it, as a share of the distance that matters.
 const ON: f64 = 1e-9;
@@ -70,7 +70,7 @@ pub fn hints(scene: &Scene) -> Vec<Hint> {
             add(words, About::Object(index), false);
         }
     }
-    let is_small = scene.objects.len() <= MOST_LIT;
+    let is_small = scene.objects.len() * scene.lights.len() <= MOST_LIT;
     for (index, light) in scene.lights.iter().enumerate().filter(|_| is_small) {
         let lit = || visible().filter(|_| light.visible && light.intensity > 0.0);
         for (_, object) in lit() {

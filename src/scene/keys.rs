@@ -116,13 +116,17 @@ impl Animation {
         animation
     }
 
+    /// When the first and the last of these keys are, in seconds from the start.
+    pub fn span_of(&self, places: &Keys) -> Option<(f64, f64)> {
+        let times = places.iter().filter_map(|place| self.at_place(*place));
+        let spans = times.map(|(time, _)| (time, time));
+        spans.reduce(|(first, last), (time, _)| (time.min(first), time.max(last)))
+    }
+
     /// With these keys, or copies of them, so many seconds later; each replaces what it lands on, and none goes before
     /// the start or behind [`MAX_SECONDS`]. Also their new places.
     pub fn with_moved(&self, places: &Keys, later: f64, are_copies: bool) -> (Self, Keys) {
-        let times = places.iter().filter_map(|place| self.at_place(*place));
-        let (first, last) = times.fold((MAX_SECONDS, 0.0), |(first, last), (time, _)| {
-            (time.min(first), time.max(last))
-        });
+        let (first, last) = self.span_of(places).unwrap_or((0.0, MAX_SECONDS));
         let way = (later.clamp(-first, MAX_SECONDS - last), are_copies);
         let (mut animation, mut new) = (self.clone(), Keys::new());
         let mut note = |track, indices: Vec<usize>| {

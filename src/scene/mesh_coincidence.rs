@@ -13,6 +13,9 @@ const MOST_FACES: usize = 200_000;
 const MOST_BOXES: usize = 4_000_000;
 const MOST_PAIRS: usize = 2_000_000;
 
+/// Most corners of faces that are held against endless planes: some ten milliseconds.
+const MOST_CORNERS: usize = 6_000_000;
+
 /// Share of its size by which a box is widened.
 const LITTLE: f64 = 1e-6;
 
@@ -57,10 +60,14 @@ pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coinciden
             extent,
         });
     };
+    let mut corners = MOST_CORNERS;
     for one in &ended {
+        let Shape::Mesh(mesh) = one.shape else {
+            continue;
+        };
         for plane in &endless {
-            if let (Shape::Mesh(mesh), Some(flat)) = (one.shape, plane.shape.plane_piece())
-                && let Some(extent) = on_plane(mesh, &flat, centre)
+            if let Some(flat) = plane.shape.plane_piece()
+                && let Some(extent) = on_plane(mesh, &flat, (centre, &mut corners))
             {
                 add(one, plane, extent);
             }
@@ -162,8 +169,12 @@ pub fn meet(one: (DVec3, DVec3), other: (DVec3, DVec3)) -> bool {
     one.0.cmple(other.1).all() && other.0.cmple(one.1).all()
 }
 
-/// How a mesh lies in an endless plane, if any face of it does.
-fn on_plane(mesh: &Mesh, plane: &PlanePiece, centre: DVec3) -> Option<Extent> {
+/// How a mesh lies in an endless plane, if any face of it does, and as far as so many corners may still be looked at.
+fn on_plane(
+    mesh: &Mesh,
+    plane: &PlanePiece,
+    (centre, left): (DVec3, &mut usize),
+) -> Option<Extent> {
     let triangles = mesh.source.triangles();
     let transform = mesh.transform();
     let height = |point: DVec3| {
@@ -186,6 +197,7 @@ fn on_plane(mesh: &Mesh, plane: &PlanePiece, centre: DVec3) -> Option<Extent> {
     if height(middle).abs() > across + little {
         return None;
     }
+    *left = left.checked_sub(3 * triangles.faces().len())?;
     let heights: Vec<f64> = triangles
         .points()
         .iter()

@@ -2,6 +2,11 @@
 
 use std::collections::{HashMap, HashSet};
 
+/// Most characters of a name.
+pub const MAX_NAME: usize = 200;
+/// Those that a number may take up.
+const NUMBER: usize = 20;
+
 /// Names that are taken.
 #[derive(Debug)]
 pub struct Names {
@@ -25,8 +30,9 @@ impl Names {
         if self.taken.insert(wanted.to_owned()) {
             return wanted.to_owned();
         }
-        let base = base(wanted);
-        let next = self.next.entry(base.to_owned()).or_insert(2);
+        // With its number, it is no longer than a name may be.
+        let base: String = base(wanted).chars().take(MAX_NAME - NUMBER).collect();
+        let next = self.next.entry(base.clone()).or_insert(2);
         loop {
             let name = format!("{base} {next}");
             *next += 1;
@@ -65,5 +71,8 @@ mod tests {
         ] {
             assert_eq!(names.take(wanted), taken, "{wanted}");
         }
+        let long = "é".repeat(MAX_NAME);
+        assert_eq!(names.take(&long), long);
+        assert!(names.take(&long).chars().count() <= MAX_NAME);
     }
 }

@@ -83,8 +83,8 @@ impl Recovery {
         let _ = fs::remove_file(&self.path);
     }
 
-    /// Takes one piece of work that an ended program left in the folder, and removes it from there:
-    /// that of the file `of`, or any.
+    /// Takes one piece of work that an ended program left in the folder, that of the file `of`, or any: it is kept here
+    /// from then on.
     pub fn take_leftover(&self, of: Option<&Path>) -> Option<Leftover> {
         let entries = fs::read_dir(self.path.parent()?).ok()?;
         let files = entries.filter_map(|entry| Some(entry.ok()?.path()));
@@ -94,7 +94,9 @@ impl Recovery {
             name.is_some_and(|name| name.starts_with(NAME) && name.ends_with(".ron"))
                 && *path != self.path
         };
-        files.filter(is_other).find_map(|path| take(&path, of))
+        files
+            .filter(is_other)
+            .find_map(|path| take(&path, of, &self.path))
     }
 }
 
@@ -104,7 +106,7 @@ impl Drop for Recovery {
     }
 }
 
-fn take(path: &Path, of: Option<&Path>) -> Option<Leftover> {
+fn take(path: &Path, of: Option<&Path>, to: &Path) -> Option<Leftover> {
     let lock_path = path.with_extension("lock");
     let lock = File::create(&lock_path).ok()?;
     lock.try_lock().ok()?;
@@ -120,7 +122,8 @@ fn take(path: &Path, of: Option<&Path>) -> Option<Leftover> {
     let stamp = Stamp::of_hash(base, Path::new(first));
     let mut document = Document::from_text(body).ok()?;
     document.scene.load_meshes(Path::new(first).parent());
-    let _ = fs::remove_file(path);
+    // Where it cannot be moved, it is found once more.
+    let _ = fs::rename(path, to);
     let _ = fs::remove_file(&lock_path);
     Some(Leftover {
         document,
@@ -156,6 +159,10 @@ mod tests {
         assert_eq!(leftover.path.as_deref(), Some(Path::new("/a/b.ron")));
         assert_eq!(leftover.document.to_text().expect("text"), DEMO_TEXT);
         assert!(second.take_leftover(None).is_none(), "it is taken once");
+        drop(second);
+        // Its program has ended as well, and had not kept it anew.
+        let third = Recovery::new(folder.path()).expect("a third place");
+        assert!(third.take_leftover(None).is_some());
     }
 
     #[test]

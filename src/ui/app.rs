@@ -209,11 +209,10 @@ impl App {
     pub(super) fn act_on(&mut self, ctx: &Context, outcome: Option<FileOutcome>) {
         match outcome {
             None => {}
-            Some(FileOutcome::Quit) => match self.exports.describe(&self.pictures) {
-                Some(_) => self.files.ask_to_leave(),
-                None => self.act_on(ctx, Some(FileOutcome::Leave)),
-            },
-            Some(FileOutcome::Leave) => {
+            Some(FileOutcome::AskToQuit) if self.exports.describe(&self.pictures).is_some() => {
+                self.files.ask_to_quit(&mut self.editor);
+            }
+            Some(FileOutcome::AskToQuit | FileOutcome::Quit) => {
                 self.closing = Some(self.editor.revision());
                 if self.pictures.worker().is_saving() {
                     self.editor
@@ -223,6 +222,7 @@ impl App {
             }
             Some(FileOutcome::ExportFolder(path)) => self.exports.choose_folder(&path),
             Some(FileOutcome::SaveImage(path)) => {
+                self.lab.leave();
                 self.editor.apply(Action::Show(Mode::HighRes));
                 self.pictures.request_still(&self.editor, Some(path));
             }
@@ -394,7 +394,8 @@ impl eframe::App for App {
             || self.finder.is_open
             || dragged(&ctx).is_some()
             || self.tools.is_dragging()
-            || self.timeline.is_dragging();
+            || self.timeline.is_dragging()
+            || self.overlay.is_dragging();
         let messages = std::mem::take(&mut self.editor.messages);
         self.toasts.push(&ctx, messages);
         self.toasts.show(&ctx, place.rect, self.exports.place());

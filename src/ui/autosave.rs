@@ -2,14 +2,13 @@
 
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::{Duration, Instant};
 
 use egui::Context;
 
 use crate::editor::Editor;
 use crate::scene::Recovery;
-use crate::worker::run_in_background;
+use crate::worker::Background;
 
 /// Time between two autosaves.
 const INTERVAL: Duration = Duration::from_secs(5);
@@ -23,8 +22,8 @@ pub struct Autosave {
     recovery: Option<Arc<Recovery>>,
     /// What is kept: revision, and since when.
     kept: Option<(u64, Instant)>,
-    /// The revision that is being written, and what will come of it.
-    writing: Option<(u64, Receiver<Result<(), String>>)>,
+    /// What is being written: the revision, or why it could not be.
+    writing: Background<Result<u64, String>>,
     tried: Option<Instant>,
 }
 
@@ -32,6 +31,7 @@ impl Autosave {
     /// Takes a place in `folder`, and hands what a crashed program left there to the editor.
     pub fn start(folder: Option<&Path>, editor: &mut Editor) -> Self {
         let recovery = folder.and_then(|folder| Recovery::new(folder).ok().map(Arc::new));
+        let mut kept = None;
         if let Some(leftover) = recovery
             .as_ref()
             .and_then(|recovery| recovery.take_leftover(editor.path()))
@@ -39,12 +39,14 @@ impl Autosave {
             let path = leftover.path.as_ref();
             let name = path.map_or("a new scene".to_owned(), |path| path.display().to_string());
             editor.recover(leftover);
+            kept = Some((editor.revision(), Instant::now()));
             editor.notify(format!(
                 "Glint ended with unsaved changes to {name}; here they are. Save them, or open the file again to discard them."
             ));
         }
         Self {
             recovery,
+            kept,
             ..Self::default()
         }
     }
@@ -61,7 +63,7 @@ impl Autosave {
             return;
         };
         self.take_written(editor);
-        if self.writing.is_some() {
+        if self.writing.is_awaited() {
             ctx.request_repaint_after(POLL);
             return;
         }
@@ -82,45 +84,32 @@ impl Autosave {
         self.tried = Some(Instant::now());
         let document = editor.document_to_keep();
         let (path, stamp) = (editor.path().map(Path::to_owned), editor.stamp().cloned());
-        let written = run_in_background("glint-autosave", move || {
-            let text = document.to_text().map_err(|error| error.to_string());
-            text.and_then(|text| {
-                let kept = recovery.keep(&text, path.as_deref(), stamp.as_ref());
-                kept.map_err(|error| error.to_string())
-            })
+        self.writing = Background::start("glint-autosave", move || {
+            let text = document.to_text().map_err(|error| error.to_string())?;
+            let kept = recovery.keep(&text, path.as_deref(), stamp.as_ref());
+            kept.map_err(|error| error.to_string())?;
+            Ok(revision)
         });
         ctx.request_repaint_after(POLL);
-        self.writing = Some((revision, written));
     }
 
     /// Takes up what has been written since.
     fn take_written(&mut self, editor: &mut Editor) {
-        let Some((revision, written)) = &self.writing else {
+        let Some(written) = self.writing.take() else {
             return;
         };
-        let error = match written.try_recv() {
-            Err(TryRecvError::Empty) => return,
-            Ok(Ok(())) => {
-                self.kept = Some((*revision, Instant::now()));
-                None
-            }
-            Ok(Err(error)) => Some(error),
-            Err(TryRecvError::Disconnected) => Some("no thread could be started".to_owned()),
-        };
-        self.writing = None;
-        if let Some(error) = error {
-            editor.report_error(format!(
+        match written.unwrap_or_else(|no_answer| Err(no_answer.to_string())) {
+            Ok(revision) => self.kept = Some((revision, Instant::now())),
+            Err(error) => editor.report_error(format!(
                 "Unsaved changes cannot be kept safe: {error}. Save your work and make room on the disk."
-            ));
+            )),
         }
     }
 
     /// The program ends as the user wished: there is nothing to recover.
     pub fn end(&mut self) {
-        if let Some((_, written)) = self.writing.take() {
-            // What is still being written must not be there afterwards.
-            let _ = written.recv();
-        }
+        // What is still being written must not be there afterwards.
+        std::mem::take(&mut self.writing).finish();
         if let Some(recovery) = &self.recovery {
             recovery.clear();
         }

@@ -168,8 +168,10 @@ pub enum Next {
     Choose,
     /// Open this file.
     Open(PathBuf),
-    /// Close the window.
+    /// Close the window; what is exported is asked about.
     Quit,
+    /// Close the window, whatever is exported.
+    QuitAnyway,
 }
 
 /// A key, what it does and in which words.

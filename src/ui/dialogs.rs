@@ -2,11 +2,10 @@
 //! where the desktop offers none.
 
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::Receiver;
 
 use egui::Context;
 
-use crate::worker::run_in_background;
+use crate::worker::Background;
 
 /// What a path is asked for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -94,7 +93,7 @@ impl Ask {
 /// Something that asks the user for a path.
 pub trait Dialogs {
     /// Asks, starting from `suggested`; the answer, or `None` for cancelled, arrives later.
-    fn ask(&mut self, ctx: &Context, ask: &Ask, suggested: PathBuf) -> Receiver<Option<PathBuf>>;
+    fn ask(&mut self, ctx: &Context, ask: &Ask, suggested: PathBuf) -> Background<Option<PathBuf>>;
 }
 
 /// The desktop's dialogs.
@@ -102,9 +101,9 @@ pub trait Dialogs {
 pub struct Native;
 
 impl Dialogs for Native {
-    fn ask(&mut self, ctx: &Context, ask: &Ask, suggested: PathBuf) -> Receiver<Option<PathBuf>> {
+    fn ask(&mut self, ctx: &Context, ask: &Ask, suggested: PathBuf) -> Background<Option<PathBuf>> {
         let (ask, wake) = (ask.clone(), ctx.clone());
-        run_in_background("glint-dialog", move || {
+        Background::start("glint-dialog", move || {
             let mut dialog = rfd::FileDialog::new().set_title(ask.title());
             dialog = match ask {
                 Ask::OpenScene | Ask::SaveScene => dialog.add_filter("Glint scene", ask.endings()),

@@ -12,7 +12,7 @@ use super::dialogs::{Ask, Dialogs};
 use super::folders::Folders;
 use super::interchange::{export_job, export_path, export_povray, import_path, imported};
 use super::outside::{OUTSIDE, Theirs, Watch};
-use super::prompts::{Answer, PathPrompt, ask_about_changes, ask_to_leave, ask_to_quit};
+use super::prompts::{Answer, PathPrompt, ask_about_changes, ask_to_quit};
 use super::reading::{Read, Reading};
 use super::wishes::{Answered, FileOutcome, PathRequest, Waiting};
 use crate::editor::{Action, Editor, Time};
@@ -45,8 +45,6 @@ enum Question {
     Saving(Next),
     Quit,
     Path(PathRequest, PathPrompt),
-    /// Exports are going on.
-    Exports,
     /// Another program has written the file; the wish is to save, if it is one.
     Outside(Box<Theirs>, Option<PathRequest>),
 }
@@ -81,7 +79,7 @@ impl Files {
         self.go_on(ctx, editor, next)
     }
 
-    /// Quits, after asking whether that is meant.
+    /// Quits, after asking whether that is meant, and what becomes of changes.
     pub fn ask_to_quit(&mut self, editor: &mut Editor) {
         editor.apply(Action::Time(Time::Stop));
         self.question = Some(if editor.is_dirty() {
@@ -89,11 +87,6 @@ impl Files {
         } else {
             Question::Quit
         });
-    }
-
-    /// Closes the window, after asking whether what is going on is to be given up.
-    pub fn ask_to_leave(&mut self) {
-        self.question = Some(Question::Exports);
     }
 
     /// Writes the document to its file, or asks for one.
@@ -117,17 +110,17 @@ impl Files {
     }
 
     /// Asks for a path.
-    pub fn ask(&mut self, ctx: &Context, editor: &Editor, ask: Ask) {
+    pub fn ask(&mut self, ctx: &Context, editor: &mut Editor, ask: Ask) {
         self.wish(ctx, editor, PathRequest::new(editor, ask, None));
     }
 
-    /// One dialog at a time: while one is open, further wishes are not heard.
-    fn wish(&mut self, ctx: &Context, editor: &Editor, wish: PathRequest) {
-        if self.waiting.is_none() {
-            let suggested = self.folders.suggest(editor, &wish.ask);
-            let answer = self.dialogs.ask(ctx, &wish.ask, suggested);
-            self.waiting = Some(Waiting::new(wish, answer));
+    fn wish(&mut self, ctx: &Context, editor: &mut Editor, wish: PathRequest) {
+        if self.waiting.is_some() {
+            return editor.notify("Another file dialog is open: answer that first".to_owned());
         }
+        let suggested = self.folders.suggest(editor, &wish.ask);
+        let answer = self.dialogs.ask(ctx, &wish.ask, suggested);
+        self.waiting = Some(Waiting::new(wish, answer));
     }
 
     /// Whether nothing waits for an answer, which would be about another document than was asked about.
@@ -156,7 +149,7 @@ impl Files {
         if ctx.input(|input| input.pointer.any_down()) {
             return None;
         }
-        if !self.reading.is_empty() {
+        if !self.reading.is_empty() && self.is_free() {
             ctx.request_repaint_after(AT_ONCE);
             self.take_read(ctx, editor, Duration::ZERO);
         } else if self.is_free() && self.watch.is_due(ctx, editor) {
@@ -164,7 +157,7 @@ impl Files {
             let changed = self.watch.changed_meshes(editor);
             self.reading.extend(Reading::again(editor, changed));
         }
-        let waiting = self.waiting.take()?;
+        let mut waiting = self.waiting.take()?;
         match waiting.answered() {
             Answered::NotYet => self.waiting = Some(waiting),
             Answered::Path(path) => {
@@ -193,8 +186,7 @@ impl Files {
         self.question = Some(Question::Path(wish, prompt));
     }
 
-    /// Draws what is being asked.
-    /// Exports that go on are told in words.
+    /// Draws what is being asked; exports that go on are told in words.
     pub fn show(
         &mut self,
         ui: &Ui,
@@ -203,20 +195,23 @@ impl Files {
     ) -> Option<FileOutcome> {
         let ctx = ui.ctx().clone();
         let answer = match self.question.as_mut()? {
-            Question::Unsaved(_) => ask_about_changes(&ctx, &editor.title()),
+            Question::Unsaved(next) => {
+                let going = exports.filter(|_| matches!(next, Next::Quit | Next::QuitAnyway));
+                if going.is_some() {
+                    *next = Next::QuitAnyway;
+                }
+                ask_about_changes(&ctx, &editor.title(), going)
+            }
             Question::Saving(_) if editor.is_making_keys() => Answer::Open,
             Question::Saving(_) => Answer::Yes,
-            Question::Quit => ask_to_quit(&ctx),
-            // Where they have ended meanwhile, what came of them is to be seen.
-            Question::Exports => exports.map_or(Answer::Cancel, |going| ask_to_leave(&ctx, going)),
+            Question::Quit => ask_to_quit(&ctx, exports),
             Question::Path(_, prompt) => prompt.show(&ctx),
             Question::Outside(theirs, _) => theirs.ask(&ctx, &editor.title()),
         };
         if answer == Answer::Open {
             return None;
         }
-        let question = self.question.take()?;
-        match (question, answer) {
+        match (self.question.take()?, answer) {
             (Question::Unsaved(next), Answer::Yes) if editor.is_making_keys() => {
                 self.question = Some(Question::Saving(next));
                 None
@@ -226,13 +221,15 @@ impl Files {
             }
             (Question::Unsaved(next), Answer::No) => self.go_on(&ctx, editor, next),
             (Question::Quit, Answer::Yes) => Some(FileOutcome::Quit),
-            (Question::Exports, Answer::No) => Some(FileOutcome::Leave),
-            (Question::Exports, Answer::Cancel) if exports.is_none() => {
-                editor.notify("The export has ended; Ctrl+Q quits".to_owned());
-                None
-            }
-            (Question::Path(wish, prompt), Answer::Yes) => {
-                self.answered(&ctx, editor, wish, prompt.path())
+            (Question::Path(wish, mut prompt), Answer::Yes) => {
+                let outcome = self.answered(&ctx, editor, wish.clone(), prompt.path());
+                if self.is_free()
+                    && let Some(why) = editor.take_error(wish.ask.title())
+                {
+                    prompt.refuse(why);
+                    self.question = Some(Question::Path(wish, prompt));
+                }
+                outcome
             }
             (Question::Outside(theirs, wish), answer) => {
                 self.settle_outside(&ctx, editor, (*theirs, answer), wish)
@@ -352,8 +349,7 @@ impl Files {
                 return then.and_then(|next| self.go_on(ctx, editor, next));
             }
             (_, Answer::Other) => {
-                let wish = PathRequest::new(editor, Ask::SaveScene, then);
-                self.wish(ctx, editor, wish);
+                self.wish(ctx, editor, PathRequest::new(editor, Ask::SaveScene, then));
             }
             _ => {}
         }
@@ -371,7 +367,8 @@ impl Files {
             }),
             Next::Choose => self.ask(ctx, editor, Ask::OpenScene),
             Next::Open(path) => self.open(ctx, editor, &path),
-            Next::Quit => return Some(FileOutcome::Quit),
+            Next::Quit => return Some(FileOutcome::AskToQuit),
+            Next::QuitAnyway => return Some(FileOutcome::Quit),
         }
         None
     }
@@ -396,7 +393,11 @@ impl Files {
     }
 
     fn take_read(&mut self, ctx: &Context, editor: &mut Editor, wait: Duration) {
-        let first = self.reading.front().filter(|_| self.is_free());
+        let first = if self.is_free() {
+            self.reading.front_mut()
+        } else {
+            None
+        };
         let Some(read) = first.and_then(|reading| reading.wait(wait)) else {
             return;
         };

@@ -1,7 +1,7 @@
 //! From held keys and mouse moves to steps of a flight. Speeds are per second, whatever the frame
 //! rate.
 
-use egui::{Context, Event, Key, PointerButton, Response, Ui};
+use egui::{Context, Event, Key, PointerButton, Response, Ui, Vec2};
 
 use super::flight_keys::{FLIGHT, FlightKey};
 use crate::editor::Motion;
@@ -104,7 +104,7 @@ impl Flying {
             motion = held.times(speed * seconds, TURN_SPEED * seconds);
         }
         if let Some(picture) = picture.filter(|p| p.dragged_by(PointerButton::Secondary)) {
-            let moved = picture.drag_motion();
+            let moved = drag_of(picture);
             motion.yaw += f64::from(moved.x) * MOUSE_TURN;
             motion.pitch -= f64::from(moved.y) * MOUSE_TURN;
         }
@@ -255,5 +255,15 @@ fn speed(scene: &Scene) -> f64 {
         extent * EXTENTS_PER_SECOND
     } else {
         PLAIN_SPEED
+    }
+}
+/// How far the pointer was dragged over the picture, in points. At the edge of the screen it stays, and the mouse goes on;
+/// a pen, or a mouse of another machine, has no motion but the pointer's.
+pub fn drag_of(picture: &Response) -> Vec2 {
+    let moved = picture.drag_delta();
+    if moved == Vec2::ZERO {
+        picture.drag_motion()
+    } else {
+        moved
     }
 }

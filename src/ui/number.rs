@@ -131,7 +131,7 @@ fn out_of_range(field: &Field, number: f64) -> Option<String> {
         format!("{name} must be above 0")
     } else {
         let [least, most] = [least, most].map(|end| rounded(end, "", ENDS));
-        format!("{name} goes from {least} to {most}")
+        format!("{name} goes from {least} to {most}{}", field.unit)
     })
 }
 

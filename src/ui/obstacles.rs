@@ -15,13 +15,14 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             let has = matches!(editor.selection(), Selection::Items(_) | Selection::Keys(_));
             (!has).then_some(nothing)
         }
-        Command::Duplicate
-        | Command::Copy
-        | Command::Cut
-        | Command::SelectSamePack
-        | Command::ToggleVisible => {
+        Command::Duplicate | Command::Copy | Command::Cut | Command::SelectSamePack => {
             let has = editor.selection().item().is_some();
             (!has).then_some(nothing)
+        }
+        Command::ToggleVisible => {
+            let mut items = editor.selection().items().iter();
+            let has = items.any(|item| item.is_visible(editor.shown()).is_some());
+            (!has).then_some("nothing that can be hidden is selected")
         }
         Command::Join => {
             let (scene, items) = (editor.scene(), editor.selection().items());
@@ -71,7 +72,15 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             [_] => None,
             _ => Some("several things are selected"),
         },
-        Command::Play if editor.scene().animation.is_still() => Some("nothing moves yet"),
+        Command::Play
+        | Command::FirstFrame
+        | Command::LastFrame
+        | Command::FrameBack
+        | Command::FrameOn
+            if editor.scene().animation.is_still() =>
+        {
+            Some("nothing moves yet")
+        }
         Command::SelectKeys | Command::PreviousKey | Command::NextKey => {
             let is_still = editor.scene().animation.is_still();
             is_still.then_some("there are no keys yet")

@@ -262,7 +262,6 @@ impl Pictures {
             }
             return;
         }
-        self.still_requested = None;
         let (size, pace) = match editor.mode {
             Mode::LowRes => (low_res(pixels), Pace::Whole),
             // A frame of the animation has its time, and no more.

@@ -30,13 +30,14 @@ pub enum Answer {
     Cancel,
 }
 
-/// Asks what becomes of unsaved changes: saved, lost, or neither.
-pub fn ask_about_changes(ctx: &Context, title: &str) -> Answer {
+/// Asks what becomes of unsaved changes: saved, lost, or neither; of exports that are given up as well.
+pub fn ask_about_changes(ctx: &Context, title: &str, going: Option<&str>) -> Answer {
     let look = ("unsaved changes", 380.0, Answer::Yes);
     question(ctx, look, |ui, answer| {
         ui.heading(format!("Save changes to {title}?"));
         ui.add_space(GRID);
         ui.label("Without saving, the changes since the last save are lost.");
+        tell_going(ui, going);
         ui.add_space(2.0 * GRID);
         ui.horizontal(|ui| {
             if primary(ui, "Save changes").clicked() {
@@ -52,11 +53,16 @@ pub fn ask_about_changes(ctx: &Context, title: &str) -> Answer {
     })
 }
 
-/// Asks whether quitting is meant.
-pub fn ask_to_quit(ctx: &Context) -> Answer {
+/// Asks whether quitting is meant, also where exports are going on.
+pub fn ask_to_quit(ctx: &Context, going: Option<&str>) -> Answer {
+    let (width, heading) = match going {
+        Some(_) => (380.0, "Quit while exporting?"),
+        None => (160.0, "Quit Glint?"),
+    };
     // Esc asks for it too, which is pressed in passing: what ends the session is not the next key.
-    question(ctx, ("quit", 160.0, Answer::Cancel), |ui, answer| {
-        ui.heading("Quit Glint?");
+    question(ctx, ("quit", width, Answer::Cancel), |ui, answer| {
+        ui.heading(heading);
+        tell_going(ui, going);
         ui.add_space(2.0 * GRID);
         ui.horizontal(|ui| {
             if primary(ui, "Stay").clicked() {
@@ -69,24 +75,13 @@ pub fn ask_to_quit(ctx: &Context) -> Answer {
     })
 }
 
-/// Asks whether exports that are going on are to be given up: Yes to stay, No to leave.
-pub fn ask_to_leave(ctx: &Context, going: &str) -> Answer {
-    question(ctx, ("exports", 380.0, Answer::Yes), |ui, answer| {
-        ui.heading("Quit while exporting?");
+fn tell_going(ui: &mut Ui, going: Option<&str>) {
+    if let Some(going) = going {
         ui.add_space(GRID);
         ui.label(format!(
-            "Going on: {going}. What is done stays; the window of exports resumes it next time."
+            "Not finished: {going}. What is done stays; the window of exports resumes it next time."
         ));
-        ui.add_space(2.0 * GRID);
-        ui.horizontal(|ui| {
-            if primary(ui, "Stay").clicked() {
-                *answer = Answer::Yes;
-            }
-            if ui.button("Quit now").clicked() {
-                *answer = Answer::No;
-            }
-        });
-    })
+    }
 }
 
 /// A path that is being typed.
@@ -99,6 +94,8 @@ pub struct PathPrompt {
     asked: Option<PathBuf>,
     /// Why a folder could not be made.
     problem: Option<String>,
+    /// Why what was asked for did not succeed with this path.
+    refused: Option<String>,
 }
 
 impl PathPrompt {
@@ -111,7 +108,13 @@ impl PathPrompt {
             is_new: true,
             asked: None,
             problem: None,
+            refused: None,
         }
+    }
+
+    /// It did not succeed with the path that was typed, for this reason.
+    pub fn refuse(&mut self, why: String) {
+        (self.refused, self.is_new) = (Some(why), true);
     }
 
     /// The path that was typed, with `~` for the home folder and the ending that files have.
@@ -139,7 +142,7 @@ impl PathPrompt {
                 .align(egui::Align2::LEFT_CENTER);
             let field = ui.add(field).labelled_by(label.id);
             if field.changed() {
-                self.problem = None;
+                (self.problem, self.refused) = (None, None);
             }
             if self.is_new {
                 field.request_focus();
@@ -202,12 +205,22 @@ impl PathPrompt {
         self.asked.as_ref() == Some(&self.path())
     }
 
-    /// The folder of a file to be written, if it is not there.
+    /// The folder of a file to be written, if it is not there, and can be made.
     fn missing_folder(&self) -> Option<PathBuf> {
         let path = self.path();
         let folder = path.parent().filter(|_| self.ask.writes())?;
         let is_there = folder.as_os_str().is_empty() || folder.is_dir();
-        (!is_there).then(|| folder.to_owned())
+        (!is_there && self.file_in_the_way().is_none()).then(|| folder.to_owned())
+    }
+
+    /// A file that stands where a folder would have to be.
+    fn file_in_the_way(&self) -> Option<PathBuf> {
+        let path = self.path();
+        let folders = path.ancestors().skip(1);
+        let there = folders
+            .filter(|_| self.ask.writes())
+            .find(|folder| folder.exists())?;
+        (!there.is_dir()).then(|| there.to_owned())
     }
 
     fn warning(&self) -> Option<Warning> {
@@ -220,6 +233,16 @@ impl PathPrompt {
         };
         if let Some(words) = self.problem.clone() {
             return impossible(words);
+        }
+        if let Some(words) = self.refused.clone() {
+            // It may succeed now.
+            return Some(Warning {
+                words,
+                is_possible: true,
+            });
+        }
+        if let Some(file) = self.file_in_the_way() {
+            return impossible(format!("{} is a file, not a folder", file.display()));
         }
         if let Some(folder) = self.missing_folder() {
             return impossible(format!("There is no folder {}", folder.display()));
@@ -314,7 +337,8 @@ pub fn question(
         ui.set_width(width);
         add(ui, &mut answer);
     });
-    if answer == Answer::Open && modal.should_close() {
+    // A click beside it, in passing, is no answer: what is typed there is lost otherwise, and goes elsewhere.
+    if answer == Answer::Open && modal.should_close() && !modal.backdrop_response.clicked() {
         answer = Answer::Cancel;
     }
     // The key that has led to the question does not answer it.

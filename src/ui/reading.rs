@@ -2,14 +2,13 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 use crate::editor::Editor;
 use crate::files::Stamp;
 use crate::mesh::{MeshError, MeshFile, read_mesh_file};
 use crate::scene::{Document, MeshSource, Scene, SceneError};
-use crate::worker::run_in_background;
+use crate::worker::Background;
 
 /// What was read.
 pub enum Read {
@@ -27,7 +26,7 @@ pub enum Read {
 pub struct Reading {
     /// Where it is.
     pub path: PathBuf,
-    answer: Receiver<Read>,
+    answer: Background<Read>,
     since: Instant,
     /// The document when its reading began.
     before: Arc<Scene>,
@@ -65,19 +64,16 @@ impl Reading {
         let own = path.to_owned();
         Self {
             path: path.to_owned(),
-            answer: run_in_background("glint-reader", move || read(own)),
+            answer: Background::start("glint-reader", move || read(own)),
             since: Instant::now(),
             before: Arc::clone(editor.scene()),
         }
     }
 
     /// What was read, if that is known within so long.
-    pub fn wait(&self, most: Duration) -> Option<Read> {
-        match self.answer.recv_timeout(most) {
-            Ok(read) => Some(read),
-            Err(RecvTimeoutError::Timeout) => None,
-            Err(RecvTimeoutError::Disconnected) => Some(Read::Nothing),
-        }
+    pub fn wait(&mut self, most: Duration) -> Option<Read> {
+        let read = self.answer.take_within(most)?;
+        Some(read.unwrap_or(Read::Nothing))
     }
 
     /// Whether the document was changed since.

@@ -60,14 +60,16 @@ impl App {
                 self.act_on(ctx, outcome);
             }
             // Nothing comes of it before it is answered.
-            Command::Ask(ask) => self.files.ask(ctx, &self.editor, ask),
+            Command::Ask(ask) => self.files.ask(ctx, &mut self.editor, ask),
             Command::Save => {
                 let outcome = self.files.save(ctx, &mut self.editor);
                 self.act_on(ctx, outcome);
             }
             Command::Escape => self.escape(ctx),
             Command::Export => self.exports.is_open = !self.exports.is_open,
-            Command::Live | Command::LowRes | Command::HighRes if self.lab.leave() => {
+            Command::Live | Command::LowRes | Command::HighRes | Command::ActualSize
+                if self.lab.leave() =>
+            {
                 self.run(ctx, command);
             }
             Command::Copy | Command::Cut if is_enabled(&command, &self.editor) => {
@@ -92,7 +94,14 @@ impl App {
             Command::Zoom(Zoom::Out) => zoom_out(ctx),
             Command::Zoom(Zoom::Usual) => ctx.set_zoom_factor(1.0),
             Command::PictureAlone => self.layout.is_alone = !self.layout.is_alone,
-            Command::Aspect(aspect) => self.layout.aspect = aspect,
+            Command::Aspect(aspect) => {
+                self.lab.leave();
+                self.layout.aspect = aspect;
+                if self.editor.mode == Mode::HighRes {
+                    // Its picture has all of the light.
+                    self.editor.apply(Action::Show(Mode::Live));
+                }
+            }
             Command::Part(part) => {
                 let is_shown = self.layout.part(part);
                 *is_shown = !*is_shown;
@@ -102,6 +111,7 @@ impl App {
             }
             Command::Find => self.finder.open(),
             Command::Shortcuts => self.shortcuts_open = !self.shortcuts_open,
+            other if !is_enabled(&other, &self.editor) => {}
             other => {
                 for action in actions(&other, &self.editor) {
                     self.editor.apply(action);
@@ -187,9 +197,6 @@ impl App {
     /// The commands that are actions of the editor.
     fn run_on_scene(&mut self, command: &Command) {
         let editor = &mut self.editor;
-        if !is_enabled(command, editor) {
-            return;
-        }
         let action = match command {
             Command::Undo => Action::Undo,
             Command::Redo => Action::Redo,
@@ -277,7 +284,11 @@ impl App {
                 _ => return,
             },
         };
+        let before = editor.revision();
         editor.apply(action);
+        if let Some(done) = told(command).filter(|_| editor.revision() != before) {
+            editor.notify_of_step(done.to_owned());
+        }
     }
 
     /// Leaves the innermost of what is going on; where nothing is, the second time asks to quit.
@@ -292,10 +303,12 @@ impl App {
             self.why.close();
         } else if self.exports.is_open {
             self.exports.is_open = false;
+        } else if self.lab.leave() {
+            // The live view is back.
         } else if self.layout.aspect != Aspect::All && self.editor.mode != Mode::HighRes {
             self.layout.aspect = Aspect::All;
-        } else if self.outliner.clear_filter() || self.lab.leave() {
-            // Everything is listed, or the live view is back.
+        } else if self.outliner.clear_filter() {
+            // Everything is listed.
         } else if self.editor.timeline().recorded().is_some() {
             self.editor.apply(Action::Time(Time::Stop));
         } else if self.editor.timeline().is_playing {
@@ -317,6 +330,18 @@ impl App {
                 .notify("Esc once more asks whether to quit".to_owned());
         }
     }
+}
+
+/// What a command has done whose key is a letter or a digit, and which changes all of the picture: a field may have been
+/// meant.
+fn told(command: &Command) -> Option<&'static str> {
+    Some(match command {
+        Command::Orthographic => "Orthographic projection; P is perspective",
+        Command::Perspective => "Perspective projection; O is orthographic",
+        Command::MarkersOn => "Lights have markers; U hides them",
+        Command::MarkersOff => "Lights have no markers; I shows them",
+        _ => return None,
+    })
 }
 
 /// This view as one more bookmark.

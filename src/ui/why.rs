@@ -1,7 +1,6 @@
 //! Why a place of the picture has its colour: the terms of the shading, as numbers.
 
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, TryRecvError};
 
 use egui::{Color32, Context, Grid, Painter, Pos2, RichText, Sense, Ui, Window, vec2};
 use glam::DVec3;
@@ -9,7 +8,7 @@ use glam::DVec3;
 use super::theme::{GRID, ROW, palette};
 use crate::lab::{Lit, Share, Sight, explain};
 use crate::scene::{Scene, format_number};
-use crate::worker::run_in_background;
+use crate::worker::Background;
 
 /// Radius of the ring around the place, in points.
 const RING: f32 = 7.0;
@@ -20,7 +19,7 @@ const DECIMALS: usize = 3;
 #[derive(Default)]
 pub struct Why {
     answer: Option<Sight>,
-    waiting: Option<Receiver<Sight>>,
+    waiting: Background<Sight>,
 }
 
 impl Why {
@@ -28,7 +27,7 @@ impl Why {
     pub fn ask(&mut self, scene: &Arc<Scene>, (origin, direction): (DVec3, DVec3)) {
         let scene = Arc::clone(scene);
         let look = move || explain(&scene, origin, direction);
-        self.waiting = Some(run_in_background("glint-why", look));
+        self.waiting = Background::start("glint-why", look);
     }
 
     /// Whether an answer is shown.
@@ -55,14 +54,11 @@ impl Why {
 
     /// Shows the answer, once it is there.
     pub fn show(&mut self, ctx: &Context) {
-        match self.waiting.as_ref().map(Receiver::try_recv) {
-            None => {}
-            Some(Err(TryRecvError::Empty)) => ctx.request_repaint(),
-            Some(Err(TryRecvError::Disconnected)) => self.waiting = None,
-            Some(Ok(answer)) => {
-                self.answer = Some(answer);
-                self.waiting = None;
-            }
+        if let Some(Ok(answer)) = self.waiting.take() {
+            self.answer = Some(answer);
+        }
+        if self.waiting.is_awaited() {
+            ctx.request_repaint();
         }
         let Some(answer) = &self.answer else { return };
         let mut is_open = true;

@@ -1,12 +1,12 @@
 //! What is wished of files, and what comes of it.
 
 use std::path::PathBuf;
-use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::{Duration, Instant};
 
 use super::commands::Next;
 use super::dialogs::Ask;
 use crate::editor::Editor;
+use crate::worker::Background;
 
 /// A dialog that comes back empty sooner than a hand can cancel it was never shown.
 const NO_DIALOG: Duration = Duration::from_millis(400);
@@ -14,10 +14,10 @@ const NO_DIALOG: Duration = Duration::from_millis(400);
 /// What became of the wishes, for the window to act on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileOutcome {
-    /// The window may close, as far as files go.
-    Quit,
+    /// The window may close, as far as the document goes.
+    AskToQuit,
     /// The window may close, whatever is going on.
-    Leave,
+    Quit,
     /// The still picture is to be traced and written here.
     SaveImage(PathBuf),
     /// Frames are to be written here.
@@ -53,7 +53,7 @@ impl PathRequest {
 pub struct Waiting {
     /// What it asks for.
     pub wish: PathRequest,
-    answer: Receiver<Option<PathBuf>>,
+    answer: Background<Option<PathBuf>>,
     since: Instant,
 }
 
@@ -71,7 +71,7 @@ pub enum Answered {
 
 impl Waiting {
     /// One that has just been opened.
-    pub fn new(wish: PathRequest, answer: Receiver<Option<PathBuf>>) -> Self {
+    pub fn new(wish: PathRequest, answer: Background<Option<PathBuf>>) -> Self {
         let since = Instant::now();
         Self {
             wish,
@@ -81,14 +81,12 @@ impl Waiting {
     }
 
     /// What it has answered.
-    pub fn answered(&self) -> Answered {
-        match self.answer.try_recv() {
-            Ok(Some(path)) => Answered::Path(path),
-            Err(TryRecvError::Empty) => Answered::NotYet,
-            Ok(None) | Err(TryRecvError::Disconnected) if self.since.elapsed() < NO_DIALOG => {
-                Answered::NoDialog
-            }
-            Ok(None) | Err(TryRecvError::Disconnected) => Answered::Cancelled,
+    pub fn answered(&mut self) -> Answered {
+        match self.answer.take() {
+            None => Answered::NotYet,
+            Some(Ok(Some(path))) => Answered::Path(path),
+            Some(_) if self.since.elapsed() < NO_DIALOG => Answered::NoDialog,
+            Some(_) => Answered::Cancelled,
         }
     }
 }

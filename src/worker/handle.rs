@@ -107,12 +107,9 @@ impl Worker {
     }
 
     /// Gives up every still picture, waiting or running. Those that were to be written are told of
-    /// as events.
+    /// as events; one that is traced already is written.
     pub fn cancel_still(&self) {
         let mut mailbox = self.shared.mailbox();
-        let running = mailbox.running.as_ref();
-        let running = running.filter(|running| !running.is_given_up);
-        let running = running.and_then(|running| running.save_to.clone());
         mailbox.give_up(JobKind::Still);
         let waiting = mailbox.give_up(JobKind::Save).into_iter();
         let waiting = waiting.filter_map(|job| match job {
@@ -120,10 +117,7 @@ impl Worker {
             _ => None,
         });
         drop(mailbox);
-        for path in waiting.chain(running) {
-            self.shared
-                .tell(Event::Failed(format!("{} was not written", path.display())));
-        }
+        waiting.for_each(|path| self.shared.tell_unwritten(&path));
     }
 
     /// Measures a study, in place of any other, whenever there is nothing more urgent.

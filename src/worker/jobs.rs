@@ -22,6 +22,8 @@ pub enum JobKind {
     Query,
     /// A small picture for the side.
     Thumbnail,
+    /// A question that is answered by measuring, for seconds.
+    Quality,
     /// A still picture to look at.
     Still,
     /// A still picture to be written.

@@ -28,6 +28,10 @@ impl Job {
     pub fn kind(&self) -> JobKind {
         match self {
             Self::Live(_) => JobKind::Live,
+            Self::Query(QueryJob {
+                question: Question::Quality(_),
+                ..
+            }) => JobKind::Quality,
             Self::Query(_) => JobKind::Query,
             Self::Thumbnail(_) => JobKind::Thumbnail,
             Self::Still(StillJob { save_to: None, .. }) => JobKind::Still,

@@ -28,4 +28,4 @@ pub use jobs::{
     Activity, Answer, Event, ExportState, Frame, JobKind, LiveJob, Pace, QueryJob, Question,
     StillJob, ThumbnailJob,
 };
-pub use task::{panic_text, run_in_background};
+pub use task::{Background, NoAnswer, panic_text};

@@ -126,7 +126,11 @@ fn finish(shared: &Shared, job: Job, outcome: Option<JobOutcome>) -> bool {
         }
         (Job::Lab(study), Some(outcome)) => finish_piece(shared, study, &outcome),
         (job, Some(JobOutcome::Unfinished)) => {
-            shared.mailbox().finish(Some(job));
+            let running = shared.mailbox().finish(Some(job));
+            let given_up = running.filter(|running| running.is_given_up);
+            if let Some(path) = given_up.and_then(|running| running.save_to) {
+                shared.tell_unwritten(&path);
+            }
             true
         }
         _ => {

@@ -1,5 +1,6 @@
 //! What the render thread and its handle share.
 
+use std::path::Path;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use super::jobs::{Answer, Event, ExportState, Frame};
@@ -63,6 +64,12 @@ impl Shared {
         *slot = Some(frame);
         drop(outbox);
         (self.wake)();
+    }
+
+    /// Tells the user that a picture was given up.
+    pub fn tell_unwritten(&self, path: &Path) {
+        let path = path.display();
+        self.tell(Event::Failed(format!("{path} was not written")));
     }
 
     /// Tells the user something.

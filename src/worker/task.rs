@@ -2,22 +2,79 @@
 
 use std::any::Any;
 use std::io;
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
-/// Runs `work` on a thread of that name; what it returns arrives in the channel, which is closed
-/// without it if the thread cannot start or panics.
-pub fn run_in_background<T: Send + 'static>(
-    name: &str,
-    work: impl FnOnce() -> T + Send + 'static,
-) -> Receiver<T> {
-    let (sender, receiver) = channel();
-    // Where no thread can be had, the sender is dropped with the closure: the receiver sees the
-    // closed channel, which is the failure that it has to handle anyway.
-    let _ = spawn(name, move || {
-        let _ = sender.send(work());
-    });
-    receiver
+/// Work on a thread of its own, or none: what it returns is asked for until it is there, and taken once.
+#[derive(Debug)]
+pub struct Background<T>(Option<Receiver<T>>);
+
+/// The thread of some work could not be started, or it ended in a panic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the thread for it could not be started, or stopped with a fault of its own")]
+pub struct NoAnswer;
+
+impl<T> Default for Background<T> {
+    fn default() -> Self {
+        Self(None)
+    }
+}
+
+impl<T> From<Receiver<T>> for Background<T> {
+    /// Work that is going on elsewhere, and sends its answer.
+    fn from(receiver: Receiver<T>) -> Self {
+        Self(Some(receiver))
+    }
+}
+
+impl<T: Send + 'static> Background<T> {
+    /// Begins work on a thread of that name.
+    pub fn start(name: &str, work: impl FnOnce() -> T + Send + 'static) -> Self {
+        let (sender, receiver) = channel();
+        // Where no thread can be had, the sender is dropped with the closure: the receiver sees the closed channel, as
+        // it does after a panic.
+        let _ = spawn(name, move || {
+            let _ = sender.send(work());
+        });
+        receiver.into()
+    }
+}
+
+impl<T> Background<T> {
+    /// Whether there is work whose answer was not taken yet.
+    pub fn is_awaited(&self) -> bool {
+        self.0.is_some()
+    }
+
+    /// What came of the work; `None` where it is not there yet, or taken, or no work was begun.
+    ///
+    /// # Errors
+    /// [`NoAnswer`] once, if it never comes.
+    pub fn take(&mut self) -> Option<Result<T, NoAnswer>> {
+        self.take_within(Duration::ZERO)
+    }
+
+    /// The same, after so long at most.
+    ///
+    /// # Errors
+    /// [`NoAnswer`] once, if it never comes.
+    pub fn take_within(&mut self, most: Duration) -> Option<Result<T, NoAnswer>> {
+        let answer = match self.0.as_ref()?.recv_timeout(most) {
+            Ok(answer) => Ok(answer),
+            Err(RecvTimeoutError::Disconnected) => Err(NoAnswer),
+            Err(RecvTimeoutError::Timeout) => return None,
+        };
+        self.0 = None;
+        Some(answer)
+    }
+
+    /// Waits until the work is over, if there is any; what came of it is not wanted.
+    pub fn finish(self) {
+        if let Some(receiver) = self.0 {
+            let _ = receiver.recv();
+        }
+    }
 }
 
 /// Starts a thread with a name, for debuggers and process lists.
@@ -35,4 +92,29 @@ pub fn panic_text(panic: &(dyn Any + Send)) -> &str {
     let text = panic.downcast_ref::<&str>().copied();
     text.or_else(|| panic.downcast_ref::<String>().map(String::as_str))
         .unwrap_or("no reason given")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_answer_is_taken_once_and_one_that_never_comes_is_told() {
+        let long = Duration::from_mins(1);
+        let mut none = Background::<i32>::default();
+        assert!(!none.is_awaited());
+        assert_eq!((none.take(), none.take_within(long)), (None, None));
+        let mut seven = Background::start("seven", || 7);
+        assert_eq!(seven.take_within(long), Some(Ok(7)));
+        assert_eq!((seven.take(), seven.is_awaited()), (None, false));
+        let (sender, receiver) = channel();
+        let mut later = Background::from(receiver);
+        assert_eq!((later.take(), later.is_awaited()), (None, true));
+        assert_eq!(later.take_within(Duration::ZERO), None);
+        sender.send(3).expect("it waits");
+        assert_eq!((later.take(), later.is_awaited()), (Some(Ok(3)), false));
+        let mut lost = Background::<i32>::start("lost", || panic!("on purpose"));
+        assert_eq!(lost.take_within(long), Some(Err(NoAnswer)));
+        assert_eq!((lost.take(), lost.is_awaited()), (None, false));
+    }
 }

@@ -28,6 +28,7 @@ const HOMES: &[(&[&str], &[&str])] = &[
             "worker",
             "export/exporting",
             "export/writers",
+            "export/frame_file",
             "export/ffmpeg",
             "export/program",
             "plan/grouping",

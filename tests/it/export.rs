@@ -361,10 +361,7 @@ fn what_no_video_can_show_is_told_and_what_it_shows_otherwise_as_well() {
             said.contains(told) && told.is_empty() != said.contains("leaves out"),
             "{said}"
         );
-        let file = std::io::BufReader::new(fs::File::open(&gif).expect("there"));
-        let decoder = image::codecs::gif::GifDecoder::new(file).expect("a GIF");
-        let frames = decoder.into_frames().collect_frames().expect("frames");
-        assert_eq!(frames.len(), shown, "{fps}");
+        assert_eq!(gif_frames(&gif).len(), shown, "{fps}");
     }
 }
 
@@ -436,7 +433,8 @@ fn what_cannot_be_written_is_told_and_leaves_no_parts() {
     // A file stands where the folder should be.
     let output = run(export(&obstacle, &[]).arg("--dry-run"));
     assert_eq!(output.status.code(), Some(1));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("cannot write"));
+    // Nothing was to be written.
+    assert!(String::from_utf8_lossy(&output.stderr).contains("cannot read"));
 }
 
 /// The system lets a program write so much and no more, as a full disk does: half a frame.
@@ -608,6 +606,15 @@ fn runners_are_told_how_far_it_is() {
     );
 }
 
+/// The frames of a GIF, in red, green, blue and opacity.
+fn gif_frames(path: &str) -> Vec<gif::Frame<'static>> {
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::RGBA);
+    let file = std::io::BufReader::new(fs::File::open(path).expect("there"));
+    let frames = options.read_info(file).expect("a GIF").into_iter();
+    frames.map(|frame| frame.expect("whole")).collect()
+}
+
 #[test]
 fn videos_without_ffmpeg_hold_every_frame() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -622,15 +629,29 @@ fn videos_without_ffmpeg_hold_every_frame() {
         &frames,
         &["--frames", "1-9:2", "--video", &apng, "--format", "png"],
     ));
-    let file = std::io::BufReader::new(fs::File::open(&gif).expect("there"));
-    let decoder = image::codecs::gif::GifDecoder::new(file).expect("a GIF");
-    let shown = decoder.into_frames().collect_frames().expect("frames");
+    let shown = gif_frames(&gif);
     assert_eq!(shown.len(), 5);
     assert_eq!(
-        shown[0].delay().numer_denom_ms(),
-        (140, 1),
+        shown[0].delay, 14,
         "2/14 s in hundredths: every second frame plays at the speed of all"
     );
+    // Each is nearest to its own frame, although several are packed beside each other.
+    let plain = |frame| image::open(frames.join(format!("rayTrace{frame}.png"))).expect("there");
+    let plain: Vec<Vec<u8>> = (1..=9)
+        .step_by(2)
+        .map(|frame| plain(frame).to_rgba8().into_raw())
+        .collect();
+    for (place, shown) in shown.iter().enumerate() {
+        let off = |plain: &&Vec<u8>| -> u32 {
+            let both = shown.buffer.iter().zip(plain.iter());
+            both.map(|(a, b)| u32::from(a.abs_diff(*b))).sum()
+        };
+        assert_eq!(
+            plain.iter().min_by_key(off),
+            plain.get(place),
+            "frame {place}"
+        );
+    }
     let file = std::io::BufReader::new(fs::File::open(&apng).expect("there"));
     let decoder = image::codecs::png::PngDecoder::new(file).expect("a PNG");
     let shown = decoder
@@ -923,7 +944,7 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
     harness.window.get_by_label("Start export").click();
     harness.window.step();
     // A second click asks for nothing more.
-    see(&mut harness, "These frames are being made");
+    see(&mut harness, "Files of these names are being made");
     harness.window.get_by_label("Start export").click();
     finish(&mut harness);
     let rows = harness
@@ -1015,6 +1036,16 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
         assert!(start.elapsed() < Duration::from_mins(1), "nothing is made");
         sleep(Duration::from_millis(2));
     }
+    // With changes, one question is about both.
+    harness.window.key_press(Key::O);
+    harness.window.step();
+    harness.window.key_press_modifiers(CTRL, Key::Q);
+    see(&mut harness, "the window of exports resumes it next time");
+    harness.window.get_by_label("Don't save").click();
+    for _ in 0..3 {
+        harness.window.step();
+    }
+    assert!(!harness.window.state().is_asking());
     drop(harness);
 
     // The next window is on another scene, and makes the frames of this one.

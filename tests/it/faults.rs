@@ -168,6 +168,11 @@ fn whoever_is_killed_while_work_is_kept_leaves_all_of_it() {
             found += 1;
         }
         assert!(
+            names(folder.path()).iter().any(is_kept),
+            "it is kept where it was taken to"
+        );
+        next.clear();
+        assert!(
             !names(folder.path()).iter().any(is_kept),
             "it is taken once"
         );

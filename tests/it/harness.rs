@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
@@ -15,12 +15,13 @@ use glint::image::Image;
 use glint::scene::{Document, Scene, Shape, Sphere};
 use glint::trace::{RenderControl, survey};
 use glint::ui::{App, Ask, Dialogs, Setup};
+use glint::worker::Background;
 
 /// Dialogs that answer from a list; with none left, they do as a desktop without dialogs does.
 pub struct Scripted(VecDeque<(Ask, Option<PathBuf>)>);
 
 impl Dialogs for Scripted {
-    fn ask(&mut self, _: &Context, ask: &Ask, _: PathBuf) -> Receiver<Option<PathBuf>> {
+    fn ask(&mut self, _: &Context, ask: &Ask, _: PathBuf) -> Background<Option<PathBuf>> {
         let (sender, receiver) = channel();
         let answer = self.0.pop_front().map(|(expected, answer)| {
             assert_eq!(expected, *ask);
@@ -29,7 +30,7 @@ impl Dialogs for Scripted {
         sender
             .send(answer.flatten())
             .expect("the receiver is there");
-        receiver
+        receiver.into()
     }
 }
 

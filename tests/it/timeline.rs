@@ -315,6 +315,21 @@ fn keys_are_dragged_copied_and_picked_with_the_mouse() {
         [0.0, 1.0, 2.0, 4.0],
         "one step for each drag"
     );
+    // The time of the earliest of several is typed; the others follow.
+    harness.click("Key 2");
+    harness
+        .window
+        .get_by_label("Key 3")
+        .click_modifiers(Modifiers::SHIFT);
+    harness.settle();
+    harness.window.get_by_label("2 keys in 1 s");
+    harness.type_into("first at", "1.25");
+    assert_eq!(times(&harness), [0.0, 1.25, 2.25, 4.0]);
+    assert_eq!(harness.editor().undo_label(), Some("Key: time"));
+    harness.type_into("first at", "3");
+    assert_eq!(times(&harness), [0.0, 3.0, 4.0]);
+    let words = "This has replaced 1 key; undo brings it back";
+    harness.window.get_by_label_contains(words);
 }
 
 #[test]
@@ -382,6 +397,33 @@ fn playing_is_real_time_whatever_the_frames() {
             "{repeat:?} {seconds}: {playhead}"
         );
         assert_eq!(editor.timeline().is_playing, repeat != Repeat::Once);
+    }
+}
+
+#[test]
+fn what_is_over_at_once_is_not_played_for_ever() {
+    let mut editor = Editor::demo();
+    let mut scene = Scene::demo();
+    let key = SceneKey::new(0.0, scene.camera.clone());
+    scene.animation_mut().keys = vec![key];
+    editor.apply(Action::Edit(Edit::Animation(scene.animation, "key")));
+    editor.apply(Action::Time(Time::Play(true)));
+    editor.apply(Action::Time(Time::Tick(0.01)));
+    assert!(!editor.timeline().is_playing);
+}
+
+#[test]
+fn a_key_that_is_set_or_moved_again_is_selected() {
+    let mut harness = animation(&[(0.0, 0.0), (1.0, 30.0), (2.0, 10.0)]);
+    harness.click("Key 1");
+    harness.type_into("time", "1.5");
+    let moved = harness.editor().selection().clone();
+    assert_eq!(times(&harness), [1.0, 1.5, 2.0]);
+    for _ in 0..2 {
+        harness.press(Modifiers::COMMAND, Key::Z);
+        harness.click("Light 1");
+        harness.press(Modifiers::COMMAND, Key::Y);
+        assert_eq!(*harness.editor().selection(), moved);
     }
 }
 
@@ -576,6 +618,22 @@ fn a_key_is_dragged_in_the_view() {
     );
     harness.press(Modifiers::COMMAND, Key::Z);
     assert_eq!(harness.scene().animation.keys[1].value, before, "one step");
+    // Esc takes back what is still held, and leaves it selected.
+    let selected = harness.editor().selection().clone();
+    harness.window.drag_at(at);
+    harness.window.step();
+    for part in 1..=3 {
+        harness.window.hover_at(at + vec2(0.0, -20.0 * part as f32));
+        harness.window.step();
+    }
+    assert_ne!(harness.scene().animation.keys[1].value, before);
+    harness.window.key_press(Key::Escape);
+    harness.window.step();
+    harness.window.drop_at(at);
+    harness.settle();
+    assert_eq!(harness.scene().animation.keys[1].value, before);
+    assert_eq!(*harness.editor().selection(), selected);
+    assert_eq!(harness.editor().redo_label(), Some("Move key in the view"));
 }
 
 #[test]

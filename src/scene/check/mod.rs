@@ -17,6 +17,7 @@ use camera::check_camera;
 use place::{At, Check, no_such};
 
 use super::material::MAX_EXPONENT;
+use super::names::MAX_NAME;
 use super::object::{LightObj, Object};
 use super::render::{MAX_REFLECTIONS, MAX_SIDE, Render};
 use super::shape::{Field, FieldValue, Shape};
@@ -24,8 +25,6 @@ use super::whole::{Scene, VERSION};
 
 /// Most pixels in a picture: 1 GiB of 8-bit RGBA.
 const MAX_PIXELS: u64 = 1 << 28;
-/// Longest name, in characters.
-const MAX_NAME: usize = 200;
 
 /// Refuses a scene that cannot be traced as it stands, naming the first problem in file order.
 ///
@@ -119,6 +118,9 @@ fn check_objects(at: &At, scene: &Scene, valid: Option<&Scene>) -> Check {
 
 fn check_object(at: &At, scene: &Scene, object: &Object) -> Check {
     check_name(&at.field("name"), &object.name)?;
+    if !object.group.is_empty() {
+        check_name(&at.field("group"), &object.group)?;
+    }
     check_pack_exists(&at.field("color_pack"), scene, &object.color_pack)?;
     check_shape(&at.field("shape"), &object.shape)
 }

@@ -51,11 +51,6 @@ impl Entry {
         self.order.is_none()
     }
 
-    /// What was ordered, until it is over.
-    pub fn order(&self) -> Option<&Order> {
-        self.order.as_ref()
-    }
-
     /// What it does after its frames, in words; `None` if nothing more will happen.
     pub fn describe_rest(&self) -> Option<String> {
         self.order.as_ref()?;
@@ -69,9 +64,9 @@ impl Entry {
         Some(format!("video {done}/{}", video.frames()))
     }
 
-    /// Whether it has ended, and these frames take the place of its own: they may not be there any more.
-    pub fn is_replaced_by(&self, sequence: &Sequence) -> bool {
-        self.is_over() && self.files == files_of(sequence)
+    /// Whether its frames are files of the same names.
+    pub fn writes_files_of(&self, sequence: &Sequence) -> bool {
+        self.files == files_of(sequence)
     }
 
     /// Goes on to what is next, for what its frames are now; `None` if they were given up. The order, if it

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use egui::{Align2, ComboBox, TextEdit, Ui};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::editor::Editor;
 use crate::export::{
@@ -18,30 +18,12 @@ use crate::ui::hint::Hint as _;
 use crate::ui::icons;
 use crate::ui::number::{Field, lone};
 use crate::ui::requests::UiRequests;
-use crate::ui::status::in_words;
 use crate::ui::theme::ROW;
-use crate::words::counted;
-
-/// Frames that are to be made, and how many of them replace files.
-pub type Found = Result<(usize, usize), String>;
 
 /// Width of the window's fields, in points.
 pub const FIELDS: f32 = 360.0;
-/// Videos that can be made beside the frames; the first is none.
-const VIDEOS: [&str; 6] = ["none", "mp4", "mov", "mkv", "gif", "apng"];
-/// Bytes of a PNG for each of a PPM, about, where no picture says it.
-const PNG_SHARE: f64 = 0.35;
-/// Bytes of an EXR for each of its numbers as they are in memory, about.
-const EXR_SHARE: f64 = 0.6;
-
-/// What pixels of the picture on screen have cost.
-#[derive(Clone, Copy, Debug)]
-pub struct PerPixel {
-    /// Milliseconds of tracing, if that is known.
-    pub millis: Option<f64>,
-    /// Bytes of a PNG for each of a PPM.
-    pub png_share: Option<f64>,
-}
+/// No video, as it is offered and kept.
+const NO_VIDEO: &str = "none";
 
 /// What a scene asks for itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -70,9 +52,12 @@ pub struct Settings {
     pub folder: String,
     frames: String,
     name: String,
-    format: Format,
-    width: u32,
-    height: u32,
+    /// What the frames are.
+    pub format: Format,
+    /// How wide they are, in pixels.
+    pub width: u32,
+    /// How high.
+    pub height: u32,
     /// Whether width and height are set each by itself, in another shape than the scene's.
     #[serde(default)]
     is_free: bool,
@@ -81,7 +66,27 @@ pub struct Settings {
     own: Own,
     #[serde(with = "crate::scene::method")]
     antialias: Sampling,
-    video: String,
+    #[serde(serialize_with = "write_video", deserialize_with = "read_video")]
+    /// The video that follows the frames.
+    pub video: Option<Video>,
+}
+
+/// A video by its ending.
+fn video_word(video: Option<Video>) -> &'static str {
+    video.map_or(NO_VIDEO, Video::ending)
+}
+
+#[expect(
+    clippy::ref_option,
+    clippy::trivially_copy_pass_by_ref,
+    reason = "so it is called"
+)]
+fn write_video<S: Serializer>(video: &Option<Video>, to: S) -> Result<S::Ok, S::Error> {
+    video_word(*video).serialize(to)
+}
+
+fn read_video<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Video>, D::Error> {
+    String::deserialize(from).map(|word| Video::of_ending(&word))
 }
 
 impl Settings {
@@ -109,7 +114,7 @@ impl Settings {
             is_free: false,
             fps: scene.animation.frames_per_second,
             antialias: scene.render.antialias,
-            video: VIDEOS[0].to_owned(),
+            video: None,
         }
     }
 
@@ -175,10 +180,8 @@ impl Settings {
             height,
             ..
         } = self;
-        let video = match self.video.as_str() {
-            none if none == VIDEOS[0] => String::new(),
-            video => format!(" + {video}"),
-        };
+        let video = self.video.map(|video| format!(" + {}", video.ending()));
+        let video = video.unwrap_or_default();
         let ending = self.format.ending();
         format!("{title} · {frames} · {width}×{height} · {ending}{video}")
     }
@@ -203,13 +206,14 @@ impl Settings {
         Ok(sequence)
     }
 
-    /// The video that is to follow the frames.
+    /// Where the video is to be that follows the frames.
     pub fn video(&self, sequence: &Sequence) -> Option<(PathBuf, Video)> {
         let folder = std::path::absolute(&sequence.folder).ok();
         let name = folder.as_deref().and_then(Path::file_name);
         let name = name.map_or("frames".into(), |name| name.to_string_lossy());
-        let path = sequence.folder.join(format!("{name}.{}", self.video));
-        Video::of_path(&path).ok().map(|video| (path, video))
+        let video = self.video?;
+        let path = sequence.folder.join(format!("{name}.{}", video.ending()));
+        Some((path, video))
     }
 }
 
@@ -285,16 +289,7 @@ pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
 /// The rows of the window.
 pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
     ui.weak("folder");
-    ui.horizontal(|ui| {
-        let whole = std::path::absolute(settings.folder.trim());
-        let field = TextEdit::singleline(&mut settings.folder).align(Align2::LEFT_CENTER);
-        ui.add_sized([FIELDS - 90.0, ROW], field)
-            .hint(whole.map_or(String::new(), |path| path.display().to_string()))
-            .accessible_name("folder");
-        if ui.button("Browse…").clicked() {
-            out.commands.push(Command::Ask(Ask::ExportFolder));
-        }
-    });
+    ui.horizontal(|ui| folder(ui, settings, out));
     ui.end_row();
     ui.weak("frames");
     let frames = TextEdit::singleline(&mut settings.frames).align(Align2::LEFT_CENTER);
@@ -303,139 +298,102 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
         .accessible_name("frames");
     ui.end_row();
     ui.weak("names");
-    ui.horizontal(|ui| {
-        let name = TextEdit::singleline(&mut settings.name).align(Align2::LEFT_CENTER);
-        ui.add_sized([140.0, ROW], name)
-            .hint("%d is the number, %05d the number with five digits")
-            .accessible_name("names");
-        if let (Ok(pattern), Ok(frames)) = (
-            Pattern::parse(&settings.name),
-            Frames::parse(&settings.frames),
-        ) {
-            let ending = settings.format.ending();
-            let file = |frame: u64| format!("{}.{ending}", pattern.name(frame));
-            let first = frames.iter().next().map_or(String::new(), file);
-            ui.weak(match frames.last() {
-                Some(last) if frames.count() > 1 => format!("{first} … {}", file(last)),
-                _ => first,
-            });
-        }
-    });
+    ui.horizontal(|ui| names(ui, settings));
     ui.end_row();
     ui.weak("picture");
-    ui.horizontal(|ui| {
-        let mut size = (settings.width, settings.height);
-        for (name, side) in [
-            ("export width", &mut size.0),
-            ("export height", &mut size.1),
-        ] {
-            let field = Field {
-                name,
-                hint: "In pixels",
-                unit: " px",
-                default: f64::from(*side),
-                range: 1.0..=f64::from(MAX_SIDE),
-                speed: None,
-            };
-            let mut pixels = f64::from(*side);
-            lone(ui, &field, &mut pixels);
-            *side = pixels.round() as u32;
-        }
-        settings.set_size(size);
-        let mut keeps_shape = !settings.is_free;
-        ui.toggle_value(&mut keeps_shape, icons::text(icons::LINK))
-            .accessible_name("keep the shape of the picture")
-            .hint("Width and height follow each other, in the shape of the scene's picture");
-        settings.is_free = !keeps_shape;
-        ComboBox::from_id_salt("export antialias")
-            .selected_text(settings.antialias.id())
-            .show_ui(ui, |ui| {
-                for method in Sampling::ALL {
-                    ui.selectable_value(&mut settings.antialias, method.value, method.id);
-                }
-            });
-        for format in Format::ALL {
-            ui.selectable_value(&mut settings.format, format, format.ending());
-        }
-    });
+    ui.horizontal(|ui| picture(ui, settings));
     ui.end_row();
     ui.weak("time");
-    ui.horizontal(|ui| {
-        let mut fps = settings.fps;
-        let field = Field {
-            name: "export frames per second",
-            hint: "Of the frames and the video; the flight stays as it is",
-            unit: " fps",
-            default: fps,
-            range: FRAME_RATES,
-            speed: Some(0.1),
-        };
-        lone(ui, &field, &mut fps);
-        settings.set_fps(fps);
-        ui.weak("video");
-        for video in VIDEOS {
-            let hint = match video {
-                "none" => "Only frames",
-                "gif" | "apng" => "Made by Glint itself",
-                _ => "Made by ffmpeg, if that is installed",
-            };
-            ui.selectable_value(&mut settings.video, video.to_owned(), video)
-                .hint(hint);
-        }
-    });
+    ui.horizontal(|ui| time_and_video(ui, settings));
     ui.end_row();
 }
 
-/// What will happen: frames, time, room on the disk.
-pub fn forecast(
-    settings: &Settings,
-    sequence: &Sequence,
-    found: Option<&Found>,
-    per_pixel: PerPixel,
-) -> String {
-    let pixels = f64::from(settings.width) * f64::from(settings.height);
-    let total = sequence.frames.count();
-    let video = settings.video(sequence);
-    let video = video.map_or(String::new(), |(path, video)| {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let remark = video.check(sequence).ok().flatten();
-        let remark = remark.map_or(String::new(), |remark| format!("; {remark}"));
-        format!(", then {name}{remark}")
-    });
-    let (missing, what) = match found {
-        None => (
-            total,
-            format!("{}, looking into the folder…", counted(total, "frame")),
-        ),
-        Some(Err(error)) => (total, error.clone()),
-        Some(Ok((0, _))) => return format!("all {} are there{video}", counted(total, "frame")),
-        Some(Ok((missing, replaced))) => {
-            let there = total - missing;
-            let stay = match there {
-                0 => String::new(),
-                1 => ", 1 is there and stays".to_owned(),
-                there => format!(", {there} are there and stay"),
-            };
-            let replace = match replaced {
-                0 => String::new(),
-                1 => ", 1 replaces an older file".to_owned(),
-                replaced => format!(", {replaced} replace older files"),
-            };
-            let frames = counted(*missing, "frame");
-            (*missing, format!("{frames} to make{stay}{replace}"))
-        }
+fn folder(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
+    let whole = std::path::absolute(settings.folder.trim());
+    let field = TextEdit::singleline(&mut settings.folder).align(Align2::LEFT_CENTER);
+    ui.add_sized([FIELDS - 90.0, ROW], field)
+        .hint(whole.map_or(String::new(), |path| path.display().to_string()))
+        .accessible_name("folder");
+    if ui.button("Browse…").clicked() {
+        out.commands.push(Command::Ask(Ask::ExportFolder));
+    }
+}
+
+fn names(ui: &mut Ui, settings: &mut Settings) {
+    let name = TextEdit::singleline(&mut settings.name).align(Align2::LEFT_CENTER);
+    ui.add_sized([140.0, ROW], name)
+        .hint("%d is the number, %05d the number with five digits")
+        .accessible_name("names");
+    if let (Ok(pattern), Ok(frames)) = (
+        Pattern::parse(&settings.name),
+        Frames::parse(&settings.frames),
+    ) {
+        let ending = settings.format.ending();
+        let file = |frame: u64| format!("{}.{ending}", pattern.name(frame));
+        let first = frames.iter().next().map_or(String::new(), file);
+        ui.weak(match frames.last() {
+            Some(last) if frames.count() > 1 => format!("{first} … {}", file(last)),
+            _ => first,
+        });
+    }
+}
+
+fn picture(ui: &mut Ui, settings: &mut Settings) {
+    let mut size = (settings.width, settings.height);
+    for (name, side) in [
+        ("export width", &mut size.0),
+        ("export height", &mut size.1),
+    ] {
+        let field = Field {
+            name,
+            hint: "In pixels",
+            unit: " px",
+            default: f64::from(*side),
+            range: 1.0..=f64::from(MAX_SIDE),
+            speed: None,
+        };
+        let mut pixels = f64::from(*side);
+        lone(ui, &field, &mut pixels);
+        *side = pixels.round() as u32;
+    }
+    settings.set_size(size);
+    let mut keeps_shape = !settings.is_free;
+    ui.toggle_value(&mut keeps_shape, icons::text(icons::LINK))
+        .accessible_name("keep the shape of the picture")
+        .hint("Width and height follow each other, in the shape of the scene's picture");
+    settings.is_free = !keeps_shape;
+    ComboBox::from_id_salt("export antialias")
+        .selected_text(settings.antialias.id())
+        .show_ui(ui, |ui| {
+            for method in Sampling::ALL {
+                ui.selectable_value(&mut settings.antialias, method.value, method.id);
+            }
+        });
+    for format in Format::ALL {
+        ui.selectable_value(&mut settings.format, format, format.ending());
+    }
+}
+
+fn time_and_video(ui: &mut Ui, settings: &mut Settings) {
+    let mut fps = settings.fps;
+    let field = Field {
+        name: "export frames per second",
+        hint: "Of the frames and the video; the flight stays as it is",
+        unit: " fps",
+        default: fps,
+        range: FRAME_RATES,
+        speed: Some(0.1),
     };
-    let bytes = match settings.format {
-        Format::Ppm => 3.0,
-        Format::Png => 3.0 * per_pixel.png_share.unwrap_or(PNG_SHARE),
-        Format::Exr => 12.0 * EXR_SHARE,
-    };
-    let megabytes = pixels * bytes * missing as f64 / 1e6;
-    let seconds = per_pixel
-        .millis
-        .map(|millis| millis * pixels * missing as f64 / 1e3);
-    let time = seconds.map_or(String::new(), |seconds| {
-        format!(", about {}", in_words(seconds))
-    });
-    format!("{what}{time}, {megabytes:.0} MB{video}")
+    lone(ui, &field, &mut fps);
+    settings.set_fps(fps);
+    ui.weak("video");
+    for video in std::iter::once(None).chain(Video::ALL.map(Some)) {
+        let hint = match video {
+            None => "Only frames",
+            Some(video) if video.needs_ffmpeg() => "Made by ffmpeg, if that is installed",
+            Some(_) => "Made by Glint itself",
+        };
+        ui.selectable_value(&mut settings.video, video, video_word(video))
+            .hint(hint);
+    }
 }

@@ -54,3 +54,26 @@ impl KeptSettings {
         Self(named.skip(skipped).cloned().collect())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::Video;
+
+    #[test]
+    fn settings_are_the_same_in_the_next_run() {
+        let editor = Editor::demo();
+        for (video, word) in [(None, "none"), (Some(Video::H264), "mp4")] {
+            let mut settings = Settings::of(&editor);
+            settings.video = video;
+            let mut kept = KeptSettings::default();
+            let owner = Owner::File("/a/demo.ron".into());
+            kept.keep(owner.clone(), settings.clone());
+            // As the window keeps what it remembers.
+            let text = ron::to_string(&kept).expect("a text");
+            assert!(text.contains(&format!("video:\"{word}\"")), "{text}");
+            let kept: KeptSettings = ron::from_str(&text).expect("the same");
+            assert_eq!(kept.of(&owner), Some(&settings.at_home()));
+        }
+    }
+}

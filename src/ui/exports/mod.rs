@@ -8,20 +8,20 @@ mod order;
 
 mod video_maker;
 
+mod forecast;
+
 mod progress;
 
 mod entry;
 
-use std::io::Cursor;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::Duration;
 
 use egui::{Button, Context, Grid, Rect, RichText, Ui, Window};
 
 use self::entry::Entry;
-use self::fields::{Found, PerPixel, Settings, fields, forecast, presets};
+use self::fields::{Settings, fields, presets};
+use self::forecast::Forecast;
 pub use self::kept::KeptSettings;
 use self::kept::Owner;
 use self::order::{EXPORT, Order};
@@ -30,11 +30,9 @@ use super::pictures::Pictures;
 use super::requests::UiRequests;
 use super::status::in_words;
 use super::theme::{GRID, palette};
-use crate::editor::{Editor, Mode};
+use crate::editor::Editor;
 use crate::export::Sequence;
-use crate::image::{Format, Image};
 use crate::ui::hint::Hint as _;
-use crate::worker::run_in_background;
 
 /// Settings on the screen.
 struct Shown {
@@ -64,15 +62,8 @@ pub struct Exports {
     entries: Vec<Entry>,
     /// What ended without being finished.
     interrupted: Vec<Order>,
-    /// What was found in the folder, for these settings, this state of the scene, and so many exports
-    /// that have ended.
-    found: Option<(Settings, (u64, usize), Option<Found>)>,
-    looking: Option<Receiver<Found>>,
-    /// How many bytes a PNG of the picture on screen has for each of a PPM.
-    png_share: Option<f64>,
-    /// Which picture that was, or is going to be: its revision and width.
-    packed: Option<(u64, usize)>,
-    packing: Option<Receiver<f64>>,
+    /// What is known of what is asked for.
+    forecast: Forecast,
     /// Exports that have ended, of all.
     ended: usize,
 }
@@ -161,12 +152,11 @@ impl Exports {
         self.place
     }
 
-    /// Whether there is something that the window should be drawn again for.
+    /// Whether something of them is not over yet.
     pub fn is_busy(&self, pictures: &Pictures) -> bool {
         pictures.worker().is_exporting()
             || self.entries.iter().any(|entry| !entry.is_over())
-            || self.looking.is_some()
-            || self.packing.is_some()
+            || self.forecast.is_busy()
     }
 
     /// Draws the window, if it is open.
@@ -177,7 +167,13 @@ impl Exports {
         pictures: &Pictures,
         out: &mut UiRequests,
     ) {
-        if self.is_busy(pictures) {
+        let states = pictures.worker().exports();
+        let is_paused = |entry: &Entry| {
+            let mut states = states.iter();
+            states.any(|state| state.id == entry.id && state.is_paused && state.ended.is_none())
+        };
+        let mut going = self.entries.iter().filter(|entry| !entry.is_over());
+        if self.forecast.is_busy() || going.any(|entry| !is_paused(entry)) {
             ctx.request_repaint_after(Duration::from_millis(100));
         }
         let mut is_open = self.is_open;
@@ -196,6 +192,8 @@ impl Exports {
         if !self.is_open
             && let Some(shown) = self.shown.take()
         {
+            // Nobody asks what it finds out.
+            self.forecast = Forecast::default();
             self.last = Some((shown.document, shown.settings.clone()));
             self.kept.keep(shown.owner, shown.settings);
         }
@@ -240,24 +238,24 @@ impl Exports {
             .spacing([GRID, GRID / 2.0])
             .show(ui, |ui| fields(ui, &mut settings, out));
         let sequence = settings.sequence(editor.scene());
-        let is_making = self.is_making(&settings, editor);
+        let is_making = sequence
+            .as_ref()
+            .is_ok_and(|sequence| self.is_making(sequence));
         let colors = palette(ui.ctx());
+        self.forecast.update();
         match &sequence {
             Err(error) => {
                 ui.colored_label(colors.error, error.to_string());
             }
             Ok(_) if is_making => {
-                ui.label("These frames are being made: see below");
+                ui.label("Files of these names are being made: see below");
             }
             Ok(sequence) => {
-                self.look(editor, &settings, sequence);
-                self.pack(editor, pictures);
-                let found = self.found.as_ref().and_then(|(.., found)| found.as_ref());
-                let per_pixel = PerPixel {
-                    millis: pictures.millis_per_pixel(editor),
-                    png_share: self.png_share,
-                };
-                ui.label(forecast(&settings, sequence, found, per_pixel));
+                let forecast = &mut self.forecast;
+                forecast.look((&settings, sequence), editor, self.ended);
+                forecast.measure((&settings, sequence), editor, pictures);
+                let millis = pictures.millis_per_pixel(editor);
+                ui.label(forecast.describe(&settings, sequence, millis));
             }
         }
         let text = RichText::new("Export").color(colors.on_accent);
@@ -279,11 +277,10 @@ impl Exports {
         });
     }
 
-    /// Whether the frames of these settings are ordered, of the scene as it is.
-    fn is_making(&self, settings: &Settings, editor: &Editor) -> bool {
-        let settings = settings.clone().at_home();
-        let mut orders = self.entries.iter().filter_map(Entry::order);
-        orders.any(|order| order.settings == settings && Arc::ptr_eq(&order.scene, editor.scene()))
+    /// Whether files of these names are ordered: two exports would replace each other's.
+    fn is_making(&self, sequence: &Sequence) -> bool {
+        let mut going = self.entries.iter().filter(|entry| !entry.is_over());
+        going.any(|entry| entry.writes_files_of(sequence))
     }
 
     /// Puts an order into the queue.
@@ -294,12 +291,14 @@ impl Exports {
         editor: &mut Editor,
         pictures: &Pictures,
     ) {
-        self.found = None;
+        self.forecast.forget_folder();
         editor.begin(EXPORT);
         match pictures.worker().export(sequence.clone()) {
             Ok(id) => {
                 let replaced = self.entries.iter();
-                let replaced = replaced.filter(|entry| entry.is_replaced_by(&sequence));
+                // They may not be there any more.
+                let replaced =
+                    replaced.filter(|entry| entry.is_over() && entry.writes_files_of(&sequence));
                 replaced.for_each(|entry| pictures.worker().forget_export(entry.id));
                 self.entries.push(Entry::new(id, order, sequence));
             }
@@ -310,66 +309,6 @@ impl Exports {
                 self.interrupted.push(order.failed(why));
             }
         }
-    }
-
-    /// Finds out, on a thread of its own, how small a PNG of the finished picture on screen is.
-    fn pack(&mut self, editor: &Editor, pictures: &Pictures) {
-        if let Some(packing) = &self.packing {
-            match packing.try_recv() {
-                Err(TryRecvError::Empty) => return,
-                Err(TryRecvError::Disconnected) => {}
-                Ok(share) => self.png_share = Some(share),
-            }
-            self.packing = None;
-        }
-        let frame = pictures.whole(editor);
-        // A picture of 64 pixels says little of larger ones, and there is no hurry while it plays.
-        let is_meant = editor.mode != Mode::LowRes && !editor.timeline().is_playing;
-        let Some(frame) = frame.filter(|_| is_meant) else {
-            return;
-        };
-        let of = (frame.revision, frame.image.width);
-        if self.packed.replace(of) != Some(of) {
-            let image = Arc::clone(&frame.image);
-            self.packing = Some(run_in_background("glint-pack", move || {
-                share_of_png(&image)
-            }));
-        }
-    }
-
-    /// Looks on a thread of its own what is in the folder already.
-    fn look(&mut self, editor: &Editor, settings: &Settings, sequence: &Sequence) {
-        if let Some(looking) = &self.looking {
-            match looking.try_recv() {
-                Err(TryRecvError::Empty) => return,
-                Err(TryRecvError::Disconnected) => {}
-                Ok(found) => {
-                    if let Some((.., place)) = &mut self.found {
-                        *place = Some(found);
-                    }
-                }
-            }
-            self.looking = None;
-        }
-        let state = (editor.revision(), self.ended);
-        let is_same =
-            |(of, at, _): &(Settings, (u64, usize), Option<Found>)| of == settings && *at == state;
-        if self.found.as_ref().is_some_and(is_same) {
-            return;
-        }
-        self.found = Some((settings.clone(), state, None));
-        let sequence = sequence.clone();
-        self.looking = Some(run_in_background("glint-look", move || {
-            // A folder that is not there has no frames; looking must not make it.
-            if !sequence.folder.exists() {
-                return Ok((sequence.frames.count(), 0));
-            }
-            let missing = sequence.missing().map_err(|error| error.to_string())?;
-            let replaced = missing
-                .iter()
-                .filter(|frame| sequence.path(**frame).exists());
-            Ok((missing.len(), replaced.count()))
-        }));
     }
 
     fn show_list(&mut self, ui: &mut Ui, editor: &mut Editor, pictures: &Pictures) {
@@ -417,14 +356,5 @@ impl Exports {
         } else if let Some(index) = removed {
             self.interrupted.remove(index).end();
         }
-    }
-}
-
-/// How many bytes a PNG of a picture has for each of a PPM.
-fn share_of_png(image: &Image) -> f64 {
-    let mut file = Cursor::new(Vec::new());
-    match image.encode(Format::Png, &mut file) {
-        Ok(()) => file.into_inner().len() as f64 / (3 * image.pixels.len()).max(1) as f64,
-        Err(_) => 1.0,
     }
 }

@@ -3,13 +3,12 @@
 
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::mpsc::Receiver;
 
 use super::fields::{Settings, SettingsError};
 use crate::editor::Editor;
 use crate::export::Sequence;
 use crate::scene::{Document, Leftover, Recovery, Scene};
-use crate::worker::run_in_background;
+use crate::worker::Background;
 
 /// What messages about exports are about.
 pub const EXPORT: &str = "export";
@@ -32,7 +31,7 @@ pub struct Order {
     /// Where it is kept; nowhere, if the system gives no place.
     place: Option<Arc<Recovery>>,
     /// The text on its way there.
-    writing: Option<Receiver<()>>,
+    writing: Background<()>,
 }
 
 impl Order {
@@ -47,7 +46,7 @@ impl Order {
         let path = editor.path().map(Path::to_owned);
         let writing = place.clone().map(|place| {
             let settings = settings.clone();
-            run_in_background("glint-order", move || {
+            Background::start("glint-order", move || {
                 // Without it, an export that is killed has to be asked for again.
                 let text = text_of(&settings, document);
                 let _ = text.map(|text| place.keep(&text, path.as_deref(), None));
@@ -59,7 +58,7 @@ impl Order {
             why: None,
             scene: Arc::clone(editor.scene()),
             place,
-            writing,
+            writing: writing.unwrap_or_default(),
         }
     }
 
@@ -100,7 +99,7 @@ impl Order {
             why: None,
             scene: Arc::new(document.scene),
             place: kept.map(|()| Arc::new(place)),
-            writing: None,
+            writing: Background::default(),
         })
     }
 
@@ -122,10 +121,8 @@ impl Order {
 
     /// There is nothing left to take up.
     pub fn end(self) {
-        if let Some(writing) = self.writing {
-            // What is still being written must not be there afterwards.
-            let _ = writing.recv();
-        }
+        // What is still being written must not be there afterwards.
+        self.writing.finish();
         if let Some(place) = self.place {
             place.clear();
         }
@@ -140,6 +137,8 @@ fn text_of(settings: &Settings, mut document: Document) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
     use crate::scene::DEMO_TEXT;
 
@@ -165,14 +164,10 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let editor = Editor::demo();
         let settings = Settings::of(&editor);
-        let order = Order::new(settings.clone(), &editor, Some(folder.path()));
+        let mut order = Order::new(settings.clone(), &editor, Some(folder.path()));
         let name = order.name.clone();
-        order
-            .writing
-            .as_ref()
-            .expect("written")
-            .recv()
-            .expect("it is");
+        let written = order.writing.take_within(Duration::from_mins(1));
+        assert_eq!(written, Some(Ok(())));
         assert!(
             Order::left_in(folder.path()).is_empty(),
             "its program still runs"

@@ -53,7 +53,9 @@ fn video_progress(video: &VideoMaker) -> (f64, String) {
         VideoState::Waiting => (0.0, counted(total, "frame")),
         VideoState::Making(done) => {
             let share = *done as f64 / total.max(1) as f64;
-            (share, format!("{name}: {done} of {total}"))
+            let left = video.seconds_left().map(in_words);
+            let left = left.map_or(String::new(), |left| format!(" · {left} left"));
+            (share, format!("{name}: {done} of {total}{left}"))
         }
         VideoState::Made => (1.0, format!("{} and {name}", counted(total, "frame"))),
         VideoState::Stopped => (

@@ -3,10 +3,16 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::{Receiver, TryRecvError};
+use std::time::{Duration, Instant};
 
 use crate::export::{Sequence, Video, VideoError};
-use crate::worker::run_in_background;
+use crate::trace::Threads;
+use crate::worker::Background;
+
+/// Threads that make a video: half of all, as the picture on screen is traced meanwhile.
+pub fn video_threads() -> usize {
+    (Threads::available() / 2).max(1)
+}
 
 /// What has become of a video.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,7 +37,9 @@ pub struct VideoMaker {
     pub state: VideoState,
     sequence: Sequence,
     video: Video,
-    making: Option<Receiver<Result<(), VideoError>>>,
+    making: Background<Result<(), VideoError>>,
+    /// Since when it is made, and how long its frames have taken that are in it.
+    since: Option<(Instant, Duration)>,
     /// Frames that are in it.
     done: Arc<AtomicUsize>,
     /// Whether it is not wanted any more.
@@ -46,7 +54,8 @@ impl VideoMaker {
             state: VideoState::Waiting,
             sequence,
             video,
-            making: None,
+            making: Background::default(),
+            since: None,
             done: Arc::default(),
             is_stopped: Arc::default(),
         }
@@ -57,7 +66,16 @@ impl VideoMaker {
         self.sequence.frames.count()
     }
 
-    /// Makes it, on a thread of its own.
+    /// Seconds that are left of its making, as far as its first frames tell.
+    pub fn seconds_left(&self) -> Option<f64> {
+        let (VideoState::Making(done @ 1..), Some((_, taken))) = (&self.state, self.since) else {
+            return None;
+        };
+        let left = self.frames().saturating_sub(*done);
+        Some(taken.as_secs_f64() / *done as f64 * left as f64)
+    }
+
+    /// Makes it, on threads of its own.
     pub fn make(&mut self) {
         let (kind, sequence, path) = (self.video, self.sequence.clone(), self.path.clone());
         let (done, is_stopped) = (Arc::clone(&self.done), Arc::clone(&self.is_stopped));
@@ -65,8 +83,12 @@ impl VideoMaker {
             done.store(frames, Ordering::Relaxed);
             !is_stopped.load(Ordering::Relaxed)
         };
-        let make = move || kind.make(&sequence, &path, go_on);
-        self.making = Some(run_in_background("glint-video", make));
+        let make = move || {
+            let threads = Threads::new(Some(video_threads()))?;
+            threads.run(|| kind.make(&sequence, &path, go_on))
+        };
+        self.since = Some((Instant::now(), Duration::ZERO));
+        self.making = Background::start("glint-video", make);
         self.state = VideoState::Making(0);
     }
 
@@ -77,19 +99,22 @@ impl VideoMaker {
 
     /// Looks how far it is.
     pub fn update(&mut self) -> &VideoState {
-        if let Some(made) = &self.making {
-            self.state = match made.try_recv() {
-                Ok(Ok(())) => VideoState::Made,
-                Ok(Err(VideoError::Stopped)) => VideoState::Stopped,
-                Ok(Err(error)) => VideoState::Failed(error.to_string()),
-                Err(TryRecvError::Disconnected) => {
-                    VideoState::Failed("the video was not made".to_owned())
-                }
-                Err(TryRecvError::Empty) => VideoState::Making(self.done.load(Ordering::Relaxed)),
-            };
-            if !matches!(self.state, VideoState::Making(_)) {
-                self.making = None;
+        match self.making.take() {
+            Some(Ok(Ok(()))) => self.state = VideoState::Made,
+            Some(Ok(Err(VideoError::Stopped))) => self.state = VideoState::Stopped,
+            Some(Ok(Err(error))) => self.state = VideoState::Failed(error.to_string()),
+            Some(Err(no_answer)) => {
+                self.state = VideoState::Failed(format!("No video: {no_answer}"));
             }
+            None if self.making.is_awaited() => {
+                let state = VideoState::Making(self.done.load(Ordering::Relaxed));
+                // Several come at once.
+                if let Some((since, taken)) = self.since.as_mut().filter(|_| state != self.state) {
+                    *taken = since.elapsed();
+                }
+                self.state = state;
+            }
+            None => {}
         }
         &self.state
     }

@@ -6,15 +6,17 @@ use egui::{Button, Id, Ui};
 
 use super::camera::place_rows;
 use super::title::{tell_different, title};
-use crate::editor::{Edit, Editor, Time};
+use crate::editor::{Action, Edit, Editor, Time};
 use crate::scene::{
     Animation, Easing, Interpolation, KeyPlace, Keys, MAX_SECONDS, Orientation, Target, Value,
+    format_number,
 };
 use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, coordinate, fraction};
+use crate::words::counted;
 
 /// The ways on which every value can go on.
 const STAYING: [Interpolation; 3] = [
@@ -23,20 +25,25 @@ const STAYING: [Interpolation; 3] = [
     Interpolation::Hold,
 ];
 
-/// Time, way and value of the selected key; of several, way and pace of the first, which others take on.
+/// Time, way and value of the selected key; of several, the time of the earliest, which the others follow, and way and
+/// pace of the first, which others take on.
 pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     if !ui.input(|input| input.pointer.any_down()) {
         ui.data_mut(|data| data.remove::<Moved>(drag_id()));
     }
     let animation = &editor.scene().animation;
     let Some(&first) = places.first() else { return };
-    let Some((time, pace)) = animation.at_place(first) else {
+    let pace = animation.at_place(first).map(|(_, pace)| pace);
+    let (Some(pace), Some((time, last))) = (pace, animation.span_of(places)) else {
         return;
     };
     let only = (places.len() == 1).then_some(first);
-    let name = match only {
-        Some(only) => animation.name_of(only),
-        None => format!("{} keys", places.len()),
+    let name = if let Some(only) = only {
+        animation.name_of(only)
+    } else {
+        // As fine as anybody sets them.
+        let span = ((last - time) * 1e3).round() / 1e3;
+        format!("{} keys in {} s", places.len(), format_number(span))
     };
     title(ui, icons::KEY, &name);
     let paces = places.iter().filter_map(|place| animation.at_place(*place));
@@ -53,9 +60,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     );
     let (mut new_time, mut new_pace) = (time, pace);
     let mut rows = Rows::new(ui);
-    if only.is_some() {
-        rows.number(&time_field(), &mut new_time);
-    }
+    rows.number(&time_field(only.is_some()), &mut new_time);
     pace_rows(&mut rows, editor, &mut new_pace);
     let new_value = only.and_then(|only| value_rows(&mut rows, animation, only));
     // Of several, what all of them have may be picked for those that have not.
@@ -129,12 +134,13 @@ struct Moved {
     time: f64,
 }
 
-/// Moves the selected key to another time.
+/// Moves the selected keys, of which the earliest goes to another time.
 fn move_key(ui: &Ui, editor: &Editor, to: f64, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let places = editor.selection().keys();
-    let first = places.first().and_then(|place| animation.at_place(*place));
-    let Some((time, _)) = first else { return };
+    let Some((time, _)) = animation.span_of(places) else {
+        return;
+    };
     let now = || Moved {
         animation: Arc::clone(animation),
         places: places.clone(),
@@ -144,8 +150,23 @@ fn move_key(ui: &Ui, editor: &Editor, to: f64, out: &mut UiRequests) {
     let before = ui.data_mut(|data| data.get_temp_mut_or_insert_with(drag_id(), now).clone());
     let later = to - before.time;
     let (moved, new) = before.animation.with_moved(&before.places, later, false);
+    let count = before.animation.places().len();
+    let replaced = count.saturating_sub(moved.places().len());
+    let is_typed = !ui.input(|input| input.pointer.any_down());
     out.edit(Edit::animation(moved, "Key: time"));
     out.select(new);
+    out.actions.extend(
+        told_of_replaced(replaced)
+            .filter(|_| is_typed)
+            .map(Action::Tell),
+    );
+}
+
+/// What is said where keys that are moved have replaced so many others.
+pub fn told_of_replaced(count: usize) -> Option<String> {
+    let them = if count == 1 { "it" } else { "them" };
+    let keys = counted(count, "key");
+    (count > 0).then(|| format!("This has replaced {keys}; undo brings {them} back"))
 }
 
 /// Where the key that is dragged is remembered.
@@ -153,10 +174,17 @@ fn drag_id() -> Id {
     Id::unique("key before its time was dragged")
 }
 
-fn time_field() -> Field {
+fn time_field(is_only: bool) -> Field {
+    let (name, hint) = if is_only {
+        let hint = "Seconds from the start; it takes the place of a key that is there";
+        ("time", hint)
+    } else {
+        let hint = "Seconds from the start to the earliest of them; the others follow";
+        ("first at", hint)
+    };
     Field {
-        name: "time",
-        hint: "Seconds from the start; it takes the place of a key that is there",
+        name,
+        hint,
         unit: " s",
         default: 0.0,
         range: 0.0..=MAX_SECONDS,

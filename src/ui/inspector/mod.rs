@@ -18,7 +18,7 @@ mod needs;
 
 mod world;
 
-pub use keys::key_ways;
+pub use keys::{key_ways, told_of_replaced};
 pub use quality::Quality;
 pub use title::name_field;
 use title::title_field;

@@ -11,6 +11,60 @@ use crate::editor::Editor;
 use crate::lab::{cheapest_within, closest_within, costs_of_dots};
 use crate::ui::hint::Hint as _;
 
+/// Something to choose, what it is called, and what that means.
+type Choice<T> = (T, &'static str, &'static str);
+
+const TABS: [Choice<Tab>; 2] = [
+    (
+        Tab::Chart,
+        "Chart",
+        "Time against error of every way of tracing the scene",
+    ),
+    (
+        Tab::Stability,
+        "Stability",
+        "Where formulas break, and where the scene stands",
+    ),
+];
+
+const COSTS: [Choice<CostAxis>; 2] = [
+    (
+        CostAxis::Time,
+        "time",
+        "Milliseconds per picture: the median of interleaved runs",
+    ),
+    (
+        CostAxis::Rays,
+        "rays",
+        "Rays per pixel: the same on every machine",
+    ),
+];
+
+const ERRORS: [Choice<ErrorAxis>; 3] = [
+    (
+        ErrorAxis::Rmse,
+        "RMSE",
+        "Root of the mean square of the error, linear, 0–1",
+    ),
+    (
+        ErrorAxis::Max,
+        "worst",
+        "The worst channel of all pixels, 0–1",
+    ),
+    (
+        ErrorAxis::Visible,
+        "visible",
+        "Share of the pixels that are off by more than 4/255",
+    ),
+];
+
+fn choose<T: PartialEq, const N: usize>(ui: &mut Ui, chosen: &mut T, choices: [Choice<T>; N]) {
+    for (choice, name, hint) in choices {
+        ui.selectable_value(chosen, choice, name).hint(hint);
+    }
+    ui.separator();
+}
+
 impl Lab {
     /// The line; what it asks of the render thread.
     pub(super) fn show_head(
@@ -26,95 +80,50 @@ impl Lab {
         {
             out.commands.push(Command::Timeline);
         }
-        for (tab, name, hint) in [
-            (
-                Tab::Chart,
-                "Chart",
-                "Time against error of every way of tracing the scene",
-            ),
-            (
-                Tab::Stability,
-                "Stability",
-                "Where formulas break, and where the scene stands",
-            ),
-        ] {
-            ui.selectable_value(&mut self.tab, tab, name).hint(hint);
-        }
-        ui.separator();
+        choose(ui, &mut self.tab, TABS);
         if self.tab == Tab::Stability {
             return None;
         }
-        let mut wish = None;
-        let hint = "Trace the scene in every way there is, and compare: about half a minute";
-        let measure = ui.add_enabled(!self.is_running, Button::new("Measure"));
-        if measure.hint(hint).clicked() {
-            wish = Some(self.measure(editor));
-        } else if self.is_running {
-            let done = self.study.as_ref().map_or(0.0, |study| study.progress());
-            if ui.button("Cancel measuring").clicked() {
-                self.is_running = false;
-                wish = Some(LabRequest::Stop);
-            }
-            let left = self.study.as_ref().and_then(|study| study.remaining());
-            let left = left.map_or(String::new(), |left| {
-                format!(", {:.0} s left", left.as_secs_f64().ceil())
-            });
-            ui.label(format!("{:.0} %{left}", (done * 100.0).floor()));
-        } else {
-            let hint = "Put POV-Ray, an independent engine, among the ways, where it is installed";
-            ui.checkbox(&mut self.asks_povray, "POV-Ray").hint(hint);
-        }
+        let wish = self.show_measuring(ui, editor);
         if self.is_stale(editor) {
             let stale = RichText::new("stale").color(palette(ui.ctx()).accent);
             ui.add(Label::new(stale).extend())
                 .hint("The scene has changed since; measure again");
         }
         ui.separator();
-        for (cost, name, hint) in [
-            (
-                CostAxis::Time,
-                "time",
-                "Milliseconds per picture: the median of interleaved runs",
-            ),
-            (
-                CostAxis::Rays,
-                "rays",
-                "Rays per pixel: the same on every machine",
-            ),
-        ] {
-            ui.selectable_value(&mut self.cost, cost, name).hint(hint);
-        }
-        ui.separator();
-        for (error, name, hint) in [
-            (
-                ErrorAxis::Rmse,
-                "RMSE",
-                "Root of the mean square of the error, linear, 0–1",
-            ),
-            (
-                ErrorAxis::Max,
-                "worst",
-                "The worst channel of all pixels, 0–1",
-            ),
-            (
-                ErrorAxis::Visible,
-                "visible",
-                "Share of the pixels that are off by more than 4/255",
-            ),
-        ] {
-            ui.selectable_value(&mut self.error, error, name).hint(hint);
-        }
-        ui.separator();
+        choose(ui, &mut self.cost, COSTS);
+        choose(ui, &mut self.error, ERRORS);
         self.show_bounds(ui);
         ui.add(Label::new(RichText::new(self.notice).weak()).extend());
-        let obstacle = self
-            .study
-            .as_ref()
-            .and_then(|study| study.obstacle.as_ref());
-        if let Some(obstacle) = obstacle {
+        let study = self.study.as_ref();
+        if let Some(obstacle) = study.and_then(|study| study.obstacle.as_ref()) {
             ui.weak("no POV-Ray").hint(obstacle);
         }
         wish
+    }
+
+    /// What starts and ends the measuring, and how far it is.
+    fn show_measuring(&mut self, ui: &mut Ui, editor: &Editor) -> Option<LabRequest> {
+        let hint = "Trace the scene in every way there is, and compare: about half a minute";
+        let measure = ui.add_enabled(!self.is_running, Button::new("Measure"));
+        if measure.hint(hint).clicked() {
+            return Some(self.measure(editor));
+        }
+        if !self.is_running {
+            let hint = "Put POV-Ray, an independent engine, among the ways, where it is installed";
+            ui.checkbox(&mut self.asks_povray, "POV-Ray").hint(hint);
+            return None;
+        }
+        let stop = ui.button("Cancel measuring").clicked();
+        let study = self.study.as_ref();
+        let done = study.map_or(0.0, |study| study.progress());
+        let left = study.and_then(|study| study.remaining());
+        let left = left.map_or(String::new(), |left| {
+            format!(", {:.0} s left", left.as_secs_f64().ceil())
+        });
+        ui.label(format!("{:.0} %{left}", (done * 100.0).floor()));
+        self.is_running = !stop;
+        stop.then_some(LabRequest::Stop)
     }
 
     fn show_bounds(&mut self, ui: &mut Ui) {

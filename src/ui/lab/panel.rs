@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::Duration;
 
 use egui::{Align, Button, Key, Layout, Response, RichText, Ui};
@@ -20,7 +19,7 @@ use crate::lab::{EIGHT_BIT_FLOOR, Study, keep, kept};
 use crate::scene::{Render, Scene};
 use crate::trace::Threads;
 use crate::words::counted;
-use crate::worker::run_in_background;
+use crate::worker::Background;
 
 /// Time between two looks at whether a kept study is read.
 const LOOK: Duration = Duration::from_millis(50);
@@ -75,7 +74,7 @@ pub struct Lab {
     folder: Option<PathBuf>,
     /// The document whose kept study was looked for, and what is found.
     looked_for: Option<u64>,
-    found: Option<Receiver<Option<Study>>>,
+    found: Background<Option<Study>>,
 }
 
 impl Default for Lab {
@@ -102,7 +101,7 @@ impl Default for Lab {
             notice: "",
             folder: None,
             looked_for: None,
-            found: None,
+            found: Background::default(),
         }
     }
 }
@@ -135,7 +134,7 @@ impl Lab {
         if let (Some(study), Some(folder)) = (done, folder) {
             let (study, machine, folder) = (study.clone(), self.machine.clone(), folder.clone());
             // Nobody waits for it.
-            drop(run_in_background("glint-lab", move || {
+            drop(Background::start("glint-lab", move || {
                 keep(&study, &machine, &folder);
             }));
         }
@@ -143,29 +142,27 @@ impl Lab {
 
     /// Looks for what was measured of a document that was opened, and takes it up when it is found.
     fn look_for_kept(&mut self, ui: &Ui, editor: &Editor) {
+        if self.is_running {
+            // What it finds would take the place of what is measured.
+            return;
+        }
         let document = editor.documents();
         if let Some(folder) = self.folder.clone()
             && self.looked_for != Some(document)
         {
             self.looked_for = Some(document);
-            if !self.is_running {
-                // It was measured of another one.
-                (self.study, self.chosen) = (None, None);
-                self.number += 1;
-            }
+            // It was measured of another one.
+            (self.study, self.chosen) = (None, None);
+            self.number += 1;
             let (scene, machine) = (Arc::clone(editor.scene()), self.machine.clone());
-            self.found = Some(run_in_background("glint-lab", move || {
-                kept(&scene, SIDE, &machine, &folder)
-            }));
+            self.found =
+                Background::start("glint-lab", move || kept(&scene, SIDE, &machine, &folder));
         }
-        let Some(found) = &self.found else { return };
-        let study = match found.try_recv() {
-            Ok(study) => study,
-            Err(TryRecvError::Disconnected) => None,
-            Err(TryRecvError::Empty) => return ui.request_repaint_after(LOOK),
-        };
-        self.found = None;
-        if let Some(study) = study.filter(|_| !self.is_running) {
+        let study = self.found.take();
+        if self.found.is_awaited() {
+            ui.request_repaint_after(LOOK);
+        }
+        if let Some(Ok(Some(study))) = study {
             self.study = Some(Box::new(study));
             self.chosen = None;
             self.number += 1;
@@ -245,7 +242,7 @@ impl Lab {
             study = study.with_povray();
         }
         let study = Box::new(study);
-        self.found = None;
+        self.found = Background::default();
         self.notice = "";
         self.study = Some(study.clone());
         self.chosen = None;

@@ -1,7 +1,5 @@
 //! The maps of where formulas break, and where the open scene stands on them.
 
-use std::sync::mpsc::{Receiver, TryRecvError};
-
 use egui::{Button, RichText, ScrollArea, Ui, vec2};
 
 use super::super::theme::{GRID, ROW, palette};
@@ -9,7 +7,7 @@ use super::heat;
 use crate::lab::stability::{Map, maps};
 use crate::scene::Scene;
 use crate::ui::hint::Hint as _;
-use crate::worker::run_in_background;
+use crate::worker::Background;
 
 /// How many times more tries than for a first look: a second of computing.
 const EFFORT: u32 = 4;
@@ -20,7 +18,7 @@ const LIST: f32 = 440.0;
 #[derive(Default)]
 pub struct Stability {
     maps: Vec<Map>,
-    coming: Option<Receiver<Vec<Map>>>,
+    coming: Background<Vec<Map>>,
     chosen: usize,
 }
 
@@ -61,13 +59,10 @@ impl Stability {
     }
 
     fn fetch(&mut self, ui: &mut Ui) {
-        let coming = self
-            .coming
-            .get_or_insert_with(|| run_in_background("glint-stability", || maps(EFFORT)));
-        match coming.try_recv() {
-            Ok(maps) => self.maps = maps,
-            Err(TryRecvError::Disconnected) => self.coming = None,
-            Err(TryRecvError::Empty) => {}
+        if let Some(Ok(maps)) = self.coming.take() {
+            self.maps = maps;
+        } else if !self.coming.is_awaited() {
+            self.coming = Background::start("glint-stability", || maps(EFFORT));
         }
         ui.centered_and_justified(|ui| ui.weak("Trying every formula…"));
         ui.request_repaint_after(std::time::Duration::from_millis(100));

@@ -64,6 +64,7 @@ impl Outliner {
         self.filter.clear();
         self.folded.retain(|kind| *kind != Kind::Object);
         self.group_rows.renaming = group;
+        self.reveals = true;
     }
 
     /// Lists everything again. Whether not everything was listed.
@@ -93,20 +94,7 @@ impl Outliner {
             self.renaming = None;
             self.group_rows.renaming = None;
         }
-        ui.horizontal(|ui| {
-            let buttons = if self.filter.is_empty() { 1.0 } else { 2.0 };
-            let width = ui.available_width() - (ROW + GRID) * buttons;
-            let field = TextEdit::singleline(&mut self.filter).hint_text("Filter");
-            ui.add_sized([width, ROW], field.align(egui::Align2::LEFT_CENTER))
-                .accessible_name("Filter");
-            if !self.filter.is_empty()
-                && icons::button(ui, icons::CLOSE, "Clear the filter").clicked()
-            {
-                self.clear_filter();
-            }
-            let add = icons::button(ui, icons::ADD, "Add to scene");
-            egui::Popup::menu(&add).show(|ui| add_menu(ui, editor.shown(), out));
-        });
+        ui.horizontal(|ui| self.show_filter(ui, editor, out));
         let mut groups = std::mem::take(&mut self.groups);
         groups.update(&editor.scene().objects, &self.group_rows.folded);
         let lines = self.lines(editor.scene(), &groups);
@@ -129,48 +117,72 @@ impl Outliner {
         self.reveals = false;
         let shown = area.show_rows(ui, ROW, lines.len(), |ui, range| {
             for index in range {
-                match lines.get(index) {
-                    Some(Line::Single(selection, icon, name)) => {
-                        let rect = row(ui);
-                        let look = RowStyle {
-                            icon,
-                            is_bright: true,
-                            is_selected: editor.selection() == selection,
-                        };
-                        let response = entry(ui, rect, look, name);
-                        self.walk.attend(ui, index, &response);
-                        if response.clicked() {
-                            out.select(selection.clone());
-                        }
-                    }
-                    Some(Line::Kind(kind, count)) => {
-                        let listed = lines.listed(kind);
-                        let is_all = self.filter.is_empty() || self.folded.contains(&kind);
-                        let words = if is_all {
-                            count.to_string()
-                        } else {
-                            format!("{listed} of {count}")
-                        };
-                        self.title(ui, editor, (kind, &words), out);
-                    }
-                    Some(Line::Group(place)) => {
-                        let group = &groups.all[place];
-                        if let Some(response) = self.group_rows.show(ui, editor, group, out) {
-                            self.walk.attend(ui, index, &response);
-                        }
-                    }
-                    Some(Line::Entry(item, is_in)) => {
-                        let entry = (listed, item, is_in);
-                        if let Some(response) = self.item(ui, editor, entry, out) {
-                            self.walk.attend(ui, index, &response);
-                        }
-                    }
-                    None => {}
-                }
+                self.show_line(ui, editor, (listed, index), out);
             }
         });
         self.groups = groups;
         self.scrolled = (shown.state.clamped_offset().y, shown.inner_rect.height());
+    }
+
+    fn show_filter(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+        let buttons = if self.filter.is_empty() { 1.0 } else { 2.0 };
+        let width = ui.available_width() - (ROW + GRID) * buttons;
+        let field = TextEdit::singleline(&mut self.filter).hint_text("Filter");
+        ui.add_sized([width, ROW], field.align(egui::Align2::LEFT_CENTER))
+            .accessible_name("Filter");
+        if !self.filter.is_empty() && icons::button(ui, icons::CLOSE, "Clear the filter").clicked()
+        {
+            self.clear_filter();
+        }
+        let add = icons::button(ui, icons::ADD, "Add to scene");
+        egui::Popup::menu(&add).show(|ui| add_menu(ui, editor.shown(), out));
+    }
+
+    fn show_line(
+        &mut self,
+        ui: &mut Ui,
+        editor: &Editor,
+        (listed, index): (Listed, usize),
+        out: &mut UiRequests,
+    ) {
+        match listed.lines.get(index) {
+            Some(Line::Single(selection, icon, name)) => {
+                let rect = row(ui);
+                let look = RowStyle {
+                    icon,
+                    is_bright: true,
+                    is_selected: editor.selection() == selection,
+                };
+                let response = entry(ui, rect, look, name);
+                self.walk.attend(ui, index, &response);
+                if response.clicked() {
+                    out.select(selection.clone());
+                }
+            }
+            Some(Line::Kind(kind, count)) => {
+                let some = listed.lines.listed(kind);
+                let is_all = self.filter.is_empty() || self.folded.contains(&kind);
+                let words = if is_all {
+                    count.to_string()
+                } else {
+                    format!("{some} of {count}")
+                };
+                self.title(ui, editor, (kind, &words), out);
+            }
+            Some(Line::Group(place)) => {
+                let group = &listed.groups[place];
+                if let Some(response) = self.group_rows.show(ui, editor, group, out) {
+                    self.walk.attend(ui, index, &response);
+                }
+            }
+            Some(Line::Entry(item, is_in)) => {
+                let entry = (listed, item, is_in);
+                if let Some(response) = self.item(ui, editor, entry, out) {
+                    self.walk.attend(ui, index, &response);
+                }
+            }
+            None => {}
+        }
     }
 
     /// The row of what was just selected elsewhere.

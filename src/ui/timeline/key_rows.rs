@@ -11,9 +11,9 @@ use super::strip::{KEY, band, diamond, label};
 use crate::editor::{Action, Edit, Editor, Selection};
 use crate::scene::{Animation, Interpolation, Key, KeyPlace, Keys};
 use crate::ui::hint::Hint as _;
+use crate::ui::inspector::told_of_replaced;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, TRACK, palette};
-use crate::words::counted;
 
 /// What the pointer does to the rows from when it is pressed to when it is let go.
 #[derive(Default)]
@@ -55,10 +55,7 @@ impl Drag {
         };
         let before = self.before.places().len() + copies;
         let replaced = before.saturating_sub(now.places().len());
-        let is_done = *now != *self.before && replaced > 0;
-        let them = if replaced == 1 { "it" } else { "them" };
-        let keys = counted(replaced, "key");
-        is_done.then(|| format!("This has replaced {keys}; undo brings {them} back"))
+        told_of_replaced(replaced).filter(|_| *now != *self.before)
     }
 }
 

@@ -4,7 +4,7 @@ use egui::{Color32, Painter, Pos2, Rect, Sense, Stroke, Ui, vec2};
 
 use glam::DVec3;
 
-use crate::editor::{Edit, Editor};
+use crate::editor::{Action, Edit, Editor};
 use crate::scene::{Camera, KeyPlace, Keys, Projection};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
@@ -163,7 +163,12 @@ impl Overlay {
         if extent > 0.0 { extent } else { 1.0 }
     }
 
-    /// A key is clicked to be selected, and dragged in the plane of the view.
+    /// Whether a key is being dragged.
+    pub fn is_dragging(&self) -> bool {
+        self.dragged.is_some()
+    }
+
+    /// A key is clicked to be selected, and dragged in the plane of the view; Esc takes that back.
     fn handle(
         &mut self,
         ui: &Ui,
@@ -200,6 +205,9 @@ impl Overlay {
         let pointer = response.interact_pointer_pos();
         let Some(pointer) = pointer.filter(|_| response.dragged()) else {
             self.dragged = None;
+            if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+                out.actions.push(Action::CancelGesture);
+            }
             return;
         };
         // As deep in the view as it was: along the ray by as much more as that leans.

@@ -288,7 +288,7 @@ fn replaced_flight(name: &str, animation: &Animation) -> Option<String> {
     (!animation.keys.is_empty()).then_some(words)
 }
 
-/// What a command of the timeline comes to; nothing where it makes no sense.
+/// What a command of the timeline comes to, where it makes sense; nothing of others.
 pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action> {
     use crate::editor::Action;
     let animation = &editor.scene().animation;
@@ -301,13 +301,12 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action>
         of_camera.chain(tracks.map(|key| key.time))
     };
     let timed = |time: Time| vec![Action::Time(time)];
-    let has_time = !animation.is_still();
     match command {
-        Command::Play if has_time => timed(Time::Play(!editor.timeline().is_playing)),
-        Command::FirstFrame if has_time => timed(Time::Seek(0.0)),
-        Command::LastFrame if has_time => timed(Time::Seek(animation.duration())),
-        Command::FrameBack if has_time => timed(Time::Step(-1)),
-        Command::FrameOn if has_time => timed(Time::Step(1)),
+        Command::Play => timed(Time::Play(!editor.timeline().is_playing)),
+        Command::FirstFrame => timed(Time::Seek(0.0)),
+        Command::LastFrame => timed(Time::Seek(animation.duration())),
+        Command::FrameBack => timed(Time::Step(-1)),
+        Command::FrameOn => timed(Time::Step(1)),
         Command::PreviousKey => {
             let earlier = times().filter(|key| frame(*key) < frame(time));
             let key = earlier.max_by(f64::total_cmp);
@@ -318,12 +317,10 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action>
             let key = later.min_by(f64::total_cmp);
             key.map_or(Vec::new(), |key| timed(Time::Seek(key)))
         }
-        Command::Record if editor.timeline().recorded().is_none() => timed(Time::Record),
+        Command::Record => timed(Time::Record),
         Command::StopRecording => timed(Time::Stop),
         Command::SelectKeys => vec![Action::Select(animation.places().into())],
-        Command::LookThrough if !animation.keys.is_empty() => {
-            timed(Time::LookThrough(!editor.looks_through()))
-        }
+        Command::LookThrough => timed(Time::LookThrough(!editor.looks_through())),
         Command::AddKey => {
             let view = editor.shown().camera.clone();
             let (changed, place) = animation.with_key(time, view);

@@ -12,6 +12,7 @@ use super::subject::Subject;
 use crate::editor::{Action, Edit, Editor, Selection};
 use crate::image::Thing;
 use crate::scene::Shape;
+use crate::ui::flying::drag_of;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
 use crate::ui::viewport::Place;
@@ -169,7 +170,7 @@ impl Drag {
             }
             return response.dragged();
         }
-        let moved = response.drag_motion();
+        let moved = drag_of(response);
         match self {
             Self::Orbit(about) if moved != egui::Vec2::ZERO => {
                 out.actions.push(Action::Orbit(*about, turn(moved)));

@@ -3,12 +3,13 @@
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Sender, channel};
 
 use egui::{
     Context, Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, TouchPhase, pos2, vec2,
 };
 use glint::ui::{Ask, Dialogs};
+use glint::worker::Background;
 
 use crate::harness::{CTRL, EditorHarness};
 
@@ -39,10 +40,10 @@ impl Unanswered {
 }
 
 impl Dialogs for Unanswered {
-    fn ask(&mut self, _: &Context, _: &Ask, _: PathBuf) -> Receiver<Option<PathBuf>> {
+    fn ask(&mut self, _: &Context, _: &Ask, _: PathBuf) -> Background<Option<PathBuf>> {
         let (sender, receiver) = channel();
         self.0.borrow_mut().push(sender);
-        receiver
+        receiver.into()
     }
 }
 

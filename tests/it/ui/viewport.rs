@@ -62,6 +62,12 @@ fn keys_switch_projection_markers_and_resolution() {
     );
     harness.press(Modifiers::NONE, Key::Escape);
     assert_eq!(harness.editor().mode, Mode::Live);
+    // Typed in passing, a digit or a letter says what it has done.
+    harness.press(Modifiers::NONE, Key::Num0);
+    harness
+        .window
+        .get_by_label("Orthographic projection; P is perspective");
+    harness.press(Modifiers::NONE, Key::P);
     harness.press(Modifiers::NONE, Key::Escape);
     harness.press(Modifiers::NONE, Key::Escape);
     harness.window.get_by_label("Quit Glint?");

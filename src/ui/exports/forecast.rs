@@ -1,0 +1,209 @@
+//! What an export will take: frames, time, room on the disk.
+
+use std::io::Cursor;
+use std::sync::Arc;
+
+use super::fields::Settings;
+use super::video_maker::video_threads;
+use crate::editor::{Editor, Mode};
+use crate::export::{Sequence, Video};
+use crate::image::{Format, Image};
+use crate::ui::pictures::Pictures;
+use crate::ui::status::in_words;
+use crate::words::counted;
+use crate::worker::Background;
+
+/// Bytes of a PNG for each of a PPM, about, where no picture says it.
+const PNG_SHARE: f64 = 0.35;
+/// Bytes of an EXR for each of its numbers as they are in memory, about.
+const EXR_SHARE: f64 = 0.6;
+
+/// Frames of a sequence that are not in their folder as they should be.
+struct Missing {
+    /// How many.
+    count: usize,
+    /// How many of them replace other files.
+    replaced: usize,
+}
+
+/// What was measured on the picture on screen.
+#[derive(Default)]
+struct Sample {
+    /// Bytes of a PNG for each of a PPM.
+    png_share: Option<f64>,
+    /// Seconds that making the video takes.
+    video: Option<f64>,
+}
+
+/// What is known of an export that is asked for. It is found out on other threads.
+#[derive(Default)]
+pub struct Forecast {
+    /// What was looked for in the folder: these settings, at this revision of the scene, after so many exports.
+    sought: Option<(Settings, u64, usize)>,
+    looking: Background<Result<Missing, String>>,
+    found: Option<Result<Missing, String>>,
+    /// Which picture is measured: its revision and width; and for which export.
+    subject: Option<(u64, usize, Settings)>,
+    measuring: Background<Sample>,
+    sample: Sample,
+}
+
+impl Forecast {
+    /// Whether something is being found out.
+    pub fn is_busy(&self) -> bool {
+        self.looking.is_awaited() || self.measuring.is_awaited()
+    }
+
+    /// The folder is going to change.
+    pub fn forget_folder(&mut self) {
+        (self.sought, self.found) = (None, None);
+    }
+
+    /// Takes up what was found out.
+    pub fn update(&mut self) {
+        if let Some(answer) = self.looking.take() {
+            self.found = Some(answer.unwrap_or_else(|no_answer| Err(no_answer.to_string())));
+        }
+        if let Some(Ok(sample)) = self.measuring.take() {
+            self.sample = sample;
+        }
+    }
+
+    /// Looks what is in the folder already; `ended` counts the exports that may have changed it.
+    pub fn look(
+        &mut self,
+        (settings, sequence): (&Settings, &Sequence),
+        editor: &Editor,
+        ended: usize,
+    ) {
+        let sought = (settings.clone(), editor.revision(), ended);
+        if self.looking.is_awaited() || self.sought.as_ref() == Some(&sought) {
+            return;
+        }
+        (self.sought, self.found) = (Some(sought), None);
+        let sequence = sequence.clone();
+        self.looking = Background::start("glint-look", move || missing(&sequence));
+    }
+
+    /// Measures how large and how slow to pack frames like the finished picture on screen are.
+    pub fn measure(
+        &mut self,
+        (settings, sequence): (&Settings, &Sequence),
+        editor: &Editor,
+        pictures: &Pictures,
+    ) {
+        let frame = pictures.whole(editor);
+        // A picture of 64 pixels says little of larger ones, and there is no hurry while it plays.
+        let is_meant = editor.mode != Mode::LowRes && !editor.timeline().is_playing;
+        let Some(frame) = frame.filter(|_| is_meant && !self.measuring.is_awaited()) else {
+            return;
+        };
+        let subject = (frame.revision, frame.image.width, settings.clone());
+        if self.subject.as_ref() != Some(&subject) {
+            (self.subject, self.sample.video) = (Some(subject), None);
+            let (image, video) = (Arc::clone(&frame.image), settings.video);
+            let sequence = sequence.clone();
+            let measure = move || Sample::of(&image, &sequence, video);
+            self.measuring = Background::start("glint-sample", measure);
+        }
+    }
+
+    /// In words, where a pixel takes so many milliseconds to trace, if that is known.
+    pub fn describe(
+        &self,
+        settings: &Settings,
+        sequence: &Sequence,
+        millis: Option<f64>,
+    ) -> String {
+        let total = sequence.frames.count();
+        let (missing, what) = match &self.found {
+            None => (
+                total,
+                format!("{}, looking into the folder…", counted(total, "frame")),
+            ),
+            Some(Err(error)) => (total, error.clone()),
+            Some(Ok(Missing { count: 0, .. })) => {
+                (0, format!("all {} are there", counted(total, "frame")))
+            }
+            Some(Ok(missing)) => (missing.count, missing.describe(total)),
+        };
+        let pixels = f64::from(settings.width) * f64::from(settings.height);
+        let about = |seconds: Option<f64>| {
+            seconds.map_or(String::new(), |seconds| {
+                format!(", about {}", in_words(seconds))
+            })
+        };
+        let frames = if missing == 0 {
+            String::new()
+        } else {
+            let megabytes = pixels * self.bytes(settings.format) * missing as f64 / 1e6;
+            let seconds = millis.map(|millis| millis * pixels * missing as f64 / 1e3);
+            format!("{}, {megabytes:.0} MB", about(seconds))
+        };
+        let video = settings.video(sequence).map(|(path, video)| {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let is_of_this = |(.., of): &(u64, usize, Settings)| of == settings;
+            let is_known = self.subject.as_ref().is_some_and(is_of_this);
+            let time = about(self.sample.video.filter(|_| is_known));
+            let remark = video.check(sequence).ok().flatten();
+            let remark = remark.map_or(String::new(), |remark| format!("; {remark}"));
+            format!(", then {name}{time}{remark}")
+        });
+        format!("{what}{frames}{}", video.unwrap_or_default())
+    }
+
+    /// Bytes of a pixel.
+    fn bytes(&self, format: Format) -> f64 {
+        match format {
+            Format::Ppm => 3.0,
+            Format::Png => 3.0 * self.sample.png_share.unwrap_or(PNG_SHARE),
+            Format::Exr => 12.0 * EXR_SHARE,
+        }
+    }
+}
+
+impl Missing {
+    /// In words, of so many frames in all.
+    fn describe(&self, total: usize) -> String {
+        let stay = match total - self.count {
+            0 => String::new(),
+            1 => ", 1 is there and stays".to_owned(),
+            there => format!(", {there} are there and stay"),
+        };
+        let replace = match self.replaced {
+            0 => String::new(),
+            1 => ", 1 replaces an older file".to_owned(),
+            replaced => format!(", {replaced} replace older files"),
+        };
+        format!("{} to make{stay}{replace}", counted(self.count, "frame"))
+    }
+}
+
+impl Sample {
+    fn of(image: &Image, sequence: &Sequence, video: Option<Video>) -> Self {
+        let pixels = image.pixels.len().max(1) as f64;
+        let mut file = Cursor::new(Vec::new());
+        let encoded = image.encode(Format::Png, &mut file);
+        let time = video.and_then(|video| video.forecast(sequence, image, video_threads()));
+        Self {
+            png_share: encoded
+                .ok()
+                .map(|()| file.into_inner().len() as f64 / (3.0 * pixels)),
+            video: time.map(|time| time.as_secs_f64()),
+        }
+    }
+}
+
+fn missing(sequence: &Sequence) -> Result<Missing, String> {
+    // A folder that is not there has no frames; looking must not make it.
+    if !sequence.folder.exists() {
+        let count = sequence.frames.count();
+        return Ok(Missing { count, replaced: 0 });
+    }
+    let missing = sequence.missing().map_err(|error| error.to_string())?;
+    let is_there = |frame: &&u64| sequence.path(**frame).exists();
+    Ok(Missing {
+        count: missing.len(),
+        replaced: missing.iter().filter(is_there).count(),
+    })
+}
