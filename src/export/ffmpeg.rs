@@ -121,7 +121,7 @@ fn feed(
 fn without_ffmpeg(sequence: &Sequence, path: &Path, codec: &str) -> String {
     match command(sequence, path, codec) {
         Some(command) => format!("this makes the video of them:\n{command}"),
-        None => "the same command makes the video of them once it is".to_owned(),
+        None => "exporting once more makes the video of them, once it is".to_owned(),
     }
 }
 
@@ -150,7 +150,7 @@ fn command(sequence: &Sequence, path: &Path, codec: &str) -> Option<String> {
         return None;
     }
     let files = sequence.frames.iter();
-    let files = files.map(|frame| quoted(&sequence.path(frame).display().to_string()));
+    let files = files.map(|frame| quoted(&absolute(&sequence.path(frame)).display().to_string()));
     let files = files.collect::<Vec<String>>().join(" ");
     Some(format!(
         "cat {files} | ffmpeg -f image2pipe -framerate {fps} -i - {codec} {output}"

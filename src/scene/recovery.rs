@@ -121,10 +121,10 @@ fn take(path: &Path, of: Option<&Path>, to: &Path) -> Option<Leftover> {
     };
     let stamp = Stamp::of_hash(base, Path::new(first));
     let mut document = Document::from_text(body).ok()?;
-    document.scene.load_meshes(Path::new(first).parent());
-    // Where it cannot be moved, it is found once more.
-    let _ = fs::rename(path, to);
+    // What cannot be moved stays where it is: taken all the same, it would be found again and again.
+    fs::rename(path, to).ok()?;
     let _ = fs::remove_file(&lock_path);
+    document.scene.load_meshes(Path::new(first).parent());
     Some(Leftover {
         document,
         path: (!first.is_empty()).then(|| PathBuf::from(first)),

@@ -395,7 +395,7 @@ impl eframe::App for App {
             || dragged(&ctx).is_some()
             || self.tools.is_dragging()
             || self.timeline.is_dragging()
-            || self.overlay.is_dragging();
+            || self.overlay.is_dragging(&ctx);
         let messages = std::mem::take(&mut self.editor.messages);
         self.toasts.push(&ctx, messages);
         self.toasts.show(&ctx, place.rect, self.exports.place());

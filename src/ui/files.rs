@@ -223,7 +223,7 @@ impl Files {
             (Question::Quit, Answer::Yes) => Some(FileOutcome::Quit),
             (Question::Path(wish, mut prompt), Answer::Yes) => {
                 let outcome = self.answered(&ctx, editor, wish.clone(), prompt.path());
-                if self.is_free()
+                if wish.document == editor.documents()
                     && let Some(why) = editor.take_error(wish.ask.title())
                 {
                     prompt.refuse(why);

@@ -1,7 +1,7 @@
 //! From held keys and mouse moves to steps of a flight. Speeds are per second, whatever the frame
 //! rate.
 
-use egui::{Context, Event, Key, PointerButton, Response, Ui, Vec2};
+use egui::{Context, Event, Key, PointerButton, Response, Ui, Vec2, vec2};
 
 use super::flight_keys::{FLIGHT, FlightKey};
 use crate::editor::Motion;
@@ -257,13 +257,11 @@ fn speed(scene: &Scene) -> f64 {
         PLAIN_SPEED
     }
 }
+
 /// How far the pointer was dragged over the picture, in points. At the edge of the screen it stays, and the mouse goes on;
 /// a pen, or a mouse of another machine, has no motion but the pointer's.
 pub fn drag_of(picture: &Response) -> Vec2 {
-    let moved = picture.drag_delta();
-    if moved == Vec2::ZERO {
-        picture.drag_motion()
-    } else {
-        moved
-    }
+    let (moved, motion) = (picture.drag_delta(), picture.drag_motion());
+    let along = |moved: f32, motion: f32| if moved == 0.0 { motion } else { moved };
+    vec2(along(moved.x, motion.x), along(moved.y, motion.y))
 }

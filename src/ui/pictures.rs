@@ -262,6 +262,10 @@ impl Pictures {
             }
             return;
         }
+        if !self.worker.is_tracing_still() {
+            // What is on its way is not asked for again; what has failed is.
+            self.still_requested = None;
+        }
         let (size, pace) = match editor.mode {
             Mode::LowRes => (low_res(pixels), Pace::Whole),
             // A frame of the animation has its time, and no more.

@@ -98,7 +98,8 @@ impl Worker {
 
     /// Whether a question waits for its answer.
     pub fn is_asked(&self) -> bool {
-        self.shared.mailbox().has(JobKind::Query)
+        let mailbox = self.shared.mailbox();
+        mailbox.has(JobKind::Query) || mailbox.has(JobKind::Quality)
     }
 
     /// The answers since the last call.
@@ -141,6 +142,12 @@ impl Worker {
     /// The study as far as it is measured, if it has got on since the last call.
     pub fn take_study(&self) -> Option<Study> {
         self.shared.outbox().study.take()
+    }
+
+    /// Whether a still picture is being traced, or waits for that.
+    pub fn is_tracing_still(&self) -> bool {
+        let mailbox = self.shared.mailbox();
+        mailbox.has(JobKind::Still) || mailbox.has(JobKind::Save)
     }
 
     /// Whether a picture is being written, or waits for that.

@@ -36,10 +36,13 @@ pub enum JobKind {
 
 impl JobKind {
     /// Whether a new job of this kind stops one that runs: if it is more urgent, or takes its place.
-    /// Small pictures are done before anything could be gained by stopping them.
+    /// Small pictures are done before anything could be gained by stopping them, and stop no measuring, which begins
+    /// anew then.
     pub fn preempts(self, running: Self) -> bool {
         let replaces = self == running && self.is_replaced();
-        running != Self::Thumbnail && (self < running || replaces)
+        let waits =
+            running == Self::Thumbnail || (self, running) == (Self::Thumbnail, Self::Quality);
+        !waits && (self < running || replaces)
     }
 
     /// Whether a new job of this kind takes the place of the one before.

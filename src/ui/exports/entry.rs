@@ -1,6 +1,6 @@
 //! One export of the list: its frames, then its video.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use egui::{Image as Picture, TextureHandle, TextureOptions, Ui, vec2};
 
@@ -27,6 +27,8 @@ pub struct Entry {
     video: Option<VideoMaker>,
     /// Where its frames are: their folder, and their names and ending.
     files: (PathBuf, String),
+    /// The first and the last of them.
+    frames: (u64, u64),
     /// A small picture of the frame that was written last, and how many were before it.
     thumb: Option<(usize, TextureHandle)>,
 }
@@ -35,6 +37,7 @@ impl Entry {
     /// What was ordered, as these frames.
     pub fn new(id: u64, order: Order, sequence: Sequence) -> Self {
         let (video, files) = (order.settings.video(&sequence), files_of(&sequence));
+        let frames = ends_of(&sequence);
         let video = video.map(|(path, video)| VideoMaker::new(sequence, path, video));
         Self {
             id,
@@ -42,6 +45,7 @@ impl Entry {
             order: Some(order),
             video,
             files,
+            frames,
             thumb: None,
         }
     }
@@ -64,9 +68,18 @@ impl Entry {
         Some(format!("video {done}/{}", video.frames()))
     }
 
-    /// Whether its frames are files of the same names.
+    /// Whether its frames are files of the same names, whichever.
     pub fn writes_files_of(&self, sequence: &Sequence) -> bool {
         self.files == files_of(sequence)
+    }
+
+    /// Whether it goes on and writes files that this would write as well, with this video.
+    pub fn is_in_the_way_of(&self, sequence: &Sequence, video: Option<&Path>) -> bool {
+        let frames = ends_of(sequence);
+        let meets = self.frames.0 <= frames.1 && frames.0 <= self.frames.1;
+        let own = self.video.as_ref().map(|video| video.path.as_path());
+        let has_video = video.is_some() && own == video;
+        !self.is_over() && (has_video || meets && self.writes_files_of(sequence))
     }
 
     /// Goes on to what is next, for what its frames are now; `None` if they were given up. The order, if it
@@ -180,6 +193,12 @@ impl Entry {
         }
         ui.add(Picture::new(&*texture).fit_to_exact_size(vec2(THUMB, THUMB)));
     }
+}
+
+/// The first and the last frame of a sequence.
+fn ends_of(sequence: &Sequence) -> (u64, u64) {
+    let first = sequence.frames.iter().next().unwrap_or(1);
+    (first, sequence.frames.last().unwrap_or(first))
 }
 
 /// Where the frames of a sequence are: their folder, and their names and ending.

@@ -240,7 +240,7 @@ impl Exports {
         let sequence = settings.sequence(editor.scene());
         let is_making = sequence
             .as_ref()
-            .is_ok_and(|sequence| self.is_making(sequence));
+            .is_ok_and(|sequence| self.is_making(&settings, sequence));
         let colors = palette(ui.ctx());
         self.forecast.update();
         match &sequence {
@@ -248,7 +248,7 @@ impl Exports {
                 ui.colored_label(colors.error, error.to_string());
             }
             Ok(_) if is_making => {
-                ui.label("Files of these names are being made: see below");
+                ui.label("Such files are being made: see below");
             }
             Ok(sequence) => {
                 let forecast = &mut self.forecast;
@@ -277,10 +277,11 @@ impl Exports {
         });
     }
 
-    /// Whether files of these names are ordered: two exports would replace each other's.
-    fn is_making(&self, sequence: &Sequence) -> bool {
-        let mut going = self.entries.iter().filter(|entry| !entry.is_over());
-        going.any(|entry| entry.writes_files_of(sequence))
+    /// Whether such files are ordered: two exports would replace each other's.
+    fn is_making(&self, settings: &Settings, sequence: &Sequence) -> bool {
+        let video = settings.video(sequence).map(|(path, _)| path);
+        let mut entries = self.entries.iter();
+        entries.any(|entry| entry.is_in_the_way_of(sequence, video.as_deref()))
     }
 
     /// Puts an order into the queue.
@@ -347,6 +348,10 @@ impl Exports {
         if let Some(index) = resumed {
             let order = self.interrupted.remove(index);
             match order.sequence() {
+                Ok(sequence) if self.is_making(&order.settings, &sequence) => {
+                    editor.notify("Another export makes such files: wait for it".to_owned());
+                    self.interrupted.push(order);
+                }
                 Ok(sequence) => self.begin(order, sequence, editor, pictures),
                 Err(error) => {
                     editor.report_error_in(EXPORT, format!("{}: {error}", order.name));

@@ -82,9 +82,6 @@ impl Order {
     /// An order that was left; its place, if it is none.
     fn read(leftover: Leftover, place: Recovery) -> Result<Self, Recovery> {
         let Leftover { document, path, .. } = leftover;
-        // It was taken out of where it was left, and belongs to this program now.
-        let text = document.to_text().ok();
-        let kept = text.and_then(|text| place.keep(&text, path.as_deref(), None).ok());
         let line = document.header.lines().next();
         let line = line.and_then(|line| line.strip_prefix(MARK));
         let settings = line.and_then(|line| serde_json::from_str::<Settings>(line).ok());
@@ -98,7 +95,7 @@ impl Order {
             settings,
             why: None,
             scene: Arc::new(document.scene),
-            place: kept.map(|()| Arc::new(place)),
+            place: Some(Arc::new(place)),
             writing: Background::default(),
         })
     }

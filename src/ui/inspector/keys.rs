@@ -28,10 +28,14 @@ const STAYING: [Interpolation; 3] = [
 /// Time, way and value of the selected key; of several, the time of the earliest, which the others follow, and way and
 /// pace of the first, which others take on.
 pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
-    if !ui.input(|input| input.pointer.any_down()) {
-        ui.data_mut(|data| data.remove::<Moved>(drag_id()));
-    }
     let animation = &editor.scene().animation;
+    if !ui.input(|input| input.pointer.any_down()) {
+        let moved: Option<Moved> = ui.data_mut(|data| data.remove_temp(drag_id()));
+        let before = moved.map_or(0, |moved| moved.animation.places().len());
+        let replaced = before.saturating_sub(animation.places().len());
+        out.actions
+            .extend(told_of_replaced(replaced).map(Action::Tell));
+    }
     let Some(&first) = places.first() else { return };
     let pace = animation.at_place(first).map(|(_, pace)| pace);
     let (Some(pace), Some((time, last))) = (pace, animation.span_of(places)) else {
@@ -127,7 +131,7 @@ fn point_field(target: &Target) -> Field {
 }
 
 /// A key before its time was dragged: it replaces what it lands on, and not what it passes.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 struct Moved {
     animation: Arc<Animation>,
     places: Keys,
@@ -146,20 +150,12 @@ fn move_key(ui: &Ui, editor: &Editor, to: f64, out: &mut UiRequests) {
         places: places.clone(),
         time,
     };
-    // A typed time has nothing to remember: it is one step.
+    // Of a typed time, for what is told of it in the next frame.
     let before = ui.data_mut(|data| data.get_temp_mut_or_insert_with(drag_id(), now).clone());
     let later = to - before.time;
     let (moved, new) = before.animation.with_moved(&before.places, later, false);
-    let count = before.animation.places().len();
-    let replaced = count.saturating_sub(moved.places().len());
-    let is_typed = !ui.input(|input| input.pointer.any_down());
     out.edit(Edit::animation(moved, "Key: time"));
     out.select(new);
-    out.actions.extend(
-        told_of_replaced(replaced)
-            .filter(|_| is_typed)
-            .map(Action::Tell),
-    );
 }
 
 /// What is said where keys that are moved have replaced so many others.

@@ -1,6 +1,6 @@
 //! The flight in the view: its way, a tick for each frame, and its keys, which can be dragged.
 
-use egui::{Color32, Painter, Pos2, Rect, Sense, Stroke, Ui, vec2};
+use egui::{Color32, Context, Painter, Pos2, Rect, Sense, Stroke, Ui, vec2};
 
 use glam::DVec3;
 
@@ -163,8 +163,11 @@ impl Overlay {
         if extent > 0.0 { extent } else { 1.0 }
     }
 
-    /// Whether a key is being dragged.
-    pub fn is_dragging(&self) -> bool {
+    /// Whether a key is being dragged, which may be out of sight by now.
+    pub fn is_dragging(&mut self, ctx: &Context) -> bool {
+        if !ctx.input(|input| input.pointer.any_down()) {
+            self.dragged = None;
+        }
         self.dragged.is_some()
     }
 
