@@ -121,7 +121,7 @@ fn feed(
 fn without_ffmpeg(sequence: &Sequence, path: &Path, codec: &str) -> String {
     match command(sequence, path, codec) {
         Some(command) => format!("this makes the video of them:\n{command}"),
-        None => "exporting once more makes the video of them, once it is".to_owned(),
+        None => "exporting once more makes the video of them when ffmpeg is there".to_owned(),
     }
 }
 
