@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec3;
 
 use super::{ArcLengthSpline, Closing, Curve};
-use crate::scene::{Camera, Easing, Interpolation, Key, Orientation};
+use crate::scene::{Camera, Easing, Interpolation, Key, Orientation, SAME_TIME};
 
 /// How near to the axis of an orbit a place counts as on it, as a share of how far the other is.
 const ON_AXIS: f64 = 1e-9;
@@ -109,6 +109,7 @@ impl CameraPath {
         };
         let along = eased(from.easing, (time - from.time) / (to.time - from.time));
         let camera = match (from.interpolation, self.smooth[i]) {
+            (Interpolation::Hold, _) if to.time - time < SAME_TIME => to.value.clone(),
             (Interpolation::Hold, _) => from.value.clone(),
             (_, Some((run, index))) => self.on_curve(i, &self.runs[run], index, along),
             (Interpolation::Orbit { around }, _) => {

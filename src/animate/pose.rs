@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::path::{eased, orbit};
 use super::{ArcLengthSpline, CameraPath, Closing, Curve};
-use crate::scene::{Camera, Interpolation, Key, Owners, Scene, Value};
+use crate::scene::{Camera, Interpolation, Key, Owners, SAME_TIME, Scene, Value};
 
 /// The scene as it is at `time` in seconds, seen by its own camera: every track has set its value.
 pub fn pose(scene: &Arc<Scene>, time: f64) -> Arc<Scene> {
@@ -48,6 +48,7 @@ fn value_at(keys: &[Key<Value>], time: f64) -> Option<Value> {
     };
     let along = eased(from.easing, (time - from.time) / (to.time - from.time));
     Some(match (from.value, to.value, from.interpolation) {
+        (_, _, Interpolation::Hold) if to.time - time < SAME_TIME => to.value,
         (_, _, Interpolation::Hold) => from.value,
         (Value::Number(_), Value::Number(_), Interpolation::Smooth) => {
             let (run, place) = run_around(keys, i);
@@ -143,6 +144,7 @@ pub fn motion_between(from: &Camera, to: &Camera) -> CameraChange {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Animation;
     use proptest::prelude::*;
 
     /// Few places, so that keys stay where they are for a while, and smooth segments with others between them.
@@ -164,6 +166,20 @@ mod tests {
             });
             keys.collect()
         })
+    }
+
+    #[test]
+    fn what_is_written_with_six_digits_is_at_its_frame() {
+        let hold = |time: f64, value: f64| Key {
+            interpolation: Interpolation::Hold,
+            ..Key::new(time, Value::Number(value))
+        };
+        let keys = [hold(0.0, 1.0), hold(0.071_429, 2.0)];
+        for (frame, expected) in [(1.0, 2.0), (0.99, 1.0)] {
+            assert_eq!(value_at(&keys, frame / 14.0), Some(Value::Number(expected)));
+        }
+        assert_eq!(Animation::frames_in(0.333_333, 30.0), 11);
+        assert_eq!(Animation::frames_in(0.333_33, 30.0), 10);
     }
 
     /// The whole run that a segment is in.

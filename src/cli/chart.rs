@@ -15,7 +15,7 @@ use super::goal::{error, time};
 use super::scene::read_scene;
 use super::target::{check_text, picture_format};
 use crate::export::write_text;
-use crate::files::processor;
+use crate::files::{is_same_file, processor};
 use crate::lab::{
     Figure, Growth, PictureLook, Study, capitalised, cheapest_within, closest_within, csv, scaling,
     scaling_csv, table,
@@ -102,6 +102,13 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
     // A name that cannot be written is known before the first ray.
     picture_format(args.png.as_deref())?;
     check_text(args.csv.as_deref())?;
+    if let Some(path) = &args.csv
+        && args.scenes.iter().any(|scene| is_same_file(scene, path))
+    {
+        let path = path.display();
+        let sentence = format!("{path} is the scene: give the figures another name");
+        return Err(CliError::usage(sentence));
+    }
     let threads = args.threads.start()?;
     if args.growth {
         return grow(args, &threads);

@@ -64,13 +64,20 @@ fn write_scene(args: &ConvertArgs) -> Result<(), CliError> {
         report_warning(&format!("{}: {note}", args.input.display()));
     }
     check(&scene).map_err(|problem| {
-        CliError::failed(format!("{}: {}", input.display(), problem.sentence))
+        let (name, sentence) = (input.display(), problem.sentence);
+        CliError::usage(format!(
+            "{name}: no scene shows this mesh whole: {sentence}"
+        ))
     })?;
     let objects = scene.objects.len();
     let faces: usize = scene.faces();
-    Document::of(scene)
-        .save(&output)
-        .map_err(CliError::failed)?;
+    let backup = Document::of(scene).save(&output);
+    if let Some(backup) = backup.map_err(CliError::failed)? {
+        let (name, backup) = (args.output.display(), backup.display());
+        report_warning(&format!(
+            "what was in {name} had comments, and is kept as {backup}"
+        ));
+    }
     say(&format!(
         "{}: {}, {}",
         args.output.display(),

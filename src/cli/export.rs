@@ -11,11 +11,11 @@ use indicatif::ProgressBar;
 use super::args::{SizeArgs, ThreadsArgs};
 use super::bar::{TICK, progress_bar, restyle};
 use super::error::{CliError, report_warning, say};
-use super::scene::read_whole_scene;
+use super::scene::read_whole_document;
 use crate::export::{ExportError, ExportStep, Exported, Exporting};
 use crate::export::{Frames, Pattern, Sequence, Video, check_place, write_job};
 use crate::image::Format;
-use crate::scene::{Document, Method as _, Sampling};
+use crate::scene::{Method as _, Sampling, Scene};
 use crate::trace::{RenderControl, Threads};
 use crate::words::counted;
 
@@ -78,8 +78,8 @@ fn format_of(word: &str) -> Result<Format, String> {
 }
 
 impl What {
-    fn sequence(&self, folder: PathBuf) -> Result<Sequence, CliError> {
-        let mut scene = read_whole_scene(&self.scene)?;
+    /// The frames of a scene.
+    fn sequence(&self, mut scene: Scene, folder: PathBuf) -> Result<Sequence, CliError> {
         let render = &mut scene.render;
         (render.width, render.height) = self.size.of((render.width, render.height));
         render.antialias = self.antialias.unwrap_or(render.antialias);
@@ -97,7 +97,8 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
     let video = args.video.as_deref();
     let video = video.map(|path| Video::of_path(path).map(|video| (path, video)));
     let video = video.transpose().map_err(CliError::usage)?;
-    let sequence = args.what.sequence(args.output.clone())?;
+    let scene = read_whole_document(&args.what.scene)?.scene;
+    let sequence = args.what.sequence(scene, args.output.clone())?;
     if let Some((path, video)) = video {
         let remark = video.check(&sequence).map_err(CliError::usage)?;
         // It may be in the folder of the frames, which need not be there yet.
@@ -169,7 +170,7 @@ fn export(
     threads: &Threads,
     reporter: &ProgressReporter,
 ) -> Result<Exported, CliError> {
-    let again = "; what is done stays, and the same command goes on from there";
+    let again = "; what is done stays: once that is put right, the same command goes on from there";
     let failed = |error: ExportError| CliError::failed(format!("{error}{again}"));
     let mut exporting = Exporting::new(sequence)?.side_by_side();
     let control = RenderControl::default();
@@ -181,7 +182,9 @@ fn export(
                 ExportStep::Failed(error) => return Err(failed(error)),
             }
         }
-        exporting.finish().map_err(failed)
+        let done = exporting.finish().map_err(failed)?;
+        reporter.tell(done);
+        Ok(done)
     })
 }
 
@@ -211,16 +214,20 @@ impl ProgressReporter {
 
     fn tell(&self, done: Exported) {
         let so_far = done.kept + done.written;
+        if so_far > 0 && self.bar.position() == so_far as u64 {
+            return;
+        }
         if self.bar.position() == 0 && so_far > 0 {
             let style = "{spinner} {bar:32} {pos}/{len} frames  {per_sec}  {eta} left";
             restyle(&self.bar, style);
         }
         self.bar.set_position(so_far as u64);
-        if self.is_openjd {
+        // That all is done is said when it is, of the video too.
+        if self.is_openjd && so_far < done.total {
             let share = so_far as f64 * 100.0 / done.total.max(1) as f64;
             say(&format!("openjd_progress: {share:.1}"));
-            self.say_status(&format!("{so_far} of {} frames", done.total));
         }
+        self.say_status(&format!("{so_far} of {} frames", done.total));
     }
 
     fn say_status(&self, status: &str) {
@@ -247,9 +254,12 @@ impl ProgressReporter {
 /// # Errors
 /// [`CliError`]: arguments that fit no scene, or a file that cannot be written.
 pub fn run_job(args: &JobArgs) -> Result<(), CliError> {
-    let sequence = args.what.sequence(PathBuf::from("frames"))?;
     let (file, path) = (&args.what.scene, &args.output);
-    let job = write_job(&Document::load(file)?, Some(file), &sequence, path);
+    let document = read_whole_document(file)?;
+    let sequence = args
+        .what
+        .sequence(document.scene.clone(), PathBuf::from("frames"))?;
+    let job = write_job(&document, Some(file), &sequence, path);
     let job = job.map_err(CliError::failed)?;
     let frames = counted(sequence.frames.count(), "frame");
     say(&format!("{}: a job of {frames}", path.display()));

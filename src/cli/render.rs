@@ -12,7 +12,7 @@ use super::args::{MAX_TIMES, SizeArgs, ThreadsArgs, whole};
 use super::bar::{SHARE, TICK, progress_bar};
 use super::error::{CliError, say};
 use super::goal::{error, time};
-use super::scene::{read_scene, read_whole_scene};
+use super::scene::{read_scene, read_whole_document};
 use super::settings::SettingArgs;
 use super::target::picture_format;
 use crate::animate::{CameraPath, shot};
@@ -111,7 +111,7 @@ pub fn run(args: &RenderArgs) -> Result<(), CliError> {
     let format = picture_format(args.output.as_deref())?;
     let mut scene = match args.frame {
         None => read_scene(&args.scene)?,
-        Some(_) => read_whole_scene(&args.scene)?,
+        Some(_) => read_whole_document(&args.scene)?.scene,
     };
     let threads = args.threads.start()?;
     if let Some(frame) = args.frame {

@@ -21,10 +21,10 @@ pub fn read_scene(path: &Path) -> Result<Scene, CliError> {
 ///
 /// # Errors
 /// [`CliError::Usage`], for a file that is no scene; [`CliError::Failed`], if a mesh of it could not be read.
-pub fn read_whole_scene(path: &Path) -> Result<Scene, CliError> {
-    let scene = Document::load(path)?.scene;
-    match missing_meshes(path, &scene).first() {
-        None => Ok(scene),
+pub fn read_whole_document(path: &Path) -> Result<Document, CliError> {
+    let document = Document::load(path)?;
+    match missing_meshes(path, &document.scene).first() {
+        None => Ok(document),
         Some(problem) => {
             let sentence = format!("{problem}, and no frame is made without it");
             Err(CliError::failed(sentence))

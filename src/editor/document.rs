@@ -240,6 +240,11 @@ impl Editor {
         self.history.end_gesture(&self.scene);
     }
 
+    /// Whether edits of the same kind are one step.
+    pub fn is_in_gesture(&self) -> bool {
+        self.history.is_in_gesture()
+    }
+
     /// Starts a document from an empty scene.
     pub fn start_new(&mut self) {
         self.replace(Document::of(Scene::empty()), None);
@@ -283,7 +288,7 @@ impl Editor {
         (self.is_dirty, self.is_gone) = (false, false);
         let kept = backup.map_or(String::new(), |backup| {
             format!(
-                "; the file had comments inside, so it was kept as {}",
+                "; the file that was there had other comments, and is kept as {}",
                 backup.display()
             )
         });

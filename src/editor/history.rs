@@ -73,6 +73,11 @@ impl History {
         }
     }
 
+    /// Whether a gesture goes on.
+    pub fn is_in_gesture(&self) -> bool {
+        self.gesture.is_some()
+    }
+
     /// The next edit is a step of its own. A gesture that ends `here`, where it began, was none.
     pub fn end_gesture(&mut self, here: &Scene) {
         let aside = std::mem::take(&mut self.aside);

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::error::ExportError;
-use super::save::{disk, write_text};
+use super::save::{check_place, disk, write_text};
 use super::sequence::Sequence;
 use crate::files::{back_up, is_same_file, read_file, write_atomic};
 use crate::scene::{Document, SceneError};
@@ -86,6 +86,8 @@ pub fn write_job(
     if frames.len() > LONGEST {
         return Err(JobError::TooManyPieces(frames));
     }
+    // Nothing is moved out of the way of a template that cannot be written.
+    check_place(path)?;
     let is_copied = !file.is_some_and(|file| is_same_file(file, &scene));
     let backup = if is_copied {
         write_scene(document, file.filter(|_| !has_files), &scene)?
@@ -118,7 +120,8 @@ fn write_scene(
     path: &Path,
 ) -> Result<Option<PathBuf>, JobError> {
     let disk = |source| disk(path, source);
-    let text = if let Some(file) = file {
+    // What comes through a pipe comes once.
+    let text = if let Some(file) = file.filter(|file| file.is_file()) {
         fs::read(file).map_err(disk)?
     } else {
         let (header, scene) = (document.header.clone(), document.scene.taken_in());

@@ -27,7 +27,7 @@ const MOST_PIXELS: usize = 1 << 26;
 #[derive(Clone, Debug)]
 pub struct Sequence {
     scene: Arc<Scene>,
-    path: CameraPath,
+    path: Arc<CameraPath>,
     /// The frames.
     pub frames: Frames,
     /// Their names.
@@ -77,7 +77,7 @@ impl Sequence {
             return Err(NoSuchFrame { frame: last, count }.into());
         }
         Ok(Self {
-            path: CameraPath::new(&scene.animation.keys),
+            path: Arc::new(CameraPath::new(&scene.animation.keys)),
             scene,
             frames,
             pattern,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::candidates::{OWN, POVRAY};
 use super::measure::ErrorMetrics;
-use super::study::{Measurement, Reference, Study};
+use super::study::{Measurement, REFERENCE_SAMPLES, Reference, Study};
 use crate::export::{fingerprint, save_image, write_text};
 use crate::files::{make_folder, remove_oldest};
 use crate::image::{Film, Format, Image};
@@ -23,6 +23,8 @@ struct Kept {
     machine: String,
     width: u32,
     height: u32,
+    /// What the errors are measured against: with another, they are others.
+    reference_samples: u32,
     reference_rmse: f64,
     dots: Vec<KeptDot>,
 }
@@ -90,6 +92,7 @@ fn try_keep(study: &Study, machine: &str, folder: &Path) -> Option<()> {
         machine: machine.to_owned(),
         width,
         height,
+        reference_samples: REFERENCE_SAMPLES,
         reference_rmse: reference.rmse,
         dots,
     };
@@ -112,6 +115,7 @@ pub fn kept(scene: &Arc<Scene>, side: u32, machine: &str, folder: &Path) -> Opti
     let names = kept.dots.iter().map(|dot| &dot.name);
     let is_same = names.eq(study.measurements.iter().map(|dot| &dot.candidate.name))
         && kept.machine == machine
+        && kept.reference_samples == REFERENCE_SAMPLES
         && (kept.width, kept.height) == study.size();
     if !is_same {
         return None;

@@ -48,5 +48,5 @@ pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, difference, trace_light};
 pub use pareto_front::{cheapest_within, closest_within, front};
 pub use quality::{Choice, Goal, choose};
 pub use scaling::{SharedPicture, scaling, scaling_csv};
-pub use study::{Measurement, Reference, Study, Timing};
+pub use study::{Measurement, REFERENCE_SAMPLES, Reference, Study, Timing};
 pub use table::{csv, table};

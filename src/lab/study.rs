@@ -11,10 +11,12 @@ use crate::plan::{Planner, RenderRequest};
 use crate::scene::{Precision, Sampling, Scene};
 use crate::trace::{RenderControl, Threads, Tracer};
 
-/// Samples along each side of a pixel of the reference, and of a second one with samples in other
-/// places, which tells how far the first is off.
-const REFERENCE_GRIDS: [u32; 2] = [64, 61];
-/// A reference is traced in so many pieces, between which more urgent work can go first.
+/// Samples along each side of a pixel of the two pictures whose mean is the reference. They have no place in common
+/// but the middle of the pixel, so that they are off in other ways, and what they differ by tells how far.
+const REFERENCE_GRIDS: [u32; 2] = [43, 47];
+/// Samples of the reference per pixel.
+pub const REFERENCE_SAMPLES: u32 = REFERENCE_GRIDS[0].pow(2) + REFERENCE_GRIDS[1].pow(2);
+/// Each of the two is traced in so many pieces, between which more urgent work can go first.
 const REFERENCE_PIECES: usize = 32;
 /// What the references count for in the progress, in timed runs.
 const REFERENCE_WORTH: f64 = 100.0;
@@ -61,8 +63,8 @@ pub struct Timing {
 /// What the errors are measured against.
 #[derive(Clone, Debug)]
 pub struct Reference {
-    /// How far it is off itself: what two references with samples in other places differ by,
-    /// over √2.
+    /// How far it is off itself: half of what the two pictures differ by whose mean it is, which is the standard error
+    /// of a mean of two.
     pub rmse: f64,
     /// The picture.
     pub picture: Arc<Image>,
@@ -73,7 +75,8 @@ pub struct Reference {
 pub struct Study {
     scene: Arc<Scene>,
     size: (u32, u32),
-    /// The reference and the second one, as many rows as are traced.
+    /// The two pictures whose mean is the reference, as many rows as are traced; their mean in place of the first, once
+    /// it is known.
     references: [Arc<Vec<LinearRgb>>; 2],
     /// There once the reference is.
     pub reference: Option<Reference>,
@@ -176,7 +179,7 @@ impl Study {
         (done > 0.0).then(|| self.spent.mul_f64((1.0 - done) / done))
     }
 
-    /// A few rows of a reference, or what the two differ by when both are there.
+    /// A few rows of one of the two pictures, or their mean when both are there.
     fn find_reference(&mut self, control: &RenderControl) {
         let (width, height) = (self.size.0 as usize, self.size.1 as usize);
         let unfinished = self
@@ -184,11 +187,12 @@ impl Study {
             .iter()
             .position(|reference| reference.len() < width * height);
         let Some(index) = unfinished else {
-            let rmse = difference(&self.references[1], &self.references[0]).rmse / 2.0_f64.sqrt();
-            self.reference = Some(Reference {
-                rmse,
-                picture: Arc::new(eight_bits(self.references[0].to_vec(), (width, height))),
-            });
+            let [first, second] = std::mem::take(&mut self.references);
+            let rmse = difference(&first, &second).rmse / 2.0;
+            let mean = mean_of(&first, &second);
+            let picture = Arc::new(eight_bits(mean.clone(), (width, height)));
+            self.reference = Some(Reference { rmse, picture });
+            self.references[0] = Arc::new(mean);
             return;
         };
         let request = RenderRequest {
@@ -284,6 +288,14 @@ impl Study {
     }
 }
 
+/// Half of each of two pictures of the same size.
+fn mean_of(first: &[LinearRgb], second: &[LinearRgb]) -> Vec<LinearRgb> {
+    let pixels = first.iter().zip(second);
+    pixels
+        .map(|(a, b)| std::array::from_fn(|channel| 0.5 * (a[channel] + b[channel])))
+        .collect()
+}
+
 /// The finished picture, as the user would get it.
 fn draw(
     candidate: &Candidate,
@@ -356,6 +368,7 @@ impl Measurement {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::MAX_GRID;
 
     #[test]
     fn a_study_measures_everything_and_its_reference_is_no_method() {
@@ -395,6 +408,27 @@ mod tests {
         assert!(rmse("the plan") < rmse("none") / 3.0);
         assert!(rmse("grid:8") < rmse("grid:2"));
         assert!(rmse("0 bounces") > 10.0 * rmse("the plan"));
+    }
+
+    #[test]
+    fn a_reference_knows_how_far_it_is_off() {
+        let scene = Scene::demo();
+        let (width, height) = (32, 24);
+        let request = RenderRequest {
+            precision: Precision::Double,
+            sampling: Sampling::Grid(MAX_GRID),
+            ..RenderRequest::sized(width, height)
+        };
+        let control = RenderControl::default();
+        let tracer = Tracer::planned(&scene, &request, &mut Planner::default());
+        let (truth, _) = trace_light(&tracer, &control).expect("not stopped");
+        let mut study = Study::new(Arc::new(scene), width, height);
+        while study.reference.is_none() {
+            study.step(&control);
+        }
+        let said = study.reference.as_ref().expect("a reference").rmse;
+        let off = difference(&study.references[0], &truth).rmse;
+        assert!(off < 1.5 * said && off > said / 3.0, "{said:e} {off:e}");
     }
 
     #[test]

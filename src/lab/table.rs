@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::clusters::front_of;
-use super::study::{Measurement, Study};
+use super::study::{Measurement, REFERENCE_SAMPLES, Study};
 
 impl Study {
     /// Milliseconds and RMSE of each dot, as far as they are known; NaN elsewhere.
@@ -64,7 +64,7 @@ pub fn table(study: &Study) -> String {
     if let Some(truth) = &study.reference {
         let _ = writeln!(
             text,
-            "{width}×{height}; reference: f64, 64×64 samples per pixel, itself off by {:.1e}; 8 bits cannot show less than {:.1e}",
+            "{width}×{height}; reference: f64, {REFERENCE_SAMPLES} samples per pixel, itself off by {:.1e}; 8 bits cannot show less than {:.1e}",
             truth.rmse,
             super::EIGHT_BIT_FLOOR
         );

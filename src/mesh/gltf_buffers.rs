@@ -1,6 +1,9 @@
 //! The numbers that a glTF file refers to: which bytes they are, and that they are there.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::path::Path;
+use std::rc::Rc;
 
 use base64::Engine as _;
 use base64::engine::DecodePaddingMode;
@@ -11,7 +14,7 @@ use gltf::buffer::View;
 use gltf::{Accessor, Document};
 
 use super::error::{Fault, excerpt};
-use super::limits::read_companion;
+use super::limits::{check_points, read_companion};
 use crate::files::stays_inside;
 
 /// Exporters do and do not pad.
@@ -28,7 +31,7 @@ pub(super) struct Buffers<'a> {
     /// What a GLB file has behind its JSON.
     chunk: Option<&'a [u8]>,
     /// Nothing for the buffer that is the chunk.
-    loaded: Vec<Option<Vec<u8>>>,
+    loaded: Vec<Option<Rc<Vec<u8>>>>,
     /// Whether positions may be whole numbers.
     is_quantized: bool,
 }
@@ -45,12 +48,20 @@ impl<'a> Buffers<'a> {
     ) -> Result<Self, Fault> {
         let mut loaded = Vec::new();
         let mut total = 0;
+        // One that is named a thousand times is there once.
+        let mut known: HashMap<&str, Rc<Vec<u8>>> = HashMap::new();
         for buffer in document.buffers() {
             let bytes = match buffer.source() {
                 Source::Bin => None,
-                Source::Uri(uri) => Some(read_uri(uri, folder)?),
+                Source::Uri(uri) => Some(match known.entry(uri) {
+                    Entry::Occupied(known) => Rc::clone(known.get()),
+                    Entry::Vacant(place) => {
+                        let bytes = Rc::new(read_uri(uri, folder)?);
+                        total += bytes.len();
+                        Rc::clone(place.insert(bytes))
+                    }
+                }),
             };
-            total += bytes.as_ref().map_or(0, Vec::len);
             if total > MAX_BYTES {
                 let what = "bytes in its buffers";
                 let limit = MAX_BYTES;
@@ -75,7 +86,13 @@ impl<'a> Buffers<'a> {
                 "accessor {number} holds positions that are not three floats each"
             )));
         }
-        let mut points = self.numbers(accessor)?;
+        let mut points = if accessor.view().is_some() {
+            self.numbers(accessor)?
+        } else {
+            // Zeros, of which some are replaced: "glTF 2.0 specification", 3.6.2.3.
+            check_points(accessor.count())?;
+            vec![[0.0; 3]; accessor.count()]
+        };
         let Some(sparse) = accessor.sparse() else {
             return Ok(points);
         };
@@ -162,7 +179,8 @@ impl<'a> Buffers<'a> {
             return refuse("has items that overlap");
         }
         let buffer = view.buffer().index();
-        let loaded = self.loaded.get(buffer).and_then(Option::as_deref);
+        let loaded = self.loaded.get(buffer).and_then(Option::as_ref);
+        let loaded = loaded.map(|bytes| bytes.as_slice());
         let Some(bytes) = loaded.or(self.chunk) else {
             return refuse("names a buffer that is not there");
         };

@@ -18,9 +18,9 @@ mod part;
 
 mod mtl;
 
-mod obj_fault;
-
 mod obj_lines;
+
+mod obj_fault;
 
 mod obj;
 

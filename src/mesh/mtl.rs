@@ -16,6 +16,8 @@ use crate::files::stays_inside;
 
 /// Most bytes of the material files of one OBJ file: room for thousands of materials.
 const MAX_BYTES: u64 = 4 << 20;
+/// Most files that are looked for under a name that is the same but for capitals.
+const MOST_SEARCHES: u32 = 32;
 /// The models of illumination in which reflections are traced: Alias/Wavefront, "Object files", appendix B1.
 const MIRRORING: RangeInclusive<u8> = 3..=7;
 /// Most characters of a file's name in a sentence.
@@ -29,6 +31,8 @@ pub(super) struct Libraries<'a> {
     folder: &'a Path,
     /// A file that is named a million times is read until these are used up.
     left: Cell<u64>,
+    /// How many files may still be looked for under another spelling.
+    searches: Cell<u32>,
     /// The materials that were read.
     names: RefCell<HashSet<String>>,
     /// The first file that was named and could not be read.
@@ -43,6 +47,7 @@ impl<'a> Libraries<'a> {
         Self {
             folder,
             left: Cell::new(MAX_BYTES),
+            searches: Cell::new(MOST_SEARCHES),
             names: RefCell::default(),
             missing: RefCell::default(),
             unknown: RefCell::default(),
@@ -124,7 +129,7 @@ impl<'a> Libraries<'a> {
         // An empty file costs something too.
         self.left
             .set(left.saturating_sub(bytes.len() as u64 + 1024));
-        Some(String::from_utf8_lossy(&bytes).into_owned())
+        Some(with_line_breaks(&String::from_utf8_lossy(&bytes)).into_owned())
     }
 }
 
@@ -132,16 +137,26 @@ impl Libraries<'_> {
     /// The name of a file as the disk has it: exporters on Windows do not tell capitals from other letters.
     fn spelled(&self, name: &Path) -> PathBuf {
         let place = self.folder.join(name);
-        // A file that is named a million times is not looked for as often.
-        if place.exists() || self.missing.borrow().is_some() {
+        // A million files that are not there are not looked for as often.
+        if place.exists() || self.searches.get() == 0 {
             return name.to_owned();
         }
+        self.searches.set(self.searches.get() - 1);
         let folder = place.parent().unwrap_or(self.folder);
         let wanted = place.file_name().unwrap_or_default();
         let entries = fs::read_dir(folder).into_iter().flatten().flatten();
         let mut names = entries.map(|entry| entry.file_name());
         let same = names.find(|name| name.eq_ignore_ascii_case(wanted));
         same.map_or(name.to_owned(), |same| name.with_file_name(same))
+    }
+}
+
+/// A text with line breaks as we know them: old programs end lines with a carriage return alone.
+pub(super) fn with_line_breaks(text: &str) -> Cow<'_, str> {
+    if text.contains('\r') && !text.contains('\n') {
+        Cow::Owned(text.replace('\r', "\n"))
+    } else {
+        Cow::Borrowed(text)
     }
 }
 

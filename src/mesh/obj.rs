@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 use tobj::{LoadOptions, Model};
 
 use super::error::Fault;
-use super::mtl::{Libraries, colors_of};
+use super::mtl::{Libraries, colors_of, with_line_breaks};
 use super::obj_fault::find_fault;
 use super::obj_lines::ObjLines;
 use super::part::{COLORS_OF_POINTS, MeshFile, Part};
@@ -31,6 +31,7 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
     // Names may be in any encoding; everything else is ASCII.
     let text = String::from_utf8_lossy(bytes);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let text = &*with_line_breaks(text);
     let libraries = Libraries::new(folder);
     let mut lines = ObjLines::new(text, &libraries);
     let loaded = tobj::load_obj_buf(&mut lines, &OPTIONS, |name| libraries.load(name));

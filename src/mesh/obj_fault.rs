@@ -1,6 +1,7 @@
 //! Where an OBJ file is wrong, looked for once it is known to be: `tobj` says what and not where.
 
 use super::error::{Fault, excerpt};
+use super::obj_lines::Kind;
 use super::triangles::FARTHEST;
 
 /// Most characters of a word that a sentence shows.
@@ -11,11 +12,18 @@ pub(super) fn find_fault(text: &str, said: &str) -> Fault {
     let is_point = |line: &&str| line.split_ascii_whitespace().next() == Some("v");
     let total = text.lines().filter(is_point).count();
     let mut before = 0;
-    let mut goes_on = false;
+    let mut going_on = None;
     for (index, line) in text.lines().enumerate() {
         let mut words = line.split_ascii_whitespace();
-        let keyword = if goes_on { Some("") } else { words.next() };
-        goes_on = line.trim_ascii_end().ends_with('\\');
+        let begun = going_on.take();
+        let keyword = if begun.is_some() {
+            Some("")
+        } else {
+            words.next()
+        };
+        let kind = begun.unwrap_or_else(|| Kind::of(line));
+        let goes_on = kind.can_go_on() && line.trim_ascii_end().ends_with('\\');
+        going_on = goes_on.then_some(kind);
         let why = match keyword {
             Some("v") => {
                 before += 1;

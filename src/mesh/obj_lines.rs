@@ -13,17 +13,18 @@ use super::mtl::Libraries;
 
 /// What a line says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+pub(super) enum Kind {
     Point,
     Face,
     Group,
     Material,
     Library,
+    Remark,
     Other,
 }
 
 impl Kind {
-    fn of(line: &str) -> Self {
+    pub(super) fn of(line: &str) -> Self {
         match line.split_ascii_whitespace().next() {
             Some("v") => Self::Point,
             Some("f") => Self::Face,
@@ -31,8 +32,14 @@ impl Kind {
             // One without a name is an error to `tobj` and nothing to a person.
             Some("usemtl") if line.len() > "usemtl".len() => Self::Material,
             Some("mtllib") => Self::Library,
+            Some(word) if word.starts_with('#') => Self::Remark,
             _ => Self::Other,
         }
+    }
+
+    /// Whether a line goes on behind a backslash: the name of a file or a group may end like this, and a remark.
+    pub(super) fn can_go_on(self) -> bool {
+        matches!(self, Self::Point | Self::Face | Self::Other)
     }
 }
 
@@ -97,10 +104,7 @@ impl<'a> ObjLines<'a> {
             let begun = self.going_on.take();
             let kind = begun.unwrap_or_else(|| Kind::of(line));
             let (line, goes_on) = match line.strip_suffix('\\') {
-                // Not where the name of a file or a group ends like this.
-                Some(start) if matches!(kind, Kind::Point | Kind::Face | Kind::Other) => {
-                    (start, !rest.is_empty())
-                }
+                Some(start) if kind.can_go_on() => (start, !rest.is_empty()),
                 _ => (line, false),
             };
             self.going_on = goes_on.then_some(kind);
@@ -118,7 +122,7 @@ impl<'a> ObjLines<'a> {
             };
             self.count(kind, line, goes_on)?;
             let behind: &[u8] = if goes_on { b" " } else { b"\n" };
-            if kind == Kind::Other {
+            if matches!(kind, Kind::Remark | Kind::Other) {
                 continue;
             }
             // An empty piece would be the end of the text.
@@ -164,7 +168,7 @@ impl<'a> ObjLines<'a> {
                 }
                 check_groups(self.groups)
             }
-            Kind::Library | Kind::Other => Ok(()),
+            Kind::Library | Kind::Remark | Kind::Other => Ok(()),
         }
     }
 }
@@ -229,7 +233,7 @@ mod tests {
 
     #[test]
     fn only_what_matters_is_left() {
-        let text = "# a cube\r\nv 1 2\t3 0.5 0.5 0.5\nvt 1 1\n  f 1/1 \\\r\n 2 3\n\nl 1 2 \\\n3\nusemtl\n\tg a b\\\nf 1 2";
+        let text = "# a cube of C:\\\r\nv 1 2\t3 0.5 0.5 0.5\nvt 1 1\n  f 1/1 \\\r\n 2 3\n\nl 1 2 \\\n3\nusemtl\n\tg a b\\\nf 1 2";
         let mut read = String::new();
         ObjLines::new(text, &Libraries::new(Path::new("")))
             .read_to_string(&mut read)

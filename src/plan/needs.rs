@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::geometry::{Kept, LARGEST_LIST, MOST_LISTED_TRIANGLES, SMALLEST_TREE};
 use super::materials::Material;
 use super::pack::Plan;
-use super::precision::{is_filtered, is_too_much_twice, needs_double};
+use super::precision::{is_filtered, is_fine, is_too_much_twice, needs_double};
 use super::request::RenderRequest;
 use crate::scene::{Accelerator, HighlightMethod, Object, Precision, Sampling, Scene, Shape};
 use crate::simd::Exponent;
@@ -69,7 +69,7 @@ fn precision(scene: &Scene, request: &RenderRequest) -> Need {
         Precision::Auto if needs_double(scene, request) => need(
             rule,
             double,
-            "something is too far, too small or too close for single precision",
+            "something is too far, too small or too close for single precision, or the lens is too long",
             "nothing: the picture would show the rounding",
         ),
         Precision::Auto if is_too_much_twice(scene, request) => need(
@@ -90,8 +90,11 @@ fn precision(scene: &Scene, request: &RenderRequest) -> Need {
                     "time: a vector holds twice as many numbers, and what rounding decides on edges is not traced again",
                 )
             };
-            let why =
-                "nothing is farther than 5,000 of its radii or smaller than 1/10,000 of the scene";
+            let why = if is_fine(scene, request) {
+                "nothing is farther than 500,000 of its radii or smaller than 1/1,000,000 of the scene"
+            } else {
+                "nothing is farther than 5,000 of its radii or smaller than 1/10,000 of the scene"
+            };
             need(rule, what, why, saves)
         }
     }
@@ -134,16 +137,24 @@ fn reflections(scene: &Scene, plan: &Plan<f64>) -> Need {
 }
 
 fn shadows(scene: &Scene, plan: &Plan<f64>) -> Need {
+    let rule = "shadows";
     let (used, all) = (plan.lights.len(), scene.lights.len());
-    let why = if !scene.objects.iter().any(|object| object.visible) {
-        "nothing is visible"
-    } else if used == all {
-        "every light shines on something that the camera can reach"
+    let is_anything_seen = scene.visible_objects().next().is_some();
+    if all == 0 || !is_anything_seen {
+        let why = if all == 0 {
+            "there are no lights"
+        } else {
+            "nothing is visible"
+        };
+        return need(rule, "no shadow rays", why, "all of them");
+    }
+    let why = if used == all {
+        "every light may shine on something that the camera can reach"
     } else {
         "the others are hidden, have no intensity or are behind a plane"
     };
     need(
-        "shadows",
+        rule,
         format!(
             "shadow rays to {used} of {}, from surfaces that face them",
             counted(all, "light")
@@ -377,10 +388,15 @@ fn highlights(scene: &Scene, request: &RenderRequest, plan: &Plan<f64>) -> Need 
             "nothing",
         )
     } else {
+        let why = if request.methods.highlight == HighlightMethod::Power {
+            ASKED
+        } else {
+            "every Phong exponent is a whole number up to 256"
+        };
         need(
             rule,
             "repeated squaring",
-            "every Phong exponent is a whole number up to 256",
+            why,
             "a logarithm and an exponential per light",
         )
     }

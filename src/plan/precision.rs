@@ -37,6 +37,10 @@ const MOST_PAIRS: usize = 100_000;
 /// precision: 1/16 of a pixel, of a thousand.
 const MAX_DISTANCE_PER_HEIGHT: f64 = 1e3;
 
+/// Longest lens, in pixels from the eye to its picture, in single precision: the last digit of a ray is then 1/16 of a
+/// pixel.
+const MAX_DISTANCE_IN_PIXELS: f64 = 1e6;
+
 /// Smallest distance of the surfaces of two spheres as a share of the scene's extent in single precision: where
 /// they are nearer everywhere, rounding decides which is seen, or whether one shadows the other.
 const MIN_GAP_PER_EXTENT: f64 = 3e-4;
@@ -44,9 +48,6 @@ const MIN_GAP_PER_EXTENT: f64 = 3e-4;
 const MIN_GAP_PER_RADIUS: f64 = 1e-2;
 /// Most spheres that are held against each other.
 const MOST_SPHERES: usize = 2_000;
-/// A direction in which the places of spheres that stand in rows differ all the same.
-const ASKEW: DVec3 = DVec3::new(0.79, 0.53, 0.31);
-
 /// Most things that single precision can number.
 const MAX_NUMBER: usize = 1 << 24;
 
@@ -75,6 +76,12 @@ pub fn is_double(scene: &Scene, request: &RenderRequest) -> bool {
 /// Whether what rounding may decide in a picture in single precision is traced again in double precision.
 pub fn is_filtered(scene: &Scene, request: &RenderRequest) -> bool {
     is_rounding_seen(scene, request) && primitives(scene) <= MOST_FILTERED
+}
+
+/// Whether things may be smaller and farther, since what rounding may decide is traced again. The size of the picture does
+/// not matter: its parts would differ from it.
+pub fn is_fine(scene: &Scene, request: &RenderRequest) -> bool {
+    is_filtered(scene, request) && has_many_edges(scene)
 }
 
 /// Whether there is so much in a scene that all of it is traced in double precision, rather than what rounding may decide.
@@ -108,8 +115,14 @@ fn is_uncountable(scene: &Scene) -> bool {
 
 /// Whether single precision would show in the picture.
 pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
-    let projection = request.projection_of(&scene.camera);
-    if projection == Projection::Orthographic && is_far_in_parallel(scene) {
+    let is_out_of_sight = match request.projection_of(&scene.camera) {
+        Projection::Orthographic => is_far_in_parallel(scene),
+        Projection::Perspective => {
+            let pixels = scene.camera.projection_distance * f64::from(request.height);
+            pixels > MAX_DISTANCE_IN_PIXELS
+        }
+    };
+    if is_out_of_sight {
         return true;
     }
     let Some((low, high)) = scene.bounds() else {
@@ -121,8 +134,7 @@ pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
     if extent < MIN_EXTENT || is_just_above(scene, extent) || has_twins(scene, extent) {
         return true;
     }
-    // Of the same things in a picture of any size.
-    let smaller = if is_filtered(scene, request) && has_many_edges(scene) {
+    let smaller = if is_fine(scene, request) {
         SMALLER_WHEN_FILTERED
     } else {
         1.0
@@ -201,7 +213,7 @@ fn is_just_above(scene: &Scene, extent: f64) -> bool {
 fn has_twins(scene: &Scene, extent: f64) -> bool {
     let visible = scene.visible_objects();
     let spheres = visible.filter_map(|object| match &object.shape {
-        Shape::Sphere(sphere) => Some((sphere.center.dot(ASKEW), sphere)),
+        Shape::Sphere(sphere) => Some((sphere.along(), sphere)),
         _ => None,
     });
     let mut spheres: Vec<_> = spheres.take(MOST_SPHERES + 1).collect();
@@ -214,10 +226,8 @@ fn has_twins(scene: &Scene, extent: f64) -> bool {
         let least = nearest.min(MIN_GAP_PER_RADIUS * one.radius);
         let others = spheres[place + 1..].iter();
         let near = others.take_while(|(other, _)| other - along < least);
-        let mut gaps = near.map(|(_, other)| {
-            one.center.distance(other.center) + (one.radius - other.radius).abs()
-        });
-        gaps.any(|gap| gap > 0.0 && gap < least)
+        let mut others = near.map(|(_, other)| other);
+        others.any(|other| one.gap(other) < least && !one.is_same(other))
     })
 }
 
@@ -327,6 +337,21 @@ mod tests {
             .into();
             scene.objects.push(twin);
             assert_eq!(is_needed(&scene), expected, "{gap}");
+        }
+    }
+
+    #[test]
+    fn a_lens_may_be_a_million_pixels_long() {
+        let mut scene = Scene::demo();
+        for (distance, height, expected) in [(1e3, 999, false), (1e3, 1001, true), (1e5, 9, false)]
+        {
+            scene.camera.projection_distance = distance;
+            let request = RenderRequest::sized(64, height);
+            assert_eq!(
+                needs_double(&scene, &request),
+                expected,
+                "{distance} {height}"
+            );
         }
     }
 

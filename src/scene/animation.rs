@@ -16,6 +16,9 @@ use super::orientation::Orientation;
 pub const FRAME_RATES: RangeInclusive<f64> = 1.0..=240.0;
 /// Longest animation, in seconds: a day.
 pub const MAX_SECONDS: f64 = 86_400.0;
+/// Keys nearer to each other than this are at the same time, in seconds, as is a key to a frame: files may be written
+/// by hand.
+pub const SAME_TIME: f64 = 1e-6;
 /// Most keys of one kind.
 pub const MAX_KEYS: usize = 100_000;
 
@@ -121,13 +124,21 @@ pub enum Owner<'a> {
 }
 
 /// A recorded flight: what the camera did, at the times when it was seen doing it.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Take {
     /// In order of time.
     pub samples: Vec<Sample>,
     /// The camera's other properties, from the sample where they begin to hold.
     pub lenses: Vec<Lens>,
+}
+
+/// Every step of every edit asks whether something has changed, and there may be very many samples.
+impl PartialEq for Take {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self, other)
+            || (&self.samples, &self.lenses) == (&other.samples, &other.lenses)
+    }
 }
 
 /// One moment of a take: time in seconds, position, and yaw, pitch and roll in radians.
@@ -195,8 +206,7 @@ impl Animation {
 
     /// Frames of so many seconds, with that at zero.
     pub fn frames_in(seconds: f64, frames_per_second: f64) -> u64 {
-        // A last key within a millionth of a frame's time is meant to be on it.
-        (seconds * frames_per_second + 1e-6).floor() as u64 + 1
+        ((seconds + SAME_TIME) * frames_per_second).floor() as u64 + 1
     }
 
     /// Time of a frame in seconds; frames are counted from 1.
@@ -206,7 +216,7 @@ impl Animation {
 
     /// The frame that is on show at a time, counted from 1.
     pub fn frame_at(&self, time: f64) -> u64 {
-        (time.max(0.0) * self.frames_per_second + 1e-6).floor() as u64 + 1
+        ((time.max(0.0) + SAME_TIME) * self.frames_per_second).floor() as u64 + 1
     }
 }
 

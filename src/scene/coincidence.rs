@@ -1,14 +1,12 @@
 //! Objects that fill the same surface: which of them is seen there, rounding would decide.
 
-use std::collections::HashMap;
-
 use glam::DVec3;
 
 use super::list::List;
 pub use super::mesh_coincidence::{Coincidence, Extent};
 use super::mesh_coincidence::{counts_down, meet, mesh_coincidences, widened};
 use super::object::Object;
-use super::shape::{Outline, PlanePiece, Shape};
+use super::shape::{Outline, PlanePiece, Shape, Sphere};
 
 /// Most objects that are looked at: some ten milliseconds.
 const MOST_OBJECTS: usize = 200_000;
@@ -28,20 +26,10 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     let visible = objects.iter().enumerate();
     let visible = visible.filter(|(_, object)| object.visible);
     let mut found = Vec::new();
-    let mut balls: HashMap<[u64; 4], usize> = HashMap::new();
-    let (mut endless, mut pieces) = (Vec::new(), Vec::new());
+    let (mut balls, mut endless, mut pieces) = (Vec::new(), Vec::new(), Vec::new());
     for (index, object) in visible {
         if let Shape::Sphere(ball) = &object.shape {
-            let [x, y, z] = ball.center.to_array();
-            let same = balls.entry([x, y, z, ball.radius].map(f64::to_bits));
-            let earlier = *same.or_insert(index);
-            if earlier != index {
-                found.push(Coincidence {
-                    later: index,
-                    earlier,
-                    extent: Extent::Whole,
-                });
-            }
+            balls.push((index, ball));
         }
         if let Some(flat) = object.shape.plane_piece() {
             match object.shape.bounds() {
@@ -54,6 +42,7 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
             }
         }
     }
+    add_balls(balls, &mut found);
     let mut add = |one: (usize, &PlanePiece), other: (usize, &PlanePiece)| {
         if one.1.coincides(other.1, centre) {
             let (earlier, later) = if one.0 < other.0 {
@@ -93,6 +82,36 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     found
 }
 
+/// Adds the balls that are one but for the last digits of their numbers: the earliest stays.
+fn add_balls(mut balls: Vec<(usize, &Sphere)>, found: &mut Vec<Coincidence>) {
+    balls.sort_by(|(_, one), (_, other)| one.along().total_cmp(&other.along()));
+    let mut is_known = vec![false; balls.len()];
+    let mut pairs = MOST_PAIRS;
+    for place in 0..balls.len() {
+        if is_known[place] {
+            continue;
+        }
+        let (index, one) = balls[place];
+        let last = one.along() + one.room();
+        let others = balls.iter().enumerate().skip(place + 1);
+        let near = others.take_while(|(_, (_, other))| other.along() <= last);
+        let near = near.take_while(|_| counts_down(&mut pairs));
+        let same = near.filter(|(_, (_, other))| one.is_same(other));
+        let same: Vec<(usize, usize)> = same.map(|(place, (index, _))| (place, *index)).collect();
+        let all = same.iter().map(|(_, index)| *index).chain([index]);
+        let earliest = all.clone().min().unwrap_or(index);
+        let later = all.filter(|index| *index != earliest);
+        found.extend(later.map(|later| Coincidence {
+            later,
+            earlier: earliest,
+            extent: Extent::Whole,
+        }));
+        for (place, _) in same {
+            is_known[place] = true;
+        }
+    }
+}
+
 /// A flat object that ends.
 struct Piece {
     index: usize,
@@ -105,6 +124,27 @@ struct Piece {
 mod tests {
     use super::*;
     use crate::scene::Disc;
+
+    #[test]
+    fn balls_are_one_but_for_their_last_digits_and_the_earliest_stays() {
+        let ball = |x: f64, radius: f64| {
+            let center = DVec3::new(x, 0.7, -100.0);
+            Object::new("Ball", "pack", Sphere { center, radius })
+        };
+        let same = [
+            ball(0.1 + 0.2, 20.0),
+            ball(0.3, 20.000_000_000_000_004),
+            ball(0.3, 19.0),
+            ball(0.3, 20.0),
+            ball(0.300_001, 20.0),
+        ];
+        let found = coincidences(&same.into_iter().collect(), DVec3::ZERO);
+        let pairs: Vec<_> = found
+            .iter()
+            .map(|pair| (pair.later, pair.earlier))
+            .collect();
+        assert_eq!(pairs, [(1, 0), (3, 0)]);
+    }
 
     #[test]
     fn flat_pieces_fill_one_surface_whichever_way_they_face() {

@@ -183,7 +183,13 @@ impl Document {
         }
         let scene: Scene = options().from_str(text).map_err(|error| {
             let start = error.span.start;
-            let at = offset_of(text, start.line, start.col);
+            // The parser stops within a comment that ends the file.
+            let is_bare = text[header(text).len()..].trim().is_empty();
+            let at = if is_bare {
+                text.trim_end().len()
+            } else {
+                offset_of(text, start.line, start.col)
+            };
             let sentence = sentence(&error.code, text.split_at(at), MAX_DEPTH);
             let is_end = text[at..].trim().is_empty() && error.code != ron::Error::Eof;
             let ends = if is_end { "the file ends here; " } else { "" };
@@ -261,11 +267,22 @@ impl Document {
         };
         let there = read_file(path).ok();
         let there = there.and_then(|bytes| String::from_utf8(bytes).ok());
-        let loses_comments = there.is_some_and(|text| has_inner_comments(&text));
+        let loses_comments = there.is_some_and(|text| self.loses_comments_of(&text));
         let backup = loses_comments.then(|| back_up(path)).transpose();
         let backup = backup.map_err(disk)?;
         write_atomic(path, text.as_bytes()).map_err(disk)?;
         Ok((backup, Stamp::of(text.as_bytes(), time_of(path))))
+    }
+}
+
+impl Document {
+    /// Whether the text of a scene has comments that this one has not.
+    fn loses_comments_of(&self, text: &str) -> bool {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let header = header(text);
+        let plain = |text: &str| text.replace('\r', "").trim().to_owned();
+        let own = plain(header);
+        !own.is_empty() && own != plain(&self.header) || has_inner_comments(text)
     }
 }
 
@@ -370,6 +387,8 @@ fn refuse(name: &str, text: &str, at: usize, sentence: String) -> SceneError {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
     use crate::scene::List;
 
@@ -387,6 +406,24 @@ mod tests {
             light.marker = None;
         }
         assert_eq!(sparse, expected);
+    }
+
+    #[test]
+    fn remarks_of_another_scene_are_kept_when_it_is_written_over() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.ron");
+        let text = format!(
+            "// precious\n{}",
+            Document::of(Scene::empty()).to_text().expect("a text")
+        );
+        fs::write(&path, &text).expect("written");
+        let own = Document::load(&path).expect("a scene");
+        assert_eq!(own.save(&path).expect("saved"), None, "it has them");
+        let backup = Document::of(Scene::demo()).save(&path).expect("saved");
+        assert_eq!(
+            fs::read_to_string(backup.expect("kept")).expect("read"),
+            text
+        );
     }
 
     #[test]

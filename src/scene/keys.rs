@@ -5,14 +5,12 @@ use std::collections::{BTreeSet, HashSet};
 use glam::DVec3;
 
 use super::animation::{
-    Animation, Easing, Interpolation, Key, MAX_SECONDS, Owner, Target, Track, Value,
+    Animation, Easing, Interpolation, Key, MAX_SECONDS, Owner, SAME_TIME, Target, Track, Value,
 };
 use super::camera::Camera;
 
 /// Keys nearer to each other than this share of a frame are one.
 const SAME: f64 = 0.25;
-/// Keys nearer to each other than this are at the same time, in seconds.
-const EQUAL: f64 = 1e-6;
 
 /// Where a key is among all of an animation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -56,7 +54,7 @@ impl Animation {
     /// each other before are two on purpose, as on both sides of a jump.
     fn replaces(&self, (from, to): (f64, f64), other: f64) -> bool {
         let were_apart = !self.is_same_time(from, other);
-        self.is_same_time(to, other) && (were_apart || (to - other).abs() < EQUAL)
+        self.is_same_time(to, other) && (were_apart || (to - other).abs() < SAME_TIME)
     }
 
     /// With a camera key at this time, in place of one that is there; and its place.

@@ -69,8 +69,8 @@ mod examples;
 mod recovery;
 
 pub use animation::{
-    Animation, Easing, FRAME_RATES, Interpolation, Key, Lens, MAX_KEYS, MAX_SECONDS, Owner, Sample,
-    Take, Target, Track, Value,
+    Animation, Easing, FRAME_RATES, Interpolation, Key, Lens, MAX_KEYS, MAX_SECONDS, Owner,
+    SAME_TIME, Sample, Take, Target, Track, Value,
 };
 pub use aspect::Aspect;
 pub use camera::{Bookmark, Camera, Framing, Projection};

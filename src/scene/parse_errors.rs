@@ -36,8 +36,13 @@ pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) 
             format!("{owner} needs a field `{field}`, which is not there")
         }
         Error::DuplicateStructField { field, .. } => format!("the field `{field}` comes twice"),
-        Error::ExpectedDifferentLength { found, .. } => {
-            format!("expected three numbers such as (1, 2, 3), found {found}")
+        Error::ExpectedDifferentLength { expected, found } => {
+            let such = if expected.contains("Sample") {
+                "time, position, yaw, pitch and roll such as (0, (1, 2, 3), 0, 0, 0)"
+            } else {
+                "three numbers such as (1, 2, 3)"
+            };
+            format!("expected {such}, found {found}")
         }
         Error::ExpectedNamedStructLike(name) => format!("expected {name}(…)"),
         Error::ExpectedDifferentStructName { expected, found } => {
@@ -45,7 +50,9 @@ pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) 
         }
         Error::ExpectedBoolean => "expected true or false".to_owned(),
         Error::ExpectedFloat => "expected a number".to_owned(),
-        Error::ExpectedInteger => "expected a whole number".to_owned(),
+        Error::ExpectedInteger | Error::InvalidIntegerDigit { base: 10, .. } => {
+            "expected a whole number".to_owned()
+        }
         Error::ExpectedString => "expected a text in quotation marks".to_owned(),
         Error::ExpectedStringEnd => "the text has no closing quotation mark".to_owned(),
         Error::ExpectedArray => "expected a list: […]".to_owned(),
@@ -65,6 +72,9 @@ pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) 
         }
         Error::FloatUnderscore | Error::UnderscoreAtBeginning => {
             "there is an underscore in the number where none may be".to_owned()
+        }
+        Error::SuggestRawIdentifier(name) => {
+            format!("there is no `{name}`: names are of letters, digits and _")
         }
         Error::InvalidIntegerDigit { digit, base } => {
             format!("{digit:?} is no digit of a number in base {base}")

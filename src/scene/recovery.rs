@@ -71,6 +71,12 @@ impl Recovery {
     /// What the system answered; the last kept state is then still there.
     pub fn keep(&self, text: &str, path: Option<&Path>, stamp: Option<&Stamp>) -> io::Result<()> {
         let name = path.map_or(String::new(), |path| path.display().to_string());
+        // In one line.
+        let name = if name.contains(['\n', '\r']) {
+            serde_json::Value::from(name).to_string()
+        } else {
+            name
+        };
         let base = stamp.map_or(String::new(), |stamp| {
             format!("{BASE_MARK}{}\n", stamp.hash())
         });
@@ -84,7 +90,7 @@ impl Recovery {
     }
 
     /// Takes one piece of work that an ended program left in the folder, that of the file `of`, or any: it is kept here
-    /// from then on.
+    /// from then on, in place of what was.
     pub fn take_leftover(&self, of: Option<&Path>) -> Option<Leftover> {
         let entries = fs::read_dir(self.path.parent()?).ok()?;
         let files = entries.filter_map(|entry| Some(entry.ok()?.path()));
@@ -112,6 +118,8 @@ fn take(path: &Path, of: Option<&Path>, to: &Path) -> Option<Leftover> {
     lock.try_lock().ok()?;
     let text = fs::read_to_string(path).ok()?;
     let (first, body) = text.strip_prefix(MARK)?.split_once('\n')?;
+    let escaped: Option<String> = serde_json::from_str(first).ok();
+    let first = escaped.as_deref().unwrap_or(first);
     if of.is_some_and(|of| of != Path::new(first)) {
         return None;
     }
@@ -163,6 +171,12 @@ mod tests {
         // Its program has ended as well, and had not kept it anew.
         let third = Recovery::new(folder.path()).expect("a third place");
         assert!(third.take_leftover(None).is_some());
+        let odd = Path::new("/a/b\nc.ron");
+        third.keep(DEMO_TEXT, Some(odd), None).expect("kept");
+        drop(third);
+        let fourth = Recovery::new(folder.path()).expect("a fourth place");
+        let leftover = fourth.take_leftover(Some(odd)).expect("left behind");
+        assert_eq!(leftover.path.as_deref(), Some(odd));
     }
 
     #[test]

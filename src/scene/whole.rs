@@ -62,6 +62,16 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Whether both have the same things in the same light, unchanged since one was copied from the other, whatever
+    /// looks at them; `false` may be wrong.
+    pub fn has_same_things(&self, other: &Self) -> bool {
+        self.objects.is_same(&other.objects)
+            && self.lights.is_same(&other.lights)
+            && self.color_packs.is_same(&other.color_packs)
+            && self.background == other.background
+            && self.ambient_intensity == other.ambient_intensity
+    }
+
     /// An empty scene with the demo's camera and a pack and a light to start from.
     pub fn empty() -> Self {
         let mut light = default_lights().remove(0);

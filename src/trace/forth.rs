@@ -18,7 +18,7 @@ use super::slip::may_slip;
 use super::stats::Rays;
 use super::thresholds::{LARGEST_STRETCH, SLIPPING};
 use super::walk::Stack;
-use crate::plan::{HitOrder, IdleFaces, Plan};
+use crate::plan::{HitOrder, IdleFaces, Plan, Show};
 use crate::primitive::{Blur, CAUTION, Kind, Ray, roundings};
 use crate::simd::{Mask as _, Real, SimdFloat};
 
@@ -145,7 +145,8 @@ impl<L: SimdFloat> Bounce<L> {
             }
         }
         let Some(mut ball) = bounds.ball() else {
-            return !self.thin.is_empty();
+            // Where mirrors are shown, what shows none is dark, the sky too.
+            return !self.thin.is_empty() || plan.show == Show::Mirrors;
         };
         let mut lift = L::Real::ZERO;
         if let Some((geometry, _)) = kernel.geometry() {

@@ -1,7 +1,7 @@
 //! The window's frame: reads input, shows the panels, applies what they asked for, and hands the
 //! scene to the render thread.
 
-use egui::{Context, Event, Popup, SurrenderFocusOn, Theme, Ui, ViewportCommand};
+use egui::{Context, DragAndDrop, Event, Popup, SurrenderFocusOn, Theme, Ui, ViewportCommand};
 use serde::de::DeserializeOwned;
 
 use super::autosave::Autosave;
@@ -73,6 +73,10 @@ pub struct App {
     pub(super) keys_are_taken: bool,
     /// Commands for the next frame.
     pub(super) deferred: Vec<Command>,
+    /// What was found out, and waits.
+    pub(super) answers: Vec<Answer>,
+    /// Which of the documents was shown last, see [`Editor::documents`].
+    pub(super) document: u64,
     /// The revision at which the user said that the window may close.
     pub(super) closing: Option<u64>,
     /// The text that was copied last, and what it describes.
@@ -131,6 +135,8 @@ impl App {
             levels: Levels::default(),
             keys_are_taken: false,
             deferred: Vec::new(),
+            answers: Vec::new(),
+            document: 0,
             closing: None,
             copied: None,
             escaped: None,
@@ -268,7 +274,10 @@ impl App {
 
 impl eframe::App for App {
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
-        self.pictures.poll(ctx, &mut self.editor);
+        if self.pictures.poll(ctx, &mut self.editor) {
+            // Nobody would read of it.
+            self.closing = None;
+        }
         let is_measuring = self.pictures.worker().is_measuring();
         self.lab
             .update(is_measuring, self.pictures.worker().take_study());
@@ -279,25 +288,7 @@ impl eframe::App for App {
         if !wishes.is_empty() {
             self.pictures.worker().request_thumbnails(wishes);
         }
-        for answer in self.pictures.worker().take_answers() {
-            match answer {
-                Answer::Survey(take, seen) => {
-                    self.editor.apply(Action::Time(Time::Surveyed(take, seen)));
-                }
-                Answer::Visible(revision, ticks) => self.overlay.take_visible(revision, ticks),
-                Answer::Objects(revision, map, without) => {
-                    let selected = self.tools.take(revision, map, &without);
-                    if let Some(selected) = selected {
-                        self.editor.apply(Action::Select(selected));
-                    }
-                }
-                Answer::Quality(choice) => {
-                    if let Some(edit) = self.quality.take(choice, &self.editor) {
-                        self.editor.apply(Action::Edit(edit));
-                    }
-                }
-            }
-        }
+        self.take_answers(ctx);
         self.exports.update(&mut self.editor, &self.pictures);
         self.pass_time(ctx);
         self.close_if_meant(ctx);
@@ -318,6 +309,7 @@ impl eframe::App for App {
             let outcome = self.files.start(ctx, &mut self.editor, Next::Quit);
             self.act_on(ctx, outcome);
         }
+        self.follow_document();
         self.autosave.tick(ctx, &mut self.editor);
         let is_busy = self.is_gesture(ctx);
         self.check.update(&self.editor, is_busy);
@@ -393,7 +385,10 @@ impl eframe::App for App {
             || self.files.is_asking()
             || self.finder.is_open
             || dragged(&ctx).is_some()
+            // What is carried is known by its place in a list.
+            || DragAndDrop::has_any_payload(&ctx)
             || self.tools.is_dragging()
+            || self.still.is_marking()
             || self.timeline.is_dragging()
             || self.overlay.is_dragging(&ctx);
         let messages = std::mem::take(&mut self.editor.messages);

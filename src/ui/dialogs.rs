@@ -54,9 +54,12 @@ impl Ask {
         )
     }
 
-    /// The path, with the ending that such files have if it has none; scenes have always that of scenes, whatever
-    /// stands before it.
+    /// The path, with the ending that such files have if it has none, unless it is a file to be read; scenes have
+    /// always that of scenes, whatever stands before it.
     pub fn with_ending(&self, mut path: PathBuf) -> PathBuf {
+        if !self.writes() && path.is_file() {
+            return path;
+        }
         let own = self.endings()[0];
         match path.extension() {
             Some(ending) if ending.is_empty() => path.with_extension(own),
@@ -134,5 +137,21 @@ impl Dialogs for Native {
             wake.request_repaint();
             path
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_without_an_ending_can_be_opened_and_is_not_written_over() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("scene");
+        let with = folder.path().join("scene.ron");
+        assert_eq!(Ask::OpenScene.with_ending(path.clone()), with);
+        std::fs::write(&path, "").expect("written");
+        assert_eq!(Ask::OpenScene.with_ending(path.clone()), path);
+        assert_eq!(Ask::SaveScene.with_ending(path), with);
     }
 }

@@ -71,6 +71,10 @@ impl Files {
     /// Does `next`, after asking about unsaved changes. A flight that is still being recorded becomes keys, which
     /// are some.
     pub fn start(&mut self, ctx: &Context, editor: &mut Editor, next: Next) -> Option<FileOutcome> {
+        if !matches!(self.question, None | Some(Question::Saving(_))) {
+            editor.notify("Answer the open question first".to_owned());
+            return None;
+        }
         editor.apply(Action::Time(Time::Stop));
         if editor.is_dirty() {
             self.question = Some(Question::Unsaved(next));
@@ -135,18 +139,13 @@ impl Files {
 
     /// What is being read, in words, for the status line.
     pub fn describe_reading(&self) -> Option<String> {
-        let reading = self.reading()?;
-        Some(if self.is_free() {
-            reading.describe()
-        } else {
-            format!("{} waits for the open question", reading.name())
-        })
+        Some(self.reading()?.describe(self.is_free()))
     }
 
     /// Takes answers and files up as they come.
     pub fn poll(&mut self, ctx: &Context, editor: &mut Editor) -> Option<FileOutcome> {
         // What is dragged is not to be pulled from under the hand.
-        if ctx.input(|input| input.pointer.any_down()) {
+        if ctx.input(|input| input.pointer.any_down()) || editor.is_in_gesture() {
             return None;
         }
         if !self.reading.is_empty() && self.is_free() {
@@ -157,7 +156,8 @@ impl Files {
             let changed = self.watch.changed_meshes(editor);
             self.reading.extend(Reading::again(editor, changed));
         }
-        let mut waiting = self.waiting.take()?;
+        // One question after the other.
+        let mut waiting = self.waiting.take_if(|_| self.question.is_none())?;
         match waiting.answered() {
             Answered::NotYet => self.waiting = Some(waiting),
             Answered::Path(path) => {
@@ -253,9 +253,9 @@ impl Files {
         match wish.ask {
             Ask::OpenScene if !is_as_asked => return self.start(ctx, editor, Next::Open(path)),
             Ask::OpenScene => self.open(ctx, editor, &path),
-            Ask::SaveScene if !is_same => {
-                let why = "What was to be saved is not open any more";
-                editor.report_error_in(wish.ask.title(), why.to_owned());
+            ask if !is_same => {
+                let why = "What this was for is not open any more";
+                editor.report_error_in(ask.title(), why.to_owned());
             }
             Ask::ImportMesh => self.import_mesh(ctx, editor, &path),
             Ask::SaveImage => return Some(FileOutcome::SaveImage(path)),
@@ -362,9 +362,7 @@ impl Files {
         editor.begin(OUTSIDE);
         match next {
             Next::New => editor.start_new(),
-            Next::Example(place) => EXAMPLES.get(place).into_iter().for_each(|example| {
-                editor.start_example(example);
-            }),
+            Next::Example(place) => editor.start_example(&EXAMPLES[place]),
             Next::Choose => self.ask(ctx, editor, Ask::OpenScene),
             Next::Open(path) => self.open(ctx, editor, &path),
             Next::Quit => return Some(FileOutcome::AskToQuit),
@@ -409,15 +407,15 @@ impl Files {
                 self.start(ctx, editor, Next::Open(reading.path));
             }
             Read::Scene(document) => self.opened(editor, &reading.path, *document),
-            Read::Mesh(Ok(file)) => imported(editor, &reading.path, file),
-            Read::Mesh(Err(error)) => {
-                editor.report_error_in(Ask::ImportMesh.title(), error.to_string());
+            Read::Mesh(Ok(file)) if !reading.is_of_another(editor) => {
+                imported(editor, &reading.path, file);
+            }
+            Read::Mesh(read) => {
+                let why = read.map_or_else(|error| error.to_string(), |_| reading.describe_late());
+                editor.report_error_in(Ask::ImportMesh.title(), why);
             }
             Read::Again(sources) => editor.take_meshes(sources),
-            Read::Nothing => {
-                let path = reading.path.display();
-                editor.report_error(format!("{path} could not be read: the reader stopped"));
-            }
+            Read::Nothing => editor.report_error(reading.describe_fault()),
         }
     }
 

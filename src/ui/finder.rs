@@ -50,6 +50,12 @@ enum Target {
     Addition(Addition),
 }
 
+impl Target {
+    fn is(&self, command: &Command) -> bool {
+        matches!(self, Self::Command(own) if own == command)
+    }
+}
+
 /// What menus and buttons call commands whose names here say more, in small letters.
 const ALSO: [(Command, &str); 12] = [
     (Command::Ask(Ask::SaveScene), "save as"),
@@ -64,6 +70,16 @@ const ALSO: [(Command, &str); 12] = [
     (Command::Zoom(Zoom::In), "zoom in"),
     (Command::Zoom(Zoom::Out), "zoom out"),
     (Command::Zoom(Zoom::Usual), "reset zoom"),
+];
+
+/// What people call what can be added, beside its name here, in small letters.
+const ALSO_ADDED: [(&str, &str); 6] = [
+    ("Add Sphere", "ball"),
+    ("Add Plane", "floor ground wall"),
+    ("Add Disc", "circle coin"),
+    ("Add Box", "cube"),
+    ("Add Light", "lamp sun"),
+    ("Add ColorPack", "material colour"),
 ];
 
 impl Finder {
@@ -161,10 +177,10 @@ fn finds(ui: &Ui, (editor, recent): (&Editor, &[PathBuf]), text: &str) -> Vec<Fi
         let name = name.to_lowercase();
         words.iter().all(|word| name.contains(word))
     };
-    let mut finds: Vec<Find> = commands(ui, editor, recent)
-        .filter(|find| has(&find.name) || has(also(&find.what)))
+    let named = commands(ui, editor, recent).chain(additions());
+    let mut finds: Vec<Find> = named
+        .filter(|find| has(&format!("{} {}", find.name, also(find))))
         .collect();
-    finds.extend(additions().filter(|find| has(&find.name)));
     finds.extend(settings(editor).filter(|find| has(&find.name)));
     // There may be very many.
     let room = MOST.saturating_sub(finds.len());
@@ -200,12 +216,14 @@ fn commands<'a>(
         })
 }
 
-/// What else a command is called.
-fn also(what: &Target) -> &'static str {
-    let name = ALSO
-        .iter()
-        .find(|(command, _)| matches!(what, Target::Command(own) if own == command));
-    name.map_or("", |(_, name)| *name)
+/// What else it is called.
+fn also(find: &Find) -> &'static str {
+    let commands = ALSO.iter().filter(|(command, _)| find.what.is(command));
+    let additions = ALSO_ADDED.iter().filter(|(name, _)| find.name == *name);
+    let mut words = commands
+        .map(|(_, words)| *words)
+        .chain(additions.map(|(_, words)| *words));
+    words.next().unwrap_or_default()
 }
 
 /// What the menu *Add* offers.
@@ -324,4 +342,16 @@ fn things<'a>(
             is_enabled: true,
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_has_other_words_too_can_be_added() {
+        for (name, _) in ALSO_ADDED {
+            assert!(additions().any(|find| find.name == name), "{name}");
+        }
+    }
 }

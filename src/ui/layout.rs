@@ -66,6 +66,11 @@ impl Part {
 }
 
 impl Layout {
+    /// Shows the outliner, beside the picture if that was alone.
+    pub fn show_outliner(&mut self) {
+        (self.outliner, self.is_alone) = (true, false);
+    }
+
     /// Whether a part of the window is shown.
     pub fn part(&mut self, part: Part) -> &mut bool {
         match part {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use egui::containers::menu::{MenuConfig, SubMenuButton};
-use egui::{Button, DragValue, MenuBar, PopupCloseBehavior, Theme, Ui};
+use egui::{Button, MenuBar, PopupCloseBehavior, Theme, Ui};
 
 use super::add::add_menu;
 use super::commands::{Command, Next, Zoom};
@@ -14,6 +14,7 @@ use super::hint::Hint as _;
 use super::icons;
 use super::layout::{Below, Layout, Part};
 use super::menu_entry::{ITEM_COMMANDS, entry, offer, ticked};
+use super::number::{Field, lone};
 use super::obstacles::is_enabled;
 use super::requests::UiRequests;
 use crate::animate::{Preset, Retime};
@@ -160,14 +161,15 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
     SubMenuButton::new("Flying speed")
         .config(stays)
         .ui(ui, |ui| {
-            let speed = DragValue::new(&mut layout.fly_speed)
-                .range(SLOWEST..=FASTEST)
-                .speed(0.02)
-                .max_decimals(2)
-                .suffix("×");
-            ui.add(speed)
-                .accessible_name("flying speed")
-                .hint("The wheel changes it while the camera flies or looks around");
+            let field = Field {
+                name: "flying speed",
+                hint: "The wheel changes it while the camera flies or looks around",
+                unit: "×",
+                default: 1.0,
+                range: SLOWEST..=FASTEST,
+                speed: Some(0.02),
+            };
+            lone(ui, &field, &mut layout.fly_speed);
         });
     ui.menu_button("Letters and buttons", |ui| {
         for (text, zoom) in [

@@ -106,6 +106,8 @@ mod exports;
 
 mod app;
 
+mod answers;
+
 mod panels;
 
 mod on_selected;

@@ -152,7 +152,7 @@ fn read(text: &str) -> Option<f64> {
 }
 
 /// The number that a text is, if it is one and no other.
-fn read_number(text: &str) -> Option<f64> {
+pub fn read_number(text: &str) -> Option<f64> {
     if is_ambiguous(text) {
         return None;
     }
@@ -256,7 +256,7 @@ fn enter(
     // Three in a row have less room.
     let most = if pasted.is_some() { NARROW } else { WIDE };
     let shown = |value: f64| rounded(value, field.unit, most);
-    let (own, refused) = (shown(*value), Cell::new(None));
+    let (own, refused, is_as_shown) = (shown(*value), Cell::new(None), Cell::new(false));
     let parser = |text: &str| {
         let text = text.trim();
         let text = text.strip_suffix(field.unit.trim()).unwrap_or(text);
@@ -268,6 +268,7 @@ fn enter(
             return is_within.then_some(whole.x);
         }
         let text = text.trim();
+        is_as_shown.set(text == own);
         // A field that is left as it was says nothing.
         refused.set(refusal(field, text).filter(|_| text != own));
         // What is out of range is a slip, and not a wish for its end.
@@ -293,7 +294,7 @@ fn enter(
     }
     tell_refused(&response, is_cancelled, refused.take());
     // A field that is left as it was entered gives back what it showed.
-    let is_as_shown = !response.dragged() && own.parse() == Ok(edited);
+    let is_as_shown = !response.dragged() && is_as_shown.get();
     if response.changed() && edited.is_finite() && !is_cancelled && !is_as_shown {
         *value = edited.clamp(*field.range.start(), *field.range.end());
     }

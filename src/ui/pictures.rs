@@ -93,20 +93,25 @@ impl Pictures {
         })
     }
 
-    /// Takes up what the render thread has finished.
-    pub fn poll(&mut self, ctx: &Context, editor: &mut Editor) {
+    /// Takes up what the render thread has finished. Whether something has failed.
+    pub fn poll(&mut self, ctx: &Context, editor: &mut Editor) -> bool {
         while let Some(frame) = self.worker.take_frame() {
             if !frame.is_still {
                 self.rhythm.note(frame.revision, Instant::now());
             }
             self.screen.take(ctx, frame);
         }
+        let mut has_failed = false;
         for event in self.worker.take_events() {
             match event {
                 Event::Saved(path) => editor.notify(format!("Saved {}", path.display())),
-                Event::Failed(reason) => editor.report_error_in(Ask::SaveImage.title(), reason),
+                Event::Failed(reason) => {
+                    editor.report_error_in(Ask::SaveImage.title(), reason);
+                    has_failed = true;
+                }
             }
         }
+        has_failed
     }
 
     /// What traces them.
@@ -225,14 +230,10 @@ impl Pictures {
         if aspect == Aspect::All {
             return Arc::clone(scene);
         }
-        let known = self.aspect.take().filter(|(of, from, _)| {
-            *of == aspect
-                && from.objects.is_same(&scene.objects)
-                && from.lights.is_same(&scene.lights)
-                && from.color_packs.is_same(&scene.color_packs)
-                && from.background == scene.background
-                && from.ambient_intensity == scene.ambient_intensity
-        });
+        let known = self
+            .aspect
+            .take()
+            .filter(|(of, from, _)| *of == aspect && from.has_same_things(scene));
         let shown = match known {
             Some((.., before)) => Arc::new(Scene {
                 camera: scene.camera.clone(),

@@ -28,8 +28,9 @@ pub struct Reading {
     pub path: PathBuf,
     answer: Background<Read>,
     since: Instant,
-    /// The document when its reading began.
+    /// The document when its reading began, and which of them it was, see [`Editor::documents`].
     before: Arc<Scene>,
+    document: u64,
 }
 
 impl Reading {
@@ -67,6 +68,7 @@ impl Reading {
             answer: Background::start("glint-reader", move || read(own)),
             since: Instant::now(),
             before: Arc::clone(editor.scene()),
+            document: editor.documents(),
         }
     }
 
@@ -83,15 +85,36 @@ impl Reading {
         (editor.is_dirty() && is_other) || is_flying
     }
 
+    /// Whether another document is open by now.
+    pub fn is_of_another(&self, editor: &Editor) -> bool {
+        self.document != editor.documents()
+    }
+
+    /// What is said where it came too late.
+    pub fn describe_late(&self) -> String {
+        let name = self.name();
+        format!("{name} was not imported: the scene that it was for is not open any more")
+    }
+
+    /// What is said where the reader stopped with a fault of its own.
+    pub fn describe_fault(&self) -> String {
+        let path = self.path.display();
+        format!("{path} could not be read: the reader stopped")
+    }
+
     /// The name of the file.
     pub fn name(&self) -> String {
         let name = self.path.file_name().unwrap_or_default();
         name.to_string_lossy().into_owned()
     }
 
-    /// In words, for the status line.
-    pub fn describe(&self) -> String {
+    /// In words, for the status line; what was read may have to wait.
+    pub fn describe(&self, is_free: bool) -> String {
+        let name = self.name();
+        if !is_free {
+            return format!("{name} waits for the open question");
+        }
         let seconds = self.since.elapsed().as_secs_f64();
-        format!("reading {}, {seconds:.0} s", self.name())
+        format!("reading {name}, {seconds:.0} s")
     }
 }

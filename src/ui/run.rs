@@ -136,6 +136,11 @@ impl App {
     /// Shows this below the picture, or takes it away: the timeline comes back in place of the lab.
     fn toggle_below(&mut self, panel: Below) {
         self.lab.leave();
+        if std::mem::take(&mut self.layout.is_alone) {
+            // It was not seen.
+            self.layout.below = panel;
+            return;
+        }
         self.layout.below = match panel {
             other if other != self.layout.below => other,
             Below::Lab => Below::Timeline,
@@ -259,7 +264,7 @@ impl App {
                 Action::Select(with_same_pack(editor.scene(), item))
             }
             Command::Rename if editor.selection().items().len() > 1 => {
-                self.layout.outliner = true;
+                self.layout.show_outliner();
                 let group = editor.selection().group(editor.scene());
                 return self.outliner.rename_group(group.map(str::to_owned));
             }
@@ -277,7 +282,7 @@ impl App {
             }
             on_item => match (on_item, editor.selection().items()) {
                 (Command::Rename, [item]) => {
-                    self.layout.outliner = true;
+                    self.layout.show_outliner();
                     return self.outliner.rename(editor.scene(), *item);
                 }
                 (Command::Duplicate, [item]) => Action::Edit(Edit::Duplicate(*item)),

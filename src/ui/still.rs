@@ -1,7 +1,9 @@
 //! Hands in the still picture: the wheel enlarges it, a drag moves it, a drag with Shift marks the part that
 //! is traced anew.
 
-use egui::{Event, MouseWheelUnit, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui};
+use egui::{
+    Event, Key, MouseWheelUnit, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui,
+};
 
 use super::magnifier::Magnifier;
 use super::pictures::Pictures;
@@ -24,6 +26,8 @@ pub struct Still {
     stepped_at: f64,
     /// Where a part begins that is being marked.
     from: Option<Pos2>,
+    /// Whether the marking was given up, of which the button is still held.
+    is_given_up: bool,
 }
 
 impl Still {
@@ -36,7 +40,12 @@ impl Still {
 
     /// Shows all of the next picture.
     pub fn leave(&mut self) {
-        self.magnifier = Magnifier::default();
+        (self.magnifier, self.from) = (Magnifier::default(), None);
+    }
+
+    /// Whether a part of it is being marked, which Escape gives up.
+    pub fn is_marking(&self) -> bool {
+        self.from.is_some()
     }
 
     /// What the picture is called on itself.
@@ -78,9 +87,13 @@ impl Still {
         if response.drag_started_by(PointerButton::Primary) && is_shifted {
             self.from = ui.input(|input| input.pointer.press_origin());
         }
+        if self.is_marking() && ui.input(|input| input.key_pressed(Key::Escape)) {
+            (self.from, self.is_given_up) = (None, true);
+        }
+        self.is_given_up &= ui.input(|input| input.pointer.any_down());
         if let Some(from) = self.from {
             self.mark(ui, (from, to), &response, (pictures, size));
-        } else if response.dragged() {
+        } else if response.dragged() && !self.is_given_up {
             self.magnifier.pan(response.drag_delta(), to);
         }
         response

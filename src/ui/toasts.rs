@@ -54,8 +54,12 @@ impl Toasts {
             self.shown.retain(|toast| toast.message != message);
             self.shown.push(Toast { message, since });
         }
-        let excess = self.shown.len().saturating_sub(MOST);
-        self.shown.drain(..excess);
+        while self.shown.len() > MOST {
+            // An error stays until it is dismissed, if it can; the newest is to be seen.
+            let mut older = self.shown[..MOST].iter();
+            let oldest = older.position(|toast| !toast.message.is_error);
+            self.shown.remove(oldest.unwrap_or(0));
+        }
     }
 
     /// Draws them at the lower edge of the picture area, beside a window in it if there is room.
@@ -163,5 +167,33 @@ fn body(ui: &mut egui::Ui, text: &str) {
                     .selectable(true),
             );
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_stay_and_the_newest_is_seen() {
+        let (ctx, mut toasts) = (Context::default(), Toasts::default());
+        let mut push = |text: &str, is_error: bool| {
+            let (text, about) = (text.to_owned(), "");
+            let message = Message {
+                is_error,
+                text,
+                about,
+            };
+            toasts.push(&ctx, vec![message]);
+            let shown = toasts.shown.iter().map(|toast| &*toast.message.text);
+            shown.collect::<Vec<_>>().join(" ")
+        };
+        push("a", true);
+        push("b", false);
+        assert_eq!(push("c", false), "a b c");
+        assert_eq!(push("d", false), "a c d", "the error stays");
+        push("e", true);
+        assert_eq!(push("f", true), "a e f");
+        assert_eq!(push("g", false), "e f g", "there is room for the newest");
     }
 }

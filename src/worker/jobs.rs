@@ -47,7 +47,7 @@ impl JobKind {
 
     /// Whether a new job of this kind takes the place of the one before.
     pub fn is_replaced(self) -> bool {
-        matches!(self, Self::Live | Self::Still | Self::Lab)
+        matches!(self, Self::Live | Self::Quality | Self::Still | Self::Lab)
     }
 }
 
@@ -96,8 +96,8 @@ pub enum Answer {
     Visible(u64, Vec<(DVec3, bool)>),
     /// For the question of this number: what is seen at each pixel without these.
     Objects(u64, ObjectMap, Vec<Thing>),
-    /// What was measured and chosen.
-    Quality(Choice),
+    /// What was measured and chosen for this; `None` if the tracer has failed.
+    Quality(Goal, Option<Choice>),
 }
 
 /// A small picture for the side: traced when no live view waits, never stopped, one sample per pixel.

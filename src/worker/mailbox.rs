@@ -231,6 +231,7 @@ impl Mailbox {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lab::Goal;
     use crate::plan::RenderRequest;
     use crate::scene::Scene;
     use crate::worker::jobs::Pace;
@@ -305,6 +306,29 @@ mod tests {
         mailbox.put(live(2));
         mailbox.finish(Some(job));
         assert_eq!(mailbox.next(&[]).expect("a job").0.kind(), JobKind::Live);
+        mailbox.finish(None);
+        assert!(mailbox.next(&[]).is_none());
+    }
+
+    #[test]
+    fn a_quality_that_is_asked_for_takes_the_place_of_the_one_before() {
+        let quality = |error| {
+            Job::Query(QueryJob {
+                scene: Arc::new(Scene::empty()),
+                question: Question::Quality(Goal::Within(error)),
+            })
+        };
+        let mut mailbox = Mailbox::default();
+        mailbox.put(quality(0.1));
+        let (job, _) = mailbox.next(&[]).expect("a job");
+        mailbox.put(quality(0.2));
+        assert!(is_stopped(&mailbox));
+        mailbox.finish(Some(job));
+        let (job, _) = mailbox.next(&[]).expect("a job");
+        assert!(matches!(
+            job,
+            Job::Query(QueryJob { question: Question::Quality(Goal::Within(error)), .. }) if error == 0.2
+        ));
         mailbox.finish(None);
         assert!(mailbox.next(&[]).is_none());
     }

@@ -197,7 +197,8 @@ fn answer(
         Question::Quality(goal) => {
             let (scene, mut planner) = (&job.scene, planner.clone());
             let request = RenderRequest::still(scene);
-            choose(scene, &request, *goal, &mut planner, control).map(Answer::Quality)
+            choose(scene, &request, *goal, &mut planner, control)
+                .map(|choice| Answer::Quality(*goal, Some(choice)))
         }
     };
     match answer {
@@ -209,13 +210,17 @@ fn answer(
     }
 }
 
-/// A recorded flight is kept even if nobody can tell what it saw.
+/// A recorded flight is kept even if nobody can tell what it saw, and nobody waits for a quality for ever.
 fn answer_nothing(shared: &Shared, job: &QueryJob) {
-    if let Question::Survey(take, _) = &job.question {
-        let seen = vec![Vec::new(); take.samples.len()];
-        let answer = Answer::Survey(Arc::clone(take), seen);
-        shared.outbox().answers.push(answer);
-    }
+    let answer = match &job.question {
+        Question::Survey(take, _) => {
+            let seen = vec![Vec::new(); take.samples.len()];
+            Answer::Survey(Arc::clone(take), seen)
+        }
+        Question::Quality(goal) => Answer::Quality(*goal, None),
+        Question::Visible(..) | Question::Objects(..) => return,
+    };
+    shared.outbox().answers.push(answer);
 }
 
 fn thumbnail(shared: &Shared, job: &ThumbnailJob, planner: &mut Planner) -> JobOutcome {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use glint::image::{Image, LinearImage, render, render_light_into};
 use glint::plan::{Planner, Region, RenderRequest};
-use glint::scene::{Aspect, Light, Object, Precision, Sampling, Scene, Sphere};
+use glint::scene::{Accelerator, Aspect, Light, Object, Precision, Sampling, Scene, Sphere};
 use glint::trace::RenderControl;
 
 fn light_of(scene: &Scene, request: &RenderRequest) -> LinearImage {
@@ -176,5 +176,31 @@ fn a_part_has_the_same_pixels_as_the_whole_and_nothing_else() {
             (31..6000).contains(&traced),
             "{traced}: whole tiles, no more"
         );
+    }
+}
+
+#[test]
+fn what_mirrors_add_is_nothing_where_nothing_is_met_however_it_is_traced() {
+    let mut scene = ball();
+    scene.background = DVec3::splat(255.0);
+    for pack in scene.packs_mut().values_mut() {
+        pack.reflective = true;
+        pack.specular = DVec3::splat(255.0);
+    }
+    for accelerator in [Accelerator::List, Accelerator::Bvh] {
+        for sampling in [Sampling::Centres, Sampling::ADAPTIVE] {
+            let request = RenderRequest {
+                aspect: Aspect::Mirrors,
+                accelerator,
+                sampling,
+                ..RenderRequest::sized(120, 120)
+            };
+            let image = light_of(&scene, &request);
+            let case = format!("{accelerator:?} {sampling:?}");
+            let at = |row: usize| &image.pixels[row * 120..][..120];
+            assert!(at(60)[60][0] > 0.0, "{case}: the ball mirrors the sky");
+            let sky = (0..20).chain(100..120).flat_map(at);
+            assert!(sky.flatten().all(|channel| *channel == 0.0), "{case}");
+        }
     }
 }

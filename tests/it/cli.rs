@@ -382,6 +382,15 @@ fn chart_prints_the_front_and_writes_every_figure() {
             .is_some_and(|line| line.starts_with("take ")),
         "{said}"
     );
+    // Not in the place of the scene.
+    let scene = folder.path().join("own.ron");
+    std::fs::copy(DEMO, &scene).expect("copied");
+    let refused = glint(
+        folder.path(),
+        &["chart", "own.ron", "--side", "16", "--csv", "./own.ron"],
+    );
+    assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+    assert!(std::fs::read(&scene).expect("there") == std::fs::read(DEMO).expect("there"));
     let chart = image::open(folder.path().join("c.png")).expect("a picture");
     assert_eq!((chart.width(), chart.height()), (1600, 960));
     let accent = image::Rgba([0xF2, 0xB1, 0x34, 255]);

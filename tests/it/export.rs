@@ -24,7 +24,7 @@ use glint::worker::Worker;
 use image::AnimationDecoder as _;
 
 use crate::harness::{CTRL, EditorHarness};
-use crate::program::{FLIGHT, done, glint, names, run};
+use crate::program::{FLIGHT, done, glint, names, run, wait_until};
 
 /// Exports small frames of the published flight into a folder.
 fn export(folder: &Path, more: &[&str]) -> Command {
@@ -870,29 +870,15 @@ fn a_job_has_a_name_that_farms_take_whatever_the_scene_is_called() {
 
 /// Waits until nothing is exported any more.
 fn finish(harness: &mut EditorHarness) {
-    let start = std::time::Instant::now();
-    while harness.window.state().is_exporting() {
-        assert!(
-            start.elapsed() < Duration::from_mins(1),
-            "the export never ended"
-        );
-        sleep(Duration::from_millis(5));
-        harness.window.step();
-    }
+    harness.wait_for("the end of the export", |harness| {
+        !harness.window.state().is_exporting()
+    });
     harness.settle();
 }
 
 /// Waits until a text is in the window.
 fn see(harness: &mut EditorHarness, text: &str) {
-    let start = std::time::Instant::now();
-    while harness.window.query_by_label_contains(text).is_none() {
-        assert!(
-            start.elapsed() < Duration::from_mins(1),
-            "{text} never came"
-        );
-        sleep(Duration::from_millis(5));
-        harness.window.step();
-    }
+    harness.wait_for(text, |harness| harness.sees(text));
 }
 
 #[test]
@@ -1031,11 +1017,7 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
             .is_none()
     );
     assert!(harness.window.state().is_exporting());
-    let start = std::time::Instant::now();
-    while !folder.join("rayTrace3.ppm").exists() {
-        assert!(start.elapsed() < Duration::from_mins(1), "nothing is made");
-        sleep(Duration::from_millis(2));
-    }
+    wait_until("a frame", || folder.join("rayTrace3.ppm").exists());
     // With changes, one question is about both.
     harness.window.key_press(Key::O);
     harness.window.step();
@@ -1157,19 +1139,12 @@ fn an_export_waits_goes_on_and_is_given_up() {
     let first = worker.export(sequence("first", "1-202")).expect("a folder");
     let second = worker.export(sequence("second", "1-3")).expect("a folder");
     let state = |id: u64| worker.exports().into_iter().find(|state| state.id == id);
-    let wait = |what: &str, is_true: &dyn Fn() -> bool| {
-        let start = std::time::Instant::now();
-        while !is_true() {
-            assert!(start.elapsed() < Duration::from_mins(1), "{what}");
-            sleep(Duration::from_millis(2));
-        }
-    };
-    wait("it starts", &|| {
+    wait_until("it starts", || {
         state(first).is_some_and(|state| state.done.written > 2)
     });
     worker.pause_export(first, true);
     // While the first waits, the second is done.
-    wait("the second ends", &|| {
+    wait_until("the second ends", || {
         state(second).is_some_and(|state| state.ended == Some(Ok(())))
     });
     let at = state(first).expect("listed").done.written;
@@ -1181,17 +1156,17 @@ fn an_export_waits_goes_on_and_is_given_up() {
     );
     assert!(state(first).expect("listed").last.is_some());
     worker.pause_export(first, false);
-    wait("it goes on", &|| {
+    wait_until("it goes on", || {
         state(first).is_some_and(|state| state.done.written > still + 3)
     });
     worker.forget_export(first);
     worker.forget_export(second);
     let third = worker.export(sequence("second", "1-3")).expect("a folder");
     assert!(third > second, "no name is given twice");
-    wait("the third ends", &|| {
+    wait_until("the third ends", || {
         state(third).is_some_and(|state| state.done.kept == 3)
     });
-    wait("and is done", &|| !worker.is_exporting());
+    wait_until("and is done", || !worker.is_exporting());
     assert!(state(first).is_none() && !worker.is_exporting());
     drop(worker);
     // What is written stays, whole, and is taken up by the next.
@@ -1289,6 +1264,37 @@ fn a_job_takes_no_ones_place_and_no_backup_that_of_another() {
         "{said}"
     );
     assert!(fs::read(&scene).expect("there") == fs::read(FLIGHT).expect("there"));
+    // Nothing is moved for a template that cannot be written.
+    let blocked = folder.path().join("blocked");
+    fs::create_dir_all(blocked.join("job.yaml")).expect("folders");
+    fs::write(blocked.join("s.ron"), "mine").expect("written");
+    let template = blocked.join("job.yaml");
+    let output = run(&mut glint(&[
+        "job",
+        path,
+        "-o",
+        template.to_str().expect("plain"),
+    ]));
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(names(&blocked), ["job.yaml", "s.ron"]);
+    assert_eq!(
+        fs::read_to_string(blocked.join("s.ron")).expect("there"),
+        "mine"
+    );
+    // A scene comes through a pipe once.
+    let piped = folder.path().join("piped.yaml");
+    let text = fs::File::open(&scene).expect("there");
+    let mut cat = Command::new("cat")
+        .stdin(text)
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("cat");
+    let pipe = cat.stdout.take().expect("a pipe");
+    let mut job = glint(&["job", "/dev/stdin", "-o", piped.to_str().expect("plain")]);
+    done(job.stdin(pipe));
+    cat.wait().expect("ended");
+    let copy = Document::load(&folder.path().join("stdin.ron")).expect("a scene");
+    assert_eq!(copy.scene, Document::load(&scene).expect("a scene").scene);
     // Two others in its place are kept both.
     let inner = folder.path().join("jobs");
     fs::create_dir(&inner).expect("a folder");

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 use glint::scene::{Document, Object, Recovery, Scene, Sphere};
 
-use crate::program::{self, FLIGHT, done, names, run};
+use crate::program::{self, FLIGHT, done, names, run, wait_until};
 use crate::random::Dice;
 
 /// Programs that are killed while they save.
@@ -145,14 +145,7 @@ fn whoever_is_killed_while_work_is_kept_leaves_all_of_it() {
             .stdout(Stdio::null())
             .spawn()
             .expect("it runs");
-        let start = Instant::now();
-        while !names(folder.path()).iter().any(is_kept) {
-            assert!(
-                start.elapsed() < Duration::from_mins(1),
-                "nothing is ever kept"
-            );
-            sleep(Duration::from_millis(2));
-        }
+        wait_until("kept work", || names(folder.path()).iter().any(is_kept));
         sleep(Duration::from_secs_f64(dice.real(0.0, 0.05)));
         child.kill().expect("killed");
         child.wait().expect("ended");

@@ -17,6 +17,8 @@ use glint::trace::{RenderControl, survey};
 use glint::ui::{App, Ask, Dialogs, Setup};
 use glint::worker::Background;
 
+use crate::PATIENCE;
+
 /// Dialogs that answer from a list; with none left, they do as a desktop without dialogs does.
 pub struct Scripted(VecDeque<(Ask, Option<PathBuf>)>);
 
@@ -145,7 +147,7 @@ impl EditorHarness {
         self.window.step();
         while !self.window.state().is_settled() {
             assert!(
-                start.elapsed() < Duration::from_mins(1),
+                start.elapsed() < PATIENCE,
                 "the picture never came of {:?}",
                 self.editor().to_text()
             );
@@ -155,6 +157,24 @@ impl EditorHarness {
             self.window.step();
         }
         self.window.step();
+    }
+
+    /// Steps until something is so: as fast as time passes, since messages go again.
+    pub fn wait_for(&mut self, what: &str, is_so: impl Fn(&Self) -> bool) {
+        let start = Instant::now();
+        while !is_so(self) {
+            assert!(start.elapsed() < PATIENCE, "waited in vain for {what}");
+            std::thread::sleep(Duration::from_millis(16));
+            self.window.step();
+        }
+        // What appears is measured in its first frame, and seen in its second.
+        self.window.step();
+    }
+
+    /// Whether a text with these words is in the window.
+    pub fn sees(&self, words: &str) -> bool {
+        let mut seen = self.window.query_all_by_label_contains(words);
+        seen.next().is_some()
     }
 
     pub fn editor(&self) -> &Editor {

@@ -2,6 +2,8 @@
 
 #![allow(clippy::expect_used, reason = "a test that cannot go on has failed")]
 
+use std::time::Duration;
+
 mod antialias;
 mod architecture;
 mod aspects;
@@ -33,3 +35,7 @@ mod timeline;
 mod ui;
 mod window;
 mod worker;
+
+/// How long a test waits for what shall happen. Minutes may pass on a slow machine that is busy with other tests; only
+/// what hangs is to fail.
+const PATIENCE: Duration = Duration::from_mins(10);

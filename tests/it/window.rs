@@ -7,8 +7,7 @@ use std::time::{Duration, Instant};
 
 use image::RgbaImage;
 
-/// Longest wait for anything, on a machine busy with other things.
-const PATIENCE: Duration = Duration::from_mins(1);
+use crate::PATIENCE;
 
 /// A virtual display that ends with the test.
 struct Display {

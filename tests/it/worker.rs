@@ -11,8 +11,8 @@ use glint::scene::{MAX_GRID, Object, Sampling, Scene, Sphere};
 use glint::trace::RenderControl;
 use glint::worker::{Activity, BUDGET, Event, Frame, LiveJob, Pace, StillJob, Worker};
 
-/// A test that waits longer than this has lost.
-const PATIENCE: Duration = Duration::from_mins(1);
+use crate::PATIENCE;
+use crate::program::wait_until;
 
 fn live(revision: u64, scene: &Arc<Scene>, side: u32) -> LiveJob {
     let picture = RenderRequest::sized(side, side);
@@ -53,14 +53,6 @@ fn wait_for(worker: &Worker, fits: impl Fn(&Frame) -> bool) -> Vec<Frame> {
         "no such frame came; the render thread is {:?}",
         worker.activity()
     );
-}
-
-fn wait_until(what: &str, mut is_true: impl FnMut() -> bool) {
-    let start = Instant::now();
-    while !is_true() {
-        assert!(start.elapsed() < PATIENCE, "{what} never came true");
-        std::thread::sleep(Duration::from_micros(200));
-    }
 }
 
 /// Thousands of spheres: about 20 µs a pixel.

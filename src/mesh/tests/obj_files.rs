@@ -210,3 +210,21 @@ fn colours_that_are_not_found_are_told_and_those_that_can_be_are_found() {
     let notes = Sample::new("m.obj", painted).notes();
     assert_eq!(notes, ["colours of points or faces are left out"]);
 }
+
+#[test]
+fn lines_end_as_on_old_machines_and_remarks_as_they_like() {
+    let text = format!("# C:\\dir\\\nmtllib m.mtl\n{SQUARE}usemtl red\nf 1 2 3\nf 1 3 4\n");
+    for text in [text.clone(), text.replace('\n', "\r")] {
+        let sample = Sample::new("m.obj", &text);
+        sample.beside("m.mtl", "newmtl red\rKd 1 0 0\r");
+        let parts = sample.parts();
+        assert_eq!(parts[0].triangles.faces().len(), 2);
+        assert_eq!(parts[0].triangles.points().len(), 4);
+        let colors = parts[0].colors.as_ref().expect("a colour");
+        assert_eq!(colors.diffuse, [1.0, 0.0, 0.0]);
+    }
+    // Where a line is wrong is told behind a remark, too.
+    let sample = Sample::new("m.obj", "g a\\\n# b\\\nf 1 2 9\n");
+    let said = sample.error();
+    assert!(said.contains(":3:") || said.contains("line 3"), "{said}");
+}

@@ -178,6 +178,11 @@ fn positions_may_be_quantized_or_replaced_one_by_one() {
         ALONE,
     );
     assert_eq!(replaced, [DVec3::ZERO, DVec3::new(0.0, 5.0, 7.0), DVec3::X]);
+    // Of nothing but what is replaced.
+    let bytes = [vec![1, 2, 0, 0], bytes_of(&[0.0, 5.0, 7.0, 1.0, 0.0, 0.0])].concat();
+    let alone = r#"{"componentType":5126,"count":3,"type":"VEC3","sparse":{"count":2,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":1}}}"#;
+    let replaced = corners(&bytes, alone, &[(0, 2), (4, 24)], "", ALONE);
+    assert_eq!(replaced, [DVec3::ZERO, DVec3::new(0.0, 5.0, 7.0), DVec3::X]);
 }
 
 #[test]

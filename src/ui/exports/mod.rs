@@ -15,9 +15,10 @@ mod progress;
 mod entry;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
-use egui::{Button, Context, Grid, Rect, RichText, Ui, Window};
+use egui::{Button, Context, Grid, Rect, RichText, ScrollArea, Ui, Window};
 
 use self::entry::Entry;
 use self::fields::{Settings, fields, presets};
@@ -32,7 +33,13 @@ use super::status::in_words;
 use super::theme::{GRID, palette};
 use crate::editor::Editor;
 use crate::export::Sequence;
+use crate::scene::Scene;
 use crate::ui::hint::Hint as _;
+
+/// What is left free below the list of exports, in points.
+const MARGIN: f32 = 2.0 * GRID;
+/// The least height of the list, in points.
+const LEAST_LIST: f32 = 120.0;
 
 /// Settings on the screen.
 struct Shown {
@@ -62,6 +69,8 @@ pub struct Exports {
     entries: Vec<Entry>,
     /// What ended without being finished.
     interrupted: Vec<Order>,
+    /// The frames that were asked for last, with what, of which scene; or why there are none.
+    sequence: Option<(Settings, Arc<Scene>, Result<Sequence, String>)>,
     /// What is known of what is asked for.
     forecast: Forecast,
     /// Exports that have ended, of all.
@@ -184,8 +193,12 @@ impl Exports {
             .default_pos(egui::pos2(280.0, 60.0))
             .show(ctx, |ui| {
                 self.show_settings(ui, editor, pictures, out);
-                self.show_list(ui, editor, pictures);
-                self.show_interrupted(ui, editor, pictures);
+                let room = ctx.content_rect().bottom() - ui.cursor().top() - MARGIN;
+                let list = ScrollArea::vertical().max_height(room.max(LEAST_LIST));
+                list.show(ui, |ui| {
+                    self.show_list(ui, editor, pictures);
+                    self.show_interrupted(ui, editor, pictures);
+                });
             });
         self.place = shown.map(|shown| shown.response.rect);
         self.is_open = is_open && self.is_open;
@@ -193,7 +206,7 @@ impl Exports {
             && let Some(shown) = self.shown.take()
         {
             // Nobody asks what it finds out.
-            self.forecast = Forecast::default();
+            (self.forecast, self.sequence) = (Forecast::default(), None);
             self.last = Some((shown.document, shown.settings.clone()));
             self.kept.keep(shown.owner, shown.settings);
         }
@@ -237,7 +250,7 @@ impl Exports {
             .num_columns(2)
             .spacing([GRID, GRID / 2.0])
             .show(ui, |ui| fields(ui, &mut settings, out));
-        let sequence = settings.sequence(editor.scene());
+        let sequence = self.sequence(&settings, editor.scene());
         let is_making = sequence
             .as_ref()
             .is_ok_and(|sequence| self.is_making(&settings, sequence));
@@ -245,7 +258,7 @@ impl Exports {
         self.forecast.update();
         match &sequence {
             Err(error) => {
-                ui.colored_label(colors.error, error.to_string());
+                ui.colored_label(colors.error, error);
             }
             Ok(_) if is_making => {
                 ui.label("Such files are being made: see below");
@@ -275,6 +288,17 @@ impl Exports {
             owner: Owner::of(editor),
             settings,
         });
+    }
+
+    /// The frames that are asked for; of large scenes they are not made anew in every frame of the window.
+    fn sequence(&mut self, settings: &Settings, scene: &Arc<Scene>) -> Result<Sequence, String> {
+        let known = self.sequence.take();
+        let known = known.filter(|(of, from, _)| of == settings && Arc::ptr_eq(from, scene));
+        let (.., sequence) = self.sequence.insert(known.unwrap_or_else(|| {
+            let made = settings.sequence(scene).map_err(|error| error.to_string());
+            (settings.clone(), Arc::clone(scene), made)
+        }));
+        sequence.clone()
     }
 
     /// Whether such files are ordered: two exports would replace each other's.

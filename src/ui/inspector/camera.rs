@@ -36,7 +36,13 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     if ui.button("Reset to the demo's camera").clicked() {
         return out.edit(Edit::Camera(defaults, "reset"));
     }
-    if let Some(field) = changed.filter(|_| camera != *before) {
+    if camera.projection != before.projection {
+        // Things stay as large as they were, as with the keys.
+        out.commands.push(match camera.projection {
+            Projection::Perspective => Command::Perspective,
+            Projection::Orthographic => Command::Orthographic,
+        });
+    } else if let Some(field) = changed.filter(|_| camera != *before) {
         out.edit(Edit::Camera(camera, field));
     }
     bookmarks(ui, editor, out);

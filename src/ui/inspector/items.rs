@@ -17,6 +17,9 @@ use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, color_names, coordinate, fraction};
 use crate::words::counted;
 
+/// Most things that are listed as wearing a pack.
+const MOST_USERS: usize = 100;
+
 /// What ambient and diffuse colour are called at once.
 pub const BOTH: (&str, [&str; 3]) = color_names!("color");
 
@@ -283,7 +286,9 @@ pub fn pack(ui: &mut Ui, index: usize, before: &ColorPack, out: &mut UiRequests)
 pub fn used_by(ui: &mut Ui, scene: &Scene, name: &str, out: &mut UiRequests) {
     let mut rows = Rows::new(ui);
     rows.heading("Used by");
-    let users: Vec<Item> = Item::wearing(scene, name).collect();
+    let mut all = Item::wearing(scene, name);
+    let users: Vec<Item> = all.by_ref().take(MOST_USERS).collect();
+    let more = all.count();
     if users.is_empty() {
         ui.weak("Nothing yet – choose it in an object's ColorPack");
     }
@@ -299,5 +304,8 @@ pub fn used_by(ui: &mut Ui, scene: &Scene, name: &str, out: &mut UiRequests) {
         {
             out.select(item);
         }
+    }
+    if more > 0 {
+        ui.weak(format!("and {more} more"));
     }
 }

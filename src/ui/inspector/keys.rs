@@ -29,13 +29,6 @@ const STAYING: [Interpolation; 3] = [
 /// pace of the first, which others take on.
 pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
-    if !ui.input(|input| input.pointer.any_down()) {
-        let moved: Option<Moved> = ui.data_mut(|data| data.remove_temp(drag_id()));
-        let before = moved.map_or(0, |moved| moved.animation.places().len());
-        let replaced = before.saturating_sub(animation.places().len());
-        out.actions
-            .extend(told_of_replaced(replaced).map(Action::Tell));
-    }
     let Some(&first) = places.first() else { return };
     let pace = animation.at_place(first).map(|(_, pace)| pace);
     let (Some(pace), Some((time, last))) = (pace, animation.span_of(places)) else {
@@ -128,6 +121,18 @@ fn point_field(target: &Target) -> Field {
         },
         _ => coordinate("position", "Where it is at that time, in world units"),
     }
+}
+
+/// Says which keys were replaced by those whose time has been changed, once that is over. Whatever is selected by then.
+pub fn tell_of_moved(ui: &Ui, editor: &Editor, out: &mut UiRequests) {
+    if ui.input(|input| input.pointer.any_down()) {
+        return;
+    }
+    let moved: Option<Moved> = ui.data_mut(|data| data.remove_temp(drag_id()));
+    let before = moved.map_or(0, |moved| moved.animation.places().len());
+    let replaced = before.saturating_sub(editor.scene().animation.places().len());
+    out.actions
+        .extend(told_of_replaced(replaced).map(Action::Tell));
 }
 
 /// A key before its time was dragged: it replaces what it lands on, and not what it passes.

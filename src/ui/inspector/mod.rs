@@ -35,6 +35,7 @@ use crate::scene::{Shape, Target};
 
 /// Shows the selection and pushes its changes.
 pub fn show(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiRequests) {
+    keys::tell_of_moved(ui, editor, out);
     // Each thing is read from its top.
     let selection = editor.selection();
     let area = ScrollArea::vertical().id_salt((discriminant(selection), selection.item()));

@@ -71,10 +71,11 @@ impl Quality {
         }
     }
 
-    /// Takes up what was chosen: the change of the document that it was asked for.
-    pub fn take(&mut self, choice: Choice, editor: &Editor) -> Option<Edit> {
-        let is_wanted = |asked: &(Goal, u64)| *asked == (choice.goal, editor.documents());
-        self.asked.take_if(|asked| is_wanted(asked))?;
+    /// Takes up what was chosen, if anything could be: the change of the document that it was asked for.
+    pub fn take(&mut self, goal: Goal, choice: Option<Choice>, editor: &Editor) -> Option<Edit> {
+        let asked = (goal, editor.documents());
+        self.asked.take_if(|own| *own == asked)?;
+        let choice = choice?;
         self.choice = Some(choice);
         let render = Render {
             antialias: choice.sampling,

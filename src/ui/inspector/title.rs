@@ -58,7 +58,10 @@ pub fn name_field(ui: &mut Ui, label: &str, id: Id, name: &str) -> Option<String
 /// Tells what several things that are selected have otherwise.
 pub fn tell_different(ui: &mut Ui, names: impl Iterator<Item = &'static str>) {
     let names: Vec<&str> = names.collect();
-    if !names.is_empty() {
+    if names.is_empty() {
+        // What is below is the same widgets as with the line, also while they are dragged.
+        ui.skip_ahead_auto_ids(1);
+    } else {
         ui.weak(format!("Not the same for all: {}", names.join(", ")));
     }
 }

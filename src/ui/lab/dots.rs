@@ -97,7 +97,7 @@ pub fn chart(study: &Study, view: &ChartView) -> (Chart, Vec<Vec<usize>>) {
             CostAxis::Rays => "rays per pixel".to_owned(),
         },
         error: match view.axes.1 {
-            ErrorAxis::Rmse => "RMSE against 64×64 samples (0–1)",
+            ErrorAxis::Rmse => "RMSE against the reference (0–1)",
             ErrorAxis::Max => "worst channel (0–1)",
             ErrorAxis::Visible => "share of pixels > 4/255 off",
         },

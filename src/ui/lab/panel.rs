@@ -151,9 +151,6 @@ impl Lab {
             && self.looked_for != Some(document)
         {
             self.looked_for = Some(document);
-            // It was measured of another one.
-            (self.study, self.chosen) = (None, None);
-            self.number += 1;
             let (scene, machine) = (Arc::clone(editor.scene()), self.machine.clone());
             self.found =
                 Background::start("glint-lab", move || kept(&scene, SIDE, &machine, &folder));
@@ -195,6 +192,15 @@ impl Lab {
         let measured = self.study.as_ref().map(|study| &study.measurements);
         let dot = self.chosen.and_then(|place| measured?.get(place));
         dot.map_or(String::new(), |dot| format!("Lab: {}", dot.candidate.name))
+    }
+
+    /// Forgets what was measured: it was of another document. What it asks of the render thread.
+    pub fn forget(&mut self) -> Option<LabRequest> {
+        (self.study, self.chosen) = (None, None);
+        self.number += 1;
+        self.notice = "";
+        self.found = Background::default();
+        std::mem::take(&mut self.is_running).then_some(LabRequest::Stop)
     }
 
     /// Leaves the dot that is looked at; whether there was one.

@@ -20,6 +20,8 @@ pub struct Stability {
     maps: Vec<Map>,
     coming: Background<Vec<Map>>,
     chosen: usize,
+    /// Whether computing them ended with a fault.
+    has_failed: bool,
 }
 
 impl Stability {
@@ -59,10 +61,19 @@ impl Stability {
     }
 
     fn fetch(&mut self, ui: &mut Ui) {
-        if let Some(Ok(maps)) = self.coming.take() {
-            self.maps = maps;
-        } else if !self.coming.is_awaited() {
-            self.coming = Background::start("glint-stability", || maps(EFFORT));
+        match self.coming.take() {
+            Some(Ok(maps)) => self.maps = maps,
+            Some(Err(_)) => self.has_failed = true,
+            None if !self.coming.is_awaited() && !self.has_failed => {
+                self.coming = Background::start("glint-stability", || maps(EFFORT));
+            }
+            None => {}
+        }
+        if self.has_failed {
+            ui.centered_and_justified(|ui| {
+                ui.weak("The trying of the formulas has stopped with a fault of its own.")
+            });
+            return;
         }
         ui.centered_and_justified(|ui| ui.weak("Trying every formula…"));
         ui.request_repaint_after(std::time::Duration::from_millis(100));

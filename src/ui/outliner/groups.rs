@@ -116,6 +116,9 @@ impl GroupRows {
                 Renaming::To(new) if new.trim().is_empty() => {}
                 Renaming::To(new) => {
                     let name = new.trim().to_owned();
+                    for folded in self.folded.iter_mut().filter(|own| **own == group.name) {
+                        folded.clone_from(&name);
+                    }
                     out.edit(Edit::RenameGroup(group.name.clone(), name));
                 }
             }

@@ -37,7 +37,8 @@ pub struct Outliner {
     /// Where the list is scrolled to, and how much of it is seen, in points.
     scrolled: (f32, f32),
     folded: Vec<Kind>,
-    renaming: Option<Item>,
+    /// Whose name is edited, and what that was when it began.
+    renaming: Option<(Item, String)>,
     /// Whether what is selected is brought into sight, wherever the list was scrolled to.
     reveals: bool,
     groups: Groups,
@@ -55,7 +56,7 @@ impl Outliner {
                 .folded
                 .retain(|group| *group != object.group);
         }
-        self.renaming = Some(item);
+        self.renaming = item.name(scene).map(|name| (item, name.to_owned()));
         self.reveals = true;
     }
 
@@ -92,7 +93,7 @@ impl Outliner {
             // What was looked for and named was in the other one.
             self.clear_filter();
             self.renaming = None;
-            self.group_rows.renaming = None;
+            self.group_rows = GroupRows::default();
         }
         ui.horizontal(|ui| self.show_filter(ui, editor, out));
         let mut groups = std::mem::take(&mut self.groups);
@@ -297,7 +298,10 @@ impl Outliner {
     ) -> Option<Response> {
         let scene = editor.shown();
         let name = item.name(scene)?;
-        if self.renaming == Some(item) {
+        // Another thing may have come in its place.
+        self.renaming
+            .take_if(|(own, before)| *own == item && before != name);
+        if self.renaming.as_ref().is_some_and(|(own, _)| *own == item) {
             self.rename_row(ui, scene, (item, is_in_group), out);
             return None;
         }
@@ -330,7 +334,7 @@ impl Outliner {
             select_clicked(ui, editor, (listed, item), out);
         }
         if response.double_clicked() {
-            self.renaming = Some(item);
+            self.renaming = Some((item, name.to_owned()));
         }
         take_dropped(ui, editor, &response, item, out);
         response.context_menu(|ui| {

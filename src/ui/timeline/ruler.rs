@@ -1,6 +1,6 @@
 //! Seconds and frames above the keys, and where the playhead is.
 
-use egui::{Align2, FontId, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Align2, FontId, PointerButton, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use super::scale::Scale;
 use super::strip::{KEY, SMALL, band};
@@ -21,7 +21,10 @@ const STEPS: [f64; 11] = [
 pub fn show(ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) {
     let (rect, response) = band(ui, scale, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Playhead"));
-    if let Some(pointer) = response.interact_pointer_pos() {
+    let is_primary = response.clicked_by(PointerButton::Primary)
+        || response.dragged_by(PointerButton::Primary)
+        || response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_down());
+    if let Some(pointer) = response.interact_pointer_pos().filter(|_| is_primary) {
         out.time(Time::Seek(
             scale.time(pointer.x).clamp(scale.start, scale.end),
         ));

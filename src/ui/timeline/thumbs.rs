@@ -1,12 +1,14 @@
 //! Small pictures: what the keys see, above them, and the shot in a corner of the view.
 
+use std::sync::Arc;
+
 use egui::{Context, Id, Rect, Sense, TextureHandle, TextureOptions, Ui, pos2, vec2};
 
 use super::scale::Scale;
 use crate::animate::shot;
 use crate::editor::Editor;
 use crate::image::Image;
-use crate::scene::Animation;
+use crate::scene::{Animation, Scene};
 use crate::ui::commands::{Command, with_key};
 use crate::ui::hint::Hint as _;
 use crate::ui::requests::UiRequests;
@@ -26,10 +28,12 @@ const SHARE: f32 = 0.28;
 pub struct Thumbs {
     keys: Vec<Option<TextureHandle>>,
     shot: Option<TextureHandle>,
-    /// Revision of the scene whose keys were asked for, and the screen's scale.
-    asked: Option<(u64, u32)>,
-    /// Revision of the scene, time, and size that the shot was asked for.
-    asked_shot: Option<(u64, f64, u32)>,
+    /// Every key of which there is one, counted by this, has a picture.
+    stride: usize,
+    /// The scene whose keys were asked for, and the screen's scale.
+    asked: Option<(Arc<Scene>, u32)>,
+    /// The scene, time, and size that the shot was asked for.
+    asked_shot: Option<(Arc<Scene>, f64, u32)>,
 }
 
 impl Thumbs {
@@ -40,8 +44,12 @@ impl Thumbs {
             let texture = ctx.load_texture("small picture", picture, TextureOptions::LINEAR);
             if name == SHOT {
                 self.shot = Some(texture);
-            } else if let Some(place) = self.keys.get_mut(name as usize) {
-                *place = Some(texture);
+                continue;
+            }
+            let place = name as usize;
+            let own = self.keys.get_mut(place);
+            if let Some(own) = own.filter(|_| place.is_multiple_of(self.stride)) {
+                *own = Some(texture);
             }
         }
     }
@@ -57,8 +65,7 @@ impl Thumbs {
         let scene = editor.scene();
         let keys = &scene.animation.keys;
         if keys.is_empty() {
-            self.keys.clear();
-            self.shot = None;
+            *self = Self::default();
             return None;
         }
         let scale = ctx.pixels_per_point();
@@ -74,9 +81,11 @@ impl Thumbs {
         if !editor.looks_through() {
             let size = pixels(shot_place(view, aspect).height());
             let time = editor.shown_time();
-            let wanted = Some((editor.revision(), time, size.1));
-            if self.asked_shot != wanted {
-                self.asked_shot = wanted;
+            let asked = self.asked_shot.as_ref();
+            if asked.is_none_or(|asked| {
+                !shows_same(&asked.0, scene) || (asked.1, asked.2) != (time, size.1)
+            }) {
+                self.asked_shot = Some((Arc::clone(scene), time, size.1));
                 wishes.push(ThumbnailJob {
                     name: SHOT,
                     scene: shot(scene, editor.path_of_camera(), time),
@@ -87,12 +96,17 @@ impl Thumbs {
         let is_resting = !ctx.input(|input| input.pointer.any_down())
             && !editor.timeline().is_playing
             && editor.timeline().recorded().is_none();
-        let wanted = Some((editor.revision(), (scale * 100.0) as u32));
-        if self.asked != wanted && is_resting {
-            self.asked = wanted;
-            self.keys.resize(keys.len(), None);
+        let (asked, scale) = (self.asked.as_ref(), (scale * 100.0) as u32);
+        if is_resting && asked.is_none_or(|asked| !shows_same(&asked.0, scene) || asked.1 != scale)
+        {
+            self.asked = Some((Arc::clone(scene), scale));
             // Where there are very many keys, some of them have pictures, evenly.
             let stride = keys.len().div_ceil(MOST).max(1);
+            if self.stride != stride {
+                self.keys.clear();
+                self.stride = stride;
+            }
+            self.keys.resize(keys.len(), None);
             let sketch = |(place, key): (usize, &crate::scene::Key<_>)| ThumbnailJob {
                 name: place as u64,
                 scene: shot(scene, editor.path_of_camera(), key.time),
@@ -148,6 +162,14 @@ impl Thumbs {
         ui.painter()
             .text(at, egui::Align2::LEFT_TOP, "Shot", font, colors.on_picture);
     }
+}
+
+/// Whether pictures of the keys of one are those of the other. The camera of the view is in none of them.
+fn shows_same(one: &Scene, other: &Scene) -> bool {
+    one.has_same_things(other)
+        && one.light_visualization == other.light_visualization
+        && one.render == other.render
+        && Arc::ptr_eq(&one.animation, &other.animation)
 }
 
 /// The lower right corner of the view.

@@ -13,6 +13,7 @@ use crate::editor::{Action, Edit, Editor, Selection};
 use crate::image::Thing;
 use crate::scene::Shape;
 use crate::ui::flying::drag_of;
+use crate::ui::number::read_number;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
 use crate::ui::viewport::Place;
@@ -192,9 +193,7 @@ impl Drag {
             }
             Self::Grip(grip) => {
                 ui.set_cursor_icon(CursorIcon::Grabbing);
-                if grip.takes_numbers() && type_into(ui, &mut grip.typed) {
-                    return false;
-                }
+                let is_done = grip.takes_numbers() && type_into(ui, &mut grip.typed);
                 let modifiers = ui.input(|input| input.modifiers);
                 let pull = Pull {
                     at,
@@ -205,6 +204,9 @@ impl Drag {
                     let (edit, words) = grip.pull(&view.lens, pull).unwrap_or_default();
                     out.actions.extend(edit.map(Action::Edit));
                     grip.label(&view.painter, at, &words);
+                }
+                if is_done {
+                    return false;
                 }
             }
         }
@@ -220,7 +222,7 @@ fn show_frame(view: &View, part: Rect, (at, count): (Pos2, usize)) {
     label(&view.painter, at, &counted(count, "item"));
 }
 
-/// Takes digits up. Whether Enter was pressed after some.
+/// Takes digits up. Whether Enter was pressed after some that are a number.
 fn type_into(ui: &Ui, typed: &mut String) -> bool {
     let events = ui.input(|input| input.filtered_events(&egui::EventFilter::default()));
     let mut is_done = false;
@@ -229,7 +231,7 @@ fn type_into(ui: &Ui, typed: &mut String) -> bool {
             Event::Text(text) => {
                 typed.extend(
                     text.chars()
-                        .filter(|c| c.is_ascii_digit() || ".-".contains(*c)),
+                        .filter(|c| c.is_ascii_digit() || ".,-+eE".contains(*c)),
                 );
             }
             Event::Key {
@@ -243,7 +245,7 @@ fn type_into(ui: &Ui, typed: &mut String) -> bool {
                 key: Key::Enter,
                 pressed: true,
                 ..
-            } => is_done = !typed.is_empty(),
+            } => is_done = read_number(typed).is_some(),
             _ => {}
         }
     }

@@ -8,6 +8,7 @@ use super::lens::Lens;
 use super::subject::{Subject, together};
 use crate::editor::Edit;
 use crate::scene::{Disc, Plane, Shape, format_number};
+use crate::ui::number::read_number;
 
 /// Degrees to which turns snap.
 const DEGREES: f64 = 15.0;
@@ -112,7 +113,7 @@ impl Grip {
     pub fn pull(&self, lens: &Lens, pull: Pull) -> Option<(Option<Edit>, String)> {
         let unit = lens.unit_at(self.middle);
         let round = |value: f64| rounded(value, unit, pull.snaps);
-        let typed = self.typed.parse::<f64>().ok();
+        let typed = read_number(&self.typed);
         match self.handle {
             Handle::Along(axis) => {
                 let (direction, name) = AXES[axis];
@@ -147,6 +148,7 @@ impl Grip {
                 Some((self.move_all(by), words))
             }
             Handle::Radius => {
+                let typed = typed.filter(|radius| *radius > 0.0);
                 let radius = typed.map_or_else(|| self.radius(lens, pull.at).map(round), Some)?;
                 let subject = self.before.first()?;
                 let edit = (radius > 0.0)
@@ -264,6 +266,8 @@ impl Grip {
     pub fn label(&self, painter: &Painter, at: Pos2, words: &str) {
         let words = if self.typed.is_empty() {
             words.to_owned()
+        } else if read_number(&self.typed).is_none() {
+            format!("{} is no number yet", self.typed)
         } else {
             format!("{words} (Enter)")
         };

@@ -60,6 +60,8 @@ pub struct Tools {
     document: u64,
     /// Where the menu was opened.
     menu_at: Option<Pos2>,
+    /// Whether what is there is not known yet.
+    menu_waits: bool,
     /// Where the picture was.
     view: Option<Rect>,
 }
@@ -73,6 +75,7 @@ impl Tools {
     /// Lets go of everything: the picture is another one, or none that can be taken hold of.
     pub fn rest(&mut self) {
         (self.drag, self.click, self.behind, self.wheel) = (None, None, None, None);
+        self.menu_waits = false;
     }
 
     /// Takes up what is seen in the picture of a revision, as if nothing of `without` were there. What is to
@@ -119,7 +122,8 @@ impl Tools {
             lens,
             painter: ui.painter().with_clip_rect(place.rect),
         };
-        let has_gizmo = !editor.looks_through();
+        // What plays would set a key in every frame.
+        let has_gizmo = !(editor.looks_through() || editor.timeline().is_playing);
         let hovered = response.hover_pos().filter(|_| self.drag.is_none());
         let meant = hovered
             .filter(|_| has_gizmo)
@@ -144,7 +148,7 @@ impl Tools {
             self.turn_wheel(&view, response, wheel, out);
         }
         self.show_menu(ui, &view, response, out);
-        let waits = matches!(self.drag, Some(Drag::Undecided(..)));
+        let waits = matches!(self.drag, Some(Drag::Undecided(..))) || self.menu_waits;
         if waits || (!is_busy && self.drag.is_none()) {
             out.questions.extend(self.sight.wanted(editor, place));
         }
@@ -189,6 +193,10 @@ impl Tools {
     fn show_menu(&mut self, ui: &Ui, view: &View, response: &Response, out: &mut UiRequests) {
         if response.secondary_clicked() {
             self.menu_at = ui.input(|input| input.pointer.interact_pos());
+            self.menu_waits = true;
+        }
+        if self.menu_waits && self.sight.map(view.editor).is_some() {
+            self.menu_waits = false;
             let seen = self.menu_at;
             let seen = seen.and_then(|at| self.sight.at(view.editor, view.place.rect, at));
             if let Some(item) = seen.map(item_of)
@@ -197,7 +205,7 @@ impl Tools {
                 out.actions.push(Action::Select(Selection::all([item])));
             }
         }
-        response.context_menu(|ui| {
+        let menu = response.context_menu(|ui| {
             if let Some(at) = self.menu_at
                 && ui.button("Why this colour").clicked()
             {
@@ -205,8 +213,13 @@ impl Tools {
                 out.commands.push(Command::Why(origin, direction));
             }
             ui.separator();
-            for (text, command) in ITEM_COMMANDS {
-                offer(ui, view.editor, text, command, out);
+            // What is selected may be something else.
+            if self.menu_waits {
+                ui.weak("Looking what is here");
+            } else {
+                for (text, command) in ITEM_COMMANDS {
+                    offer(ui, view.editor, text, command, out);
+                }
             }
             ui.separator();
             entry(ui, "Paste", Command::RequestPaste, out);
@@ -217,6 +230,8 @@ impl Tools {
                 entry(ui, text, command, out);
             }
         });
+        // Of a menu that is closed, nobody waits for what it is about.
+        self.menu_waits &= menu.is_some();
     }
 
     fn start(

@@ -1,7 +1,7 @@
 //! Files: opening, saving, and what is asked before something is lost.
 
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
@@ -122,7 +122,7 @@ fn the_still_picture_is_written_to_a_file() {
     let mut harness = EditorHarness::with(answers, None);
     harness.press(Modifiers::COMMAND, Key::E);
     let path = harness.folder.path().join("picture.png");
-    wait_for(&mut harness, |_| path.exists());
+    harness.wait_for("the file", |_| path.exists());
     harness.settle();
     let saved = image::open(path).expect("a picture").to_rgba8();
     assert_eq!(saved.into_raw(), harness.picture().pixels.concat());
@@ -140,7 +140,7 @@ fn a_picture_in_an_unknown_format_is_asked_about_again() {
     let folder = harness.folder.path().to_owned();
     let path = folder.join("picture.PNG");
     harness.type_name("Path", path.to_str().expect("plain"));
-    wait_for(&mut harness, |_| path.exists());
+    harness.wait_for("the file", |_| path.exists());
     assert!(path.exists() && !folder.join("picture.jpg").exists());
 }
 
@@ -366,29 +366,16 @@ fn changed_outside(edit: impl FnOnce(&mut EditorHarness)) -> (EditorHarness, Pat
     (harness, path)
 }
 
-/// Steps until something is there, which takes the window a second to see; no step more, as messages go again.
-fn wait_for(harness: &mut EditorHarness, is_there: impl Fn(&EditorHarness) -> bool) {
-    let start = Instant::now();
-    while !is_there(harness) {
-        assert!(start.elapsed() < Duration::from_mins(1), "it never came");
-        std::thread::sleep(Duration::from_millis(20));
-        harness.window.step();
-    }
-    // What appears is measured in its first frame, and seen in its second.
-    harness.window.step();
-}
-
 #[test]
 fn what_another_program_breaks_is_told_where_it_is() {
     let (mut harness, path) = changed_outside(|_| {});
     std::fs::write(&path, "Scene(\n  version: 1,\n  objects: [}\n").expect("written");
-    wait_for(&mut harness, |harness| {
-        let told = harness.window.query_by_label_contains("given.ron:3:");
-        told.is_some()
-    });
+    harness.wait_for("the place", |harness| harness.sees("given.ron:3:"));
     assert_eq!(radius(harness.scene(), 0), 20.0);
     std::fs::write(&path, demo_text(31.5)).expect("written");
-    wait_for(&mut harness, |harness| radius(harness.scene(), 0) == 31.5);
+    harness.wait_for("what was written", |harness| {
+        radius(harness.scene(), 0) == 31.5
+    });
     assert!(
         harness
             .window
@@ -400,7 +387,9 @@ fn what_another_program_breaks_is_told_where_it_is() {
 #[test]
 fn what_another_program_writes_is_read_anew_and_can_be_undone() {
     let (mut harness, _) = changed_outside(|_| {});
-    wait_for(&mut harness, |harness| radius(harness.scene(), 0) == 31.5);
+    harness.wait_for("what was written", |harness| {
+        radius(harness.scene(), 0) == 31.5
+    });
     assert!(!harness.editor().is_dirty());
     harness
         .window
@@ -439,7 +428,7 @@ fn a_mesh_file_that_another_program_writes_is_read_anew_before_and_after_what_is
         std::thread::sleep(Duration::from_millis(1100));
         harness.window.step();
         std::fs::write(folder.join(name), mesh(height)).expect("written");
-        wait_for(harness, |harness| top(harness, index) == height);
+        harness.wait_for("the mesh", |harness| top(harness, index) == height);
     };
     wait(&mut harness, "roof.obj", 0, 7.0);
     // What was missing is there now.
@@ -467,11 +456,8 @@ fn a_mesh_file_that_another_program_writes_is_read_anew_before_and_after_what_is
     assert!(!harness.editor().is_dirty());
     // What is broken stays as it was, and is told.
     std::fs::write(folder.join("roof.obj"), "f 1 2 3\n").expect("written");
-    wait_for(&mut harness, |harness| {
-        let told = harness
-            .window
-            .query_by_label_contains("what was read of it before stays");
-        told.is_some()
+    harness.wait_for("the message", |harness| {
+        harness.sees("what was read of it before stays")
     });
     assert_eq!(top(&harness, 0), 7.0);
     // It is saved in the scene then, which follows the file no more.
@@ -493,6 +479,30 @@ fn a_mesh_file_that_another_program_writes_is_read_anew_before_and_after_what_is
 }
 
 #[test]
+fn a_name_that_is_typed_is_not_given_to_another_thing_that_comes_in_its_place() {
+    let (mut harness, path) = changed_outside(|harness| {
+        harness.click("Sphere 1");
+        harness.press(Modifiers::NONE, Key::F2);
+    });
+    harness.wait_for("what was written", |harness| {
+        radius(harness.scene(), 0) == 31.5
+    });
+    harness.window.get_by_label("new name");
+    let mut scene = Scene::demo();
+    scene.objects.remove(0);
+    let text = Document::of(scene.clone()).to_text().expect("a text");
+    // The window has looked at what was there.
+    std::thread::sleep(Duration::from_millis(1100));
+    harness.window.step();
+    std::fs::write(&path, text).expect("written");
+    let count = scene.objects.len();
+    harness.wait_for("what was written", |harness| {
+        harness.scene().objects.len() == count
+    });
+    assert!(harness.window.query_by_label("new name").is_none());
+}
+
+#[test]
 fn both_changed_one_is_asked_which_is_to_stay() {
     let edit = |harness: &mut EditorHarness| {
         harness.click("Sphere 2");
@@ -501,7 +511,7 @@ fn both_changed_one_is_asked_which_is_to_stay() {
     let is_asked = |harness: &EditorHarness| harness.window.query_by_label("Keep mine").is_some();
     for answer in ["Keep mine", "Take theirs"] {
         let (mut harness, path) = changed_outside(edit);
-        wait_for(&mut harness, is_asked);
+        harness.wait_for("the question", is_asked);
         harness
             .window
             .get_by_label_contains("2 objects changed: Sphere 1, Sphere 2");
@@ -548,14 +558,14 @@ fn a_file_that_is_gone_is_told_and_what_is_open_counts_as_unsaved() {
         told.is_some()
     };
     std::fs::rename(&path, &elsewhere).expect("moved");
-    wait_for(&mut harness, is_told);
+    harness.wait_for("the message", is_told);
     assert!(harness.editor().is_dirty());
     // It is there again.
     std::fs::rename(&elsewhere, &path).expect("moved");
-    wait_for(&mut harness, |harness| !is_told(harness));
+    harness.wait_for("the file again", |harness| !is_told(harness));
     assert!(!harness.editor().is_dirty());
     std::fs::remove_file(&path).expect("removed");
-    wait_for(&mut harness, is_told);
+    harness.wait_for("the message", is_told);
     harness.press(CTRL, Key::S);
     assert!(!harness.editor().is_dirty());
     assert_eq!(
@@ -573,7 +583,9 @@ fn a_question_that_is_left_open_does_not_end_the_watch() {
     harness.press(Modifiers::NONE, Key::Escape);
     assert!(harness.window.query_by_label("Keep mine").is_none());
     std::fs::write(&path, demo_text(31.5)).expect("written");
-    wait_for(&mut harness, |harness| radius(harness.scene(), 0) == 31.5);
+    harness.wait_for("what was written", |harness| {
+        radius(harness.scene(), 0) == 31.5
+    });
     // Nothing of one's own is to be saved: theirs is taken.
     std::fs::write(&path, demo_text(12.5)).expect("written");
     harness.press(CTRL, Key::S);
@@ -601,7 +613,7 @@ fn a_flight_that_is_still_recorded_is_asked_about() {
     // Enter presses the button that is meant.
     harness.press(Modifiers::NONE, Key::Enter);
     let path = harness.folder.path().join("flown.ron");
-    wait_for(&mut harness, |_| path.exists());
+    harness.wait_for("the file", |_| path.exists());
     let keys = Document::load(&path)
         .expect("valid")
         .scene

@@ -168,16 +168,9 @@ fn a_quality_is_chosen_by_measuring_and_needs_tells_why() {
         .click();
     harness.settle();
     harness.click("automatic: 50 dB, hardly visible");
-    let start = Instant::now();
-    while harness
-        .window
-        .query_by_label("measuring this scene")
-        .is_some()
-    {
-        assert!(start.elapsed() < Duration::from_mins(1), "never measured");
-        std::thread::sleep(Duration::from_millis(20));
-        harness.window.step();
-    }
+    harness.wait_for("the qualities", |harness| {
+        !harness.sees("measuring this scene")
+    });
     harness.settle();
     // Whichever is cheapest today, the default is closer than that by far.
     assert_ne!(harness.scene().render.antialias, Sampling::default());
@@ -189,6 +182,64 @@ fn a_quality_is_chosen_by_measuring_and_needs_tells_why() {
         .get_by_label_contains("the cheapest within 50.0 dB");
     harness.press(CTRL, Key::Z);
     assert_eq!(harness.scene(), &small);
+}
+
+#[test]
+fn what_was_measured_is_taken_up_when_nothing_is_dragged() {
+    let mut small = Scene::demo();
+    (small.render.width, small.render.height) = (128, 96);
+    let mut harness = EditorHarness::on(small.clone());
+    harness.click("Picture");
+    let choose = |harness: &mut EditorHarness| {
+        let row = |harness: &EditorHarness| {
+            let row = harness
+                .window
+                .get_by_role_and_label(Role::ComboBox, "quality");
+            row.click();
+        };
+        row(harness);
+        harness.settle();
+        let entry = harness
+            .window
+            .get_by_label("automatic: 50 dB, hardly visible");
+        entry.click();
+        harness.window.step();
+        harness.window.step();
+    };
+    let start = Instant::now();
+    choose(&mut harness);
+    harness.wait_for("the qualities", |harness| {
+        !harness.sees("measuring this scene")
+    });
+    let measuring = start.elapsed();
+    harness.press(CTRL, Key::Z);
+    assert_eq!(harness.scene(), &small);
+    let from = place(&harness, center(harness.scene(), 0));
+    choose(&mut harness);
+    pull(
+        &mut harness,
+        from,
+        from + vec2(40.0, 0.0),
+        PointerButton::Primary,
+        Modifiers::NONE,
+    );
+    let start = Instant::now();
+    while start.elapsed() < 3 * measuring {
+        std::thread::sleep(Duration::from_millis(16));
+        harness.window.step();
+    }
+    assert_eq!(
+        harness.scene().render,
+        small.render,
+        "it waits for the hand"
+    );
+    assert_ne!(harness.scene(), &small);
+    harness.press(Modifiers::NONE, Key::Escape);
+    assert_eq!(harness.scene(), &small, "all of the drag is taken back");
+    drop_at(&mut harness, from, PointerButton::Primary, Modifiers::NONE);
+    harness.wait_for("the quality", |harness| {
+        harness.scene().render != small.render
+    });
 }
 
 #[test]

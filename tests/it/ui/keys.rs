@@ -1,10 +1,11 @@
 //! Keys on the line of time where hands are less tidy: between frames, beyond the end, onto each other.
 
 use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, Pos2};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::Queryable as _;
 use glint::editor::Mode;
 
+use super::tools::{drop_at, pull};
 use crate::harness::{CTRL, EditorHarness};
 use crate::timeline::{animation, times};
 
@@ -233,6 +234,31 @@ fn the_line_of_time_zooms_where_the_pointer_is() {
     assert!((zoomed - 1.5).abs() < 0.05, "{zoomed}");
     harness.press(Modifiers::NONE, Key::Home);
     assert!((apart(&harness) - before).abs() < 1.0, "all of it again");
+}
+
+#[test]
+fn the_middle_button_moves_the_line_of_time_and_not_the_playhead() {
+    let mut harness = window(&[0.0, 1.0, 2.0]);
+    let before = harness.editor().timeline().playhead;
+    let (from, to) = (on_ruler(&harness, 0.5), on_ruler(&harness, 1.5));
+    pull(
+        &mut harness,
+        from,
+        to,
+        PointerButton::Middle,
+        Modifiers::NONE,
+    );
+    drop_at(&mut harness, to, PointerButton::Middle, Modifiers::NONE);
+    assert_eq!(harness.editor().timeline().playhead, before);
+    pull(
+        &mut harness,
+        from,
+        to,
+        PointerButton::Primary,
+        Modifiers::NONE,
+    );
+    drop_at(&mut harness, to, PointerButton::Primary, Modifiers::NONE);
+    assert_ne!(harness.editor().timeline().playhead, before);
 }
 
 #[test]

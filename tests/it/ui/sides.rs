@@ -268,6 +268,31 @@ fn what_is_typed_counts_though_the_field_shows_less_of_it() {
 }
 
 #[test]
+fn keys_do_nothing_while_a_row_is_carried() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    (0..60).for_each(|_| harness.window.step());
+    let count = harness.scene().objects.len();
+    let (from, to) = (
+        middle(&harness, "Sphere 2"),
+        middle(&harness, "Triangle 4") + egui::vec2(0.0, 4.0),
+    );
+    hover(&mut harness, from);
+    button(&mut harness, from, PointerButton::Primary, true, NONE);
+    for part in 1..=6 {
+        hover(&mut harness, from + (to - from) * (part as f32 / 6.0));
+    }
+    harness.window.key_press(Key::Delete);
+    (0..3).for_each(|_| harness.window.step());
+    button(&mut harness, to, PointerButton::Primary, false, NONE);
+    harness.settle();
+    let objects = &harness.scene().objects;
+    assert_eq!(objects.len(), count, "the key was not heard");
+    let there = objects.iter().position(|object| object.name == "Sphere 2");
+    assert_eq!(objects[there.expect("it") - 1].name, "Triangle 4");
+}
+
+#[test]
 fn rows_are_dragged_out_of_groups_and_into_them_and_groups_go_with_all_members() {
     let mut scene = Scene::demo();
     for index in [0, 3] {

@@ -2,7 +2,6 @@
 //! does not grow, and what it leaves behind can be read. `GLINT_SOAK=200000` asks for so many events.
 
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
@@ -20,24 +19,12 @@ const ROUND: usize = 400;
 const WARM: usize = 8;
 /// Bytes of the largest scene that is opened.
 const LARGEST: usize = 6_000;
-/// How long the window may be at anything.
-const PATIENCE: Duration = Duration::from_mins(2);
 
 /// The resident memory of this process in MiB; nothing where the system does not tell.
 fn memory() -> Option<f64> {
     let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
     let resident: f64 = pages.split(' ').nth(1)?.parse().ok()?;
     Some(resident * 4096.0 / f64::from(1 << 20))
-}
-
-/// Steps until something is so.
-fn wait(harness: &mut EditorHarness, what: &str, is_so: impl Fn(&EditorHarness) -> bool) {
-    let start = Instant::now();
-    while !is_so(harness) {
-        assert!(start.elapsed() < PATIENCE, "{what}");
-        std::thread::sleep(Duration::from_millis(2));
-        harness.window.step();
-    }
 }
 
 /// Presses a button, if it is there.
@@ -79,9 +66,7 @@ fn record(harness: &mut EditorHarness) -> bool {
     tap(harness, Key::R, Modifiers::NONE);
     fly(harness);
     tap(harness, Key::T, Modifiers::NONE);
-    wait(harness, "keys", |harness| {
-        !harness.editor().is_making_keys()
-    });
+    harness.wait_for("keys", |harness| !harness.editor().is_making_keys());
     harness.settle();
     !harness.scene().animation.keys.is_empty()
 }
@@ -112,7 +97,7 @@ fn end_exports(harness: &mut EditorHarness) {
         show_exports(harness);
         while press(harness, "Resume") {}
     }
-    wait(harness, "the exports end", |harness| {
+    harness.wait_for("the exports end", |harness| {
         !harness.window.state().is_exporting()
     });
 }
@@ -126,9 +111,7 @@ fn export(harness: &mut EditorHarness, folder: &Path) -> bool {
     harness.type_into("export height", "24");
     harness.settle();
     press(harness, "Start export");
-    wait(harness, "frames", |harness| {
-        !harness.window.state().is_exporting()
-    });
+    harness.wait_for("frames", |harness| !harness.window.state().is_exporting());
     press(harness, "Remove");
     tap(harness, Key::Escape, Modifiers::NONE);
     let count = std::fs::read_dir(folder).map_or(0, Iterator::count);

@@ -1,0 +1,58 @@
+//! What the render thread has found out, and the document that it was about.
+
+use std::time::Duration;
+
+use egui::Context;
+
+use super::app::App;
+use crate::editor::{Action, Time};
+use crate::worker::Answer;
+
+/// Time between two looks at whether something is still dragged.
+const LOOK: Duration = Duration::from_millis(50);
+
+impl App {
+    /// Takes up what the render thread has found out. What changes the document waits until nothing is dragged or
+    /// flown: it would be a step of its own in the middle of another.
+    pub(super) fn take_answers(&mut self, ctx: &Context) {
+        let is_busy = self.is_gesture(ctx) || self.editor.is_in_gesture();
+        let mut answers = std::mem::take(&mut self.answers);
+        answers.extend(self.pictures.worker().take_answers());
+        for answer in answers {
+            match answer {
+                Answer::Survey(..) | Answer::Quality(..) if is_busy => self.answers.push(answer),
+                Answer::Survey(take, seen) => {
+                    self.editor.apply(Action::Time(Time::Surveyed(take, seen)));
+                }
+                Answer::Visible(revision, ticks) => self.overlay.take_visible(revision, ticks),
+                Answer::Objects(revision, map, without) => {
+                    let selected = self.tools.take(revision, map, &without);
+                    if let Some(selected) = selected {
+                        self.editor.apply(Action::Select(selected));
+                    }
+                }
+                Answer::Quality(goal, choice) => {
+                    if let Some(edit) = self.quality.take(goal, choice, &self.editor) {
+                        self.editor.apply(Action::Edit(edit));
+                    }
+                }
+            }
+        }
+        if !self.answers.is_empty() {
+            ctx.request_repaint_after(LOOK);
+        }
+    }
+
+    /// Leaves what was about the document before, if another one is open.
+    pub(super) fn follow_document(&mut self) {
+        let document = self.editor.documents();
+        if std::mem::replace(&mut self.document, document) != document {
+            self.why.close();
+            let is_about = |answer: &Answer| matches!(answer, Answer::Quality(..));
+            self.answers.retain(|answer| !is_about(answer));
+            if let Some(wish) = self.lab.forget() {
+                self.pictures.fulfil(wish);
+            }
+        }
+    }
+}
