@@ -13,7 +13,7 @@ use crate::trace::{RenderControl, Threads, Tracer};
 
 /// Samples along each side of a pixel of the two pictures whose mean is the reference. They have no place in common
 /// but the middle of the pixel, so that they are off in other ways, and what they differ by tells how far.
-const REFERENCE_GRIDS: [u32; 2] = [43, 47];
+const REFERENCE_GRIDS: [u32; 2] = [47, 53];
 /// Samples of the reference per pixel.
 pub const REFERENCE_SAMPLES: u32 = REFERENCE_GRIDS[0].pow(2) + REFERENCE_GRIDS[1].pow(2);
 /// Each of the two is traced in so many pieces, between which more urgent work can go first.

@@ -36,7 +36,7 @@ struct Quality {
 }
 
 /// Samples along each side of a pixel of the pictures whose mean is the truth: prime to each other, so that they have
-/// next to no place in common, and are off in other ways.
+/// next to no place in common, and are off in other ways. Of the demo it is off by 75 dB, where 59 are asked for.
 const TRUTH: [u32; 2] = [31, 33];
 
 /// What a picture of this size would be without jagged edges and in double precision.

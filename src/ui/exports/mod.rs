@@ -194,7 +194,10 @@ impl Exports {
             .show(ctx, |ui| {
                 self.show_settings(ui, editor, pictures, out);
                 let room = ctx.content_rect().bottom() - ui.cursor().top() - MARGIN;
-                let list = ScrollArea::vertical().max_height(room.max(LEAST_LIST));
+                let room = room.max(LEAST_LIST);
+                let list = ScrollArea::vertical().max_height(room);
+                // The window itself gives it less.
+                let list = list.min_scrolled_height(room);
                 list.show(ui, |ui| {
                     self.show_list(ui, editor, pictures);
                     self.show_interrupted(ui, editor, pictures);

@@ -1,5 +1,6 @@
 //! Hands in the picture: clicks, handles, and the camera.
 
+use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, ViewportCommand, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
@@ -191,6 +192,55 @@ fn an_arrow_moves_along_its_axis_and_takes_typed_values() {
     harness.press(NONE, Key::Enter);
     drop_at(&mut harness, to, PointerButton::Primary, NONE);
     assert_eq!(center(harness.scene(), 0) - before, DVec3::Y * 12.5);
+    harness.press(CTRL, Key::Z);
+
+    // Half of the world writes a comma; what is no number moves nothing, and does not end the drag.
+    pull(&mut harness, from, to, PointerButton::Primary, NONE);
+    harness.window.event(Event::Text("-".to_owned()));
+    harness.window.step();
+    harness.press(NONE, Key::Enter);
+    harness.window.event(Event::Text("1,5".to_owned()));
+    harness.window.step();
+    harness.press(NONE, Key::Enter);
+    drop_at(&mut harness, to, PointerButton::Primary, NONE);
+    assert_eq!(center(harness.scene(), 0) - before, DVec3::Y * -1.5);
+}
+
+#[test]
+fn the_menu_is_about_what_is_there_also_where_that_is_not_known_yet() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 2");
+    let at = place(&harness, center(harness.scene(), 0));
+    hover(&mut harness, at);
+    harness.window.event(Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Line,
+        delta: vec2(0.0, 1.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: NONE,
+    });
+    harness.window.step();
+    button(&mut harness, at, PointerButton::Secondary, true, NONE);
+    button(&mut harness, at, PointerButton::Secondary, false, NONE);
+    harness.wait_for("what is there", |harness| harness.sees("Duplicate"));
+    assert_eq!(names(&harness), ["Sphere 1"]);
+}
+
+#[test]
+fn a_projection_that_is_chosen_in_the_inspector_is_that_of_its_key() {
+    let mut by_key = EditorHarness::new();
+    by_key.press(NONE, Key::O);
+    let mut harness = EditorHarness::new();
+    let choice = |harness: &EditorHarness| {
+        let choice = harness
+            .window
+            .get_by_role_and_label(Role::ComboBox, "projection");
+        choice.click();
+    };
+    choice(&harness);
+    harness.settle();
+    harness.click("Orthographic");
+    assert_eq!(harness.scene().camera, by_key.scene().camera);
 }
 
 #[test]
