@@ -225,6 +225,14 @@ impl EditorHarness {
         self.click(entry);
     }
 
+    /// Unfolds a choice in a panel.
+    pub fn unfold(&mut self, choice: &str) {
+        self.window
+            .get_by_role_and_label(Role::ComboBox, choice)
+            .click();
+        self.settle();
+    }
+
     /// Types a number over the one in a field.
     pub fn type_into(&mut self, field: &str, text: &str) {
         self.window

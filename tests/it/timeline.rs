@@ -994,11 +994,7 @@ fn a_pace_for_several_keys_leaves_their_ways() {
     let mut harness = EditorHarness::on(scene);
     hover_over_line(&mut harness);
     harness.press(CTRL, Key::A);
-    harness
-        .window
-        .get_by_role_and_label(Role::ComboBox, "pace")
-        .click();
-    harness.settle();
+    harness.unfold("pace");
     harness.click("slow start");
     let keys = &harness.scene().animation.keys;
     let left: Vec<Interpolation> = keys.iter().map(|key| key.interpolation).collect();
@@ -1007,11 +1003,7 @@ fn a_pace_for_several_keys_leaves_their_ways() {
     assert_eq!(harness.editor().undo_label(), Some("Key: pace"));
     // What the first has already may be picked for all.
     harness.window.get_by_label("Not the same for all: way");
-    harness
-        .window
-        .get_by_role_and_label(Role::ComboBox, "way")
-        .click();
-    harness.settle();
+    harness.unfold("way");
     harness.click(ways[0].name());
     let keys = &harness.scene().animation.keys;
     assert!(keys.iter().all(|key| key.interpolation == ways[0]));

@@ -7,7 +7,7 @@ use glam::DVec3;
 use glint::editor::Item;
 use glint::scene::{ColorPack, Document, Scene, Sphere};
 
-use super::tools::{button, center, click, hover, place};
+use super::tools::{button, center, click, drop_at, hover, place, pull};
 use crate::harness::{CTRL, EditorHarness};
 
 const NONE: Modifiers = Modifiers::NONE;
@@ -22,13 +22,8 @@ fn middle(harness: &EditorHarness, label: &str) -> Pos2 {
 }
 
 fn carry(harness: &mut EditorHarness, from: Pos2, to: Pos2) {
-    hover(harness, from);
-    button(harness, from, PointerButton::Primary, true, NONE);
-    for part in 1..=6 {
-        hover(harness, from + (to - from) * (part as f32 / 6.0));
-    }
-    button(harness, to, PointerButton::Primary, false, NONE);
-    harness.settle();
+    pull(harness, from, to, PointerButton::Primary, NONE);
+    drop_at(harness, to, PointerButton::Primary, NONE);
 }
 
 #[test]
@@ -277,15 +272,10 @@ fn keys_do_nothing_while_a_row_is_carried() {
         middle(&harness, "Sphere 2"),
         middle(&harness, "Triangle 4") + egui::vec2(0.0, 4.0),
     );
-    hover(&mut harness, from);
-    button(&mut harness, from, PointerButton::Primary, true, NONE);
-    for part in 1..=6 {
-        hover(&mut harness, from + (to - from) * (part as f32 / 6.0));
-    }
+    pull(&mut harness, from, to, PointerButton::Primary, NONE);
     harness.window.key_press(Key::Delete);
     (0..3).for_each(|_| harness.window.step());
-    button(&mut harness, to, PointerButton::Primary, false, NONE);
-    harness.settle();
+    drop_at(&mut harness, to, PointerButton::Primary, NONE);
     let objects = &harness.scene().objects;
     assert_eq!(objects.len(), count, "the key was not heard");
     let there = objects.iter().position(|object| object.name == "Sphere 2");
