@@ -34,6 +34,8 @@ mod solids;
 
 mod geometry;
 
+mod closeness;
+
 mod precision;
 
 mod materials;

@@ -1,11 +1,8 @@
 //! Which real type a scene needs: single precision wherever its errors stay invisible.
 
-use glam::DVec3;
-
+use super::closeness::{has_layers, has_twins, is_at_border, is_just_above, is_low};
 use super::request::{Model, RenderRequest};
-use crate::scene::{
-    Light, List, Object, Outline, PlanePiece, Precision, Projection, Scene, Shape, unit,
-};
+use crate::scene::{Object, Precision, Projection, Scene, Shape, unit};
 
 /// Largest ratio of a sphere's distance to its radius in single precision: the perpendicular
 /// discriminant is then off by at most 3.2·u·ρ ≈ 1/1000 of the radius.
@@ -19,35 +16,17 @@ const SMALLER_WHEN_FILTERED: f64 = 100.0;
 /// Smallest extent of a scene in single precision, in which squares of much smaller numbers are nothing.
 const MIN_EXTENT: f64 = 1e-12;
 
-/// Smallest height of the eye or a light over a sphere, in radii, in single precision: below it, the
-/// distance to the ground right ahead has lost its digits.
-const MIN_HEIGHT_PER_RADIUS: f64 = 1e-3;
-
-/// Smallest height of the eye over a plane, or of a light over anything flat, as a share of the scene's
-/// extent, in single precision: below it, rounding may put it on the other side.
-const MIN_HEIGHT_PER_EXTENT: f64 = 1e-5;
-/// The same of the eye over a disc or a triangle, which is narrow where it matters.
-const MIN_HEIGHT_OVER_PIECE: f64 = 1e-7;
 /// Cosine between the middle ray and a plane's normal from which on the plane is looked at, and not along.
 const FACING: f64 = 0.1;
-/// Most pairs of an object and a light that are looked at.
-const MOST_PAIRS: usize = 100_000;
-
 /// Largest ratio of the distance of what parallel rays show to the height of their picture in single
 /// precision: 1/16 of a pixel, of a thousand.
 const MAX_DISTANCE_PER_HEIGHT: f64 = 1e3;
 
-/// Longest lens, in pixels from the eye to its picture, in single precision: the last digit of a ray is then 1/16 of a
-/// pixel.
-const MAX_DISTANCE_IN_PIXELS: f64 = 1e6;
+/// Longest lens, in pixels from the eye to its picture, in single precision: the last digit of a ray is then 1/500 of a
+/// pixel. At 360,000 it is 8 pixels of 40,000 that a triangle gets wrong, and clean edges are off by 8 levels; at 800,000
+/// by 19.
+const MAX_DISTANCE_IN_PIXELS: f64 = 3e4;
 
-/// Smallest distance of the surfaces of two spheres as a share of the scene's extent in single precision: where
-/// they are nearer everywhere, rounding decides which is seen, or whether one shadows the other.
-const MIN_GAP_PER_EXTENT: f64 = 3e-4;
-/// The same as a share of their radii, for small ones.
-const MIN_GAP_PER_RADIUS: f64 = 1e-2;
-/// Most spheres that are held against each other.
-const MOST_SPHERES: usize = 2_000;
 /// Most things that single precision can number.
 const MAX_NUMBER: usize = 1 << 24;
 
@@ -134,11 +113,11 @@ pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
     if extent < MIN_EXTENT || is_just_above(scene, extent) || has_twins(scene, extent) {
         return true;
     }
-    let smaller = if is_fine(scene, request) {
-        SMALLER_WHEN_FILTERED
-    } else {
-        1.0
-    };
+    let is_fine = is_fine(scene, request);
+    if !is_fine && (is_at_border(scene, extent) || has_layers(scene, (centre, extent))) {
+        return true;
+    }
+    let smaller = if is_fine { SMALLER_WHEN_FILTERED } else { 1.0 };
     let wall = if scene.lights.is_empty() {
         0.0
     } else {
@@ -146,7 +125,7 @@ pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
     };
     let visible = scene.visible_objects();
     visible.map(|object| &object.shape).any(|shape| {
-        shape.height_per_radius(eye) < MIN_HEIGHT_PER_RADIUS
+        is_low(shape, eye)
             || match shape.feature() {
                 None => false,
                 Some((at, size)) => {
@@ -174,63 +153,6 @@ fn farthest_wall(scene: &Scene) -> f64 {
     distances.fold(0.0, f64::max)
 }
 
-/// Whether the eye is all but on a plane, or a light on anything: on something round, its shadow ends where
-/// rays graze.
-fn is_just_above(scene: &Scene, extent: f64) -> bool {
-    let is_just_above = |piece: &PlanePiece, point: DVec3, least: f64| {
-        let height = piece.height(point).abs();
-        height > 0.0 && height < least * extent
-    };
-    let lights = match scene.objects.len() * scene.lights.len() {
-        0..=MOST_PAIRS => &scene.lights,
-        _ => &List::new(),
-    };
-    let visible = scene.visible_objects();
-    let shapes = visible.map(|object| &object.shape);
-    // Without lights only planes count: many objects are not worth a closer look.
-    let mut looked_at =
-        shapes.filter(|shape| !lights.is_empty() || matches!(shape, Shape::Plane(_)));
-    looked_at.any(|shape| {
-        let Some(piece) = shape.plane_piece() else {
-            let height = |light: &Light| shape.height_per_radius(light.position);
-            return lights
-                .iter()
-                .any(|light| height(light) < MIN_HEIGHT_PER_RADIUS);
-        };
-        let least = if piece.outline == Outline::Endless {
-            MIN_HEIGHT_PER_EXTENT
-        } else {
-            MIN_HEIGHT_OVER_PIECE
-        };
-        is_just_above(&piece, scene.camera.position, least)
-            || lights
-                .iter()
-                .any(|light| is_just_above(&piece, light.position, MIN_HEIGHT_PER_EXTENT))
-    })
-}
-
-/// Whether two spheres all but fill the same surface. Those that do fill it are one.
-fn has_twins(scene: &Scene, extent: f64) -> bool {
-    let visible = scene.visible_objects();
-    let spheres = visible.filter_map(|object| match &object.shape {
-        Shape::Sphere(sphere) => Some((sphere.along(), sphere)),
-        _ => None,
-    });
-    let mut spheres: Vec<_> = spheres.take(MOST_SPHERES + 1).collect();
-    if spheres.len() > MOST_SPHERES {
-        return false;
-    }
-    spheres.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
-    let nearest = MIN_GAP_PER_EXTENT * extent;
-    spheres.iter().enumerate().any(|(place, (along, one))| {
-        let least = nearest.min(MIN_GAP_PER_RADIUS * one.radius);
-        let others = spheres[place + 1..].iter();
-        let near = others.take_while(|(other, _)| other - along < least);
-        let mut others = near.map(|(_, other)| other);
-        others.any(|other| one.gap(other) < least && !one.is_same(other))
-    })
-}
-
 /// Whether rays that run side by side come from too far.
 fn is_far_in_parallel(scene: &Scene) -> bool {
     let camera = &scene.camera;
@@ -255,27 +177,14 @@ fn is_far_in_parallel(scene: &Scene) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
     use crate::mesh::Triangles;
-    use crate::scene::{Mesh, Plane, Sphere, Triangle};
+    use crate::scene::{List, Mesh, Plane, Sphere, Triangle};
 
     fn is_needed(scene: &Scene) -> bool {
         needs_double(scene, &RenderRequest::sized(64, 64))
-    }
-
-    #[test]
-    fn what_all_but_touches_needs_double_precision_and_what_touches_does_not() {
-        let mut scene = Scene::demo();
-        let eye = scene.camera.position;
-        for (height, expected) in [(0.0, false), (1e-4, true), (1.0, false)] {
-            scene.camera.position = DVec3 { y: height, ..eye };
-            assert_eq!(is_needed(&scene), expected, "eye at {height}");
-        }
-        scene.camera.position = eye;
-        for (height, expected) in [(0.0, false), (1e-4, true), (0.1, false)] {
-            scene.lights[0].position.y = height;
-            assert_eq!(is_needed(&scene), expected, "light at {height}");
-        }
     }
 
     #[test]
@@ -325,6 +234,21 @@ mod tests {
     }
 
     #[test]
+    fn what_all_but_touches_needs_double_precision_and_what_touches_does_not() {
+        let mut scene = Scene::demo();
+        let eye = scene.camera.position;
+        for (height, expected) in [(0.0, false), (1e-4, true), (1.0, false)] {
+            scene.camera.position = DVec3 { y: height, ..eye };
+            assert_eq!(is_needed(&scene), expected, "eye at {height}");
+        }
+        scene.camera.position = eye;
+        for (height, expected) in [(0.0, false), (1e-4, true), (0.1, false)] {
+            scene.lights[0].position.y = height;
+            assert_eq!(is_needed(&scene), expected, "light at {height}");
+        }
+    }
+
+    #[test]
     fn spheres_that_all_but_fill_one_surface_need_double_precision() {
         for (gap, expected) in [(0.0, false), (1e-6, true), (0.04, true), (0.2, false)] {
             let mut scene = Scene::demo();
@@ -341,9 +265,24 @@ mod tests {
     }
 
     #[test]
-    fn a_lens_may_be_a_million_pixels_long() {
+    fn an_eye_or_a_light_at_a_border_needs_double_precision() {
         let mut scene = Scene::demo();
-        for (distance, height, expected) in [(1e3, 999, false), (1e3, 1001, true), (1e5, 9, false)]
+        let corner = DVec3::new(200.0, 55.0, -100.0);
+        let eye = scene.camera.position;
+        for (away, expected) in [(0.0, true), (0.05, true), (0.2, false)] {
+            scene.camera.position = corner + DVec3::Y * away;
+            assert_eq!(is_needed(&scene), expected, "eye at {away}");
+            scene.camera.position = eye;
+            scene.lights[1].position = corner + DVec3::Y * away;
+            assert_eq!(is_needed(&scene), expected, "light at {away}");
+            scene.lights[1] = Scene::demo().lights[1].clone();
+        }
+    }
+
+    #[test]
+    fn a_lens_may_be_thirty_thousand_pixels_long() {
+        let mut scene = Scene::demo();
+        for (distance, height, expected) in [(1e2, 299, false), (1e2, 301, true), (1e3, 29, false)]
         {
             scene.camera.projection_distance = distance;
             let request = RenderRequest::sized(64, height);

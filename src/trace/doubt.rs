@@ -78,13 +78,12 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
         t - self.along.at(t)
     }
 
-    /// Where the nearest hit and the second may change places. What is equally near in single precision is so by
-    /// construction, and has an order.
+    /// Where the nearest hit and the second may change places: also where they are equally near, as are pieces a hair apart
+    /// from afar.
     #[inline(always)]
     pub fn is_tie(&self, nearest: L, second: L) -> L::Mask {
         // Infinity less infinity is no number.
-        let gap = second - nearest;
-        gap.less(self.along.at(nearest)) & gap.like(L::Real::ZERO).less(gap)
+        (second - nearest).less(self.along.at(nearest))
     }
 
     /// How far a primitive is, and from where on that is undecided; `None` if no ray that is wanted meets it.

@@ -61,6 +61,31 @@ impl PlanePiece {
         }
     }
 
+    /// How far a point is from its border, in world units; infinity for what is endless.
+    pub fn distance_of_border(&self, point: DVec3) -> f64 {
+        match self.outline {
+            Outline::Endless => f64::INFINITY,
+            Outline::Triangle([a, b, c]) => {
+                let distance = |(from, to): (DVec3, DVec3)| {
+                    let side = to - from;
+                    let share = (point - from).dot(side) / side.length_squared();
+                    (from + side * share.clamp(0.0, 1.0) - point).length()
+                };
+                let sides = [(a, b), (b, c), (c, a)];
+                sides
+                    .map(distance)
+                    .into_iter()
+                    .fold(f64::INFINITY, f64::min)
+            }
+            Outline::Disc(radius) => {
+                let offset = point - self.point;
+                let height = self.normal.dot(offset);
+                let along = (offset - self.normal * height).length();
+                height.hypot(along - radius)
+            }
+        }
+    }
+
     /// Whether a unit direction is across it.
     pub fn is_across(&self, direction: DVec3) -> bool {
         direction.cross(self.normal).length() <= ALONG_NORMAL
@@ -80,12 +105,26 @@ impl PlanePiece {
         } else {
             (other, self)
         };
-        let normal = large.normal;
         let reach = |point: &DVec3| (*point - centre).abs().max_element();
         let points = small.points();
         let farthest = points.iter().map(reach).fold(reach(&large.point), f64::max);
-        let is_in = |point: &DVec3| normal.dot(*point - large.point).abs() <= IN_PLANE * farthest;
-        points.iter().all(is_in) && self.overlaps(other, normal)
+        small.lies_over(large, IN_PLANE * farthest)
+    }
+
+    /// Whether some of it is in front of or behind a piece that is no smaller, and all of it within so much of that one's
+    /// plane; in world units.
+    fn lies_over(&self, large: &Self, height: f64) -> bool {
+        let is_in = |point: &DVec3| large.normal.dot(*point - large.point).abs() <= height;
+        self.points().iter().all(is_in) && self.overlaps(large, large.normal)
+    }
+
+    /// Whether one of them is that close to the other all over, and they lie over each other; in world units.
+    pub fn is_beside(&self, other: &Self, height: f64) -> bool {
+        if self.size() < other.size() {
+            self.lies_over(other, height)
+        } else {
+            other.lies_over(self, height)
+        }
     }
 
     /// Infinity for what is endless.
@@ -191,6 +230,36 @@ mod tests {
         assert!(!coincide(disc(-0.72, -0.72, 1.0), half), "before a corner");
         assert!(!coincide(disc(0.0, 0.0, 1.0), disc(2.0, 0.0, 1.0)));
         assert!(coincide(disc(0.0, 0.0, 1.0), disc(1.9, 0.0, 1.0)));
+    }
+
+    #[test]
+    fn pieces_a_hair_apart_are_beside_each_other_where_they_overlap() {
+        let rug = disc(0.0, 0.0, 1.0);
+        let lifted = |x: f64, height: f64| PlanePiece {
+            point: DVec3::new(x, height, 0.0),
+            ..rug
+        };
+        assert!(rug.is_beside(&lifted(0.5, 1e-3), 2e-3) && lifted(0.5, 1e-3).is_beside(&rug, 2e-3));
+        assert!(!rug.is_beside(&lifted(0.5, 3e-3), 2e-3), "too far");
+        assert!(!rug.is_beside(&lifted(2.1, 1e-3), 2e-3), "side by side");
+    }
+
+    #[test]
+    fn a_border_is_as_far_as_its_nearest_side_corner_or_rim() {
+        let piece = triangle([[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]]);
+        for (point, expected) in [
+            ([1.0, 0.0, 0.5], 0.5),
+            ([2.0, 3.0, -4.0], 5.0),
+            ([-3.0, 0.0, -4.0], 5.0),
+            ([4.0, 0.0, 3.0], 2.4),
+        ] {
+            let distance = piece.distance_of_border(point.into());
+            assert!((distance - expected).abs() < 1e-12, "{point:?} {distance}");
+        }
+        let distance =
+            |x: f64, y: f64| disc(1.0, 0.0, 2.0).distance_of_border(DVec3::new(x, y, 0.0));
+        assert_eq!(distance(1.0, 0.0), 2.0);
+        assert_eq!((distance(6.0, 4.0), distance(2.5, 0.0)), (5.0, 0.5));
     }
 
     #[test]
