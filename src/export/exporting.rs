@@ -8,9 +8,10 @@ use std::sync::atomic::Ordering;
 use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 
 use super::error::ExportError;
+use super::fingerprint::fingerprint;
 use super::manifest::{Hash, Manifest};
 use super::save::disk;
-use super::sequence::{Sequence, fingerprint};
+use super::sequence::Sequence;
 use super::writers::{WriteJob, WriteResult, Writers};
 use crate::image::{Film, Format, Image, RenderCost};
 use crate::plan::{Planner, RenderRequest};

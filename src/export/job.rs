@@ -20,9 +20,6 @@ const CHUNK: u32 = 10;
 /// The template, with a name between @ signs for each value.
 const TEMPLATE: &str = include_str!("../../assets/job_template.yaml");
 
-/// What every template begins with.
-const TEMPLATE_BEGINS: &str = "specificationVersion:";
-
 /// Why a job could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum JobError {
@@ -98,9 +95,8 @@ pub fn write_job(
         .map(|backup| (scene.clone(), backup))
         .into_iter()
         .collect();
-    // An older template may go.
-    let is_template = |there: &[u8]| there.starts_with(TEMPLATE_BEGINS.as_bytes());
-    if read_file(path).is_ok_and(|there| !is_template(&there)) {
+    // An older template of ours may go.
+    if read_file(path).is_ok_and(|there| !is_template(&String::from_utf8_lossy(&there))) {
         let backup = back_up(path).map_err(|source| disk(path, source))?;
         replaced.push((path.to_owned(), backup));
     }
@@ -139,6 +135,18 @@ fn job_name(scene: &str) -> String {
     let name = scene.replace("{{", "{ ").replace("}}", "} ");
     let plain = name.chars().filter(|letter| !letter.is_control());
     plain.take(LONGEST_NAME).collect()
+}
+
+/// Whether a text is the template with some values, and nothing that was written by hand.
+fn is_template(text: &str) -> bool {
+    // What is not a key, between @ signs, is there as it is.
+    let mut parts = TEMPLATE.split('@').step_by(2);
+    let rest = parts.next().and_then(|first| text.strip_prefix(first));
+    let rest = parts.try_fold(rest.unwrap_or_default(), |rest, part| {
+        let (value, rest) = rest.split_once(part)?;
+        (!value.contains('\n')).then_some(rest)
+    });
+    rest == Some("")
 }
 
 /// The template: frames in chunks, then a video of all of them. The scene is an attached file, which

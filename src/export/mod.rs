@@ -10,6 +10,8 @@ mod pattern;
 
 mod manifest;
 
+mod fingerprint;
+
 mod sequence;
 
 mod writers;
@@ -32,11 +34,12 @@ mod povray;
 
 pub use error::{ExportError, VideoError};
 pub use exporting::{ExportStep, Exported, Exporting};
+pub use fingerprint::fingerprint;
 pub use frames::{Frames, FramesError};
 pub use job::{Job, JobError, write_job};
 pub use manifest::{Hash, Manifest};
 pub use pattern::{Pattern, PatternError};
 pub use povray::{ByPovray, PovrayError, by_povray, povray_differences, povray_text};
 pub use save::{check_place, save_image, save_picture, write_text};
-pub use sequence::{NoSuchFrame, Sequence, SequenceError, fingerprint};
+pub use sequence::{NoSuchFrame, Sequence, SequenceError};
 pub use video::Video;

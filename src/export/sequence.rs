@@ -9,6 +9,7 @@ use std::time::Duration;
 use image::ImageError;
 
 use super::error::ExportError;
+use super::fingerprint::fingerprint;
 use super::frames::{Frames, FramesError};
 use super::manifest::{Hash, MANIFEST, Manifest, add_note, content};
 use super::pattern::Pattern;
@@ -205,31 +206,6 @@ impl Sequence {
         add_note(&self.folder, &self.file(frame), &content, fingerprint, time)
             .map_err(|source| disk(&self.folder.join(MANIFEST), source))
     }
-}
-
-/// A hash of everything that decides a frame's bytes: what is in it, how it is traced, the format and the version of
-/// the program.
-///
-/// # Errors
-/// [`ExportError::Unwritable`], for a scene that has no text.
-pub fn fingerprint(shown: &Scene, format: Format) -> Result<Hash, ExportError> {
-    let mut still = Scene {
-        animation: Arc::default(),
-        // Neither these nor groups are seen.
-        bookmarks: Vec::new(),
-        ..shown.abridged()
-    };
-    for index in 0..still.objects.len() {
-        if !still.objects[index].group.is_empty() {
-            still.objects[index].group.clear();
-        }
-    }
-    let text = ron::to_string(&still)?;
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
-    hasher.update(format.ending().as_bytes());
-    hasher.update(text.as_bytes());
-    Ok(hasher.finalize())
 }
 
 #[cfg(test)]

@@ -1239,8 +1239,14 @@ fn a_job_brings_its_meshes_and_keeps_what_was_there() {
     assert_eq!(kept, "what somebody else made");
     assert!(fs::read(&other).expect("copied") == fs::read(FLIGHT).expect("there"));
 
-    // An older template goes; what is none does not.
-    assert!(!folder.path().join("job.yaml.bak").exists());
+    // An older template goes; what is none, or was changed by hand, does not.
+    let backup = folder.path().join("job.yaml.bak");
+    assert!(!backup.exists());
+    let by_hand = fs::read_to_string(&template).expect("there") + "# for the night\n";
+    fs::write(&template, &by_hand).expect("written");
+    let said = done(&mut glint(&["job", FLIGHT, "-o", path]));
+    assert!(said.contains("job.yaml.bak"), "{said}");
+    assert_eq!(fs::read_to_string(&backup).expect("kept"), by_hand);
     let notes = folder.path().join("notes.txt");
     fs::write(&notes, "what to buy").expect("written");
     let path = notes.to_str().expect("plain");
