@@ -8,6 +8,19 @@ pub fn counted<N: Copy + Display + PartialEq + From<u8>>(number: N, one: &str) -
     format!("{number} {one}{s}")
 }
 
+/// Most values that a message names.
+const MOST_NAMES: usize = 3;
+
+/// The first few of some names, and how many more there are; `None` if there are none.
+pub fn listed(mut names: impl Iterator<Item = String>) -> Option<String> {
+    let first: Vec<String> = names.by_ref().take(MOST_NAMES).collect();
+    let more = match names.count() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    (!first.is_empty()).then(|| format!("{}{more}", first.join(", ")))
+}
+
 /// Letters of somebody's text that a sentence has room for.
 const QUOTED: usize = 40;
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::CameraPath;
 use super::smoothing::smoothed;
-use crate::scene::{Camera, Interpolation, Key, Take};
+use crate::scene::{Camera, Interpolation, Key, SAME_TIME, Sample, Take};
 
 /// Keys to both sides whose removal a key feels: a smooth segment is shaped by its neighbours.
 const REACH: usize = 3;
@@ -93,7 +93,7 @@ pub fn simplify(take: &Take, seen: &[Vec<Seen>], tolerance: f64) -> Simplified {
     // Where places coincide, a curve is shaped from farther away than pruning looks.
     let chosen = search.refined(chosen);
     let keys = search.keys(chosen.iter().copied());
-    let worst = worst_off(&CameraPath::new(&keys), take, seen);
+    let worst = worst_off(&CameraPath::new(&keys), take, seen, ends_of(&keys));
     let jumps = jumps.len();
     Simplified { keys, worst, jumps }
 }
@@ -121,16 +121,32 @@ fn smoothed_cameras(
     smooth.next().unwrap_or_else(plain)
 }
 
-/// Where keys are off a take the most: it is flown in the time that the keys take.
-pub fn worst_off(path: &CameraPath, take: &Take, seen: &[Vec<Seen>]) -> Worst {
-    let times = |keys: &[Key<Camera>]| Some((keys.first()?.time, keys.last()?.time));
-    let (Some((start, end)), [first, .., last]) = (times(path.keys()), &take.samples[..]) else {
+/// The times of the first and the last key; none of none.
+pub fn ends_of(keys: &[Key<Camera>]) -> Option<(f64, f64)> {
+    Some((keys.first()?.time, keys.last()?.time))
+}
+
+/// Where keys are off a take the most, which is flown from `start` to `end`; of what is before and behind the keys
+/// nothing is said.
+pub fn worst_off(
+    path: &CameraPath,
+    take: &Take,
+    seen: &[Vec<Seen>],
+    flown: Option<(f64, f64)>,
+) -> Worst {
+    let (Some((start, end)), Some(ends), [first, .., last]) =
+        (flown, ends_of(path.keys()), &take.samples[..])
+    else {
         let off = f64::INFINITY;
         return Worst { off, time: 0.0 };
     };
     let scale = (end - start) / (last.0 - first.0);
-    let off = take.samples.iter().zip(seen).map(|(sample, seen)| {
-        let time = start + (sample.0 - first.0) * scale;
+    let time_of = |sample: &Sample| start + (sample.0 - first.0) * scale;
+    let between = ends.0 - SAME_TIME..=ends.1 + SAME_TIME;
+    let samples = take.samples.iter().zip(seen);
+    let samples = samples.filter(|(sample, _)| between.contains(&time_of(sample)));
+    let off = samples.map(|(sample, seen)| {
+        let time = time_of(sample);
         let camera = path.at(time);
         let off = camera.map_or(f64::INFINITY, |camera| deviation(&camera, seen));
         Worst { off, time }

@@ -133,6 +133,10 @@ pub fn make_pack_unique(scene: &mut Scene, index: usize) {
     let Some(place) = scene.color_packs.get_index_of(&object.color_pack) else {
         return;
     };
+    let is_shared = Item::wearing(scene, &object.color_pack).nth(1).is_some();
+    if !is_shared {
+        return;
+    }
     if let Some(copy) = duplicate(scene, Item::pack(place)) {
         let name = copy.name(scene).unwrap_or_default().to_owned();
         scene.objects[index].color_pack = name;

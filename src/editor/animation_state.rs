@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::edit::Replaced;
 use super::timeline::{MEASURED_AT, Timeline};
-use crate::animate::{CameraPath, Seen, Worst, pose, shot, worst_off};
+use crate::animate::{CameraPath, Seen, Worst, ends_of, pose, shot, worst_off};
 use crate::scene::{Camera, Key, Owners, Scene, Take, Target};
 
 /// The finest tolerance of the slider, in pixels.
@@ -13,6 +13,8 @@ const FINEST: f64 = 0.05;
 const FARTHEST: f64 = 100.0;
 /// Flights that were made of recordings are known, so many of them.
 const MOST_MADE: usize = 16;
+/// Keys from both ends of a flight that may tell when it was recorded.
+const TELLING: usize = 8;
 
 /// What waits for the survey of a take.
 #[derive(Clone, Debug)]
@@ -87,7 +89,8 @@ impl AnimationState {
             self.pending.get_or_insert(Pending::Measure(take));
             return;
         };
-        let Worst { off, time } = worst_off(&self.path, &take, seen);
+        let flown = self.flown(&animation.keys);
+        let Worst { off, time } = worst_off(&self.path, &take, seen, flown);
         let off = off * MEASURED_AT;
         self.timeline.worst = Some(Worst { off, time });
         let mut made = self.made.iter();
@@ -100,7 +103,30 @@ impl AnimationState {
         } else if off.is_finite() && self.made.is_empty() {
             // As the slider shows it: a hundredth more or less is no wish of the user's.
             self.timeline.tolerance = (off.max(FINEST) * 100.0).ceil() / 100.0;
+            let keys = animation.keys.clone();
+            self.note_made(self.timeline.tolerance, keys);
         }
+    }
+
+    /// From when to when the recording is flown in these keys: what is left of those that were made of it tells, by
+    /// their times, whether the flight was stretched; where nothing is known of it, the first and the last key.
+    pub fn flown(&self, keys: &[Key<Camera>]) -> Option<(f64, f64)> {
+        let made = self.made.iter().rev().map(|(_, made)| made);
+        let mut told = made.filter_map(|made| {
+            // Where a flight waits, or comes back, several are alike and tell nothing.
+            let times = |key: &Key<Camera>| {
+                let mut same = made.iter().filter(|other| other.value == key.value);
+                let only = same.next().filter(|_| same.next().is_none())?;
+                Some((only.time, key.time))
+            };
+            let first = keys.iter().take(TELLING).find_map(times)?;
+            let last = keys.iter().rev().take(TELLING).find_map(times)?;
+            let (start, end) = ends_of(made)?;
+            let scale = (last.1 - first.1) / (last.0 - first.0);
+            let at = |time: f64| first.1 + (time - first.0) * scale;
+            (scale.is_finite() && scale > 0.0).then(|| (at(start), at(end)))
+        });
+        told.next().or_else(|| ends_of(keys))
     }
 
     /// These keys were made of the recording with this tolerance.

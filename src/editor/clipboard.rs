@@ -12,7 +12,7 @@ use super::item::{Item, Kind};
 use super::names::{past_lights, past_objects, step_aside};
 use super::selection::Selection;
 use crate::scene::{
-    ColorPack, Document, List, Names, Owner, Owners, Scene, SceneError, Track, names_field,
+    ColorPack, Document, List, Names, Owner, Owners, Scene, SceneError, Track, header, names_field,
 };
 
 /// How far a copy of a light alone is from it, in world units.
@@ -62,8 +62,9 @@ fn tracks_of(part: &Scene, scene: &Scene) -> Vec<Track> {
 /// [`SceneError::Refused`]: why it is neither; places are those of the whole that the text is part of.
 pub fn read(text: &str, scene: &Scene) -> Result<Scene, SceneError> {
     let text = text.trim().trim_end_matches(',');
-    let word = text.split(|c: char| !c.is_alphanumeric()).next();
-    if text.starts_with('"') {
+    let body = &text[header(text).len()..];
+    let word = body.split(|c: char| !c.is_alphanumeric()).next();
+    if body.starts_with('"') {
         let whole =
             format!("Scene(version: 1, color_packs: {{\n{text}\n}}, objects: [], lights: [])");
         return Document::from_text(&whole).map(|document| document.scene);

@@ -10,6 +10,7 @@ use crate::scene::{
     Animation, Bookmark, Camera, ColorPack, Light, List, Object, Owner, Render, Scene, Shape,
     Target,
 };
+use crate::words::listed;
 
 use super::adding::{add_light, add_object, add_pack, duplicate, make_pack_unique};
 use super::arrange::{Arrangement, arrange, group};
@@ -85,7 +86,7 @@ pub enum EditError {
     PackInUse {
         /// The pack's name.
         name: String,
-        /// The names of what wears it.
+        /// The first few names of what wears it, and how many more there are.
         users: String,
     },
     /// Two packs would have one name.
@@ -314,10 +315,10 @@ fn delete(scene: &mut Scene, mut items: Vec<Item>) -> Result<(), EditError> {
         .map(|&index| scene.color_packs.get_index(index));
     if let Some((name, _)) = names.flatten().find(|(name, _)| worn.contains(&***name)) {
         let users = Item::wearing(scene, name);
-        let users: Vec<&str> = users.filter_map(|user| user.name(scene)).collect();
+        let users = users.filter_map(|user| user.name(scene)).map(str::to_owned);
         return Err(EditError::PackInUse {
             name: name.clone(),
-            users: users.join(", "),
+            users: listed(users).unwrap_or_default(),
         });
     }
     for index in packs {

@@ -30,6 +30,7 @@ impl Editor {
                 timeline.seek(animation, seconds.clamp(0.0, MAX_SECONDS));
                 self.show_time();
             }
+            Time::Stretched(from, by) => timeline.stretch(from, by),
             Time::Step(frames) => {
                 let frame = animation.frame_at(timeline.playhead);
                 // From behind the end it goes on from there.
@@ -146,7 +147,8 @@ impl Editor {
                 }
                 self.animation_state.timeline.tolerance = pixels;
                 let old = Arc::clone(&self.scene);
-                let keys = in_the_time_of(&old.animation.keys, self.simplified(&take));
+                let flown = self.animation_state.flown(&old.animation.keys);
+                let keys = in_the_time_of(flown, self.simplified(&take));
                 self.animation_state.note_made(pixels, keys.clone());
                 let animation = Animation {
                     keys,
@@ -239,14 +241,14 @@ impl Editor {
     }
 }
 
-/// New keys for a flight that had been given another length.
-fn in_the_time_of(old: &[Key<Camera>], new: Vec<Key<Camera>>) -> Vec<Key<Camera>> {
-    let ([first, .., last], [start, .., end]) = (old, &new[..]) else {
+/// New keys for a flight that may have been given another length.
+fn in_the_time_of(flown: Option<(f64, f64)>, new: Vec<Key<Camera>>) -> Vec<Key<Camera>> {
+    let (Some((first, last)), [start, .., end]) = (flown, &new[..]) else {
         return new;
     };
-    let scale = (last.time - first.time) / (end.time - start.time);
-    let (from, to) = (start.time, first.time);
-    let at = |time: f64| to + (time - from) * scale;
+    let scale = (last - first) / (end.time - start.time);
+    let from = start.time;
+    let at = |time: f64| first + (time - from) * scale;
     let keys = new.into_iter();
     keys.map(|key| Key {
         time: at(key.time),

@@ -7,6 +7,7 @@ use indexmap::IndexSet;
 use super::action::{Message, STEP};
 use super::document::Editor;
 use crate::scene::{Scene, Shape, Target};
+use crate::words::listed;
 
 /// What messages about edits are about.
 const EDIT: &str = "edit";
@@ -14,8 +15,6 @@ const EDIT: &str = "edit";
 const MESHES: &str = "meshes";
 /// What messages about meshes are about whose files are broken.
 const BROKEN: &str = "broken meshes";
-/// Most values that a message names.
-const MOST_NAMES: usize = 3;
 
 impl Editor {
     fn say(&mut self, is_error: bool, about: &'static str, text: String) {
@@ -69,7 +68,7 @@ impl Editor {
     }
 
     /// Says which meshes could not be read.
-    pub(super) fn tell_missing_meshes(&mut self) {
+    pub fn tell_missing_meshes(&mut self) {
         self.begin(MESHES);
         let mut problems = self.scene.mesh_problems();
         let Some((index, why)) = problems.next() else {
@@ -137,6 +136,8 @@ impl Editor {
     /// Tells why an edit is not made.
     pub(super) fn refuse(&mut self, why: String) {
         self.is_refused = true;
+        // One that is made anew with every step of a drag may be refused in other words each time.
+        self.begin(EDIT);
         self.report_error_in(EDIT, why);
     }
 
@@ -146,14 +147,4 @@ impl Editor {
             self.begin(EDIT);
         }
     }
-}
-
-/// The first few of some names, and how many more there are; `None` if there are none.
-fn listed(mut names: impl Iterator<Item = String>) -> Option<String> {
-    let first: Vec<String> = names.by_ref().take(MOST_NAMES).collect();
-    let more = match names.count() {
-        0 => String::new(),
-        more => format!(" and {more} more"),
-    };
-    (!first.is_empty()).then(|| format!("{}{more}", first.join(", ")))
 }

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use glam::DVec3;
 
 use super::item::{Item, Kind};
-use crate::scene::{Keys, Scene};
+use crate::scene::{Keys, Object, Scene};
 
 /// What is selected, and shown in the inspector.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -61,6 +61,27 @@ impl Selection {
         is_whole.then_some(group)
     }
 
+    /// All objects of a group.
+    pub fn of_group(scene: &Scene, group: &str) -> Self {
+        let objects = scene.objects.iter().enumerate();
+        let members = objects.filter(|(_, object)| object.group == group);
+        Self::all(members.map(|(index, _)| Item::object(index)))
+    }
+
+    /// Whether what is selected is a group already, of one or of several, and nothing else.
+    pub fn is_group(&self, scene: &Scene) -> bool {
+        let only = self.item().filter(|item| item.kind == Kind::Object);
+        let only = only.and_then(|item| scene.objects.get(item.index));
+        let is_alone = |object: &Object| {
+            let groups = scene.objects.iter().map(|object| &object.group);
+            !object.group.is_empty() && groups.filter(|group| **group == object.group).count() == 1
+        };
+        match self.items() {
+            [_] => only.is_some_and(is_alone),
+            _ => self.group(scene).is_some(),
+        }
+    }
+
     /// These, each of them once; the camera if there are none.
     pub fn all(items: impl IntoIterator<Item = Item>) -> Self {
         let mut all = Vec::new();
@@ -107,6 +128,17 @@ impl Selection {
         self.items().contains(&item)
     }
 
+    /// For each object, of so many, whether it is among them: for whoever asks of many.
+    pub fn object_marks(&self, count: usize) -> Vec<bool> {
+        let mut marks = vec![false; count];
+        for item in self.items().iter().filter(|item| item.kind == Kind::Object) {
+            if let Some(mark) = marks.get_mut(item.index) {
+                *mark = true;
+            }
+        }
+        marks
+    }
+
     /// Whether all of these are among them.
     pub fn has_all(&self, items: impl ExactSizeIterator<Item = Item>) -> bool {
         // Mostly, fewer are selected.
@@ -131,12 +163,19 @@ impl Selection {
 
     /// What all that have a place are turned about: a single thing about a point of its own.
     pub fn pivot(&self, scene: &Scene) -> Option<DVec3> {
-        match self.items() {
-            [item] if item.kind == Kind::Object => {
+        match self.only_placed() {
+            Some(item) if item.kind == Kind::Object => {
                 Some(scene.objects.get(item.index)?.shape.pivot())
             }
             _ => self.middle(scene),
         }
+    }
+
+    /// The one that has a place, where others that are selected have none.
+    pub fn only_placed(&self) -> Option<Item> {
+        let mut placed = self.items().iter().filter(|item| item.kind != Kind::Pack);
+        let first = placed.next().copied();
+        first.filter(|_| placed.next().is_none())
     }
 
     /// The same with `item`, or without it if it was among them.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::animate::{Seen, Worst};
-use crate::scene::{Animation, Camera, MAX_KEYS, Orientation, Take};
+use crate::scene::{Animation, Camera, MAX_KEYS, MAX_SECONDS, Orientation, Take};
 
 /// The picture that a deviation is told for, in pixels.
 pub const MEASURED_AT: f64 = 1024.0;
@@ -25,6 +25,8 @@ pub enum Repeat {
 pub enum Time {
     /// Put the playhead at the frame nearest to so many seconds.
     Seek(f64),
+    /// The flight from this time on takes so many times as long: the playhead stays where it is in it.
+    Stretched(f64, f64),
     /// Put it so many frames further, or back.
     Step(i64),
     /// Play or pause.
@@ -131,10 +133,15 @@ impl Timeline {
     }
 
     pub(super) fn seek(&mut self, animation: &Animation, seconds: f64) {
-        let half = 0.5 / animation.frames_per_second;
-        let frame = animation.frame_at(seconds + half);
-        self.playhead = animation.time_of(frame);
+        self.playhead = animation.time_of(animation.nearest_frame(seconds));
         self.is_returning = false;
+    }
+
+    /// It is not on a frame then: to be drawn back and forth takes it nowhere else.
+    pub(super) fn stretch(&mut self, from: f64, by: f64) {
+        if self.playhead > from {
+            self.playhead = (from + (self.playhead - from) * by).min(MAX_SECONDS);
+        }
     }
 
     /// Time passes; at the ends, what was chosen happens.

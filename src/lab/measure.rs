@@ -54,6 +54,14 @@ pub fn difference(picture: &[LinearRgb], reference: &[LinearRgb]) -> ErrorMetric
     }
 }
 
+/// Half of each of two pictures of the same size.
+pub fn mean(first: &[LinearRgb], second: &[LinearRgb]) -> Vec<LinearRgb> {
+    let pixels = first.iter().zip(second);
+    pixels
+        .map(|(a, b)| std::array::from_fn(|channel| 0.5 * (a[channel] + b[channel])))
+        .collect()
+}
+
 /// Traces a picture as linear light on the current rayon pool; `None` if `control` said stop.
 pub fn trace_light(tracer: &Tracer, control: &RenderControl) -> Option<(Vec<LinearRgb>, Rays)> {
     let mut pixels = vec![[0.0; 3]; tracer.width() * tracer.height()];

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::candidates::{Candidate, Family, candidates, povray};
-use super::measure::{ErrorMetrics, difference, eight_bits, scaled, trace_light};
+use super::measure::{ErrorMetrics, difference, eight_bits, mean, scaled, trace_light};
 use crate::export::{PovrayError, by_povray};
 use crate::image::{Image, LinearRgb, render_into};
 use crate::plan::{Planner, RenderRequest};
@@ -189,7 +189,7 @@ impl Study {
         let Some(index) = unfinished else {
             let [first, second] = std::mem::take(&mut self.references);
             let rmse = difference(&first, &second).rmse / 2.0;
-            let mean = mean_of(&first, &second);
+            let mean = mean(&first, &second);
             let picture = Arc::new(eight_bits(mean.clone(), (width, height)));
             self.reference = Some(Reference { rmse, picture });
             self.references[0] = Arc::new(mean);
@@ -286,14 +286,6 @@ impl Study {
         }
         true
     }
-}
-
-/// Half of each of two pictures of the same size.
-fn mean_of(first: &[LinearRgb], second: &[LinearRgb]) -> Vec<LinearRgb> {
-    let pixels = first.iter().zip(second);
-    pixels
-        .map(|(a, b)| std::array::from_fn(|channel| 0.5 * (a[channel] + b[channel])))
-        .collect()
 }
 
 /// The finished picture, as the user would get it.

@@ -85,7 +85,7 @@ pub use hints::{About, Hint, hints};
 pub use join::MOST_SEPARATE;
 pub use keys::{KeyPlace, Keys};
 pub use list::List;
-pub use locate::{PathStep, names_field};
+pub use locate::{PathStep, header, names_field};
 pub use material::{ColorPack, MAX_EXPONENT, Packs};
 pub use methods::{
     Accelerator, HighlightMethod, MAX_GRID, MAX_HALVINGS, Method, MethodInfo, Methods, Precision,

@@ -7,7 +7,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::file::Document;
-use crate::files::{Stamp, write_atomic};
+use crate::files::{Stamp, is_same_file, write_atomic};
 
 /// First line of a recovery file: the path of the document follows.
 const MARK: &str = "// unsaved changes of: ";
@@ -120,7 +120,7 @@ fn take(path: &Path, of: Option<&Path>, to: &Path) -> Option<Leftover> {
     let (first, body) = text.strip_prefix(MARK)?.split_once('\n')?;
     let escaped: Option<String> = serde_json::from_str(first).ok();
     let first = escaped.as_deref().unwrap_or(first);
-    if of.is_some_and(|of| of != Path::new(first)) {
+    if of.is_some_and(|of| !is_same_file(of, Path::new(first))) {
         return None;
     }
     let (base, body) = match body.strip_prefix(BASE_MARK) {

@@ -25,30 +25,36 @@ pub struct Autosave {
     /// What is being written: the revision, or why it could not be.
     writing: Background<Result<u64, String>>,
     tried: Option<Instant>,
+    /// The document that was looked for work of that a crashed program left, see [`Editor::documents`].
+    looked_for: u64,
 }
 
 impl Autosave {
     /// Takes a place in `folder`, and hands what a crashed program left there to the editor.
     pub fn start(folder: Option<&Path>, editor: &mut Editor) -> Self {
         let recovery = folder.and_then(|folder| Recovery::new(folder).ok().map(Arc::new));
-        let mut kept = None;
-        if let Some(leftover) = recovery
-            .as_ref()
-            .and_then(|recovery| recovery.take_leftover(editor.path()))
-        {
+        let mut autosave = Self {
+            recovery,
+            ..Self::default()
+        };
+        autosave.take_up(editor);
+        autosave
+    }
+
+    /// Hands the work to the editor that a crashed program left of its document; of any, if that has no file.
+    fn take_up(&mut self, editor: &mut Editor) {
+        let recovery = self.recovery.as_ref();
+        let leftover = recovery.and_then(|recovery| recovery.take_leftover(editor.path()));
+        if let Some(leftover) = leftover {
             let path = leftover.path.as_ref();
             let name = path.map_or("a new scene".to_owned(), |path| path.display().to_string());
             editor.recover(leftover);
-            kept = Some((editor.revision(), Instant::now()));
+            self.kept = Some((editor.revision(), Instant::now()));
             editor.notify(format!(
                 "Glint ended with unsaved changes to {name}; here they are. Save them, or open the file again to discard them."
             ));
         }
-        Self {
-            recovery,
-            kept,
-            ..Self::default()
-        }
+        self.looked_for = editor.documents();
     }
 
     /// Since when the unsaved work is safe, if there is any.
@@ -66,6 +72,12 @@ impl Autosave {
         if self.writing.is_awaited() {
             ctx.request_repaint_after(POLL);
             return;
+        }
+        if self.looked_for != editor.documents() {
+            self.looked_for = editor.documents();
+            if editor.path().is_some() && !editor.is_dirty() {
+                self.take_up(editor);
+            }
         }
         if !editor.is_dirty() {
             if self.kept.take().is_some() {

@@ -3,7 +3,6 @@
 use egui::Response;
 
 use crate::editor::{Edit, Editor, Item, Kind};
-use crate::scene::Object;
 
 /// The pack that was dropped on a widget.
 pub fn dropped_pack(response: &Response) -> Option<Item> {
@@ -13,7 +12,7 @@ pub fn dropped_pack(response: &Response) -> Option<Item> {
         .filter(|item| item.kind == Kind::Pack)
 }
 
-/// The change that makes an object wear a pack; all that is selected, if the object is among it.
+/// The change that makes an object or the marker of a light wear a pack; all that is selected, if it is among it.
 pub fn dressed(editor: &Editor, pack: Item, item: Item) -> Option<Edit> {
     let scene = editor.shown();
     let name = pack.name(scene)?;
@@ -24,15 +23,18 @@ pub fn dressed(editor: &Editor, pack: Item, item: Item) -> Option<Edit> {
     } else {
         &one
     };
-    let objects = items.iter().filter(|item| item.kind == Kind::Object);
-    let edits = objects.filter_map(|item| {
-        let object = scene.objects.get(item.index)?.clone();
-        let color_pack = name.to_owned();
-        let object = Object {
-            color_pack,
-            ..object
-        };
-        Some(Edit::object(item.index, object, "color pack"))
+    let edits = items.iter().filter_map(|item| match item.kind {
+        Kind::Object => {
+            let mut object = scene.objects.get(item.index)?.clone();
+            name.clone_into(&mut object.color_pack);
+            Some(Edit::object(item.index, object, "color pack"))
+        }
+        Kind::Light => {
+            let mut light = scene.lights.get(item.index)?.clone();
+            name.clone_into(&mut light.marker.as_mut()?.color_pack);
+            Some(Edit::Light(item.index, light, "color pack"))
+        }
+        Kind::Pack => None,
     });
     let edits: Vec<Edit> = edits.collect();
     (!edits.is_empty()).then(|| Edit::Each(edits, format!("Wear {name}")))

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use egui::{
     AtomExt as _, Button, Context, Frame, Id, Key, Modal, Modifiers, ScrollArea, TextEdit, Ui,
 };
+use indexmap::IndexSet;
 
 use super::add::Addition;
 use super::commands::{Command, KEYLESS, Next, SHORTCUTS, Zoom, name_of};
@@ -333,14 +334,19 @@ fn things<'a>(
     });
     let packs = (0..scene.color_packs.len()).map(|index| (Item::pack(index), "color pack"));
     let all = lights.chain(objects).chain(packs);
-    all.filter_map(move |(item, kind)| {
-        let name = item.name(scene).filter(|name| has(name))?;
-        Some(Find {
+    let all = all.map(|(item, kind)| (item.name(scene).unwrap_or_default(), kind, Some(item)));
+    let groups: IndexSet<&str> = scene.objects.iter().map(|o| o.group.as_str()).collect();
+    let groups = groups.into_iter().filter(|group| !group.is_empty());
+    let groups = groups.map(|group| (group, "group", None));
+    let all = groups.chain(all).filter(move |(name, ..)| has(name));
+    all.map(|(name, kind, item)| {
+        let selection = item.map_or_else(|| Selection::of_group(scene, name), Selection::from);
+        Find {
             name: name.to_owned(),
             aside: kind.to_owned(),
-            what: Target::Selection(Selection::from(item)),
+            what: Target::Selection(selection),
             is_enabled: true,
-        })
+        }
     })
 }
 

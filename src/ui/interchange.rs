@@ -12,7 +12,7 @@ use crate::export::{Job, Pattern, Sequence, povray_text, write_job, write_text};
 use crate::files::is_same_file;
 use crate::image::Format;
 use crate::mesh::MeshFile;
-use crate::scene::{Animation, Camera, Scene, around, check, read_text};
+use crate::scene::{Animation, Camera, Key, Scene, around, check, read_text};
 use crate::words::counted;
 
 /// The keys of a file take the place of the camera's.
@@ -30,6 +30,13 @@ pub fn import_path(editor: &mut Editor, path: &Path) {
         Ok(keys) if keys.is_empty() => {
             let why = format!("{}: there are no keys in it", path.display());
             editor.report_error_in(Ask::ImportPath.title(), why);
+        }
+        Ok(keys) if keys == editor.scene().animation.keys => {
+            let keys = counted(keys.len(), "key");
+            editor.notify(format!(
+                "The {keys} from {} are there already",
+                path.display()
+            ));
         }
         Ok(keys) => {
             let count = keys.len();
@@ -60,8 +67,18 @@ pub fn export_path(editor: &mut Editor, path: &Path) {
     } else {
         to_text(keys).map_err(Box::<dyn Error>::from)
     };
+    let has_ways = keys.iter().any(|key| {
+        let plain = Key::new(key.time, key.value.clone());
+        (key.interpolation, key.easing) != (plain.interpolation, plain.easing)
+    });
+    // Who takes it for another program may know; who takes it for a copy does not.
+    let lost = if is_table(path) && has_ways {
+        " without the ways and paces between keys: a RON file keeps them"
+    } else {
+        ""
+    };
     match text.and_then(|text| Ok(write_text(path, &text)?)) {
-        Ok(()) => editor.notify(format!("Saved {}", path.display())),
+        Ok(()) => editor.notify(format!("Saved {}{lost}", path.display())),
         Err(error) => editor.report_error_in(Ask::ExportPath.title(), error.to_string()),
     }
 }

@@ -46,6 +46,9 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             let has = editor.scene().animation.keys.len() > 1;
             (!has).then_some("the camera has fewer than two keys")
         }
+        Command::Group if editor.selection().is_group(editor.scene()) => {
+            Some("it is a group already")
+        }
         Command::Group | Command::PutDown => {
             let mut items = editor.selection().items().iter();
             let has = items.any(|item| item.kind == Kind::Object);

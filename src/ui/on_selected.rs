@@ -2,6 +2,7 @@
 
 use crate::editor::{Action, Arrangement, Edit, Editor, Item, Kind, Selection, excerpt};
 use crate::scene::Scene;
+use crate::words::counted;
 
 /// Hides everything that is selected, or shows it if all of it is hidden.
 pub fn toggle_visible(editor: &mut Editor) {
@@ -9,12 +10,15 @@ pub fn toggle_visible(editor: &mut Editor) {
     let items = editor.selection().items();
     let mut visible = items.iter().filter_map(|item| item.is_visible(scene));
     let visible = !visible.any(|visible| visible);
-    let field = if visible { "show" } else { "hide" };
+    let verb = if visible { "Show" } else { "Hide" };
     let edits = items.iter();
     let edits = edits.filter_map(|item| Edit::visible(scene, *item, visible));
     let edits: Vec<Edit> = edits.collect();
-    let label = format!("{field} {} items", edits.len());
-    editor.apply(Action::Edit(Edit::Each(edits, label)));
+    let name = match items {
+        [item] => item.name(scene).unwrap_or_default().to_owned(),
+        _ => counted(edits.len(), "item"),
+    };
+    editor.apply(Action::Edit(Edit::Each(edits, format!("{verb} {name}"))));
 }
 
 /// The selected objects, or a triangle and all that share corners with it.

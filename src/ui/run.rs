@@ -191,11 +191,15 @@ impl App {
             }
         };
         self.editor.begin(PASTE);
+        let is_whole = pasted.mesh_problems().next().is_none();
         let paste = Edit::Paste(Box::new(pasted), "Paste");
         let before = self.editor.revision();
         self.editor.apply(Action::Edit(paste));
         if self.editor.revision() != before {
             self.tell_unseen("What was pasted");
+            if !is_whole {
+                self.editor.tell_missing_meshes();
+            }
         }
     }
 

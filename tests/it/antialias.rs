@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec3;
 use glint::image::LinearRgb;
-use glint::lab::{difference, trace_light};
+use glint::lab::{difference, mean, trace_light};
 use glint::mesh::Triangles;
 use glint::plan::RenderRequest;
 use glint::scene::{
@@ -41,7 +41,7 @@ const TRUTH: [u32; 2] = [31, 33];
 
 /// What a picture of this size would be without jagged edges and in double precision.
 fn truth_of(scene: &Scene, size: &RenderRequest) -> Vec<LinearRgb> {
-    let [mut truth, other] = TRUTH.map(|side| {
+    let [first, second] = TRUTH.map(|side| {
         let fine = RenderRequest {
             sampling: Sampling::Grid(side),
             precision: Precision::Double,
@@ -49,10 +49,7 @@ fn truth_of(scene: &Scene, size: &RenderRequest) -> Vec<LinearRgb> {
         };
         linear(scene, &fine).0
     });
-    for (truth, other) in truth.iter_mut().flatten().zip(other.iter().flatten()) {
-        *truth = (*truth + other) / 2.0;
-    }
-    truth
+    mean(&first, &second)
 }
 
 /// How far the picture is off that is asked for.

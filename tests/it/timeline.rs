@@ -287,6 +287,41 @@ fn keys_made_anew_keep_the_time_that_the_flight_was_given() {
 }
 
 #[test]
+fn an_end_that_is_taken_away_or_added_does_not_stretch_the_recording() {
+    let mut editor = Editor::demo();
+    editor.recover(unsaved(Document::load(FLIGHT.as_ref()).expect("a scene")));
+    survey_flight(&mut editor);
+    let said = editor.timeline().worst.expect("a recording").off;
+    let before = editor.scene().animation.clone();
+    let last = before.keys.len() - 1;
+    let shorter = before.without_keys(&[KeyPlace::of_camera(last)].into());
+    let view = editor.scene().camera.clone();
+    let (longer, _) = before.with_key(before.duration() + 5.0, view);
+    let mut stretched = Animation::clone(&before);
+    for key in &mut stretched.keys {
+        key.time *= 2.0;
+    }
+    for (edited, seconds) in [
+        (shorter, before.duration()),
+        (longer, before.duration()),
+        (stretched, before.duration() * 2.0),
+    ] {
+        editor.apply(Action::Edit(Edit::animation(edited, "Edit")));
+        let off = editor.timeline().worst.expect("measured").off;
+        assert!(off <= said + 1e-6, "{off} px where {said} were said");
+        editor.apply(Action::Time(Time::Simplify(5.0)));
+        let duration = editor.scene().animation.duration();
+        assert!(
+            (duration - seconds).abs() < 1e-6,
+            "{duration} s, not {seconds}"
+        );
+        editor.apply(Action::Undo);
+        editor.apply(Action::Undo);
+        assert_eq!(editor.scene().animation, before);
+    }
+}
+
+#[test]
 fn keys_are_dragged_copied_and_picked_with_the_mouse() {
     let mut harness = animation(&[(0.0, 0.0), (1.0, 30.0), (2.0, 10.0), (4.0, 60.0)]);
     let second = points_per_second(&harness);
@@ -824,20 +859,22 @@ fn an_object_with_keys_moves_and_its_corners_do_not_drift() {
     }
 }
 
+fn open_presets(harness: &mut EditorHarness) {
+    let menu = harness
+        .window
+        .get_by_role_and_label(Role::Button, "Animate");
+    menu.click();
+    harness.settle();
+    let flights = harness.window.get_by_label_contains("Ready-made flight");
+    flights.click();
+    harness.settle();
+}
+
 #[test]
 fn ready_made_flights_and_other_timings_are_one_step_each() {
     let mut harness = EditorHarness::new();
     let presets = Preset::ALL.map(|preset| preset.words().0);
-    harness
-        .window
-        .get_by_role_and_label(Role::Button, "Animate")
-        .click();
-    harness.settle();
-    harness
-        .window
-        .get_by_label_contains("Ready-made flight")
-        .click();
-    harness.settle();
+    open_presets(&mut harness);
     for name in presets {
         harness.window.get_by_label(name);
     }
@@ -867,7 +904,9 @@ fn paths_go_out_to_a_table_and_come_back() {
             vec![
                 (Ask::ExportPath, Some(folder.join("path.csv"))),
                 (Ask::ImportPath, Some(folder.join("path.csv"))),
+                (Ask::ImportPath, Some(folder.join("path.csv"))),
                 (Ask::ImportPath, Some(folder.join("broken.csv"))),
+                (Ask::ExportPath, Some(folder.join("circle.csv"))),
             ]
         },
         Some(&text),
@@ -883,6 +922,8 @@ fn paths_go_out_to_a_table_and_come_back() {
         assert_eq!((was.time, was.value.position), (is.time, is.value.position));
         assert!((was.value.look_at - is.value.look_at).length() < 1e-9);
     }
+    harness.choose("Animate", "Import path…");
+    harness.window.get_by_label_contains("are there already");
     let broken = harness.folder.path().join("broken.csv");
     std::fs::write(&broken, "time,x,y,z\n0,1,2,3\n0,1,2,3\n").expect("written");
     let kept = harness.scene().animation.keys.clone();
@@ -895,6 +936,12 @@ fn paths_go_out_to_a_table_and_come_back() {
         kept,
         "a bad table changes nothing"
     );
+    open_presets(&mut harness);
+    harness.click("Turntable");
+    harness.choose("Animate", "Export path…");
+    harness
+        .window
+        .get_by_label_contains("circle.csv without the ways and paces between keys");
 }
 
 /// A frame on the command line is what the playhead shows in the window, byte by byte.

@@ -150,10 +150,13 @@ fn the_tolerance_is_kept_through_pauses_and_kinks() {
             "{} at {pixels}",
             worst.off * 1024.0
         );
-        assert_eq!(worst, worst_off(&CameraPath::new(&keys), &take, &seen));
+        assert_eq!(
+            worst,
+            worst_off(&CameraPath::new(&keys), &take, &seen, ends_of(&keys))
+        );
         // In another time it is the same flight.
         let slower = CameraPath::new(&stretched_keys(&keys, 20.0));
-        let off = worst_off(&slower, &take, &seen).off * 1024.0;
+        let off = worst_off(&slower, &take, &seen, ends_of(slower.keys())).off * 1024.0;
         assert!((off - worst.off * 1024.0).abs() < 0.05, "{off} stretched");
     }
 }

@@ -8,7 +8,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, EnumAccess, MapAccess, VariantAccess as _, Visitor};
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Field};
+use super::describe::{Describe, Field, FieldValue};
 use super::disc::Disc;
 use super::mesh::Mesh;
 use super::plane::Plane;
@@ -131,6 +131,33 @@ macro_rules! shapes {
             #[must_use]
             pub fn moved(&self, by: DVec3) -> Self {
                 match self { $(Self::$kind(shape) => Self::$kind(shape.moved(by))),* }
+            }
+
+            /// Its points, in the order of the file.
+            pub fn points(&self) -> Vec<DVec3> {
+                let mut points = Vec::new();
+                self.clone().fields(&mut |field| {
+                    if let FieldValue::Point(point) = field.value {
+                        points.push(*point);
+                    }
+                });
+                points
+            }
+
+            /// The same shape in another place: one that has a single point has it there to the last digit.
+            #[must_use]
+            pub fn placed(&self, place: DVec3) -> Self {
+                let mut placed = self.moved(place - self.position());
+                let mut points = Vec::new();
+                placed.fields(&mut |field| {
+                    if let FieldValue::Point(point) = field.value {
+                        points.push(point);
+                    }
+                });
+                if let [only] = &mut points[..] {
+                    **only = place;
+                }
+                placed
             }
 
             /// The same shape, turned about a point.

@@ -129,16 +129,18 @@ impl Settings {
     /// The same for a scene that asks for `fresh` now: what was the scene's own is so again.
     pub fn for_scene(&self, fresh: Self) -> Self {
         let mut settings = self.clone();
+        settings.own = fresh.own;
         if (self.width, self.height) == self.own.size {
-            (settings.width, settings.height) = fresh.own.size;
+            (settings.width, settings.height) = settings.own.size;
+        } else if self.own.size != settings.own.size && !self.is_free {
+            settings.height = settings.height_of(self.width);
         }
         if self.fps == self.own.fps {
             settings.fps = fresh.fps;
         }
         if self.has_all_frames() {
-            settings.frames = fresh.own.frames(settings.fps);
+            settings.frames = settings.own.frames(settings.fps);
         }
-        settings.own = fresh.own;
         settings
     }
 
@@ -154,13 +156,18 @@ impl Settings {
         if self.is_free {
             return;
         }
-        let (wide, high) = (f64::from(self.own.size.0), f64::from(self.own.size.1));
-        let side = |length: f64| (length.round() as u32).clamp(1, MAX_SIDE);
+        let (wide, high) = self.own.size;
         if width != before.0 {
-            self.height = side(f64::from(width) * high / wide);
+            self.height = self.height_of(width);
         } else if height != before.1 {
-            self.width = side(f64::from(height) * wide / high);
+            self.width = scaled(height, wide, high);
         }
+    }
+
+    /// How high a picture of the scene's shape is that is so wide.
+    fn height_of(&self, width: u32) -> u32 {
+        let (wide, high) = self.own.size;
+        scaled(width, high, wide)
     }
 
     /// Another rate; all frames stay all.
@@ -208,13 +215,20 @@ impl Settings {
 
     /// Where the video is to be that follows the frames.
     pub fn video(&self, sequence: &Sequence) -> Option<(PathBuf, Video)> {
-        let folder = std::path::absolute(&sequence.folder).ok();
-        let name = folder.as_deref().and_then(Path::file_name);
-        let name = name.map_or("frames".into(), |name| name.to_string_lossy());
         let video = self.video?;
-        let path = sequence.folder.join(format!("{name}.{}", video.ending()));
+        let folder = std::path::absolute(&sequence.folder);
+        let folder = folder.unwrap_or_else(|_| sequence.folder.clone());
+        let name = folder.file_name();
+        let name = name.map_or("frames".into(), |name| name.to_string_lossy());
+        let path = folder.join(format!("{name}.{}", video.ending()));
         Some((path, video))
     }
+}
+
+/// A side, times one number and through another.
+fn scaled(side: u32, times: u32, through: u32) -> u32 {
+    let length = f64::from(side) * f64::from(times) / f64::from(through);
+    (length.round() as u32).clamp(1, MAX_SIDE)
 }
 
 /// Why nothing can be exported with these settings.

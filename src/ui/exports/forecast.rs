@@ -19,11 +19,14 @@ const PNG_SHARE: f64 = 0.35;
 const EXR_SHARE: f64 = 0.6;
 
 /// Frames of a sequence that are not in their folder as they should be.
+#[derive(Default)]
 struct Missing {
     /// How many.
     count: usize,
     /// How many of them replace other files.
     replaced: usize,
+    /// Whether the video replaces another file.
+    has_video: bool,
 }
 
 /// What was measured on the picture on screen.
@@ -81,8 +84,16 @@ impl Forecast {
             return;
         }
         (self.sought, self.found) = (Some(sought), None);
-        let sequence = sequence.clone();
-        self.looking = Background::start("glint-look", move || missing(&sequence));
+        let (sequence, video) = (sequence.clone(), settings.video(sequence));
+        let look = move || {
+            let has_video = video.is_some_and(|(path, _)| path.exists());
+            let missing = missing(&sequence)?;
+            Ok(Missing {
+                has_video,
+                ..missing
+            })
+        };
+        self.looking = Background::start("glint-look", look);
     }
 
     /// Measures how large and how slow to pack frames like the finished picture on screen are.
@@ -147,7 +158,13 @@ impl Forecast {
             let time = about(self.sample.video.filter(|_| is_known));
             let remark = video.check(sequence).ok().flatten();
             let remark = remark.map_or(String::new(), |remark| format!("; {remark}"));
-            format!(", then {name}{time}{remark}")
+            let has_video = matches!(&self.found, Some(Ok(missing)) if missing.has_video);
+            let replaced = if has_video {
+                " in place of an older one"
+            } else {
+                ""
+            };
+            format!(", then {name}{replaced}{time}{remark}")
         });
         format!("{what}{frames}{}", video.unwrap_or_default())
     }
@@ -198,12 +215,16 @@ fn missing(sequence: &Sequence) -> Result<Missing, String> {
     // A folder that is not there has no frames; looking must not make it.
     if !sequence.folder.exists() {
         let count = sequence.frames.count();
-        return Ok(Missing { count, replaced: 0 });
+        return Ok(Missing {
+            count,
+            ..Missing::default()
+        });
     }
     let missing = sequence.missing().map_err(|error| error.to_string())?;
     let is_there = |frame: &&u64| sequence.path(**frame).exists();
     Ok(Missing {
         count: missing.len(),
         replaced: missing.iter().filter(is_there).count(),
+        has_video: false,
     })
 }

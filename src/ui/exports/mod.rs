@@ -139,8 +139,10 @@ impl Exports {
     /// What is going on, in words; `None` if nothing is.
     pub fn describe(&self, pictures: &Pictures) -> Option<String> {
         let states = pictures.worker().exports();
-        let mut going = states.iter().filter(|state| state.ended.is_none());
-        let Some(state) = going.next() else {
+        let going = || states.iter().filter(|state| state.ended.is_none());
+        // One that waits is not what is going on.
+        let at_work = going().find(|state| !state.is_paused);
+        let Some(state) = at_work.or_else(|| going().next()) else {
             return self.entries.iter().find_map(Entry::describe_rest);
         };
         let done = state.done.kept + state.done.written;
@@ -149,7 +151,7 @@ impl Exports {
             None if state.is_paused => " · paused".to_owned(),
             None => String::new(),
         };
-        let more = match going.count() {
+        let more = match going().count() - 1 {
             0 => String::new(),
             more => format!(" · {more} more"),
         };

@@ -21,7 +21,7 @@ fn moved_point(scene: &Scene, edit: &Edit) -> Option<MovedPoint> {
     match edit {
         Edit::Object(index, new, _) => {
             let (old, new) = (&scene.objects.get(*index)?.shape, &new.shape);
-            let (old, new) = (points(old), points(new));
+            let (old, new) = (old.points(), new.points());
             let mut pairs = old.iter().zip(&new);
             let (from, to) = pairs.find(|(from, to)| from != to)?;
             Some(MovedPoint {
@@ -40,16 +40,6 @@ fn moved_point(scene: &Scene, edit: &Edit) -> Option<MovedPoint> {
         }
         _ => None,
     }
-}
-
-fn points(shape: &Shape) -> Vec<DVec3> {
-    let mut points = Vec::new();
-    shape.clone().fields(&mut |field| {
-        if let FieldValue::Point(point) = field.value {
-            points.push(*point);
-        }
-    });
-    points
 }
 
 /// Moves everything that is selected as what was selected last, which a change moves: together, by as much; or to the
@@ -74,27 +64,13 @@ fn move_all(
     };
     let edits = others.iter().filter_map(|item| {
         let object = |object: &mut Object| {
-            object.shape = placed(&object.shape, to(object.shape.position()));
+            object.shape = object.shape.placed(to(object.shape.position()));
         };
         let light = |light: &mut Light| light.position = to(light.position);
         edited(scene, *item, "position", (object, light))
     });
     let edits = edits.chain(own).collect();
     Edit::Each(edits, format!("Move {} items", selected.len()))
-}
-
-/// A shape in another place.
-fn placed(shape: &Shape, place: DVec3) -> Shape {
-    let mut placed = shape.moved(place - shape.position());
-    if points(shape).len() == 1 {
-        // To the last digit, as it was typed.
-        placed.fields(&mut |field| {
-            if let FieldValue::Point(point) = field.value {
-                *point = place;
-            }
-        });
-    }
-    placed
 }
 
 /// The same change for everything that is selected, which is made of what was selected last; whether places are moved
@@ -133,6 +109,11 @@ pub fn for_all(scene: &Scene, selected: &[Item], edit: Edit, is_together: bool) 
                 Some(Edit::Pack(index, pack, field))
             });
             (edits.collect(), field)
+        }
+        Edit::MakePackUnique(_) => {
+            let objects = selected.iter().filter(|item| item.kind == Kind::Object);
+            let edits = objects.map(|item| Edit::MakePackUnique(item.index));
+            (edits.collect(), "own color packs")
         }
         other => return other,
     };

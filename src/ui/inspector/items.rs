@@ -161,10 +161,12 @@ pub fn object(
     ui.horizontal(|ui| {
         ui.weak(format!("used by {users}"));
         let unique = ui.add_enabled(users > 1, egui::Button::new("Make unique"));
-        if unique
-            .hint("Give this object a color pack of its own")
-            .clicked()
-        {
+        let hint = if is_alone {
+            "Give this object a color pack of its own"
+        } else {
+            "Give each of these objects a color pack of its own"
+        };
+        if unique.hint(hint).clicked() {
             out.edit(Edit::MakePackUnique(index));
         }
     });

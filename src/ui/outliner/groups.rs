@@ -30,11 +30,11 @@ impl GroupRows {
         &mut self,
         ui: &mut Ui,
         editor: &Editor,
-        group: &Group,
+        (group, is_selected): (&Group, bool),
         out: &mut UiRequests,
     ) -> Option<Response> {
         if self.renaming.as_ref() == Some(&group.name) {
-            self.rename(ui, group, out);
+            self.rename(ui, editor, group, out);
             return None;
         }
         let scene = editor.shown();
@@ -47,7 +47,7 @@ impl GroupRows {
         let look = RowStyle {
             icon: icons::GROUP,
             is_bright,
-            is_selected: editor.selection().has_all(members()),
+            is_selected,
         };
         let response = entry(ui, rect, look, &group.name);
         let all = || Action::Select(Selection::all(members()));
@@ -105,7 +105,7 @@ impl GroupRows {
         }
     }
 
-    fn rename(&mut self, ui: &mut Ui, group: &Group, out: &mut UiRequests) {
+    fn rename(&mut self, ui: &mut Ui, editor: &Editor, group: &Group, out: &mut UiRequests) {
         let rect = row(ui);
         ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
             let id = Id::unique(("name of the group", &group.name));
@@ -116,8 +116,13 @@ impl GroupRows {
                 Renaming::To(new) if new.trim().is_empty() => {}
                 Renaming::To(new) => {
                     let name = new.trim().to_owned();
+                    // That of another group is refused.
+                    let mut groups = editor.scene().objects.iter().map(|object| &object.group);
+                    let is_free = !groups.any(|other| *other == name);
                     for folded in self.folded.iter_mut().filter(|own| **own == group.name) {
-                        folded.clone_from(&name);
+                        if is_free {
+                            folded.clone_from(&name);
+                        }
                     }
                     out.edit(Edit::RenameGroup(group.name.clone(), name));
                 }

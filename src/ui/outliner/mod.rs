@@ -99,9 +99,14 @@ impl Outliner {
         let mut groups = std::mem::take(&mut self.groups);
         groups.update(&editor.scene().objects, &self.group_rows.folded);
         let lines = self.lines(editor.scene(), &groups);
+        // Once for all rows: there may be many groups of many, of which many are selected.
+        let marks = editor
+            .selection()
+            .object_marks(editor.scene().objects.len());
         let listed = Listed {
             lines: &lines,
             groups: &groups.all,
+            marks: &marks,
         };
         let walked = self.walk.step(ui, (editor, listed), keys_are_free);
         let walked = walked.map(|(row, action)| {
@@ -172,7 +177,10 @@ impl Outliner {
             }
             Some(Line::Group(place)) => {
                 let group = &listed.groups[place];
-                if let Some(response) = self.group_rows.show(ui, editor, group, out) {
+                let mut members = group.members.iter().map(|&index| Item::object(index));
+                let is_selected = members.all(|member| listed.is_marked(editor, member));
+                let row = (group, is_selected);
+                if let Some(response) = self.group_rows.show(ui, editor, row, out) {
                     self.walk.attend(ui, index, &response);
                 }
             }
@@ -225,8 +233,10 @@ impl Outliner {
                     kind,
                     index: *index,
                 };
-                item.name(scene)
-                    .is_some_and(|name| name.to_lowercase().contains(&filter))
+                let object = scene.objects.get(*index).filter(|_| kind == Kind::Object);
+                let group = object.map(|object| object.group.as_str());
+                let mut names = item.name(scene).into_iter().chain(group);
+                names.any(|name| name.to_lowercase().contains(&filter))
             };
             Entries::Some((0..count).filter(matches).collect())
         };
@@ -306,7 +316,7 @@ impl Outliner {
             return None;
         }
         let (icon, visible) = (icons::of_item(scene, item), item.is_visible(scene));
-        let is_selected = editor.selection().has(item);
+        let is_selected = listed.is_marked(editor, item);
         let (mut rect, mut eye_rect) = (row(ui), Rect::NOTHING);
         if is_in_group {
             rect.min.x += ROW;

@@ -3,7 +3,7 @@
 use egui::{Event, EventFilter, Key, Modifiers, Response, Ui};
 
 use super::lines::{Group, Line, Lines, SINGLES};
-use crate::editor::{Action, Editor, Item, Selection};
+use crate::editor::{Action, Editor, Item, Kind, Selection};
 use crate::scene::Scene;
 
 /// What has the arrow keys.
@@ -28,6 +28,8 @@ pub struct Listed<'a> {
     pub lines: &'a Lines<'a>,
     /// The groups, by their places.
     pub groups: &'a [Group],
+    /// For each object whether it is selected.
+    pub marks: &'a [bool],
 }
 
 impl Walk {
@@ -116,6 +118,14 @@ impl Walk {
 }
 
 impl Listed<'_> {
+    /// Whether an item is selected.
+    pub fn is_marked(&self, editor: &Editor, item: Item) -> bool {
+        match item.kind {
+            Kind::Object => self.marks.get(item.index) == Some(&true),
+            Kind::Light | Kind::Pack => editor.selection().has(item),
+        }
+    }
+
     /// The row of what is selected, if it is listed: that of its group, if all of that is, or if the group is folded.
     pub fn row_of(&self, editor: &Editor) -> Option<usize> {
         let Some(item) = editor.selection().item() else {

@@ -6,7 +6,7 @@ use egui_plot::{HoverPosition, Line, MarkerShape, Plot, PlotPoint, PlotPoints, P
 use super::scale::Scale;
 use crate::animate::{CameraChange, CameraPath, motion_between};
 use crate::editor::Editor;
-use crate::scene::{Animation, Camera, Interpolation, Key};
+use crate::scene::{Animation, Camera, Interpolation, Key, SAME_TIME};
 use crate::ui::hint::Hint as _;
 use crate::ui::theme::{GRAPH, palette};
 use crate::words::counted;
@@ -150,14 +150,15 @@ fn steps(animation: &Animation, path: &CameraPath) -> Vec<PaceStep> {
         .map(|key| key.value.position.abs().max_element());
     let noise = far.fold(0.0, f64::max) * NOISE;
     let per_second = fps / stride as f64;
+    let pairs = animation.keys.windows(2);
+    let cuts = pairs.filter(|pair| pair[0].interpolation == Interpolation::Hold);
+    let cuts: Vec<f64> = cuts.map(|pair| pair[1].time).collect();
     let step = |index: usize| {
-        let time = animation.time_of(frames[index + 1]);
-        let is_cut = animation.keys.windows(2).any(|pair| {
-            let is_hold = pair[0].interpolation == Interpolation::Hold;
-            is_hold
-                && pair[1].time > animation.time_of(frames[index])
-                && pair[1].time <= time + 1e-6
-        });
+        let (from, time) = (frames[index], animation.time_of(frames[index + 1]));
+        let earlier = cuts.partition_point(|cut| *cut <= animation.time_of(from));
+        let is_cut = cuts
+            .get(earlier)
+            .is_some_and(|cut| *cut <= time + SAME_TIME);
         let beside = [index.checked_sub(1), Some(index + 1)];
         let is_jump = |of: fn(&CameraChange) -> f64, mean: f64| {
             let here = of(&motions[index]);

@@ -18,6 +18,8 @@ mod thumbs;
 
 mod transport;
 
+use std::sync::Arc;
+
 use egui::{InputState, Key, Modifiers, Rect, ScrollArea, Ui};
 
 use self::graph::Graph;
@@ -29,6 +31,7 @@ pub use self::transport::{actions, clock};
 use super::commands::{Command, with_key};
 use super::requests::UiRequests;
 use super::theme::{GRID, TRACK_LABEL};
+use crate::animate::paused_seconds;
 use crate::editor::Editor;
 use crate::scene::Animation;
 use crate::ui::hint::Hint as _;
@@ -54,6 +57,8 @@ pub struct TimelinePanel {
     frame: u64,
     rows: KeyRows,
     graph: Graph,
+    /// Seconds of pauses, of the animation that they were counted for.
+    paused: Option<(Arc<Animation>, f64)>,
 }
 
 impl Default for TimelinePanel {
@@ -67,6 +72,7 @@ impl Default for TimelinePanel {
             frame: 0,
             rows: KeyRows::default(),
             graph: Graph::default(),
+            paused: None,
         }
     }
 }
@@ -96,7 +102,8 @@ impl TimelinePanel {
         });
         let animation = &editor.scene().animation;
         if animation.take.is_some() {
-            ui.horizontal_wrapped(|ui| transport::show_take(ui, editor, out));
+            let paused = self.paused(animation);
+            ui.horizontal_wrapped(|ui| transport::show_take(ui, editor, paused, out));
         }
         if animation.is_still() {
             ui.centered_and_justified(|ui| {
@@ -148,6 +155,14 @@ impl TimelinePanel {
     /// Shows all of the line again.
     pub fn fit(&mut self) {
         self.chosen = None;
+    }
+
+    /// Seconds of pauses; of many keys they are not counted anew in every frame of the window.
+    fn paused(&mut self, animation: &Arc<Animation>) -> f64 {
+        let known = self.paused.take();
+        let known = known.filter(|(of, _)| Arc::ptr_eq(of, animation));
+        let count = || (Arc::clone(animation), paused_seconds(&animation.keys));
+        self.paused.insert(known.unwrap_or_else(count)).1
     }
 
     /// Whether keys are being moved, or a frame is drawn around some.

@@ -62,7 +62,8 @@ impl Overlay {
             }
         }
         self.draw_way(&painter, &lens, colors.curve);
-        let size = self.extent() * CAMERA_SHARE;
+        let extent = self.extent();
+        let size = extent * CAMERA_SHARE;
         let selected = editor.selection().keys();
         let mut drawn: Vec<Pos2> = Vec::new();
         for (place, key) in animation.keys.iter().enumerate() {
@@ -70,7 +71,7 @@ impl Overlay {
             let color = if is_selected {
                 colors.accent
             } else {
-                let fade = self.fade(&lens, key.value.position);
+                let fade = fade(&lens, extent, key.value.position);
                 colors.curve.gamma_multiply(fade)
             };
             let eye = lens.place(key.value.position);
@@ -148,13 +149,6 @@ impl Overlay {
         }
     }
 
-    /// How strongly a camera is drawn: what is near to the eye covers much of the picture and says little.
-    fn fade(&self, lens: &Lens, position: DVec3) -> f32 {
-        let (eye, _) = lens.ray(lens.view.center());
-        let far = self.extent() * FADING;
-        (eye.distance(position) / far).clamp(f64::from(HIDDEN), 1.0) as f32
-    }
-
     /// Size of the flight in world units.
     fn extent(&self) -> f64 {
         let points = self.ticks.iter().map(|(point, _)| (*point, *point));
@@ -223,6 +217,13 @@ impl Overlay {
         let moved = animation.with_each(&own, |key| key.value.position = to);
         out.edit(Edit::animation(moved, "Move key in the view"));
     }
+}
+
+/// How strongly a camera is drawn: what is near to the eye covers much of the picture and says little.
+fn fade(lens: &Lens, extent: f64, position: DVec3) -> f32 {
+    let (eye, _) = lens.ray(lens.view.center());
+    let far = extent * FADING;
+    (eye.distance(position) / far).clamp(f64::from(HIDDEN), 1.0) as f32
 }
 
 /// A pyramid from the eye to the frame of the picture, or the frame alone where rays run side by side.

@@ -3,7 +3,7 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, PopupCloseBehavior, RichText, Slider, Ui};
 
-use crate::animate::{longest_flight, paused_seconds, stretched};
+use crate::animate::{longest_flight, stretched};
 use crate::editor::{Edit, Editor, Repeat, Time};
 use crate::scene::{Animation, FRAME_RATES, KeyPlace, Keys};
 use crate::ui::commands::{Command, with_key};
@@ -186,7 +186,7 @@ fn rates(ui: &mut Ui, editor: &Editor, graph: &mut bool, out: &mut UiRequests) {
 
 /// How long the flight of the camera is; another length stretches it.
 fn length(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
-    let (animation, time) = (&editor.scene().animation, editor.shown_time());
+    let animation = &editor.scene().animation;
     let [first, .., last] = &animation.keys[..] else {
         return;
     };
@@ -204,16 +204,12 @@ fn length(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     lone(ui, &field, &mut seconds);
     if seconds != before {
         out.edit(Edit::animation(stretched(animation, seconds), "Stretch"));
-        // The playhead stays where it is in the flight.
-        if time > first.time {
-            let later = (time - first.time) * seconds / before;
-            out.time(Time::Seek(first.time + later));
-        }
+        out.time(Time::Stretched(first.time, seconds / before));
     }
 }
 
 /// The recorded flight, and how closely the keys follow it.
-pub fn show_take(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+pub fn show_take(ui: &mut Ui, editor: &Editor, paused: f64, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let Some(take) = &animation.take else { return };
     let before = editor.timeline().tolerance;
@@ -248,7 +244,6 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
             .hint("The keys are not those that were made of the recording");
     }
     ui.separator();
-    let paused = paused_seconds(&animation.keys);
     if paused > 0.0 {
         ui.weak(format!("{paused:.1} s of pauses"));
     }
@@ -294,7 +289,7 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action>
     let animation = &editor.scene().animation;
     let time = editor.shown_time();
     // The playhead goes to the frame nearest to a key, which may be before or behind it.
-    let frame = |time: f64| animation.frame_at(time + 0.5 / animation.frames_per_second);
+    let frame = |time: f64| animation.nearest_frame(time);
     let times = || {
         let tracks = animation.tracks.iter().flat_map(|track| &track.keys);
         let of_camera = animation.keys.iter().map(|key| key.time);

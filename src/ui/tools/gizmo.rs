@@ -141,10 +141,9 @@ fn handles(lens: &Lens, selected: &Selection, scene: &Scene) -> Vec<Drawn> {
         return Vec::new();
     };
     // Of many, nothing is copied: this is done in every frame.
-    let only = match selected.items() {
-        [item] => Subject::new(scene, *item),
-        _ => None,
-    };
+    let only = selected
+        .only_placed()
+        .and_then(|item| Subject::new(scene, item));
     let Some(place) = lens.place(middle) else {
         return Vec::new();
     };

@@ -118,11 +118,12 @@ impl Grip {
             Handle::Along(axis) => {
                 let (direction, name) = AXES[axis];
                 let to = self.pointed_at(lens, pull.at)?;
-                let start = self.place().dot(direction);
+                let mut place = self.place();
+                let start = place[axis];
                 let pulled = (to - self.from.1).dot(direction);
-                let by = typed.unwrap_or_else(|| round(start + pulled) - start);
-                let words = format!("{name} {}", signed(by));
-                Some((self.move_all(direction * by), words))
+                place[axis] = typed.map_or_else(|| round(start + pulled), |by| start + by);
+                let words = format!("{name} {}", signed(place[axis] - start));
+                Some((self.move_to(place), words))
             }
             Handle::Across(_) | Handle::Free => {
                 let to = if pull.is_level && self.handle == Handle::Free {
@@ -135,17 +136,17 @@ impl Grip {
                     Handle::Across(across) => across == axis,
                     _ => pull.is_level && axis == 1,
                 };
+                let start = self.place();
                 let part = |axis: usize| {
-                    let start = self.place()[axis];
                     if fixed(axis) {
-                        0.0
+                        start[axis]
                     } else {
-                        round(start + by[axis]) - start
+                        round(start[axis] + by[axis])
                     }
                 };
-                let by = DVec3::new(part(0), part(1), part(2));
-                let words = [by.x, by.y, by.z].map(signed).join(", ");
-                Some((self.move_all(by), words))
+                let place = DVec3::new(part(0), part(1), part(2));
+                let words = (place - start).to_array().map(signed).join(", ");
+                Some((self.move_to(place), words))
             }
             Handle::Radius => {
                 let typed = typed.filter(|radius| *radius > 0.0);
@@ -186,9 +187,16 @@ impl Grip {
         }
     }
 
-    fn move_all(&self, by: DVec3) -> Option<Edit> {
-        let edits = self.before.iter().map(|subject| subject.moved(by));
-        together(edits.collect(), "Move")
+    /// Moves everything with [`Self::place`].
+    fn move_to(&self, place: DVec3) -> Option<Edit> {
+        let edits = match &self.before[..] {
+            [only] => vec![only.placed(place)],
+            all => {
+                let by = place - self.place();
+                all.iter().map(|subject| subject.moved(by)).collect()
+            }
+        };
+        together(edits, "Move")
     }
 
     fn scale_all(&self, times: f64) -> Option<Edit> {

@@ -72,11 +72,28 @@ impl Subject {
         }
     }
 
-    /// What is to be round where it is moved: of a mesh its position, of all else the middle.
+    /// What is to be round where it is moved: the position of what is in one place, of all else the middle.
     pub fn position(&self) -> DVec3 {
         match self.shape() {
-            Some(Shape::Mesh(mesh)) => mesh.position,
+            Some(shape) if shape.points().len() == 1 => shape.position(),
             _ => self.middle(),
+        }
+    }
+
+    /// The change that moves it to a place.
+    pub fn placed(&self, place: DVec3) -> Edit {
+        match self {
+            Self::Object(_, object) if object.shape.points().len() == 1 => {
+                self.reshaped(object.shape.placed(place), "move")
+            }
+            Self::Object(..) => self.moved(place - self.position()),
+            Self::Light(index, light) => {
+                let light = Light {
+                    position: place,
+                    ..light.clone()
+                };
+                Edit::Light(*index, light, "move")
+            }
         }
     }
 
@@ -84,13 +101,7 @@ impl Subject {
     pub fn moved(&self, by: DVec3) -> Edit {
         match self {
             Self::Object(_, object) => self.reshaped(object.shape.moved(by), "move"),
-            Self::Light(index, light) => {
-                let light = Light {
-                    position: light.position + by,
-                    ..light.clone()
-                };
-                Edit::Light(*index, light, "move")
-            }
+            Self::Light(_, light) => self.placed(light.position + by),
         }
     }
 

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, vec2};
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glam::DVec3;
 use glint::editor::Kind;
 use glint::scene::{Sampling, Scene, Shape, Sphere};
@@ -457,6 +457,25 @@ fn a_change_of_a_pack_is_for_the_packs_of_all() {
         let pack = &harness.scene().color_packs[name];
         assert_eq!(pack.specular, DVec3::new(1.0, 2.0, 3.0), "{name}");
     }
+}
+
+#[test]
+fn several_get_packs_of_their_own_and_the_last_that_shares_one_keeps_it() {
+    let mut harness = EditorHarness::new();
+    harness.click("Triangle 1");
+    let last = harness.window.get_by_label("Triangle 6");
+    last.click_modifiers(Modifiers::SHIFT);
+    harness.settle();
+    harness.click("Make unique");
+    let triangles = || harness.scene().objects.iter().skip(2).take(6);
+    let packs: Vec<_> = triangles()
+        .map(|triangle| triangle.color_pack.as_str())
+        .collect();
+    let copies = (2..=6).map(|number| format!("tetrahedron {number}"));
+    let expected: Vec<_> = copies.chain(["tetrahedron".to_owned()]).collect();
+    assert_eq!(packs, expected);
+    let button = harness.window.get_by_label("Make unique");
+    assert!(button.accesskit_node().is_disabled());
 }
 
 #[test]
