@@ -43,7 +43,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "ERROR", value_parser = error, conflicts_with_all = ["antialias", "budget", "show"])]
     within: Option<f64>,
     /// Measure samplings on this picture, and take the closest that takes at most so long: 16ms, 2s, or a number of milliseconds; the measuring takes time of its own
-    #[arg(long, value_name = "TIME", value_parser = time, allow_negative_numbers = true, conflicts_with = "antialias")]
+    #[arg(long, value_name = "TIME", value_parser = time, allow_negative_numbers = true, conflicts_with_all = ["antialias", "show"])]
     budget: Option<Duration>,
     /// Instruction set of the tracer; all give the same picture [default: the widest of this processor]
     #[arg(long, value_name = "LEVEL", value_parser = lanes)]

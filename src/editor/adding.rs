@@ -24,22 +24,16 @@ const FLOOR: [f64; 3] = [196.0, 192.0, 186.0];
 /// How large the marker of the first light is, as a share of the scene.
 const MARKER_SHARE: f64 = 0.02;
 
-/// Adds an object of this name, or one like it. It wears a pack of its own, or one that nothing wears: its colour is
-/// changed without that of others.
+/// Adds an object of this name, or one like it. It wears a pack of its own: a new one, or one as new that nothing wears.
 pub fn add_object(scene: &mut Scene, name: &str, shape: Shape) -> Item {
     let name = free_object_name(scene, &format!("{name} 1"));
-    let color_pack = free_pack(scene).unwrap_or_else(|| {
-        let [red, green, blue] = match shape {
-            Shape::Plane(_) => FLOOR,
-            _ => COLORS[scene.color_packs.len() % COLORS.len()],
-        };
-        let color = DVec3::new(red, green, blue);
-        let pack = ColorPack {
-            ambient: color,
-            diffuse: color,
-            ..ColorPack::default()
-        };
-        insert_pack(scene, &name.to_lowercase(), pack).1
+    let colors = match shape {
+        Shape::Plane(_) => &[FLOOR][..],
+        _ => &COLORS,
+    };
+    let color_pack = free_pack(scene, colors).unwrap_or_else(|| {
+        let color = colors[scene.color_packs.len() % colors.len()];
+        insert_pack(scene, &name.to_lowercase(), new_pack(color)).1
     });
     scene.objects.push(Object::new(name, color_pack, shape));
     Item::object(scene.objects.len() - 1)
@@ -143,12 +137,23 @@ pub fn make_pack_unique(scene: &mut Scene, index: usize) {
     }
 }
 
-/// A pack that nothing wears; not the one that is kept for lights.
-fn free_pack(scene: &Scene) -> Option<String> {
+/// What a new thing wears.
+fn new_pack(color: [f64; 3]) -> ColorPack {
+    let color = DVec3::from_array(color);
+    ColorPack {
+        ambient: color,
+        diffuse: color,
+        ..ColorPack::default()
+    }
+}
+
+/// A pack that nothing wears, and that is as new in one of these colours: others somebody may have made for later.
+fn free_pack(scene: &Scene, colors: &[[f64; 3]]) -> Option<String> {
     let worn = scene.worn_packs();
-    let mut names = scene.color_packs.keys();
-    let is_free = |name: &&String| *name != "light" && !worn.contains(name.as_str());
-    names.find(is_free).cloned()
+    let is_new = |pack: &ColorPack| colors.iter().any(|color| *pack == new_pack(*color));
+    let mut packs = scene.color_packs.iter();
+    let free = packs.find(|(name, pack)| !worn.contains(name.as_str()) && is_new(pack));
+    free.map(|(name, _)| name.clone())
 }
 
 /// Puts a pack behind the others, under this name or one like it: its place and its name.

@@ -1,6 +1,6 @@
 //! The changes that can be made to a scene, each with its name in the history.
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -60,8 +60,8 @@ pub enum Edit {
     Duplicate(Item),
     /// Away with these; a pack that is in use stays.
     Delete(Vec<Item>),
-    /// To another place in its list, counted without it.
-    Move(Item, usize),
+    /// These, of one kind, to another place in their list, counted without them.
+    Move(Vec<Item>, usize),
     /// Objects elsewhere in their list, and into another group.
     Arrange(Arrangement),
     /// A copy of its pack for this object alone.
@@ -209,7 +209,10 @@ impl Edit {
                 [item] => format!("Delete {}", name(item)),
                 _ => format!("Delete {} items", items.len()),
             },
-            Self::Move(item, _) => format!("Move {}", name(*item)),
+            Self::Move(items, _) => match items[..] {
+                [item] => format!("Move {}", name(item)),
+                _ => format!("Move {} items", items.len()),
+            },
             Self::Arrange(arrangement) => match arrangement.objects[..] {
                 [one] => format!("Move {}", name(Item::object(one))),
                 _ => format!("Move {} items", arrangement.objects.len()),
@@ -259,7 +262,7 @@ impl Edit {
             Self::Rename(item, name) => rename(scene, item, name.trim())?,
             Self::Duplicate(item) => return Ok(duplicate(scene, item).into_iter().collect()),
             Self::Delete(items) => delete(scene, items)?,
-            Self::Move(item, to) => return Ok(vec![move_item(scene, item, to)]),
+            Self::Move(items, to) => return Ok(move_items(scene, items, to)),
             Self::Arrange(arrangement) => return Ok(arrange(scene, arrangement)),
             Self::MakePackUnique(index) => make_pack_unique(scene, index),
             Self::MergePacks => scene.merge_equal_packs(),
@@ -373,23 +376,42 @@ fn rename_group(scene: &mut Scene, from: &str, to: &str) -> Result<(), EditError
     Ok(())
 }
 
-fn move_item(scene: &mut Scene, item: Item, to: usize) -> Item {
-    let Item { kind, index } = item;
-    let count = kind.count(scene);
-    if index >= count {
-        return item;
-    }
-    let to = to.min(count - 1);
+/// Returns where they are then, in the order in which they were given.
+fn move_items(scene: &mut Scene, items: Vec<Item>, to: usize) -> Vec<Item> {
+    let Some(kind) = items.first().map(|item| item.kind) else {
+        return items;
+    };
+    let is_there = |item: &&Item| item.kind == kind && item.index < kind.count(scene);
+    let moved = items.iter().filter(is_there).map(|item| item.index);
+    let moved: BTreeSet<usize> = moved.collect();
+    let to = to.min(kind.count(scene) - moved.len());
     match kind {
-        Kind::Object => {
-            let object = scene.objects.remove(index);
-            scene.objects.insert(to, object);
+        Kind::Object => move_within(&mut scene.objects, &moved, to),
+        Kind::Light => move_within(&mut scene.lights, &moved, to),
+        Kind::Pack => {
+            let packs = scene.packs_mut();
+            let taken = moved.iter().rev();
+            let taken = taken.filter_map(|index| packs.shift_remove_index(*index));
+            for (name, pack) in taken.collect::<Vec<_>>() {
+                packs.shift_insert(to, name, pack);
+            }
         }
-        Kind::Light => {
-            let light = scene.lights.remove(index);
-            scene.lights.insert(to, light);
-        }
-        Kind::Pack => scene.packs_mut().move_index(index, to),
     }
-    Item { kind, index: to }
+    let places: Vec<usize> = moved.into_iter().collect();
+    let now = |item: &Item| {
+        let place = places.binary_search(&item.index).ok()?;
+        Some(Item {
+            kind,
+            index: to + place,
+        })
+    };
+    items.iter().filter_map(now).collect()
+}
+
+/// Takes out what is in these places, and puts it in before the one that is `to` then.
+fn move_within<T: Clone>(list: &mut List<T>, places: &BTreeSet<usize>, to: usize) {
+    let taken = places.iter().rev().map(|place| list.remove(*place));
+    for item in taken.collect::<Vec<_>>() {
+        list.insert(to, item);
+    }
 }

@@ -115,9 +115,15 @@ impl Selection {
         }
     }
 
+    /// Those of a kind; the one that was selected last comes last.
+    pub fn of_kind(&self, kind: Kind) -> Vec<Item> {
+        let own = self.items().iter().filter(|item| item.kind == kind);
+        own.copied().collect()
+    }
+
     /// The places of those of a kind, in ascending order.
     pub fn places(&self, kind: Kind) -> Vec<usize> {
-        let own = self.items().iter().filter(|item| item.kind == kind);
+        let own = self.of_kind(kind).into_iter();
         let mut places: Vec<usize> = own.map(|item| item.index).collect();
         places.sort_unstable();
         places

@@ -217,8 +217,23 @@ fn what_is_not_there_does_not_move() {
     for _ in 0..2 {
         editor.apply(Action::Edit(Edit::Delete(vec![Item::light(0)])));
     }
-    editor.apply(Action::Edit(Edit::Move(Item::light(0), 0)));
+    editor.apply(Action::Edit(Edit::Move(vec![Item::light(0)], 0)));
     assert!(editor.scene().lights.is_empty());
+}
+
+#[test]
+fn several_packs_move_together_and_stay_selected() {
+    let mut editor = Editor::demo();
+    let items = vec![Item::pack(3), Item::pack(0)];
+    editor.apply(Action::Select(Selection::all(items.clone())));
+    editor.apply(Action::Edit(Edit::Move(items, 2)));
+    let names: Vec<_> = editor.scene().color_packs.keys().collect();
+    assert_eq!(
+        names,
+        ["sphere 2", "tetrahedron", "sphere 1", "plane", "light"]
+    );
+    assert_eq!(editor.selection().items(), [Item::pack(3), Item::pack(2)]);
+    assert_eq!(editor.undo_label(), Some("Move 2 items"));
 }
 
 #[test]
@@ -246,7 +261,8 @@ fn any_edit() -> impl Strategy<Value = Action> {
         }),
         prop::collection::vec(item.clone(), 1..4).prop_map(Edit::Delete),
         item.clone().prop_map(Edit::Duplicate),
-        (item, 0..12_usize).prop_map(|(item, to)| Edit::Move(item, to)),
+        (prop::collection::vec(item, 1..4), 0..12_usize)
+            .prop_map(|(items, to)| Edit::Move(items, to)),
         (0..12_usize).prop_map(Edit::MakePackUnique),
     ]
     .prop_map(Action::Edit)

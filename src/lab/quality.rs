@@ -98,7 +98,7 @@ pub fn choose(
         let (light, first) = strips.trace(sampling)?;
         let (_, second) = strips.trace(sampling)?;
         // Nothing makes a run faster than it is.
-        let time = first.min(second).as_secs_f64() * strips.share_of_all();
+        let time = first.min(second);
         measured.push((sampling, (time, difference(&light, &reference).rmse)));
     }
     pick(goal, &measured)
@@ -170,19 +170,22 @@ impl<'a> Strips<'a> {
         f64::from(self.request.height) / (self.rows * self.firsts.len()) as f64
     }
 
-    fn trace(&mut self, sampling: Sampling) -> Option<(Vec<LinearRgb>, Duration)> {
+    /// Their light, and how many seconds the whole picture takes: it is planned once, however many rows it has.
+    fn trace(&mut self, sampling: Sampling) -> Option<(Vec<LinearRgb>, f64)> {
         let start = Instant::now();
         let request = RenderRequest {
             sampling,
             ..*self.request
         };
         let tracer = Tracer::planned(self.scene, &request, self.planner);
+        let planned = start.elapsed().as_secs_f64();
         let strip = self.rows * self.request.width as usize;
         let mut light = vec![[0.0; 3]; strip * self.firsts.len()];
         for (strip, first) in light.chunks_exact_mut(strip).zip(&self.firsts) {
             tracer.rows(strip, *first, self.control)?;
         }
-        Some((light, start.elapsed()))
+        let traced = start.elapsed().as_secs_f64() - planned;
+        Some((light, planned + traced * self.share_of_all()))
     }
 }
 

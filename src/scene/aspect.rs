@@ -147,7 +147,9 @@ impl Aspect {
                 clay(&mut shown);
                 shown.background = DVec3::ZERO;
                 shown.ambient_intensity = 0.0;
-                for light in shown.lights.iter_mut() {
+                let lights = shown.lights.iter_mut();
+                // What gives no light casts no shadow.
+                for light in lights.filter(|light| light.intensity > 0.0) {
                     light.intensity = 1.0;
                 }
             }
@@ -205,8 +207,12 @@ fn flat(shown: &mut Scene) {
         light.intensity = 0.0;
     }
     shown.ambient_intensity = 1.0;
+    let mut word = "object".to_owned();
+    while shown.color_packs.keys().any(|name| name.starts_with(&word)) {
+        word.push('+');
+    }
     let names: Vec<String> = (0..shown.objects.len())
-        .map(|index| format!("object {index}"))
+        .map(|index| format!("{word} {index}"))
         .collect();
     for (object, name) in shown.objects.iter_mut().zip(&names) {
         object.color_pack.clone_from(name);

@@ -6,6 +6,15 @@ use ron::Error;
 /// the parser's limit.
 pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) -> String {
     match error {
+        // Mostly a fourth number, where a colour or a place has three.
+        Error::ExpectedStructLikeEnd
+            if before.trim_end().ends_with(',') && after.starts_with(is_of_number) =>
+        {
+            "expected the closing bracket: this is a number more than there may be".to_owned()
+        }
+        Error::SuggestRawIdentifier(name) if name.starts_with(is_of_number) => {
+            format!("expected the name of a field, found {name}: decimals stand behind a point")
+        }
         // It has taken what is before the point for a whole number, and wonders about the rest.
         Error::ExpectedComma
             if before.ends_with(|c: char| c.is_ascii_digit()) && after.starts_with('.') =>
@@ -88,12 +97,17 @@ pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) 
         Error::Utf8Error(_) => "the file is no text in UTF-8".to_owned(),
         Error::UnclosedLineComment => "the comment does not end".to_owned(),
         Error::IntegerOutOfBounds => {
-            "the number is out of range; expected a whole number from 0 to 4294967295".to_owned()
+            "the number is out of range: it is too large, or less than 0".to_owned()
         }
         Error::UnclosedBlockComment => "the comment has no closing */".to_owned(),
         Error::TrailingCharacters => "there is more text behind the end of the scene".to_owned(),
         other => other.to_string(),
     }
+}
+
+/// Whether a number may begin with it.
+fn is_of_number(letter: char) -> bool {
+    letter.is_ascii_digit() || letter == '-'
 }
 
 fn list(names: &[&str]) -> String {

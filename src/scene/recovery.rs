@@ -180,6 +180,20 @@ mod tests {
     }
 
     #[test]
+    fn work_is_found_under_any_spelling_of_its_file() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("a.ron");
+        fs::write(&file, DEMO_TEXT).expect("written");
+        fs::create_dir(folder.path().join("sub")).expect("made");
+        let first = Recovery::new(folder.path()).expect("a place");
+        let spelling = folder.path().join("sub/../a.ron");
+        first.keep(DEMO_TEXT, Some(&spelling), None).expect("kept");
+        drop(first);
+        let second = Recovery::new(folder.path()).expect("a place");
+        assert!(second.take_leftover(Some(&file)).is_some());
+    }
+
+    #[test]
     fn cleared_work_is_gone() {
         let folder = tempfile::tempdir().expect("a folder");
         let first = Recovery::new(folder.path()).expect("a place");

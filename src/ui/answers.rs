@@ -5,6 +5,7 @@ use std::time::Duration;
 use egui::Context;
 
 use super::app::App;
+use super::inspector::Outcome;
 use crate::editor::{Action, Time};
 use crate::worker::Answer;
 
@@ -32,8 +33,12 @@ impl App {
                     }
                 }
                 Answer::Quality(goal, choice) => {
-                    if let Some(edit) = self.quality.take(goal, choice, &self.editor) {
-                        self.editor.apply(Action::Edit(edit));
+                    match self.quality.take(goal, choice, &self.editor) {
+                        Some(Outcome::Edit(edit)) => self.editor.apply(Action::Edit(edit)),
+                        Some(Outcome::Ask(question)) => {
+                            self.pictures.ask(&self.editor, vec![question]);
+                        }
+                        None => {}
                     }
                 }
             }

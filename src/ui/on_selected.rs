@@ -90,10 +90,17 @@ pub fn step(editor: &Editor, is_down: bool) -> Option<Edit> {
             let moved = selection.places(Kind::Object);
             Arrangement::step(&scene.objects, &moved, is_down).map(Edit::Arrange)
         }
-        kind if is_down => {
-            let has_next = item.index + 1 < kind.count(scene);
-            has_next.then(|| Edit::Move(item, item.index + 1))
+        kind => {
+            let items = selection.of_kind(kind);
+            let places = || items.iter().map(|item| item.index);
+            // Counted without them.
+            let to = if is_down {
+                let last = places().max().filter(|last| last + 1 < kind.count(scene))?;
+                last + 2 - items.len()
+            } else {
+                places().min()?.checked_sub(1)?
+            };
+            Some(Edit::Move(items, to))
         }
-        _ => Some(Edit::Move(item, item.index.checked_sub(1)?)),
     }
 }

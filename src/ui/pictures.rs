@@ -109,6 +109,10 @@ impl Pictures {
                     editor.report_error_in(Ask::SaveImage.title(), reason);
                     has_failed = true;
                 }
+                Event::Fault(reason) => {
+                    editor.report_error(reason);
+                    has_failed = true;
+                }
             }
         }
         has_failed
@@ -218,7 +222,13 @@ impl Pictures {
         });
     }
 
-    /// Gives the still picture up.
+    /// Gives up the still picture to look at.
+    pub fn leave_still(&mut self) {
+        self.still_requested = None;
+        self.worker.leave_still();
+    }
+
+    /// Gives every still picture up, also one that is to be written.
     pub fn cancel_still(&mut self) {
         self.still_requested = None;
         self.worker.cancel_still();

@@ -206,6 +206,8 @@ impl App {
     /// The commands that are actions of the editor.
     fn run_on_scene(&mut self, command: &Command) {
         let editor = &mut self.editor;
+        // Each is a step of its own, whatever keys are held still.
+        editor.end_gesture();
         let action = match command {
             Command::Undo => Action::Undo,
             Command::Redo => Action::Redo,
@@ -325,7 +327,7 @@ impl App {
         } else if self.editor.mode == Mode::HighRes && self.pictures.region.take().is_some() {
             // All of the picture is traced again.
         } else if self.editor.mode != Mode::Live {
-            self.pictures.cancel_still();
+            self.pictures.leave_still();
             self.editor.apply(Action::Show(Mode::Live));
         } else if self.editor.looks_through() {
             self.editor.apply(Action::Time(Time::LookThrough(false)));

@@ -18,6 +18,8 @@ const DECIMALS: usize = 3;
 /// What is asked, and the answer.
 #[derive(Default)]
 pub struct Why {
+    /// The ray, from where and where to, and the scene that it was sent into last.
+    asked: Option<(DVec3, DVec3, Arc<Scene>)>,
     answer: Option<Sight>,
     waiting: Background<Sight>,
 }
@@ -25,6 +27,7 @@ pub struct Why {
 impl Why {
     /// Asks what a ray sees, and why. It is found out elsewhere: a mesh may have many faces.
     pub fn ask(&mut self, scene: &Arc<Scene>, (origin, direction): (DVec3, DVec3)) {
+        self.asked = Some((origin, direction, Arc::clone(scene)));
         let scene = Arc::clone(scene);
         let look = move || explain(&scene, origin, direction);
         self.waiting = Background::start("glint-why", look);
@@ -52,11 +55,24 @@ impl Why {
         *self = Self::default();
     }
 
-    /// Shows the answer, once it is there.
-    pub fn show(&mut self, ctx: &Context) {
+    /// Asks anew, where the scene is another one by now.
+    fn follow(&mut self, scene: &Arc<Scene>) {
+        let Some((origin, direction, of)) = &self.asked else {
+            return;
+        };
+        let is_same = of.has_same_things(scene)
+            && (of.light_visualization, &of.render) == (scene.light_visualization, &scene.render);
+        if !is_same && !self.waiting.is_awaited() {
+            self.ask(scene, (*origin, *direction));
+        }
+    }
+
+    /// Shows the answer, once it is there, for the scene as it is now.
+    pub fn show(&mut self, ctx: &Context, scene: &Arc<Scene>) {
         if let Some(Ok(answer)) = self.waiting.take() {
             self.answer = Some(answer);
         }
+        self.follow(scene);
         if self.waiting.is_awaited() {
             ctx.request_repaint();
         }

@@ -107,6 +107,11 @@ impl Worker {
         std::mem::take(&mut self.shared.outbox().answers)
     }
 
+    /// Gives up the still picture to look at; those that are to be written go on.
+    pub fn leave_still(&self) {
+        self.shared.mailbox().give_up(JobKind::Still);
+    }
+
     /// Gives up every still picture, waiting or running. Those that were to be written are told of
     /// as events; one that is traced already is written.
     pub fn cancel_still(&self) {

@@ -204,6 +204,8 @@ pub struct ExportState {
 pub enum Event {
     /// A still picture was written to this file.
     Saved(PathBuf),
-    /// Something failed, in words for the user.
+    /// A picture was not written, and why.
     Failed(String),
+    /// The tracer itself failed, in words for the user.
+    Fault(String),
 }

@@ -41,6 +41,8 @@ impl Live<'_> {
         start: Instant,
     ) -> Option<()> {
         let mut image = self.canvas();
+        // What was planned is no price of a pixel.
+        let traced_from = Instant::now();
         let first = match self.job.pace {
             Pace::Within(time) => budget.choose(image.width, image.height, time),
             Pace::Whole => 1,
@@ -60,7 +62,7 @@ impl Live<'_> {
             let new = image.trace(&self.tracer, Pass::Centres(grid), control)?;
             rays += new;
             if is_first {
-                budget.learn(new.camera, start.elapsed());
+                budget.learn(new.camera, traced_from.elapsed());
             }
             if grid.step == 1 {
                 break;

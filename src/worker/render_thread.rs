@@ -77,8 +77,13 @@ pub fn run(shared: &Shared, threads: &Threads) {
                 None
             }
             Err(panic) => {
-                if let Job::Query(job) = &job {
-                    answer_nothing(shared, job);
+                match &job {
+                    Job::Query(job) => answer_nothing(shared, job),
+                    Job::Still(StillJob {
+                        save_to: Some(path),
+                        ..
+                    }) => shared.tell_unwritten(path),
+                    _ => {}
                 }
                 finish(shared, job, None);
                 Some(panic)
@@ -86,7 +91,7 @@ pub fn run(shared: &Shared, threads: &Threads) {
         };
         woken = Instant::now();
         if let Some(panic) = panic {
-            shared.tell(Event::Failed(format!(
+            shared.tell(Event::Fault(format!(
                 "The tracer stopped with a fault of its own: {}. Your scene is untouched; change it or undo the last step to go on.",
                 panic_text(panic.as_ref())
             )));

@@ -19,7 +19,7 @@ mod needs;
 mod world;
 
 pub use keys::{key_ways, told_of_replaced};
-pub use quality::Quality;
+pub use quality::{Outcome, Quality};
 pub use title::name_field;
 use title::title_field;
 
@@ -56,7 +56,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiReq
             },
         }
         ui.add_space(GRID);
-        needs::show(ui, editor, quality.in_use(scene));
+        needs::show(ui, editor, quality.in_use(editor));
         ui.add_space(GRID);
     });
 }

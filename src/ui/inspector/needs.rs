@@ -37,9 +37,11 @@ pub fn show(ui: &mut Ui, editor: &Editor, choice: Option<&Choice>) {
 fn lines(ui: &Ui, editor: &Editor) -> Arc<Vec<Need>> {
     let id = Id::unique("needs of the scene");
     let revision = editor.shown_revision();
+    let is_moving = editor.is_in_gesture() || editor.timeline().is_playing;
     let known = ui.data(|data| data.get_temp::<(u64, Arc<Vec<Need>>)>(id));
     match known {
-        Some((of, lines)) if of == revision => lines,
+        // To find them out, the scene is planned from nothing: not in every frame of a drag or a flight.
+        Some((of, lines)) if of == revision || is_moving => lines,
         _ => {
             let scene = editor.shown();
             let lines = Arc::new(needs(scene, &RenderRequest::still(scene)));

@@ -1,5 +1,6 @@
 //! Which sampling a scene needs, chosen by measuring it.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use super::super::requests::UiRequests;
@@ -35,24 +36,43 @@ const FIFTY_DECIBELS: f64 = 3.162_277_660_168_379_5e-3;
 /// What was asked for, and what was chosen last.
 #[derive(Debug, Default)]
 pub struct Quality {
-    /// What is being measured for the document of this number.
-    asked: Option<(Goal, u64)>,
-    choice: Option<Choice>,
+    /// What is being measured.
+    asked: Option<Asked>,
+    /// What was chosen, for the document of this number.
+    choice: Option<(Choice, u64)>,
+}
+
+/// What is being measured, of which scene, for the document of this number.
+#[derive(Debug)]
+struct Asked {
+    goal: Goal,
+    scene: Arc<Scene>,
+    document: u64,
+}
+
+/// What an answer comes to.
+pub enum Outcome {
+    /// The change of the document that was asked for.
+    Edit(Edit),
+    /// It was about the scene as it was: to be asked again.
+    Ask(Question),
 }
 
 impl Quality {
     /// What was chosen, if the scene still has it.
-    pub fn in_use(&self, scene: &Scene) -> Option<&Choice> {
-        let choice = self.choice.as_ref();
-        choice.filter(|choice| choice.sampling == scene.render.antialias)
+    pub fn in_use(&self, editor: &Editor) -> Option<&Choice> {
+        let (choice, document) = self.choice.as_ref()?;
+        let antialias = editor.shown().render.antialias;
+        (choice.sampling == antialias && *document == editor.documents()).then_some(choice)
     }
 
     /// A row to choose from.
     pub fn show(&mut self, rows: &mut Rows, editor: &Editor, out: &mut UiRequests) {
         // What was asked about a document that is gone is not answered.
-        self.asked = self.asked.filter(|asked| asked.1 == editor.documents());
-        let asked = self.asked.map(|(goal, _)| goal);
-        let before = asked.or(self.in_use(editor.shown()).map(|choice| choice.goal));
+        self.asked
+            .take_if(|asked| asked.document != editor.documents());
+        let asked = self.asked.as_ref().map(|asked| asked.goal);
+        let before = asked.or(self.in_use(editor).map(|choice| choice.goal));
         let mut goal = before;
         let hint = "Measures the samplings on this scene, in the size of its still picture, and takes the cheapest \
             that is close enough, or the closest that is fast enough (one undo step); Needs tells why";
@@ -60,7 +80,11 @@ impl Quality {
         rows.choice("quality", hint, &mut goal, options);
         if goal != before {
             self.choice = None;
-            self.asked = goal.map(|goal| (goal, editor.documents()));
+            self.asked = goal.map(|goal| Asked {
+                goal,
+                scene: Arc::clone(editor.scene()),
+                document: editor.documents(),
+            });
             out.questions.extend(goal.map(Question::Quality));
         }
         if self.asked.is_some() {
@@ -71,16 +95,27 @@ impl Quality {
         }
     }
 
-    /// Takes up what was chosen, if anything could be: the change of the document that it was asked for.
-    pub fn take(&mut self, goal: Goal, choice: Option<Choice>, editor: &Editor) -> Option<Edit> {
-        let asked = (goal, editor.documents());
-        self.asked.take_if(|own| *own == asked)?;
+    /// Takes up what was chosen, if anything could be.
+    pub fn take(&mut self, goal: Goal, choice: Option<Choice>, editor: &Editor) -> Option<Outcome> {
+        let (scene, document) = (editor.scene(), editor.documents());
+        let asked = self
+            .asked
+            .take_if(|own| own.goal == goal && own.document == document)?;
         let choice = choice?;
-        self.choice = Some(choice);
+        if asked.scene.render.antialias != scene.render.antialias {
+            // Another one was chosen by hand meanwhile.
+            return None;
+        }
+        if asked.scene.render != scene.render || !asked.scene.has_same_things(scene) {
+            let scene = Arc::clone(scene);
+            self.asked = Some(Asked { scene, ..asked });
+            return Some(Outcome::Ask(Question::Quality(goal)));
+        }
+        self.choice = Some((choice, document));
         let render = Render {
             antialias: choice.sampling,
             ..editor.shown().render.clone()
         };
-        (render != editor.shown().render).then_some(Edit::Render(render, "quality"))
+        (render != editor.shown().render).then_some(Outcome::Edit(Edit::Render(render, "quality")))
     }
 }

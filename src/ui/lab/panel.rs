@@ -295,8 +295,13 @@ impl Lab {
     /// compared. So are the depths of reflections that were measured.
     pub(super) fn is_stale(&self, editor: &Editor) -> bool {
         let bare = |scene: &Scene| Scene {
-            render: Render::default(),
+            render: Render {
+                width: scene.render.width,
+                height: scene.render.height,
+                ..Render::default()
+            },
             animation: Arc::default(),
+            bookmarks: Vec::new(),
             ..scene.clone()
         };
         let limit = editor.shown().render.reflection_limit;

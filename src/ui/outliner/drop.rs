@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use egui::{DragAndDrop, Rect, Response, StrokeKind, Ui};
 
 use super::lines::Group;
-use crate::editor::{Arrangement, Edit, Editor, Item, Kind};
+use crate::editor::{Arrangement, Edit, Editor, Item, Kind, Selection};
 use crate::ui::dress::dressed;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
@@ -114,14 +114,19 @@ pub fn take_dropped_on_group(
     }
 }
 
-/// The objects that are dragged with one: all that are selected, if it is among them.
-fn dragged_objects(editor: &Editor, item: Item) -> Vec<usize> {
+/// What is dragged with one: all of its kind that are selected, if it is among them.
+fn dragged_items(editor: &Editor, item: Item) -> Vec<Item> {
     let selected = editor.selection();
     if selected.has(item) {
-        selected.places(Kind::Object)
+        selected.of_kind(item.kind)
     } else {
-        vec![item.index]
+        vec![item]
     }
+}
+
+/// The same of an object.
+fn dragged_objects(editor: &Editor, item: Item) -> Vec<usize> {
+    Selection::Items(dragged_items(editor, item)).places(item.kind)
 }
 
 /// What comes of an item that is dropped on the upper or the lower half of a row.
@@ -130,9 +135,14 @@ fn put_beside(editor: &Editor, dragged: Item, (item, is_after): (Item, bool)) ->
         return None;
     }
     if item.kind != Kind::Object {
-        // Counted without it.
-        let to = item.index + usize::from(is_after) - usize::from(dragged.index < item.index);
-        return Some(Edit::Move(dragged, to));
+        let items = dragged_items(editor, dragged);
+        // Counted without them.
+        let before = items
+            .iter()
+            .filter(|other| other.index < item.index)
+            .count();
+        let to = item.index + usize::from(is_after) - before;
+        return (!items.contains(&item)).then_some(Edit::Move(items, to));
     }
     let objects = dragged_objects(editor, dragged);
     let group = editor.scene().objects.get(item.index)?.group.clone();

@@ -644,6 +644,27 @@ fn recovered_work_does_not_replace_what_was_written_since() {
 }
 
 #[test]
+fn work_that_was_left_is_taken_up_when_its_file_is_opened_later() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [first, second, data] = ["a.ron", "b.ron", "data"].map(|name| folder.path().join(name));
+    for path in [&first, &second] {
+        std::fs::write(path, demo_text(20.0)).expect("written");
+    }
+    let place = Recovery::new(&data).expect("a place");
+    let left = demo_text(31.5);
+    place.keep(&left, Some(&second), None).expect("kept");
+    drop(place);
+    let mut harness = EditorHarness::kept_in(&data, first);
+    assert_eq!(radius(harness.scene(), 0), 20.0);
+    harness.drop_file(second);
+    assert_eq!(radius(harness.scene(), 0), 31.5);
+    assert!(harness.editor().is_dirty());
+    harness
+        .window
+        .get_by_label_contains("Glint ended with unsaved changes to");
+}
+
+#[test]
 fn what_is_done_while_the_desktop_asks_is_asked_about() {
     let dialogs = Unanswered::default();
     let mut harness = EditorHarness::asked(|_| Box::new(dialogs.clone()), None);

@@ -96,6 +96,16 @@ fn a_group_is_listed_hidden_renamed_and_moved_as_one() {
         .get_by_label_contains("There is another group named “Balls”");
     assert_eq!(groups(&harness), ["Balls", "Balls", "Group 1"]);
     harness.click("Dismiss");
+    // What is folded is so still.
+    harness.click("Fold Group 1");
+    harness.click("Group 1");
+    harness.press(NONE, Key::F2);
+    harness.window.event(Event::Text("Balls".to_owned()));
+    harness.settle();
+    harness.press(NONE, Key::Enter);
+    harness.window.get_by_label("Unfold Group 1");
+    harness.window.get_by_label("Fold Balls");
+    harness.click("Dismiss");
     harness.press(CTRL, Key::Z);
     // What is dropped on it is in it.
     let (from, to) = (middle(&harness, "Plane"), middle(&harness, "Balls"));
@@ -126,6 +136,11 @@ fn packs_are_dragged_onto_rows_and_into_the_picture() {
     carry(&mut harness, from, to);
     assert_eq!(pack(&harness, 1), "plane");
     assert_eq!(pack(&harness, 0), "plane");
+    // The marker of a light wears one as well.
+    let to = middle(&harness, "Light 1");
+    carry(&mut harness, from, to);
+    let marker = harness.scene().lights[0].marker.as_ref();
+    assert_eq!(marker.expect("a marker").color_pack, "plane");
 }
 
 #[test]

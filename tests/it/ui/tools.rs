@@ -412,6 +412,17 @@ fn text_is_pasted_and_what_is_none_is_refused() {
     harness.settle();
     assert_eq!(names(&harness), ["New"]);
     assert_eq!(radius(harness.scene(), 9), 9.0);
+    // With a word about it before it, and a mesh that is not there.
+    let text = r#"// mine
+Object(name: "Gone", color_pack: "plane", shape: Mesh(file: "gone.ply"))"#;
+    harness.window.event(Event::Paste(text.to_owned()));
+    harness.settle();
+    assert_eq!(names(&harness), ["Gone"]);
+    harness
+        .window
+        .get_by_label_contains("\"Gone\" is not in the picture");
+    harness.click("Dismiss");
+    harness.press(CTRL, Key::Z);
     harness.window.event(Event::Cut);
     harness.settle();
     assert_eq!(harness.scene(), &Scene::demo());
@@ -479,6 +490,20 @@ fn everything_is_found_by_its_name() {
             .query_by_label_contains("Enter does what")
             .is_none()
     );
+    // Groups, too; what is one already does not become another.
+    harness.click("Triangle 2");
+    let other = harness.window.get_by_label("Triangle 4");
+    other.click_modifiers(CTRL);
+    harness.settle();
+    for _ in 0..2 {
+        harness.press(CTRL, Key::G);
+    }
+    harness.click("Sphere 1");
+    harness.press(CTRL, Key::K);
+    harness.window.event(Event::Text("group 1".to_owned()));
+    harness.settle();
+    harness.press(NONE, Key::Enter);
+    assert_eq!(names(&harness), ["Triangle 2", "Triangle 4"]);
     // Also what people call it.
     for (word, name) in [("add ball", "Sphere 3"), ("cube", "Box 1")] {
         harness.press(CTRL, Key::K);
