@@ -150,7 +150,9 @@ fn new_pack(color: [f64; 3]) -> ColorPack {
 /// A pack that nothing wears, and that is as new in one of these colours: others somebody may have made for later.
 fn free_pack(scene: &Scene, colors: &[[f64; 3]]) -> Option<String> {
     let worn = scene.worn_packs();
-    let is_new = |pack: &ColorPack| colors.iter().any(|color| *pack == new_pack(*color));
+    let is_new = |pack: &ColorPack| {
+        *pack == ColorPack::default() || colors.iter().any(|color| *pack == new_pack(*color))
+    };
     let mut packs = scene.color_packs.iter();
     let free = packs.find(|(name, pack)| !worn.contains(name.as_str()) && is_new(pack));
     free.map(|(name, _)| name.clone())

@@ -381,10 +381,11 @@ fn move_items(scene: &mut Scene, items: Vec<Item>, to: usize) -> Vec<Item> {
     let Some(kind) = items.first().map(|item| item.kind) else {
         return items;
     };
-    let is_there = |item: &&Item| item.kind == kind && item.index < kind.count(scene);
+    let count = kind.count(scene);
+    let is_there = |item: &&Item| item.kind == kind && item.index < count;
     let moved = items.iter().filter(is_there).map(|item| item.index);
     let moved: BTreeSet<usize> = moved.collect();
-    let to = to.min(kind.count(scene) - moved.len());
+    let to = to.min(count - moved.len());
     match kind {
         Kind::Object => move_within(&mut scene.objects, &moved, to),
         Kind::Light => move_within(&mut scene.lights, &moved, to),
@@ -405,7 +406,7 @@ fn move_items(scene: &mut Scene, items: Vec<Item>, to: usize) -> Vec<Item> {
             index: to + place,
         })
     };
-    items.iter().filter_map(now).collect()
+    items.iter().filter(is_there).filter_map(now).collect()
 }
 
 /// Takes out what is in these places, and puts it in before the one that is `to` then.

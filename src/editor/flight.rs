@@ -107,6 +107,11 @@ impl Editor {
         self.animation_state.pending.as_ref().map(Pending::take)
     }
 
+    /// Whether the scene changes from frame to frame of the window.
+    pub fn is_moving(&self) -> bool {
+        self.is_in_gesture() || self.timeline().is_playing
+    }
+
     /// Whether a recorded flight is about to become keys.
     pub fn is_making_keys(&self) -> bool {
         matches!(self.animation_state.pending, Some(Pending::Keep(_)))
@@ -247,7 +252,8 @@ fn in_the_time_of(flown: Option<(f64, f64)>, new: Vec<Key<Camera>>) -> Vec<Key<C
         return new;
     };
     let scale = (last - first) / (end.time - start.time);
-    let from = start.time;
+    // Where the beginning was taken away, what is left may have been moved to the start: it is there again, later.
+    let (from, first) = (start.time, first.max(0.0));
     let at = |time: f64| first + (time - from) * scale;
     let keys = new.into_iter();
     keys.map(|key| Key {

@@ -68,6 +68,33 @@ impl Selection {
         Self::all(members.map(|(index, _)| Item::object(index)))
     }
 
+    /// What is taken hold of with a thing of the picture: the group that it is in; of one of which something is selected,
+    /// the thing itself.
+    #[must_use]
+    pub fn picked(&self, scene: &Scene, item: Item) -> Self {
+        let object = scene.objects.get(item.index);
+        let object = object.filter(|object| item.kind == Kind::Object && !object.group.is_empty());
+        let mut selected = self.of_kind(Kind::Object).into_iter();
+        let closed = object.filter(|object| {
+            let group = |index: usize| Some(&scene.objects.get(index)?.group);
+            !selected.any(|other| group(other.index) == Some(&object.group))
+        });
+        closed.map_or_else(
+            || Self::from(item),
+            |object| Self::of_group(scene, &object.group),
+        )
+    }
+
+    /// The same with all of `others`, or without one that was among them.
+    #[must_use]
+    pub fn toggled_with(&self, others: &Self) -> Self {
+        match others.items() {
+            [one] => self.toggled(*one),
+            // Of a group that is selected by itself, nothing was.
+            all => Self::all(self.items().iter().chain(all).copied()),
+        }
+    }
+
     /// Whether what is selected is a group already, of one or of several, and nothing else.
     pub fn is_group(&self, scene: &Scene) -> bool {
         let only = self.item().filter(|item| item.kind == Kind::Object);

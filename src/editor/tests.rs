@@ -47,24 +47,6 @@ fn a_drag_is_one_step_and_two_drags_are_two() {
 }
 
 #[test]
-fn the_last_frame_is_one_that_is_made_and_keys_may_come_later() {
-    let mut editor = Editor::demo();
-    let view = editor.scene().camera.clone();
-    let (first, _) = Animation::default().with_key(0.0, view.clone());
-    let (animation, _) = first.with_key(1.05, view);
-    assert_eq!(
-        (animation.frames_per_second, animation.frame_count()),
-        (14.0, 15)
-    );
-    editor.apply(Action::Edit(Edit::animation(animation, "Keys")));
-    for (seconds, frame) in [(1.05, 15), (1.04, 15), (1.06, 16), (3.0, 43)] {
-        editor.apply(Action::Time(Time::Seek(seconds)));
-        let shown = editor.scene().animation.frame_at(editor.shown_time());
-        assert_eq!(shown, frame, "{seconds} s");
-    }
-}
-
-#[test]
 fn hiding_leaves_keys_alone_and_joining_takes_them_along() {
     let mut editor = Editor::demo();
     editor.apply(Action::Edit(Edit::Join(vec![2, 3, 4])));
@@ -209,6 +191,30 @@ fn a_unique_pack_leaves_the_others_alone() {
         scene.color_packs["tetrahedron"]
     );
     assert_eq!(Item::wearing(scene, "tetrahedron").count(), 5);
+}
+
+#[test]
+fn what_is_added_wears_no_pack_that_was_made_for_later() {
+    let mut editor = Editor::demo();
+    editor.apply(Action::Edit(Edit::AddPack));
+    let new = editor.scene().color_packs.len() - 1;
+    let (name, pack) = editor
+        .scene()
+        .color_packs
+        .get_index(new)
+        .expect("it is new");
+    let (name, mut mirror) = (name.clone(), pack.clone());
+    let add = |editor: &mut Editor| {
+        let shape = Shape::examples(DVec3::ZERO, 10.0)[0].clone();
+        editor.apply(Action::Edit(Edit::AddObject(shape.kind(), shape)));
+        let added = editor.scene().objects.last().expect("it is added");
+        added.color_pack.clone()
+    };
+    assert_eq!(add(&mut editor), name, "nobody has changed it");
+    editor.apply(Action::Undo);
+    mirror.reflective = true;
+    editor.apply(Action::Edit(Edit::Pack(new, mirror, "reflective")));
+    assert_ne!(add(&mut editor), name);
 }
 
 #[test]

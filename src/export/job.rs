@@ -137,10 +137,11 @@ fn job_name(scene: &str) -> String {
     plain.take(LONGEST_NAME).collect()
 }
 
-/// Whether a text is the template with some values, and nothing that was written by hand.
+/// Whether a text is the template with values of some scene, and nothing that was written by hand.
 fn is_template(text: &str) -> bool {
+    let template = TEMPLATE.replace("@CHUNK@", &CHUNK.to_string());
     // What is not a key, between @ signs, is there as it is.
-    let mut parts = TEMPLATE.split('@').step_by(2);
+    let mut parts = template.split('@').step_by(2);
     let rest = parts.next().and_then(|first| text.strip_prefix(first));
     let rest = parts.try_fold(rest.unwrap_or_default(), |rest, part| {
         let (value, rest) = rest.split_once(part)?;

@@ -182,6 +182,23 @@ impl Sequence {
         Ok(manifest.is_valid(&file, &fingerprint))
     }
 
+    /// Whether the last frame shows what the first does: played over and over, that stands still for a frame.
+    pub fn is_loop(&self) -> bool {
+        let (Some(first), Some(last)) = (self.frames.iter().next(), self.frames.last()) else {
+            return false;
+        };
+        let (first, last) = (self.shown(first), self.shown(last));
+        if self.frames.count() < 3 || !last.camera.is_like(&first.camera) {
+            return false;
+        }
+        let last = Scene {
+            camera: first.camera.clone(),
+            ..Scene::clone(&last)
+        };
+        let print = |scene: &Scene| fingerprint(scene, self.format).ok();
+        print(&first).is_some_and(|first| print(&last) == Some(first))
+    }
+
     /// Writes a frame: what `encode` makes, which says how long it took to trace, goes beside its place first, then under
     /// its name, then into the notes. It is not forced to the disk, which would cost more than tracing it: after a power
     /// cut its hash tells.
@@ -210,8 +227,30 @@ impl Sequence {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
+    use crate::animate::Preset;
     use crate::scene::EXAMPLES;
+
+    #[test]
+    fn a_turntable_ends_as_it_begins() {
+        let mut scene = Scene::demo();
+        let camera = scene.camera.clone();
+        let middle = DVec3::new(150.0, 30.0, -100.0);
+        scene.animation_mut().keys = Preset::Turntable.keys(&camera, middle, 2.0);
+        let is_loop = |scene: &Scene, frames: &str| {
+            let scene = Arc::new(scene.clone());
+            let frames = Some(Frames::parse(frames).expect("frames"));
+            let (pattern, folder) = (Pattern::default(), PathBuf::new());
+            let sequence = Sequence::new(scene, frames, pattern, Format::Png, folder);
+            sequence.expect("they are there").is_loop()
+        };
+        assert_eq!(scene.animation.frame_count(), 29);
+        assert!(is_loop(&scene, "1-29") && !is_loop(&scene, "1-28"));
+        scene.animation_mut().keys.pop();
+        assert!(!is_loop(&scene, "1-20"));
+    }
 
     #[test]
     fn every_third_frame_plays_at_the_speed_of_all() {

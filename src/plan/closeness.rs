@@ -1,4 +1,4 @@
-//! What the eye, lights or balls all but touch, where the digits of single precision are lost.
+//! What the eye, lights, balls or flat pieces all but touch, where the digits of single precision are lost.
 
 use glam::DVec3;
 
@@ -13,7 +13,7 @@ const MIN_HEIGHT_PER_RADIUS: f64 = 1e-3;
 const MIN_HEIGHT_PER_EXTENT: f64 = 1e-5;
 /// The same of the eye over a disc or a triangle, which is narrow where it matters.
 const MIN_HEIGHT_OVER_PIECE: f64 = 1e-7;
-/// Smallest distance of the eye or a light from the border of a piece, as a share of the scene's extent, in single
+/// Smallest distance of the eye or a light from the border of a piece, as a share of what ends of a scene, in single
 /// precision where nothing is filtered: rounding turns the line to the border by 1/5000 there. Of random triangles and
 /// discs, some at a third of it are off by up to 28 pixels of 40,000; none at three times as much.
 const MIN_DISTANCE_OF_BORDER: f64 = 3e-4;
@@ -28,7 +28,7 @@ const MIN_GAP_PER_RADIUS: f64 = 1e-2;
 /// Smallest distance of flat pieces as a share of the scene's extent in single precision, where nothing is filtered: from
 /// afar, both are at one distance otherwise, and the first is seen.
 const MIN_GAP_OF_PIECES: f64 = 1e-6;
-/// Most pieces that are held against each other: where there are more things, they are filtered.
+/// Most pieces that are held against each other: where there are more things, they are filtered mostly.
 const MOST_PIECES: usize = 64;
 /// Most spheres that are held against each other.
 const MOST_SPHERES: usize = 2_000;
@@ -69,17 +69,18 @@ pub fn is_just_above(scene: &Scene, extent: f64) -> bool {
 fn near_lights(scene: &Scene) -> impl Iterator<Item = &Light> {
     let pairs = scene.objects.len() * scene.lights.len();
     let are_few = pairs <= MOST_PAIRS;
-    scene.lights.iter().filter(move |_| are_few)
+    scene.visible_lights().filter(move |_| are_few)
 }
 
-/// Whether the eye or a light is all but on the border of something flat.
-pub fn is_at_border(scene: &Scene, extent: f64) -> bool {
-    let least = MIN_DISTANCE_OF_BORDER * extent;
+/// Whether an eye, if there is one in a place, or a light is all but on the border of something flat of a scene of this
+/// size.
+pub fn is_at_border(scene: &Scene, eye: Option<DVec3>, size: f64) -> bool {
+    let least = MIN_DISTANCE_OF_BORDER * size;
     let visible = scene.visible_objects();
     let mut pieces = visible.filter_map(|object| object.shape.plane_piece());
     pieces.any(|piece| {
         let is_near = |point: DVec3| piece.distance_of_border(point) < least;
-        is_near(scene.camera.position) || near_lights(scene).any(|light| is_near(light.position))
+        eye.is_some_and(is_near) || near_lights(scene).any(|light| is_near(light.position))
     })
 }
 

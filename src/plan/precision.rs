@@ -114,7 +114,11 @@ pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
         return true;
     }
     let is_fine = is_fine(scene, request);
-    if !is_fine && (is_at_border(scene, extent) || has_layers(scene, (centre, extent))) {
+    // Parallel rays come from a window.
+    let is_perspective = request.projection_of(&scene.camera) == Projection::Perspective;
+    let point = Some(eye).filter(|_| is_perspective);
+    let size = (high - low).length();
+    if !is_fine && (is_at_border(scene, point, size) || has_layers(scene, (centre, extent))) {
         return true;
     }
     let smaller = if is_fine { SMALLER_WHEN_FILTERED } else { 1.0 };
@@ -277,6 +281,27 @@ mod tests {
             assert_eq!(is_needed(&scene), expected, "light at {away}");
             scene.lights[1] = Scene::demo().lights[1].clone();
         }
+    }
+
+    #[test]
+    fn pieces_a_hair_apart_need_double_precision() {
+        for (gap, expected) in [(0.0, false), (1e-4, true), (0.1, false)] {
+            let mut scene = Scene::demo();
+            let mut rug = scene.objects[2].clone();
+            rug.name = "Rug".into();
+            rug.shape = rug.shape.moved(DVec3::new(0.0, 0.0, gap));
+            scene.objects.push(rug);
+            assert_eq!(is_needed(&scene), expected, "{gap}");
+        }
+    }
+
+    #[test]
+    fn a_light_that_is_off_needs_no_double_precision() {
+        let mut scene = Scene::demo();
+        scene.lights[1].position = DVec3::new(200.0, 55.05, -100.0);
+        assert!(is_needed(&scene));
+        scene.lights[1].visible = false;
+        assert!(!is_needed(&scene));
     }
 
     #[test]

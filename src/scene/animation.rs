@@ -214,14 +214,9 @@ impl Animation {
         frame.saturating_sub(1) as f64 / self.frames_per_second
     }
 
-    /// The frame nearest to a time, counted from 1; up to the last key none that nobody makes.
+    /// The frame nearest to a time, counted from 1; near the last key it may be one behind the last that is made.
     pub fn nearest_frame(&self, time: f64) -> u64 {
-        let nearest = self.frame_at(time + 0.5 / self.frames_per_second);
-        if time <= self.duration() {
-            nearest.min(self.frame_count())
-        } else {
-            nearest
-        }
+        self.frame_at(time + 0.5 / self.frames_per_second)
     }
 
     /// The frame that is on show at a time, counted from 1.

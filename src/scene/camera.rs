@@ -63,6 +63,8 @@ pub struct Framing {
 const ROOM: f64 = 1.15;
 /// Smallest sine of the angle between `look_at` and `up` that still defines a basis.
 const MIN_SINE: f64 = 1e-6;
+/// How far apart directions, and places as shares of their coordinates, are that rounding may have moved.
+const SAME_VIEW: f64 = 1e-9;
 
 impl Camera {
     /// The orthonormal basis of the camera as the columns of a matrix: x = up × z to the right of the
@@ -78,6 +80,22 @@ impl Camera {
         let u = across.try_normalize()?;
         let v = w.cross(u).try_normalize()?;
         Some(DMat3::from_cols(u, v, w))
+    }
+
+    /// Whether it sees what another one sees, but for what rounding has moved.
+    pub fn is_like(&self, other: &Self) -> bool {
+        let size = self.position.abs().max_element().max(1.0);
+        let is_near = |one: DVec3, other: DVec3| one.abs_diff_eq(other, SAME_VIEW);
+        let moved = Self {
+            position: other.position,
+            look_at: other.look_at,
+            up: other.up,
+            ..self.clone()
+        };
+        moved == *other
+            && is_near(self.position / size, other.position / size)
+            && is_near(self.look_at, other.look_at)
+            && is_near(self.up, other.up)
     }
 
     /// Where things are in the picture. `None` without a basis.

@@ -264,8 +264,7 @@ impl Method for HighlightMethod {
     ];
 }
 
-/// How the primitives that a beam of rays can meet are found. All show the same picture, byte by byte but for clean edges
-/// in a crowd of things far smaller than a pixel, which a tree looks at as one: some pixels by a level.
+/// How what rays can meet is found. All show the same picture, but for a last level on clean edges of dense crowds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Accelerator {
     /// A list, or a tree where there are many.

@@ -72,7 +72,7 @@ impl Scene {
             && self.ambient_intensity == other.ambient_intensity
     }
 
-    /// An empty scene with the demo's camera and a pack and a light to start from.
+    /// An empty scene with the demo's camera, held level, and a pack and a light to start from.
     pub fn empty() -> Self {
         let mut light = default_lights().remove(0);
         light.marker = Some(LightObj::default());
@@ -81,7 +81,10 @@ impl Scene {
             background: DVec3::new(0.0, 0.0, 0.0),
             ambient_intensity: default_ambient_intensity(),
             light_visualization: true,
-            camera: Camera::default(),
+            camera: Camera {
+                up: DVec3::Y,
+                ..Camera::default()
+            },
             bookmarks: Vec::new(),
             color_packs: Packs::from(IndexMap::from([
                 ("pack 1".to_owned(), ColorPack::default()),

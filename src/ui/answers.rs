@@ -17,11 +17,13 @@ impl App {
     /// flown: it would be a step of its own in the middle of another.
     pub(super) fn take_answers(&mut self, ctx: &Context) {
         let is_busy = self.is_gesture(ctx) || self.editor.is_in_gesture();
+        let is_moving = is_busy || self.editor.is_moving();
         let mut answers = std::mem::take(&mut self.answers);
         answers.extend(self.pictures.worker().take_answers());
         for answer in answers {
             match answer {
-                Answer::Survey(..) | Answer::Quality(..) if is_busy => self.answers.push(answer),
+                Answer::Survey(..) if is_busy => self.answers.push(answer),
+                Answer::Quality(..) if is_moving => self.answers.push(answer),
                 Answer::Survey(take, seen) => {
                     self.editor.apply(Action::Time(Time::Surveyed(take, seen)));
                 }

@@ -349,7 +349,7 @@ impl eframe::App for App {
         }
         self.finder
             .show(&ctx, &self.editor, &self.files.recent, &mut out);
-        self.why.show(&ctx, self.editor.shown());
+        self.why.show(&ctx, &self.editor);
         // Still pictures are looked at, not flown through: they would be gone.
         let (place, flown) = picture;
         let is_still = self.editor.mode == Mode::HighRes || self.lab.is_looking();

@@ -68,16 +68,17 @@ impl Autosave {
         let Some(recovery) = self.recovery.clone() else {
             return;
         };
+        if self.looked_for != editor.documents() {
+            self.looked_for = editor.documents();
+            // What is edited already is not replaced.
+            if editor.path().is_some() && !editor.is_dirty() {
+                self.take_up(editor);
+            }
+        }
         self.take_written(editor);
         if self.writing.is_awaited() {
             ctx.request_repaint_after(POLL);
             return;
-        }
-        if self.looked_for != editor.documents() {
-            self.looked_for = editor.documents();
-            if editor.path().is_some() && !editor.is_dirty() {
-                self.take_up(editor);
-            }
         }
         if !editor.is_dirty() {
             if self.kept.take().is_some() {

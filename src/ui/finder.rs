@@ -16,7 +16,7 @@ use super::obstacles::obstacle;
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW};
 use crate::animate::{Preset, Retime};
-use crate::editor::{Editor, Item, Selection};
+use crate::editor::{Editor, Item, Kind, Selection};
 use crate::scene::{Aspect, EXAMPLES};
 
 /// Width of the window in points.
@@ -58,14 +58,17 @@ impl Target {
 }
 
 /// What menus and buttons call commands whose names here say more, in small letters.
-const ALSO: [(Command, &str); 12] = [
+const ALSO: [(Command, &str); 15] = [
     (Command::Ask(Ask::SaveScene), "save as"),
-    (Command::Ask(Ask::SaveImage), "save image"),
+    (Command::Ask(Ask::SaveImage), "save image render"),
+    (Command::HighRes, "render"),
+    (Command::Export, "render frames video"),
+    (Command::PutDown, "put down drop on the floor"),
     (Command::Ask(Ask::ExportJob), "export farm job"),
     (Command::AddKey, "add key"),
     (Command::AddBookmark, "add this view"),
-    (Command::FrameSelected, "frame what is selected"),
-    (Command::FrameAll, "frame everything"),
+    (Command::FrameSelected, "frame what is selected zoom to"),
+    (Command::FrameAll, "frame everything zoom out"),
     (Command::Timeline, "panel"),
     (Command::Lab, "panel"),
     (Command::Zoom(Zoom::In), "zoom in"),
@@ -295,6 +298,17 @@ fn choices<'a>(
     all.chain(recent)
 }
 
+/// The pack that what is selected wears.
+fn worn_by_selected(editor: &Editor) -> Option<Item> {
+    let (scene, item) = (editor.scene(), editor.selection().item()?);
+    let object = scene
+        .objects
+        .get(item.index)
+        .filter(|_| item.kind == Kind::Object)?;
+    let place = scene.color_packs.get_index_of(&object.color_pack)?;
+    Some(Item::pack(place))
+}
+
 /// What stands on top of the outliner, and the settings of the picture.
 fn settings(editor: &Editor) -> impl Iterator<Item = Find> {
     let mut names = vec![
@@ -308,6 +322,11 @@ fn settings(editor: &Editor) -> impl Iterator<Item = Find> {
             Selection::Render,
         ),
     ];
+    let packs = Item::pack(0).name(editor.scene()).map(|_| Item::pack(0));
+    if let Some(pack) = worn_by_selected(editor).or(packs) {
+        let name = "Color pack: ambient, diffuse, specular, phong, reflective";
+        names.push((name.to_owned(), Selection::from(pack)));
+    }
     let chosen = editor.scene().render.chosen().into_iter();
     let labels = chosen.map(|chosen| format!("Picture: {}", chosen.setting.label));
     names.extend(labels.map(|label| (label, Selection::Render)));

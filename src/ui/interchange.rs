@@ -11,9 +11,12 @@ use crate::editor::{Action, Edit, Editor, Item, Selection, free_group_name};
 use crate::export::{Job, Pattern, Sequence, povray_text, write_job, write_text};
 use crate::files::is_same_file;
 use crate::image::Format;
-use crate::mesh::MeshFile;
+use crate::mesh::{MeshFile, Part};
 use crate::scene::{Animation, Camera, Key, Scene, around, check, read_text};
 use crate::words::counted;
+
+/// How many times as large as a scene, or as small, a mesh is whose size is told.
+const ODD: f64 = 20.0;
 
 /// The keys of a file take the place of the camera's.
 pub fn import_path(editor: &mut Editor, path: &Path) {
@@ -165,6 +168,7 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
     // What is all that there is to see is brought into the picture.
     let seen = if first == 0 { &parts[..] } else { &[] };
     let bounds = around(seen.iter().filter_map(|part| part.triangles.bounds()));
+    let odd = odd_size(editor.shown(), &parts);
     let import = Edit::Import(parts);
     let label = import.label(editor.scene());
     let mut edits = vec![import];
@@ -190,5 +194,18 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
     let count = counted(count, "triangle");
     let notes = notes.iter().map(|note| format!("; {note}"));
     let notes: String = notes.collect();
-    editor.notify_of_step(format!("{count} from {path}{how}{notes}"));
+    editor.notify_of_step(format!("{count} from {path}{how}{odd}{notes}"));
+}
+
+/// How large the parts of a mesh are, where that is far from what the scene is: mostly, they were in other units.
+fn odd_size(scene: &Scene, parts: &[Part]) -> String {
+    let size = |(low, high): (DVec3, DVec3)| (high - low).max_element();
+    let parts = around(parts.iter().filter_map(|part| part.triangles.bounds()));
+    let sizes = parts.map(size).zip(scene.objects_bounds().map(size));
+    let is_odd = |(own, all): &(f64, f64)| own * ODD < *all || *own > all * ODD;
+    let rounded = |size: f64| format!("{size:.2e}").parse::<f64>().unwrap_or(size);
+    sizes.filter(is_odd).map_or(String::new(), |(own, all)| {
+        let (own, all) = (rounded(own), rounded(all));
+        format!("; they are {own} units large, where the scene is {all}")
+    })
 }

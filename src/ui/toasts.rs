@@ -131,9 +131,15 @@ fn draw(ui: &mut egui::Ui, width: f32, message: &Message) -> bool {
     frame
         .show(ui, |ui| {
             ui.set_width(width);
+            // A single line is in the middle of the buttons beside it.
+            let above = (super::theme::ROW - ui.text_style_height(&egui::TextStyle::Body)) / 2.0;
             ui.horizontal_top(|ui| {
-                ui.label(icons::text(icon).color(color));
                 ui.vertical(|ui| {
+                    ui.add_space(above);
+                    ui.label(icons::text(icon).color(color));
+                });
+                ui.vertical(|ui| {
+                    ui.add_space(above);
                     ui.set_width(ui.available_width() - 2.0 * super::theme::ROW - 2.0 * GRID);
                     body(ui, &message.text);
                 });

@@ -6,6 +6,7 @@ use egui::{Color32, Context, Grid, Painter, Pos2, RichText, Sense, Ui, Window, v
 use glam::DVec3;
 
 use super::theme::{GRID, ROW, palette};
+use crate::editor::Editor;
 use crate::lab::{Lit, Share, Sight, explain};
 use crate::scene::{Scene, format_number};
 use crate::worker::Background;
@@ -67,12 +68,14 @@ impl Why {
         }
     }
 
-    /// Shows the answer, once it is there, for the scene as it is now.
-    pub fn show(&mut self, ctx: &Context, scene: &Arc<Scene>) {
+    /// Shows the answer, once it is there, for the scene as it is now; as it was, while something moves.
+    pub fn show(&mut self, ctx: &Context, editor: &Editor) {
         if let Some(Ok(answer)) = self.waiting.take() {
             self.answer = Some(answer);
         }
-        self.follow(scene);
+        if !editor.is_moving() {
+            self.follow(editor.shown());
+        }
         if self.waiting.is_awaited() {
             ctx.request_repaint();
         }

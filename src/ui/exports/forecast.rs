@@ -27,6 +27,8 @@ struct Missing {
     replaced: usize,
     /// Whether the video replaces another file.
     has_video: bool,
+    /// Whether the last frame shows what the first does.
+    is_loop: bool,
 }
 
 /// What was measured on the picture on screen.
@@ -86,10 +88,12 @@ impl Forecast {
         (self.sought, self.found) = (Some(sought), None);
         let (sequence, video) = (sequence.clone(), settings.video(sequence));
         let look = move || {
-            let has_video = video.is_some_and(|(path, _)| path.exists());
+            let has_video = video.as_ref().is_some_and(|(path, _)| path.exists());
+            let is_loop = video.is_some() && sequence.is_loop();
             let missing = missing(&sequence)?;
             Ok(Missing {
                 has_video,
+                is_loop,
                 ..missing
             })
         };
@@ -158,13 +162,18 @@ impl Forecast {
             let time = about(self.sample.video.filter(|_| is_known));
             let remark = video.check(sequence).ok().flatten();
             let remark = remark.map_or(String::new(), |remark| format!("; {remark}"));
-            let has_video = matches!(&self.found, Some(Ok(missing)) if missing.has_video);
-            let replaced = if has_video {
-                " in place of an older one"
-            } else {
-                ""
+            let missing = self.found.as_ref().and_then(|found| found.as_ref().ok());
+            let replaced = match missing {
+                Some(Missing { has_video: true, .. }) => " in place of an older one",
+                _ => "",
             };
-            format!(", then {name}{replaced}{time}{remark}")
+            let looped = match missing {
+                Some(Missing { is_loop: true, .. }) => {
+                    "; its last frame is the first again: it loops without a stop if that is left out"
+                }
+                _ => "",
+            };
+            format!(", then {name}{replaced}{time}{remark}{looped}")
         });
         format!("{what}{frames}{}", video.unwrap_or_default())
     }
@@ -225,6 +234,6 @@ fn missing(sequence: &Sequence) -> Result<Missing, String> {
     Ok(Missing {
         count: missing.len(),
         replaced: missing.iter().filter(is_there).count(),
-        has_video: false,
+        ..Missing::default()
     })
 }

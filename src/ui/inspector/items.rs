@@ -160,7 +160,9 @@ pub fn object(
     let users = count_users(ui, scene, name);
     ui.horizontal(|ui| {
         ui.weak(format!("used by {users}"));
-        let unique = ui.add_enabled(users > 1, egui::Button::new("Make unique"));
+        // Of several, others may share theirs.
+        let can_be = users > 1 || !is_alone;
+        let unique = ui.add_enabled(can_be, egui::Button::new("Make unique"));
         let hint = if is_alone {
             "Give this object a color pack of its own"
         } else {

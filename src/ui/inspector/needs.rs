@@ -36,16 +36,17 @@ pub fn show(ui: &mut Ui, editor: &Editor, choice: Option<&Choice>) {
 
 fn lines(ui: &Ui, editor: &Editor) -> Arc<Vec<Need>> {
     let id = Id::unique("needs of the scene");
-    let revision = editor.shown_revision();
-    let is_moving = editor.is_in_gesture() || editor.timeline().is_playing;
-    let known = ui.data(|data| data.get_temp::<(u64, Arc<Vec<Need>>)>(id));
+    let (document, revision) = (editor.documents(), editor.shown_revision());
+    let known = ui.data(|data| data.get_temp::<(u64, u64, Arc<Vec<Need>>)>(id));
+    let known = known.filter(|(of, ..)| *of == document);
     match known {
         // To find them out, the scene is planned from nothing: not in every frame of a drag or a flight.
-        Some((of, lines)) if of == revision || is_moving => lines,
+        Some((_, of, lines)) if of == revision || editor.is_moving() => lines,
         _ => {
             let scene = editor.shown();
             let lines = Arc::new(needs(scene, &RenderRequest::still(scene)));
-            ui.data_mut(|data| data.insert_temp(id, (revision, Arc::clone(&lines))));
+            let known = (document, revision, Arc::clone(&lines));
+            ui.data_mut(|data| data.insert_temp(id, known));
             lines
         }
     }

@@ -82,7 +82,7 @@ impl Quality {
             self.choice = None;
             self.asked = goal.map(|goal| Asked {
                 goal,
-                scene: Arc::clone(editor.scene()),
+                scene: Arc::clone(editor.shown()),
                 document: editor.documents(),
             });
             out.questions.extend(goal.map(Question::Quality));
@@ -95,9 +95,9 @@ impl Quality {
         }
     }
 
-    /// Takes up what was chosen, if anything could be.
+    /// Takes up what was chosen, if anything could be. The view may be another one by now: it is so all the time.
     pub fn take(&mut self, goal: Goal, choice: Option<Choice>, editor: &Editor) -> Option<Outcome> {
-        let (scene, document) = (editor.scene(), editor.documents());
+        let (scene, document) = (editor.shown(), editor.documents());
         let asked = self
             .asked
             .take_if(|own| own.goal == goal && own.document == document)?;
@@ -106,7 +106,11 @@ impl Quality {
             // Another one was chosen by hand meanwhile.
             return None;
         }
-        if asked.scene.render != scene.render || !asked.scene.has_same_things(scene) {
+        let markers = |scene: &Scene| scene.light_visualization;
+        let is_same = asked.scene.render == scene.render
+            && markers(&asked.scene) == markers(scene)
+            && asked.scene.has_same_things(scene);
+        if !is_same {
             let scene = Arc::clone(scene);
             self.asked = Some(Asked { scene, ..asked });
             return Some(Outcome::Ask(Question::Quality(goal)));

@@ -26,7 +26,7 @@ enum DropMark {
 }
 
 /// Drag a row to the upper half of another to put it above that, or to the lower half to put it below; a pack onto an
-/// object, to be worn by it.
+/// object or a light, to be worn by it.
 pub fn take_dropped(
     ui: &Ui,
     editor: &Editor,
@@ -42,7 +42,7 @@ pub fn take_dropped(
     let to = (item, is_after);
     let dragged = response.dnd_hover_payload::<Item>();
     let group = response.dnd_hover_payload::<DraggedGroup>();
-    let is_worn = |dragged: &Item| dragged.kind == Kind::Pack && item.kind == Kind::Object;
+    let is_worn = |dragged: &Item| dragged.kind == Kind::Pack && item.kind != Kind::Pack;
     let is_worn = dragged.as_ref().is_some_and(|dragged| is_worn(dragged));
     let edit = match dragged {
         Some(dragged) if is_worn => dressed(editor, *dragged, item),

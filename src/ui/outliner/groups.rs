@@ -10,7 +10,7 @@ use super::lines::Group;
 use crate::editor::{Action, Edit, Editor, Item, Selection};
 use crate::ui::commands::Command;
 use crate::ui::icons;
-use crate::ui::menu_entry;
+use crate::ui::menu_entry::{ITEM_COMMANDS, offer};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, ROW};
 
@@ -61,16 +61,14 @@ impl GroupRows {
         let is_folded = self.folded.contains(&group.name);
         take_dropped_on_group(ui, editor, &response, (group, is_folded), out);
         response.context_menu(|ui| {
-            if ui.button("Rename").clicked() {
-                self.renaming = Some(group.name.clone());
+            if !is_selected {
+                out.actions.push(all());
             }
-            for (text, command) in [
-                ("Ungroup", Command::Ungroup),
-                ("Duplicate", Command::Duplicate),
-                ("Delete", Command::Delete),
-            ] {
-                if menu_entry::entry(ui, text, command, out) {
-                    out.actions.push(all());
+            for (text, command) in ITEM_COMMANDS {
+                if command != Command::Rename {
+                    offer(ui, editor, text, command, out);
+                } else if ui.button(text).clicked() {
+                    self.renaming = Some(group.name.clone());
                 }
             }
         });
@@ -119,10 +117,9 @@ impl GroupRows {
                     // That of another group is refused.
                     let mut groups = editor.scene().objects.iter().map(|object| &object.group);
                     let is_free = !groups.any(|other| *other == name);
-                    for folded in self.folded.iter_mut().filter(|own| **own == group.name) {
-                        if is_free {
-                            folded.clone_from(&name);
-                        }
+                    if is_free {
+                        let own = self.folded.iter_mut().filter(|own| **own == group.name);
+                        own.for_each(|folded| folded.clone_from(&name));
                     }
                     out.edit(Edit::RenameGroup(group.name.clone(), name));
                 }

@@ -299,7 +299,11 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action>
     match command {
         Command::Play => timed(Time::Play(!editor.timeline().is_playing)),
         Command::FirstFrame => timed(Time::Seek(0.0)),
-        Command::LastFrame => timed(Time::Seek(animation.duration())),
+        // The last key may be nearer to a frame that nobody makes.
+        Command::LastFrame => {
+            let last = animation.time_of(animation.frame_count());
+            timed(Time::Seek(last))
+        }
         Command::FrameBack => timed(Time::Step(-1)),
         Command::FrameOn => timed(Time::Step(1)),
         Command::PreviousKey => {

@@ -123,7 +123,7 @@ impl Drag {
             let item = item_of(body);
             let mut selected = editor.selection().clone();
             if !selected.has(item) {
-                selected = Selection::all([item]);
+                selected = selected.picked(editor.scene(), item);
                 out.actions.push(Action::Select(selected.clone()));
             }
             let before = Subject::of(&selected, editor.shown());

@@ -42,6 +42,8 @@ const PATIENCE: f32 = 0.3;
 const LONGEST: usize = 32;
 /// Least size of what is framed, as a share of everything.
 const LEAST_FRAMED: f64 = 0.02;
+/// Seconds within which the second of two clicks comes at last.
+const TWICE: f64 = 1.0;
 /// How far apart two clicks on one place may be, in points.
 const SAME_PLACE: f32 = 4.0;
 
@@ -54,6 +56,8 @@ pub struct Tools {
     wheel: Option<(Pos2, DVec3)>,
     /// A click that waits to know what is there, and the picture of which revision was clicked.
     click: Option<(Pos2, Modifiers, u64)>,
+    /// When the picture was clicked last, and not for the second time.
+    clicked_at: f64,
     /// Where what is behind something was asked for, in the picture of which revision, and what is before it.
     behind: Option<(Pos2, u64, Vec<Thing>)>,
     /// The document that all this is about.
@@ -156,11 +160,14 @@ impl Tools {
             self.wheel = None;
         }
         let modifiers = ui.input(|input| input.modifiers);
-        // The first click of two may have been on something before the picture, which is gone.
+        let now = ui.input(|input| input.time);
         let is_second = response.double_clicked() && modifiers.is_none();
-        if response.clicked() && !is_second {
+        // The first click of two may have been on something before the picture, which is gone; or it waits still.
+        let is_first_done = now - self.clicked_at < TWICE && self.click.is_none();
+        if response.clicked() && (!is_second || is_first_done) {
             let (at, revision) = (response.interact_pointer_pos(), editor.shown_revision());
             self.click = at.map(|at| (at, modifiers, revision));
+            self.clicked_at = if is_second { f64::NEG_INFINITY } else { now };
         }
         self.select(&view, out);
         self.take_pack(ui, &view, response, out);
@@ -177,15 +184,13 @@ impl Tools {
         let at = ui.input(|input| input.pointer.latest_pos());
         let seen = at.and_then(|at| self.sight.at(view.editor, view.place.rect, at));
         let item = seen.map(item_of);
-        match dropped {
-            Some(pack) => {
-                let edit = item.and_then(|item| dressed(view.editor, pack, item));
-                out.actions.extend(edit.map(Action::Edit));
-            }
-            None => {
-                self.sight
-                    .show(&view.painter, view.editor, view.place.rect, item);
-            }
+        if let Some(pack) = dropped {
+            let edit = item.and_then(|item| dressed(view.editor, pack, item));
+            out.actions.extend(edit.map(Action::Edit));
+        } else {
+            let item = item.into_iter().collect();
+            self.sight
+                .show(&view.painter, view.editor, view.place.rect, item);
         }
     }
 
@@ -202,7 +207,8 @@ impl Tools {
             if let Some(item) = seen.map(item_of)
                 && !view.editor.selection().has(item)
             {
-                out.actions.push(Action::Select(Selection::all([item])));
+                let selected = view.editor.selection().picked(view.editor.scene(), item);
+                out.actions.push(Action::Select(selected));
             }
         }
         let menu = response.context_menu(|ui| {
@@ -265,12 +271,20 @@ impl Tools {
         // A line around the floor would be one around everything that stands on it.
         let outlined = seen.filter(|thing| ends(view.editor.shown(), *thing));
         let outlined = outlined.map(item_of).filter(|_| meant.is_none());
-        self.sight
-            .show(&view.painter, view.editor, view.place.rect, outlined);
+        let (scene, selected) = (view.editor.scene(), view.editor.selection());
+        let outlined = outlined.map(|item| selected.picked(scene, item));
+        let group = outlined.as_ref().and_then(|picked| picked.group(scene));
+        let outlined = outlined.as_ref().map_or(&[][..], Selection::items);
+        self.sight.show(
+            &view.painter,
+            view.editor,
+            view.place.rect,
+            outlined.to_vec(),
+        );
         if meant.is_some() {
             ui.set_cursor_icon(CursorIcon::Grab);
         }
-        let name = item.and_then(|item| item.name(view.editor.scene()));
+        let name = group.or_else(|| item?.name(scene));
         let (is_down, rests) = ui.input(|input| {
             let rests = input.pointer.time_since_last_movement();
             (input.pointer.any_down(), rests)
@@ -321,10 +335,13 @@ impl Tools {
         }
         self.behind = None;
         let item = seen.map(item_of);
+        let before = view.editor.selection();
+        let scene = view.editor.scene();
         let selected = match (item, modifiers.shift || modifiers.command) {
-            (Some(item), true) => view.editor.selection().toggled(item),
+            (Some(item), true) => before.toggled_with(&before.picked(scene, item)),
             (None, true) => return,
-            (item, false) => Selection::all(item),
+            (Some(item), false) => before.picked(scene, item),
+            (None, false) => Selection::default(),
         };
         out.actions.push(Action::Select(selected));
     }

@@ -100,7 +100,7 @@ impl Sight {
     }
 
     /// Draws lines around what is selected, and around what the pointer is over.
-    pub fn show(&mut self, painter: &Painter, editor: &Editor, view: Rect, hovered: Option<Item>) {
+    pub fn show(&mut self, painter: &Painter, editor: &Editor, view: Rect, mut hovered: Vec<Item>) {
         let Some((revision, map)) = &self.map else {
             return;
         };
@@ -109,11 +109,8 @@ impl Sight {
         }
         let colors = palette(painter.ctx());
         let selected = editor.selection().items().to_vec();
-        let hovered = hovered.filter(|item| !selected.contains(item));
-        let wanted = [
-            (colors.accent, selected),
-            (colors.text, hovered.into_iter().collect()),
-        ];
+        hovered.retain(|item| !selected.contains(item));
+        let wanted = [(colors.accent, selected), (colors.text, hovered)];
         for (lines, (color, items)) in self.lines.iter_mut().zip(wanted) {
             let wanted = (*revision, color, items);
             lines.update(painter.ctx(), (map, editor.shown()), wanted);

@@ -60,6 +60,9 @@ fn brackets_go_from_key_to_key_wherever_those_are_between_frames() {
         .map(|time| (time * 10.0).round() as i32)
         .collect();
     assert_eq!(frames, [0, 3, 4, 10, 20, 10, 4, 3, 0]);
+    // The last key is nearer to a frame that is not made.
+    harness.press(CTRL, Key::End);
+    assert!((harness.editor().shown_time() - 1.9).abs() < 1e-9);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Groups, packs that are dragged, bookmarks, and the way of Tab through the panels.
 
 use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glam::DVec3;
 use glint::editor::Item;
@@ -120,6 +120,44 @@ fn a_group_is_listed_hidden_renamed_and_moved_as_one() {
     harness.click("Balls");
     harness.press(CTRL.plus(Modifiers::SHIFT), Key::G);
     assert!(harness.scene().objects.iter().all(|o| o.group.is_empty()));
+}
+
+#[test]
+fn in_the_picture_a_click_takes_a_group_and_another_one_goes_inside() {
+    let mut scene = Scene::demo();
+    for ball in 0..2 {
+        scene.objects[ball].group = "Balls".to_owned();
+    }
+    let mut harness = EditorHarness::on(scene);
+    let [ball, other] = [0, 1].map(|index| place(&harness, center(harness.scene(), index)));
+    let count = |harness: &EditorHarness| harness.editor().selection().items().len();
+    harness.click("Plane");
+    for (at, expected) in [(ball, 2), (ball, 1), (other, 1)] {
+        click(&mut harness, at, NONE);
+        assert_eq!(count(&harness), expected);
+    }
+    harness.click("Plane");
+    click(&mut harness, ball, Modifiers::SHIFT);
+    assert_eq!(count(&harness), 3, "all of it besides");
+    // Two clicks at once are both.
+    harness.click("Plane");
+    (0..60).for_each(|_| harness.window.step());
+    for _ in 0..2 {
+        harness.window.drag_at(ball);
+        harness.window.drop_at(ball);
+        harness.settle();
+    }
+    assert_eq!(count(&harness), 1);
+    // What is dragged is all of it.
+    harness.click("Plane");
+    let before = [0, 1].map(|index| center(harness.scene(), index));
+    carry(&mut harness, ball, ball + vec2(30.0, 0.0));
+    let after = [0, 1].map(|index| center(harness.scene(), index));
+    let by = [0, 1].map(|index| after[index] - before[index]);
+    assert!(
+        by[0].length() > 1.0 && (by[0] - by[1]).length() < 1e-9,
+        "{by:?}"
+    );
 }
 
 #[test]
