@@ -135,9 +135,9 @@ impl Editor {
 
     /// Tells why an edit is not made.
     pub(super) fn refuse(&mut self, why: String) {
-        self.is_refused = true;
         // One that is made anew with every step of a drag may be refused in other words each time.
-        self.begin(EDIT);
+        self.forget_refusal();
+        self.is_refused = true;
         self.report_error_in(EDIT, why);
     }
 

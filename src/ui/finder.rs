@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use egui::{
-    AtomExt as _, Button, Context, Frame, Id, Key, Modal, Modifiers, ScrollArea, TextEdit, Ui,
+    Align2, AtomExt as _, Button, Context, Frame, Id, Key, Modal, Modifiers, ScrollArea, TextEdit,
+    Ui, vec2,
 };
 use indexmap::IndexSet;
 
@@ -23,6 +24,8 @@ use crate::scene::{Aspect, EXAMPLES};
 const WIDTH: f32 = 460.0;
 /// Height of the list where there are many, in points.
 const HEIGHT: f32 = 12.0 * ROW;
+/// How far below the upper border of the window it is, in points.
+const TOP: f32 = 5.0 * ROW;
 /// Most finds that are listed.
 const MOST: usize = 200;
 
@@ -107,7 +110,10 @@ impl Finder {
             return;
         }
         let frame = Frame::popup(&ctx.global_style()).inner_margin(GRID);
-        let modal = Modal::new(Id::unique("finder")).frame(frame);
+        // What is typed into stays where it is, however much is found.
+        let id = Id::unique("finder");
+        let area = Modal::default_area(id).anchor(Align2::CENTER_TOP, vec2(0.0, TOP));
+        let modal = Modal::new(id).area(area).frame(frame);
         let shown = modal.show(ctx, |ui| {
             ui.set_width(WIDTH);
             self.ask(ui, (editor, recent))
@@ -132,11 +138,13 @@ impl Finder {
         let field = TextEdit::singleline(&mut self.text)
             .hint_text("A command, an object, a light, a color pack, a setting")
             .desired_width(f32::INFINITY)
-            .align(egui::Align2::LEFT_CENTER);
+            .align(Align2::LEFT_CENTER);
         let field = ui.add(field).hint("Enter does what is marked");
         field.request_focus();
         if field.changed() {
             self.meant = 0;
+            // Of what is typed into an empty field, the first frame shows nothing.
+            ui.request_repaint();
         }
         let finds = finds(ui, known, &self.text);
         let last = finds.len().saturating_sub(1);
@@ -155,7 +163,7 @@ impl Finder {
                     let button = Button::selectable(place == self.meant, name)
                         .truncate()
                         .right_text(&find.aside)
-                        .min_size(egui::vec2(ui.available_width(), ROW));
+                        .min_size(vec2(ui.available_width(), ROW));
                     let shown = ui.add_enabled(find.is_enabled, button);
                     if place == self.meant && (down > 0 || up > 0) {
                         shown.scroll_to_me(None);

@@ -123,7 +123,7 @@ impl Entry {
         match state.ended.as_ref()? {
             Ok(()) => {
                 let (total, folder) = (counted(state.done.total, "frame"), state.folder.display());
-                editor.notify(format!("{total} in {folder}"));
+                editor.notify(format!("Saved {total} in {folder}"));
                 match &mut self.video {
                     Some(video) => video.make(),
                     None => self.end(),

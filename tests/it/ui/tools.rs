@@ -1,7 +1,7 @@
 //! Hands in the picture: clicks, handles, and the camera.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, ViewportCommand, vec2};
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glam::DVec3;
 use glint::editor::{Item, Selection};
 use glint::scene::{Scene, Shape, Triangle};
@@ -532,6 +532,16 @@ fn a_pixel_is_explained_and_parts_of_the_light_are_shown() {
         let term = harness.window.query_by_label("ambient intensity · ambient");
         term.is_some()
     });
+    // It is about the scene as it is.
+    let told = |harness: &EditorHarness| {
+        let node = harness.window.get_by_label_contains("in sphere 1, ");
+        node.accesskit_node().value()
+    };
+    let before = told(&harness);
+    harness.type_into("radius", "10");
+    harness.wait_for("the reasons anew", |harness| told(harness) != before);
+    harness.press(CTRL, Key::Z);
+    harness.wait_for("those of before", |harness| told(harness) == before);
     harness.press(NONE, Key::Escape);
     let whole = harness.picture();
     harness.choose("View", "Show");
