@@ -25,10 +25,10 @@ const MOST_PAIRS: usize = 100_000;
 const MIN_GAP_PER_EXTENT: f64 = 3e-4;
 /// The same as a share of their radii, for small ones.
 const MIN_GAP_PER_RADIUS: f64 = 1e-2;
-/// Smallest distance of flat pieces as a share of the scene's extent in single precision, where nothing is filtered: from
-/// afar, both are at one distance otherwise, and the first is seen.
+/// Smallest distance of flat pieces as a share of the scene's extent in single precision: from afar, both are at one
+/// distance otherwise, and the first is seen.
 const MIN_GAP_OF_PIECES: f64 = 1e-6;
-/// Most pieces that are held against each other: where there are more things, they are filtered mostly.
+/// Most pieces that are held against each other.
 const MOST_PIECES: usize = 64;
 /// Most spheres that are held against each other.
 const MOST_SPHERES: usize = 2_000;

@@ -118,7 +118,8 @@ pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
     let is_perspective = request.projection_of(&scene.camera) == Projection::Perspective;
     let point = Some(eye).filter(|_| is_perspective);
     let size = (high - low).length();
-    if !is_fine && (is_at_border(scene, point, size) || has_layers(scene, (centre, extent))) {
+    // Samples that look for an edge inside of a pixel are not filtered, and layers would be seen in all of them.
+    if has_layers(scene, (centre, extent)) || !is_fine && is_at_border(scene, point, size) {
         return true;
     }
     let smaller = if is_fine { SMALLER_WHEN_FILTERED } else { 1.0 };
