@@ -114,6 +114,13 @@ fn deleting_twice_deletes_once() {
     harness.press(Modifiers::NONE, Key::Delete);
     harness.press(Modifiers::NONE, Key::Delete);
     assert_eq!(times(&harness), [0.0, 2.0, 3.0]);
+    harness.press(CTRL, Key::Z);
+    assert_eq!(times(&harness), [0.0, 1.0, 2.0, 3.0]);
+    assert_eq!(
+        harness.editor().selection().keys().len(),
+        1,
+        "it is selected"
+    );
 }
 
 #[test]
