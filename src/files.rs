@@ -138,6 +138,14 @@ impl NewFile {
         self.file.path()
     }
 
+    /// Where another program is to write it, which some systems allow with no file that is locked.
+    pub fn lend(&self) -> &Path {
+        if cfg!(windows) {
+            let _ = self.as_file().unlock();
+        }
+        self.path()
+    }
+
     /// The file itself.
     pub fn as_file(&self) -> &File {
         self.file.as_file()

@@ -5,7 +5,7 @@
 //!       │ Action ▼        ▲ Arc<Scene>, revision            │
 //!     editor (document, history, flight)                    │  same calls, no thread
 //!       │ submit(revision, scene, request)                  │
-//!     worker (the render thread; newest wins) ◄ · · · · · · ┘
+//!     worker (render threads; newest wins) ◄ · · · · · · ·  ┘
 //!       │
 //!  scene ─► animate ─► plan ─► trace ─► image ─► export ─► lab (methods ► time, error, failures)
 //!    ▲                  ▲        ▲
@@ -23,7 +23,7 @@
 //! pushes an [`editor::Action`]. When all panels are drawn, [`editor::Editor::apply`] checks what the new
 //! scene does not share with the old one, notes the old one in the history (one drag is one step) and
 //! raises the revision. The [`worker::Worker`] gets the scene in its mailbox, where it replaces any that
-//! waits. The render thread makes a [`plan::Plan`], the [`trace::Tracer`] traces tiles into an
+//! waits. A render thread makes a [`plan::Plan`], the [`trace::Tracer`] traces tiles into an
 //! [`image::Image`], coarse first, and each finished picture wakes the window. A picture of an older
 //! revision is never shown over a newer one.
 

@@ -7,6 +7,7 @@ use std::time::Instant;
 use glint::cli::{CliAction, CliError, picture_instead_of_window};
 use glint::export::save_image;
 use glint::image::{Film, Image};
+use glint::scene::Document;
 use glint::ui::NoWindow;
 use glint::{cli, ui};
 
@@ -28,7 +29,12 @@ fn main() -> ExitCode {
 
 /// Opens the window for one picture, and says what that has cost.
 fn time_start(scene: Option<PathBuf>, since: Instant) -> Result<(), CliError> {
+    let asked = scene.clone();
     let stats = ui::time_start(scene, since).map_err(CliError::failed)?;
+    // What the window said about a file went with it. To read it before would take time.
+    if let Some(path) = asked {
+        Document::load(&path)?;
+    }
     let stats =
         stats.ok_or_else(|| CliError::failed("the window was closed before it had a picture"))?;
     cli::say(&serde_json::to_string(&stats)?);

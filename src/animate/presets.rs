@@ -65,9 +65,16 @@ impl Preset {
                 }
                 keys
             }
-            Self::Dolly => looking(camera, target, 1, seconds, |share| {
-                target + arm * (1.0 - TRAVEL * share)
-            }),
+            Self::Dolly => {
+                let left = |share: f64| 1.0 - TRAVEL * share;
+                let place = |share| target + arm * left(share);
+                let mut keys = looking(camera, target, 1, seconds, place);
+                for key in &mut keys {
+                    // Where rays run side by side, things grow with the window alone.
+                    key.value.orthographic_height *= left(key.time / seconds);
+                }
+                keys
+            }
             Self::Crane => {
                 let rise = arm.length() * TRAVEL;
                 looking(camera, target, 6, seconds, |share| {

@@ -2,7 +2,9 @@
 
 use super::path::nearest;
 use super::{CameraPath, motion_between};
-use crate::scene::{Animation, Camera, Interpolation, Key, MAX_SECONDS, Orientation, Track};
+use crate::scene::{
+    Animation, Camera, Easing, Interpolation, Key, MAX_SECONDS, Orientation, Track,
+};
 
 /// Steps within a segment in which its length is measured.
 const STEPS: usize = 16;
@@ -150,7 +152,11 @@ fn constant_speed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
             (lengths[i] * seconds_per_length).max(CLOSEST)
         }
     };
-    let retimed = with_steps(keys, step);
+    let mut retimed = with_steps(keys, step);
+    for key in &mut retimed {
+        // A pace is a change of speed.
+        key.easing = Easing::Even;
+    }
     // What the shortest steps were given is taken from all.
     let last = retimed.last().map_or(end, |key| key.time);
     scaled(&retimed, start, (end - start) / (last - start))

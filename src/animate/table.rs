@@ -36,22 +36,44 @@ pub fn to_table<'c>(cameras: impl IntoIterator<Item = (f64, &'c Camera)>) -> Str
     text
 }
 
-/// Keys from such a table. Its first line names the columns, in any order; `time`, `x`, `y` and `z`
-/// must be there, what is missing is taken from `like`.
+/// What stands between cells: spreadsheets write semicolons where numbers have a decimal comma, and tabs on clipboards.
+fn delimiter_of(text: &str) -> u8 {
+    let head = text.lines().next().unwrap_or_default();
+    let mut delimiters = [',', ';', '\t'].into_iter();
+    delimiters
+        .find(|&delimiter| head.contains(delimiter))
+        .map_or(b',', |delimiter| delimiter as u8)
+}
+
+fn number_of(cell: &str, delimiter: u8) -> Option<f64> {
+    match delimiter {
+        b',' => cell.parse().ok(),
+        _ => cell.replacen(',', ".", 1).parse().ok(),
+    }
+}
+
+/// Keys from such a table, or from one with semicolons and decimal commas. Its first line names the columns, in any
+/// order; `time`, `x`, `y` and `z` must be there, what is missing is taken from `like`.
 ///
 /// # Errors
 /// [`TableError`], with the line.
 pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableError> {
     let fail = |line: usize, what: String| TableError { line, what };
+    let text = text.trim_start_matches('\u{feff}');
+    let delimiter = delimiter_of(text);
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .flexible(true)
-        .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
+        .delimiter(delimiter)
+        .from_reader(text.as_bytes());
     let names = reader.headers().cloned().unwrap_or_default();
     if names.is_empty() {
         return Err(fail(1, format!("the file is empty; expected {HEAD}")));
     }
-    let column = |name: &str| names.iter().position(|other| other == name);
+    let column = |name: &str| {
+        let mut names = names.iter();
+        names.position(|other| other.eq_ignore_ascii_case(name))
+    };
     if let Some(missing) = ["time", "x", "y", "z"]
         .iter()
         .find(|name| column(name).is_none())
@@ -71,8 +93,8 @@ pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableEr
                 Err(fail(line, format!("{name} is missing")))
             }
             None => Ok(default),
-            Some(cell) => match cell.parse::<f64>() {
-                Ok(number) if number.is_finite() => Ok(number),
+            Some(cell) => match number_of(cell, delimiter) {
+                Some(number) if number.is_finite() => Ok(number),
                 _ => Err(fail(
                     line,
                     format!("{name} must be a number, found {cell:?}"),

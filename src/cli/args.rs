@@ -2,6 +2,7 @@
 
 use clap::Args;
 
+use super::error::CliError;
 use crate::scene::MAX_SIDE;
 use crate::trace::{PoolError, Threads};
 
@@ -32,13 +33,16 @@ pub struct ThreadsArgs {
 
 impl SizeArgs {
     /// Width and height; one side alone keeps the aspect of the scene's `own`.
-    pub fn of(self, own: (u32, u32)) -> (u32, u32) {
-        match (self.width, self.height) {
+    ///
+    /// # Errors
+    /// [`CliError::Usage`], where the other side would be longer than a picture can be.
+    pub fn of(self, own: (u32, u32)) -> Result<(u32, u32), CliError> {
+        Ok(match (self.width, self.height) {
             (None, None) => own,
             (Some(width), Some(height)) => (width, height),
-            (Some(width), None) => (width, in_proportion(width, own.1, own.0)),
-            (None, Some(height)) => (in_proportion(height, own.0, own.1), height),
-        }
+            (Some(width), None) => (width, in_proportion("height", width, (own.1, own.0))?),
+            (None, Some(height)) => (in_proportion("width", height, own)?, height),
+        })
     }
 }
 
@@ -63,16 +67,42 @@ pub fn whole<const LEAST: u32, const MOST: u32>(word: &str) -> Result<u32, Strin
         .ok_or_else(|| format!("expected a whole number from {LEAST} to {MOST}"))
 }
 
-/// `side · numerator / denominator`, rounded, within the sizes that exist.
-fn in_proportion(side: u32, numerator: u32, denominator: u32) -> u32 {
-    let exact = (u64::from(side) * u64::from(numerator) + u64::from(denominator) / 2)
+/// The side of this name, `given · numerator / denominator`, rounded.
+fn in_proportion(
+    name: &str,
+    given: u32,
+    (numerator, denominator): (u32, u32),
+) -> Result<u32, CliError> {
+    let exact = (u64::from(given) * u64::from(numerator) + u64::from(denominator) / 2)
         / u64::from(denominator);
-    u32::try_from(exact).unwrap_or(MAX_SIDE).clamp(1, MAX_SIDE)
+    let side = u32::try_from(exact).ok().filter(|side| *side <= MAX_SIDE);
+    side.map(|side| side.max(1)).ok_or_else(|| {
+        CliError::usage(format!(
+            "in the scene's aspect, the {name} would be {exact} pixels, and at most {MAX_SIDE} can be: give both"
+        ))
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_side_keeps_the_aspect_or_is_refused() {
+        let size = |width, height| SizeArgs { width, height }.of((1024, 2048)).ok();
+        assert_eq!(size(None, None), Some((1024, 2048)));
+        assert_eq!(size(Some(100), None), Some((100, 200)));
+        assert_eq!(size(None, Some(1)), Some((1, 1)));
+        assert_eq!(size(Some(MAX_SIDE), Some(9)), Some((MAX_SIDE, 9)));
+        assert_eq!(size(Some(MAX_SIDE), None), None);
+        let refused = SizeArgs {
+            width: Some(MAX_SIDE),
+            height: None,
+        }
+        .of((1024, 2048));
+        let said = refused.expect_err("too high").to_string();
+        assert!(said.contains("the height would be 32768 pixels"), "{said}");
+    }
 
     #[test]
     fn numbers_are_whole_and_within_what_there_is() {

@@ -10,18 +10,18 @@ use clap::Args;
 use super::action::CliAction;
 use super::args::{ThreadsArgs, whole};
 use super::bar::{SHARE, progress_bar};
-use super::error::{CliError, say};
+use super::error::{CliError, report_warning, say};
 use super::goal::{error, time};
 use super::scene::read_scene;
 use super::target::{check_text, picture_format};
 use crate::export::write_text;
 use crate::files::{is_same_file, processor};
 use crate::lab::{
-    Figure, Growth, PictureLook, Study, capitalised, cheapest_within, closest_within, csv, scaling,
-    scaling_csv, table,
+    Figure, Growth, PictureLook, Study, capitalised, cheapest_within, closest_within,
+    costs_of_choices, csv, scaling, scaling_csv, table,
 };
 use crate::plan::RenderRequest;
-use crate::scene::Scene;
+use crate::scene::{Sampling, Scene};
 use crate::trace::{RenderControl, Threads};
 use crate::words::counted;
 
@@ -40,9 +40,9 @@ pub struct ChartArgs {
     /// Instead of the chart: measure how time grows with the number of primitives, in scenes made for that
     #[arg(long, conflicts_with_all = ["scenes", "within", "budget"])]
     growth: bool,
-    /// Instead of the chart: simulate how up to 128 cores would share pictures of the scenes, from the times of their
-    /// pieces
-    #[arg(long, requires = "scenes", conflicts_with_all = ["growth", "within", "budget", "povray"])]
+    /// Instead of the chart: simulate how up to 128 cores would share pictures of the scenes, one sample per pixel, from
+    /// the times of their pieces
+    #[arg(long, requires = "scenes", conflicts_with_all = ["growth", "within", "budget", "povray", "threads"])]
     cores: bool,
     /// Longer side of the pictures that are compared, in pixels
     #[arg(long, default_value = "256", value_parser = whole::<8, 2048>)]
@@ -128,7 +128,7 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
         }
         measure(&mut study, &threads);
         if let Some(obstacle) = &study.obstacle {
-            say(obstacle);
+            report_warning(obstacle);
         }
         if args.scenes.len() > 1 {
             say(&format!("{stem}:"));
@@ -136,6 +136,10 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
         say(table(&study).trim_end());
         if args.within.is_some() || args.budget.is_some() {
             say(&advice(&study, args.within, args.budget));
+        }
+        // Nobody looks at the pictures here, which may be many and large.
+        for dot in &mut study.measurements {
+            dot.picture = None;
         }
         studies.push((capitalised(&stem), study));
     }
@@ -173,7 +177,7 @@ fn grow(args: &ChartArgs, threads: &Threads) -> Result<Option<CliAction>, CliErr
     }
     bar.finish_and_clear();
     for obstacle in &growth.obstacles {
-        say(obstacle);
+        report_warning(obstacle);
     }
     for cost in &growth.costs {
         let planned = cost.plan_ms.map(|ms| format!(", planned in {ms:.1} ms"));
@@ -193,11 +197,24 @@ fn grow(args: &ChartArgs, threads: &Threads) -> Result<Option<CliAction>, CliErr
 
 /// What more cores would do for the scenes.
 fn share(args: &ChartArgs, scenes: &[(&PathBuf, Scene)]) -> Result<Option<CliAction>, CliError> {
-    let request = RenderRequest::sized(args.side, args.side);
+    let stems = || scenes.iter().map(|(path, _)| path.file_stem());
+    // Planning is what one worker does alone.
+    let alone = Threads::new(Some(1))?;
     let mut pictures = Vec::new();
     for (path, scene) in scenes {
-        let name = capitalised(&path.file_stem().unwrap_or_default().to_string_lossy());
-        pictures.extend(scaling(&name, scene, &request));
+        let stem = path.file_stem();
+        let is_one = stems().filter(|other| *other == stem).count() == 1;
+        let name = if is_one {
+            capitalised(&stem.unwrap_or_default().to_string_lossy())
+        } else {
+            path.display().to_string()
+        };
+        let (width, height) = Study::size_of_side(scene, args.side);
+        let request = RenderRequest {
+            sampling: Sampling::Centres,
+            ..RenderRequest::of(scene, width, height)
+        };
+        pictures.extend(alone.run(|| scaling(&name, scene, &request)));
     }
     for picture in &pictures {
         say(&format!(
@@ -226,7 +243,7 @@ fn measure(study: &mut Study, threads: &Threads) {
 
 /// Which way of tracing to take.
 fn advice(study: &Study, within: Option<f64>, budget: Option<Duration>) -> String {
-    let costs = study.costs();
+    let costs = costs_of_choices(study);
     let budget = budget.unwrap_or(Duration::MAX);
     let best = match within {
         Some(error) => cheapest_within(&costs, error, budget.as_secs_f64() * 1e3),

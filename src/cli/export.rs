@@ -81,7 +81,7 @@ impl What {
     /// The frames of a scene.
     fn sequence(&self, mut scene: Scene, folder: PathBuf) -> Result<Sequence, CliError> {
         let render = &mut scene.render;
-        (render.width, render.height) = self.size.of((render.width, render.height));
+        (render.width, render.height) = self.size.of((render.width, render.height))?;
         render.antialias = self.antialias.unwrap_or(render.antialias);
         let (frames, name) = (self.frames.clone(), self.name.clone());
         Sequence::new(Arc::new(scene), frames, name, self.format, folder)

@@ -40,7 +40,7 @@ pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
     let mut scene = read_scene(&args.scene)?;
     let size = &mut scene.render;
     let own = (size.width, size.height);
-    (size.width, size.height) = args.size.of(own);
+    (size.width, size.height) = args.size.of(own)?;
     size.antialias = Sampling::Centres;
     let threads = args.threads.start()?;
     let theirs =

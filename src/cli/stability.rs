@@ -20,7 +20,8 @@ pub struct StabilityArgs {
     /// Draw the maps into this picture (PNG, PPM or EXR)
     #[arg(long, value_name = "IMAGE")]
     png: Option<PathBuf>,
-    /// Try so many times more rays than for a first look
+    /// Try so many times more rays than for a first look, in the maps of single rays; those of pictures take the square
+    /// root of that, or stay as they are
     #[arg(long, default_value = "1", value_parser = whole::<1, MAX_TIMES>)]
     effort: u32,
 }

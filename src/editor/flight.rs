@@ -97,7 +97,9 @@ impl Editor {
     /// What moves is looked at as it moves: through the shot camera, unless the user has chosen to
     /// stay outside.
     fn show_time(&mut self) {
-        self.animation_state.timeline.wants_shot = !self.animation_state.timeline.stays_outside;
+        let timeline = &mut self.animation_state.timeline;
+        // What is recorded is where the camera is flown, and not where it was.
+        timeline.wants_shot = !timeline.stays_outside && timeline.recording.is_none();
         self.leave_still();
     }
 

@@ -2,7 +2,10 @@
 
 use glam::DVec3;
 
-use crate::scene::{Camera, Orientation};
+use crate::scene::{Camera, MAX_COORDINATE, Orientation, Projection};
+
+/// How far an orthographic picture is enlarged at most: to a window so high, in world units.
+const LEAST_HEIGHT: f64 = 1e-6;
 
 /// A step of a flight: distances in world units, turns in radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,6 +20,9 @@ pub struct Motion {
     pub yaw: f64,
     /// Tilt upwards.
     pub pitch: f64,
+    /// How much smaller the window of an orthographic picture becomes, as the logarithm of a factor: there, what is
+    /// nearer is no larger.
+    pub zoom: f64,
 }
 
 impl Motion {
@@ -29,10 +35,11 @@ impl Motion {
             up: self.up + other.up,
             yaw: self.yaw + other.yaw,
             pitch: self.pitch + other.pitch,
+            zoom: self.zoom + other.zoom,
         }
     }
 
-    /// The motion with its distances and its turns scaled.
+    /// The motion with its distances scaled, and its turns and its zoom.
     #[must_use]
     pub fn times(&self, distance: f64, turn: f64) -> Self {
         Self {
@@ -41,6 +48,7 @@ impl Motion {
             up: self.up * distance,
             yaw: self.yaw * turn,
             pitch: self.pitch * turn,
+            zoom: self.zoom * turn,
         }
     }
 }
@@ -70,7 +78,14 @@ impl Flight {
         }
         if let Some(basis) = next.basis() {
             let up = DVec3::new(0.0, motion.up, 0.0);
-            next.position += basis.x_axis * motion.right - basis.z_axis * motion.forward + up;
+            next.position += basis.x_axis * motion.right + up;
+            match next.projection {
+                Projection::Perspective => next.position -= basis.z_axis * motion.forward,
+                Projection::Orthographic => {
+                    let height = next.orthographic_height * (-motion.zoom).exp();
+                    next.orthographic_height = height.clamp(LEAST_HEIGHT, MAX_COORDINATE);
+                }
+            }
         }
         next
     }
@@ -162,6 +177,15 @@ mod tests {
             ..Motion::default()
         };
         assert_eq!(step(motion).position, DVec3::new(3.0, 4.0, -2.0));
+        let flat = Camera {
+            projection: Projection::Orthographic,
+            ..level.clone()
+        };
+        let zoom = 2.0_f64.ln();
+        let nearer = Flight::default().step(&flat, &Motion { zoom, ..motion });
+        let height = flat.orthographic_height / 2.0;
+        assert!((nearer.orthographic_height - height).abs() < 1e-9 * height);
+        assert_eq!(nearer.position, DVec3::new(3.0, 4.0, 0.0));
         let right = step(Motion {
             yaw: 0.1,
             ..Motion::default()

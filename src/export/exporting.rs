@@ -3,7 +3,6 @@
 use std::collections::VecDeque;
 use std::io;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 
 use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 
@@ -214,7 +213,7 @@ impl Exporting {
                 self.last = small_picture(&mut due.planner, &due.shown, &request).map(Arc::new);
                 ExportStep::Going
             }
-            Err(_) if control.stop.load(Ordering::Relaxed) => {
+            Err(_) if control.is_stopped() => {
                 self.left.push_front(due.frame);
                 ExportStep::Stopped
             }

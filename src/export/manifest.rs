@@ -67,7 +67,8 @@ impl Manifest {
             return false;
         };
         let is_same = note.fingerprint == *fingerprint;
-        is_same && content(&self.folder.join(file)).is_ok_and(|found| found == note.content)
+        let content = || open_file(&self.folder.join(file)).and_then(|file| content_of(&file));
+        is_same && content().is_ok_and(|found| found == note.content)
     }
 }
 
@@ -83,13 +84,13 @@ fn note(line: &str) -> Option<(String, Note)> {
     cells.next().map(|_| (file.to_owned(), note))
 }
 
-/// The hash of a file.
+/// The hash of a file, from where it is read next.
 ///
 /// # Errors
 /// Whatever the system answers.
-pub fn content(path: &Path) -> io::Result<Hash> {
+pub fn content_of(file: &File) -> io::Result<Hash> {
     let mut hasher = blake3::Hasher::new();
-    hasher.update_reader(open_file(path)?)?;
+    hasher.update_reader(file)?;
     Ok(hasher.finalize())
 }
 

@@ -7,7 +7,6 @@ use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use glam::DVec3;
@@ -335,7 +334,7 @@ pub fn by_povray(
         io::ErrorKind::NotFound => PovrayError::Missing,
         _ => disk(Path::new("povray"))(source),
     })?;
-    let is_wanted = || !control.stop.load(Ordering::Relaxed);
+    let is_wanted = || !control.is_stopped();
     let status = end_of(&mut child, is_wanted).map_err(disk(Path::new("povray")))?;
     let status = status.ok_or(PovrayError::Stopped)?;
     let said = std::fs::read(&path).map_err(disk(&path))?;

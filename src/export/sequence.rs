@@ -1,7 +1,7 @@
 //! An animation as files: which, where, and what each of them shows.
 
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{BufWriter, Seek as _};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -11,7 +11,7 @@ use image::ImageError;
 use super::error::ExportError;
 use super::fingerprint::fingerprint;
 use super::frames::{Frames, FramesError};
-use super::manifest::{Hash, MANIFEST, Manifest, add_note, content};
+use super::manifest::{Hash, MANIFEST, Manifest, add_note, content_of};
 use super::pattern::Pattern;
 use super::save::{disk, write_beside};
 use crate::animate::{CameraPath, shot};
@@ -217,7 +217,9 @@ impl Sequence {
             time = encode(file)?;
             Ok(())
         })?;
-        let content = content(beside.path());
+        // Through the file that is open: some systems let nobody else read one that is locked.
+        let mut file = beside.as_file();
+        let content = file.rewind().and_then(|()| content_of(file));
         let placed = content.and_then(|content| beside.place().map(|()| content));
         let content = placed.map_err(|source| disk(&path, source))?;
         add_note(&self.folder, &self.file(frame), &content, fingerprint, time)

@@ -93,13 +93,13 @@ impl Video {
         mut go_on: impl FnMut(usize) -> bool,
     ) -> Result<(), VideoError> {
         let beside = NewFile::beside(path).map_err(|error| VideoError::disk(path, &error))?;
-        let files = (beside.path(), path);
+        let lent = || (beside.lend(), path);
         match self {
             Self::Gif => gif(sequence, (beside.as_file(), path), &mut go_on)?,
             Self::Apng => apng(sequence, (beside.as_file(), path), &mut go_on)?,
-            Self::H264 => by_ffmpeg(sequence, files, H264, &mut go_on)?,
-            Self::ProRes => by_ffmpeg(sequence, files, PRORES, &mut go_on)?,
-            Self::Lossless => by_ffmpeg(sequence, files, LOSSLESS, &mut go_on)?,
+            Self::H264 => by_ffmpeg(sequence, lent(), H264, &mut go_on)?,
+            Self::ProRes => by_ffmpeg(sequence, lent(), PRORES, &mut go_on)?,
+            Self::Lossless => by_ffmpeg(sequence, lent(), LOSSLESS, &mut go_on)?,
         }
         // It may have been given up in the last moment.
         if !go_on(sequence.frames.count()) {

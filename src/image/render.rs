@@ -1,6 +1,6 @@
 //! From a scene to a picture: the one way.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::buffer::{Image, LinearImage, Raster};
 use crate::plan::{Planner, RenderRequest};
@@ -10,7 +10,7 @@ use crate::trace::{Pass, Pixel, Rays, RenderControl, Tracer};
 /// What a picture cost.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RenderCost {
-    /// Wall time, planning included.
+    /// Wall time, planning included and pauses not.
     pub time: Duration,
     /// Rays traced.
     pub rays: Rays,
@@ -60,12 +60,12 @@ fn render_pixels<P: Pixel + Copy + Default>(
     request: &RenderRequest,
     control: &RenderControl,
 ) -> Option<RenderCost> {
-    let start = Instant::now();
+    let watch = control.stopwatch();
     let tracer = Tracer::planned(scene, request, planner);
     image.resize(tracer.width(), tracer.height());
     let rays = tracer.pass(&mut image.pixels, Pass::Whole, control)?;
     Some(RenderCost {
-        time: start.elapsed(),
+        time: watch.elapsed(),
         rays,
         lanes: tracer.lanes(),
     })

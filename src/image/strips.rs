@@ -2,7 +2,7 @@
 
 use std::io::{self, Seek, Write};
 use std::ops::Range;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use image::ImageError;
 
@@ -37,7 +37,7 @@ impl<'a, P: Pixel + Copy + Default> Strips<'a, P> {
         (scene, request): (&Scene, &RenderRequest),
         control: &'a RenderControl,
     ) -> Self {
-        let start = Instant::now();
+        let watch = control.stopwatch();
         let tracer = Tracer::planned(scene, request, planner);
         Self {
             step: tracer.strip(),
@@ -45,7 +45,7 @@ impl<'a, P: Pixel + Copy + Default> Strips<'a, P> {
             control,
             strip,
             rows: 0..0,
-            time: start.elapsed(),
+            time: watch.elapsed(),
             rays: Rays::default(),
         }
     }
@@ -76,14 +76,14 @@ impl<'a, P: Pixel + Copy + Default> Strips<'a, P> {
     }
 
     fn trace(&mut self, row: usize) -> Option<()> {
-        let start = Instant::now();
+        let watch = self.control.stopwatch();
         let first = row / self.step * self.step;
         let rows = first..(first + self.step).min(self.tracer.height());
         self.strip
             .resize(rows.len() * self.tracer.width(), P::default());
         self.rays += self.tracer.rows(self.strip, first, self.control)?;
         self.rows = rows;
-        self.time += start.elapsed();
+        self.time += watch.elapsed();
         Some(())
     }
 }
@@ -200,9 +200,7 @@ mod tests {
     fn a_picture_that_nobody_wants_any_more_becomes_no_file() {
         let (scene, control) = (Scene::demo(), RenderControl::default());
         let request = RenderRequest::sized(40, 30);
-        control
-            .stop
-            .store(true, std::sync::atomic::Ordering::Relaxed);
+        control.stop();
         for format in Format::ALL {
             let mut film = Film::new(format);
             let mut drawing = film.draw(&mut Planner::default(), (&scene, &request), &control);

@@ -1,8 +1,10 @@
 //! Ways of tracing that are one dot on the chart: nothing measured tells them apart.
 
+use super::candidates::{Candidate, Family};
 use super::measure::ErrorMetrics;
 use super::pareto_front::front;
 use super::study::{Measurement, Study, Timing};
+use crate::plan::Model;
 
 /// Errors that differ by less are equal.
 const SAME_ERROR: f64 = 0.02;
@@ -10,15 +12,18 @@ const SAME_ERROR: f64 = 0.02;
 const SAME_TIME: f64 = 0.08;
 
 /// Groups of measurements, by their places, that differ neither in time nor in error by more than the runs of
-/// each do; the first of a group is the first of the list. What is not fully measured is in no group.
+/// each do, certain ones and doubtful ones apart; the first of a group is the first of the list. What is not fully
+/// measured is in no group.
 pub fn clusters(study: &Study) -> Vec<Vec<usize>> {
     let known = |dot: &Measurement| Some((dot.timing()?, dot.metrics?));
     let mut clusters: Vec<((Timing, ErrorMetrics), Vec<usize>)> = Vec::new();
     for (place, dot) in study.measurements.iter().enumerate() {
         let Some(figures) = known(dot) else { continue };
+        // One that is certain does not stand behind one that is not.
+        let is_like = |place: usize| study.measurements[place].is_doubtful() == dot.is_doubtful();
         match clusters
             .iter_mut()
-            .find(|(first, _)| is_same(*first, figures))
+            .find(|(first, cluster)| is_like(cluster[0]) && is_same(*first, figures))
         {
             Some((_, cluster)) => cluster.push(place),
             None => clusters.push((figures, vec![place])),
@@ -39,6 +44,24 @@ pub fn costs_of_dots(study: &Study) -> Vec<(f64, f64)> {
     let mut costs = vec![(f64::NAN, f64::NAN); all.len()];
     for cluster in clusters(study) {
         costs[cluster[0]] = all[cluster[0]];
+    }
+    costs
+}
+
+/// [`costs_of_dots`] of what can be taken for a scene: no other program, no smaller picture, and no way in which less is
+/// spared or other things are seen, which are there to be looked at.
+pub fn costs_of_choices(study: &Study) -> Vec<(f64, f64)> {
+    let mut costs = costs_of_dots(study);
+    for (cost, dot) in costs.iter_mut().zip(&study.measurements) {
+        let Candidate {
+            family,
+            model,
+            upscale,
+            ..
+        } = dot.candidate;
+        if family == Family::Referee || model != Model::Needed || upscale > 1 {
+            *cost = (f64::NAN, f64::NAN);
+        }
     }
     costs
 }
@@ -83,8 +106,11 @@ mod tests {
             ([20.0, 20.1, 20.2], 5e-4),
             // Slower and farther off.
             ([30.0, 30.1, 30.2], 2e-3),
+            // As fast as the fourth, perhaps.
+            ([12.0, 20.0, 29.0], 5e-4),
         ]);
-        assert_eq!(clusters(&study), [vec![0, 1], vec![2], vec![3], vec![4]]);
+        let apart = [vec![0, 1], vec![2], vec![3], vec![4], vec![5]];
+        assert_eq!(clusters(&study), apart);
         assert_eq!(front_of(&study), [0, 3]);
     }
 }

@@ -11,8 +11,9 @@ use crate::plan::{Planner, RenderRequest};
 use crate::scene::{Method as _, Sampling, Scene};
 use crate::trace::{RenderControl, Tracer};
 
-/// Samples along each side of a pixel of what errors are measured against.
-const REFERENCE_GRID: u32 = 24;
+/// Samples along each side of a pixel of what errors are measured against: a number that has none of the samples of
+/// even grids among its own.
+const REFERENCE_GRID: u32 = 23;
 /// Rows of a strip.
 const STRIP: usize = 8;
 /// About as many pixels are measured: few enough to take a second or so, many enough to meet what there is to see.
@@ -81,7 +82,9 @@ pub fn choose(
     control: &RenderControl,
 ) -> Option<Choice> {
     let mut strips = Strips::new(scene, request, planner, control);
-    let (reference, _) = strips.trace(Sampling::Grid(REFERENCE_GRID))?;
+    let (reference, first) = strips.trace(Sampling::Grid(REFERENCE_GRID))?;
+    // A mesh is made ready once, for all of them; whoever traces the picture afterwards waits for that again.
+    let ready = first.planned;
     let mut measured: Vec<(Sampling, (f64, f64))> = Vec::new();
     for sampling in samplings() {
         // Grids come by their size: beyond one that is close enough, or takes too long, each takes longer.
@@ -98,7 +101,8 @@ pub fn choose(
         let (light, first) = strips.trace(sampling)?;
         let (_, second) = strips.trace(sampling)?;
         // Nothing makes a run faster than it is.
-        let time = first.min(second);
+        let planned = first.planned.min(second.planned).max(ready);
+        let time = planned + first.traced.min(second.traced);
         measured.push((sampling, (time, difference(&light, &reference).rmse)));
     }
     pick(goal, &measured)
@@ -127,6 +131,12 @@ fn pick(goal: Goal, measured: &[(Sampling, (f64, f64))]) -> Option<Choice> {
         tried: measured.len(),
         is_met: met.is_some(),
     })
+}
+
+/// What a picture takes.
+struct Seconds {
+    planned: f64,
+    traced: f64,
 }
 
 /// Strips of a picture, from its top to its bottom.
@@ -170,8 +180,8 @@ impl<'a> Strips<'a> {
         f64::from(self.request.height) / (self.rows * self.firsts.len()) as f64
     }
 
-    /// Their light, and how many seconds the whole picture takes: it is planned once, however many rows it has.
-    fn trace(&mut self, sampling: Sampling) -> Option<(Vec<LinearRgb>, f64)> {
+    /// Their light, and what the whole picture takes: it is planned once, however many rows it has.
+    fn trace(&mut self, sampling: Sampling) -> Option<(Vec<LinearRgb>, Seconds)> {
         let start = Instant::now();
         let request = RenderRequest {
             sampling,
@@ -185,7 +195,8 @@ impl<'a> Strips<'a> {
             tracer.rows(strip, *first, self.control)?;
         }
         let traced = start.elapsed().as_secs_f64() - planned;
-        Some((light, planned + traced * self.share_of_all()))
+        let traced = traced * self.share_of_all();
+        Some((light, Seconds { planned, traced }))
     }
 }
 
@@ -252,9 +263,7 @@ mod tests {
     fn a_picture_that_nobody_wants_any_more_is_not_measured() {
         let scene = Scene::demo();
         let stopped = RenderControl::default();
-        stopped
-            .stop
-            .store(true, std::sync::atomic::Ordering::Relaxed);
+        stopped.stop();
         let request = RenderRequest::of(&scene, 96, 72);
         let planner = &mut Planner::default();
         assert_eq!(

@@ -92,10 +92,16 @@ pub struct Study {
 impl Study {
     /// Nothing measured yet; pictures will have the scene's aspect, and a longer side of `side` pixels.
     pub fn of_side(scene: Arc<Scene>, side: u32) -> Self {
+        let (width, height) = Self::size_of_side(&scene, side);
+        Self::new(scene, width, height)
+    }
+
+    /// Width and height of a scene's picture whose longer side is so long.
+    pub fn size_of_side(scene: &Scene, side: u32) -> (u32, u32) {
         let (width, height) = (scene.render.width, scene.render.height);
         let scale = f64::from(side) / f64::from(width.max(height));
         let scaled = |side: u32| ((f64::from(side) * scale).round() as u32).max(1);
-        Self::new(scene, scaled(width), scaled(height))
+        (scaled(width), scaled(height))
     }
 
     /// Nothing measured yet; pictures will be `width × height`.
@@ -427,9 +433,7 @@ mod tests {
     fn a_stopped_piece_is_done_again() {
         let mut study = Study::new(Arc::new(Scene::demo()), 16, 16);
         let stopped = RenderControl::default();
-        stopped
-            .stop
-            .store(true, std::sync::atomic::Ordering::Relaxed);
+        stopped.stop();
         assert!(study.step(&stopped) && study.progress() == 0.0);
         assert!(study.step(&RenderControl::default()) && study.progress() > 0.0);
     }

@@ -31,7 +31,7 @@ const GEOMETRY_EXTENSIONS: [&str; 3] = [
 /// Reads the primitives of the default scene, or of the first if none is said to be, or of all nodes if there is none.
 pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, Fault> {
     let (json, chunk) = split(bytes)?;
-    let document = document_of(&json)?;
+    let (document, animates) = document_of(&json)?;
     let buffers = Buffers::load(&document, chunk.as_deref(), folder)?;
     let mut walk = Walk {
         buffers,
@@ -68,7 +68,7 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
     }
     Ok(MeshFile {
         parts: walk.parts,
-        notes: notes(&document),
+        notes: notes(&document, animates),
     })
 }
 
@@ -87,7 +87,7 @@ fn roots(document: &Document) -> Vec<Node<'_>> {
 }
 
 /// What of a file is not read.
-fn notes(document: &Document) -> Vec<String> {
+fn notes(document: &Document, animates: bool) -> Vec<String> {
     let primitives = || document.meshes().flat_map(|mesh| mesh.primitives());
     let has_colors = |one: Primitive| one.get(&Semantic::Colors(0)).is_some();
     [
@@ -96,16 +96,20 @@ fn notes(document: &Document) -> Vec<String> {
             primitives().any(|one| one.morph_targets().len() > 0),
             "its morph targets are left out",
         ),
+        (document.textures().len() > 0, "its textures are left out"),
         (document.cameras().len() > 0, "its cameras are left out"),
-        (
-            document.animations().len() > 0,
-            "its animations are left out",
-        ),
+        (has_lights(document), "its lights are left out"),
+        (animates, "its animations are left out"),
     ]
     .into_iter()
     .filter(|(is_there, _)| *is_there)
     .map(|(_, note)| note.to_owned())
     .collect()
+}
+
+fn has_lights(document: &Document) -> bool {
+    let mut names = document.extensions_used();
+    names.any(|name| name == "KHR_lights_punctual")
 }
 
 type Chunks<'a> = (Cow<'a, [u8]>, Option<Cow<'a, [u8]>>);
@@ -129,17 +133,15 @@ fn split(bytes: &[u8]) -> Result<Chunks<'_>, Fault> {
     Ok((glb.json, glb.bin))
 }
 
-fn document_of(json: &[u8]) -> Result<Document, Fault> {
+/// What the file says, and whether it says how things move.
+fn document_of(json: &[u8]) -> Result<(Document, bool), Fault> {
     let objects = json.iter().filter(|&&byte| byte == b'{' || byte == b'[');
     if objects.count() > MAX_OBJECTS {
         let (what, limit) = ("objects and lists", MAX_OBJECTS);
         return Err(Fault::TooMany { what, limit });
     }
-    let mut root = Root::from_slice(json).map_err(|error| {
-        let said = error.to_string();
-        let why = said.rsplit_once(" at line ").map_or(&*said, |(why, _)| why);
-        Fault::in_line(error.line(), format!("this is no valid glTF file: {why}"))
-    })?;
+    let (mut root, animates) = root_of(json)?;
+    root.animations.clear();
     // What is only about materials, lights or pictures does not keep the triangles from being read.
     let is_needed = |name: &String| GEOMETRY_EXTENSIONS.contains(&name.as_str());
     if let Some(name) = root.extensions_required.iter().find(|name| is_needed(name)) {
@@ -148,8 +150,8 @@ fn document_of(json: &[u8]) -> Result<Document, Fault> {
         )));
     }
     root.extensions_required.clear();
-    prepare_positions(&mut root)?;
-    Document::from_json(root).map_err(|error| {
+    prepare_primitives(&mut root)?;
+    let document = Document::from_json(root).map_err(|error| {
         let gltf::Error::Validation(errors) = &error else {
             return Fault::new(format!("this is no valid glTF file: {error}"));
         };
@@ -159,12 +161,47 @@ fn document_of(json: &[u8]) -> Result<Document, Fault> {
             "this is no valid glTF file: {}",
             said.unwrap_or_default()
         ))
-    })
+    })?;
+    Ok((document, animates))
+}
+
+/// The same before anything is looked at. What moves may be said in ways that the crate does not know, as pointers; it
+/// is left out anyway.
+fn root_of(json: &[u8]) -> Result<(Root, bool), Fault> {
+    let error = match Root::from_slice(json) {
+        Ok(root) => {
+            let animates = !root.animations.is_empty();
+            return Ok((root, animates));
+        }
+        Err(error) => error,
+    };
+    if let Ok(mut root) = serde_json::from_slice::<serde_json::Map<_, _>>(json)
+        && root.remove("animations").is_some()
+        && let Ok(root) = serde_json::from_value(root.into())
+    {
+        return Ok((root, true));
+    }
+    let said = error.to_string();
+    let why = said.rsplit_once(" at line ").map_or(&*said, |(why, _)| why);
+    let sentence = format!("this is no valid glTF file: {why}");
+    Err(Fault::in_line(error.line(), sentence))
 }
 
 /// The crate panics on positions that are not there, and refuses those without their bounds, which
-/// nobody here asks for and not every exporter writes.
-fn prepare_positions(root: &mut Root) -> Result<(), Fault> {
+/// nobody here asks for and not every exporter writes. It refuses primitives without any as well, and attributes of
+/// applications, which are legal.
+fn prepare_primitives(root: &mut Root) -> Result<(), Fault> {
+    for mesh in &mut root.meshes {
+        for primitive in &mut mesh.primitives {
+            let is_known = |semantic: &Checked<_>| matches!(semantic, Checked::Valid(_));
+            primitive
+                .attributes
+                .retain(|semantic, _| is_known(semantic));
+        }
+        let positions = Checked::Valid(Semantic::Positions);
+        mesh.primitives
+            .retain(|primitive| primitive.attributes.contains_key(&positions));
+    }
     let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
     for primitive in primitives {
         let positions = Checked::Valid(Semantic::Positions);

@@ -39,6 +39,8 @@ pub(super) struct Libraries<'a> {
     missing: RefCell<Option<String>>,
     /// The first material that was named and is in no file.
     unknown: RefCell<Option<String>>,
+    /// Whether a material has a picture for a colour.
+    has_textures: Cell<bool>,
 }
 
 impl<'a> Libraries<'a> {
@@ -51,7 +53,14 @@ impl<'a> Libraries<'a> {
             names: RefCell::default(),
             missing: RefCell::default(),
             unknown: RefCell::default(),
+            has_textures: Cell::default(),
         }
+    }
+
+    /// What is to be said about pictures that materials have.
+    pub(super) fn texture_note(&self) -> Option<String> {
+        let note = "its textures are left out";
+        self.has_textures.get().then(|| note.to_owned())
     }
 
     /// What is to be said about files that could not be read, or materials that are not in them.
@@ -113,6 +122,9 @@ impl<'a> Libraries<'a> {
                 .reduce(|all, one| format!("{all}\n{one}"))
                 .ok_or(LoadError::OpenFileFailed)?,
         };
+        if text.lines().any(|line| line.trim().starts_with("map_")) {
+            self.has_textures.set(true);
+        }
         let lines = text.lines().map(|line| whole_color(line.trim()));
         let lines = lines.filter(|line| is_color(line));
         let kept = lines.collect::<Vec<_>>().join("\n");

@@ -115,9 +115,15 @@ impl Body<'_> {
                         Ok(())
                     })?;
                     // Nothing behind the faces matters, if the points were before.
-                    if points.len() == vertices {
+                    if points.len() == vertices && !header.elements.contains_key("tristrips") {
                         break;
                     }
+                }
+                "tristrips" => {
+                    check_corners(element)?;
+                    self.each(element, |number, read| {
+                        add_strips(&mut faces, number, &read.corners, vertices)
+                    })?;
                 }
                 _ => self.each(element, |_, _| Ok(()))?,
             }
@@ -233,9 +239,10 @@ fn check_corners(element: &ElementDef) -> Result<(), Fault> {
         is_corners(name) && matches!(property.data_type, PropertyType::List(..))
     });
     if !has_corners {
-        return Err(Fault::new(
-            "the header gives a `face` no list `vertex_indices` or `vertex_index`",
-        ));
+        return Err(Fault::new(format!(
+            "the header gives a `{}` no list `vertex_indices` or `vertex_index`",
+            element.name
+        )));
     }
     Ok(())
 }
@@ -258,6 +265,22 @@ fn add_fan(
     check_faces(faces.len() + rest.len().saturating_sub(1))?;
     for pair in rest.windows(2) {
         faces.push([index(*first)?, index(pair[0])?, index(pair[1])?]);
+    }
+    Ok(())
+}
+
+/// Strips of triangles, one behind the other with -1 between: every other triangle of a strip is turned over.
+fn add_strips(
+    faces: &mut Vec<[u32; 3]>,
+    number: usize,
+    corners: &[i64],
+    vertices: usize,
+) -> Result<(), Fault> {
+    for strip in corners.split(|&corner| corner == -1) {
+        for (place, &[a, b, c]) in strip.array_windows().enumerate() {
+            let corners = if place % 2 == 0 { [a, b, c] } else { [b, a, c] };
+            add_fan(faces, number, &corners, vertices)?;
+        }
     }
     Ok(())
 }

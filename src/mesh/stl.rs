@@ -108,6 +108,7 @@ fn prepare_text(bytes: &mut Vec<u8>) -> Result<Option<String>, Fault> {
             b'?'
         };
     }
+    blank_normals(bytes);
     // Faces cannot be counted before they are read; there are no more than this.
     if check_faces(bytes.len() / SHORTEST).is_err() {
         let facets = bytes.windows(8).filter(|window| *window == b"endfacet");
@@ -119,6 +120,31 @@ fn prepare_text(bytes: &mut Vec<u8>) -> Result<Option<String>, Fault> {
         bytes.push(b' ');
     }
     Ok((!name.is_empty()).then_some(name))
+}
+
+/// Nobody looks at normals, and of a face without an area some programs write what is no number: `-nan(ind)`.
+fn blank_normals(text: &mut [u8]) {
+    let (mut at, mut left, mut is_facet) = (0, 0, false);
+    while at < text.len() {
+        if text[at].is_ascii_whitespace() {
+            // What is missing in a line is not taken from the next.
+            left = if text[at] == b'\n' { 0 } else { left };
+            at += 1;
+            continue;
+        }
+        let rest = text[at..].iter();
+        let length = rest.take_while(|byte| !byte.is_ascii_whitespace()).count();
+        let word = &mut text[at..at + length];
+        at += length;
+        if left > 0 {
+            word.fill(b' ');
+            word[0] = b'0';
+            left -= 1;
+        } else if is_facet && word == b"normal" {
+            left = 3;
+        }
+        is_facet = word == b"facet";
+    }
 }
 
 /// Reads a text; later solids without a name need the space, too.

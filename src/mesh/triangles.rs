@@ -50,7 +50,9 @@ impl Triangles {
     }
 
     pub(super) fn of(points: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Self {
-        let boxes = points.iter().map(|&point| (point, point));
+        // A point that no face has is nowhere.
+        let corners = faces.as_flattened().iter();
+        let boxes = corners.map(|&corner| (points[corner as usize], points[corner as usize]));
         let bounds = boxes.reduce(|(low, high), (point, _)| (low.min(point), high.max(point)));
         Self {
             points,
@@ -271,6 +273,15 @@ mod tests {
         assert_eq!(triangles.faces(), [[0, 2, 1], [2, 0, 1]]);
         let again = Triangles::join([&triangles, &triangles].into_iter()).expect("a mesh");
         assert_eq!(again, triangles);
+    }
+
+    #[test]
+    fn a_point_that_no_face_has_is_nowhere() {
+        let points = vec![DVec3::ZERO, DVec3::X, DVec3::splat(1e9), DVec3::Y];
+        let triangles = Triangles::new(points, vec![[0, 1, 3]]).expect("a mesh");
+        let corner = DVec3::new(1.0, 1.0, 0.0);
+        assert_eq!(triangles.bounds(), Some((DVec3::ZERO, corner)));
+        assert_eq!(triangles.points().len(), 4, "it is kept");
     }
 
     #[test]

@@ -5,20 +5,25 @@ use crate::primitive::PackedTriangle;
 use crate::simd::{Real, Vec3};
 
 /// Tells of the triangles that a ray meets, in any order, and how far each is; what is told says how far is still
-/// looked.
+/// looked. Whether so many nodes were enough for all of them.
 pub fn cast<R: Real>(
     triangles: &[PackedTriangle<R>],
     bvh: &Bvh<R>,
-    (origin, direction): (Vec3<R>, Vec3<R>),
+    ((origin, direction), most): ((Vec3<R>, Vec3<R>), usize),
     mut tell: impl FnMut(u32, R) -> R,
-) {
+) -> bool {
     let inverse = direction.to_array().map(|part| R::ONE / part);
     let mut reach = R::INFINITY;
     let mut waiting = vec![0];
+    let mut left = most;
     while let Some(node) = waiting
         .pop()
         .and_then(|index: u32| bvh.nodes.get(index as usize))
     {
+        if left == 0 {
+            return false;
+        }
+        left -= 1;
         let (near, far) = slabs(&node.planes, origin.to_array(), inverse);
         for place in 0..node.count {
             // Not-a-number is in neither range: such a box is looked into.
@@ -36,6 +41,7 @@ pub fn cast<R: Real>(
             }
         }
     }
+    true
 }
 
 /// Two directions: any will do; along none of the axes, edges are rarely met.
@@ -47,7 +53,8 @@ pub fn is_outside<R: Real>(triangles: &[PackedTriangle<R>], bvh: &Bvh<R>, point:
     WAYS_OUT.iter().all(|way| {
         let direction = Vec3::from(way.map(R::from_f64));
         let (mut nearest, mut first, mut around) = (R::INFINITY, -1, 0);
-        cast(triangles, bvh, (point, direction), |face, t| {
+        let all = usize::MAX;
+        cast(triangles, bvh, ((point, direction), all), |face, t| {
             let is_left = triangles[face as usize].normal.dot(direction) > R::ZERO;
             let turn = if is_left { 1 } else { -1 };
             around += turn;

@@ -76,8 +76,51 @@ impl LightContacts {
 pub struct Tie {
     /// The numbers of its primitives.
     pub numbers: Range<usize>,
-    /// Those of the others, in their order; the first that a ray meets there is seen.
-    pub over: Vec<Range<usize>>,
+    /// The others; the first of them that a ray meets there is seen.
+    pub over: Others,
+}
+
+/// Objects in an order: many may lie in one.
+#[derive(Clone, Debug)]
+pub struct Others {
+    /// The numbers of the primitives of each, by these, and its place in the order.
+    ranked: Vec<(Range<usize>, usize)>,
+    /// How many of them stand in no tree: the first.
+    listed: usize,
+}
+
+impl Others {
+    /// Objects whose primitives have these numbers, in their order; below `listed`, those stand in no tree.
+    pub fn new(numbers: Vec<Range<usize>>, listed: usize) -> Self {
+        let ranked = numbers.into_iter().enumerate();
+        let mut ranked: Vec<_> = ranked.map(|(rank, numbers)| (numbers, rank)).collect();
+        ranked.sort_by_key(|(numbers, _)| numbers.start);
+        Self {
+            listed: ranked.partition_point(|(numbers, _)| numbers.start < listed),
+            ranked,
+        }
+    }
+
+    /// The place in the order of the object whose primitive has a number.
+    pub fn rank_of(&self, number: usize) -> Option<usize> {
+        let after = self
+            .ranked
+            .partition_point(|(numbers, _)| numbers.start <= number);
+        let (numbers, rank) = self.ranked.get(after.checked_sub(1)?)?;
+        numbers.contains(&number).then_some(*rank)
+    }
+
+    /// The numbers of those that stand in no tree, each of which is one primitive.
+    pub fn listed(&self) -> impl Iterator<Item = usize> {
+        self.ranked[..self.listed]
+            .iter()
+            .map(|(numbers, _)| numbers.start)
+    }
+
+    /// Whether some stand in a tree.
+    pub fn are_in_tree(&self) -> bool {
+        self.listed < self.ranked.len()
+    }
 }
 
 impl Contacts {
@@ -198,6 +241,18 @@ mod tests {
     use super::*;
     use crate::primitive::Kind;
     use crate::scene::{Accelerator, Sampling, Triangle};
+
+    #[test]
+    fn others_are_found_by_their_numbers_in_whatever_order_they_are() {
+        let others = Others::new(vec![40..60, 7..8, 20..40, 3..4], 20);
+        let ranks = [50, 7, 20, 39, 3].map(|number| others.rank_of(number));
+        assert_eq!(ranks, [Some(0), Some(1), Some(2), Some(2), Some(3)]);
+        for none in [0, 4, 8, 19, 60] {
+            assert_eq!(others.rank_of(none), None, "{none}");
+        }
+        assert!(others.listed().eq([3, 7]) && others.are_in_tree());
+        assert!(!Others::new(vec![1..2, 5..6], 20).are_in_tree());
+    }
 
     #[test]
     fn triangles_are_measured_alike_in_lists_and_in_trees_where_some_stand_apart() {

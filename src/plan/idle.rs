@@ -1,5 +1,6 @@
 //! Faces of meshes that rays from the eye or to a light can do without.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use rayon::iter::ParallelIterator as _;
@@ -72,14 +73,17 @@ impl IdleFaces {
 /// What was found for the picture before, which the next one may need as well.
 #[derive(Clone, Debug, Default)]
 pub struct KeptIdle<R> {
-    known: Vec<Known<R>>,
-    used: Vec<Known<R>>,
+    known: HashMap<Key, Known<R>>,
+    used: HashMap<Key, Known<R>>,
 }
+
+/// Where a mesh is kept, and the place of a light from its middle, bit by bit.
+type Key = (usize, [u64; 3]);
 
 #[derive(Clone, Debug)]
 struct Known<R> {
-    mesh: Arc<PackedMesh<R>>,
-    place: Vec3<R>,
+    /// Kept, so that no other is where it is.
+    _mesh: Arc<PackedMesh<R>>,
     idle: Arc<IdleFaces>,
 }
 
@@ -87,17 +91,16 @@ impl<R: Real> KeptIdle<R> {
     /// The idle faces of a mesh for a light.
     pub fn towards(&mut self, light: Vec3<R>, mesh: &MeshInstance<R>) -> Arc<IdleFaces> {
         let place = light - mesh.centre;
-        let is_it =
-            |known: &&Known<R>| Arc::ptr_eq(&known.mesh, &mesh.mesh) && known.place == place;
-        let known = self.known.iter().chain(&self.used).find(is_it).cloned();
-        let found = known.unwrap_or_else(|| Known {
-            mesh: Arc::clone(&mesh.mesh),
-            place,
-            idle: Arc::new(IdleFaces::towards(&mesh.mesh, place)),
+        let bits = place.to_array().map(|part| part.to_f64().to_bits());
+        let key = (Arc::as_ptr(&mesh.mesh).addr(), bits);
+        let known = &mut self.known;
+        let found = self.used.entry(key).or_insert_with(|| {
+            known.remove(&key).unwrap_or_else(|| Known {
+                _mesh: Arc::clone(&mesh.mesh),
+                idle: Arc::new(IdleFaces::towards(&mesh.mesh, place)),
+            })
         });
-        let idle = Arc::clone(&found.idle);
-        self.used.push(found);
-        idle
+        Arc::clone(&found.idle)
     }
 
     /// Forgets what the last picture did not need.

@@ -40,6 +40,11 @@ impl<R: Real> Surface<R> {
     pub fn brightness(&self) -> R {
         self.diffuse.x + self.diffuse.y + self.diffuse.z
     }
+
+    /// The sum of the channels of the highlight's colour.
+    pub fn gloss(&self) -> R {
+        self.specular.x + self.specular.y + self.specular.z
+    }
 }
 
 /// One material per pack, then one per pack as a marker wears it.

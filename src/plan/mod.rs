@@ -66,6 +66,7 @@ mod needs;
 
 pub use balls::Balls;
 pub use bvh::{Bvh, Child, GROUP, Node};
+pub use contacts::Others;
 pub use crossed::tests_spared;
 pub use geometry::{Geometry, Kept, Planner};
 pub use hit_order::HitOrder;

@@ -5,6 +5,9 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
+use rayon::iter::{
+    IndexedParallelIterator as _, IntoParallelRefIterator as _, ParallelIterator as _,
+};
 
 use super::borders::Borders;
 use super::bvh::{Bvh, Member};
@@ -33,10 +36,15 @@ pub struct PackedMesh<R> {
     pub bvh: Bvh<R>,
     /// How far they reach from the middle of the box around them.
     pub reach: R,
+    /// The corners of each of them in its source; none where they do not stand in the order of the mesh before it was
+    /// turned.
+    faces: Arc<[[u32; 3]]>,
     /// For each of them the first of those that it hangs together with; none if all do.
     things: Arc<[u32]>,
     /// Whether it has an inside; its normals then point away from there, however its file winds them.
     is_solid: bool,
+    /// Whether its file winds them the other way.
+    is_inside_out: bool,
     /// The middle, from the origin of the mesh.
     middle: DVec3,
     turn: DMat3,
@@ -49,14 +57,48 @@ pub struct PackedMesh<R> {
 /// What a packed mesh is made of, wherever that is: where its faces are kept, how they are turned and scaled, and up to
 /// which angle they are smooth, bit by bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct MeshKey(usize, [u64; 9], u64);
+pub struct MeshKey(LevelKey, [u64; 3]);
+
+/// The same, however they are turned.
+pub type LevelKey = (usize, [u64; 3], u64);
 
 impl MeshKey {
     /// That of a mesh.
     pub fn of(mesh: &Mesh) -> Self {
         let address = Arc::as_ptr(mesh.source.triangles()).addr();
-        let turn = mesh.turn().to_cols_array().map(f64::to_bits);
-        Self(address, turn, mesh.smooth.to_bits())
+        let bits = |parts: DVec3| parts.to_array().map(f64::to_bits);
+        let level = (address, bits(mesh.scale), mesh.smooth.to_bits());
+        Self(level, bits(mesh.rotation))
+    }
+
+    /// That of the mesh before it was turned.
+    pub fn level(&self) -> LevelKey {
+        self.0
+    }
+}
+
+/// Where the points of a mesh are.
+struct Points {
+    /// From their middle.
+    points: Vec<DVec3>,
+    /// That of the box around its corners, from the origin of the mesh.
+    middle: DVec3,
+}
+
+impl Points {
+    fn of(source: &Triangles, turn: DMat3) -> Self {
+        let mut points: Vec<DVec3> = source.points().iter().map(|&point| turn * point).collect();
+        let named = source.faces().as_flattened().iter();
+        let corners = named.map(|&corner| points[corner as usize]);
+        let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (low, high) = corners.fold(none, |(low, high), corner| {
+            (low.min(corner), high.max(corner))
+        });
+        let middle = low * 0.5 + high * 0.5;
+        for point in &mut points {
+            *point -= middle;
+        }
+        Self { points, middle }
     }
 }
 
@@ -76,20 +118,33 @@ pub struct MeshInstance<R> {
 }
 
 impl PackedMesh<f64> {
-    /// Packs a mesh: what it is is decided in double precision, whatever it is traced in.
+    /// Packs a mesh: what it is is decided in double precision, whatever it is traced in; and before it is turned, so that
+    /// it stays the same when it is, see [`Self::turned`].
     pub fn new(mesh: &Mesh) -> Self {
-        let (source, turn) = (mesh.source.triangles(), mesh.turn());
-        let turned = || source.points().iter().map(|&point| turn * point);
-        let low = turned().fold(DVec3::INFINITY, DVec3::min);
-        let high = turned().fold(DVec3::NEG_INFINITY, DVec3::max);
-        let middle = low * 0.5 + high * 0.5;
-        let points: Vec<DVec3> = turned().map(|point| point - middle).collect();
+        if mesh.rotation == DVec3::ZERO {
+            return Self::of(mesh);
+        }
+        let level = Mesh {
+            rotation: DVec3::ZERO,
+            ..mesh.clone()
+        };
+        let turned = Self::of(&level).turned(mesh);
+        turned.unwrap_or_else(|| Self {
+            // Its faces may stand in another order.
+            faces: [].into(),
+            ..Self::of(mesh)
+        })
+    }
+
+    fn of(mesh: &Mesh) -> Self {
+        let turn = mesh.turn();
+        let Points { points, middle } = Points::of(mesh.source.triangles(), turn);
         let is_mirrored = turn.determinant() < 0.0;
         // Clockwise seen from outside, as it was before.
         let face = |&[a, b, c]: &[u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
         let corners = |face: [u32; 3]| face.map(|point| points[point as usize]);
         let packed = |face: &[u32; 3]| PackedTriangle::of_mesh(corners(*face));
-        let faces = source.faces().iter().map(face);
+        let faces = mesh.source.triangles().faces().iter().map(face);
         let faces: Vec<_> = faces.filter(|face| packed(face).is_some()).collect();
         // The tree first: to build it takes more room than anything else.
         let mut bvh = Bvh::new(faces.len(), |number| Member {
@@ -114,24 +169,22 @@ impl PackedMesh<f64> {
         if volume < 0.0 {
             triangles.iter_mut().for_each(PackedTriangle::turn);
         }
-        let smooth = if mesh.smooth > 0.0 {
-            corner_normals(&triangles, mesh.smooth)
-        } else {
-            Vec::new()
-        };
+        let smooth = normals_of(mesh, &triangles);
         Self {
             has_flat: has_flat(&smooth),
             lift: largest_lift(&triangles, &smooth),
             reach: reach(&triangles, bvh.bounds.ball().0),
             smooth,
+            faces: faces.into(),
             things,
             bvh,
             is_solid: volume != 0.0,
+            is_inside_out: volume < 0.0,
             triangles,
             middle,
             turn,
             key: MeshKey::of(mesh),
-            source: Arc::clone(source),
+            source: Arc::clone(mesh.source.triangles()),
         }
     }
 
@@ -144,8 +197,51 @@ impl PackedMesh<f64> {
     fn rounded<R: Real>(&self) -> PackedMesh<R> {
         let triangles = self.triangles.iter().map(PackedTriangle::in_precision);
         let smooth = self.smooth.iter().map(CornerNormals::in_precision);
-        let (triangles, smooth) = (triangles.collect::<Vec<_>>(), smooth.collect::<Vec<_>>());
-        let bvh = self.bvh.in_precision();
+        self.with(
+            (triangles.collect(), smooth.collect()),
+            self.bvh.in_precision(),
+        )
+    }
+}
+
+impl<R: Real> PackedMesh<R> {
+    /// The same mesh, turned otherwise: what hangs together, how thick it is and what stands beside what need not be found
+    /// out again. `None` where that is not known, or rounding leaves a face without an area.
+    pub fn turned(&self, mesh: &Mesh) -> Option<PackedMesh<f64>> {
+        let turn = mesh.turn();
+        let Points { points, middle } = Points::of(&self.source, turn);
+        let faces = self.faces.par_iter().zip(&self.triangles);
+        let triangles = faces.map(|(face, own)| {
+            let corners = face.map(|point| points[point as usize]);
+            let mut triangle = PackedTriangle::of_mesh(corners)?;
+            if self.is_inside_out {
+                triangle.turn();
+            }
+            triangle.thickness = own.thickness.to_f64();
+            triangle.has_tips = own.has_tips;
+            Some(triangle)
+        });
+        let triangles: Vec<PackedTriangle<f64>> = triangles.collect::<Option<_>>()?;
+        if triangles.len() < self.triangles.len() {
+            return None;
+        }
+        let mut bvh = self.bvh.in_precision();
+        bvh.refit(|number| member(&triangles[number]));
+        let smooth = normals_of(mesh, &triangles);
+        Some(PackedMesh {
+            middle,
+            turn,
+            key: MeshKey::of(mesh),
+            ..self.with((triangles, smooth), bvh)
+        })
+    }
+
+    /// The same mesh, with its triangles elsewhere.
+    fn with<S: Real>(
+        &self,
+        (triangles, smooth): (Vec<PackedTriangle<S>>, Vec<CornerNormals<S>>),
+        bvh: Bvh<S>,
+    ) -> PackedMesh<S> {
         PackedMesh {
             has_flat: has_flat(&smooth),
             lift: largest_lift(&triangles, &smooth),
@@ -153,17 +249,17 @@ impl PackedMesh<f64> {
             triangles,
             smooth,
             bvh,
+            faces: Arc::clone(&self.faces),
             things: Arc::clone(&self.things),
             is_solid: self.is_solid,
+            is_inside_out: self.is_inside_out,
             middle: self.middle,
             turn: self.turn,
             key: self.key,
             source: Arc::clone(&self.source),
         }
     }
-}
 
-impl<R: Real> PackedMesh<R> {
     /// The first of its faces that one of this number hangs together with.
     pub fn thing_of(&self, face: usize) -> usize {
         self.things.get(face).map_or(0, |&first| first as usize)
@@ -195,6 +291,15 @@ pub fn measure(
         triangle.has_tips = has_tips;
     }
     bvh.refit(|number| member(&triangles[number]));
+}
+
+/// The normals of faces that are shaded as one curved surface.
+fn normals_of(mesh: &Mesh, triangles: &[PackedTriangle<f64>]) -> Vec<CornerNormals<f64>> {
+    if mesh.smooth > 0.0 {
+        corner_normals(triangles, mesh.smooth)
+    } else {
+        Vec::new()
+    }
 }
 
 /// Whether some faces with these normals look flat.
@@ -276,6 +381,59 @@ mod tests {
                 smooth.curvature
             );
         }
+    }
+
+    #[test]
+    fn a_mesh_is_the_same_whichever_way_it_was_turned_before() {
+        let source = Mesh::of(icosphere(2.0));
+        let posed = |rotation: [f64; 3]| Mesh {
+            rotation: rotation.into(),
+            scale: DVec3::new(1.0, -2.0, 0.5),
+            smooth: 60.0,
+            ..source.clone()
+        };
+        let (level, here) = (posed([0.0; 3]), posed([10.0, -70.0, 200.0]));
+        let fresh = PackedMesh::new(&here);
+        for before in [level, posed([90.0, 0.0, 3.0])] {
+            let before = PackedMesh::new(&before);
+            for turned in [before.turned(&here), before.rounded::<f64>().turned(&here)] {
+                let turned = turned.expect("no face is lost");
+                assert_eq!(
+                    format!("{:?}", turned.triangles),
+                    format!("{:?}", fresh.triangles)
+                );
+                assert_eq!(
+                    format!("{:?}", turned.smooth),
+                    format!("{:?}", fresh.smooth)
+                );
+                assert_eq!(format!("{:?}", turned.bvh), format!("{:?}", fresh.bvh));
+                assert_eq!((turned.middle, turned.key), (fresh.middle, fresh.key));
+            }
+        }
+        // As if it had been made as it stands: the same faces in another order, about as thick, since one of several is
+        // measured.
+        let sorted = |mesh: &PackedMesh<f64>| {
+            let faces = mesh.triangles.iter();
+            let mut faces: Vec<_> = faces
+                .map(|face| (format!("{:?}", face.corners), face.has_tips, face.thickness))
+                .collect();
+            faces.sort_by(|a, b| a.0.cmp(&b.0));
+            faces
+        };
+        for (one, other) in sorted(&fresh).iter().zip(&sorted(&PackedMesh::of(&here))) {
+            assert_eq!((&one.0, one.1), (&other.0, other.1));
+            assert!((0.7..1.4).contains(&(one.2 / other.2)), "{one:?} {other:?}");
+        }
+        let single = fresh.rounded::<f32>();
+        let turned = single.turned(&posed([0.0; 3])).expect("no face is lost");
+        let level = PackedMesh::new(&posed([0.0; 3])).rounded::<f32>();
+        let turned = turned.rounded::<f32>();
+        assert_eq!(
+            format!("{:?}", turned.triangles),
+            format!("{:?}", level.triangles)
+        );
+        let volume = volume(&fresh.triangles);
+        assert!(fresh.is_solid && volume > 0.0, "{volume}");
     }
 
     #[test]

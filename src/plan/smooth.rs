@@ -4,7 +4,7 @@ use crate::primitive::{CornerNormals, PackedTriangle, number_corners};
 use crate::simd::{Real, Vec3};
 
 /// At corners where more faces than this meet, they stay flat: each is held against all others.
-const MOST_AROUND: usize = 256;
+const MOST_AROUND: usize = 1024;
 
 /// By how much the cosine between faces must be above that of the angle, or they stay flat: several roundings of single
 /// precision, which files have their corners in, so that of faces which meet at just that angle none is smooth by rounding.

@@ -15,6 +15,8 @@ use crate::simd::Vec3;
 const MEASURED: usize = 8;
 /// Cosine between the normals of faces above which they look the same way.
 const ALIKE: f64 = 0.7;
+/// Nodes that are looked into behind one of them, at most: where the boxes of long thin faces overlap, it would be all.
+const MOST_NODES: usize = 1024;
 /// Where faces are measured, as shares of their corners: not in the middle, which lies before an edge of the other side
 /// where that is its mirror image.
 const NEARLY_MIDDLE: [f64; 3] = [0.38, 0.34, 0.28];
@@ -109,13 +111,19 @@ impl Faces<'_> {
         let middle = a * of_a + b * of_b + c * of_c;
         let is_other = |other: u32| other as usize != face;
         let mut nearest = f64::INFINITY;
-        cast(self.triangles, self.bvh, (middle, inwards), |face, t| {
+        let ray = ((middle, inwards), MOST_NODES);
+        let is_sure = cast(self.triangles, self.bvh, ray, |face, t| {
             if is_other(face) {
                 nearest = nearest.min(t);
             }
             nearest
         });
-        nearest
+        if is_sure {
+            nearest
+        } else {
+            // Thin by itself, as far as is known: it is looked for.
+            nearest.min(self.triangles[face].thickness)
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use super::contacts::{Contacts, Tie};
+use super::contacts::{Contacts, Others, Tie};
 use super::pack::Plan;
 use super::packed_mesh::MeshInstance;
 use super::request::RenderRequest;
@@ -31,21 +31,24 @@ impl<R: Real> Plan<R> {
         let unlike: HashSet<usize> = unlike.flat_map(|f| [f.later, f.earlier]).collect();
         let is_seen =
             |found: &Coincidence| unlike.contains(&found.later) && unlike.contains(&found.earlier);
-        let mut ties: Vec<Tie> = Vec::new();
+        let mut ties: Vec<(Range<usize>, Vec<Range<usize>>)> = Vec::new();
         for found in met.iter().filter(|found| is_seen(found)) {
             let numbers = |place| self.numbers_at(place, &number);
             let (later, earlier) = (numbers(found.later), numbers(found.earlier));
             let (Some(later), Some(earlier)) = (later, earlier) else {
                 continue;
             };
-            match ties.last_mut().filter(|tie| tie.numbers == later) {
-                Some(tie) => tie.over.push(earlier),
-                None => ties.push(Tie {
-                    numbers: later,
-                    over: vec![earlier],
-                }),
+            match ties.last_mut().filter(|(numbers, _)| *numbers == later) {
+                Some((_, over)) => over.push(earlier),
+                None => ties.push((later, vec![earlier])),
             }
         }
+        let listed = self.primitives.len();
+        let ties = ties.into_iter().map(|(numbers, over)| Tie {
+            numbers,
+            over: Others::new(over, listed),
+        });
+        let mut ties: Vec<Tie> = ties.collect();
         ties.sort_by_key(|tie| tie.numbers.start);
         if !met.is_empty() {
             self.clearance = R::from_f64(CLEARANCE);

@@ -18,8 +18,10 @@ use crate::mesh::is_mesh_file;
 /// The RON text of the demo scene, as embedded in the program.
 pub const DEMO_TEXT: &str = include_str!("../../scenes/demo.ron");
 
-/// Longest scene file that is read, in bytes: room for 4,000,000 faces of meshes or 1,500,000 objects.
+/// Longest scene file that is read, in bytes: room for [`OWN_FACES`] or 1,500,000 objects.
 const MAX_BYTES: u64 = 256 << 20;
+/// How many faces of meshes a scene file has room for; those of other files do not count.
+pub const OWN_FACES: usize = 4_000_000;
 /// Deepest nesting of brackets; a scene needs five.
 const MAX_DEPTH: usize = 32;
 /// Most characters of a line that an error shows, so that a file on one line stays readable.

@@ -6,6 +6,7 @@ use super::camera::{Camera, Projection};
 use super::coincidence::{Coincidence, Extent, coincidences};
 use super::direction::unit;
 use super::frame::Frame;
+use super::object::Object;
 use super::shape::Shape;
 use super::whole::Scene;
 
@@ -44,22 +45,30 @@ pub enum About {
     Pack(usize),
 }
 
-/// Everything that is probably not meant.
-pub fn hints(scene: &Scene) -> Vec<Hint> {
-    let mut hints = Vec::new();
-    let mut add = |words: String, about: About, is_twice: bool| {
-        hints.push(Hint {
+impl Hint {
+    fn new(words: String, about: About, is_twice: bool) -> Self {
+        Self {
             words,
             about,
             is_twice,
-        });
-    };
-    let frame = Frame::of(scene);
-    let extent = frame.map_or(1.0, |frame| 2.0 * frame.extent);
-    let visible = scene.objects.iter().enumerate();
-    let visible = || visible.clone().filter(|(_, object)| object.visible);
+        }
+    }
+}
+
+/// Everything that is probably not meant.
+pub fn hints(scene: &Scene) -> Vec<Hint> {
+    let mut hints = camera_hints(scene);
+    hints.extend(thing_hints(scene));
+    hints
+}
+
+/// What is wrong with where the camera is.
+pub fn camera_hints(scene: &Scene) -> Vec<Hint> {
+    let mut hints = Vec::new();
+    let mut add = |words, about, is_twice| hints.push(Hint::new(words, about, is_twice));
+    let extent = Frame::of(scene).map_or(1.0, |frame| 2.0 * frame.extent);
     let eye = scene.camera.position;
-    for (index, object) in visible() {
+    for (index, object) in visible(scene) {
         let name = &object.name;
         if is_inside(&object.shape, eye) {
             let words = format!("The camera is inside {name}");
@@ -70,10 +79,22 @@ pub fn hints(scene: &Scene) -> Vec<Hint> {
             add(words, About::Object(index), false);
         }
     }
+    hints
+}
+
+fn visible(scene: &Scene) -> impl Iterator<Item = (usize, &Object)> {
+    let objects = scene.objects.iter().enumerate();
+    objects.filter(|(_, object)| object.visible)
+}
+
+/// All else, which does not change where the camera moves.
+pub fn thing_hints(scene: &Scene) -> Vec<Hint> {
+    let mut hints = Vec::new();
+    let mut add = |words, about, is_twice| hints.push(Hint::new(words, about, is_twice));
     let is_small = scene.objects.len() * scene.lights.len() <= MOST_LIT;
     for (index, light) in scene.lights.iter().enumerate().filter(|_| is_small) {
-        let lit = || visible().filter(|_| light.visible && light.intensity > 0.0);
-        for (_, object) in lit() {
+        let is_on_show = light.visible && light.intensity > 0.0;
+        for (_, object) in visible(scene).filter(|_| is_on_show) {
             let name = &object.name;
             if is_on(&object.shape, light.position) {
                 let words = format!("{} is on the surface of {name}", light.name);
@@ -93,7 +114,7 @@ pub fn hints(scene: &Scene) -> Vec<Hint> {
             add(words, About::Pack(index), false);
         }
     }
-    let centre = frame.map_or(DVec3::ZERO, |frame| frame.centre);
+    let centre = Frame::of(scene).map_or(DVec3::ZERO, |frame| frame.centre);
     add_coincident(scene, centre, &mut add);
     hints
 }

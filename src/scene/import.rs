@@ -37,13 +37,13 @@ impl Scene {
         let file = read_mesh_file(path)?;
         scene.add_parts(file.parts);
         let near = folder.and_then(|folder| path.strip_prefix(folder).ok());
-        if let (Some(near), 1) = (near.and_then(Path::to_str), scene.objects.len())
+        if let (Some(near), 1) = (near.and_then(reference_to), scene.objects.len())
             && let Some(object) = scene.objects.get_mut(0)
             && let Shape::Mesh(mesh) = &mut object.shape
         {
             // In the file's own coordinates, which are not moved to their middle.
             let mut linked = Mesh {
-                source: MeshSource::unread(near.to_owned()),
+                source: MeshSource::unread(near),
                 position: DVec3::ZERO,
                 ..mesh.clone()
             };
@@ -127,6 +127,12 @@ impl Scene {
             });
         }
     }
+}
+
+/// How a scene names a file: with the same separators on every system.
+fn reference_to(path: &Path) -> Option<String> {
+    let parts = path.components().map(|part| part.as_os_str().to_str());
+    Some(parts.collect::<Option<Vec<_>>>()?.join("/"))
 }
 
 fn plain_pack() -> ColorPack {

@@ -38,10 +38,11 @@ impl Animation {
         (a - b).abs() < SAME / self.frames_per_second
     }
 
-    /// Place of the key that counts as being at this time, the nearest, if there is one.
+    /// Place of the key that counts as being at this time, the nearest, if there is one: those of a recorded flight are
+    /// between frames, and the playhead is on one.
     fn place_at<T>(&self, keys: &[Key<T>], time: f64) -> Option<usize> {
         let off = |index: &usize| (keys[*index].time - time).abs();
-        let near = (0..keys.len()).filter(|&index| self.is_same_time(keys[index].time, time));
+        let near = (0..keys.len()).filter(|&index| self.is_near(keys[index].time, time));
         near.min_by(|a, b| off(a).total_cmp(&off(b)))
     }
 
@@ -54,7 +55,12 @@ impl Animation {
     /// each other before are two on purpose, as on both sides of a jump.
     fn replaces(&self, (from, to): (f64, f64), other: f64) -> bool {
         let were_apart = !self.is_same_time(from, other);
-        self.is_same_time(to, other) && (were_apart || (to - other).abs() < SAME_TIME)
+        self.is_near(to, other) && (were_apart || (to - other).abs() < SAME_TIME)
+    }
+
+    /// Whether times are of one frame, or nearly the same at the border between two.
+    fn is_near(&self, a: f64, b: f64) -> bool {
+        self.nearest_frame(a) == self.nearest_frame(b) || self.is_same_time(a, b)
     }
 
     /// With a camera key at this time, in place of one that is there; and its place.
@@ -242,14 +248,19 @@ impl Track {
     }
 }
 
-/// Puts a value at a time: in place of that of a key which is there, or as a new key. Its place.
+/// Puts a value at a time: in place of that of a key which is there, or as a new key. Its place. The way between two keys
+/// stays what it was when there is one more on it: a cut is a cut, and a circle goes on.
 fn put<T>(keys: &mut Vec<Key<T>>, there: Option<usize>, (time, value): (f64, T)) -> usize {
     if let Some(there) = there {
         keys[there].value = value;
         return there;
     }
     let at = keys.partition_point(|key| key.time < time);
-    keys.insert(at, Key::new(time, value));
+    let mut key = Key::new(time, value);
+    if (1..keys.len()).contains(&at) {
+        key.interpolation = keys[at - 1].interpolation;
+    }
+    keys.insert(at, key);
     at
 }
 
@@ -299,7 +310,7 @@ fn move_row<T: Clone>(
     let others = keys.iter().enumerate();
     let others = others.filter(|(index, _)| are_copies || indices.binary_search(index).is_err());
     let others: Vec<&Key<T>> = others.map(|(_, key)| key).collect();
-    let near = SAME / animation.frames_per_second;
+    let near = 1.0 / animation.frames_per_second;
     // The nearest of those that a key might replace: recorded keys may be much closer together than frames.
     let replaced = |key: &Key<T>| {
         // A copy was nowhere before.
@@ -326,104 +337,4 @@ fn move_row<T: Clone>(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Those of the keys of the only track.
-    fn times(animation: &Animation) -> Vec<f64> {
-        let keys = animation.tracks[0].keys.iter();
-        keys.map(|key| (key.time * 1e3).round() / 1e3).collect()
-    }
-
-    #[test]
-    fn keys_beside_each_other_are_deleted_and_moved_one_by_one() {
-        let target = Target::AmbientIntensity;
-        let mut animation = Animation {
-            frames_per_second: 10.0,
-            ..Animation::default()
-        };
-        for time in [0.0, 1.0, 1.2, 1.4, 3.0] {
-            animation = animation.with_value(&target, time, Value::Number(time / 10.0));
-        }
-        // In slower pictures, three of them are within a quarter of a frame.
-        animation.frames_per_second = 1.0;
-        let track = Some(0);
-        let third = KeyPlace { track, index: 2 };
-        let one = Keys::from([third]);
-        let without = animation.without_keys(&one);
-        assert_eq!(times(&without), [0.0, 1.0, 1.4, 3.0]);
-        let (moved, new) = animation.with_moved(&one, 0.8, false);
-        assert_eq!(times(&moved), [0.0, 1.0, 1.4, 2.0, 3.0]);
-        assert_eq!(new, [KeyPlace { track, index: 3 }].into());
-        let (moved, _) = animation.with_moved(&one, 1.7, false);
-        assert_eq!(times(&moved), [0.0, 1.0, 1.4, 2.9], "onto the last");
-        let (copied, new) = animation.with_moved(&one, 0.8, true);
-        assert_eq!(times(&copied), [0.0, 1.0, 1.2, 1.4, 2.0, 3.0]);
-        assert_eq!(copied.tracks[0].keys[4].value, Value::Number(0.12));
-        assert_eq!(new, [KeyPlace { track, index: 4 }].into());
-        let nearest = animation.value_at(&target, 1.15);
-        assert_eq!(nearest, Some(third));
-        let none = animation.without_keys(&animation.places());
-        assert!(none.is_still());
-    }
-
-    #[test]
-    fn keys_of_the_camera_and_of_values_are_moved_and_paced_together() {
-        let camera = |time: f64| Key::new(time, Camera::default());
-        let animation = Animation {
-            frames_per_second: 10.0,
-            keys: [1.0, 2.0].map(camera).into(),
-            ..Animation::default()
-        };
-        let target = Target::AmbientIntensity;
-        let animation = animation.with_value(&target, 0.5, Value::Number(0.3));
-        let animation = animation.with_value(&target, 4.0, Value::Number(0.4));
-        let places: Keys = animation.places().into_iter().take(3).collect();
-        // None goes before the start, and all go as far.
-        let (moved, new) = animation.with_moved(&places, -2.0, false);
-        assert_eq!(new, places);
-        let of_camera: Vec<f64> = moved.keys.iter().map(|key| key.time).collect();
-        assert_eq!((of_camera, times(&moved)), (vec![0.5, 1.5], vec![0.0, 4.0]));
-        let paced = animation.with_pace(&places, |(way, _)| *way = Interpolation::Hold);
-        let there = |place| paced.at_place(place);
-        let held = paced.places().into_iter().filter_map(there);
-        let held = held.filter(|(_, (way, _))| *way == Interpolation::Hold);
-        let held: Vec<f64> = held.map(|(time, _)| time).collect();
-        assert_eq!(held, [1.0, 2.0, 0.5]);
-    }
-
-    #[test]
-    fn a_key_among_many_takes_the_place_of_one() {
-        let key = |time: f64| Key::new(time, Camera::default());
-        let animation = Animation {
-            frames_per_second: 5.0,
-            keys: [0.0, 1.0, 1.02, 1.04, 3.0].map(key).into(),
-            ..Animation::default()
-        };
-        let last = Keys::from([KeyPlace::of_camera(4)]);
-        let (moved, new) = animation.with_moved(&last, -1.975, false);
-        let times: Vec<f64> = moved.keys.iter().map(|key| key.time).collect();
-        assert_eq!(times, [0.0, 1.0, 1.025, 1.04]);
-        assert_eq!(new, [KeyPlace::of_camera(2)].into());
-    }
-
-    #[test]
-    fn both_sides_of_a_jump_stay_two_keys() {
-        let key = |time: f64| Key::new(time, Camera::default());
-        let animation = Animation {
-            frames_per_second: 10.0,
-            keys: [0.0, 1.0, 1.02, 2.0].map(key).into(),
-            ..Animation::default()
-        };
-        let one = Keys::from([KeyPlace::of_camera(1)]);
-        for (later, are_copies, count) in [
-            (0.01, false, 4),
-            (0.02, false, 3),
-            (1.0, false, 3),
-            (0.01, true, 4),
-        ] {
-            let (moved, _) = animation.with_moved(&one, later, are_copies);
-            assert_eq!(moved.keys.len(), count, "{later} {are_copies}");
-        }
-    }
-}
+mod tests;

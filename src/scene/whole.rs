@@ -8,7 +8,7 @@ use glam::DVec3;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
-use crate::files::Marks;
+use crate::files::{Marks, is_same_file};
 
 use super::animation::Animation;
 use super::camera::{Bookmark, Camera};
@@ -164,11 +164,14 @@ impl Scene {
     #[must_use]
     pub fn taken_to(&self, folder: &Path) -> Self {
         let gone = self.gone_mesh_files();
+        let references = self.mesh_sources().filter_map(MeshSource::reference);
+        let mut elsewhere: BTreeSet<&Path> = references.map(|(own, _)| own).collect();
+        // A folder has many spellings.
+        elsewhere.retain(|own| !is_same_file(own, folder));
         self.with_sources(|source| {
-            let is_gone = source.file().is_some_and(|(_, path)| gone.contains(path));
-            (is_gone || source.is_outside(folder))
-                .then(|| source.taken_in())
-                .flatten()
+            let (own, path) = source.file()?;
+            let is_lost = gone.contains(path) || elsewhere.contains(own);
+            is_lost.then(|| source.taken_in()).flatten()
         })
     }
 
@@ -277,6 +280,13 @@ impl Scene {
     /// How many triangles the meshes have, hidden ones as well.
     pub fn faces(&self) -> usize {
         self.objects.iter().map(Object::faces).sum()
+    }
+
+    /// How many triangles are written into the file of the scene.
+    pub fn own_faces(&self) -> usize {
+        let inline = |source: &MeshSource| matches!(source, MeshSource::Inline(_));
+        let own = self.mesh_sources().filter(|source| inline(source));
+        own.map(|source| source.triangles().faces().len()).sum()
     }
 
     /// Whether the triangles of some mesh are in a file of their own.

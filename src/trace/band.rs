@@ -5,13 +5,14 @@ use std::sync::atomic::Ordering;
 
 use super::candidates::{Candidates, Span};
 use super::canvas::Canvas;
+use super::control::RenderControl;
 use super::engine::{Engine, Reference, Workspace};
 use super::heat::heat;
 use super::intersect::Kernel;
 use super::lattice::Limits;
 use super::sampler::Sampler;
 use super::shelf::Shelf;
-use super::stats::{Rays, RenderControl};
+use super::stats::Rays;
 use super::tile::{Grid, Tile, TileColors};
 use super::told::Hearing;
 use crate::plan::{Plan, Region, Show};
@@ -116,6 +117,7 @@ impl<R: SimdReal> Band<'_, R> {
             if !tile.is_in(self.region) {
                 continue;
             }
+            self.control.wait();
             let before = engine.rays.total();
             in_tile.keep_seen(in_band, plan, &tile.columns, Span::Columns);
             if plan.screen.is_some() {

@@ -1,6 +1,7 @@
 //! Which shadows hits are in that end near them: between two of those there may be light, or none.
 
 use super::candidates::Among;
+use super::coat::Coat;
 use super::cull::LightCandidates;
 use super::footprint::Footprint;
 use super::intersect::Kernel;
@@ -12,7 +13,7 @@ use super::thresholds::EDGE_CONTRAST;
 use super::walk::Stack;
 use crate::primitive::{Blur, Primitive};
 use crate::scene::Methods;
-use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
+use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// Whether there may be gaps between two shadows, of one light or of two.
@@ -30,7 +31,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         1 < shadows
     }
 
-    /// The marks of casters, see [`super::shadows`], in whose shadows hits of this brightness are; `lit` tells which
+    /// The marks of casters, see [`super::shadows`], in whose shadows hits of this coat are; `lit` tells which
     /// lights shine there. Tiles leave out different casters, and the marks are the same in all of them.
     ///
     /// Apart: few packets need it, and the others are quicker without.
@@ -38,7 +39,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     pub fn shadows_at(
         self,
         lights: &[LightCandidates],
-        (hit, footprint, brightness): (&Hit<L>, &Footprint<L>, L),
+        (hit, footprint): (&Hit<L>, &Footprint<L>),
+        (coat, view): (&Coat<L>, Vec3<L>),
         lit: L,
         stack: &mut Stack<L::Real>,
     ) -> L {
@@ -60,10 +62,12 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     let distance = to_light.length();
                     let direction = to_light * (self.splat(1.0) / distance);
                     // The shadow of a light that nobody sees is not seen either.
-                    let seen = hit.surface.normal.dot(direction)
-                        * brightness
-                        * distance.like(light.intensity);
-                    let dark = unlit & self.splat(EDGE_CONTRAST).less(seen);
+                    let normal = hit.surface.normal;
+                    let cosine = normal.dot(direction);
+                    let from = (cosine, normal, direction - view);
+                    let seen = coat.glow(self.plan, from) * distance.like(light.intensity);
+                    let facing = self.splat(0.0).less(cosine);
+                    let dark = unlit & facing & self.splat(EDGE_CONTRAST).less(seen);
                     if !dark.any() {
                         continue;
                     }

@@ -1,12 +1,14 @@
 //! What runs per ray and per tile. Knows no file and no pixel format.
 //!
-//! The files stand in the order of their dependence. From below: counters and thresholds, tiles and
+//! The files stand in the order of their dependence. From below: counters, control and thresholds, tiles and
 //! samples; which primitives to test and the tests, what lies at a hit, the footprint of a pixel and
 //! what is thin in it; packets of rays, what a beam of them can meet, and their colours; one bounce, all
 //! bounces, the pixels; the tracer, which shares tiles between threads; and questions to a scene that
 //! need no picture.
 
 mod stats;
+
+mod control;
 
 mod thresholds;
 
@@ -108,9 +110,10 @@ mod tracer;
 
 mod query;
 
+pub use control::{RenderControl, Stopwatch};
 pub use heat::heat;
-pub use query::{survey, visible};
-pub use stats::{Rays, RenderControl};
+pub use query::{KeptQuery, SceneQuery, survey, visible};
+pub use stats::Rays;
 pub use threads::{PoolError, Threads};
 pub use tile::{Grid, Pass, Pixel};
 pub use tracer::Tracer;

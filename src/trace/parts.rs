@@ -155,18 +155,20 @@ impl<L: SimdFloat> Parts<L> {
         )
     }
 
-    /// The sum of the channels of the matte colours.
+    /// See [`super::coat::Coat::glow`].
     #[inline(never)]
-    pub fn brightness(&self, plan: &Plan<L::Real>, like: L) -> L {
+    pub fn glow(&self, plan: &Plan<L::Real>, (cosine, normal, half): (L, Vec3<L>, Vec3<L>)) -> L {
         L::vectorize(
-            like.token(),
+            cosine.token(),
             #[inline(always)]
             || {
-                let mut brightness = like;
+                let zero = cosine.like(L::Real::ZERO);
+                let (mut matte, mut gloss) = (zero, zero);
                 for (here, surface) in self.surfaces(plan) {
-                    brightness = L::select(here, like.like(surface.brightness()), brightness);
+                    matte = L::select(here, zero.like(surface.brightness()), matte);
+                    gloss = L::select(here, zero.like(surface.gloss()), gloss);
                 }
-                brightness
+                cosine * matte + self.highlight(normal, half) * gloss
             },
         )
     }

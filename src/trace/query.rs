@@ -3,21 +3,19 @@
 //!
 //! The render thread asks, in pieces that can be stopped.
 
-use std::sync::atomic::Ordering;
-
 use glam::DVec3;
 use rayon::current_num_threads;
 use rayon::iter::{IntoParallelIterator as _, ParallelExtend as _, ParallelIterator as _};
 
 use super::candidates::{Among, Candidates};
+use super::control::RenderControl;
 use super::intersect::Kernel;
 use super::paths::{IgnoredPrimitive, Paths};
 use super::roots::Roots;
-use super::stats::RenderControl;
 use crate::animate::Seen;
-use crate::plan::{Kept, Plan, RenderRequest};
+use crate::plan::{Plan, Planner, RenderRequest};
 use crate::primitive::{Blur, Ray};
-use crate::scene::{Camera, Framing, Scene, Take};
+use crate::scene::{Camera, Framing, List, Object, Scene, Take};
 use crate::simd::Vec3;
 
 /// The visible objects of a scene; markers of lights are not among them.
@@ -27,15 +25,36 @@ pub struct SceneQuery {
     all: Candidates,
 }
 
+/// A query that is kept: the next question may be about the same objects, seen from elsewhere.
+#[derive(Clone, Debug, Default)]
+pub struct KeptQuery(Option<(List<Object>, SceneQuery)>);
+
+impl KeptQuery {
+    /// The query of a scene; what is ready in `planner` is not made ready again.
+    pub fn of(&mut self, scene: &Scene, planner: &Planner) -> &SceneQuery {
+        let known = self.0.take();
+        let known = known.filter(|(objects, _)| objects.is_same(&scene.objects));
+        let fresh = || (scene.objects.clone(), SceneQuery::of(scene, planner));
+        &self.0.insert(known.unwrap_or_else(fresh)).1
+    }
+}
+
 impl SceneQuery {
     /// What can be seen of a scene, which must pass [`crate::scene::check`].
     pub fn new(scene: &Scene) -> Self {
-        let unmarked = Scene {
-            light_visualization: false,
+        Self::of(scene, &Planner::default())
+    }
+
+    fn of(scene: &Scene, planner: &Planner) -> Self {
+        // Nothing is asked of lights.
+        let unlit = Scene {
+            lights: List::new(),
             ..scene.clone()
         };
         let request = RenderRequest::sized(1, 1);
-        let plan = Plan::new(&unmarked, &request, &mut Kept::default());
+        let mut own = Planner::default();
+        own.share_meshes(planner);
+        let plan = Plan::new(&unlit, &request, &mut own.double);
         Self {
             all: Candidates::all(&plan),
             plan,
@@ -80,16 +99,14 @@ impl SceneQuery {
 const SURVEYED: u32 = 5;
 
 /// Adds to `seen` what the other samples of a recorded flight see of the scene, at a grid of places in
-/// their pictures: all of them, or at least one for each thread if `control` says stop. Whether it was
-/// all of them.
+/// their pictures, so many times as wide as high: all of them, or at least one for each thread if `control`
+/// says stop. Whether it was all of them.
 pub fn survey(
     take: &Take,
-    scene: &Scene,
+    (query, aspect): (&SceneQuery, f64),
     seen: &mut Vec<Vec<Seen>>,
     control: &RenderControl,
 ) -> bool {
-    let query = SceneQuery::new(scene);
-    let aspect = scene.render.aspect();
     let sample = |sample: usize| {
         let framing = take.camera(sample).and_then(|camera| camera.framing());
         framing.map_or(Vec::new(), |framing| query.look(&framing, aspect))
@@ -97,7 +114,7 @@ pub fn survey(
     while seen.len() < take.samples.len() {
         let last = take.samples.len().min(seen.len() + current_num_threads());
         seen.par_extend((seen.len()..last).into_par_iter().map(sample));
-        if control.stop.load(Ordering::Relaxed) {
+        if control.is_stopped() {
             break;
         }
     }
@@ -106,12 +123,11 @@ pub fn survey(
 
 /// For each point, whether nothing stands between it and the camera. `None` if `control` said stop.
 pub fn visible(
-    scene: &Scene,
+    query: &SceneQuery,
     camera: &Camera,
     points: &[DVec3],
     control: &RenderControl,
 ) -> Option<Vec<(DVec3, bool)>> {
-    let query = SceneQuery::new(scene);
     let framing = camera.framing();
     let is_visible = |point: DVec3| {
         framing.is_some_and(|framing| {
@@ -120,7 +136,7 @@ pub fn visible(
         })
     };
     let points = points.iter().map(|&point| {
-        let is_stopped = control.stop.load(Ordering::Relaxed);
+        let is_stopped = control.is_stopped();
         (!is_stopped).then(|| (point, is_visible(point)))
     });
     points.collect()

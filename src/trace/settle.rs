@@ -8,6 +8,7 @@ use super::intersect::{Kernel, Nearest};
 use super::paths::{Paths, real};
 use super::scan::Test;
 use super::walk::Stack;
+use crate::plan::Others;
 use crate::primitive::{Blur, Primitive, WithPrimitive};
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
@@ -31,7 +32,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             #[inline(always)]
             || {
                 let mut settled = nearest;
-                let (infinity, listed) = (self.infinity(), self.plan.primitives.len());
+                let infinity = self.infinity();
                 let mut left = nearest.t.less(infinity).bits();
                 while left != 0 {
                     let lane = left.trailing_zeros() as usize;
@@ -58,7 +59,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                         rank: infinity,
                     };
                     self.meet_all(&tie.over, paths, &mut test);
-                    if tie.over.iter().any(|numbers| listed <= numbers.start)
+                    if tie.over.are_in_tree()
                         && let Some(thicket) = self.thicket(among, (here, blur))
                     {
                         thicket.scan(paths, stack, &mut test);
@@ -74,15 +75,14 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
 
     /// Tests those of some objects that stand in no tree.
     #[inline(always)]
-    fn meet_all(self, over: &[Range<usize>], paths: &Paths<L>, test: &mut SettleTest<L>) {
-        let listed = self.plan.primitives.len();
-        for &Range { start, .. } in over.iter().filter(|numbers| numbers.start < listed) {
+    fn meet_all(self, over: &Others, paths: &Paths<L>, test: &mut SettleTest<L>) {
+        for number in over.listed() {
             let meet = Meet {
                 paths,
-                number: start,
+                number,
                 test: &mut *test,
             };
-            self.plan.primitives.with(start, meet);
+            self.plan.primitives.with(number, meet);
         }
     }
 }
@@ -90,7 +90,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
 /// Looks for the first of some objects that is met where something was.
 struct SettleTest<'a, L: SimdFloat> {
     methods: &'a Methods,
-    over: &'a [Range<usize>],
+    over: &'a Others,
     met: Nearest<L>,
     /// How far from there it may be across its surface.
     apart: L,
@@ -116,11 +116,7 @@ impl<L: SimdFloat> Test<L> for SettleTest<'_, L> {
         paths: &Paths<L>,
         number: usize,
     ) {
-        let Some(rank) = self
-            .over
-            .iter()
-            .position(|numbers| numbers.contains(&number))
-        else {
+        let Some(rank) = self.over.rank_of(number) else {
             return;
         };
         let t = paths.distance::<false, P>(primitive, prepared, number, self.methods);

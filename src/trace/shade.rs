@@ -13,6 +13,7 @@ use super::mirrored::Mirrored;
 use super::packet::{EdgeInfo, Packet};
 use super::parts::{Arriving, Parts};
 use super::paths::{IgnoredPrimitive, NOTHING, Paths};
+use super::shadows::light_bit;
 use super::stats::Rays;
 use super::surface::Hit;
 use super::thin::Gaze;
@@ -21,9 +22,6 @@ use super::walk::Stack;
 use crate::plan::{PointLight, Show};
 use crate::primitive::Blur;
 use crate::simd::{Mask as _, SimdFloat, Vec3};
-
-/// Lights that an edge tells apart: sums of so many powers of two are exact in any real type.
-const LIGHT_BITS: usize = 20;
 
 /// How packets are shaded.
 pub struct Shader<'a, L: SimdFloat, const TREE: bool> {
@@ -143,9 +141,8 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                     && let Some(footprint) = point.footprint
                 {
                     let (hit, lit) = (point.hit, edge.lit);
-                    let brightness = point.coat.brightness(kernel.plan, kernel.splat(0.0));
-                    let seen = (&hit, &footprint, brightness);
-                    edge.shadows = edge.shadows + kernel.shadows_at(lights, seen, lit, stack);
+                    let (seen, look) = ((&hit, &footprint), (&point.coat, point.view));
+                    edge.shadows = edge.shadows + kernel.shadows_at(lights, seen, look, lit, stack);
                 }
                 match point.coat {
                     Coat::One(surface) => {
@@ -367,9 +364,9 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 // What is in the shadow of something wide is not seen to be in that of something thin as well.
                 let open = facing & !blocked.wide;
                 // The shadow of a light that nobody sees is not seen either.
-                let brightness = point.coat.brightness(kernel.plan, zero);
-                let brightest = brightness * zero.like(light.intensity);
-                let visible = kernel.splat(EDGE_CONTRAST).less(cosine * brightest);
+                let from = (cosine, hit.surface.normal, l - point.view);
+                let brightest = point.coat.glow(kernel.plan, from) * zero.like(light.intensity);
+                let visible = lit_side & kernel.splat(EDGE_CONTRAST).less(brightest);
                 let gaze = Gaze {
                     paths: &paths,
                     active: open & visible,
@@ -402,7 +399,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             arriving.highlight = L::select(lit, highlight, arriving.highlight);
         }
         if let Some((edge, footprint)) = edge {
-            let bit = kernel.splat(f64::from(1_u32 << (source.index % LIGHT_BITS)));
+            let bit = kernel.splat(light_bit(source.index));
             edge.lit = L::select(lit, edge.lit + bit, edge.lit);
             if point.coat.is_sharp() {
                 let off = (normal - half * (one / half.length())).length();

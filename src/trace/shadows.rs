@@ -7,10 +7,25 @@
 
 /// Lights that are told apart: the first of the scene.
 const LIGHTS: usize = 3;
+/// Lights that an edge tells apart: sums of so many powers of two are exact in any real type.
+const LIGHT_BITS: usize = 20;
+/// Bits that more lights share: few, so that the sum of three thousand lights is exact as well.
+const SHARED: usize = 13;
 /// Bits that tell casters apart. Those of all lights together are exact in any real type.
 const BITS: u32 = 5;
 /// Bits of what is seen directly; above them are those of what is seen in a mirror.
 const DIRECT: u32 = LIGHTS as u32 * BITS;
+
+/// What an edge adds for a light that shines. Those that shadows are noted of have a power of two of their own; no sum
+/// of the others reaches down to it.
+#[inline(always)]
+pub fn light_bit(light: usize) -> f64 {
+    let place = match light.checked_sub(LIGHT_BITS) {
+        None => light,
+        Some(other) => LIGHTS + other % SHARED,
+    };
+    f64::from(1_u32 << place)
+}
 
 /// What tells a caster from others, by its number: from 1 on.
 #[inline(always)]
@@ -76,6 +91,17 @@ mod tests {
             marks.sum::<f64>() as f32 as u32
         };
         joined(sum(direct), sum(mirrored))
+    }
+
+    #[test]
+    fn no_sum_of_other_lights_is_taken_for_one_that_is_told_apart() {
+        let others: f64 = (LIGHTS..3000).map(light_bit).sum();
+        for own in 0..LIGHTS {
+            let lit = (others + light_bit(own)) as f32 as u32;
+            let told: Vec<u32> = (0..LIGHTS).map(|light| lit >> light & 1).collect();
+            let expected: Vec<u32> = (0..LIGHTS).map(|light| u32::from(light == own)).collect();
+            assert_eq!(told, expected);
+        }
     }
 
     #[test]

@@ -1,7 +1,6 @@
-//! What is counted, and how a trace is stopped.
+//! What is counted.
 
 use std::ops::{Add, AddAssign};
-use std::sync::atomic::{AtomicBool, AtomicU64};
 
 use serde::Serialize;
 
@@ -42,13 +41,4 @@ impl Add for Rays {
             again: self.again + other.again,
         }
     }
-}
-
-/// What a running trace and its caller tell each other.
-#[derive(Debug, Default)]
-pub struct RenderControl {
-    /// Set by the caller to end the trace within a part of a tile.
-    pub stop: AtomicBool,
-    /// Pixels traced so far.
-    pub pixels: AtomicU64,
 }

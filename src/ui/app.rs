@@ -11,6 +11,7 @@ use super::exports::Exports;
 use super::files::Files;
 use super::finder::Finder;
 use super::flying::Flying;
+use super::grain::Grain;
 use super::histogram::Levels;
 use super::inspector::Quality;
 use super::lab::Lab;
@@ -32,7 +33,6 @@ use super::wishes::FileOutcome;
 use super::{help, theme};
 use crate::editor::{Action, Editor, Mode, Time};
 use crate::image::Image;
-use crate::mesh::is_mesh_file;
 use crate::scene::{Aspect, Scene};
 use crate::worker::{Answer, RenderThreadError};
 
@@ -69,6 +69,7 @@ pub struct App {
     pub(super) examples: Examples,
     pub(super) check: SceneCheck,
     pub(super) still: Still,
+    grain: Grain,
     pub(super) levels: Levels,
     pub(super) keys_are_taken: bool,
     /// Commands for the next frame.
@@ -132,6 +133,7 @@ impl App {
             examples: Examples::default(),
             check: SceneCheck::default(),
             still: Still::default(),
+            grain: Grain::default(),
             levels: Levels::default(),
             keys_are_taken: false,
             deferred: Vec::new(),
@@ -294,15 +296,7 @@ impl eframe::App for App {
         self.close_if_meant(ctx);
         let outcome = self.files.poll(ctx, &mut self.editor);
         self.act_on(ctx, outcome);
-        for file in ctx.input(|input| input.raw.dropped_files.clone()) {
-            if is_mesh_file(file.path()) {
-                self.files.import_mesh(ctx, &mut self.editor, file.path());
-                continue;
-            }
-            let next = Next::Open(file.path().to_owned());
-            let outcome = self.files.start(ctx, &mut self.editor, next);
-            self.act_on(ctx, outcome);
-        }
+        self.take_dropped(ctx);
         let is_closing = ctx.input(|input| input.viewport().close_requested());
         if is_closing && self.closing.is_none() {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
@@ -325,11 +319,19 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         keep_readable(ui);
+        self.grain.update(ui.ctx(), self.editor.scene());
         // What had the keys when this frame's were pressed: a field loses its focus to Escape, and a
         // menu closes, before this is asked.
         let was_typing = ui.text_edit_focused();
         let keys_are_free = !self.keys_are_taken && !was_typing;
+        // What is recorded stays as it was flown.
+        let is_recording = self.editor.timeline().recorded().is_some();
+        let gives_up = !is_recording && self.flying.gives_up(ui);
         let mut out = UiRequests {
+            actions: gives_up
+                .then_some(Action::CancelGesture)
+                .into_iter()
+                .collect(),
             commands: self.commanded(ui, keys_are_free),
             ..UiRequests::default()
         };
@@ -366,6 +368,9 @@ impl eframe::App for App {
         let flies = keys_are_free && is_free && !self.outliner.has_keys(ui);
         let speed = (&**self.editor.scene(), self.layout.fly_speed);
         let motion = self.flying.step(ui, flown, flies, speed);
+        if self.flying.begins_to_look() {
+            out.actions.push(Action::BeginGesture);
+        }
         out.actions.extend(motion.map(Action::Fly));
         let questions = std::mem::take(&mut out.questions);
         self.carry_out(&ctx, out, was_typing);

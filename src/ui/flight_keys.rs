@@ -21,6 +21,7 @@ const STILL: Motion = Motion {
     up: 0.0,
     yaw: 0.0,
     pitch: 0.0,
+    zoom: 0.0,
 };
 
 /// A table of keys: each with the direction in which it flies, and what Help says about it.

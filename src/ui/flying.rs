@@ -1,7 +1,7 @@
 //! From held keys and mouse moves to steps of a flight. Speeds are per second, whatever the frame
 //! rate.
 
-use egui::{Context, Event, Key, PointerButton, Response, Ui, Vec2, vec2};
+use egui::{Context, Event, Key, Modifiers, PointerButton, Response, Ui, Vec2, vec2};
 
 use super::flight_keys::{FLIGHT, FlightKey};
 use crate::editor::Motion;
@@ -9,6 +9,8 @@ use crate::scene::Scene;
 
 /// Radians per second of an arrow key.
 const TURN_SPEED: f64 = 0.9;
+/// How fast a key brings an orthographic picture nearer: to half its window in a second.
+const ZOOM_SPEED: f64 = std::f64::consts::LN_2;
 /// Radians per point of mouse movement.
 const MOUSE_TURN: f64 = 0.004;
 /// Flying speed in scene extents per second: four seconds across.
@@ -44,6 +46,26 @@ pub struct Flying {
     wheel_at: Option<f64>,
     /// When the speed was last changed.
     changed_at: Option<f64>,
+    look: Look,
+}
+
+/// What the secondary button is held for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Look {
+    /// It is not, or for something else.
+    #[default]
+    Not,
+    /// Looking around, from this frame on.
+    Begins,
+    /// Looking around.
+    Around,
+    /// Nothing any more: Escape took it back.
+    GivenUp,
+}
+
+/// Whether the picture is looked around in.
+fn is_looked_around_in(picture: &Response) -> bool {
+    picture.dragged_by(PointerButton::Secondary)
 }
 
 /// What the control key is being held for.
@@ -102,13 +124,36 @@ impl Flying {
             let speed = speed(scene) * fast * factor;
             let seconds = f64::from(ui.input(|input| input.stable_dt)).min(LONGEST_FRAME);
             motion = held.times(speed * seconds, TURN_SPEED * seconds);
+            motion.zoom = held.forward * ZOOM_SPEED * fast * seconds;
         }
-        if let Some(picture) = picture.filter(|p| p.dragged_by(PointerButton::Secondary)) {
+        self.look = match self.look {
+            _ if !ui.input(|input| input.pointer.secondary_down()) => Look::Not,
+            Look::Not if picture.is_some_and(is_looked_around_in) => Look::Begins,
+            Look::Begins => Look::Around,
+            going_on => going_on,
+        };
+        let looks = matches!(self.look, Look::Begins | Look::Around);
+        if let Some(picture) = picture.filter(|picture| looks && is_looked_around_in(picture)) {
             let moved = drag_of(picture);
             motion.yaw += f64::from(moved.x) * MOUSE_TURN;
             motion.pitch -= f64::from(moved.y) * MOUSE_TURN;
         }
         (motion != Motion::default()).then_some(motion)
+    }
+
+    /// Whether looking around begins in this frame: it is a step of its own, also in flight.
+    pub fn begins_to_look(&self) -> bool {
+        self.look == Look::Begins
+    }
+
+    /// Whether Escape takes back how the camera was moved since looking around began; it means nothing else then.
+    pub fn gives_up(&mut self, ui: &Ui) -> bool {
+        let gives_up = matches!(self.look, Look::Begins | Look::Around)
+            && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
+        if gives_up {
+            self.look = Look::GivenUp;
+        }
+        gives_up
     }
 
     /// Points that the wheel turned over the picture. While the camera flies or looks around, the wheel

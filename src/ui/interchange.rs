@@ -12,7 +12,7 @@ use crate::export::{Job, Pattern, Sequence, povray_text, write_job, write_text};
 use crate::files::is_same_file;
 use crate::image::Format;
 use crate::mesh::{MeshFile, Part};
-use crate::scene::{Animation, Camera, Key, Scene, around, check, read_text};
+use crate::scene::{Animation, Camera, OWN_FACES, Scene, around, check, read_text};
 use crate::words::counted;
 
 /// How many times as large as a scene, or as small, a mesh is whose size is told.
@@ -70,10 +70,10 @@ pub fn export_path(editor: &mut Editor, path: &Path) {
     } else {
         to_text(keys).map_err(Box::<dyn Error>::from)
     };
-    let has_ways = keys.iter().any(|key| {
-        let plain = Key::new(key.time, key.value.clone());
-        (key.interpolation, key.easing) != (plain.interpolation, plain.easing)
-    });
+    let plain = Default::default();
+    let has_ways = keys
+        .iter()
+        .any(|key| (key.interpolation, key.easing) != plain);
     // Who takes it for another program may know; who takes it for a copy does not.
     let lost = if is_table(path) && has_ways {
         " without the ways and paces between keys: a RON file keeps them"
@@ -86,9 +86,9 @@ pub fn export_path(editor: &mut Editor, path: &Path) {
     }
 }
 
-/// The scene as it is now, in POV-Ray's language.
+/// The scene as the window shows it, at the playhead's time and through its camera, in POV-Ray's language.
 pub fn export_povray(editor: &mut Editor, path: &Path) {
-    match write_text(path, &povray_text(editor.scene())) {
+    match write_text(path, &povray_text(editor.shown())) {
         Ok(()) => editor.notify(format!("Saved {}", path.display())),
         Err(error) => editor.report_error_in(Ask::ExportPovray.title(), error.to_string()),
     }
@@ -129,10 +129,22 @@ fn write(editor: &Editor, path: &Path) -> Result<Job, Box<dyn Error>> {
         );
         return Err(sentence.into());
     }
+    check_whole(editor.scene())?;
     let (pattern, folder) = (Pattern::default(), PathBuf::from("frames"));
     let sequence = Sequence::new(editor.scene().clone(), None, pattern, Format::Ppm, folder)?;
     let own = own.filter(|_| !editor.is_dirty());
     Ok(write_job(&editor.document(), own, &sequence, path)?)
+}
+
+/// Refuses to make frames of a scene with a mesh that is not there: nobody would miss it in a thousand files.
+pub fn check_whole(scene: &Scene) -> Result<(), String> {
+    let problem = scene.mesh_problems().next();
+    problem.map_or(Ok(()), |(index, why)| {
+        let name = &scene.objects[index].name;
+        Err(format!(
+            "{name:?} cannot be shown, and no frame is made without it: {why}"
+        ))
+    })
 }
 
 /// Makes a change. Whether there was one: it may be refused, with a reason of its own.
@@ -165,6 +177,14 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
         editor.scene().objects.len(),
         editor.scene().objects.len() + parts.len(),
     );
+    let room = OWN_FACES.saturating_sub(editor.scene().own_faces());
+    if count > room {
+        let (path, limit) = (path.display(), OWN_FACES);
+        let why = format!(
+            "{path} has {count} triangles, and a scene file has room for {limit}; `glint convert {path} -o NAME.ron` makes a scene beside it that refers to it"
+        );
+        return editor.report_error_in(Ask::ImportMesh.title(), why);
+    }
     // What is all that there is to see is brought into the picture.
     let seen = if first == 0 { &parts[..] } else { &[] };
     let bounds = around(seen.iter().filter_map(|part| part.triangles.bounds()));

@@ -48,6 +48,8 @@ mod prompts;
 
 mod outside;
 
+mod dropped;
+
 mod interchange;
 
 mod reading;
@@ -63,6 +65,8 @@ mod examples;
 mod raster;
 
 mod arithmetic;
+
+mod grain;
 
 mod number;
 

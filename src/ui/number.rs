@@ -10,6 +10,7 @@ use egui::{
 use glam::DVec3;
 
 use super::arithmetic::calculate;
+use super::grain::{USUAL, grain};
 use super::hint::Hint as _;
 use super::theme::ROW;
 use crate::scene::{MAX_COORDINATE, parse_vec3};
@@ -212,7 +213,9 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
         pasted,
         axis,
     } = *number;
-    let speed = (value.abs().max(size) * 0.01).max(0.01);
+    // What is no length has a size of its own.
+    let least = grain(ui.ctx()).max((field.default.abs() * 1e-3).min(USUAL));
+    let speed = (value.abs().max(size) * 0.01).max(least);
     let add = |ui: &mut Ui, widget: DragValue| {
         let widget = widget
             .speed(field.speed.unwrap_or(speed))

@@ -88,6 +88,9 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             let is_still = editor.scene().animation.is_still();
             is_still.then_some("there are no keys yet")
         }
+        Command::LookThrough if editor.timeline().recorded().is_some() => {
+            Some("a flight is being recorded")
+        }
         Command::LookThrough | Command::Ask(Ask::ExportPath) => {
             let has = !editor.scene().animation.keys.is_empty();
             (!has).then_some("the camera has no keys yet")

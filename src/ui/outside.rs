@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime};
 
 use egui::{Context, Ui};
@@ -11,11 +12,14 @@ use super::theme::GRID;
 use crate::editor::Editor;
 use crate::files::{Marks, Stamp, is_missing, marks_of, time_of};
 use crate::scene::{Document, List, Object, SceneError, differences};
+use crate::worker::Background;
 
 /// What messages are about that tell of it.
 pub const OUTSIDE: &str = "Changed outside";
 /// How often the open file is looked at.
 const RHYTHM: Duration = Duration::from_secs(1);
+/// How often it is looked at once something has changed: whoever writes it may not be ready.
+const LOOKS: u32 = 3;
 /// Most lines of differences that are shown.
 const MOST_LINES: usize = 8;
 
@@ -23,6 +27,12 @@ const MOST_LINES: usize = 8;
 #[derive(Default)]
 pub struct Watch {
     looked: Option<Instant>,
+    /// How many looks there are before the next guard.
+    left: u32,
+    /// How the files were at the last look.
+    marked: Vec<Marked>,
+    /// Who looks while nothing changes: a window that rests draws nothing.
+    guard: Option<Guard>,
     /// When it was written last, as far as is known.
     found: Option<(PathBuf, SystemTime)>,
     /// Why it could not be read: told if it is still so at the next look, since it may be half written.
@@ -38,15 +48,46 @@ pub struct Watch {
 impl Watch {
     /// Whether files must be looked at again.
     pub fn is_due(&mut self, ctx: &Context, editor: &Editor) -> bool {
-        if editor.path().is_none() {
+        let Some(path) = editor.path() else {
+            self.guard = None;
+            return false;
+        };
+        self.note_meshes(editor);
+        // An undo brings back what was read of a mesh before.
+        let meshes = self.shown.iter().flat_map(|(_, files)| files);
+        let meshes = meshes.map(|file| (file.full(), file.read));
+        let files: Vec<Watched> = meshes.chain([(path.to_owned(), None)]).collect();
+        let has_news = match &mut self.guard {
+            Some(guard) => guard.files != files || guard.alarm.take().is_some(),
+            None => false,
+        };
+        if has_news {
+            (self.guard, self.left, self.looked) = (None, LOOKS, None);
+        }
+        if self.guard.is_some() {
             return false;
         }
-        ctx.request_repaint_after(RHYTHM);
         let is_due = self.looked.is_none_or(|looked| looked.elapsed() >= RHYTHM);
         if is_due {
             self.looked = Some(Instant::now());
+            self.left = self.left.saturating_sub(1);
+            let marked = files.into_iter();
+            self.marked = marked
+                .map(|(file, read)| (marks_of(&file), file, read))
+                .collect();
+        } else if self.left == 0 {
+            self.guard = Some(Guard::new(ctx, std::mem::take(&mut self.marked)));
+            return false;
         }
+        // The frame after the last look makes the guard.
+        let is_last = is_due && self.left == 0;
+        ctx.request_repaint_after(if is_last { RHYTHM / 10 } else { RHYTHM });
         is_due
+    }
+
+    /// What was found may not be all, or not be so at the next look.
+    fn look_on(&mut self) {
+        self.left = LOOKS;
     }
 
     /// Tells if the file is not there, and was not at the last look either: whoever writes it anew may take it away first.
@@ -55,6 +96,9 @@ impl Watch {
         let is_missing = is_missing(path);
         let was_missing = self.missing.as_deref() == Some(path);
         self.missing = is_missing.then(|| path.to_owned());
+        if is_missing != was_missing {
+            self.look_on();
+        }
         let is_gone = is_missing && was_missing;
         if is_gone && !editor.is_gone() {
             let path = path.display();
@@ -67,6 +111,32 @@ impl Watch {
     /// The files of meshes that were written since they were read, and are the same at two looks: they may have been
     /// half written at the first. Their folders, and the paths in those.
     pub fn changed_meshes(&mut self, editor: &Editor) -> Vec<(PathBuf, String)> {
+        self.note_meshes(editor);
+        let files = self.shown.iter().flat_map(|(_, files)| files);
+        let seen = &mut self.seen;
+        let mut is_moving = false;
+        let changed = files.filter(|file| {
+            let full = file.full();
+            let now = marks_of(&full);
+            let [found, asked] = seen.entry(full).or_default();
+            let is_still = std::mem::replace(found, now) == now;
+            is_moving |= !is_still;
+            // What is gone stays as it is in the window.
+            let is_new = is_still && now.is_some() && now != file.read && now != *asked;
+            if is_new {
+                *asked = now;
+            }
+            is_new
+        });
+        let places = changed.map(|file| (file.folder.clone(), file.path.clone()));
+        let places = places.collect();
+        if is_moving {
+            self.look_on();
+        }
+        places
+    }
+
+    fn note_meshes(&mut self, editor: &Editor) {
         let objects = &editor.scene().objects;
         let is_other = |(of, _): &(List<Object>, _)| !of.is_same(objects);
         if self.shown.as_ref().is_none_or(is_other) {
@@ -78,22 +148,6 @@ impl Watch {
             });
             self.shown = Some((objects.clone(), files.collect()));
         }
-        let files = self.shown.iter().flat_map(|(_, files)| files);
-        let seen = &mut self.seen;
-        let changed = files.filter(|file| {
-            let full = file.folder.join(&file.path);
-            let now = marks_of(&full);
-            let [found, asked] = seen.entry(full).or_default();
-            let is_still = std::mem::replace(found, now) == now;
-            // What is gone stays as it is in the window.
-            let is_new = is_still && now.is_some() && now != file.read && now != *asked;
-            if is_new {
-                *asked = now;
-            }
-            is_new
-        });
-        let places = changed.map(|file| (file.folder.clone(), file.path.clone()));
-        places.collect()
     }
 
     /// Whether the file is another than when it was looked at last, by what the disk says of it: it is not read
@@ -102,6 +156,9 @@ impl Watch {
         let found = time_of(path).map(|time| (path.to_owned(), time));
         let is_news = found.is_none() || found != self.found;
         self.found = found;
+        if is_news {
+            self.look_on();
+        }
         is_news
     }
 
@@ -127,6 +184,46 @@ struct MeshFile {
     path: String,
     /// What marked it when it was read.
     read: Option<Marks>,
+}
+
+/// A file, and what marked it when its mesh was read.
+type Watched = (PathBuf, Option<Marks>);
+/// What marks a file now, the file, and what marked it when its mesh was read.
+type Marked = (Option<Marks>, PathBuf, Option<Marks>);
+
+impl MeshFile {
+    fn full(&self) -> PathBuf {
+        self.folder.join(&self.path)
+    }
+}
+
+/// Looks at files beside the window, and wakes it if one of them has changed.
+struct Guard {
+    /// The files, and what marked them when they were read.
+    files: Vec<Watched>,
+    alarm: Background<()>,
+    /// Gone with the guard.
+    _alive: Arc<()>,
+}
+
+impl Guard {
+    fn new(ctx: &Context, marked: Vec<Marked>) -> Self {
+        let files = marked.iter().map(|(_, file, read)| (file.clone(), *read));
+        let files = files.collect();
+        let alive = Arc::new(());
+        let is_wanted = Arc::downgrade(&alive);
+        let is_there = move || {
+            let mut marked = marked.iter();
+            is_wanted.strong_count() == 0 || marked.any(|(marks, file, _)| marks_of(file) != *marks)
+        };
+        let ctx = ctx.clone();
+        let wake = move || ctx.request_repaint();
+        Self {
+            files,
+            alarm: Background::look_out("glint-watch", RHYTHM, is_there, wake),
+            _alive: alive,
+        }
+    }
 }
 
 /// What another program has written, and how it differs.

@@ -7,7 +7,9 @@ use egui::{Context, Key, Popup, ViewportCommand};
 use glam::DVec3;
 
 use super::app::App;
-use super::commands::{Command, Zoom};
+use super::commands::{Command, Next, Zoom};
+use super::dropped::Dropped;
+use super::interchange::import_path;
 use super::layout::Below;
 use super::obstacles::is_enabled;
 use super::on_selected::{delete, duplicate_all, joined, step, toggle_visible, with_same_pack};
@@ -20,9 +22,13 @@ use crate::editor::{
     free_group_name, read,
 };
 use crate::scene::{Aspect, Bookmark, Document, Projection};
+use crate::words::counted;
 
 /// Seconds within which Escape twice asks to quit.
 const TWICE: f64 = 3.0;
+
+/// Most triangles that are copied as text.
+const COPIED_FACES: usize = 100_000;
 
 /// What messages about pasting are about.
 const PASTE: &str = "paste";
@@ -50,6 +56,41 @@ impl App {
         if self.editor.revision() != before {
             // What was measured before is not what is edited.
             self.lab.leave();
+        }
+    }
+
+    /// Opens, or adds, what is dropped onto the window.
+    pub(super) fn take_dropped(&mut self, ctx: &Context) {
+        let files = ctx.input(|input| input.raw.dropped_files.clone());
+        let files: Vec<_> = files.iter().map(|file| file.path().to_owned()).collect();
+        let dropped = Dropped::of(&files);
+        let left = dropped
+            .as_ref()
+            .map_or(0, |dropped| dropped.left_of(&files));
+        if left > 0 {
+            let files = counted(left, "other file");
+            self.editor.notify(format!(
+                "One thing after the other: {files} of those that were dropped did not come in"
+            ));
+        }
+        match dropped {
+            None => {}
+            Some(Dropped::Scene(path)) => {
+                let outcome = self.files.start(ctx, &mut self.editor, Next::Open(path));
+                self.act_on(ctx, outcome);
+            }
+            Some(Dropped::Parts { path: Some(_), .. }) if self.files.is_asking() => {
+                self.editor
+                    .notify("Answer the open question first".to_owned());
+            }
+            Some(Dropped::Parts { meshes, path }) => {
+                for mesh in meshes {
+                    self.files.import_mesh(ctx, &mut self.editor, &mesh);
+                }
+                if let Some(path) = path {
+                    import_path(&mut self.editor, &path);
+                }
+            }
         }
     }
 
@@ -157,12 +198,17 @@ impl App {
 
     /// Puts what is selected on the clipboard. Whether it is there.
     fn copy(&mut self, ctx: &Context) -> bool {
-        let document = Document::of(excerpt(self.editor.scene(), self.editor.selection()));
-        match document.to_text() {
+        let part = excerpt(self.editor.scene(), self.editor.selection());
+        // Another window looks for files in another folder. What is large is copied as the name of its file.
+        let whole = if part.faces() <= COPIED_FACES {
+            part.taken_in()
+        } else {
+            part.clone()
+        };
+        match Document::of(whole).to_text() {
             Ok(text) => {
                 ctx.copy_text(text.clone());
-                // Text says where the triangles of a mesh are, and not what they are.
-                self.copied = Some((text, document.scene));
+                self.copied = Some((text, part));
                 true
             }
             Err(error) => {

@@ -1,5 +1,7 @@
 //! What is probably not meant in the scene, with a way to it and, where there is one, a way out.
 
+use std::sync::Arc;
+
 use egui::{Popup, RichText, ScrollArea, Ui};
 
 use super::hint::Hint as _;
@@ -7,7 +9,7 @@ use super::icons;
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW, palette};
 use crate::editor::{Edit, Editor, Item, Selection};
-use crate::scene::{About, Hint, Scene, hints};
+use crate::scene::{About, Hint, Scene, camera_hints, thing_hints};
 use crate::words::counted;
 
 /// Width of the list in points.
@@ -19,6 +21,8 @@ const MOST_ROWS: f32 = 12.0;
 #[derive(Default)]
 pub struct SceneCheck {
     of: Option<u64>,
+    /// What was found of other things than the camera, and in which scene.
+    things: Option<(Arc<Scene>, Vec<Hint>)>,
     hints: Vec<Hint>,
     /// Whether too much of the picture is as bright as can be.
     is_clipped: bool,
@@ -32,7 +36,14 @@ impl SceneCheck {
     pub fn update(&mut self, editor: &Editor, is_busy: bool) {
         if self.of != Some(editor.revision()) && !is_busy {
             self.of = Some(editor.revision());
-            self.hints = hints(editor.scene());
+            let scene = editor.scene();
+            let known = self.things.take();
+            // To look at surfaces in one place takes long, and needs no camera.
+            let known = known.filter(|(of, _)| of.has_same_things(scene));
+            let found = known.map_or_else(|| thing_hints(scene), |(_, found)| found);
+            self.hints = camera_hints(scene);
+            self.hints.extend_from_slice(&found);
+            self.things = Some((Arc::clone(scene), found));
             self.is_clipped = false;
         }
     }

@@ -154,6 +154,11 @@ pub fn palette(ctx: &Context) -> Palette {
     of(ctx.theme())
 }
 
+/// The colours of lines in a picture, which is mostly dark, whatever the theme.
+pub fn in_picture() -> Palette {
+    DARK
+}
+
 fn of(theme: Theme) -> Palette {
     match theme {
         Theme::Dark => DARK,

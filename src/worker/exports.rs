@@ -30,7 +30,7 @@ impl Worker {
         });
         mailbox.put(Job::Export(id, exporting));
         drop(mailbox);
-        self.shared.wakeup.notify_one();
+        self.shared.wakeup.notify_all();
         Ok(id)
     }
 
@@ -57,7 +57,7 @@ impl Worker {
             mailbox.stop_export(id);
         }
         drop((mailbox, outbox));
-        self.shared.wakeup.notify_one();
+        self.shared.wakeup.notify_all();
     }
 
     /// Gives an export up, or takes one that has ended out of the list. Frames that are written stay.

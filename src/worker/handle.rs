@@ -1,4 +1,4 @@
-//! The handle on the render thread.
+//! The handle on the render threads.
 
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Condvar, Mutex};
@@ -6,7 +6,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use super::jobs::{
-    Activity, Answer, Event, Frame, JobKind, LiveJob, QueryJob, StillJob, ThumbnailJob,
+    Activity, Answer, Crew, Event, Frame, JobKind, LiveJob, QueryJob, StillJob, ThumbnailJob,
 };
 use super::mailbox::Job;
 use super::render_thread;
@@ -22,21 +22,21 @@ pub enum RenderThreadError {
     /// Not those that trace.
     #[error(transparent)]
     Pool(#[from] PoolError),
-    /// Not the one that shares out the work.
-    #[error("cannot start the render thread: {0}")]
+    /// Not one of those that share out the work.
+    #[error("cannot start a render thread: {0}")]
     Thread(#[source] std::io::Error),
 }
 
-/// The handle on the render thread. Dropping it ends the thread.
+/// The handle on the render threads. Dropping it ends them.
 #[derive(Debug)]
 pub struct Worker {
     pub(super) shared: Arc<Shared>,
-    thread: Option<JoinHandle<()>>,
+    threads: Vec<JoinHandle<()>>,
 }
 
 impl Worker {
-    /// Starts the render thread with `threads` tracing threads. `wake` is called from it after every
-    /// frame and event.
+    /// Starts the render threads, each with `threads` tracing threads: of the two crews, one rests or waits. `wake` is
+    /// called from them after every frame and event.
     ///
     /// # Errors
     /// [`RenderThreadError`] when the system starts no threads.
@@ -44,25 +44,31 @@ impl Worker {
         threads: Option<usize>,
         wake: impl Fn() + Send + Sync + 'static,
     ) -> Result<Self, RenderThreadError> {
-        let threads = Threads::new(threads)?;
         let shared = Arc::new(Shared {
             mailbox: Mutex::default(),
             wakeup: Condvar::new(),
             outbox: Mutex::<Outbox>::default(),
+            planner: Mutex::default(),
             until_quit: RenderControl::default(),
             wake: Box::new(wake),
         });
-        let thread = spawn("glint-render-thread", {
-            let shared = Arc::clone(&shared);
-            move || render_thread::run(&shared, &threads)
-        });
-        let thread = Some(thread.map_err(RenderThreadError::Thread)?);
-        Ok(Self { shared, thread })
+        let mut worker = Self {
+            shared,
+            threads: Vec::new(),
+        };
+        for crew in Crew::ALL {
+            let pool = Threads::new(threads)?;
+            let shared = Arc::clone(&worker.shared);
+            let work = move || render_thread::run(&shared, crew, &pool);
+            let thread = spawn(crew.name(), work).map_err(RenderThreadError::Thread)?;
+            worker.threads.push(thread);
+        }
+        Ok(worker)
     }
 
     pub(super) fn put(&self, job: Job) {
         self.shared.mailbox().put(job);
-        self.shared.wakeup.notify_one();
+        self.shared.wakeup.notify_all();
     }
 
     /// Asks for a live picture in place of any that waits; finer passes over an older one end
@@ -174,32 +180,31 @@ impl Worker {
     /// What the render thread is doing, or is about to.
     pub fn activity(&self) -> Activity {
         let mailbox = self.shared.mailbox();
-        let running = mailbox.running.as_ref();
-        match running.map(|running| (running.kind, running)) {
-            Some((JobKind::Live, running)) => {
-                return Activity::Live {
-                    revision: running.revision,
-                    elapsed: running.started.elapsed(),
-                };
-            }
-            Some((JobKind::Still | JobKind::Save, running)) => {
-                return Activity::Still {
-                    done: running.control.pixels.load(Ordering::Relaxed),
-                    total: running.pixels,
-                    elapsed: running.started.elapsed(),
-                };
-            }
-            _ => {}
+        let live = mailbox.running(Crew::Prompt);
+        if let Some(running) = live.filter(|running| running.kind == JobKind::Live) {
+            return Activity::Live {
+                revision: running.revision,
+                elapsed: running.spent(),
+            };
         }
-        let still = mailbox
-            .waiting(JobKind::Still)
-            .or_else(|| mailbox.waiting(JobKind::Save));
-        match (mailbox.waiting(JobKind::Live), still) {
-            (Some(Job::Live(live)), _) => Activity::Live {
+        if let Some(Job::Live(live)) = mailbox.waiting(JobKind::Live) {
+            return Activity::Live {
                 revision: live.revision,
                 elapsed: Duration::ZERO,
-            },
-            (_, Some(Job::Still(still))) => Activity::Still {
+            };
+        }
+        let is_still = |kind| matches!(kind, JobKind::Still | JobKind::Save);
+        let still = mailbox.running(Crew::Patient);
+        if let Some(running) = still.filter(|running| is_still(running.kind)) {
+            return Activity::Still {
+                done: running.control.pixels.load(Ordering::Relaxed),
+                total: running.pixels,
+                elapsed: running.spent(),
+            };
+        }
+        let still = mailbox.waiting(JobKind::Still);
+        match still.or_else(|| mailbox.waiting(JobKind::Save)) {
+            Some(Job::Still(still)) => Activity::Still {
                 done: 0,
                 total: still.request.pixels(),
                 elapsed: Duration::ZERO,
@@ -212,14 +217,11 @@ impl Worker {
 impl Drop for Worker {
     fn drop(&mut self) {
         let mut mailbox = self.shared.mailbox();
-        mailbox.quit = true;
-        self.shared.until_quit.stop.store(true, Ordering::Relaxed);
-        if let Some(running) = &mut mailbox.running {
-            running.give_up();
-        }
+        mailbox.quit();
+        self.shared.until_quit.stop();
         drop(mailbox);
-        self.shared.wakeup.notify_one();
-        if let Some(thread) = self.thread.take() {
+        self.shared.wakeup.notify_all();
+        for thread in self.threads.drain(..) {
             // A panic on the thread was already shown as an event.
             let _ = thread.join();
         }

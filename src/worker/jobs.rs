@@ -1,4 +1,4 @@
-//! What is asked of the render thread, and what it tells.
+//! What is asked of the render threads, and what they tell.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -34,15 +34,52 @@ pub enum JobKind {
     Lab,
 }
 
+/// The threads that share the work. Nobody who edits waits for a picture that takes long: it is paused meanwhile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Crew {
+    /// For what the window shows next.
+    Prompt,
+    /// For what was asked for and may take long; begins and goes on while the other rests.
+    Patient,
+}
+
+impl Crew {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Prompt, Self::Patient];
+
+    /// What its thread is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Prompt => "glint-prompt",
+            Self::Patient => "glint-patient",
+        }
+    }
+}
+
 impl JobKind {
-    /// Whether a new job of this kind stops one that runs: if it is more urgent, or takes its place.
-    /// Small pictures are done before anything could be gained by stopping them, and stop no measuring, which begins
-    /// anew then.
+    /// Which thread does it.
+    pub fn crew(self) -> Crew {
+        if self < Self::Still {
+            Crew::Prompt
+        } else {
+            Crew::Patient
+        }
+    }
+
+    /// Whether a new job of this kind stops one that runs, which begins anew: if it is more urgent for the same thread,
+    /// or takes its place. Small pictures are done before anything could be gained by stopping them, and stop no
+    /// measuring; a picture that is written is stopped by nothing. What measures time cannot be paused.
     pub fn preempts(self, running: Self) -> bool {
+        let is_same = self.crew() == running.crew() || running == Self::Lab;
         let replaces = self == running && self.is_replaced();
-        let waits =
-            running == Self::Thumbnail || (self, running) == (Self::Thumbnail, Self::Quality);
-        !waits && (self < running || replaces)
+        let waits = matches!(running, Self::Thumbnail | Self::Save)
+            || (self, running) == (Self::Thumbnail, Self::Quality);
+        is_same && !waits && (self < running || replaces)
+    }
+
+    /// Whether a new job of this kind lets one that runs wait.
+    pub fn pauses(self, running: Self) -> bool {
+        self.crew() == Crew::Prompt && running.crew() == Crew::Patient
     }
 
     /// Whether a new job of this kind takes the place of the one before.
@@ -131,8 +168,7 @@ pub struct StillJob {
     pub request: RenderRequest,
     /// The picture itself, if it is on screen: formats of 8 bits are written without tracing it again.
     pub traced: Option<Arc<Image>>,
-    /// Where to write it. A picture that is to be written outlives edits: it is started again when
-    /// the live view is done.
+    /// Where to write it. A picture that is to be written outlives edits: it goes on when the live view is done.
     pub save_to: Option<PathBuf>,
 }
 

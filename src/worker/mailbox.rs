@@ -1,11 +1,13 @@
 //! What waits to be done, and what is being done.
 
+use std::mem::{Discriminant, discriminant};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
-use super::jobs::{ExportState, JobKind, LiveJob, QueryJob, Question, StillJob, ThumbnailJob};
+use super::jobs::{
+    Crew, ExportState, JobKind, LiveJob, QueryJob, Question, StillJob, ThumbnailJob,
+};
 use crate::export::Exporting;
 use crate::lab::Study;
 use crate::trace::RenderControl;
@@ -46,19 +48,23 @@ impl Job {
     /// Whether `newer` makes this job pointless.
     fn is_replaced_by(&self, newer: &Self) -> bool {
         match (self, newer) {
-            (Self::Query(old), Self::Query(new)) => matches!(
-                (&old.question, &new.question),
-                (Question::Survey(..), Question::Survey(..))
-                    | (Question::Visible(..), Question::Visible(..))
-                    | (Question::Objects(..), Question::Objects(..))
-                    | (Question::Quality(..), Question::Quality(..))
-            ),
+            (Self::Query(old), Self::Query(new)) => {
+                discriminant(&old.question) == discriminant(&new.question)
+            }
             (Self::Thumbnail(old), Self::Thumbnail(new)) => old.name == new.name,
             // A still picture to look at is of the past once the scene has changed.
             (Self::Still(old), Self::Live(new)) => {
                 old.save_to.is_none() && old.revision < new.revision
             }
             _ => self.kind() == newer.kind() && newer.kind().is_replaced(),
+        }
+    }
+
+    /// What sort of question it asks.
+    fn question(&self) -> Option<Discriminant<Question>> {
+        match self {
+            Self::Query(query) => Some(discriminant(&query.question)),
+            _ => None,
         }
     }
 
@@ -83,6 +89,8 @@ pub struct Running {
     pub save_to: Option<PathBuf>,
     /// The name of an export.
     pub export: Option<u64>,
+    /// What sort of question it is.
+    question: Option<Discriminant<Question>>,
     /// Stops it.
     pub control: Arc<RenderControl>,
     /// When it was begun.
@@ -108,20 +116,23 @@ impl Running {
             pixels,
             save_to,
             export: job.export(),
+            question: job.question(),
             control: Arc::clone(control),
             started: Instant::now(),
             is_given_up: false,
         }
     }
 
-    fn stop(&self) {
-        self.control.stop.store(true, Ordering::Relaxed);
-    }
-
     /// Stops it for good.
     pub fn give_up(&mut self) {
         self.is_given_up = true;
-        self.stop();
+        self.control.stop();
+    }
+
+    /// Time since it was begun in which it did not wait.
+    pub fn spent(&self) -> Duration {
+        let spent = self.started.elapsed();
+        spent.saturating_sub(self.control.paused())
     }
 }
 
@@ -130,27 +141,32 @@ impl Running {
 pub struct Mailbox {
     /// In order of arrival, but for small pictures.
     waiting: Vec<Job>,
-    /// What is being done.
-    pub running: Option<Running>,
+    /// What each crew is doing.
+    running: [Option<Running>; 2],
     /// How many exports there were: the name of the newest.
     pub export_count: u64,
-    /// Whether the thread is to end.
+    /// Whether the threads are to end.
     pub quit: bool,
 }
 
 impl Mailbox {
-    /// Takes a job in: it takes the place of those that it makes pointless, and stops the running one
+    /// Takes a job in: it takes the place of those that it makes pointless, and stops what is running, or lets it wait,
     /// if it is more urgent.
     pub fn put(&mut self, job: Job) {
         self.waiting.retain(|old| !old.is_replaced_by(&job));
-        if let Some(running) = &mut self.running {
-            if job.kind().preempts(running.kind) {
-                running.stop();
-            }
+        for running in self.running.iter_mut().flatten() {
             let is_outdated = running.kind == JobKind::Still
                 && matches!(&job, Job::Live(live) if running.revision < live.revision);
-            let is_replaced = running.kind == job.kind() && job.kind().is_replaced();
-            running.is_given_up |= is_outdated || is_replaced;
+            let is_same = running.kind == job.kind() && job.kind().is_replaced();
+            let is_asked_anew = running.question.is_some() && running.question == job.question();
+            let is_replaced = is_same || is_asked_anew;
+            if is_outdated || is_replaced {
+                running.give_up();
+            } else if job.kind().preempts(running.kind) {
+                running.control.stop();
+            } else if job.kind().pauses(running.kind) {
+                running.control.pause();
+            }
         }
         // The newest small pictures are those that are looked for.
         let index = match job {
@@ -160,26 +176,58 @@ impl Mailbox {
         self.waiting.insert(index, job);
     }
 
-    /// Takes the most urgent job out, the first of those. An export that is paused waits.
-    pub fn next(&mut self, exports: &[ExportState]) -> Option<(Job, Arc<RenderControl>)> {
+    /// What a crew is doing.
+    pub fn running(&self, crew: Crew) -> Option<&Running> {
+        self.running[crew as usize].as_ref()
+    }
+
+    /// Whether anybody waits for what the window shows next.
+    fn is_hurried(&self) -> bool {
+        let mut waiting = self.waiting.iter();
+        self.running(Crew::Prompt).is_some() || waiting.any(|job| job.kind().crew() == Crew::Prompt)
+    }
+
+    /// Whether what was begun waits for what the window shows next.
+    pub fn is_paused(&self) -> bool {
+        let running = self.running(Crew::Patient);
+        running.is_some_and(|running| running.control.is_paused())
+    }
+
+    /// Lets what waits for the window go on, unless somebody has asked for more in the last moment.
+    pub fn go_on(&self) {
+        let running = self.running(Crew::Patient);
+        if let Some(running) = running.filter(|_| !self.is_hurried()) {
+            running.control.go_on();
+        }
+    }
+
+    /// Takes the most urgent job of a crew out, the first of those. An export that is paused waits.
+    pub fn next(
+        &mut self,
+        crew: Crew,
+        exports: &[ExportState],
+    ) -> Option<(Job, Arc<RenderControl>)> {
+        if crew == Crew::Patient && self.is_hurried() {
+            return None;
+        }
         let is_paused = |job: &Job| {
             let id = job.export();
             let mut states = exports.iter();
             id.is_some_and(|id| states.any(|state| state.id == id && state.is_paused))
         };
         let ready = self.waiting.iter().enumerate();
-        let ready = ready.filter(|(_, job)| !is_paused(job));
+        let ready = ready.filter(|(_, job)| job.kind().crew() == crew && !is_paused(job));
         let (index, _) = ready.min_by_key(|(_, job)| job.kind())?;
         let job = self.waiting.remove(index);
         let control = Arc::new(RenderControl::default());
-        self.running = Some(Running::new(&job, &control));
+        self.running[crew as usize] = Some(Running::new(&job, &control));
         Some((job, control))
     }
 
-    /// Nothing is running any more. A job that was stopped for a more urgent one is the next of its
+    /// A crew has ended what it was doing. A job that was stopped for a more urgent one is the next of its
     /// kind, unless it was given up. What was running.
-    pub fn finish(&mut self, stopped: Option<Job>) -> Option<Running> {
-        let running = self.running.take();
+    pub fn finish(&mut self, crew: Crew, stopped: Option<Job>) -> Option<Running> {
+        let running = self.running[crew as usize].take();
         let is_wanted = running.as_ref().is_some_and(|running| !running.is_given_up);
         if let Some(job) = stopped.filter(|_| is_wanted) {
             self.waiting.insert(0, job);
@@ -194,14 +242,15 @@ impl Mailbox {
 
     /// Whether a job of a kind runs or waits.
     pub fn has(&self, kind: JobKind) -> bool {
-        let mut running = self.running.iter();
+        let mut running = self.running.iter().flatten();
         running.any(|running| running.kind == kind && !running.is_given_up)
             || self.waiting(kind).is_some()
     }
 
     /// Gives the jobs of a kind up, those that wait and the one that runs. Those that waited.
     pub fn give_up(&mut self, kind: JobKind) -> Vec<Job> {
-        if let Some(running) = self.running.as_mut().filter(|running| running.kind == kind) {
+        let running = self.running.iter_mut().flatten();
+        for running in running.filter(|running| running.kind == kind) {
             running.give_up();
         }
         let (gone, kept) = std::mem::take(&mut self.waiting)
@@ -213,8 +262,17 @@ impl Mailbox {
 
     /// Stops the frame of an export that is being traced; it is the next again.
     pub fn stop_export(&self, id: u64) {
-        if let Some(running) = self.running.as_ref().filter(|r| r.export == Some(id)) {
-            running.stop();
+        let running = self.running(Crew::Patient);
+        if let Some(running) = running.filter(|running| running.export == Some(id)) {
+            running.control.stop();
+        }
+    }
+
+    /// Ends everything.
+    pub fn quit(&mut self) {
+        self.quit = true;
+        for running in self.running.iter_mut().flatten() {
+            running.give_up();
         }
     }
 
@@ -229,120 +287,4 @@ impl Mailbox {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::lab::Goal;
-    use crate::plan::RenderRequest;
-    use crate::scene::Scene;
-    use crate::worker::jobs::Pace;
-
-    fn live(revision: u64) -> Job {
-        Job::Live(LiveJob {
-            revision,
-            scene: Arc::new(Scene::empty()),
-            request: RenderRequest::sized(8, 8),
-            pace: Pace::Whole,
-        })
-    }
-
-    fn still(revision: u64, save_to: Option<&str>) -> Job {
-        Job::Still(StillJob {
-            revision,
-            scene: Arc::new(Scene::empty()),
-            request: RenderRequest::sized(8, 8),
-            traced: None,
-            save_to: save_to.map(PathBuf::from),
-        })
-    }
-
-    fn lab() -> Job {
-        let scene = Arc::new(Scene::empty());
-        Job::Lab(Box::new(Study::of_side(scene, 8)))
-    }
-
-    fn is_stopped(mailbox: &Mailbox) -> bool {
-        let running = mailbox.running.as_ref().expect("running");
-        running.control.stop.load(Ordering::Relaxed)
-    }
-
-    #[test]
-    fn the_most_urgent_runs_first_and_the_newest_live_view_wins() {
-        let mut mailbox = Mailbox::default();
-        for job in [lab(), still(1, Some("a")), live(1), still(1, None), live(2)] {
-            mailbox.put(job);
-        }
-        let mut kinds = Vec::new();
-        while let Some((job, _)) = mailbox.next(&[]) {
-            if let Job::Live(live) = &job {
-                assert_eq!(live.revision, 2);
-            }
-            kinds.push(job.kind());
-            mailbox.finish(None);
-        }
-        // The live view of a newer revision has made the still picture to look at pointless.
-        assert_eq!(kinds, [JobKind::Live, JobKind::Save, JobKind::Lab]);
-    }
-
-    #[test]
-    fn one_rule_stops_the_less_urgent_and_brings_it_back() {
-        let mut mailbox = Mailbox::default();
-        mailbox.put(still(1, Some("a")));
-        let (job, _) = mailbox.next(&[]).expect("a job");
-        mailbox.put(lab());
-        assert!(!is_stopped(&mailbox), "the lab waits");
-        mailbox.put(live(2));
-        assert!(is_stopped(&mailbox));
-        mailbox.finish(Some(job));
-        assert_eq!(mailbox.next(&[]).expect("a job").0.kind(), JobKind::Live);
-        mailbox.finish(None);
-        assert_eq!(mailbox.next(&[]).expect("a job").0.kind(), JobKind::Save);
-    }
-
-    #[test]
-    fn what_is_replaced_does_not_come_back() {
-        let mut mailbox = Mailbox::default();
-        mailbox.put(still(1, None));
-        let (job, _) = mailbox.next(&[]).expect("a job");
-        mailbox.put(live(2));
-        mailbox.finish(Some(job));
-        assert_eq!(mailbox.next(&[]).expect("a job").0.kind(), JobKind::Live);
-        mailbox.finish(None);
-        assert!(mailbox.next(&[]).is_none());
-    }
-
-    #[test]
-    fn a_quality_that_is_asked_for_takes_the_place_of_the_one_before() {
-        let quality = |error| {
-            Job::Query(QueryJob {
-                scene: Arc::new(Scene::empty()),
-                question: Question::Quality(Goal::Within(error)),
-            })
-        };
-        let mut mailbox = Mailbox::default();
-        mailbox.put(quality(0.1));
-        let (job, _) = mailbox.next(&[]).expect("a job");
-        mailbox.put(quality(0.2));
-        assert!(is_stopped(&mailbox));
-        mailbox.finish(Some(job));
-        let (job, _) = mailbox.next(&[]).expect("a job");
-        assert!(matches!(
-            job,
-            Job::Query(QueryJob { question: Question::Quality(Goal::Within(error)), .. }) if error == 0.2
-        ));
-        mailbox.finish(None);
-        assert!(mailbox.next(&[]).is_none());
-    }
-
-    #[test]
-    fn small_pictures_are_not_stopped() {
-        let mut mailbox = Mailbox::default();
-        mailbox.put(Job::Thumbnail(ThumbnailJob {
-            name: 1,
-            scene: Arc::new(Scene::empty()),
-            size: (8, 8),
-        }));
-        mailbox.next(&[]).expect("a job");
-        mailbox.put(live(1));
-        assert!(!is_stopped(&mailbox));
-    }
-}
+mod tests;

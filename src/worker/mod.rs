@@ -1,4 +1,5 @@
-//! The background: one named thread that owns the tracer. The editor drops a request into a mailbox
+//! The background: two named threads that trace, one for what the window shows next, and one for what takes long and
+//! waits meanwhile. The editor drops a request into a mailbox
 //! and goes on; the newest wins; finished pictures wait in an outbox. Nothing here knows about windows:
 //! `wake` is called whenever there is something to look at.
 

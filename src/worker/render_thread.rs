@@ -1,4 +1,4 @@
-//! The thread itself: takes the most urgent job, traces, publishes.
+//! The threads themselves: each takes the most urgent job of its crew, traces, publishes.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::budget::Budget;
 use super::frame_pool::FramePool;
-use super::jobs::{Answer, Event, Frame, QueryJob, Question, StillJob, ThumbnailJob};
+use super::jobs::{Answer, Crew, Event, Frame, QueryJob, Question, StillJob, ThumbnailJob};
 use super::live::Live;
 use super::mailbox::Job;
 use super::shared::Shared;
@@ -17,10 +17,13 @@ use crate::image::{Film, Format, Image, ObjectMapper, render_into};
 use crate::lab::{Study, choose};
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::Sampling;
-use crate::trace::{RenderControl, Threads, Tracer, survey, visible};
+use crate::trace::{KeptQuery, RenderControl, Threads, Tracer, survey, visible};
 
 /// Time between two reports of a study.
 const REPORT_INTERVAL: Duration = Duration::from_millis(250);
+
+/// What was paused goes on after so long: a hand that drags, or a flight that plays, asks for its next picture before.
+const CALM: Duration = Duration::from_millis(100);
 
 /// How a job ended.
 enum JobOutcome {
@@ -32,39 +35,29 @@ enum JobOutcome {
     Export(ExportStep),
 }
 
+/// What a thread keeps from one job to the next.
+struct Desk {
+    budget: Budget,
+    frame_pool: FramePool,
+    mapper: ObjectMapper,
+    query: KeptQuery,
+    /// What was planned for the last picture that was asked for.
+    planner: Planner,
+}
+
 /// Works until told to quit. A panic in a job becomes an event, and the thread lives on.
-pub fn run(shared: &Shared, threads: &Threads) {
-    let mut budget = Budget::new();
-    let mut frame_pool = FramePool::default();
-    let mut planner = Planner::default();
-    let mut mapper = ObjectMapper::default();
+pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
+    let mut desk = Desk {
+        budget: Budget::new(),
+        frame_pool: FramePool::default(),
+        mapper: ObjectMapper::default(),
+        query: KeptQuery::default(),
+        planner: Planner::default(),
+    };
     let mut woken = Instant::now();
-    while let Some((mut job, control)) = next_job(shared) {
+    while let Some((mut job, control)) = next_job(shared, crew) {
         let outcome = catch_unwind(AssertUnwindSafe(|| {
-            threads.run(|| match &mut job {
-                Job::Live(job) => {
-                    let start = Instant::now();
-                    let mut live = Live {
-                        shared,
-                        job,
-                        tracer: Tracer::planned(&job.scene, &job.request, &mut planner),
-                        frame_pool: &mut frame_pool,
-                    };
-                    live.run(&control, &mut budget, start);
-                    JobOutcome::Ended
-                }
-                Job::Query(job) => answer(shared, job, &mut mapper, (&planner, &control)),
-                Job::Thumbnail(job) => thumbnail(shared, job, &mut planner),
-                Job::Still(job) => still(shared, job, &mut planner, &control),
-                Job::Export(_, exporting) => JobOutcome::Export(exporting.step(&control)),
-                Job::Lab(study) => {
-                    if study.step(&control) {
-                        JobOutcome::Unfinished
-                    } else {
-                        JobOutcome::Ended
-                    }
-                }
-            })
+            threads.run(|| work_on(shared, &mut job, &mut desk, &control))
         }));
         let panic = match outcome {
             Ok(outcome) => {
@@ -90,6 +83,8 @@ pub fn run(shared: &Shared, threads: &Threads) {
             }
         };
         woken = Instant::now();
+        // The other crew may wait until this one rests.
+        shared.wakeup.notify_all();
         if let Some(panic) = panic {
             shared.tell(Event::Fault(format!(
                 "The tracer stopped with a fault of its own: {}. Your scene is untouched; change it or undo the last step to go on.",
@@ -100,21 +95,56 @@ pub fn run(shared: &Shared, threads: &Threads) {
     }
 }
 
+/// Does a job, or a piece of it.
+fn work_on(shared: &Shared, job: &mut Job, desk: &mut Desk, control: &RenderControl) -> JobOutcome {
+    match job {
+        Job::Live(job) => {
+            let start = Instant::now();
+            let mut live = Live {
+                shared,
+                job,
+                tracer: Tracer::planned(&job.scene, &job.request, &mut shared.planner()),
+                frame_pool: &mut desk.frame_pool,
+            };
+            live.run(control, &mut desk.budget, start);
+            JobOutcome::Ended
+        }
+        Job::Query(job) => answer(shared, job, desk, control),
+        Job::Thumbnail(job) => thumbnail(shared, job),
+        Job::Still(job) => still(shared, job, &mut desk.planner, control),
+        Job::Export(_, exporting) => JobOutcome::Export(exporting.step(control)),
+        Job::Lab(study) => {
+            if study.step(control) {
+                JobOutcome::Unfinished
+            } else {
+                JobOutcome::Ended
+            }
+        }
+    }
+}
+
 /// Waits for work.
-fn next_job(shared: &Shared) -> Option<(Job, Arc<RenderControl>)> {
+fn next_job(shared: &Shared, crew: Crew) -> Option<(Job, Arc<RenderControl>)> {
     let mut mailbox = shared.mailbox();
     loop {
         if mailbox.quit {
             return None;
         }
-        let next = mailbox.next(&shared.outbox().exports);
+        let next = mailbox.next(crew, &shared.outbox().exports);
         if next.is_some() {
             return next;
         }
-        mailbox = shared
-            .wakeup
-            .wait(mailbox)
-            .unwrap_or_else(PoisonError::into_inner);
+        mailbox = if crew == Crew::Prompt && mailbox.is_paused() {
+            let waited = shared.wakeup.wait_timeout(mailbox, CALM);
+            let (mailbox, waited) = waited.unwrap_or_else(PoisonError::into_inner);
+            if waited.timed_out() {
+                mailbox.go_on();
+            }
+            mailbox
+        } else {
+            let woken = shared.wakeup.wait(mailbox);
+            woken.unwrap_or_else(PoisonError::into_inner)
+        };
     }
 }
 
@@ -131,15 +161,15 @@ fn finish(shared: &Shared, job: Job, outcome: Option<JobOutcome>) -> bool {
         }
         (Job::Lab(study), Some(outcome)) => finish_piece(shared, study, &outcome),
         (job, Some(JobOutcome::Unfinished)) => {
-            let running = shared.mailbox().finish(Some(job));
+            let running = shared.mailbox().finish(job.kind().crew(), Some(job));
             let given_up = running.filter(|running| running.is_given_up);
             if let Some(path) = given_up.and_then(|running| running.save_to) {
                 shared.tell_unwritten(&path);
             }
             true
         }
-        _ => {
-            shared.mailbox().finish(None);
+        (job, _) => {
+            shared.mailbox().finish(job.kind().crew(), None);
             false
         }
     }
@@ -160,8 +190,9 @@ fn finish_frame(shared: &Shared, id: u64, mut exporting: Box<Exporting>, step: O
     let mut outbox = shared.outbox();
     let state = outbox.exports.iter_mut().find(|state| state.id == id);
     let job = Job::Export(id, exporting);
-    let running = mailbox.finish(Some(job).filter(|_| is_going && state.is_some()));
-    let spent = running.map_or(Duration::ZERO, |running| running.started.elapsed());
+    let stopped = Some(job).filter(|_| is_going && state.is_some());
+    let running = mailbox.finish(Crew::Patient, stopped);
+    let spent = running.map_or(Duration::ZERO, |running| running.spent());
     if let Some(state) = state {
         state.done = done;
         state.busy += spent;
@@ -176,7 +207,7 @@ fn finish_piece(shared: &Shared, study: Box<Study>, outcome: &JobOutcome) -> boo
     let mut mailbox = shared.mailbox();
     let found = Study::clone(&study);
     let has_more = matches!(outcome, JobOutcome::Unfinished);
-    let running = mailbox.finish(has_more.then_some(Job::Lab(study)));
+    let running = mailbox.finish(Crew::Patient, has_more.then_some(Job::Lab(study)));
     let is_wanted = running.is_some_and(|running| !running.is_given_up);
     if is_wanted {
         shared.outbox().study = Some(found);
@@ -187,20 +218,25 @@ fn finish_piece(shared: &Shared, study: Box<Study>, outcome: &JobOutcome) -> boo
 fn answer(
     shared: &Shared,
     job: &mut QueryJob,
-    mapper: &mut ObjectMapper,
-    (planner, control): (&Planner, &RenderControl),
+    Desk { mapper, query, .. }: &mut Desk,
+    control: &RenderControl,
 ) -> JobOutcome {
+    let scene = &job.scene;
     let answer = match &mut job.question {
-        Question::Survey(take, seen) => survey(take, &job.scene, seen, control)
-            .then(|| Answer::Survey(Arc::clone(take), std::mem::take(seen))),
+        Question::Survey(take, seen) => {
+            let query = query.of(scene, &shared.planner());
+            survey(take, (query, scene.render.aspect()), seen, control)
+                .then(|| Answer::Survey(Arc::clone(take), std::mem::take(seen)))
+        }
         Question::Visible(name, camera, points) => {
-            visible(&job.scene, camera, points, control).map(|seen| Answer::Visible(*name, seen))
+            let query = query.of(scene, &shared.planner());
+            visible(query, camera, points, control).map(|seen| Answer::Visible(*name, seen))
         }
         Question::Objects(name, request, without) => mapper
-            .map(&job.scene, request, without, (planner, control))
+            .map(&job.scene, request, without, (&shared.planner(), control))
             .map(|map| Answer::Objects(*name, map, std::mem::take(without))),
         Question::Quality(goal) => {
-            let (scene, mut planner) = (&job.scene, planner.clone());
+            let mut planner = shared.planner().clone();
             let request = RenderRequest::still(scene);
             choose(scene, &request, *goal, &mut planner, control)
                 .map(|choice| Answer::Quality(*goal, Some(choice)))
@@ -228,13 +264,14 @@ fn answer_nothing(shared: &Shared, job: &QueryJob) {
     shared.outbox().answers.push(answer);
 }
 
-fn thumbnail(shared: &Shared, job: &ThumbnailJob, planner: &mut Planner) -> JobOutcome {
+fn thumbnail(shared: &Shared, job: &ThumbnailJob) -> JobOutcome {
     let request = RenderRequest {
         sampling: Sampling::Centres,
         ..RenderRequest::of(&job.scene, job.size.0, job.size.1)
     };
     let mut image = Image::default();
     let control = &shared.until_quit;
+    let planner = &mut shared.planner();
     if render_into(&mut image, planner, &job.scene, &request, control).is_some() {
         shared.outbox().thumbnails.push((job.name, image));
     }
@@ -255,6 +292,7 @@ fn still(
         tell_written(shared, path, save_image(&film, path));
         return JobOutcome::Ended;
     }
+    planner.share_meshes(&shared.planner());
     let Some(cost) = film.expose(planner, &job.scene, &job.request, control) else {
         return JobOutcome::Unfinished;
     };

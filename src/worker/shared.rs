@@ -1,4 +1,4 @@
-//! What the render thread and its handle share.
+//! What the render threads and their handle share.
 
 use std::path::Path;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -7,6 +7,7 @@ use super::jobs::{Answer, Event, ExportState, Frame};
 use super::mailbox::Mailbox;
 use crate::image::Image;
 use crate::lab::Study;
+use crate::plan::Planner;
 use crate::trace::RenderControl;
 
 /// The mailbox, the outbox, and how each side wakes the other.
@@ -17,6 +18,8 @@ pub struct Shared {
     pub wakeup: Condvar,
     /// What was done.
     pub outbox: Mutex<Outbox>,
+    /// What was planned for the window; what is written shares its meshes.
+    pub planner: Mutex<Planner>,
     /// Controls what only quitting stops: first passes and small pictures.
     pub until_quit: RenderControl,
     /// Called when there is something in the outbox.
@@ -51,6 +54,11 @@ impl Shared {
     /// The outbox.
     pub fn outbox(&self) -> MutexGuard<'_, Outbox> {
         lock(&self.outbox)
+    }
+
+    /// What was planned for the window.
+    pub fn planner(&self) -> MutexGuard<'_, Planner> {
+        lock(&self.planner)
     }
 
     /// Puts a picture into the slot of its kind, in place of one that was not taken yet.

@@ -41,6 +41,28 @@ impl<T: Send + 'static> Background<T> {
     }
 }
 
+impl Background<()> {
+    /// Looks every so often on a thread of that name until there is something, and calls `wake` then.
+    pub fn look_out(
+        name: &str,
+        rhythm: Duration,
+        is_there: impl Fn() -> bool + Send + 'static,
+        wake: impl FnOnce() + Send + 'static,
+    ) -> Self {
+        let (sender, receiver) = channel();
+        let _ = spawn(name, move || {
+            loop {
+                std::thread::sleep(rhythm);
+                if is_there() {
+                    let _ = sender.send(());
+                    return wake();
+                }
+            }
+        });
+        receiver.into()
+    }
+}
+
 impl<T> Background<T> {
     /// Whether there is work whose answer was not taken yet.
     pub fn is_awaited(&self) -> bool {
@@ -96,7 +118,20 @@ pub fn panic_text(panic: &(dyn Any + Send)) -> &str {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicU32, Ordering};
+
     use super::*;
+
+    #[test]
+    fn who_looks_out_wakes_once_there_is_something() {
+        let looks = AtomicU32::new(0);
+        let (sender, woken) = channel();
+        let is_there = move || looks.fetch_add(1, Ordering::Relaxed) == 3;
+        let wake = move || sender.send(()).expect("somebody waits");
+        let mut guard = Background::look_out("guard", Duration::from_millis(1), is_there, wake);
+        assert_eq!(woken.recv(), Ok(()));
+        assert_eq!((guard.take(), guard.is_awaited()), (Some(Ok(())), false));
+    }
 
     #[test]
     fn an_answer_is_taken_once_and_one_that_never_comes_is_told() {

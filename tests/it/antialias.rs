@@ -8,8 +8,8 @@ use glint::lab::{difference, mean, trace_light};
 use glint::mesh::Triangles;
 use glint::plan::RenderRequest;
 use glint::scene::{
-    Disc, Document, EXAMPLES, List, Mesh, Object, Precision, Sampling, Scene, Shape, Sphere,
-    Triangle,
+    ColorPack, Disc, Document, EXAMPLES, List, Mesh, Object, Plane, Precision, Sampling, Scene,
+    Shape, Sphere, Triangle,
 };
 use glint::trace::{Rays, RenderControl, Tracer};
 
@@ -215,6 +215,72 @@ fn tips_do_not_slip_through_in_shadows_and_mirrors_either() {
     assert!(
         got.psnr >= EIGHT_BITS && got.visible <= 4 && got.worst <= 2.0 * INVISIBLE,
         "{got:?}"
+    );
+}
+
+/// Needles and grains over a black floor in whose highlight they cast shadows.
+fn lacquer() -> Scene {
+    let mut scene = Scene::empty();
+    scene.camera.position = DVec3::new(0.0, 2.6, 3.2);
+    scene.camera.look_at = DVec3::new(0.0, -0.75, -1.0);
+    scene.camera.up = DVec3::Y;
+    scene.camera.projection_distance = 1.2;
+    scene.light_visualization = false;
+    scene.lights[0].position = DVec3::new(0.0, 3.0, -4.0);
+    scene.lights[0].intensity = 1.0;
+    let black = ColorPack {
+        ambient: DVec3::ZERO,
+        diffuse: DVec3::ZERO,
+        specular: DVec3::ZERO,
+        ..ColorPack::default()
+    };
+    let glossy = ColorPack {
+        specular: DVec3::splat(255.0),
+        phong_exponent: 4.0,
+        ..black.clone()
+    };
+    let packs = scene.packs_mut();
+    packs.insert("black".to_owned(), black);
+    packs.insert("glossy".to_owned(), glossy);
+    let mut add = |pack: &str, shape: Shape| {
+        let name = format!("Thing {}", scene.objects.len());
+        scene.objects.push(Object::new(name, pack, shape));
+    };
+    let floor = Plane {
+        point: DVec3::ZERO,
+        normal: DVec3::Y,
+    };
+    add("glossy", floor.into());
+    for n in 0..14 {
+        let x = -1.4 + 0.2 * f64::from(n);
+        let [a, b, c] =
+            [(0.0, -2.0), (0.003, -2.0), (0.13, 1.1)].map(|(off, z)| DVec3::new(x + off, 0.9, z));
+        add("black", Triangle { a, b, c }.into());
+    }
+    for n in 0..10 {
+        let center = DVec3::new(
+            -1.0 + 0.21 * f64::from(n),
+            0.8,
+            -0.5 + 0.1 * f64::from(n % 4),
+        );
+        let grain = Sphere {
+            center,
+            radius: 0.004,
+        };
+        add("black", grain.into());
+    }
+    scene
+}
+
+#[test]
+fn thin_shadows_are_seen_in_a_highlight_on_black() {
+    let (scene, size) = (lacquer(), RenderRequest::sized(128, 128));
+    let truth = truth_of(&scene, &size);
+    let at = |sampling| quality_against(&truth, &scene, &RenderRequest { sampling, ..size });
+    let (got, grid) = (at(Sampling::ADAPTIVE), at(Sampling::Grid(4)));
+    assert!(
+        got.psnr >= grid.psnr && 4 * got.visible <= grid.visible && 50 < grid.visible,
+        "{got:?} {grid:?}"
     );
 }
 

@@ -34,6 +34,7 @@ const HOMES: &[(&[&str], &[&str])] = &[
             "plan/grouping",
             "plan/borders",
             "plan/idle",
+            "plan/packed_mesh",
             "plan/thickness",
             "trace/tracer",
             "trace/threads",

@@ -6,7 +6,6 @@ use std::io::Cursor;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -498,7 +497,7 @@ fn a_frame_too_large_for_the_memory_is_the_whole_picture() {
     let begin = || Exporting::new(sequence()).expect("a folder");
     let mut exporting = begin().side_by_side();
     let control = RenderControl::default();
-    control.stop.store(true, Ordering::Relaxed);
+    control.stop();
     assert!(matches!(exporting.step(&control), ExportStep::Stopped));
     assert!(files(folder.path()).is_empty(), "it is begun again");
     let control = RenderControl::default();
@@ -539,7 +538,9 @@ fn frames_side_by_side_are_the_same_and_none_is_left_out() {
             for round in 0.. {
                 let control = RenderControl::default();
                 let is_stopped = stops && round % 2 == 1;
-                control.stop.store(is_stopped, Ordering::Relaxed);
+                if is_stopped {
+                    control.stop();
+                }
                 match exporting.step(&control) {
                     ExportStep::Going => assert!(!is_stopped),
                     ExportStep::Stopped => assert!(is_stopped),

@@ -13,7 +13,7 @@ use egui_kittest::{Harness, TestRenderer};
 use glint::editor::{Action, Editor, Time};
 use glint::image::Image;
 use glint::scene::{Document, Scene, Shape, Sphere};
-use glint::trace::{RenderControl, survey};
+use glint::trace::{RenderControl, SceneQuery, survey};
 use glint::ui::{App, Ask, Dialogs, Setup};
 use glint::worker::Background;
 
@@ -201,8 +201,15 @@ impl EditorHarness {
 
     /// Drops a file onto the window.
     pub fn drop_file(&mut self, path: PathBuf) {
+        self.drop_files([path]);
+    }
+
+    /// Drops several at once.
+    pub fn drop_files(&mut self, paths: impl IntoIterator<Item = PathBuf>) {
         let dropped = &mut self.window.input_mut().dropped_files;
-        dropped.push(Arc::new(OnDisk(path)));
+        for path in paths {
+            dropped.push(Arc::new(OnDisk(path)));
+        }
         self.settle();
     }
 
@@ -322,12 +329,9 @@ pub fn radius(scene: &Scene, object: usize) -> f64 {
 pub fn survey_flight(editor: &mut Editor) {
     while let Some(take) = editor.wanted_survey().cloned() {
         let mut seen = Vec::new();
-        assert!(survey(
-            &take,
-            editor.scene(),
-            &mut seen,
-            &RenderControl::default()
-        ));
+        let scene = editor.scene();
+        let looked = (&SceneQuery::new(scene), scene.render.aspect());
+        assert!(survey(&take, looked, &mut seen, &RenderControl::default()));
         editor.apply(Action::Time(Time::Surveyed(take, seen)));
     }
 }

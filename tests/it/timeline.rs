@@ -192,6 +192,9 @@ fn a_recording_without_a_movement_leaves_the_flight_as_it_is() {
     editor.apply(Action::Time(Time::Record));
     for tenth in 0..20 {
         editor.apply(Action::Time(Time::Sample(f64::from(tenth) / 10.0)));
+        // Things may be looked at as they move; the camera is the one that is flown.
+        editor.apply(Action::Time(Time::Seek(f64::from(tenth))));
+        assert!(!editor.looks_through());
     }
     editor.apply(Action::Time(Time::Stop));
     assert!(!editor.is_making_keys());

@@ -9,7 +9,9 @@ use glint::lab::Study;
 use glint::plan::RenderRequest;
 use glint::scene::{MAX_GRID, Object, Sampling, Scene, Sphere};
 use glint::trace::RenderControl;
-use glint::worker::{Activity, BUDGET, Event, Frame, LiveJob, Pace, StillJob, Worker};
+use glint::worker::{
+    Activity, BUDGET, Event, Frame, LiveJob, Pace, StillJob, ThumbnailJob, Worker,
+};
 
 use crate::PATIENCE;
 use crate::program::wait_until;
@@ -218,6 +220,42 @@ fn a_picture_that_is_to_be_saved_outlives_edits() {
         direct.pixels.concat(),
         "it shows the scene as it was asked for"
     );
+}
+
+#[test]
+fn a_picture_that_is_written_goes_on_where_it_was() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let worker = Worker::new(None, || {}).expect("a render thread");
+    let mut slow = still(1, &slow_scene(), 192);
+    slow.request.sampling = Sampling::Grid(16);
+    slow.save_to = Some(folder.path().join("still.png"));
+    worker.request_still(slow);
+    let quick = Arc::new(Scene::demo());
+    let mut last = 0;
+    let mut revision = 1;
+    while worker.is_saving() {
+        let mut done = 0;
+        wait_until("the picture, a little further", || {
+            if let Activity::Still { done: now, .. } = worker.activity() {
+                assert!(now >= last, "{now} pixels, {last} before: begun anew");
+                done = now;
+            }
+            done > last || !worker.is_saving()
+        });
+        last = done;
+        revision += 1;
+        worker.submit(live(revision, &quick, 64));
+        worker.request_thumbnails(vec![ThumbnailJob {
+            name: revision,
+            scene: Arc::clone(&quick),
+            size: (64, 48),
+        }]);
+        wait_for(&worker, |frame| {
+            !frame.is_still && frame.revision == revision
+        });
+    }
+    assert!(revision > 3, "it was made to wait {revision} times");
+    assert!(matches!(worker.take_events().as_slice(), [Event::Saved(_)]));
 }
 
 #[test]

@@ -177,6 +177,47 @@ fn a_turntable_is_a_circle_that_looks_at_its_middle() {
 }
 
 #[test]
+fn a_dolly_comes_nearer_in_both_projections() {
+    let target = DVec3::new(10.0, 20.0, -30.0);
+    for projection in [Projection::Perspective, Projection::Orthographic] {
+        let start = Camera {
+            projection,
+            ..camera(DVec3::new(100.0, 60.0, 5.0), 10.0, 0.0)
+        };
+        let keys = Preset::Dolly.keys(&start, target, 8.0);
+        let ends = [&keys[0].value, &keys[keys.len() - 1].value];
+        // How large something at the target is in the picture.
+        let height = ends.map(|camera| {
+            let framing = camera.framing().expect("a framing");
+            let up = camera.basis().expect("a basis").y_axis;
+            let places = [target, target + up].map(|point| framing.project(point));
+            let [low, high] = places.map(|place| place.expect("in front"));
+            (high[1] - low[1]).abs()
+        });
+        assert!(height[1] > 1.5 * height[0], "{projection:?} {height:?}");
+    }
+}
+
+#[test]
+fn a_table_of_a_spreadsheet_is_a_path() {
+    let like = Camera::default();
+    let keys = |text: &str| from_table(text, &like);
+    let plain = keys("time,x,y,z,yaw\n0,1.5,2,3,10\n1.25,-4,2,3,20\n").expect("keys");
+    assert_eq!(plain[1].time, 1.25);
+    for text in [
+        "Time;X;Y;Z;Yaw\r\n0;1,5;2;3;10\r\n1,25;-4;2;3;20\r\n",
+        "time\tx\ty\tz\tyaw\n0\t1.5\t2\t3\t10\n1,25\t-4\t2\t3\t20\n",
+    ] {
+        assert_eq!(keys(text).as_ref(), Ok(&plain), "{text}");
+    }
+    let error = keys("time;x;y;z\n0;1;2;1,2,3\n").expect_err("no number");
+    assert_eq!(
+        (error.line, &*error.what),
+        (2, "z must be a number, found \"1,2,3\"")
+    );
+}
+
+#[test]
 fn an_orbit_from_or_to_its_axis_turns_nowhere() {
     let around = DVec3::new(1.0, 2.0, 3.0);
     // What is meant to be on the axis is so but for rounding.

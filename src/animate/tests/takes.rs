@@ -213,6 +213,14 @@ fn constant_speed_is_constant_and_takes_as_long() {
         let x = at(&even, time).position.x;
         assert!((x - 40.0 * time).abs() < 0.5, "{x} at {time}");
     }
+    // However it was paced.
+    let mut paced = on_x(&[(0.0, 0.0), (2.0, 80.0)]).keys().to_vec();
+    paced[0].easing = Easing::InOut;
+    let even = CameraPath::new(&Retime::ConstantSpeed.apply(&paced));
+    for time in times(&even, 20) {
+        let x = at(&even, time).position.x;
+        assert!((x - 40.0 * time).abs() < 0.5, "{x} at {time}");
+    }
     // Turns alone have a speed too.
     let here = DVec3::splat(0.0);
     let turns = [(0.0, 0.0), (1.0, 90.0), (9.0, 100.0)];

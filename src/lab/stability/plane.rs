@@ -13,11 +13,12 @@ const ANGLES: [f64; 6] = [45.0, 10.0, 1.0, 0.1, 0.01, 0.001];
 /// Tries in each cell for a first look.
 const TRIES: u64 = 200;
 
-/// The one formula: off by more than the rounding of the ray must cost, 8u / sin(angle).
+/// The one formula: off by more than twice what the rounding of the ray must cost, which is 8u / sin(angle): the ray and
+/// the plane that are asked for are rounded as well.
 pub fn map(effort: u32) -> Map {
     let across = Axis::new("degrees", &ANGLES);
     Map::measure(
-        (Subject::Plane, "distance off by more than 8u / sin(angle)"),
+        (Subject::Plane, "distance off by more than 16u / sin(angle)"),
         ("plane".to_owned(), true),
         (across, scales()),
         |angle, scale| {
@@ -53,7 +54,7 @@ fn fails(number: u64, angle: f64, scale: f64) -> Option<bool> {
     let truth = (f64::from(plane.offset) - n.dot(o)) / n.dot(d);
     // A ray that its own rounding has turned away from the plane was never to meet it.
     (truth > 0.0).then(|| {
-        let allowed = 8.0 * f64::from(f32::UNIT_ROUNDOFF) / sine;
-        (found - truth).abs() > allowed * truth.abs() * 2.0
+        let allowed = 16.0 * f64::from(f32::UNIT_ROUNDOFF) / sine;
+        (found - truth).abs() > allowed * truth.abs()
     })
 }

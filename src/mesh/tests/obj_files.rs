@@ -206,6 +206,11 @@ fn colours_that_are_not_found_are_told_and_those_that_can_be_are_found() {
         std::os::unix::fs::symlink(&outside.path, link).expect("a link");
         assert_eq!(inside.notes(), [missing]);
     }
+    sample.beside(
+        "some.mtl",
+        "newmtl red\nKd 1 1 1\nnewmtl Material #25\n map_Kd wood.png\n",
+    );
+    assert_eq!(sample.notes(), ["its textures are left out"]);
     let painted = "v 0 0 0 1 0 0\nv 1 0 0 1 1 0\nv 0 1 0 1 0 0\nf 1 2 3\n";
     let notes = Sample::new("m.obj", painted).notes();
     assert_eq!(notes, ["colours of points or faces are left out"]);

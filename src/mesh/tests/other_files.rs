@@ -20,6 +20,22 @@ fn stl_texts_differ() {
         let triangles = Sample::new("m.stl", &text).triangles();
         assert!(triangles == expected, "{text}");
     }
+    // Of a triangle without an area, some programs write no normal that is a number.
+    let normal = text_stl()
+        .lines()
+        .find(|line| line.contains("normal"))
+        .map(str::to_owned);
+    let normal = normal.expect("a normal");
+    for none in ["-nan(ind) -nan(ind) -nan(ind)", "-1.#IND 1.#QNAN 0", "0 0"] {
+        let text = text_stl().replacen(normal.trim(), &format!("facet normal {none}"), 1);
+        assert!(text != text_stl());
+        let read = super::read_triangles(&Sample::new("m.stl", &text).path);
+        assert_eq!(
+            read.ok().as_ref() == Some(&expected),
+            none != "0 0",
+            "{none}"
+        );
+    }
     // Two solids are one part with the name of the first.
     let other = "solid b\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid b\n";
     let parts = Sample::new("m.stl", text_stl() + other).parts();
@@ -51,6 +67,55 @@ fn ply_polygons_become_fans() {
     assert_eq!(mesh.faces(), [[0, 2, 1], [0, 3, 2], [0, 4, 3]]);
     assert_eq!(mesh.points()[0].to_array(), [0.0, 0.5, 0.0]);
     assert_eq!(mesh.points()[2].to_array(), [2.0, 1.0, 0.0]);
+}
+
+#[test]
+fn ply_strips_are_triangles() {
+    let header = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n";
+    let points = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n";
+    let mesh = Sample::new("m.ply", format!("{header}{points}8 0 1 2 3 -1 2 3 4\n")).triangles();
+    // The second of a strip is turned over, so that all look the same way: clockwise, as a mesh keeps them.
+    assert_eq!(mesh.faces(), [[0, 2, 1], [2, 3, 1], [2, 4, 3]]);
+    let error = Sample::new("m.ply", format!("{header}{points}4 0 1 2 9\n")).error();
+    assert!(error.contains('9'), "{error}");
+}
+
+#[test]
+fn what_is_only_about_looks_or_programs_does_not_keep_gltf_from_being_read() {
+    let json = embedded_gltf("");
+    let expected = Sample::new("m.gltf", &json).triangles();
+    let with = |more: &str| json.replacen('{', &format!("{{{more},"), 1);
+    // A picture in a format of an extension, and what turns a texture.
+    let texture = with(r#""textures":[{"extensions":{"EXT_texture_webp":{"source":0}}}]"#);
+    let pointer = with(
+        r#""animations":[{"channels":[{"sampler":0,"target":{"path":"pointer"}}],"samplers":[]}]"#,
+    );
+    let pointed = with(
+        r#""animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"pointer"}}],"samplers":[]}]"#,
+    );
+    let attribute = json.replacen(r#""POSITION":0"#, r#""POSITION":0,"_BATCHID":0"#, 1);
+    let pointless = json.replacen(
+        r#""primitives":["#,
+        r#""primitives":[{"attributes":{}},"#,
+        1,
+    );
+    let lights = with(r#""extensionsUsed":["KHR_lights_punctual"]"#);
+    for (text, note) in [
+        (texture, Some("its textures are left out")),
+        (pointer, Some("its animations are left out")),
+        (pointed, Some("its animations are left out")),
+        (attribute, None),
+        (pointless, None),
+        (lights, Some("its lights are left out")),
+    ] {
+        assert!(text != json);
+        let sample = Sample::new("m.gltf", &text);
+        assert_eq!(sample.triangles(), expected, "{text:.200}");
+        assert_eq!(sample.notes(), note.into_iter().collect::<Vec<_>>());
+    }
+    let broken = json.replacen(r#""meshes":["#, r#""animations":3,"meshes":7,"more":["#, 1);
+    let error = Sample::new("m.gltf", broken).error();
+    assert!(error.contains("this is no valid glTF file"), "{error}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::files::{Marks, marks_of, stays_inside};
+use crate::files::{Marks, is_missing, marks_of, stays_inside};
 use crate::mesh::{Triangles, read_triangles};
 
 /// Where the triangles of a mesh come from.
@@ -66,6 +66,10 @@ impl MeshSource {
         else {
             return;
         };
+        // Written on Windows, whose separators mean nothing elsewhere.
+        if path.contains('\\') && folder.is_some_and(|folder| is_missing(&folder.join(&*path))) {
+            *path = path.replace('\\', "/");
+        }
         // What is not read is not looked at either.
         let allowed = folder.filter(|folder| stays_inside(folder, Path::new(path)));
         *own_folder = allowed.map(Path::to_owned);
@@ -97,11 +101,6 @@ impl MeshSource {
             Self::Inline(_) => None,
             Self::File { problem, .. } => problem.as_deref(),
         }
-    }
-
-    /// Whether it is none for a scene file of this folder: it was read from elsewhere.
-    pub fn is_outside(&self, of: &Path) -> bool {
-        matches!(self, Self::File { folder, .. } if folder.as_deref() != Some(of))
     }
 
     /// The folder and the path in it of a file that was read.

@@ -1,4 +1,5 @@
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::LazyLock;
+use std::sync::atomic::Ordering;
 
 use glam::DVec3;
 
@@ -169,17 +170,14 @@ fn a_large_picture_is_no_more_than_a_strip_in_memory() {
 }
 
 /// Told to stop by the first pixel that is written.
-static FIRST: RenderControl = RenderControl {
-    stop: AtomicBool::new(false),
-    pixels: AtomicU64::new(0),
-};
+static FIRST: LazyLock<RenderControl> = LazyLock::new(RenderControl::default);
 
 #[derive(Clone, Copy)]
 struct Stopping;
 
 impl Pixel for Stopping {
     fn of<R: Real>(_: R, _: R, _: R) -> Self {
-        FIRST.stop.store(true, Ordering::Relaxed);
+        FIRST.stop();
         Self
     }
 }

@@ -33,6 +33,13 @@ struct Own {
     seconds: f64,
     size: (u32, u32),
     fps: f64,
+    /// How its edges are smoothed; older settings do not say.
+    #[serde(with = "crate::scene::method", default = "usual_sampling")]
+    antialias: Sampling,
+}
+
+fn usual_sampling() -> Sampling {
+    Sampling::ADAPTIVE
 }
 
 impl Own {
@@ -102,6 +109,7 @@ impl Settings {
             seconds: scene.animation.duration(),
             size: (scene.render.width, scene.render.height),
             fps: scene.animation.frames_per_second,
+            antialias: scene.render.antialias,
         };
         Self {
             folder: folder.join(format!("{stem} frames")).display().to_string(),
@@ -137,6 +145,9 @@ impl Settings {
         }
         if self.fps == self.own.fps {
             settings.fps = fresh.fps;
+        }
+        if self.antialias == self.own.antialias {
+            settings.antialias = fresh.antialias;
         }
         if self.has_all_frames() {
             settings.frames = settings.own.frames(settings.fps);
@@ -411,3 +422,6 @@ fn time_and_video(ui: &mut Ui, settings: &mut Settings) {
             .hint(hint);
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -27,6 +27,7 @@ pub use self::kept::KeptSettings;
 use self::kept::Owner;
 use self::order::{EXPORT, Order};
 use self::progress::seconds_left;
+use super::interchange::check_whole;
 use super::pictures::Pictures;
 use super::requests::UiRequests;
 use super::status::in_words;
@@ -300,7 +301,8 @@ impl Exports {
         let known = self.sequence.take();
         let known = known.filter(|(of, from, _)| of == settings && Arc::ptr_eq(from, scene));
         let (.., sequence) = self.sequence.insert(known.unwrap_or_else(|| {
-            let made = settings.sequence(scene).map_err(|error| error.to_string());
+            let made = check_whole(scene)
+                .and_then(|()| settings.sequence(scene).map_err(|error| error.to_string()));
             (settings.clone(), Arc::clone(scene), made)
         }));
         sequence.clone()

@@ -35,11 +35,14 @@ fn finding(growth: &Growth) -> String {
     let Some((first, last, times)) = ends(Way::Plain) else {
         return "Time against primitives".to_owned();
     };
+    let ready = last.plan_ms;
+    let ready = ready.map(|ms| format!(" (and {:.1} s once, to make the mesh ready)", ms / 1e3));
     let theirs = ends(Way::Embree).map(|(.., times)| format!(", one by Embree {times:.1} times"));
     format!(
-        "From {} to {} faces, a picture takes {times:.1} times as long{}",
+        "From {} to {} faces, a picture takes {times:.1} times as long{}{}",
         first.primitives,
         last.primitives,
+        ready.unwrap_or_default(),
         theirs.unwrap_or_default()
     )
 }
@@ -60,7 +63,7 @@ fn show(ui: &mut Ui, growth: &Growth) {
     let side = growth.side();
     Plot::new("growth chart")
         .x_axis_label("primitives")
-        .y_axis_label(format!("ms per {side}×{side} picture"))
+        .y_axis_label(format!("ms per {side}×{side} picture, made ready before"))
         .x_axis_formatter(plain)
         .y_axis_formatter(plain)
         .x_grid_spacer(|input| decades(&input))

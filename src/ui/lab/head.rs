@@ -8,7 +8,7 @@ use super::super::theme::palette;
 use super::dots::{CostAxis, ErrorAxis};
 use super::panel::{Lab, LabRequest, Tab};
 use crate::editor::Editor;
-use crate::lab::{cheapest_within, closest_within, costs_of_dots};
+use crate::lab::{cheapest_within, closest_within, costs_of_choices};
 use crate::ui::hint::Hint as _;
 
 /// Something to choose, what it is called, and what that means.
@@ -127,7 +127,7 @@ impl Lab {
     }
 
     fn show_bounds(&mut self, ui: &mut Ui) {
-        let costs = self.study.as_deref().map(costs_of_dots);
+        let costs = self.study.as_deref().map(costs_of_choices);
         let button = |ui: &mut Ui, words: &str, hint: &str| {
             let button = ui.add_enabled(costs.is_some(), Button::new(words));
             button.hint(hint).clicked()

@@ -20,11 +20,19 @@ pub fn picture(look: PictureLook, mut show: impl FnMut(&mut Ui)) -> Image {
     } else {
         Theme::Dark
     };
-    let (width, height) = (look.size.0 / SCALE, look.size.1 / SCALE);
-    draw((width, height), SCALE as f32, theme, |ui| {
+    let (width, height) = look.size;
+    let points = (width.div_ceil(SCALE), height.div_ceil(SCALE));
+    let drawn = draw(points, SCALE as f32, theme, |ui| {
         let frame = egui::Frame::new().inner_margin(2.0 * GRID);
         frame.show(ui, &mut show);
-    })
+    });
+    let (width, height) = (width as usize, height as usize);
+    let rows = drawn.pixels.chunks(drawn.width).take(height);
+    Image {
+        width,
+        height,
+        pixels: rows.flat_map(|row| &row[..width]).copied().collect(),
+    }
 }
 
 /// The charts of time and RMSE of these studies, each with the name of its scene, as the window would draw
@@ -80,7 +88,9 @@ fn show_common(ui: &mut Ui, charts: &[Chart]) {
     });
     if let Some(chart) = charts.first() {
         let error = chart.error;
-        ui.weak(format!("To the right {}, upwards {error}", chart.cost));
+        let sized = charts.iter().all(|other| other.cost == chart.cost);
+        let cost = if sized { &chart.cost } else { "ms per picture" };
+        ui.weak(format!("To the right {cost}, upwards {error}"));
     }
     ui.add_space(GRID);
 }

@@ -15,6 +15,11 @@ use crate::ui::inspector::told_of_replaced;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, TRACK, palette};
 
+/// Of keys that are nearer to each other, in points, the first is shown.
+const APART: f32 = 2.0;
+/// Unless they are selected, and no more than these are.
+const FEW: usize = 64;
+
 /// What the pointer does to the rows from when it is pressed to when it is let go.
 #[derive(Default)]
 pub struct KeyRows {
@@ -169,10 +174,16 @@ impl KeyRows {
         beside.hint(format!("{name}\nClick to select its keys"));
         ways(ui, scale, rect, keys);
         playhead(ui, scale, rect, editor);
+        // Of those that are in one place on the screen, one is seen and taken: there may be a hundred thousand.
+        let selected = editor.selection().keys();
+        let are_few = selected.len() <= FEW;
+        let mut last = f32::NEG_INFINITY;
         for (index, key) in keys.iter().enumerate() {
-            if scale.shows(key.time) {
-                let at = pos2(scale.x(key.time), rect.center().y);
-                self.key(ui, (at, editor), KeyPlace { track, index }, out);
+            let (x, place) = (scale.x(key.time), KeyPlace { track, index });
+            let is_apart = x - last >= APART || are_few && selected.contains(&place);
+            if scale.shows(key.time) && is_apart {
+                last = x;
+                self.key(ui, (pos2(x, rect.center().y), editor), place, out);
             }
         }
     }
@@ -191,8 +202,8 @@ impl KeyRows {
         let near = Rect::from_center_size(at, vec2(2.0 * KEY + 2.0, TRACK));
         let id = ui.scope_id().with(("key", place.track, place.index));
         let response = ui.interact(near, id, Sense::click_and_drag());
-        let name = animation.name_of(place);
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+        let name = || animation.name_of(place);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name()));
         let is_on = editor.selection().keys().contains(&place);
         let colors = palette(ui.ctx());
         let fill = match (is_on, response.hovered()) {
@@ -203,10 +214,12 @@ impl KeyRows {
         diamond(ui, at, fill, way == Interpolation::Hold);
         self.pick(&response, (place, time), editor, out);
         response.context_menu(|ui| menu(ui, place, editor, out));
-        response.hint(format!(
-            "{name}: {time:.3} s, {}\nDrag to move, Ctrl-drag to copy, Shift-click for several",
-            way.name()
-        ));
+        if response.hovered() {
+            let (name, way) = (name(), way.name());
+            response.hint(format!(
+                "{name}: {time:.3} s, {way}\nDrag to move, Ctrl-drag to copy, Shift-click for several"
+            ));
+        }
     }
 
     /// A click selects, a drag starts to move.
@@ -256,12 +269,17 @@ impl KeyRows {
         out: &mut UiRequests,
     ) {
         let Some(held) = &self.drag else { return };
-        let Some(to) = pointed(ui, scale, &held.before) else {
+        let (is_down, at) =
+            ui.input(|input| (input.pointer.primary_down(), input.pointer.latest_pos()));
+        if !is_down {
             let told = held.told(&editor.scene().animation);
             out.actions.extend(told.map(Action::Tell));
             self.drag = None;
             return;
-        };
+        }
+        // Out of the window, it waits where it was.
+        let Some(at) = at else { return };
+        let to = nearest_frame(scale.time(at.x), &held.before);
         let later = to - held.from;
         let (moved, new) = held.before.with_moved(&held.places, later, held.are_copies);
         if moved != *editor.scene().animation {
@@ -343,11 +361,8 @@ fn ways<T>(ui: &Ui, scale: &Scale, rect: Rect, keys: &[Key<T>]) {
     }
 }
 
-/// The frame's time at the pointer; `None` once it is let go.
-fn pointed(ui: &Ui, scale: &Scale, animation: &Animation) -> Option<f64> {
-    let (is_down, at) =
-        ui.input(|input| (input.pointer.primary_down(), input.pointer.latest_pos()));
-    let at = at.filter(|_| is_down)?;
+/// The time of the frame that is nearest to a time.
+fn nearest_frame(time: f64, animation: &Animation) -> f64 {
     let fps = animation.frames_per_second;
-    Some((scale.time(at.x).max(0.0) * fps).round() / fps)
+    (time.max(0.0) * fps).round() / fps
 }

@@ -1,5 +1,7 @@
 //! The flight in the view: its way, a tick for each frame, and its keys, which can be dragged.
 
+use std::collections::HashSet;
+
 use egui::{Color32, Context, Painter, Pos2, Rect, Sense, Stroke, Ui, vec2};
 
 use glam::DVec3;
@@ -7,7 +9,7 @@ use glam::DVec3;
 use crate::editor::{Action, Edit, Editor};
 use crate::scene::{Camera, KeyPlace, Keys, Projection};
 use crate::ui::requests::UiRequests;
-use crate::ui::theme::palette;
+use crate::ui::theme::{Palette, in_picture};
 use crate::ui::tools::Lens;
 use crate::worker::Question;
 
@@ -19,6 +21,10 @@ const CAMERA_SHARE: f64 = 0.06;
 const REACH: f32 = 9.0;
 /// Cameras nearer than this share of the flight's extent fade.
 const FADING: f64 = 0.3;
+/// Of keys within so many points, one can be taken.
+const CELL: f32 = 4.0;
+/// Most selected keys that are all drawn as cameras.
+const FEW: usize = 64;
 /// Between cameras nearer to each other, in points, only dots are drawn.
 const APART: f32 = 30.0;
 /// Radius of the dot where a camera stands, in points.
@@ -53,7 +59,7 @@ impl Overlay {
         };
         self.update(editor, out);
         let painter = ui.painter().with_clip_rect(view);
-        let colors = palette(ui.ctx());
+        let colors = in_picture();
         let thin = Stroke::new(1.0, colors.text.gamma_multiply(0.6));
         let recorded = self.recorded.iter().map(|&point| lens.place(point));
         for pair in recorded.collect::<Vec<_>>().windows(2) {
@@ -61,14 +67,18 @@ impl Overlay {
                 painter.line_segment([from, to], thin);
             }
         }
-        self.draw_way(&painter, &lens, colors.curve);
+        self.draw_way(&painter, &lens, &colors);
         let extent = self.extent();
         let size = extent * CAMERA_SHARE;
         let selected = editor.selection().keys();
         let mut drawn: Vec<Pos2> = Vec::new();
+        let mut taken = HashSet::new();
+        // One that is selected among few is drawn where it is on others, and taken there.
+        let are_few = selected.len() <= FEW;
         for (place, key) in animation.keys.iter().enumerate() {
-            let is_selected = selected.contains(&KeyPlace::of_camera(place));
-            let color = if is_selected {
+            let is_on = selected.contains(&KeyPlace::of_camera(place));
+            let is_selected = is_on && are_few;
+            let color = if is_on {
                 colors.accent
             } else {
                 let fade = fade(&lens, extent, key.value.position);
@@ -82,7 +92,12 @@ impl Overlay {
             } else if let Some(eye) = eye {
                 painter.circle_filled(eye, EYE, color);
             }
-            self.handle(ui, editor, &lens, place, out);
+            let cell = |eye: Pos2| [eye.x, eye.y].map(|at| (at / CELL) as i32);
+            let is_first = eye.is_some_and(|eye| taken.insert(cell(eye)));
+            let is_held = self.dragged.is_some_and(|(held, _)| held == place);
+            if is_first || is_selected || is_held {
+                self.handle(ui, editor, &lens, place, out);
+            }
         }
         if let Some(shot) = editor.path_of_camera().at(editor.shown_time()) {
             draw_camera(&painter, &lens, &shot, size * 1.6, colors.accent);
@@ -129,17 +144,21 @@ impl Overlay {
         }
     }
 
-    fn draw_way(&self, painter: &Painter, lens: &Lens, color: Color32) {
+    fn draw_way(&self, painter: &Painter, lens: &Lens, colors: &Palette) {
         let places: Vec<(Option<Pos2>, bool)> = self
             .ticks
             .iter()
             .map(|&(point, is_clear)| (lens.place(point), is_clear))
             .collect();
-        let shade = |is_clear: bool| color.gamma_multiply(if is_clear { 1.0 } else { HIDDEN });
-        for pair in places.windows(2) {
-            if let (Some(from), Some(to)) = (pair[0].0, pair[1].0) {
-                let color = shade(pair[0].1 && pair[1].1);
-                painter.line_segment([from, to], Stroke::new(1.5, color));
+        let share = |is_clear: bool| if is_clear { 1.0 } else { HIDDEN };
+        let shade = |is_clear: bool| colors.curve.gamma_multiply(share(is_clear));
+        // On a light ground, a dark edge.
+        for (width, color) in [(3.5, colors.halo), (1.5, colors.curve)] {
+            for pair in places.windows(2) {
+                if let (Some(from), Some(to)) = (pair[0].0, pair[1].0) {
+                    let color = color.gamma_multiply(share(pair[0].1 && pair[1].1));
+                    painter.line_segment([from, to], Stroke::new(width, color));
+                }
             }
         }
         for (place, is_clear) in places {
@@ -179,7 +198,9 @@ impl Overlay {
         let Some(at) = lens.place(position) else {
             return;
         };
-        if !lens.view.contains(at) {
+        // One that is dragged out of the picture may be brought back.
+        let is_held = self.dragged.is_some_and(|(held, _)| held == place);
+        if !is_held && !lens.view.contains(at) {
             return;
         }
         let near = Rect::from_center_size(at, vec2(2.0, 2.0) * REACH);

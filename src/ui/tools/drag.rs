@@ -161,7 +161,10 @@ impl Drag {
             out.actions.push(Action::CancelGesture);
             return false;
         }
-        let Some(at) = pointer else { return false };
+        // Out of the window, it waits where it was.
+        let Some(at) = pointer else {
+            return ui.input(|input| input.pointer.any_down());
+        };
         if let Self::Undecided(from, is_shifted) = *self {
             if sight.map(view.editor).is_some() {
                 match Self::start(view, sight, (from, None, is_shifted), out) {

@@ -5,8 +5,9 @@ use std::time::Duration;
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glint::editor::{Editor, excerpt};
+use glint::export::povray_text;
 use glint::scene::{Document, Recovery, Scene, Shape};
 use glint::ui::Ask;
 
@@ -192,6 +193,143 @@ fn dropped_files_open() {
     harness.drop_file(path);
     assert_eq!(harness.scene(), &Scene::empty());
     assert_eq!(harness.editor().title(), "dropped.ron");
+}
+
+#[test]
+fn a_model_is_dropped_with_all_that_lies_beside_it() {
+    let mut harness = EditorHarness::new();
+    let folder = harness.folder.path().to_owned();
+    for (name, text) in [
+        ("m.mtl", "newmtl gold\nKd 1 0.8 0\n"),
+        (
+            "m.obj",
+            "mtllib m.mtl\nv 0 0 0\nv 90 0 0\nv 0 90 0\nusemtl gold\nf 1 2 3\n",
+        ),
+        ("wood.png", "no picture"),
+    ] {
+        std::fs::write(folder.join(name), text).expect("written");
+    }
+    harness.drop_files(["m.mtl", "m.obj", "wood.png"].map(|name| folder.join(name)));
+    harness.wait_for("the model", |harness| {
+        harness.scene().color_packs.contains_key("gold")
+    });
+    assert_eq!(
+        harness.scene().objects.len(),
+        Scene::demo().objects.len() + 1
+    );
+    assert!(!harness.sees("Save changes"));
+    // A table of numbers is a path.
+    let path = folder.join("path.CSV");
+    std::fs::write(&path, "Time;X;Y;Z\n0;1,5;2;3\n1;2,5;2;3\n").expect("written");
+    harness.drop_file(path);
+    let keys = &harness.scene().animation.keys;
+    assert_eq!(keys.len(), 2);
+    assert_eq!(keys[1].value.position.to_array(), [2.5, 2.0, 3.0]);
+}
+
+#[test]
+fn what_is_copied_brings_its_mesh_into_another_window() {
+    let object = "Object(name: \"a\", color_pack: \"p\", shape: Mesh(file: \"m.obj\"))";
+    let text =
+        format!("Scene(version: 1, color_packs: {{\"p\": ColorPack()}}, objects: [{object}])");
+    let open = |shift: u32| {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mesh = format!("v {shift} 0 0\nv 90 0 0\nv 0 90 0\nf 1 2 3\n");
+        std::fs::write(folder.path().join("m.obj"), mesh).expect("written");
+        let scene = folder.path().join("s.ron");
+        std::fs::write(&scene, &text).expect("written");
+        (EditorHarness::kept_in(folder.path(), scene), folder)
+    };
+    let (mut one, _kept) = open(0);
+    let (mut other, _also) = open(5);
+    one.click("a");
+    one.window.event(Event::Copy);
+    one.window.step();
+    let commands = &one.window.output().platform_output.commands;
+    let copied = commands.iter().find_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    let copied = copied.expect("a text");
+    let triangles =
+        |harness: &EditorHarness, index: usize| match &harness.scene().objects[index].shape {
+            Shape::Mesh(mesh) => mesh.source.triangles().clone(),
+            _ => panic!("a mesh"),
+        };
+    let own = triangles(&one, 0);
+    for harness in [&mut one, &mut other] {
+        harness.window.event(Event::Paste(copied.clone()));
+        harness.settle();
+        assert_eq!(triangles(harness, 1), own);
+    }
+    assert_ne!(triangles(&other, 0), own);
+    // In its own window it is the same file.
+    let text = one.editor().to_text().expect("a text");
+    assert_eq!(text.matches("Mesh(file: \"m.obj\"").count(), 2, "{text}");
+}
+
+#[test]
+fn nothing_is_made_of_a_scene_with_a_mesh_that_is_gone() {
+    let object = "Object(name: \"Bunny\", color_pack: \"p\", shape: Mesh(file: \"gone.ply\"))";
+    let text =
+        format!("Scene(version: 1, color_packs: {{\"p\": ColorPack()}}, objects: [{object}])");
+    let answers = |folder: &Path| vec![(Ask::ExportJob, Some(folder.join("job.yaml")))];
+    let mut harness = EditorHarness::with(answers, Some(&text));
+    harness.click("Dismiss");
+    harness.press(CTRL.plus(Modifiers::SHIFT), Key::E);
+    let refusal = "\"Bunny\" cannot be shown, and no frame is made without it";
+    harness.window.get_by_label_contains(refusal);
+    assert!(
+        harness
+            .window
+            .get_by_label("Start export")
+            .accesskit_node()
+            .is_disabled()
+    );
+    harness.press(Modifiers::NONE, Key::Escape);
+    harness.choose("File", "Export farm job…");
+    harness.window.get_by_label_contains(refusal);
+    assert!(!harness.folder.path().join("job.yaml").exists());
+}
+
+#[test]
+fn a_window_that_rests_draws_nothing() {
+    let text = Document::of(Scene::demo()).to_text().expect("a text");
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let delay = |harness: &EditorHarness| {
+        let output = &harness.window.output().viewport_output;
+        output[&egui::ViewportId::ROOT].repaint_delay
+    };
+    // It looks at its file for a while, as often as it asked for.
+    let start = std::time::Instant::now();
+    while delay(&harness) < Duration::from_mins(1) {
+        assert!(
+            start.elapsed() < Duration::from_mins(1),
+            "{:?}",
+            delay(&harness)
+        );
+        std::thread::sleep(delay(&harness));
+        harness.window.step();
+    }
+    assert!(!harness.sees("Changed outside"));
+    // And sees all the same what becomes of it.
+    let other = Document::of(Scene::empty()).to_text().expect("a text");
+    std::fs::write(harness.folder.path().join("given.ron"), other).expect("written");
+    harness.wait_for("what was written", |harness| {
+        harness.scene() == &Scene::empty()
+    });
+}
+
+#[test]
+fn povray_gets_what_is_on_show() {
+    let answers = |folder: &Path| vec![(Ask::ExportPovray, Some(folder.join("now.pov")))];
+    let text = std::fs::read_to_string("scenes/flight.ron").expect("readable");
+    let mut harness = EditorHarness::with(answers, Some(&text));
+    harness.press(CTRL, Key::End);
+    harness.choose("File", "Export for POV-Ray…");
+    let written = std::fs::read_to_string(harness.folder.path().join("now.pov")).expect("written");
+    assert_eq!(written, povray_text(harness.editor().shown()));
+    assert_ne!(written, povray_text(harness.scene()));
 }
 
 #[test]

@@ -5,7 +5,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::Queryable as _;
 use glint::editor::Mode;
 
-use super::tools::{drop_at, pull};
+use super::tools::{drop_at, hover, pull};
 use crate::harness::{CTRL, EditorHarness};
 use crate::timeline::{animation, times};
 
@@ -105,6 +105,47 @@ fn escape_takes_the_drag_of_a_key_back() {
     harness.settle();
     assert_eq!(times(&harness), [0.0, 1.0, 2.0]);
     assert_eq!(harness.editor().undo_label(), None);
+}
+
+#[test]
+fn a_key_follows_a_pointer_that_leaves_the_window_and_comes_back() {
+    let mut harness = window(&[0.0, 1.0, 2.0]);
+    let key = harness.window.get_by_role_and_label(Role::Button, "Key 2");
+    let from = key.rect().center();
+    let to = from + egui::vec2(40.0, 0.0);
+    pull(
+        &mut harness,
+        from,
+        to,
+        PointerButton::Primary,
+        Modifiers::NONE,
+    );
+    let there = times(&harness);
+    assert!(there[1] > 1.0);
+    harness.window.event(Event::PointerGone);
+    harness.window.step();
+    harness.window.step();
+    assert_eq!(times(&harness), there, "it waits");
+    let to = from + egui::vec2(60.0, 0.0);
+    hover(&mut harness, to);
+    drop_at(&mut harness, to, PointerButton::Primary, Modifiers::NONE);
+    assert!(times(&harness)[1] > there[1], "{there:?}");
+    harness.press(CTRL, Key::Z);
+    assert_eq!(times(&harness), [0.0, 1.0, 2.0], "it was one drag");
+}
+
+#[test]
+fn a_key_takes_the_place_of_one_in_the_same_frame() {
+    // Those of a recorded flight are between frames.
+    let mut harness = window(&[0.0, 0.46, 1.04, 2.0]);
+    for _ in 0..2 {
+        harness.press(Modifiers::NONE, Key::CloseBracket);
+        harness.press(Modifiers::NONE, Key::K);
+    }
+    assert_eq!(times(&harness), [0.0, 0.46, 1.04, 2.0]);
+    harness.press(Modifiers::NONE, Key::Period);
+    harness.press(Modifiers::NONE, Key::K);
+    assert_eq!(harness.scene().animation.keys.len(), 5);
 }
 
 #[test]

@@ -156,6 +156,30 @@ fn the_right_button_looks_around() {
 }
 
 #[test]
+fn escape_takes_a_look_around_back() {
+    let mut harness = EditorHarness::new();
+    let start = harness.scene().clone();
+    let middle = harness.view().center();
+    let to = middle + egui::vec2(60.0, 20.0);
+    let button = egui::PointerButton::Secondary;
+    pull(&mut harness, middle, to, button, Modifiers::NONE);
+    assert_ne!(harness.editor().shown().camera, start.camera);
+    harness.window.key_press(Key::Escape);
+    harness.window.step();
+    assert_eq!(harness.editor().shown().camera, start.camera);
+    // The button is still down, and means nothing any more.
+    hover(&mut harness, to + egui::vec2(40.0, 0.0));
+    drop_at(&mut harness, to, button, Modifiers::NONE);
+    assert_eq!(harness.scene(), &start);
+    assert_eq!(harness.editor().undo_label(), None);
+    assert!(!harness.sees("Esc once more"));
+    // The next drag looks around again.
+    pull(&mut harness, middle, to, button, Modifiers::NONE);
+    drop_at(&mut harness, to, button, Modifiers::NONE);
+    assert_ne!(harness.scene(), &start);
+}
+
+#[test]
 fn ctrl_flies_down_and_is_no_shortcut_in_flight() {
     let mut harness = EditorHarness::new();
     let start = harness.scene().camera.position;

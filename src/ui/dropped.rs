@@ -1,0 +1,95 @@
+//! What files that are dropped onto the window together are for.
+
+use std::path::{Path, PathBuf};
+
+use crate::mesh::is_mesh_file;
+
+/// What is done with them.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Dropped {
+    /// This one is opened; meshes beside it are those that it refers to.
+    Scene(PathBuf),
+    /// These are added, and this is the flight. What is beside them, as materials and textures, is read with them.
+    Parts {
+        /// Files of meshes.
+        meshes: Vec<PathBuf>,
+        /// The keys of a camera.
+        path: Option<PathBuf>,
+    },
+}
+
+impl Dropped {
+    /// `None` where nothing was dropped.
+    pub fn of(files: &[PathBuf]) -> Option<Self> {
+        let first_with = |ending: &str| {
+            let mut files = files.iter();
+            files.find(|file| has_ending(file, ending)).cloned()
+        };
+        let meshes = files.iter().filter(|file| is_mesh_file(file));
+        let meshes: Vec<_> = meshes.cloned().collect();
+        let (scene, path) = (first_with("ron"), first_with("csv"));
+        match (scene, path) {
+            (Some(scene), _) => Some(Self::Scene(scene)),
+            // Whoever opens it says why it is no scene.
+            (None, None) if meshes.is_empty() => files.first().cloned().map(Self::Scene),
+            (None, path) => Some(Self::Parts { meshes, path }),
+        }
+    }
+}
+
+impl Dropped {
+    /// How many scenes and tables among them nothing is done with. What else is there is read with the others, or
+    /// nothing for us.
+    pub fn left_of(&self, files: &[PathBuf]) -> usize {
+        let is_wanted = |file: &&PathBuf| has_ending(file, "ron") || has_ending(file, "csv");
+        let wanted = files.iter().filter(is_wanted).count();
+        let taken = match self {
+            Self::Scene(scene) => is_wanted(&scene),
+            Self::Parts { path, .. } => path.is_some(),
+        };
+        wanted - usize::from(taken)
+    }
+}
+
+fn has_ending(path: &Path, ending: &str) -> bool {
+    let own = path.extension();
+    own.is_some_and(|own| own.eq_ignore_ascii_case(ending))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_of_a_model_is_its_mesh_and_that_of_a_scene_the_scene() {
+        let dropped = |names: &[&str]| {
+            let files: Vec<_> = names.iter().map(PathBuf::from).collect();
+            Dropped::of(&files)
+        };
+        let parts = |meshes: &[&str], path: Option<&str>| {
+            let meshes = meshes.iter().map(PathBuf::from).collect();
+            let path = path.map(PathBuf::from);
+            Some(Dropped::Parts { meshes, path })
+        };
+        let scene = |name: &str| Some(Dropped::Scene(name.into()));
+        assert_eq!(dropped(&[]), None);
+        assert_eq!(
+            dropped(&["a.mtl", "a.OBJ", "a.png"]),
+            parts(&["a.OBJ"], None)
+        );
+        assert_eq!(
+            dropped(&["a.ply", "b.stl", "c.CSV"]),
+            parts(&["a.ply", "b.stl"], Some("c.CSV"))
+        );
+        assert_eq!(dropped(&["a.ply", "s.ron"]), scene("s.ron"));
+        assert_eq!(dropped(&["a.txt", "b.txt"]), scene("a.txt"));
+        let left = |names: &[&str]| {
+            let files: Vec<_> = names.iter().map(PathBuf::from).collect();
+            Dropped::of(&files).map(|dropped| dropped.left_of(&files))
+        };
+        assert_eq!(left(&["a.obj", "a.mtl", "a.png", "p.csv"]), Some(0));
+        assert_eq!(left(&["a.ron", "b.ron", "p.csv", "a.ply"]), Some(2));
+        assert_eq!(left(&["a.csv", "b.csv"]), Some(1));
+        assert_eq!(left(&["a.txt"]), Some(0));
+    }
+}
