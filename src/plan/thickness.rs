@@ -16,7 +16,7 @@ const MEASURED: usize = 8;
 /// Cosine between the normals of faces above which they look the same way.
 const ALIKE: f64 = 0.7;
 /// Nodes that are looked into behind one of them, at most: where the boxes of long thin faces overlap, it would be all.
-const MOST_NODES: usize = 1024;
+const MOST_NODES: usize = 256;
 /// Where faces are measured, as shares of their corners: not in the middle, which lies before an edge of the other side
 /// where that is its mirror image.
 const NEARLY_MIDDLE: [f64; 3] = [0.38, 0.34, 0.28];

@@ -153,7 +153,7 @@ impl Overlay {
         let share = |is_clear: bool| if is_clear { 1.0 } else { HIDDEN };
         let shade = |is_clear: bool| colors.curve.gamma_multiply(share(is_clear));
         // On a light ground, a dark edge.
-        for (width, color) in [(3.5, colors.halo), (1.5, colors.curve)] {
+        for (width, color) in [(3.0, colors.halo.gamma_multiply(0.5)), (1.5, colors.curve)] {
             for pair in places.windows(2) {
                 if let (Some(from), Some(to)) = (pair[0].0, pair[1].0) {
                     let color = color.gamma_multiply(share(pair[0].1 && pair[1].1));
