@@ -117,7 +117,6 @@ impl<R: SimdReal> Band<'_, R> {
             if !tile.is_in(self.region) {
                 continue;
             }
-            self.control.wait();
             let before = engine.rays.total();
             in_tile.keep_seen(in_band, plan, &tile.columns, Span::Columns);
             if plan.screen.is_some() {

@@ -2,10 +2,12 @@
 
 use super::footprint::Footprint;
 use super::parts::Parts;
-use crate::plan::{Plan, Surface};
+use super::thresholds::EDGE_CONTRAST;
+use crate::plan::{Plan, PointLight, Surface};
 use crate::simd::{SimdFloat, Vec3};
 
 /// What hits are made of.
+#[derive(Clone, Copy)]
 pub enum Coat<'a, L: SimdFloat> {
     /// One material.
     One(&'a Surface<L::Real>),
@@ -54,27 +56,48 @@ impl<L: SimdFloat> Coat<'_, L> {
         }
     }
 
-    /// What light of intensity 1 adds, all channels together, from directions with these cosines whose middles to the
-    /// viewer are `half`.
+    /// The brightest that light of intensity 1 makes what is matte of it.
+    #[inline(always)]
+    pub fn brightness(&self, plan: &Plan<L::Real>, like: L) -> L {
+        match self {
+            Self::One(surface) => like.like(surface.brightness()),
+            Self::Several(parts) => parts.brightness(plan, like),
+        }
+    }
+
+    /// Where a light is seen that arrives with these cosines, the middle between it and the viewer being `half`: also
+    /// where it is so in its highlight alone.
     ///
-    /// Apart: few packets need it, and the others are quicker without.
+    /// Apart: few packets need it, and the others are quicker without. Of a copy: what the shading has in registers would
+    /// be in memory if a part of it had an address.
+    #[cold]
     #[inline(never)]
-    pub fn glow(&self, plan: &Plan<L::Real>, (cosine, normal, half): (L, Vec3<L>, Vec3<L>)) -> L {
+    pub fn shows(
+        self,
+        plan: &Plan<L::Real>,
+        light: &PointLight<L::Real>,
+        (cosine, normal, half): (L, Vec3<L>, Vec3<L>),
+    ) -> L::Mask {
         L::vectorize(
             cosine.token(),
             #[inline(always)]
-            || match self {
-                Self::One(surface) => {
-                    let matte = cosine * cosine.like(surface.brightness());
-                    match surface.exponent {
-                        None => matte,
-                        Some(exponent) => {
-                            let gloss = cosine.like(surface.gloss());
-                            matte + exponent.highlight(normal, half) * gloss
+            || {
+                let glow = match self {
+                    Self::One(surface) => {
+                        let matte = cosine * cosine.like(surface.brightness());
+                        match surface.exponent {
+                            None => matte,
+                            Some(exponent) => {
+                                let gloss = cosine.like(surface.gloss());
+                                matte + exponent.highlight(normal, half) * gloss
+                            }
                         }
                     }
-                }
-                Self::Several(parts) => parts.glow(plan, (cosine, normal, half)),
+                    Self::Several(parts) => parts.glow(plan, (cosine, normal, half)),
+                };
+                cosine
+                    .like_f64(EDGE_CONTRAST)
+                    .less(glow * cosine.like(light.intensity))
             },
         )
     }

@@ -11,7 +11,7 @@ pub struct RenderControl {
     pub(super) stop: AtomicBool,
     /// Pixels traced so far.
     pub pixels: AtomicU64,
-    /// Whether it is to wait: looked at for every tile, by every thread.
+    /// Whether it is to wait: looked at for every piece, by every thread.
     is_paused: AtomicBool,
     pause: Mutex<Pause>,
     gone_on: Condvar,
@@ -38,7 +38,7 @@ impl RenderControl {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Lets the trace wait before its next tile, until [`Self::go_on`].
+    /// Lets the trace wait before its next piece, until [`Self::go_on`].
     pub fn pause(&self) {
         let mut pause = self.lock();
         pause.since.get_or_insert_with(Instant::now);

@@ -9,7 +9,6 @@ use super::paths::Paths;
 use super::scan::{Test, scan_lists};
 use super::shadows::{mark_of, weight_of};
 use super::surface::Hit;
-use super::thresholds::EDGE_CONTRAST;
 use super::walk::Stack;
 use crate::primitive::{Blur, Primitive};
 use crate::scene::Methods;
@@ -40,7 +39,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         self,
         lights: &[LightCandidates],
         (hit, footprint): (&Hit<L>, &Footprint<L>),
-        (coat, view): (&Coat<L>, Vec3<L>),
+        (coat, view): (Coat<L>, Vec3<L>),
         lit: L,
         stack: &mut Stack<L::Real>,
     ) -> L {
@@ -65,9 +64,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     let normal = hit.surface.normal;
                     let cosine = normal.dot(direction);
                     let from = (cosine, normal, direction - view);
-                    let seen = coat.glow(self.plan, from) * distance.like(light.intensity);
                     let facing = self.splat(0.0).less(cosine);
-                    let dark = unlit & facing & self.splat(EDGE_CONTRAST).less(seen);
+                    let dark = unlit & facing & coat.shows(self.plan, light, from);
                     if !dark.any() {
                         continue;
                     }

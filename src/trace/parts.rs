@@ -155,7 +155,23 @@ impl<L: SimdFloat> Parts<L> {
         )
     }
 
-    /// See [`super::coat::Coat::glow`].
+    /// The sum of the channels of the matte colours.
+    #[inline(never)]
+    pub fn brightness(&self, plan: &Plan<L::Real>, like: L) -> L {
+        L::vectorize(
+            like.token(),
+            #[inline(always)]
+            || {
+                let mut brightness = like;
+                for (here, surface) in self.surfaces(plan) {
+                    brightness = L::select(here, like.like(surface.brightness()), brightness);
+                }
+                brightness
+            },
+        )
+    }
+
+    /// What light of intensity 1 adds, all channels together, see [`super::coat::Coat::shows`].
     #[inline(never)]
     pub fn glow(&self, plan: &Plan<L::Real>, (cosine, normal, half): (L, Vec3<L>, Vec3<L>)) -> L {
         L::vectorize(
@@ -163,12 +179,11 @@ impl<L: SimdFloat> Parts<L> {
             #[inline(always)]
             || {
                 let zero = cosine.like(L::Real::ZERO);
-                let (mut matte, mut gloss) = (zero, zero);
+                let mut gloss = zero;
                 for (here, surface) in self.surfaces(plan) {
-                    matte = L::select(here, zero.like(surface.brightness()), matte);
                     gloss = L::select(here, zero.like(surface.gloss()), gloss);
                 }
-                cosine * matte + self.highlight(normal, half) * gloss
+                cosine * self.brightness(plan, zero) + self.highlight(normal, half) * gloss
             },
         )
     }

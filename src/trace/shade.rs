@@ -141,7 +141,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                     && let Some(footprint) = point.footprint
                 {
                     let (hit, lit) = (point.hit, edge.lit);
-                    let (seen, look) = ((&hit, &footprint), (&point.coat, point.view));
+                    let (seen, look) = ((&hit, &footprint), (point.coat, point.view));
                     edge.shadows = edge.shadows + kernel.shadows_at(lights, seen, look, lit, stack);
                 }
                 match point.coat {
@@ -364,9 +364,14 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 // What is in the shadow of something wide is not seen to be in that of something thin as well.
                 let open = facing & !blocked.wide;
                 // The shadow of a light that nobody sees is not seen either.
-                let from = (cosine, hit.surface.normal, l - point.view);
-                let brightest = point.coat.glow(kernel.plan, from) * zero.like(light.intensity);
-                let visible = lit_side & kernel.splat(EDGE_CONTRAST).less(brightest);
+                let brightness = point.coat.brightness(kernel.plan, zero);
+                let brightest = brightness * zero.like(light.intensity);
+                let mut visible = kernel.splat(EDGE_CONTRAST).less(cosine * brightest);
+                let dim = open & lit_side & !visible;
+                if dim.any() {
+                    let from = (cosine, hit.surface.normal, l - point.view);
+                    visible = visible | dim & point.coat.shows(kernel.plan, light, from);
+                }
                 let gaze = Gaze {
                     paths: &paths,
                     active: open & visible,

@@ -20,11 +20,18 @@ const DIRECT: u32 = LIGHTS as u32 * BITS;
 /// of the others reaches down to it.
 #[inline(always)]
 pub fn light_bit(light: usize) -> f64 {
-    let place = match light.checked_sub(LIGHT_BITS) {
-        None => light,
-        Some(other) => LIGHTS + other % SHARED,
+    let place = if light < LIGHT_BITS {
+        light
+    } else {
+        shared_bit(light)
     };
     f64::from(1_u32 << place)
+}
+
+/// Apart: few scenes have so many lights, and the others are quicker without.
+#[cold]
+fn shared_bit(light: usize) -> usize {
+    LIGHTS + (light - LIGHT_BITS) % SHARED
 }
 
 /// What tells a caster from others, by its number: from 1 on.

@@ -257,6 +257,8 @@ impl Tracer {
         (grid, sampling): (Grid, Sampling),
         (hearing, control): (Hearing, &RenderControl),
     ) -> Option<Rays> {
+        // Not for every tile: there it costs the demo a twentieth of its time.
+        control.wait();
         let mut canvas = Pixels {
             place,
             rows: pixels,
