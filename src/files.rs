@@ -297,6 +297,12 @@ pub fn is_same_file(one: &Path, other: &Path) -> bool {
     one == other || found(one) == found(other)
 }
 
+/// Whether the name of a file ends so, in capitals or not.
+pub fn has_ending(path: &Path, ending: &str) -> bool {
+    let own = path.extension();
+    own.is_some_and(|own| own.eq_ignore_ascii_case(ending))
+}
+
 /// Whether the system says that there is nothing at a path: what is out of reach may be there.
 pub fn is_missing(path: &Path) -> bool {
     let found = fs::metadata(path);

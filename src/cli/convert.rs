@@ -1,12 +1,13 @@
 //! `glint convert`: a mesh file becomes a scene, or a scene a file for POV-Ray.
 
-use std::path::{Path, PathBuf, absolute};
+use std::path::{PathBuf, absolute};
 
 use clap::Args;
 
 use super::error::{CliError, report_warning, say};
 use super::scene::read_scene;
 use crate::export::{povray_text, write_text};
+use crate::files::has_ending;
 use crate::scene::{Document, Scene, check};
 use crate::words::counted;
 
@@ -26,17 +27,13 @@ pub struct ConvertArgs {
 /// # Errors
 /// [`CliError`]: a file that cannot be read, or one that cannot be written.
 pub fn run(args: &ConvertArgs) -> Result<(), CliError> {
-    let ends_in = |path: &Path, ending: &str| {
-        let end = path.extension();
-        end.is_some_and(|end| end.eq_ignore_ascii_case(ending))
-    };
     let output = args.output.display();
-    match (ends_in(&args.input, "ron"), &args.output) {
-        (true, path) if ends_in(path, "pov") => write_povray(args),
+    match (has_ending(&args.input, "ron"), &args.output) {
+        (true, path) if has_ending(path, "pov") => write_povray(args),
         (true, _) => Err(CliError::usage(format!(
             "{output}: what is made of a scene ends in .pov"
         ))),
-        (false, path) if ends_in(path, "ron") => write_scene(args),
+        (false, path) if has_ending(path, "ron") => write_scene(args),
         (false, _) => Err(CliError::usage(format!(
             "{output}: a scene file ends in .ron"
         ))),

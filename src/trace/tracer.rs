@@ -257,7 +257,7 @@ impl Tracer {
         (grid, sampling): (Grid, Sampling),
         (hearing, control): (Hearing, &RenderControl),
     ) -> Option<Rays> {
-        // Not for every tile: there it costs the demo a twentieth of its time.
+        // Outside of the kernel, which is left alone; a piece is short beside what anybody waits for.
         control.wait();
         let mut canvas = Pixels {
             place,

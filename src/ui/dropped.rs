@@ -1,7 +1,8 @@
 //! What files that are dropped onto the window together are for.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
+use crate::files::has_ending;
 use crate::mesh::is_mesh_file;
 
 /// What is done with them.
@@ -35,9 +36,7 @@ impl Dropped {
             (None, path) => Some(Self::Parts { meshes, path }),
         }
     }
-}
 
-impl Dropped {
     /// How many scenes and tables among them nothing is done with. What else is there is read with the others, or
     /// nothing for us.
     pub fn left_of(&self, files: &[PathBuf]) -> usize {
@@ -49,11 +48,6 @@ impl Dropped {
         };
         wanted - usize::from(taken)
     }
-}
-
-fn has_ending(path: &Path, ending: &str) -> bool {
-    let own = path.extension();
-    own.is_some_and(|own| own.eq_ignore_ascii_case(ending))
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use super::dialogs::Ask;
 use crate::animate::{from_table, from_text, to_table, to_text};
 use crate::editor::{Action, Edit, Editor, Item, Selection, free_group_name};
 use crate::export::{Job, Pattern, Sequence, povray_text, write_job, write_text};
-use crate::files::is_same_file;
+use crate::files::{has_ending, is_same_file};
 use crate::image::Format;
 use crate::mesh::{MeshFile, Part};
 use crate::scene::{Animation, Camera, OWN_FACES, Scene, around, check, read_text};
@@ -155,8 +155,7 @@ fn is_made(editor: &mut Editor, edit: Edit) -> bool {
 }
 
 fn is_table(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
+    has_ending(path, "csv")
 }
 
 /// The camera that sees all of a box; `None` if it would be too far away.

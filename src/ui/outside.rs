@@ -29,7 +29,9 @@ pub struct Watch {
     looked: Option<Instant>,
     /// How many looks there are before the next guard.
     left: u32,
-    /// How the files were at the last look.
+    /// The files that are looked at, the open one last.
+    watched: Vec<Watched>,
+    /// How they were at the last look.
     marked: Vec<Marked>,
     /// Who looks while nothing changes: a window that rests draws nothing.
     guard: Option<Guard>,
@@ -53,12 +55,14 @@ impl Watch {
             return false;
         };
         self.note_meshes(editor);
-        // An undo brings back what was read of a mesh before.
-        let meshes = self.shown.iter().flat_map(|(_, files)| files);
-        let meshes = meshes.map(|file| (file.full(), file.read));
-        let files: Vec<Watched> = meshes.chain([(path.to_owned(), None)]).collect();
+        if self.watched.last().is_none_or(|(last, _)| last != path) {
+            // An undo brings back what was read of a mesh before.
+            let meshes = self.shown.iter().flat_map(|(_, files)| files);
+            let meshes = meshes.map(|file| (file.full(), file.read));
+            self.watched = meshes.chain([(path.to_owned(), None)]).collect();
+        }
         let has_news = match &mut self.guard {
-            Some(guard) => guard.files != files || guard.alarm.take().is_some(),
+            Some(guard) => guard.files != self.watched || guard.alarm.take().is_some(),
             None => false,
         };
         if has_news {
@@ -71,9 +75,9 @@ impl Watch {
         if is_due {
             self.looked = Some(Instant::now());
             self.left = self.left.saturating_sub(1);
-            let marked = files.into_iter();
+            let marked = self.watched.iter();
             self.marked = marked
-                .map(|(file, read)| (marks_of(&file), file, read))
+                .map(|(file, read)| (marks_of(file), file.clone(), *read))
                 .collect();
         } else if self.left == 0 {
             self.guard = Some(Guard::new(ctx, std::mem::take(&mut self.marked)));
@@ -147,6 +151,7 @@ impl Watch {
                 read,
             });
             self.shown = Some((objects.clone(), files.collect()));
+            self.watched.clear();
         }
     }
 
