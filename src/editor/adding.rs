@@ -42,14 +42,7 @@ pub fn add_object(scene: &mut Scene, name: &str, shape: Shape) -> Item {
 /// Adds a light with a marker like those of the others.
 pub fn add_light(scene: &mut Scene, position: DVec3) -> Item {
     let name = free_light_name(scene, "Light 1");
-    let mut lights = scene.lights.iter();
-    let like_others = lights.find_map(|light| Some(light.marker.as_ref()?.radius));
-    let of_scene = || {
-        let (low, high) = scene.objects_bounds()?;
-        Some((high - low).length() * MARKER_SHARE).filter(|radius| *radius > 0.0)
-    };
-    let radius = like_others.or_else(of_scene);
-    let radius = radius.unwrap_or(LightObj::default().radius);
+    let radius = marker_radius(scene);
     let color_pack = if scene.color_packs.contains_key("light") {
         "light".to_owned()
     } else {
@@ -66,6 +59,18 @@ pub fn add_light(scene: &mut Scene, position: DVec3) -> Item {
         visible: true,
     });
     Item::light(scene.lights.len() - 1)
+}
+
+/// How large the marker of a light is that has none yet: as those of the others, or as the scene is large.
+pub fn marker_radius(scene: &Scene) -> f64 {
+    let mut lights = scene.lights.iter();
+    let like_others = lights.find_map(|light| Some(light.marker.as_ref()?.radius));
+    let of_scene = || {
+        let (low, high) = scene.objects_bounds()?;
+        Some((high - low).length() * MARKER_SHARE).filter(|radius| *radius > 0.0)
+    };
+    let radius = like_others.or_else(of_scene);
+    radius.unwrap_or(LightObj::default().radius)
 }
 
 /// Adds a pack.

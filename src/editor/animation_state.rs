@@ -208,8 +208,9 @@ impl AnimationState {
     }
 
     /// What has keys gets one at the time that is on show, where the edit from `scene` to `next`
-    /// has changed it, or has put something else in place of what is on show; the scene's own value stays.
-    pub fn key_tracked(&self, scene: &Scene, next: &mut Scene, replaced: &Replaced) {
+    /// has changed it, or has put something else in place of what is on show; the scene's own value stays. What plays
+    /// stops there: a drag would leave a key in every frame.
+    pub fn key_tracked(&mut self, scene: &Scene, next: &mut Scene, replaced: &Replaced) {
         let time = self.timeline.shown_time(&next.animation);
         let targets: Vec<Target> = next
             .animation
@@ -230,6 +231,7 @@ impl AnimationState {
         let values: Vec<_> = targets.iter().enumerate().filter_map(values).collect();
         for (track, own, new, is_keyed) in values {
             if is_keyed {
+                self.timeline.is_playing = false;
                 next.animation_mut().put_value(track, (time, new));
             }
             let target = &targets[track];

@@ -13,6 +13,7 @@ use super::names::{past_lights, past_objects, step_aside};
 use super::selection::Selection;
 use crate::scene::{
     ColorPack, Document, List, Names, Owner, Owners, Scene, SceneError, Track, header, names_field,
+    without_number,
 };
 
 /// How far a copy of a light alone is from it, in world units.
@@ -101,23 +102,16 @@ pub fn read(text: &str, scene: &Scene) -> Result<Scene, SceneError> {
     Ok(excerpt(&read, &Selection::all(Item::everything(&read))))
 }
 
-/// Adds everything in `pasted`, objects behind those that they are copies of, and the rest behind what is there: packs
-/// that are there already are used, others get a name that is free. Returns the lights and objects that are new.
+/// Adds everything in `pasted`, objects behind those that they are copies of, and the rest behind what is there: for
+/// what wears packs, those that are there already are used; others get a name that is free. Returns the lights and
+/// objects that are new, or the packs where nothing else is pasted.
 pub fn paste(scene: &mut Scene, pasted: &Scene) -> Vec<Item> {
     let (lights, objects) = (scene.lights.len(), scene.objects.len());
-    let mut packs = IndexMap::new();
-    let mut taken = Names::new(scene.color_packs.keys().map(String::as_str));
-    for (name, pack) in pasted.color_packs.iter() {
-        let is_there = scene.color_packs.get(name) == Some(pack);
-        let free = if is_there {
-            name.clone()
-        } else {
-            taken.take(name)
-        };
-        if !is_there {
-            scene.packs_mut().insert(free.clone(), pack.clone());
-        }
-        packs.insert(name.clone(), free);
+    let before = scene.color_packs.len();
+    let are_alone = pasted.lights.is_empty() && pasted.objects.is_empty();
+    let packs = paste_packs(scene, pasted, are_alone);
+    if are_alone {
+        return (before..scene.color_packs.len()).map(Item::pack).collect();
     }
     let known = |name: &mut String| {
         if let Some(free) = packs.get(name) {
@@ -168,6 +162,29 @@ pub fn paste(scene: &mut Scene, pasted: &Scene) -> Vec<Item> {
         None => objects.map(Item::object).collect(),
     };
     lights.chain(objects).collect()
+}
+
+/// Adds packs, unless they are there already and no copy is wanted: what each is called in the scene. One may be there
+/// under another number: with every paste there would be one more like it.
+fn paste_packs(scene: &mut Scene, pasted: &Scene, are_copies: bool) -> IndexMap<String, String> {
+    let mut taken = Names::new(scene.color_packs.keys().map(String::as_str));
+    let mut names = IndexMap::new();
+    for (name, pack) in pasted.color_packs.iter() {
+        let is_same = |there: &(&String, &ColorPack)| {
+            there.1 == pack && without_number(there.0) == without_number(name)
+        };
+        let own = scene.color_packs.get_key_value(name);
+        let own = own.filter(|(_, there)| *there == pack);
+        let there = own.or_else(|| scene.color_packs.iter().find(is_same));
+        let there = there.filter(|_| !are_copies).map(|(name, _)| name.clone());
+        let here = there.unwrap_or_else(|| {
+            let free = taken.take(name);
+            scene.packs_mut().insert(free.clone(), pack.clone());
+            free
+        });
+        names.insert(name.clone(), here);
+    }
+    names
 }
 
 /// Puts new objects at the end of the list behind those of the same names in what is pasted, or behind their group; not
@@ -336,6 +353,24 @@ mod tests {
         let mut other = Scene::empty();
         paste(&mut other, &part);
         assert_eq!((other.objects.len(), check(&other)), (2, Ok(())));
+    }
+
+    #[test]
+    fn a_pack_of_another_colour_is_pasted_once_and_one_alone_as_a_copy() {
+        let mut scene = Scene::demo();
+        let part = excerpt(&scene, &Selection::all([Item::object(0)]));
+        let name = scene.objects[0].color_pack.clone();
+        let packs = scene.color_packs.len();
+        scene.packs_mut()[&name].phong_exponent = 3.0;
+        for _ in 0..3 {
+            paste(&mut scene, &part);
+        }
+        assert_eq!(scene.color_packs.len(), packs + 1);
+        assert_eq!(check(&scene), Ok(()));
+        let alone = excerpt(&scene, &Selection::all([Item::pack(0)]));
+        let copies = paste(&mut scene, &alone);
+        assert_eq!(copies, [Item::pack(packs + 1)]);
+        assert_eq!(scene.color_packs[packs + 1], scene.color_packs[0]);
     }
 
     #[test]

@@ -364,7 +364,7 @@ impl Editor {
             }
         };
         if joined.is_empty() {
-            let state = &self.animation_state;
+            let state = &mut self.animation_state;
             state.key_tracked(&self.scene, &mut next, &replaced);
         }
         if is_camera {

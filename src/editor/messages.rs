@@ -114,7 +114,7 @@ impl Editor {
         keys.map(|names| format!("keys have gone as well ({names}); undo brings them back"))
     }
 
-    /// Color packs that all but the first wore, and smoothness.
+    /// Color packs that all but the first wore, smoothness, and what was hidden among them.
     fn lost_looks(&self, joined: &[usize]) -> Vec<String> {
         let Some((first, others)) = joined.split_first() else {
             return Vec::new();
@@ -130,7 +130,14 @@ impl Editor {
             matches!(shape, Some(Shape::Mesh(mesh)) if mesh.smooth > 0.0)
         });
         let flat = flat.map(|_| "its faces are shaded flat now".to_owned());
-        packs.into_iter().chain(flat).collect()
+        let objects = joined
+            .iter()
+            .filter_map(|&index| self.scene.objects.get(index));
+        let (seen, hidden): (Vec<_>, Vec<_>) = objects.partition(|object| object.visible);
+        let hidden = hidden.iter().map(|object| object.name.clone());
+        let hidden = listed(hidden).filter(|_| !seen.is_empty());
+        let hidden = hidden.map(|names| format!("what was hidden is seen now ({names})"));
+        packs.into_iter().chain(flat).chain(hidden).collect()
     }
 
     /// Tells why an edit is not made.

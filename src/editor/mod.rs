@@ -35,6 +35,7 @@ mod outside;
 mod flight;
 
 pub use action::{Action, Message, Mode};
+pub use adding::marker_radius;
 pub use arrange::Arrangement;
 pub use clipboard::{excerpt, read};
 pub use document::Editor;

@@ -38,6 +38,7 @@ impl Scene {
                 users.entry(corner).or_default().push(user);
             }
         }
+        let is_seen = |object: usize| self.objects.get(object).map(|object| object.visible);
         let mut found = vec![false; self.objects.len()];
         let mut waiting = vec![index];
         while let Some(object) = waiting.pop() {
@@ -51,7 +52,9 @@ impl Scene {
             waiting.extend(
                 own.iter()
                     .filter_map(|corner| users.remove(corner))
-                    .flatten(),
+                    .flatten()
+                    // What is hidden is no part of what is seen.
+                    .filter(|&other| is_seen(other) == is_seen(index)),
             );
         }
         (0..found.len()).filter(|&object| found[object]).collect()
@@ -95,6 +98,8 @@ impl Scene {
         } else {
             String::new()
         };
+        let mut own = joined.iter().filter_map(|&index| self.objects.get(index));
+        let is_seen = own.any(|object| object.visible);
         let mut rest = joined.into_iter().peekable();
         let objects = self
             .objects
@@ -107,6 +112,7 @@ impl Scene {
                 (index == first).then(|| Object {
                     shape: mesh.clone().into(),
                     group: group.clone(),
+                    visible: is_seen,
                     ..object.clone()
                 })
             });
@@ -203,6 +209,21 @@ mod tests {
     use super::*;
     use crate::scene::animation::Value;
     use crate::scene::{Animation, check};
+
+    #[test]
+    fn what_is_hidden_is_not_joined_unasked_and_hides_nothing() {
+        let mut scene = Scene::demo();
+        let is_triangle = |object: &Object| matches!(object.shape, Shape::Triangle(_));
+        let first = scene.objects.iter().position(is_triangle);
+        let first = first.expect("a triangle");
+        let all = scene.connected_triangles(first);
+        scene.objects[first].visible = false;
+        assert_eq!(scene.connected_triangles(first), [first]);
+        let others = scene.connected_triangles(first + 1);
+        assert_eq!(others.len(), all.len() - 1);
+        assert_eq!(scene.join(all), Some(first));
+        assert!(scene.objects[first].visible);
+    }
 
     #[test]
     fn the_pyramid_of_the_demo_becomes_a_mesh_and_triangles_again() {

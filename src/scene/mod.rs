@@ -91,7 +91,7 @@ pub use methods::{
     Accelerator, HighlightMethod, MAX_GRID, MAX_HALVINGS, Method, MethodInfo, Methods, Precision,
     RayOffset, Sampling, SphereMethod, TriangleMethod, UnknownMethod,
 };
-pub use names::Names;
+pub use names::{Names, without_number};
 pub(crate) use notation::method;
 pub use notation::{format_number, parse_vec3};
 pub use object::{Light, LightObj, Object, default_intensity};

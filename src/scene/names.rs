@@ -31,7 +31,10 @@ impl Names {
             return wanted.to_owned();
         }
         // With its number, it is no longer than a name may be.
-        let base: String = base(wanted).chars().take(MAX_NAME - NUMBER).collect();
+        let base: String = without_number(wanted)
+            .chars()
+            .take(MAX_NAME - NUMBER)
+            .collect();
         let next = self.next.entry(base.clone()).or_insert(2);
         loop {
             let name = format!("{base} {next}");
@@ -44,7 +47,7 @@ impl Names {
 }
 
 /// A name without the number that is a word of its own.
-fn base(name: &str) -> &str {
+pub fn without_number(name: &str) -> &str {
     let is_number = |word: &str| word.bytes().all(|letter| letter.is_ascii_digit());
     match name.rsplit_once(' ') {
         Some((base, number)) if is_number(number) => base.trim_end(),

@@ -55,9 +55,9 @@ impl Target {
             (Self::ObjectPosition(_), Value::Point(point)) => {
                 match scene.objects.get_mut(index).map(|object| &mut object.shape) {
                     None => {}
-                    // To and fro, it would be rounded.
+                    // Of its faces, nothing is made anew.
                     Some(Shape::Mesh(mesh)) => mesh.position = point,
-                    Some(shape) => *shape = shape.moved(point - shape.position()),
+                    Some(shape) => *shape = shape.placed(point),
                 }
             }
             (Self::ObjectRotation(_), Value::Point(rotation)) => {

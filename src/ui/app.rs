@@ -16,7 +16,7 @@ use super::histogram::Levels;
 use super::inspector::Quality;
 use super::lab::Lab;
 use super::layout::{Layout, keep_readable};
-use super::number::{dragged, take_refused};
+use super::number::{Drag, dragged, take_refused};
 use super::outliner::Outliner;
 use super::pictures::Pictures;
 use super::requests::UiRequests;
@@ -340,8 +340,11 @@ impl eframe::App for App {
         if let Some(words) = take_refused(&ctx) {
             self.editor.notify(words);
         }
-        if dragged(&ctx) == Some(true) {
-            out.actions.push(Action::CancelGesture);
+        match dragged(&ctx) {
+            // What was typed before is a step of its own, also where the button that ended it is down since.
+            Some(Drag::Begins) => out.actions.insert(0, Action::BeginGesture),
+            Some(Drag::IsGivenUp) => out.actions.push(Action::CancelGesture),
+            Some(Drag::GoesOn) | None => {}
         }
         self.exports
             .show(&ctx, &mut self.editor, &self.pictures, &mut out);

@@ -68,7 +68,8 @@ impl Autosave {
         let Some(recovery) = self.recovery.clone() else {
             return;
         };
-        if self.looked_for != editor.documents() {
+        // What is still written may be of the document before, whose file it would take up.
+        if self.looked_for != editor.documents() && !self.writing.is_awaited() {
             self.looked_for = editor.documents();
             // What is edited already is not replaced.
             if editor.path().is_some() && !editor.is_dirty() {

@@ -50,7 +50,18 @@ struct LastDrag {
     frame: u64,
     /// What it was before.
     start: f64,
-    is_given_up: bool,
+    stage: Drag,
+}
+
+/// How far the drag of a number is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drag {
+    /// This frame is its first.
+    Begins,
+    /// It goes on.
+    GoesOn,
+    /// What it has done is to be undone.
+    IsGivenUp,
 }
 
 fn last_drag_id() -> Id {
@@ -71,21 +82,27 @@ fn given_up(ui: &Ui, response: &Response, value: f64) -> Option<f64> {
         is_let_go && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
     let start = last.map_or(value, |last| last.start);
     if response.dragged() || is_given_up {
+        let is_first = last.is_none_or(|last| last.frame == frame && last.stage == Drag::Begins);
+        let stage = match (is_given_up, is_first) {
+            (true, _) => Drag::IsGivenUp,
+            (false, true) => Drag::Begins,
+            (false, false) => Drag::GoesOn,
+        };
         let drag = LastDrag {
             number: response.id,
             frame,
             start,
-            is_given_up,
+            stage,
         };
         ui.data_mut(|data| data.insert_temp(last_drag_id(), drag));
     }
     is_given_up.then_some(start)
 }
 
-/// Whether a number is dragged in this frame, and then whether that was given up: what it has done is to be undone.
-pub fn dragged(ctx: &Context) -> Option<bool> {
+/// How far the drag of a number is, if one is dragged in this frame.
+pub fn dragged(ctx: &Context) -> Option<Drag> {
     let last: LastDrag = ctx.data(|data| data.get_temp(last_drag_id()))?;
-    (last.frame == ctx.cumulative_frame_nr()).then_some(last.is_given_up)
+    (last.frame == ctx.cumulative_frame_nr()).then_some(last.stage)
 }
 
 fn refused_id() -> Id {

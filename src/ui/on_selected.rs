@@ -78,7 +78,14 @@ pub fn duplicate_all(editor: &mut Editor) {
     items.sort_unstable();
     // From the last on: a copy does not move those before it.
     let edits = items.iter().rev().map(|item| Edit::Duplicate(*item));
+    let before = editor.revision();
     editor.apply(Action::Edit(Edit::Each(edits.collect(), label)));
+    if editor.revision() != before {
+        // Each stands behind what it is a copy of.
+        let copies = items.iter().zip(1..);
+        let copies = copies.map(|(item, further)| Item::pack(item.index + further));
+        editor.apply(Action::Select(Selection::all(copies)));
+    }
 }
 
 /// One step up or down in its list for what is selected: one thing, or a group.

@@ -725,6 +725,18 @@ fn what_has_keys_is_keyed_by_changing_it() {
     harness.window.get_by_label_contains(told);
 }
 
+#[test]
+fn a_hand_on_what_has_keys_stops_what_plays() {
+    let (mut harness, _) = brightening();
+    harness.press(CTRL, Key::Home);
+    harness.window.key_press(Key::G);
+    (0..20).for_each(|_| harness.window.step());
+    assert!(harness.editor().timeline().is_playing);
+    harness.drag("intensity", 30.0);
+    assert!(!harness.editor().timeline().is_playing);
+    assert_eq!(harness.scene().animation.tracks[0].keys.len(), 3);
+}
+
 /// A window in which the camera has keys at 0 and 2 seconds, and so has the intensity of a light, from 0.2 to 0.8; and
 /// the name of that row.
 fn brightening() -> (EditorHarness, String) {

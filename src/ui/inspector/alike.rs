@@ -64,7 +64,10 @@ fn move_all(
     };
     let edits = others.iter().filter_map(|item| {
         let object = |object: &mut Object| {
-            object.shape = object.shape.placed(to(object.shape.position()));
+            // Coordinates that are typed are those of one point: with several, it has no such property.
+            if is_together || object.shape.points().len() == 1 {
+                object.shape = object.shape.placed(to(object.shape.position()));
+            }
         };
         let light = |light: &mut Light| light.position = to(light.position);
         edited(scene, *item, "position", (object, light))

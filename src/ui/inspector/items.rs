@@ -5,7 +5,7 @@ use egui::{Id, Ui};
 use glam::DVec3;
 
 use super::title::title_field;
-use crate::editor::{Edit, Item};
+use crate::editor::{Edit, Item, marker_radius};
 use crate::scene::{
     self, ColorPack, FieldValue, Light, LightObj, MAX_COORDINATE, MAX_EXPONENT, MAX_FACTOR,
     MOST_SEPARATE, Object, Scene, Shape, default_intensity,
@@ -57,7 +57,7 @@ pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut
             .or(scene.color_packs.keys().next());
         light.marker = pack.filter(|_| has_marker).map(|pack| LightObj {
             color_pack: pack.clone(),
-            ..LightObj::default()
+            radius: marker_radius(scene),
         });
     }
     if let Some(marker) = &mut light.marker {

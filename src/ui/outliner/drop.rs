@@ -31,7 +31,7 @@ pub fn take_dropped(
     ui: &Ui,
     editor: &Editor,
     response: &Response,
-    item: Item,
+    (item, is_filtered): (Item, bool),
     out: &mut UiRequests,
 ) {
     response.dnd_set_drag_payload(item);
@@ -46,6 +46,8 @@ pub fn take_dropped(
     let is_worn = dragged.as_ref().is_some_and(|dragged| is_worn(dragged));
     let edit = match dragged {
         Some(dragged) if is_worn => dressed(editor, *dragged, item),
+        // Where groups are not listed, nothing leaves its own or enters another.
+        Some(dragged) if is_filtered && !are_in_one_group(editor, *dragged, item) => None,
         Some(dragged) => put_beside(editor, *dragged, to),
         None => group.and_then(|group| put_group_beside(editor, &group, to)),
     };
@@ -127,6 +129,15 @@ fn dragged_items(editor: &Editor, item: Item) -> Vec<Item> {
 /// The same of an object.
 fn dragged_objects(editor: &Editor, item: Item) -> Vec<usize> {
     Selection::Items(dragged_items(editor, item)).places(item.kind)
+}
+
+/// Whether what is dragged with one item and another one are in the same group, or in none.
+fn are_in_one_group(editor: &Editor, dragged: Item, item: Item) -> bool {
+    let group = |index: usize| Some(&editor.scene().objects.get(index)?.group);
+    item.kind != Kind::Object
+        || dragged_objects(editor, dragged)
+            .into_iter()
+            .all(|object| group(object) == group(item.index))
 }
 
 /// What comes of an item that is dropped on the upper or the lower half of a row.

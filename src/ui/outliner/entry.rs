@@ -119,7 +119,7 @@ pub fn rename_field(ui: &mut Ui, row: Rect, (label, id): (&str, Id), name: &str)
         let is_within = at.is_some_and(|at| row.contains(at));
         input.key_pressed(Key::Enter)
             || input.key_pressed(Key::Escape)
-            || (input.pointer.any_click() && !is_within)
+            || (input.pointer.any_pressed() && !is_within)
     });
     if is_left {
         Renaming::Left

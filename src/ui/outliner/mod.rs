@@ -346,7 +346,8 @@ impl Outliner {
         if response.double_clicked() {
             self.renaming = Some((item, name.to_owned()));
         }
-        take_dropped(ui, editor, &response, item, out);
+        let is_filtered = !self.filter.trim().is_empty();
+        take_dropped(ui, editor, &response, (item, is_filtered), out);
         response.context_menu(|ui| {
             if !is_selected {
                 out.select(item);

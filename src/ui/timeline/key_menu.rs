@@ -4,7 +4,6 @@ use egui::Ui;
 
 use crate::editor::{Edit, Editor};
 use crate::scene::{Easing, KeyPlace};
-use crate::ui::commands::Command;
 use crate::ui::inspector::key_ways;
 use crate::ui::requests::UiRequests;
 
@@ -30,6 +29,10 @@ pub fn menu(ui: &mut Ui, place: KeyPlace, editor: &Editor, out: &mut UiRequests)
     }
     ui.separator();
     if ui.button("Delete").clicked() {
-        out.commands.push(Command::Delete);
+        // Not what else is selected when an undo was heard beside the menu.
+        out.edit(Edit::animation(
+            animation.without_keys(places),
+            "Delete keys",
+        ));
     }
 }

@@ -12,6 +12,8 @@ use crate::ui::number::read_number;
 
 /// Degrees to which turns snap.
 const DEGREES: f64 = 15.0;
+/// What moves no more along an axis than this share of its way does not move along it.
+const STILL: f64 = 1e-9;
 
 /// A handle that was grabbed.
 #[derive(Clone, Debug)]
@@ -138,7 +140,8 @@ impl Grip {
                 };
                 let start = self.place();
                 let part = |axis: usize| {
-                    if fixed(axis) {
+                    // Seen along an axis, it is dragged across that: nothing is rounded along it.
+                    if fixed(axis) || by[axis].abs() <= STILL * by.length() {
                         start[axis]
                     } else {
                         round(start[axis] + by[axis])

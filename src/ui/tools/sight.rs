@@ -109,7 +109,8 @@ impl Sight {
         }
         let colors = palette(painter.ctx());
         let selected = editor.selection().items().to_vec();
-        hovered.retain(|item| !selected.contains(item));
+        let own: HashSet<&Item> = selected.iter().collect();
+        hovered.retain(|item| !own.contains(item));
         let wanted = [(colors.accent, selected), (colors.text, hovered)];
         for (lines, (color, items)) in self.lines.iter_mut().zip(wanted) {
             let wanted = (*revision, color, items);

@@ -228,6 +228,42 @@ fn a_model_is_dropped_with_all_that_lies_beside_it() {
 }
 
 #[test]
+fn a_flight_that_is_dropped_waits_for_the_answer_to_an_open_question() {
+    let mut harness = EditorHarness::new();
+    harness.press(Modifiers::NONE, Key::O);
+    harness.press(Modifiers::COMMAND, Key::N);
+    harness.window.get_by_label("Don't save");
+    let path = harness.folder.path().join("path.csv");
+    std::fs::write(&path, "time,x,y,z\n0,1,2,3\n1,2,2,3\n").expect("written");
+    harness.drop_file(path.clone());
+    harness
+        .window
+        .get_by_label("Answer the open question first");
+    assert!(harness.scene().animation.keys.is_empty());
+    harness.press(Modifiers::NONE, Key::Escape);
+    harness.drop_file(path);
+    assert_eq!(harness.scene().animation.keys.len(), 2);
+}
+
+#[test]
+fn a_model_in_other_units_says_how_large_it_is() {
+    let mut harness = EditorHarness::new();
+    for (reach, is_odd) in [("0.01", true), ("90", false), ("90000", true)] {
+        let path = harness.folder.path().join("model.obj");
+        let text = format!("v 0 0 0\nv {reach} 0 0\nv 0 {reach} 0\nf 1 2 3\n");
+        std::fs::write(&path, text).expect("written");
+        harness.drop_file(path);
+        harness.wait_for("the model", |harness| {
+            harness.scene().objects.len() > Scene::demo().objects.len()
+        });
+        let words = format!("they are {reach} units large, where the scene is");
+        assert_eq!(harness.sees(&words), is_odd, "{reach}");
+        harness.press(CTRL, Key::Z);
+        assert_eq!(harness.scene(), &Scene::demo());
+    }
+}
+
+#[test]
 fn what_is_copied_brings_its_mesh_into_another_window() {
     let object = "Object(name: \"a\", color_pack: \"p\", shape: Mesh(file: \"m.obj\"))";
     let text =

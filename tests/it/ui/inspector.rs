@@ -332,6 +332,43 @@ fn of_several_a_dragged_position_moves_all_and_a_typed_one_is_for_all() {
 }
 
 #[test]
+fn what_is_typed_is_a_step_of_its_own_though_a_drag_ends_it() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    let start = center(harness.scene(), 0);
+    harness
+        .window
+        .get_by_role_and_label(Role::SpinButton, "center x")
+        .click();
+    harness.settle();
+    harness.window.event(Event::Text("5".to_owned()));
+    harness.settle();
+    harness.drag("center y", 40.0);
+    let end = center(harness.scene(), 0);
+    assert_eq!(end.x, 5.0);
+    assert!(end.y > start.y);
+    harness.press(CTRL, Key::Z);
+    assert_eq!(center(harness.scene(), 0), DVec3 { x: 5.0, ..start });
+    harness.give_up_dragging("center y", |_| {});
+    assert_eq!(center(harness.scene(), 0), DVec3 { x: 5.0, ..start });
+}
+
+#[test]
+fn a_marker_is_as_large_as_the_others() {
+    let mut harness = EditorHarness::new();
+    harness.click("Light 1");
+    let before = harness.scene().lights[0].clone();
+    harness.type_into("radius", "2");
+    harness.click("Light 2");
+    harness.click("marker");
+    assert_eq!(harness.scene().lights[1].marker, None);
+    harness.click("marker");
+    let marker = harness.scene().lights[1].marker.as_ref();
+    assert_eq!(marker.map(|marker| marker.radius), Some(2.0));
+    assert_ne!(before.marker.map(|marker| marker.radius), Some(2.0));
+}
+
+#[test]
 fn a_typed_position_moves_a_group_as_one_and_its_name_is_the_groups() {
     let mut harness = EditorHarness::new();
     let [one, other] = both_balls(&mut harness);

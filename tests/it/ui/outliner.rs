@@ -1,12 +1,12 @@
 //! The outliner: filtering, hiding, renaming, adding.
 
 use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers};
+use egui::{Event, Key, Modifiers, PointerButton};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 use glint::scene::{Scene, Shape, Sphere};
 
-use super::tools::{click, hover};
+use super::tools::{click, drop_at, hover, pull};
 use crate::harness::{CTRL, EditorHarness};
 
 #[test]
@@ -33,6 +33,38 @@ fn the_outliner_filters_hides_renames_and_reorders() {
     assert_eq!(harness.scene().objects.len(), 10);
     harness.press(Modifiers::NONE, Key::Delete);
     assert_eq!(harness.scene().objects.len(), 9);
+}
+
+#[test]
+fn a_name_that_is_left_as_it_was_is_left_by_a_drag_in_the_picture() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    harness.press(Modifiers::NONE, Key::F2);
+    harness.window.get_by_label("new name");
+    let middle = harness.view().center();
+    let (to, none) = (middle + egui::vec2(60.0, 20.0), Modifiers::NONE);
+    pull(&mut harness, middle, to, PointerButton::Secondary, none);
+    drop_at(&mut harness, to, PointerButton::Secondary, none);
+    assert!(harness.window.query_by_label("new name").is_none());
+    harness.press(Modifiers::NONE, Key::Delete);
+    assert_eq!(harness.scene().objects[0].name, "Sphere 2");
+}
+
+#[test]
+fn where_groups_are_not_listed_nothing_is_dragged_into_one() {
+    let mut scene = Scene::demo();
+    scene.objects[1].group = "pair".to_owned();
+    scene.objects[2].group = "pair".to_owned();
+    let mut harness = EditorHarness::on(scene.clone());
+    harness.window.get_by_label("Filter").focus();
+    harness.window.get_by_label("Filter").type_text("sphere");
+    harness.settle();
+    let row = |name: &str| harness.window.get_by_label(name).rect().center();
+    let (from, to) = (row("Sphere 1"), row("Sphere 2") + egui::vec2(0.0, 4.0));
+    let none = Modifiers::NONE;
+    pull(&mut harness, from, to, PointerButton::Primary, none);
+    drop_at(&mut harness, to, PointerButton::Primary, none);
+    assert_eq!(harness.scene(), &scene);
 }
 
 /// The names of what is selected.

@@ -4,7 +4,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, ViewportCommand, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glam::DVec3;
 use glint::editor::{Item, Selection};
-use glint::scene::{Scene, Shape, Triangle};
+use glint::scene::{Projection, Scene, Shape, Sphere, Triangle};
 
 use crate::harness::{CTRL, EditorHarness, radius};
 
@@ -158,6 +158,27 @@ fn a_body_is_dragged_in_one_step_and_escape_takes_it_back() {
     let level = center(harness.scene(), 0);
     assert_eq!(level.y, before.y);
     assert_ne!(level, before);
+}
+
+#[test]
+fn what_is_dragged_across_the_line_of_sight_is_not_rounded_along_it() {
+    let mut scene = Scene::demo();
+    scene.camera.projection = Projection::Orthographic;
+    scene.camera.orthographic_height = 1000.0;
+    scene.camera.position = DVec3::new(0.0, 900.0, 0.0);
+    (scene.camera.look_at, scene.camera.up) = (DVec3::NEG_Y, DVec3::NEG_Z);
+    let ball = Sphere {
+        center: DVec3::new(0.0, 55.25, 0.0),
+        radius: 50.0,
+    };
+    scene.objects[0].shape = ball.into();
+    let mut harness = EditorHarness::on(scene);
+    let from = place(&harness, ball.center);
+    let to = from + vec2(60.0, -31.0);
+    drag(&mut harness, from, to, PointerButton::Primary, NONE);
+    let now = center(harness.scene(), 0);
+    assert!(now.x > 10.0 && now.x == now.x.round(), "{now}");
+    assert_eq!(now.y, 55.25);
 }
 
 #[test]

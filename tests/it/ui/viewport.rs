@@ -180,6 +180,27 @@ fn escape_takes_a_look_around_back() {
 }
 
 #[test]
+fn escape_takes_what_was_flown_while_looking_around_back_and_flies_no_farther() {
+    let mut harness = EditorHarness::new();
+    let start = harness.scene().clone();
+    let middle = harness.view().center();
+    let button = egui::PointerButton::Secondary;
+    harness.window.key_down(Key::W);
+    let to = middle + egui::vec2(60.0, 20.0);
+    pull(&mut harness, middle, to, button, Modifiers::NONE);
+    let flown = harness.editor().shown().camera.position;
+    assert_ne!(flown, start.camera.position);
+    harness.window.key_press(Key::Escape);
+    (0..5).for_each(|_| harness.window.step());
+    assert_eq!(harness.editor().shown().camera, start.camera);
+    drop_at(&mut harness, to, button, Modifiers::NONE);
+    harness.window.key_up(Key::W);
+    harness.settle();
+    assert_eq!(harness.scene(), &start);
+    assert_eq!(harness.editor().undo_label(), None);
+}
+
+#[test]
 fn ctrl_flies_down_and_is_no_shortcut_in_flight() {
     let mut harness = EditorHarness::new();
     let start = harness.scene().camera.position;
