@@ -205,7 +205,8 @@ pub fn make_folder(path: &Path) -> io::Result<()> {
             "there is something of that name that is not a folder",
         ));
     }
-    fs::create_dir_all(target)
+    // No folder is made whose name is a dot.
+    fs::create_dir_all(target.components().collect::<PathBuf>())
 }
 
 /// Opens a file to be read. Asked before: a pipe would wait for somebody who writes into it.

@@ -1,5 +1,6 @@
 //! `glint convert`: a mesh file becomes a scene, or a scene a file for POV-Ray.
 
+use std::borrow::Cow;
 use std::path::{PathBuf, absolute};
 
 use clap::Args;
@@ -45,11 +46,21 @@ fn write_povray(args: &ConvertArgs) -> Result<(), CliError> {
     write_text(&args.output, &povray_text(&scene))?;
     let (width, height) = (scene.render.width, scene.render.height);
     let path = args.output.display().to_string();
-    let quoted = shlex::try_quote(&path).unwrap_or_default();
+    let input = input_option(&path);
     say(&format!(
-        "{path}: draw it with povray +I{quoted} +W{width} +H{height} -A File_Gamma=1.0 Dither=off"
+        "{path}: draw it with povray {input} +W{width} +H{height} -A File_Gamma=1.0 Dither=off"
     ));
     Ok(())
+}
+
+/// The option that names a file to POV-Ray, as a shell needs it: POV-Ray takes the word apart once more.
+fn input_option(path: &str) -> String {
+    let is_plain = |letter: char| letter.is_alphanumeric() || "/._-".contains(letter);
+    if path.chars().all(is_plain) {
+        return format!("+I{path}");
+    }
+    let option = format!("+I\"{path}\"");
+    shlex::try_quote(&option).map_or(option.clone(), Cow::into_owned)
 }
 
 fn write_scene(args: &ConvertArgs) -> Result<(), CliError> {

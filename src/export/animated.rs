@@ -50,7 +50,7 @@ pub fn gif(
         (hundredths > 0).then_some((place + 1, (frame, hundredths)))
     });
     let pack = |(frame, hundredths)| {
-        let image = read(&sequence.path(frame))?;
+        let image = read(sequence, frame)?;
         Ok(gif_frame(image, speed, hundredths))
     };
     in_order(sequence, (shown, go_on), pack, |frame| {
@@ -166,7 +166,7 @@ pub fn apng(
     encoder.set_frame_delay(part, whole).map_err(wrong)?;
     let mut writer = encoder.write_header().map_err(wrong)?;
     let open = |frame| {
-        let image = read(&sequence.path(frame))?;
+        let image = read(sequence, frame)?;
         Ok(image::DynamicImage::from(image).to_rgb8())
     };
     let frames = sequence.frames.iter().enumerate();

@@ -75,6 +75,17 @@ pub enum VideoError {
         /// What it holds, and what would do.
         why: String,
     },
+    /// A frame is another one than was made.
+    #[error(
+        "{path} is {width}×{height} pixels now: another export has put it there; give each a folder of its own",
+        path = .path.display(), width = .size.0, height = .size.1
+    )]
+    Replaced {
+        /// The file of the frame.
+        path: PathBuf,
+        /// Its width and height in pixels.
+        size: (u32, u32),
+    },
     /// A frame could not be read.
     #[error("cannot read {path}: {source}", path = .path.display())]
     Frame {

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 use super::error::{VideoError, last_lines};
-use super::frame_file::as_ppm;
+use super::frame_file::{as_it_is, as_ppm};
 use super::program::end_of;
 use super::sequence::Sequence;
 use crate::image::Format;
@@ -78,9 +78,10 @@ fn start(sequence: &Sequence, unfinished: &Path, codec: &str) -> io::Result<Chil
         Format::Png => "png",
         Format::Ppm | Format::Exr => "ppm",
     };
-    let quiet = ["-hide_banner", "-loglevel", "error", "-y"];
+    // Without `-xerror`, it says that the disk is full and ends as if all were well.
+    let manner = ["-hide_banner", "-loglevel", "error", "-xerror", "-y"];
     Command::new("ffmpeg")
-        .args(quiet)
+        .args(manner)
         .args(["-f", "image2pipe", "-c:v", frames, "-framerate", &fps])
         .args(["-i", "-"])
         .args(codec.split(' '))
@@ -101,13 +102,10 @@ fn feed(
         return Ok(false);
     };
     for (index, frame) in sequence.frames.iter().enumerate() {
-        let file = sequence.path(frame);
         let bytes = match sequence.format {
             // No pipe tells where one of these ends.
-            Format::Exr => as_ppm(&file)?,
-            Format::Png | Format::Ppm => {
-                fs::read(&file).map_err(|error| VideoError::unreadable(&file, error.into()))?
-            }
+            Format::Exr => as_ppm(sequence, frame)?,
+            Format::Png | Format::Ppm => as_it_is(sequence, frame)?,
         };
         if pipe.write_all(&bytes).is_err() {
             return Ok(false);
@@ -127,6 +125,10 @@ fn without_ffmpeg(sequence: &Sequence, path: &Path, codec: &str) -> String {
 
 /// What one would type to make the video by hand.
 fn command(sequence: &Sequence, path: &Path, codec: &str) -> Option<String> {
+    if sequence.format == Format::Exr {
+        // No pipe tells where one of these ends, and ffmpeg makes other levels of light than we do.
+        return None;
+    }
     // What a name may begin with or have in it means something else to ffmpeg.
     let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let fps = sequence.frames_per_second();
@@ -144,10 +146,6 @@ fn command(sequence: &Sequence, path: &Path, codec: &str) -> Option<String> {
         return Some(format!(
             "ffmpeg -framerate {fps} -start_number {first} -i {input} {codec} {output}"
         ));
-    }
-    if sequence.format == Format::Exr {
-        // No pipe tells where one of these ends.
-        return None;
     }
     let files = sequence.frames.iter();
     let files = files.map(|frame| quoted(&absolute(&sequence.path(frame)).display().to_string()));

@@ -1,9 +1,10 @@
 //! Frames that are read to become a video.
 
+use std::fs;
 use std::io::Cursor;
 use std::path::Path;
 
-use image::{DynamicImage, ImageReader, ImageResult, RgbaImage};
+use image::{DynamicImage, ImageError, ImageReader, ImageResult, RgbaImage};
 use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 
 use super::error::VideoError;
@@ -42,12 +43,39 @@ pub fn in_order<F: Send, P: Send>(
     }
 }
 
+/// The file of a frame.
+///
+/// # Errors
+/// [`VideoError::Frame`], [`VideoError::Replaced`].
+pub fn as_it_is(sequence: &Sequence, frame: u64) -> Result<Vec<u8>, VideoError> {
+    let path = sequence.path(frame);
+    let wrong = |source| VideoError::unreadable(&path, source);
+    let bytes = fs::read(&path).map_err(|error| wrong(error.into()))?;
+    let reader = ImageReader::new(Cursor::new(&bytes[..])).with_guessed_format();
+    let size = reader.map_err(ImageError::from);
+    let size = size.and_then(ImageReader::into_dimensions).map_err(wrong)?;
+    check_size(sequence, &path, size)?;
+    Ok(bytes)
+}
+
+/// Another export into the folder may have put frames of its own in place of those that were made.
+fn check_size(sequence: &Sequence, path: &Path, size: (u32, u32)) -> Result<(), VideoError> {
+    if size == sequence.size() {
+        return Ok(());
+    }
+    Err(VideoError::Replaced {
+        path: path.to_owned(),
+        size,
+    })
+}
+
 /// A frame as PPM.
 ///
 /// # Errors
-/// [`VideoError::Frame`].
-pub fn as_ppm(path: &Path) -> Result<Vec<u8>, VideoError> {
-    let frame = read(path)?;
+/// [`VideoError::Frame`], [`VideoError::Replaced`].
+pub fn as_ppm(sequence: &Sequence, frame: u64) -> Result<Vec<u8>, VideoError> {
+    let path = sequence.path(frame);
+    let frame = read(sequence, frame)?;
     let image = Image {
         width: frame.width() as usize,
         height: frame.height() as usize,
@@ -55,16 +83,18 @@ pub fn as_ppm(path: &Path) -> Result<Vec<u8>, VideoError> {
     };
     let mut bytes = Cursor::new(Vec::new());
     let encoded = image.encode(Format::Ppm, &mut bytes);
-    encoded.map_err(|source| VideoError::unreadable(path, source))?;
+    encoded.map_err(|source| VideoError::unreadable(&path, source))?;
     Ok(bytes.into_inner())
 }
 
 /// A frame of 8 bits, of whatever format.
 ///
 /// # Errors
-/// [`VideoError::Frame`].
-pub fn read(path: &Path) -> Result<RgbaImage, VideoError> {
-    let image = decode(path).map_err(|source| VideoError::unreadable(path, source))?;
+/// [`VideoError::Frame`], [`VideoError::Replaced`].
+pub fn read(sequence: &Sequence, frame: u64) -> Result<RgbaImage, VideoError> {
+    let path = sequence.path(frame);
+    let image = decode(&path).map_err(|source| VideoError::unreadable(&path, source))?;
+    check_size(sequence, &path, (image.width(), image.height()))?;
     let Some(light) = image.as_rgb32f() else {
         return Ok(image.to_rgba8());
     };

@@ -138,7 +138,7 @@ mod tests {
         let named = |name: &str| all.iter().find(|candidate| candidate.name == name);
         let grid = what(named("grid:8").expect("a grid"), &all[0]);
         assert!(
-            grid.contains("grid:8: so many times so many rays"),
+            grid.contains("grid:8: a square of rays in every pixel"),
             "{grid}"
         );
         assert!(grid.contains("(common practice)"), "{grid}");

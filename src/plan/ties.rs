@@ -8,7 +8,7 @@ use super::pack::Plan;
 use super::packed_mesh::MeshInstance;
 use super::request::RenderRequest;
 use crate::scene::{Coincidence, Extent, Projection, Scene};
-use crate::simd::Real;
+use crate::simd::{Real, Vec3};
 
 /// How far apart surfaces may be that count as one, twice: their own numbers are rounded too. What counts as that is
 /// the same in any precision.
@@ -69,8 +69,8 @@ impl<R: Real> Plan<R> {
         Some(first + inner.start..first + inner.end)
     }
 
-    /// Whether a solid stands between the eye and the faces on which it stands: no ray that comes from the eye
-    /// reaches the other side of an endless plane.
+    /// Whether a solid stands between the eye, which is outside of it, and the faces on which it stands: no ray that
+    /// comes from the eye reaches the other side of an endless plane.
     fn hides(&self, scene: &Scene, found: &Coincidence) -> bool {
         let places = [found.later, found.earlier];
         let mesh = places.into_iter().find_map(|place| self.mesh_at(place));
@@ -81,8 +81,10 @@ impl<R: Real> Plan<R> {
             return false;
         };
         let middle = mesh.centre.to_dvec3() + self.centre;
-        let sides = plane.height(middle) * plane.height(scene.camera.position);
-        found.extent == Extent::Standing && mesh.is_solid() && sides > 0.0
+        let eye = scene.camera.position;
+        let is_between = plane.height(middle) * plane.height(eye) > 0.0;
+        let eye = Vec3::from_dvec3(eye - self.centre);
+        found.extent == Extent::Standing && is_between && mesh.is_seen_from_outside(eye)
     }
 
     /// The mesh that is at this place in the scene's list.

@@ -130,7 +130,8 @@ fn add_coincident(scene: &Scene, centre: DVec3, add: &mut impl FnMut(String, Abo
             extent,
         } = found;
         let looks_alike = scene.look_alike(later, earlier);
-        if extent == Extent::Standing || (extent == Extent::Faces && looks_alike) {
+        let is_hidden = matches!(extent, Extent::Standing | Extent::Touching);
+        if is_hidden || (extent == Extent::Faces && looks_alike) {
             continue; // Nobody sees which of them is in front.
         }
         if last.replace(later) == Some(later) {

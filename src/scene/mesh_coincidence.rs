@@ -13,6 +13,9 @@ const MOST_FACES: usize = 200_000;
 const MOST_BOXES: usize = 4_000_000;
 const MOST_PAIRS: usize = 2_000_000;
 
+/// Most faces of what is looked at whether it is a solid: a few milliseconds.
+const MOST_OF_SOLID: usize = 20_000;
+
 /// Most corners of faces that are held against endless planes: some ten milliseconds.
 const MOST_CORNERS: usize = 6_000_000;
 
@@ -41,6 +44,8 @@ pub enum Extent {
     Faces,
     /// A mesh stands on an endless plane or hangs below it, and has faces there.
     Standing,
+    /// Faces of solids are against each other: what is there is seen from within alone.
+    Touching,
 }
 
 /// What of a scene's visible meshes lies in something; coordinates count from `centre`.
@@ -92,8 +97,8 @@ pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coinciden
         let end = one.bounds.map_or(0.0, |(_, high)| high.x);
         let near = others.iter().take_while(|other| other.start() <= end);
         for other in near.take_while(|_| counts_down(&mut boxes)) {
-            if search.coincide(one, other) {
-                add(one, other, Extent::Faces);
+            if let Some(extent) = search.extent(one, other) {
+                add(one, other, extent);
             }
         }
     }
@@ -125,6 +130,22 @@ impl<'a> Placed<'a> {
 
     fn is_mesh(&self) -> bool {
         matches!(self.shape, Shape::Mesh(_))
+    }
+
+    /// Whether the normals of its faces point out of it (1) or into it (-1); `None` if it is no solid, or a large one.
+    fn outer_side(&self) -> Option<f64> {
+        let Shape::Mesh(mesh) = self.shape else {
+            return None;
+        };
+        let triangles = mesh.source.triangles();
+        if triangles.faces().len() > MOST_OF_SOLID || !triangles.are_closed() {
+            return None;
+        }
+        let from = mesh.position;
+        let corners = mesh.world_corners();
+        let volumes = corners.map(|[a, b, c]| (a - from).dot((b - from).cross(c - from)));
+        let volume: f64 = volumes.sum();
+        (volume != 0.0).then(|| volume.signum())
     }
 
     /// Where it begins along x.
@@ -227,36 +248,48 @@ struct Search {
 }
 
 impl Search {
-    /// Whether two objects that end have flat pieces in one plane; false where that is too much to look at.
-    fn coincide(&mut self, one: &Placed, other: &Placed) -> bool {
-        let (Some(around), Some(other_around)) = (one.bounds, other.bounds) else {
-            return false;
-        };
+    /// How two objects that end have flat pieces in one plane; `None` if they have none, or where that is too much to
+    /// look at.
+    fn extent(&mut self, one: &Placed, other: &Placed) -> Option<Extent> {
+        let (around, other_around) = (one.bounds?, other.bounds?);
         if !meet(around, other_around) {
-            return false;
+            return None;
         }
         let faces = |placed: &Placed| match placed.shape {
             Shape::Mesh(mesh) => mesh.source.triangles().faces().len(),
             _ => 1,
         };
-        let Some(left) = self.faces.checked_sub(faces(one) + faces(other)) else {
-            return false;
-        };
-        self.faces = left;
+        self.faces = self.faces.checked_sub(faces(one) + faces(other))?;
         let within = (around.0.max(other_around.0), around.1.min(other_around.1));
         let pieces = [one, other].map(|placed| {
             let mut pieces = placed.pieces_in(within);
             pieces.sort_by(|a, b| a.1.0.x.total_cmp(&b.1.0.x));
             pieces
         });
-        self.any(&pieces[0], &pieces[1]) || self.any(&pieces[1], &pieces[0])
+        let mut any = |is_wanted: &dyn Fn(f64) -> bool| {
+            self.any(&pieces[0], &pieces[1], is_wanted)
+                || self.any(&pieces[1], &pieces[0], is_wanted)
+        };
+        if !any(&|_| true) {
+            return None;
+        }
+        let sides = one.outer_side().zip(other.outer_side());
+        let are_apart =
+            sides.is_some_and(|(side, other)| !any(&|cosine| cosine * side * other > 0.0));
+        Some(if are_apart && self.pairs > 0 {
+            Extent::Touching
+        } else {
+            Extent::Faces
+        })
     }
 
-    /// Whether any piece coincides with one of the others that begins behind it along x; both are sorted by that.
+    /// Whether any piece coincides with one of the others that begins behind it along x, if the cosine between their
+    /// normals is wanted; both are sorted by that.
     fn any(
         &mut self,
         pieces: &[(PlanePiece, (DVec3, DVec3))],
         others: &[(PlanePiece, (DVec3, DVec3))],
+        is_wanted: &dyn Fn(f64) -> bool,
     ) -> bool {
         pieces.iter().any(|(piece, around)| {
             let from = others.partition_point(|(_, other)| other.0.x < around.0.x);
@@ -265,6 +298,7 @@ impl Search {
             near.any(|(other, other_around)| {
                 counts_down(&mut self.pairs)
                     && meet(*around, *other_around)
+                    && is_wanted(piece.normal.dot(other.normal))
                     && piece.coincides(other, self.centre)
             })
         })
@@ -335,6 +369,32 @@ mod tests {
         assert_eq!(found(cube(-half), floor()), Some(Extent::Standing));
         assert_eq!(found(cube(0.3 * half), floor()), None);
         assert_eq!(found(cube(9.0), floor()), None);
+    }
+
+    #[test]
+    fn solids_that_stand_on_each_other_touch_and_one_in_a_side_of_another_lies_there() {
+        let cube = |x: f64, y: f64| Mesh {
+            position: DVec3::new(x, y, 0.0),
+            ..Mesh::of((crate::mesh::SOLIDS[0].make)(2.0))
+        };
+        let side = cube(0.0, 0.0)
+            .bounds()
+            .map_or(0.0, |(low, high)| (high - low).y);
+        let lower = cube(0.0, 0.0);
+        assert_eq!(
+            found(lower.clone(), cube(0.3, side)),
+            Some(Extent::Touching)
+        );
+        // Their fronts are one surface.
+        assert_eq!(found(lower.clone(), cube(0.3, 0.3)), Some(Extent::Faces));
+        let mirrored = Mesh {
+            scale: DVec3::new(1.0, -1.0, 1.0),
+            ..cube(0.3, side)
+        };
+        assert_eq!(found(lower.clone(), mirrored), Some(Extent::Touching));
+        // A sheet has no inside.
+        let lid = sheet(1, 1.0, DVec3::Y * side / 2.0, DVec3::X * 180.0);
+        assert_eq!(found(lower, lid), Some(Extent::Faces));
     }
 
     #[test]

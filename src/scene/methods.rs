@@ -346,7 +346,7 @@ impl Method for Sampling {
         method(
             Self::Grid(4),
             "grid:4",
-            "so many times so many rays in every pixel",
+            "a square of rays in every pixel, so many to a side",
             "common practice",
         ),
     ];

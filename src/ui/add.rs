@@ -41,7 +41,7 @@ impl Addition {
                         let down = DVec3::Y * (floor - shape.position().y);
                         Edit::AddObject(shape.kind(), shape.moved(down))
                     }
-                    _ => Edit::AddObject(shape.kind(), shape),
+                    _ => Edit::AddObject(shape.kind(), stood(scene, shape, size)),
                 }
             }
             Self::Solid(place) => {
@@ -51,7 +51,7 @@ impl Addition {
                     smooth: solid.smooth,
                     ..Mesh::of((solid.make)(size))
                 };
-                Edit::AddObject(solid.name, stood(scene, mesh, size).into())
+                Edit::AddObject(solid.name, stood(scene, mesh.into(), size))
             }
             Self::Light => Edit::AddLight(at + DVec3::new(0.0, size, 0.0)),
             Self::Pack => Edit::AddPack,
@@ -167,20 +167,27 @@ fn outwards(step: f64) -> impl Iterator<Item = f64> {
     steps.map(move |steps| steps * step)
 }
 
-/// A mesh that has room for so large a thing over a floor stands on that, however flat it is.
-fn stood(scene: &Scene, mut mesh: Mesh, size: f64) -> Mesh {
+/// What has room for so large a thing over a floor stands on that, however flat it is; what would lie in it hangs.
+fn stood(scene: &Scene, mut shape: Shape, size: f64) -> Shape {
     let pieces = planes(scene).filter_map(|object| object.shape.plane_piece());
     for piece in pieces.filter(|piece| piece.normal.y.abs() > LEVEL) {
         let up = piece.normal * piece.normal.y.signum();
-        let heights = mesh.world_corners().flatten();
-        let heights = heights.map(|corner| up.dot(corner - piece.point));
-        let gap = heights.fold(f64::INFINITY, f64::min);
+        let height = |point: DVec3| up.dot(point - piece.point);
+        let lowest = |points: &mut dyn Iterator<Item = DVec3>| {
+            points.map(height).fold(f64::INFINITY, f64::min)
+        };
+        let gap = match &shape {
+            Shape::Sphere(ball) => height(ball.center) - ball.radius,
+            Shape::Triangle(triangle) => lowest(&mut triangle.corners().into_iter()),
+            Shape::Mesh(mesh) => lowest(&mut mesh.world_corners().flatten()),
+            Shape::Disc(_) | Shape::Plane(_) => continue,
+        };
         // Rounding may have sunk it in.
         if (-size / 10.0..size / 2.0).contains(&gap) {
-            mesh.position -= up * gap;
+            shape = shape.moved(-up * gap);
         }
     }
-    mesh
+    shape
 }
 
 /// The visible planes of a scene.
@@ -371,10 +378,10 @@ mod tests {
             let floor = floor.expect("a floor");
             let sizes: Vec<f64> = bounds.iter().map(|(low, high)| (*high - *low).x).collect();
             for (index, (low, high)) in bounds.iter().enumerate() {
-                assert!(
-                    floor.height(*low) > -1.0,
-                    "{floor_first}: {index} is sunk in {low}"
-                );
+                let gap = floor.height(*low);
+                // Without one, they stand where the eye looks.
+                let is_on = gap.abs() < 1e-9 || (!floor_first && gap > -1.0);
+                assert!(is_on, "{floor_first}: {index} stands {gap} above it");
                 assert!((0.5..2.0).contains(&(sizes[index] / sizes[0])), "{sizes:?}");
                 for (other_low, other_high) in &bounds[..index] {
                     let apart = low.cmpgt(*other_high).any() || high.cmplt(*other_low).any();

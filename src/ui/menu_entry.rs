@@ -21,8 +21,8 @@ pub const ITEM_COMMANDS: [(&str, Command); 14] = [
     ("Put down", Command::PutDown),
     ("Join", Command::Join),
     ("Separate", Command::Separate),
-    ("Move up", Command::MoveUp),
-    ("Move down", Command::MoveDown),
+    ("Move up in the list", Command::MoveUp),
+    ("Move down in the list", Command::MoveDown),
     ("Delete", Command::Delete),
 ];
 

@@ -3,7 +3,10 @@
 
 use std::cell::Cell;
 
-use egui::{Align, ComboBox, DragValue, Label, Layout, Response, RichText, Sense, Ui, vec2};
+use egui::{
+    Align, ComboBox, DragValue, Label, Layout, Response, RichText, Sense, Stroke, StrokeKind, Ui,
+    vec2,
+};
 
 use glam::DVec3;
 
@@ -289,6 +292,10 @@ fn swatch(ui: &mut Ui, name: &str, value: &mut DVec3) {
     let response = ui
         .color_edit_button_srgb(&mut bytes)
         .accessible_name(format!("{name} swatch"));
+    // White on white would have no end.
+    let line = Stroke::new(1.0, palette(ui.ctx()).line);
+    ui.painter()
+        .rect_stroke(response.rect, 2, line, StrokeKind::Inside);
     // The button writes rounded colours back in every frame; only a pick counts.
     if response.changed() {
         *value = DVec3::from(bytes.map(f64::from));

@@ -26,8 +26,8 @@ pub const LAB: f32 = 280.0;
 pub const TIMELINE: f32 = 216.0;
 /// Height of a few of them, which are in sight at first.
 pub const TRACKS: f32 = 3.0 * TRACK;
-/// Width of the labels of the timeline's tracks.
-pub const TRACK_LABEL: f32 = 112.0;
+/// Least and largest width of the labels of the timeline's tracks.
+pub const TRACK_LABEL: (f32, f32) = (112.0, 224.0);
 /// Height of a track of the timeline.
 pub const TRACK: f32 = 20.0;
 /// Height of the small pictures above keys.
@@ -126,7 +126,7 @@ const LIGHT: Palette = Palette {
     line: Color32::from_rgb(0xC9, 0xCE, 0xD8),
     text: Color32::from_rgb(0x22, 0x26, 0x2E),
     muted: Color32::from_rgb(0x56, 0x5E, 0x70),
-    accent: Color32::from_rgb(0x94, 0x60, 0x00),
+    accent: Color32::from_rgb(0x85, 0x56, 0x00),
     on_accent: Color32::from_rgb(0xFF, 0xFF, 0xFF),
     curve: Color32::from_rgb(0x00, 0x86, 0x80),
     selected: Color32::from_rgb(0xF6, 0xE2, 0xB8),
@@ -262,6 +262,7 @@ mod tests {
             let p = of(theme);
             let mut pairs = vec![
                 ("accent on panel", p.accent, p.panel),
+                ("accent on selected", p.accent, p.selected),
                 ("text on selected", p.text, p.selected),
                 ("on accent", p.on_accent, p.accent),
                 ("error on panel", p.error, p.panel),

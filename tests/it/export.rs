@@ -931,7 +931,7 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
     harness.window.get_by_label("Start export").click();
     harness.window.step();
     // A second click asks for nothing more.
-    see(&mut harness, "Such files are being made");
+    see(&mut harness, "These files are being made");
     harness.window.get_by_label("Start export").click();
     finish(&mut harness);
     let rows = harness

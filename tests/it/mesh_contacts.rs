@@ -66,6 +66,20 @@ fn an_eye_on_a_box_sees_its_other_sides_from_within() {
 }
 
 #[test]
+fn from_within_a_solid_the_floor_is_seen_on_which_it_stands() {
+    // A house around a smaller one, and the floor of both.
+    let house = block(DVec3::new(3.0, 2.0, 3.0), (DVec3::Y * 2.0, DVec3::ZERO));
+    for position in [DVec3::new(1.0, 1.0, 1.0), DVec3::new(-2.0, 3.9, 0.5)] {
+        let within = with_camera(scene([floor(), house.clone()]), |camera| {
+            camera.position = position;
+            camera.look_at = DVec3::new(0.1, -1.0, -0.2);
+        });
+        let picture = steady_mesh(&within, "in a house");
+        assert_eq!(blue_and_red(&picture), (0, ALL), "{position}");
+    }
+}
+
+#[test]
 fn parallel_rays_go_on_from_the_face_that_their_window_lies_in() {
     let along = turn() * -DVec3::Y;
     // The middle of the window need not be on the sheet.

@@ -207,7 +207,8 @@ impl Mesh {
             * DMat3::from_diagonal(self.scale)
     }
 
-    fn orientation(&self) -> DQuat {
+    /// Rotation.
+    pub fn orientation(&self) -> DQuat {
         let [x, y, z] = self.rotation.to_array().map(f64::to_radians);
         DQuat::from_euler(EulerRot::ZYX, z, y, x)
     }

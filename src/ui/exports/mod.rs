@@ -267,7 +267,7 @@ impl Exports {
                 ui.colored_label(colors.error, error);
             }
             Ok(_) if is_making => {
-                ui.label("Such files are being made: see below");
+                ui.label("These files are being made, see below");
             }
             Ok(sequence) => {
                 let forecast = &mut self.forecast;

@@ -4,6 +4,7 @@ use egui::{Id, Ui};
 use glam::DVec3;
 
 use super::alike::{for_all, packs_of, values};
+use super::as_one::as_one;
 use super::items;
 use super::title::{name_field, tell_different, title, title_field};
 use crate::editor::{Action, Edit, Editor, Item, Kind};
@@ -31,7 +32,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     tell_different(ui, differences(scene, selected, last).into_iter());
     let name = last.name(scene).unwrap_or_default();
     let moves = if group.is_some() {
-        "a position moves the group"
+        "a position, a rotation or a scale is that of the group"
     } else {
         "a position that is dragged moves them together"
     };
@@ -68,7 +69,10 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let is_together = group.is_some() || ui.input(|input| input.pointer.is_decidedly_dragging());
     for action in own.actions {
         out.actions.push(match action {
-            Action::Edit(edit) => Action::Edit(for_all(scene, selected, edit, is_together)),
+            Action::Edit(edit) => {
+                let all = group.and_then(|_| as_one(scene, selected, &edit));
+                Action::Edit(all.unwrap_or_else(|| for_all(scene, selected, edit, is_together)))
+            }
             other => other,
         });
     }

@@ -8,6 +8,8 @@ mod items;
 
 mod alike;
 
+mod as_one;
+
 mod many;
 
 mod keys;

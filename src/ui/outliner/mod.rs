@@ -12,7 +12,8 @@ mod groups;
 mod walk;
 
 use egui::{
-    Align, Id, Layout, Rect, Response, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2,
+    Align, Id, Layout, Rect, Response, ScrollArea, Sense, Stroke, StrokeKind, TextEdit, Ui,
+    UiBuilder, pos2, vec2,
 };
 
 use self::drop::{take_dropped, take_dropped_at_end};
@@ -328,7 +329,9 @@ impl Outliner {
             let place;
             (rect, place) = rect.split_left_right_at_x(rect.right() - 2.0 * GRID);
             let square = Rect::from_center_size(place.center(), vec2(GRID, GRID) * 1.25);
-            ui.painter().rect_filled(square, 2, color);
+            let line = Stroke::new(1.0, palette(ui.ctx()).line);
+            ui.painter()
+                .rect(square, 2, color, line, StrokeKind::Outside);
         }
         let response = entry(
             ui,

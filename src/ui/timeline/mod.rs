@@ -40,6 +40,8 @@ use crate::ui::hint::Hint as _;
 const LEAST: f64 = 4.0;
 /// Room behind the last key, as a share of the time before it.
 const BEHIND: f64 = 0.08;
+/// How much of its width labels of tracks have.
+const LABEL_SHARE: f32 = 0.14;
 
 /// What the panel remembers.
 pub struct TimelinePanel {
@@ -124,7 +126,8 @@ impl TimelinePanel {
             self.span = self.chosen.unwrap_or((0.0, end));
         }
         let area = ui.max_rect();
-        let left = area.left() + TRACK_LABEL;
+        let (least, most) = TRACK_LABEL;
+        let left = area.left() + (area.width() * LABEL_SHARE).clamp(least, most);
         let scale = Scale {
             left,
             width: area.right() - 2.0 * GRID - left,

@@ -1,0 +1,147 @@
+//! A group that is turned or stretched by the numbers of one of its members.
+
+use glam::{DQuat, DVec3};
+
+use crate::editor::{Edit, Item, Kind};
+use crate::scene::{Mesh, Object, Scene, Shape};
+
+/// What is done to all members.
+#[derive(Clone, Copy)]
+enum Change {
+    Turn(DQuat),
+    Grow(f64),
+    Stretch(DVec3),
+}
+
+impl Change {
+    /// What makes a mesh another one, if it is one of these.
+    fn between(old: &Mesh, new: &Mesh) -> Option<Self> {
+        if old.rotation != new.rotation {
+            return Some(Self::Turn(new.orientation() * old.orientation().inverse()));
+        }
+        let by = new.scale / old.scale;
+        match by == DVec3::splat(by.x) {
+            _ if old.scale == new.scale || !by.is_finite() => None,
+            true => (by.x > 0.0).then_some(Self::Grow(by.x)),
+            false => Some(Self::Stretch(by)),
+        }
+    }
+
+    /// What becomes of a member. `None` where it would be sheared, which no shape can be.
+    fn of(self, shape: &Shape, about: DVec3) -> Option<Shape> {
+        match (self, shape) {
+            (Self::Turn(by), shape) => Some(shape.turned(about, by)),
+            (Self::Grow(by), shape) => Some(shape.scaled(about, by)),
+            (Self::Stretch(by), Shape::Mesh(mesh)) if mesh.rotation == DVec3::ZERO => {
+                let stretched = Mesh {
+                    position: about + (mesh.position - about) * by,
+                    scale: mesh.scale * by,
+                    ..mesh.clone()
+                };
+                Some(stretched.into())
+            }
+            (Self::Stretch(_), _) => None,
+        }
+    }
+
+    fn verb(self) -> &'static str {
+        match self {
+            Self::Turn(_) => "Turn",
+            Self::Grow(_) | Self::Stretch(_) => "Resize",
+        }
+    }
+}
+
+/// The change that turns or stretches all members of a group about the mean of their places, as `edit` does one of
+/// them: that stays where it is then, however often it is done. `None` where `edit` does neither, or some would be
+/// sheared.
+pub fn as_one(scene: &Scene, members: &[Item], edit: &Edit) -> Option<Edit> {
+    let Edit::Object(own, new, field) = edit else {
+        return None;
+    };
+    let (Shape::Mesh(old), Shape::Mesh(new)) = (&scene.objects.get(*own)?.shape, &new.shape) else {
+        return None;
+    };
+    let change = Change::between(old, new)?;
+    let objects = members.iter().filter(|item| item.kind == Kind::Object);
+    let objects = objects.filter_map(|item| Some((item.index, scene.objects.get(item.index)?)));
+    let objects: Vec<(usize, &Object)> = objects.collect();
+    let sum: DVec3 = objects
+        .iter()
+        .map(|(_, object)| object.shape.position())
+        .sum();
+    let about = sum / objects.len() as f64;
+    let edits = objects.iter().map(|&(index, object)| {
+        let mut shape = change.of(&object.shape, about)?;
+        if let Shape::Mesh(mesh) = &mut shape
+            && index == *own
+        {
+            // To the last digit what was typed.
+            (mesh.rotation, mesh.scale) = (new.rotation, new.scale);
+        }
+        let changed = Object {
+            shape,
+            ..object.clone()
+        };
+        Some(Edit::object(index, changed, field))
+    });
+    let edits: Vec<Edit> = edits.collect::<Option<_>>()?;
+    let label = format!("{} {} items", change.verb(), edits.len());
+    Some(Edit::Each(edits, label))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::SOLIDS;
+    use crate::scene::Sphere;
+
+    /// A box and a ball beside it, and both as they are after a change of the box.
+    fn changed(change: impl FnOnce(&mut Mesh)) -> Option<(Mesh, Sphere)> {
+        let mut scene = Scene::demo();
+        let mesh = Mesh {
+            position: DVec3::new(10.0, 0.0, 0.0),
+            ..Mesh::of((SOLIDS[0].make)(4.0))
+        };
+        let center = DVec3::new(-10.0, 0.0, 0.0);
+        scene.objects[0].shape = mesh.clone().into();
+        scene.objects[1].shape = Sphere {
+            center,
+            radius: 3.0,
+        }
+        .into();
+        let mut new = mesh;
+        change(&mut new);
+        let edit = Edit::object(
+            0,
+            Object {
+                shape: new.into(),
+                ..scene.objects[0].clone()
+            },
+            "rotation",
+        );
+        let edit = as_one(&scene, &[Item::object(1), Item::object(0)], &edit)?;
+        edit.apply(&mut scene).expect("made");
+        match (&scene.objects[0].shape, &scene.objects[1].shape) {
+            (Shape::Mesh(mesh), Shape::Sphere(ball)) => Some((mesh.clone(), *ball)),
+            _ => panic!("other shapes"),
+        }
+    }
+
+    #[test]
+    fn a_group_is_turned_and_grows_about_its_middle() {
+        let (mesh, ball) = changed(|mesh| mesh.rotation.y = 90.0).expect("turned");
+        assert_eq!(mesh.rotation, DVec3::new(0.0, 90.0, 0.0));
+        assert!((mesh.position - DVec3::NEG_Z * 10.0).length() < 1e-9);
+        assert!((ball.center - DVec3::Z * 10.0).length() < 1e-9);
+        let (mesh, ball) = changed(|mesh| mesh.scale *= 3.0).expect("grown");
+        assert_eq!((mesh.position.x, ball.center.x), (30.0, -30.0));
+        assert_eq!((mesh.scale, ball.radius), (DVec3::splat(3.0), 9.0));
+    }
+
+    #[test]
+    fn what_would_be_sheared_is_left_to_each_alone() {
+        assert!(changed(|mesh| mesh.scale.x = 2.0).is_none(), "a ball");
+        assert!(changed(|mesh| mesh.position.x = 2.0).is_none(), "moved");
+    }
+}
