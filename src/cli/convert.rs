@@ -1,7 +1,7 @@
 //! `glint convert`: a mesh file becomes a scene, or a scene a file for POV-Ray.
 
 use std::borrow::Cow;
-use std::path::{PathBuf, absolute};
+use std::path::{Path, PathBuf, absolute};
 
 use clap::Args;
 
@@ -64,8 +64,11 @@ fn input_option(path: &str) -> String {
 }
 
 fn write_scene(args: &ConvertArgs) -> Result<(), CliError> {
-    let input = absolute(&args.input).map_err(CliError::usage)?;
-    let output = absolute(&args.output).map_err(CliError::usage)?;
+    let whole = |path: &Path| {
+        let named = |error| CliError::usage(format!("{}: {error}", path.display()));
+        absolute(path).map_err(named)
+    };
+    let (input, output) = (whole(&args.input)?, whole(&args.output)?);
     let read = Scene::of_mesh_file(&input, output.parent());
     let (scene, notes) = read.map_err(CliError::usage)?;
     for note in notes {

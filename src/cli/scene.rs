@@ -27,7 +27,7 @@ pub fn read_whole_document(path: &Path) -> Result<Document, CliError> {
         None => Ok(document),
         Some(problem) => {
             let sentence = format!("{problem}, and no frame is made without it");
-            Err(CliError::usage(sentence))
+            Err(CliError::failed(sentence))
         }
     }
 }

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -248,6 +249,9 @@ fn texture(pack: &ColorPack, total_intensity: f64) -> String {
     )
 }
 
+/// How large objects are that POV-Ray sees, in world units: of triangles 1e-6 or 1e7 large, it draws nothing.
+const SEEN: RangeInclusive<f64> = 1e-5..=1e6;
+
 /// In what the pictures of a scene differ, beyond rounding, for people: what the model means by it, and POV-Ray does
 /// not.
 pub fn povray_differences(scene: &Scene) -> Vec<&'static str> {
@@ -264,7 +268,17 @@ pub fn povray_differences(scene: &Scene) -> Vec<&'static str> {
     let lifted = visible().any(is_smooth).then_some(
         "light ends on the curved surface of smooth meshes here, and on their flat faces there",
     );
-    clipped.into_iter().chain(lifted).collect()
+    let is_seen_there = |object: &Object| {
+        let size = object
+            .shape
+            .bounds()
+            .map(|(low, high)| (high - low).max_element());
+        size.is_none_or(|size| SEEN.contains(&size))
+    };
+    let lost = (!visible().all(is_seen_there)).then_some(
+        "what is smaller than a hundred-thousandth of a unit, or larger than a million, is seen here, and may not be there",
+    );
+    clipped.into_iter().chain(lifted).chain(lost).collect()
 }
 
 /// What POV-Ray has drawn.

@@ -10,8 +10,10 @@ use glam::DVec3;
 use super::request::{Model, RenderRequest};
 use crate::scene::{Coincidence, Extent, List, Object, Projection, Scene, Shape, unit};
 
-/// Most touching objects that are kept out of the tree; of more, none is.
+/// Most objects that hold lights or the eye and are kept out of the tree; of more, none is.
 const MOST_APART: usize = 256;
+/// The same of those that fill one surface with others: more of them are found faster in the tree.
+const MOST_SHARING: usize = 32;
 
 /// Most pairs of an object and a light that are looked at: ten milliseconds, where either has changed.
 const MOST_PAIRS: usize = 1_000_000;
@@ -40,6 +42,8 @@ pub struct Contacts {
     /// Where the lights are.
     pub lights: Arc<LightContacts>,
     apart: BTreeSet<usize>,
+    /// The objects in `shared` that are no meshes, which are told by their numbers where they stand.
+    sharing: BTreeSet<usize>,
 }
 
 /// What lights touch.
@@ -180,20 +184,27 @@ impl Contacts {
         &self.apart
     }
 
+    /// Whether an object is told by the number that it has in a list.
+    pub fn is_told(&self, place: usize) -> bool {
+        self.apart.contains(&place) || self.sharing.contains(&place)
+    }
+
     fn set_apart(&mut self, objects: &List<Object>) {
         let shared = self.shared.iter();
         let shared = shared.flat_map(|found| [found.later, found.earlier]);
-        // A mesh is told by its numbers where it stands.
         let is_mesh = |place: &usize| matches!(objects[*place].shape, Shape::Mesh(_));
-        let shared = shared.filter(|place| !is_mesh(place));
+        self.sharing = shared.filter(|place| !is_mesh(place)).collect();
         let LightContacts {
             held_by, on_balls, ..
         } = &*self.lights;
         let lights = held_by.iter().flatten().chain(on_balls.iter().flatten());
         let eye = self.edge_on.iter().chain(&self.eye_on).copied();
-        let all: BTreeSet<usize> = shared.chain(lights.copied()).chain(eye).collect();
-        if all.len() <= MOST_APART {
-            self.apart = all;
+        let held: BTreeSet<usize> = lights.copied().chain(eye).collect();
+        if held.len() <= MOST_APART {
+            self.apart = held;
+        }
+        if self.sharing.len() <= MOST_SHARING {
+            self.apart.extend(&self.sharing);
         }
         self.apart.extend(&self.covered);
     }

@@ -55,6 +55,8 @@ pub struct Geometry<R> {
     pub bvh: Bvh<R>,
     /// How far above what is hit rays that go on from there may start.
     pub lift: R,
+    /// For each kind of primitive the places of the objects in the scene's list.
+    places: [Vec<usize>; KINDS],
     /// Whether the tree was built around other places of its members.
     is_refitted: bool,
 }
@@ -270,6 +272,7 @@ impl<R: Real> Geometry<R> {
         before: Option<(Counts, &Bvh<R>)>,
     ) -> Self {
         let (mut primitives, mut meshes) = (Primitives::default(), Vec::new());
+        let mut places: [Vec<usize>; KINDS] = Default::default();
         let packing = Packing {
             centre,
             corner_users: &count_corner_users(scene),
@@ -296,7 +299,9 @@ impl<R: Real> Geometry<R> {
                     });
                 }
                 shape => {
-                    primitives.push(shape, material, &packing);
+                    if let Some(packed) = primitives.push(shape, material, &packing) {
+                        places[packed.kind as usize].push(index);
+                    }
                 }
             }
         }
@@ -320,6 +325,7 @@ impl<R: Real> Geometry<R> {
             is_refitted: refitted.is_some(),
             bvh: refitted.unwrap_or_else(|| Bvh::new(members.0.len(), member)),
             lift: lifts.fold(R::ZERO, R::max),
+            places,
             primitives,
             meshes,
         }
@@ -364,6 +370,12 @@ impl<R: Real> Geometry<R> {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// The number of the primitive that the object at a place in the scene's list became.
+    pub fn number_at(&self, place: usize) -> Option<usize> {
+        let mut kinds = self.primitives.firsts().into_iter().zip(&self.places);
+        kinds.find_map(|(first, places)| Some(first + places.binary_search(&place).ok()?))
     }
 
     /// The mesh that the primitive of a number belongs to, counted from that of the first primitive.

@@ -162,15 +162,16 @@ impl<R: Real> Plan<R> {
             plan.take_geometry(geometry, projector, centre);
         }
         let numbers = plan.pack(scene, &contacts, projector);
-        let number = |place: &usize| numbers.get(place).copied();
+        let is_apart = |place: &usize| contacts.apart().contains(place);
+        let number = |place: &usize| numbers.get(place).copied().filter(|_| is_apart(place));
         plan.edge_on = contacts.edge_on.iter().filter_map(number).collect();
         plan.eye_on = contacts.eye_on.as_ref().and_then(number);
-        plan.tie(scene, (request, &contacts), number);
+        plan.tie(scene, (request, &contacts), &numbers);
         let occluders = occluders.as_deref().unwrap_or_default();
         let ball = |light: usize| {
             let ball = contacts.lights.on_balls.get(light).copied().flatten();
             // Where it stands in a tree, it is held against rays like everything else.
-            ball.filter(|place| numbers.contains_key(place))
+            ball.filter(|place| number(place).is_some())
         };
         let holders = |light: usize| {
             let flat = contacts.lights.held_by.get(light).into_iter().flatten();
@@ -181,7 +182,8 @@ impl<R: Real> Plan<R> {
         plan.lights = pack_lights(scene, centre, (occluders, model), holding);
         plan.hold(scene, request);
         if matches!(request.sampling, Sampling::Adaptive { .. }) {
-            measure_loose(&mut plan.primitives, &numbers.values().copied().collect());
+            let apart = contacts.apart().iter().filter_map(number).collect();
+            measure_loose(&mut plan.primitives, &apart);
         }
         if may_cull {
             plan.bound();
@@ -222,7 +224,7 @@ impl<R: Real> Plan<R> {
     }
 
     /// Packs the markers, then the visible objects that stand in no tree. Gives the numbers of those that
-    /// stand apart, by their places in the scene.
+    /// are told by them, by their places in the scene.
     fn pack(
         &mut self,
         scene: &Scene,
@@ -263,7 +265,7 @@ impl<R: Real> Plan<R> {
             let packed = self.push(&object.shape, material, &packing);
             found.extend(
                 packed
-                    .filter(|_| apart.contains(&index))
+                    .filter(|_| contacts.is_told(index))
                     .map(|packed| (index, packed)),
             );
         }

@@ -1,26 +1,29 @@
 //! Objects that fill the same surface, as the tracer counts them: the earlier one of the list is seen.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
+
+use glam::DVec3;
 
 use super::contacts::{Contacts, Others, Tie};
 use super::pack::Plan;
 use super::packed_mesh::MeshInstance;
 use super::request::RenderRequest;
+use crate::primitive::BoundingBox;
 use crate::scene::{Coincidence, Extent, Projection, Scene};
-use crate::simd::{Real, Vec3};
+use crate::simd::Real;
 
 /// How far apart surfaces may be that count as one, twice: their own numbers are rounded too. What counts as that is
 /// the same in any precision.
 const CLEARANCE: f64 = 8.0 * f32::UNIT_ROUNDOFF as f64;
 
 impl<R: Real> Plan<R> {
-    /// Finds the ties of a scene, given the numbers of what stands in no tree.
+    /// Finds the ties of a scene, given the numbers of what stands in no tree by their places in its list.
     pub fn tie(
         &mut self,
         scene: &Scene,
         (request, contacts): (&RenderRequest, &Contacts),
-        number: impl Fn(&usize) -> Option<usize>,
+        listed: &HashMap<usize, usize>,
     ) {
         let is_perspective = request.projection_of(&scene.camera) == Projection::Perspective;
         let is_met = |found: &&Coincidence| !(is_perspective && self.hides(scene, found));
@@ -33,7 +36,7 @@ impl<R: Real> Plan<R> {
             |found: &Coincidence| unlike.contains(&found.later) && unlike.contains(&found.earlier);
         let mut ties: Vec<(Range<usize>, Vec<Range<usize>>)> = Vec::new();
         for found in met.iter().filter(|found| is_seen(found)) {
-            let numbers = |place| self.numbers_at(place, &number);
+            let numbers = |place| self.numbers_at(place, listed);
             let (later, earlier) = (numbers(found.later), numbers(found.earlier));
             let (Some(later), Some(earlier)) = (later, earlier) else {
                 continue;
@@ -43,10 +46,10 @@ impl<R: Real> Plan<R> {
                 None => ties.push((later, vec![earlier])),
             }
         }
-        let listed = self.primitives.len();
+        let first_in_tree = self.primitives.len();
         let ties = ties.into_iter().map(|(numbers, over)| Tie {
             numbers,
-            over: Others::new(over, listed),
+            over: Others::new(over, first_in_tree),
         });
         let mut ties: Vec<Tie> = ties.collect();
         ties.sort_by_key(|tie| tie.numbers.start);
@@ -57,20 +60,19 @@ impl<R: Real> Plan<R> {
     }
 
     /// The numbers of the object at a place in the scene's list.
-    fn numbers_at(
-        &self,
-        place: usize,
-        number: impl Fn(&usize) -> Option<usize>,
-    ) -> Option<Range<usize>> {
-        let Some(mesh) = self.mesh_at(place) else {
-            return number(&place).map(|number| number..number + 1);
-        };
-        let (first, inner) = (self.primitives.len(), mesh.numbers());
+    fn numbers_at(&self, place: usize, listed: &HashMap<usize, usize>) -> Option<Range<usize>> {
+        if let Some(&number) = listed.get(&place) {
+            return Some(number..number + 1);
+        }
+        let (first, geometry) = (self.primitives.len(), self.geometry.as_ref()?);
+        let mesh = self.mesh_at(place).map(MeshInstance::numbers);
+        let loose = || geometry.number_at(place).map(|number| number..number + 1);
+        let inner = mesh.or_else(loose)?;
         Some(first + inner.start..first + inner.end)
     }
 
-    /// Whether a solid stands between the eye, which is outside of it, and the faces on which it stands: no ray that
-    /// comes from the eye reaches the other side of an endless plane.
+    /// Whether a solid stands between the eye, which is not near it, and the faces on which it stands: no ray that
+    /// comes from the eye reaches the other side of an endless plane. One that starts inside of it, or on it, may.
     fn hides(&self, scene: &Scene, found: &Coincidence) -> bool {
         let places = [found.later, found.earlier];
         let mesh = places.into_iter().find_map(|place| self.mesh_at(place));
@@ -83,8 +85,12 @@ impl<R: Real> Plan<R> {
         let middle = mesh.centre.to_dvec3() + self.centre;
         let eye = scene.camera.position;
         let is_between = plane.height(middle) * plane.height(eye) > 0.0;
-        let eye = Vec3::from_dvec3(eye - self.centre);
-        found.extent == Extent::Standing && is_between && mesh.is_seen_from_outside(eye)
+        let BoundingBox { low, high } = mesh.member().bounds;
+        let (low, high) = (low.to_dvec3(), high.to_dvec3());
+        let eye = eye - self.centre;
+        let little = DVec3::splat(CLEARANCE * (low.abs().max(high.abs()).max_element()));
+        let is_beside = eye.cmplt(low - little).any() || eye.cmpgt(high + little).any();
+        found.extent == Extent::Standing && mesh.is_solid() && is_between && is_beside
     }
 
     /// The mesh that is at this place in the scene's list.

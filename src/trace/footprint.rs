@@ -1,6 +1,6 @@
 //! How large a pixel is: along rays, and on what they meet.
 
-use super::thresholds::{GRAZING, HIDDEN, HIGHLIGHT_REACH, SLIPPING};
+use super::thresholds::{HIDDEN, HIGHLIGHT_REACH, SLIPPING};
 use crate::simd::{Real, SimdFloat};
 
 /// How wide a pixel is along rays: where they start, and how much wider at distance 1.
@@ -42,11 +42,11 @@ impl<L: SimdFloat> RayCone<L> {
 
 impl<L: SimdFloat> Footprint<L> {
     /// The pixel around a ray that has gone as far as `t` and meets a surface of this curvature at this
-    /// cosine.
+    /// cosine, below which it is not stretched where that is less than `grazing`.
     #[inline(always)]
-    pub fn new(cone: RayCone<L>, t: L, cosine: L, curvature: L) -> Self {
+    pub fn new(cone: RayCone<L>, (t, cosine, grazing): (L, L, L), curvature: L) -> Self {
         let width = cone.width_at(t);
-        let length = width / cosine.abs().max(t.like_f64(GRAZING));
+        let length = width / cosine.abs().max(grazing);
         Self {
             cone: RayCone { width, ..cone },
             length,

@@ -16,7 +16,7 @@ use super::samples::{Edges, Samples};
 use super::shade::Shader;
 use super::slip::may_slip;
 use super::stats::Rays;
-use super::thresholds::{LARGEST_STRETCH, SLIPPING};
+use super::thresholds::{GRAZING, GRAZING_ON_PLANES, SLIPPING};
 use super::walk::Stack;
 use crate::plan::{HitOrder, IdleFaces, Plan, Show};
 use crate::primitive::{Blur, CAUTION, Kind, Ray, roundings};
@@ -25,6 +25,31 @@ use crate::simd::{Mask as _, Real, SimdFloat};
 /// So many packets are shown where to start in trees: to find that takes as long as the way of one of them. Two packets
 /// are most of what is traced again; with a start of their own a mesh of 100,000 faces takes 1.05 times as long.
 const FEWEST_NARROWED: usize = 3;
+
+/// How much longer than wide a pixel is at most where a packet has hit something: of all but planes, nobody knows yet.
+#[inline(always)]
+fn stretch<L: SimdFloat, const TREE: bool>(
+    kernel: Kernel<L, TREE>,
+    packet: &Packet<L>,
+    hit: L::Mask,
+) -> L {
+    let (plan, numbers) = (kernel.plan, packet.near.number);
+    let first = plan.primitives.firsts()[Kind::Plane as usize];
+    let mut stretch = kernel.splat(1.0 / GRAZING);
+    let mut left = (hit & kernel.are_planes(numbers)).bits();
+    while left != 0 {
+        let lane = left.trailing_zeros() as usize;
+        let number = numbers.lane(lane).to_f64() as usize;
+        let here = numbers.same(numbers.like(real(number)));
+        left &= !here.bits();
+        let direction = packet.rays.direction;
+        let normal = direction.like(plan.primitives.planes[number - first].normal);
+        let cosine = normal.dot(direction).abs();
+        let cosine = cosine.max(kernel.splat(GRAZING_ON_PLANES));
+        stretch = L::select(here, kernel.splat(1.0) / cosine, stretch);
+    }
+    stretch
+}
 
 impl<L: SimdFloat> Bounce<L> {
     /// Becomes the rays from the camera through the samples, which can meet what is in `seen`.
@@ -167,7 +192,7 @@ impl<L: SimdFloat> Bounce<L> {
         if plan.screen.is_some() {
             // Room for what passes beside the rays to the lights, closer than a pixel.
             let footprint = if self.looks_beside() {
-                Some(self.widest(kernel) * L::Real::from_f64(LARGEST_STRETCH))
+                Some(self.longest(kernel))
             } else {
                 None
             };
@@ -247,16 +272,16 @@ impl<L: SimdFloat> Bounce<L> {
         (width.greatest(), spread.greatest())
     }
 
-    /// The widest pixel at what was hit; zero without edges.
+    /// The longest pixel at what was hit, at most; zero without edges.
     #[inline(always)]
-    fn widest<const TREE: bool>(&self, kernel: Kernel<L, TREE>) -> L::Real {
-        let mut widest = kernel.splat(0.0);
+    fn longest<const TREE: bool>(&self, kernel: Kernel<L, TREE>) -> L::Real {
+        let mut longest = kernel.splat(0.0);
         for (edge, packet) in self.edges.iter().zip(&self.packets) {
             let hit = packet.near.t.less(kernel.infinity()) & packet.active;
-            let width = edge.cone.width_at(packet.near.t);
-            widest = L::select(hit, widest.max(width), widest);
+            let length = edge.cone.width_at(packet.near.t) * stretch(kernel, packet, hit);
+            longest = L::select(hit, longest.max(length), longest);
         }
-        widest.greatest()
+        longest.greatest() * L::Real::from_f64(1.0 + CAUTION)
     }
 
     /// Shades the packets; `next` gets the rays that mirrors send on.

@@ -69,7 +69,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     if !dark.any() {
                         continue;
                     }
-                    let paths = self.spawn(hit, direction);
+                    let (paths, distance) = self.towards(hit, light, (direction, distance));
                     let among = Among {
                         candidates: &candidates.casters,
                         roots: &candidates.roots,
@@ -78,7 +78,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     };
                     let test = DepthTest {
                         methods: &self.plan.methods,
-                        distance: self.reach_to(light, distance),
+                        distance,
                         deep: footprint.hidden(),
                         free: dark,
                         deepest: self.splat(0.0),

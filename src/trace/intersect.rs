@@ -5,9 +5,10 @@ use super::candidates::Among;
 use super::doubt::Doubt;
 use super::paths::{NOTHING, Paths, real};
 use super::scan::{Test, Thicket, scan_lists};
+use super::thresholds::{GRAZING, GRAZING_ON_PLANES};
 use super::walk::Stack;
 use crate::plan::{Geometry, Plan, RayOrigin};
-use crate::primitive::{Blur, FAR_CAUTION, Primitive};
+use crate::primitive::{Blur, FAR_CAUTION, Kind, Primitive};
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
@@ -94,6 +95,22 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         L::splat(self.token, L::Real::INFINITY)
     }
 
+    /// Where what has these numbers is an endless plane.
+    #[inline(always)]
+    pub fn are_planes(self, numbers: L) -> L::Mask {
+        let first = self.plan.primitives.firsts()[Kind::Plane as usize];
+        let end = first + self.plan.primitives.planes.len();
+        let (first, end) = (numbers.like(real(first)), numbers.like(real(end)));
+        first.at_most(numbers) & numbers.less(end)
+    }
+
+    /// Cosine below which what has these numbers does not stretch a pixel any further.
+    #[inline(always)]
+    pub fn grazing(self, numbers: L) -> L {
+        let on_planes = self.splat(GRAZING_ON_PLANES);
+        L::select(self.are_planes(numbers), on_planes, self.splat(GRAZING))
+    }
+
     /// The nearest primitives along the paths where the mask is set, and where that is in doubt.
     #[inline(always)]
     pub fn nearest(
@@ -108,16 +125,20 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             number: self.splat(NOTHING),
         };
         let is_tied = !self.plan.ties.is_empty();
+        let mut best = nothing;
+        let mut doubt = Doubt::new(blur, (self.plan.is_doubted(), !is_tied));
         let mut test = NearestTest::<L, TREE, true> {
             methods: &self.plan.methods,
-            best: nothing,
+            best: &mut best,
             active,
-            doubt: Doubt::new(blur, (self.plan.is_doubted(), !is_tied)),
+            doubt: &mut doubt,
         };
         scan_lists(self.plan, among.candidates, paths, &mut test);
-        let (mut best, mut doubt) = (test.best, test.doubt);
         if let Some(thicket) = self.thicket(among, (active, blur)) {
-            (best, doubt) = self.nearest_in(&thicket, paths, (best, doubt), stack);
+            // What is lent to a function of its own is in memory for good: those above are in registers.
+            let (mut found, mut undecided) = (best, doubt);
+            self.nearest_in(&thicket, paths, (&mut found, &mut undecided), stack);
+            (best, doubt) = (found, undecided);
         }
         let doubt = if doubt.is_asked() {
             (doubt.before(best.t) | doubt.is_tie(best.t, doubt.second)) & active
@@ -130,16 +151,17 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         (best, doubt)
     }
 
-    /// The nearest of `best` and what stands in the tree. A function of its own: it is long, and few
-    /// scenes need it.
+    /// Looks in the tree for what is nearer than `best`. A function of its own: it is long, and few
+    /// scenes need it. What it finds is written where it is: the whole of it would be copied to and fro, for which the
+    /// processor waits.
     #[inline(never)]
     fn nearest_in(
         self,
         thicket: &Thicket<L>,
         paths: &Paths<L>,
-        (best, doubt): (Nearest<L>, Doubt<L, TREE>),
+        (best, doubt): (&mut Nearest<L>, &mut Doubt<L, TREE>),
         stack: &mut Stack<L::Real>,
-    ) -> (Nearest<L>, Doubt<L, TREE>) {
+    ) {
         L::vectorize(
             self.token,
             #[inline(always)]
@@ -151,9 +173,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     doubt,
                 };
                 thicket.scan(paths, stack, &mut test);
-                (test.best, test.doubt)
             },
-        )
+        );
     }
 
     /// What stands before `distance` in the way of the paths; looked for only where `wanted`. Where something is thicker
@@ -167,25 +188,27 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         stack: &mut Stack<L::Real>,
     ) -> Blocked<L> {
         let none = !wanted & wanted;
+        let mut way = Way {
+            free: wanted,
+            met: none,
+            passed: none,
+            doubt,
+        };
         let mut test = BlockedTest::<L, TREE, true> {
             methods: &self.plan.methods,
             distance,
             sure: doubt.ahead_of(distance),
             reach: distance,
             thick,
-            way: Way {
-                free: wanted,
-                met: none,
-                passed: none,
-                doubt,
-            },
+            way: &mut way,
         };
         scan_lists(self.plan, among.candidates, paths, &mut test);
-        let mut way = test.way;
         if way.free.any()
             && let Some(thicket) = self.thicket(among, (way.free, way.doubt.blur))
         {
-            way = self.way_in(&thicket, paths, (distance, thick, way), stack);
+            let mut known = way;
+            self.way_in(&thicket, paths, (distance, thick, &mut known), stack);
+            way = known;
         }
         Blocked {
             anywhere: wanted & (!way.free | way.passed | way.met),
@@ -201,9 +224,9 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         self,
         thicket: &Thicket<L>,
         paths: &Paths<L>,
-        (distance, thick, way): (L, Option<L>, Way<L, TREE>),
+        (distance, thick, way): (L, Option<L>, &mut Way<L, TREE>),
         stack: &mut Stack<L::Real>,
-    ) -> Way<L, TREE> {
+    ) {
         L::vectorize(
             self.token,
             #[inline(always)]
@@ -221,9 +244,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     way,
                 };
                 thicket.scan(paths, stack, &mut test);
-                test.way
             },
-        )
+        );
     }
 }
 
@@ -242,9 +264,9 @@ pub struct Blocked<L: SimdFloat> {
 /// the first that is tested, where they are tested in order.
 struct NearestTest<'a, L: SimdFloat, const TREE: bool, const LISTED: bool> {
     methods: &'a Methods,
-    best: Nearest<L>,
+    best: &'a mut Nearest<L>,
     active: L::Mask,
-    doubt: Doubt<L, TREE>,
+    doubt: &'a mut Doubt<L, TREE>,
 }
 
 impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
@@ -263,7 +285,7 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
         paths: &Paths<L>,
         number: usize,
     ) {
-        let doubt = &mut self.doubt;
+        let doubt = &mut *self.doubt;
         let t = if doubt.is_asked() {
             let (primitive, asked) = ((primitive, number), (self.methods, self.active));
             let Some((t, from)) = doubt.distance::<LISTED, P>(primitive, prepared, paths, asked)
@@ -296,7 +318,7 @@ struct BlockedTest<'a, L: SimdFloat, const TREE: bool, const LISTED: bool> {
     reach: L,
     /// What is no thicker is passed by, if that is given.
     thick: Option<L>,
-    way: Way<L, TREE>,
+    way: &'a mut Way<L, TREE>,
 }
 
 /// What is known of the way before a distance.
@@ -332,7 +354,7 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
         paths: &Paths<L>,
         number: usize,
     ) {
-        let way = &mut self.way;
+        let way = &mut *self.way;
         let is_met = if way.doubt.is_asked() {
             let (primitive, asked) = ((primitive, number), (self.methods, way.free));
             let distance = way

@@ -219,7 +219,9 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             Some(edge) => {
                 let cosine = hit.surface.normal.dot(view);
                 let (cone, t) = (edge.cone, packet.near.t);
-                Some(Footprint::new(cone, t, cosine, hit.surface.curvature))
+                let grazing = self.kernel.grazing(packet.near.number);
+                let seen = (t, cosine, grazing);
+                Some(Footprint::new(cone, seen, hit.surface.curvature))
             }
             None => None,
         };
@@ -347,8 +349,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let mut edge = edge.zip(point.footprint.as_ref());
         let mut lit = lit_side;
         if !candidates.casters.is_empty() || !candidates.thin.is_empty() {
-            let paths = kernel.spawn(hit, l);
-            let reach = kernel.reach_to(light, distance);
+            let (paths, reach) = kernel.towards(hit, light, (l, distance));
             let looks_beside = self.looks_for(&candidates.thin);
             let beside = edge.as_mut().filter(|_| looks_beside);
             let mut thick = None;

@@ -163,9 +163,30 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         L::select(is_hidden, self.infinity(), part + shrink * rounding)
     }
 
-    /// How far from the start of such paths something stands before a light that is at a distance from the hits.
+    /// The paths from the hits to a light, which is at a distance in a unit direction from there, and how far from their
+    /// start something stands before it.
     #[inline(always)]
-    pub fn reach_to(self, light: &PointLight<L::Real>, distance: L) -> L {
+    pub fn towards(
+        self,
+        hit: &Hit<L>,
+        light: &PointLight<L::Real>,
+        (direction, distance): (Vec3<L>, L),
+    ) -> (Paths<L>, L) {
+        let mut paths = self.spawn(hit, direction);
+        let mut distance = distance;
+        let is_at_hit = matches!(self.plan.ray_origin, RayOrigin::AtHit);
+        if is_at_hit && self.plan.clearance > L::Real::ZERO {
+            // Parallel to the way from the hit, they would meet what is a little behind the light before they are there.
+            let to_light = paths.rays.origin.like(light.position) - paths.rays.origin;
+            distance = to_light.length();
+            paths.rays.direction = to_light * (self.splat(1.0) / distance);
+        }
+        (paths, self.reach_to(light, distance))
+    }
+
+    /// How far from the start of such paths something stands before a light that is at a distance from there.
+    #[inline(always)]
+    fn reach_to(self, light: &PointLight<L::Real>, distance: L) -> L {
         match self.plan.ray_origin {
             // What the light is on, within rounding, does not stand before it.
             RayOrigin::AtHit if light.may_touch => {

@@ -152,6 +152,8 @@ impl Flying {
             && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
         if gives_up {
             self.look = Look::GivenUp;
+            // What flew meanwhile flies again when it is pressed anew.
+            ui.input(|input| self.taken.extend(&input.keys_down));
         }
         gives_up
     }

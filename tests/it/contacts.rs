@@ -96,7 +96,7 @@ pub fn at(scene: &Scene, precision: Precision) -> Image {
 }
 
 /// The picture, after all ways to it have given the same.
-fn steady(scene: &Scene, what: &str) -> Image {
+pub fn steady(scene: &Scene, what: &str) -> Image {
     let of = |precision, accelerator| {
         let wanted = RenderRequest {
             precision,

@@ -3,9 +3,11 @@
 use glam::{DMat3, DVec3};
 use glint::image::Image;
 use glint::mesh::Triangles;
-use glint::scene::{Camera, Mesh, Precision, Projection, Scene, Shape};
+use glint::scene::{Camera, Disc, Mesh, Precision, Projection, Scene, Shape};
 
-use crate::contacts::{SIDE, at, block, blue_and_red, floor, lamp, scene, sheet, steady_mesh};
+use crate::contacts::{
+    SIDE, at, block, blue_and_red, floor, lamp, scene, sheet, steady, steady_mesh,
+};
 use crate::image_model::assert_same_but_for_edges;
 
 const ALL: usize = (SIDE * SIDE) as usize;
@@ -69,7 +71,7 @@ fn an_eye_on_a_box_sees_its_other_sides_from_within() {
 fn from_within_a_solid_the_floor_is_seen_on_which_it_stands() {
     // A house around a smaller one, and the floor of both.
     let house = block(DVec3::new(3.0, 2.0, 3.0), (DVec3::Y * 2.0, DVec3::ZERO));
-    for position in [DVec3::new(1.0, 1.0, 1.0), DVec3::new(-2.0, 3.9, 0.5)] {
+    for position in [DVec3::new(1.0, 1.0, 1.0), DVec3::new(0.0, 3.9, 0.5)] {
         let within = with_camera(scene([floor(), house.clone()]), |camera| {
             camera.position = position;
             camera.look_at = DVec3::new(0.1, -1.0, -0.2);
@@ -117,6 +119,52 @@ fn a_face_casts_no_shadow_from_a_light_on_it_and_is_not_lit() {
         let pairs = pairs.filter(|(lit, alone)| is_floor(lit) && is_floor(alone));
         let differ = pairs.filter(|(lit, alone)| lit[0].abs_diff(alone[0]) > 1);
         assert_eq!(differ.count(), 0, "{what}");
+    }
+}
+
+#[test]
+fn a_lamp_a_rounding_below_the_ceiling_lights_the_room() {
+    // Files of meshes have heights in single precision, people do not.
+    let height = f64::from(2.7_f32);
+    let ceiling = sheet(1, 8.0, (DVec3::Y * height, DVec3::ZERO));
+    let hung = DVec3::new(3.0, height - 0.5, -3.0);
+    let shelf = block(DVec3::new(0.3, 0.5, 0.3), (hung, DVec3::ZERO));
+    let mut room = with_camera(scene([floor(), ceiling, shelf]), |camera| {
+        camera.position = DVec3::new(0.5, 1.6, 2.3);
+        camera.look_at = DVec3::new(-0.1, -1.0, -0.5);
+    });
+    room.lights = [lamp(0.0, 2.7, 0.3)].into_iter().collect();
+    let lit = steady_mesh(&room, "a room");
+    room.objects.remove(1);
+    let open = at(&room, Precision::Double);
+    assert_same_but_for_edges(&lit, &open, "without its ceiling");
+}
+
+#[test]
+fn of_hundreds_of_things_in_a_surface_the_first_is_seen() {
+    // Red and blue rugs by turns, all listed before their red floor or all behind it.
+    let rug = |place: u32| -> Shape {
+        let (x, z) = (f64::from(place % 20), f64::from(place / 20));
+        let center = DVec3::new(x * 0.5 - 5.0, 0.0, z * 0.5 - 6.0);
+        Disc {
+            center,
+            normal: DVec3::Y,
+            radius: 0.2,
+        }
+        .into()
+    };
+    for (count, is_first) in [(30, true), (400, true), (400, false)] {
+        let rugs = (0..count).map(rug);
+        let (before, behind) = if is_first {
+            (Some(rugs), None)
+        } else {
+            (None, Some(rugs))
+        };
+        let before = before.into_iter().flatten();
+        let of_all = scene(before.chain([floor()]).chain(behind.into_iter().flatten()));
+        let (blue, red) = blue_and_red(&steady(&of_all, "rugs"));
+        assert_eq!(blue > 0, is_first, "{count}: {blue} {red}");
+        assert!(red > ALL / 2, "{count}: {blue} {red}");
     }
 }
 

@@ -1,5 +1,7 @@
 //! The referee: POV-Ray, an engine with which Glint shares no code, draws the same pictures.
 
+use std::process::Command;
+
 use glint::export::{by_povray, povray_differences};
 use glint::image::Image;
 use glint::plan::RenderRequest;
@@ -7,6 +9,7 @@ use glint::scene::{EXAMPLES, Methods, Projection, RayOffset, Scene, Shape};
 use glint::trace::RenderControl;
 
 use crate::pictures::{differing, picture};
+use crate::program::{done, glint, run};
 use crate::random;
 
 fn by_glint(scene: &Scene, methods: Methods) -> Image {
@@ -79,4 +82,24 @@ fn povray_draws_the_same_pictures() {
     let theirs = by_povray(&demo, 2, &RenderControl::default()).expect("POV-Ray");
     let ppm = different_ppm(&by_glint(&demo, wrong), &theirs.picture);
     assert!(ppm > 1000, "only {ppm} ppm");
+}
+
+#[test]
+#[ignore = "needs POV-Ray (Debian package povray)"]
+fn the_line_that_convert_says_draws_the_scene_wherever_that_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let demo = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/demo.ron");
+    for name in ["plain", "my scene", "it's;#1"] {
+        let file = format!("{name}.pov");
+        let mut convert = glint(&["convert", demo, "-o", &file]);
+        let said = done(convert.current_dir(folder.path()));
+        let (_, line) = said.split_once("draw it with ").expect("a line");
+        let line = format!("{} +W16 +H16", line.trim());
+        let output = run(Command::new("sh")
+            .args(["-c", &line])
+            .current_dir(folder.path()));
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{line}: {said}");
+        assert!(folder.path().join(format!("{name}.png")).exists(), "{line}");
+    }
 }
