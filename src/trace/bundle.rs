@@ -52,6 +52,10 @@ pub struct Beside<R> {
     pub spread: R,
     /// How many times as wide as that things may be that are looked for.
     pub thickest: R,
+    /// How much less at distance 1 at least, where pixels narrow along all of the rays.
+    pub narrowing: R,
+    /// How wide they count at least all the same.
+    pub least: R,
 }
 
 impl<R: Real> Beside<R> {
@@ -62,7 +66,18 @@ impl<R: Real> Beside<R> {
             width,
             spread,
             thickest: R::from_f64(SLIPPING),
+            narrowing: R::ZERO,
+            least: width,
         }
+    }
+
+    /// How wide a pixel is around a box at most that is no nearer than this to where any ray starts, where it would be so
+    /// wide without narrowing. What is in it may be met a little before it.
+    #[inline(always)]
+    fn narrowed<L: SimdFloat<Real = R>>(&self, width: L, near: L) -> L {
+        let sure = near * near.like_f64(1.0 - CAUTION) - (width + width);
+        let narrowed = width - sure.max(near.like(R::ZERO)) * near.like(self.narrowing);
+        narrowed.max(near.like(self.least))
     }
 
     /// How far something may be from where rays start that go as far as `reach`, where a pixel is so wide.
@@ -285,8 +300,11 @@ impl<R: Real> Shaft<R> {
     ) -> u64 {
         let mut bits = 0;
         for first in (0..node.count).step_by(L::WIDTH) {
-            let width = self.distance::<L>(token, node, first) * L::splat(token, beside.spread)
+            let mut width = self.distance::<L>(token, node, first) * L::splat(token, beside.spread)
                 + L::splat(token, beside.width);
+            if R::ZERO < beside.narrowing {
+                width = beside.narrowed(width, self.gap::<L>(token, node, first));
+            }
             width.store(&mut widths[first..]);
             let thickness = L::load_singles(token, &node.thickness[first..]);
             let is_thin = thickness.less(width * L::splat(token, beside.thickest));
@@ -312,6 +330,21 @@ impl<R: Real> Shaft<R> {
             sum = sum + above.max(below).max(L::splat(token, R::ZERO));
         }
         sum
+    }
+
+    /// How far each box is from where a ray starts, at least: along one axis.
+    #[inline(always)]
+    fn gap<L: SimdFloat<Real = R>>(&self, token: L::Token, node: &Node, from: usize) -> L {
+        let mut gap = L::splat(token, R::ZERO);
+        for (axis, common) in self.axes.iter().enumerate() {
+            let [one, other] = common.origins;
+            let low = L::load_singles(token, &node.planes[0][axis][from..]);
+            let high = L::load_singles(token, &node.planes[1][axis][from..]);
+            let above = low - L::splat(token, one.max(other));
+            let below = L::splat(token, one.min(other)) - high;
+            gap = gap.max(above.max(below));
+        }
+        gap
     }
 
     /// The boxes of a node from `from` on as slabs between planes: where the first of the rays may enter

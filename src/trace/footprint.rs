@@ -1,6 +1,6 @@
 //! How large a pixel is: along rays, and on what they meet.
 
-use super::thresholds::{HIDDEN, HIGHLIGHT_REACH, SLIPPING};
+use super::thresholds::{GRAZING, HIDDEN, HIGHLIGHT_REACH, SLIPPING};
 use crate::simd::{Real, SimdFloat};
 
 /// How wide a pixel is along rays: where they start, and how much wider at distance 1.
@@ -69,6 +69,17 @@ impl<L: SimdFloat> Footprint<L> {
         RayCone {
             width: self.length,
             spread: -self.length / distance,
+        }
+    }
+
+    /// The cone of those rays around what is looked at as one thing in meshes. On what stretches to the horizon, most of a
+    /// mesh would be one thing.
+    #[inline(always)]
+    pub fn shadow_in_meshes(&self) -> RayCone<L> {
+        let width = self.cone.width;
+        RayCone {
+            width: self.length.min(width * width.like_f64(1.0 / GRAZING)),
+            spread: width.like(L::Real::ZERO),
         }
     }
 

@@ -27,6 +27,9 @@ pub struct Gaze<'a, L: SimdFloat> {
     pub active: L::Mask,
     /// How wide a pixel is along them.
     pub cone: RayCone<L>,
+    /// The same around what is looked at as one thing in meshes, which does not narrow towards a light: ever more would
+    /// have to be told apart, for ever less of a shadow.
+    pub in_meshes: RayCone<L>,
     /// How much it widens along rays that are mirrored there: those for which that is more than [`LARGEST_SPREAD`] do not
     /// look into meshes, and those for which it is more than [`WIDEST_TO_LIGHTS`] at nothing on the way to a light; in
     /// crowded scenes, these do not from [`LARGEST_SPREAD`] on, and from [`WIDEST_SPREAD`] on at nothing at all.
@@ -98,12 +101,15 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             self.token,
             #[inline(always)]
             || {
-                let (active, cone) = (thicket.active, gaze.cone.widening());
-                let zero = self.splat(0.0);
-                let beside = Beside::slipping(
-                    L::select(active, cone.width, zero).greatest(),
-                    L::select(active, cone.spread, zero).greatest(),
-                );
+                let active = thicket.active;
+                let (zero, never) = (self.splat(0.0), self.splat(-1.0) * self.infinity());
+                let widest = |width: L| L::select(active, width, zero).greatest();
+                let spread = L::select(active, gaze.cone.spread, never).greatest();
+                let beside = Beside {
+                    narrowing: L::Real::ZERO.max(-spread),
+                    least: widest(gaze.in_meshes.width),
+                    ..Beside::slipping(widest(gaze.cone.width), L::Real::ZERO.max(spread))
+                };
                 let thicket = Thicket {
                     beside,
                     // What is narrow is found in the same way with and without boxes.
@@ -128,8 +134,7 @@ struct ThinTest<'a, L: SimdFloat> {
     enters: bool,
     /// For which rays what is tested counts, if it is of a mesh.
     counted: L::Mask,
-    /// How wide a pixel is around what is looked at as one thing. Around faces of a mesh it does not narrow towards a light:
-    /// ever more would have to be told apart, for ever less of a shadow.
+    /// How wide a pixel is around what is looked at as one thing.
     cone: RayCone<L>,
     /// The rays that have seen a box around what is tested as one thing, bit by bit, and for which it counts.
     settled: u64,
@@ -217,7 +222,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
             if !self.enters {
                 return None;
             }
-            self.cone = self.gaze.cone.widening();
+            self.cone = self.gaze.in_meshes;
             return Some(active);
         }
         let ball = self.passed(center, radius, paths);
@@ -241,7 +246,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
             return None;
         }
         self.counted = !is_small;
-        self.cone = self.gaze.cone.widening();
+        self.cone = self.gaze.in_meshes;
         Some(others)
     }
 

@@ -82,6 +82,20 @@ fn from_within_a_solid_the_floor_is_seen_on_which_it_stands() {
 }
 
 #[test]
+fn an_eye_on_a_slab_sees_the_floor_under_it() {
+    let slab = block(DVec3::new(3.0, 0.15, 3.0), (DVec3::Y * 0.15, DVec3::ZERO));
+    // On its top, and a rounding within.
+    for height in [0.3, 0.3 - 5e-8] {
+        let on = with_camera(scene([floor(), slab.clone()]), |camera| {
+            camera.position = DVec3::new(0.3, height, 0.2);
+            camera.look_at = DVec3::new(0.1, -1.0, -0.2);
+        });
+        let picture = steady_mesh(&on, "on a slab");
+        assert_eq!(blue_and_red(&picture), (0, ALL), "{height}");
+    }
+}
+
+#[test]
 fn parallel_rays_go_on_from_the_face_that_their_window_lies_in() {
     let along = turn() * -DVec3::Y;
     // The middle of the window need not be on the sheet.
