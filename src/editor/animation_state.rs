@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::edit::Replaced;
 use super::timeline::{MEASURED_AT, Timeline};
 use crate::animate::{CameraPath, Seen, Worst, ends_of, pose, shot, worst_off};
-use crate::scene::{Camera, Key, Owners, Scene, Take, Target};
+use crate::scene::{Animation, Camera, Key, Owners, Scene, Take, Target};
 
 /// The finest tolerance of the slider, in pixels.
 const FINEST: f64 = 0.05;
@@ -207,10 +207,17 @@ impl AnimationState {
         posed
     }
 
+    /// What plays stops where it is on show: a drag of what has keys would leave one in every frame.
+    pub fn pause(&mut self, animation: &Animation) {
+        if self.timeline.is_playing {
+            self.timeline.play(false, animation);
+        }
+    }
+
     /// What has keys gets one at the time that is on show, where the edit from `scene` to `next`
-    /// has changed it, or has put something else in place of what is on show; the scene's own value stays. What plays
-    /// stops there: a drag would leave a key in every frame.
-    pub fn key_tracked(&mut self, scene: &Scene, next: &mut Scene, replaced: &Replaced) {
+    /// has changed it, or has put something else in place of what is on show; the scene's own value stays. Whether
+    /// anything gets one.
+    pub fn key_tracked(&self, scene: &Scene, next: &mut Scene, replaced: &Replaced) -> bool {
         let time = self.timeline.shown_time(&next.animation);
         let targets: Vec<Target> = next
             .animation
@@ -229,9 +236,9 @@ impl AnimationState {
             Some((track, own, new, is_keyed))
         };
         let values: Vec<_> = targets.iter().enumerate().filter_map(values).collect();
+        let is_any_keyed = values.iter().any(|(.., is_keyed)| *is_keyed);
         for (track, own, new, is_keyed) in values {
             if is_keyed {
-                self.timeline.is_playing = false;
                 next.animation_mut().put_value(track, (time, new));
             }
             let target = &targets[track];
@@ -240,6 +247,7 @@ impl AnimationState {
                 in_next.set(next, target, own);
             }
         }
+        is_any_keyed
     }
 }
 

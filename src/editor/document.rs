@@ -363,10 +363,8 @@ impl Editor {
                 return false;
             }
         };
-        if joined.is_empty() {
-            let state = &mut self.animation_state;
-            state.key_tracked(&self.scene, &mut next, &replaced);
-        }
+        let state = &self.animation_state;
+        let is_keyed = joined.is_empty() && state.key_tracked(&self.scene, &mut next, &replaced);
         if is_camera {
             self.animation_state.look_at_view();
         }
@@ -378,6 +376,9 @@ impl Editor {
             return false;
         }
         self.forget_refusal();
+        if is_keyed {
+            self.animation_state.pause(&next.animation);
+        }
         let lost = is_less.then(|| self.lost(&joined, &next)).flatten();
         let lost = lost.map(|lost| format!("{label}: {lost}"));
         let before = self.here();

@@ -178,8 +178,8 @@ impl Contacts {
         }
     }
 
-    /// The objects that stand in no tree: those that are hidden, and those that are traced otherwise than
-    /// others, unless there are too many.
+    /// The objects that stand in no tree: those that are hidden, those that hold lights or the eye, and those that share
+    /// a surface, of both unless they are too many.
     pub fn apart(&self) -> &BTreeSet<usize> {
         &self.apart
     }

@@ -82,6 +82,7 @@ pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coinciden
         centre,
         faces: MOST_FACES,
         pairs: MOST_PAIRS,
+        pairs_of_sides: MOST_PAIRS,
     };
     let all: Vec<&Placed> = ended.iter().collect();
     let meshes: Vec<&Placed> = ended.iter().filter(|one| one.is_mesh()).collect();
@@ -154,7 +155,7 @@ impl<'a> Placed<'a> {
     }
 
     /// Its flat pieces in a box, with the boxes around them.
-    fn pieces_in(&self, within: (DVec3, DVec3)) -> Vec<(PlanePiece, (DVec3, DVec3))> {
+    fn pieces_in(&self, within: (DVec3, DVec3)) -> Vec<Boxed> {
         let Shape::Mesh(mesh) = self.shape else {
             let piece = self.shape.plane_piece().zip(self.bounds);
             return piece.into_iter().collect();
@@ -245,7 +246,12 @@ struct Search {
     centre: DVec3,
     faces: usize,
     pairs: usize,
+    /// The same where it is asked which sides of solids they are.
+    pairs_of_sides: usize,
 }
+
+/// A flat piece, and the box around it.
+type Boxed = (PlanePiece, (DVec3, DVec3));
 
 impl Search {
     /// How two objects that end have flat pieces in one plane; `None` if they have none, or where that is too much to
@@ -266,31 +272,32 @@ impl Search {
             pieces.sort_by(|a, b| a.1.0.x.total_cmp(&b.1.0.x));
             pieces
         });
-        let mut any = |is_wanted: &dyn Fn(f64) -> bool| {
-            self.any(&pieces[0], &pieces[1], is_wanted)
-                || self.any(&pieces[1], &pieces[0], is_wanted)
-        };
-        if !any(&|_| true) {
+        if !self.either(&pieces, &|_| true) {
             return None;
         }
+        // All pairs are looked at where none is found: what others need to be found is not used up by that.
+        std::mem::swap(&mut self.pairs, &mut self.pairs_of_sides);
         let sides = one.outer_side().zip(other.outer_side());
-        let are_apart =
-            sides.is_some_and(|(side, other)| !any(&|cosine| cosine * side * other > 0.0));
-        Some(if are_apart && self.pairs > 0 {
+        let are_apart = sides.is_some_and(|(side, other)| {
+            let is_one_way = |cosine: f64| cosine * side * other > 0.0;
+            !self.either(&pieces, &is_one_way) && self.pairs > 0
+        });
+        std::mem::swap(&mut self.pairs, &mut self.pairs_of_sides);
+        Some(if are_apart {
             Extent::Touching
         } else {
             Extent::Faces
         })
     }
 
+    /// Whether any piece of one coincides with one of the other, see [`Self::any`].
+    fn either(&mut self, [one, other]: &[Vec<Boxed>; 2], is_wanted: &dyn Fn(f64) -> bool) -> bool {
+        self.any(one, other, is_wanted) || self.any(other, one, is_wanted)
+    }
+
     /// Whether any piece coincides with one of the others that begins behind it along x, if the cosine between their
     /// normals is wanted; both are sorted by that.
-    fn any(
-        &mut self,
-        pieces: &[(PlanePiece, (DVec3, DVec3))],
-        others: &[(PlanePiece, (DVec3, DVec3))],
-        is_wanted: &dyn Fn(f64) -> bool,
-    ) -> bool {
+    fn any(&mut self, pieces: &[Boxed], others: &[Boxed], is_wanted: &dyn Fn(f64) -> bool) -> bool {
         pieces.iter().any(|(piece, around)| {
             let from = others.partition_point(|(_, other)| other.0.x < around.0.x);
             let others = others[from..].iter();

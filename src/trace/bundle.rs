@@ -58,6 +58,9 @@ pub struct Beside<R> {
     pub least: R,
 }
 
+/// How many widths of a pixel before a box a ray passes what is in it, at most: discs the farthest.
+const PASSED_BEFORE: f64 = 4.0;
+
 impl<R: Real> Beside<R> {
     /// What may slip between samples, where pixels are so wide.
     #[inline(always)]
@@ -71,11 +74,20 @@ impl<R: Real> Beside<R> {
         }
     }
 
+    /// The same where pixels do not narrow.
+    #[must_use]
+    pub fn without_narrowing(self) -> Self {
+        Self {
+            narrowing: R::ZERO,
+            ..self
+        }
+    }
+
     /// How wide a pixel is around a box at most that is no nearer than this to where any ray starts, where it would be so
-    /// wide without narrowing. What is in it may be met a little before it.
+    /// wide without narrowing. What is in it may be passed some widths before it.
     #[inline(always)]
     fn narrowed<L: SimdFloat<Real = R>>(&self, width: L, near: L) -> L {
-        let sure = near * near.like_f64(1.0 - CAUTION) - (width + width);
+        let sure = near * near.like_f64(1.0 - CAUTION) - width * near.like_f64(PASSED_BEFORE);
         let narrowed = width - sure.max(near.like(R::ZERO)) * near.like(self.narrowing);
         narrowed.max(near.like(self.least))
     }

@@ -42,7 +42,7 @@ impl<L: SimdFloat> RayCone<L> {
 
 impl<L: SimdFloat> Footprint<L> {
     /// The pixel around a ray that has gone as far as `t` and meets a surface of this curvature at this
-    /// cosine, below which it is not stretched where that is less than `grazing`.
+    /// cosine; where that is less than `grazing`, as long as at that.
     #[inline(always)]
     pub fn new(cone: RayCone<L>, (t, cosine, grazing): (L, L, L), curvature: L) -> Self {
         let width = cone.width_at(t);

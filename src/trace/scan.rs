@@ -144,7 +144,13 @@ impl<L: SimdFloat> Thicket<'_, L> {
             test,
         };
         if T::LOOKS_BESIDE {
-            walk_beside(bvh, &bundle, &self.beside, (stack, 0), &mut objects);
+            // Of a mesh as a whole, the ball around it says how wide a pixel is, which may be passed long before the box.
+            let beside = if self.geometry.meshes.is_empty() {
+                self.beside
+            } else {
+                self.beside.without_narrowing()
+            };
+            walk_beside(bvh, &bundle, &beside, (stack, 0), &mut objects);
         } else if let Some(start) = self.roots.of_objects(self.geometry) {
             walk((bvh, start), &bundle, stack, &mut objects);
         }

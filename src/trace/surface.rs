@@ -179,7 +179,10 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             // Parallel to the way from the hit, they would meet what is a little behind the light before they are there.
             let to_light = paths.rays.origin.like(light.position) - paths.rays.origin;
             distance = to_light.length();
-            paths.rays.direction = to_light * (self.splat(1.0) / distance);
+            let way = to_light * (self.splat(1.0) / distance);
+            // From where the light is, no direction leads to it.
+            let is_apart = self.splat(0.0).less(distance);
+            paths.rays.direction = Vec3::select(is_apart, way, direction);
         }
         (paths, self.reach_to(light, distance))
     }

@@ -18,8 +18,8 @@ pub const CROWDED: f64 = 16.0;
 /// Cosine below which a surface seen at a grazing angle does not stretch a pixel any further.
 pub const GRAZING: f64 = 0.25;
 /// The same of endless planes, which are seen like that up to the horizon: shadows on them are as flat, and slip between
-/// samples. With 0.25 the shadows of parasols, seen by somebody who stands among them, are off by up to 127 levels. Of
-/// meshes as well, a knot on a floor takes 1.3 times as long, for nothing.
+/// samples. With 0.25, of the shadows of 60 parasols, seen by somebody who stands among them, most are missing: 37 dB in
+/// place of 61. Of meshes as well, a knot on a floor takes 1.3 times as long, for nothing.
 pub const GRAZING_ON_PLANES: f64 = 0.04;
 /// Half the width of a highlight of exponent p, in units of 1/√p: it has fallen to 1 % there.
 pub const HIGHLIGHT_REACH: f64 = 3.0;

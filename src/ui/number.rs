@@ -82,11 +82,10 @@ fn given_up(ui: &Ui, response: &Response, value: f64) -> Option<f64> {
         is_let_go && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
     let start = last.map_or(value, |last| last.start);
     if response.dragged() || is_given_up {
-        let is_first = last.is_none_or(|last| last.frame == frame && last.stage == Drag::Begins);
-        let stage = match (is_given_up, is_first) {
-            (true, _) => Drag::IsGivenUp,
-            (false, true) => Drag::Begins,
-            (false, false) => Drag::GoesOn,
+        let stage = match last {
+            _ if is_given_up => Drag::IsGivenUp,
+            None => Drag::Begins,
+            Some(_) => Drag::GoesOn,
         };
         let drag = LastDrag {
             number: response.id,

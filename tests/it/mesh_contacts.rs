@@ -157,9 +157,9 @@ fn a_lamp_a_rounding_below_the_ceiling_lights_the_room() {
 #[test]
 fn of_hundreds_of_things_in_a_surface_the_first_is_seen() {
     // Red and blue rugs by turns, all listed before their red floor or all behind it.
-    let rug = |place: u32| -> Shape {
+    let rug = |place: u32, height: f64| -> Shape {
         let (x, z) = (f64::from(place % 20), f64::from(place / 20));
-        let center = DVec3::new(x * 0.5 - 5.0, 0.0, z * 0.5 - 6.0);
+        let center = DVec3::new(x * 0.5 - 5.0, height, z * 0.5 - 6.0);
         Disc {
             center,
             normal: DVec3::Y,
@@ -168,7 +168,7 @@ fn of_hundreds_of_things_in_a_surface_the_first_is_seen() {
         .into()
     };
     for (count, is_first) in [(30, true), (400, true), (400, false)] {
-        let rugs = (0..count).map(rug);
+        let rugs = (0..count).map(|place| rug(place, 0.0));
         let (before, behind) = if is_first {
             (Some(rugs), None)
         } else {
@@ -176,7 +176,14 @@ fn of_hundreds_of_things_in_a_surface_the_first_is_seen() {
         };
         let before = before.into_iter().flatten();
         let of_all = scene(before.chain([floor()]).chain(behind.into_iter().flatten()));
-        let (blue, red) = blue_and_red(&steady(&of_all, "rugs"));
+        let picture = steady(&of_all, "rugs");
+        if is_first {
+            // As if they lay a little over it.
+            let lifted = (0..count).map(|place| rug(place, 1e-4));
+            let lifted = scene(lifted.chain([floor()]));
+            assert_same_but_for_edges(&picture, &at(&lifted, Precision::Double), "lifted");
+        }
+        let (blue, red) = blue_and_red(&picture);
         assert_eq!(blue > 0, is_first, "{count}: {blue} {red}");
         assert!(red > ALL / 2, "{count}: {blue} {red}");
     }

@@ -190,8 +190,14 @@ fn share_of_row(ui: &Ui, response: &Response) -> Option<f32> {
 }
 
 /// Objects and groups that are dropped on the title below their list come last in it.
-pub fn take_dropped_at_end(ui: &Ui, editor: &Editor, response: &Response, out: &mut UiRequests) {
-    if share_of_row(ui, response).is_none_or(|share| share > 0.5) {
+/// Where groups are not listed, nothing is.
+pub fn take_dropped_at_end(
+    ui: &Ui,
+    editor: &Editor,
+    (response, is_filtered): (&Response, bool),
+    out: &mut UiRequests,
+) {
+    if is_filtered || share_of_row(ui, response).is_none_or(|share| share > 0.5) {
         return;
     }
     let item = response.dnd_hover_payload::<Item>();

@@ -69,6 +69,10 @@ impl Outliner {
         self.reveals = true;
     }
 
+    fn is_filtered(&self) -> bool {
+        !self.filter.trim().is_empty()
+    }
+
     /// Lists everything again. Whether not everything was listed.
     pub fn clear_filter(&mut self) -> bool {
         let is_filtered = !self.filter.is_empty();
@@ -289,7 +293,7 @@ impl Outliner {
             colors.muted,
         );
         if kind == Kind::Pack {
-            take_dropped_at_end(ui, editor, &response, out);
+            take_dropped_at_end(ui, editor, (&response, self.is_filtered()), out);
         }
         if response.clicked() {
             if is_folded {
@@ -349,8 +353,7 @@ impl Outliner {
         if response.double_clicked() {
             self.renaming = Some((item, name.to_owned()));
         }
-        let is_filtered = !self.filter.trim().is_empty();
-        take_dropped(ui, editor, &response, (item, is_filtered), out);
+        take_dropped(ui, editor, &response, (item, self.is_filtered()), out);
         response.context_menu(|ui| {
             if !is_selected {
                 out.select(item);

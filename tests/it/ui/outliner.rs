@@ -59,12 +59,21 @@ fn where_groups_are_not_listed_nothing_is_dragged_into_one() {
     harness.window.get_by_label("Filter").focus();
     harness.window.get_by_label("Filter").type_text("sphere");
     harness.settle();
-    let row = |name: &str| harness.window.get_by_label(name).rect().center();
-    let (from, to) = (row("Sphere 1"), row("Sphere 2") + egui::vec2(0.0, 4.0));
-    let none = Modifiers::NONE;
-    pull(&mut harness, from, to, PointerButton::Primary, none);
-    drop_at(&mut harness, to, PointerButton::Primary, none);
+    let drag = |harness: &mut EditorHarness| {
+        let row = |name: &str| harness.window.get_by_label(name).rect().center();
+        let (from, to) = (row("Sphere 1"), row("Sphere 2") + egui::vec2(0.0, 4.0));
+        pull(harness, from, to, PointerButton::Primary, Modifiers::NONE);
+        drop_at(harness, to, PointerButton::Primary, Modifiers::NONE);
+    };
+    drag(&mut harness);
     assert_eq!(harness.scene(), &scene);
+    // Where they are listed, the same puts it there.
+    harness.window.get_by_label("Filter").focus();
+    harness.press(CTRL, Key::A);
+    harness.press(Modifiers::NONE, Key::Backspace);
+    drag(&mut harness);
+    assert_eq!(harness.scene().objects[1].name, "Sphere 1");
+    assert_eq!(harness.scene().objects[1].group, "pair");
 }
 
 /// The names of what is selected.
