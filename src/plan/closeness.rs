@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::scene::{Light, Outline, PlanePiece, Scene, Shape};
+use crate::scene::{Light, Mesh, Outline, PlanePiece, Scene, Shape};
 
 /// Smallest height of the eye or a light over a sphere, in radii, in single precision: below it, the
 /// distance to the ground right ahead has lost its digits.
@@ -19,6 +19,9 @@ const MIN_HEIGHT_OVER_PIECE: f64 = 1e-7;
 const MIN_DISTANCE_OF_BORDER: f64 = 3e-4;
 /// Most pairs of an object and a light that are looked at.
 const MOST_PAIRS: usize = 100_000;
+
+/// Most faces of meshes that are held against each light, in all: a millisecond.
+const MOST_FACES: usize = 20_000;
 
 /// Smallest distance of the surfaces of two spheres as a share of the scene's extent in single precision: where
 /// they are nearer everywhere, rounding decides which is seen, or whether one shadows the other.
@@ -47,11 +50,16 @@ pub fn is_just_above(scene: &Scene, extent: f64) -> bool {
     };
     let lights = || near_lights(scene);
     let has_lights = lights().next().is_some();
+    let has_few_faces = scene.faces() * lights().count() <= MOST_FACES;
     let visible = scene.visible_objects();
     let shapes = visible.map(|object| &object.shape);
     // Without lights only planes count: many objects are not worth a closer look.
     let mut looked_at = shapes.filter(|shape| has_lights || matches!(shape, Shape::Plane(_)));
     looked_at.any(|shape| {
+        if let Shape::Mesh(mesh) = shape {
+            let least = MIN_HEIGHT_PER_EXTENT * extent;
+            return has_few_faces && lights().any(|light| is_by_face(mesh, light.position, least));
+        }
         let Some(piece) = shape.plane_piece() else {
             return lights().any(|light| is_low(shape, light.position));
         };
@@ -62,6 +70,24 @@ pub fn is_just_above(scene: &Scene, extent: f64) -> bool {
         };
         is_just_above(&piece, scene.camera.position, least)
             || lights().any(|light| is_just_above(&piece, light.position, MIN_HEIGHT_PER_EXTENT))
+    })
+}
+
+/// Whether a point is nearer than this to a face of a mesh, and not in its plane.
+fn is_by_face(mesh: &Mesh, point: DVec3, least: f64) -> bool {
+    let is_near = |corners: &[DVec3; 3]| {
+        let low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+        let high = corners
+            .iter()
+            .copied()
+            .fold(DVec3::NEG_INFINITY, DVec3::max);
+        (low - least).cmple(point).all() && (high + least).cmpge(point).all()
+    };
+    let mut near = mesh.world_corners().filter(is_near);
+    near.any(|corners| {
+        let piece = PlanePiece::between(corners);
+        let height = piece.map_or(f64::INFINITY, |piece| piece.height(point).abs());
+        0.0 < height && height < least
     })
 }
 

@@ -4,7 +4,8 @@
 use glam::DVec3;
 
 use super::beam::Beam;
-use super::bundle::{Beside, Shaft};
+use super::beside::Beside;
+use super::bundle::Shaft;
 use super::candidates::{Candidates, Omit};
 use super::intersect::Kernel;
 use super::roots::Roots;

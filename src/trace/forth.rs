@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::beam::{Bounds, beam_around};
+use super::beside::Beside;
 use super::bounce::Bounce;
-use super::bundle::{Beside, Shaft, aside};
+use super::bundle::{Shaft, aside};
 use super::candidates::{Among, Candidates};
 use super::cull::Scratch;
 use super::doubt::{Uncertainty, farthest_off, is_filtered, widest_blur};

@@ -1,6 +1,6 @@
 //! The nearest hit among some primitives, and whether anything stands in a ray's way.
 
-use super::bundle::Beside;
+use super::beside::Beside;
 use super::candidates::Among;
 use super::doubt::Doubt;
 use super::paths::{NOTHING, Paths, real};

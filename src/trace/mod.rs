@@ -18,6 +18,8 @@ mod samples;
 
 mod shadows;
 
+mod beside;
+
 mod bundle;
 
 mod roots;

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::bundle::{Beside, Bundle};
+use super::beside::Beside;
+use super::bundle::Bundle;
 use super::candidates::Candidates;
 use super::paths::Paths;
 use super::roots::Roots;

@@ -1,7 +1,8 @@
 //! Whether something thin in the trees may slip between the samples of a tile at all: most tiles are spared to look for
 //! it ray by ray.
 
-use super::bundle::{Beside, Shaft};
+use super::beside::Beside;
+use super::bundle::Shaft;
 use super::thresholds::{CROWDED, SMALL};
 use crate::plan::{Bvh, Child, GROUP, Geometry, PackedMesh};
 use crate::simd::{Real, SimdFloat};

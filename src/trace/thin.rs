@@ -2,7 +2,7 @@
 //! that are narrower than two pixels. A sample that passes such a thing closely says so, and is then
 //! not left alone.
 
-use super::bundle::Beside;
+use super::beside::Beside;
 use super::candidates::{Among, Candidates};
 use super::footprint::{RayCone, pixels};
 use super::intersect::Kernel;

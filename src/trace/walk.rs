@@ -1,6 +1,7 @@
 //! The way of a packet through a tree of boxes, the nearest first.
 
-use super::bundle::{Beside, Bundle};
+use super::beside::Beside;
+use super::bundle::Bundle;
 use super::thresholds::ONE_THING;
 use crate::plan::{Bvh, Child, GROUP, Node};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};

@@ -318,7 +318,7 @@ fn shadows_that_lie_flat_in_the_distance_are_seen() {
     let got = quality_of_clean_edges(&parasols(), 160);
     // With pixels that stretch no more there than elsewhere it is 37 dB, and off by 88 levels.
     let is_clean = got.psnr >= 55.0 && got.worst <= 3.0 * INVISIBLE && got.visible <= 20;
-    assert!(is_clean && got.rays <= 8.0, "{got:?}");
+    assert!(is_clean && got.rays <= 10.0, "{got:?}");
 }
 
 /// Thousands of balls of one kind, each a part of a pixel large in pictures of 48², seen through each other.

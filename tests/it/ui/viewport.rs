@@ -185,9 +185,10 @@ fn escape_takes_what_was_flown_while_looking_around_back_and_flies_no_farther() 
     let start = harness.scene().clone();
     let middle = harness.view().center();
     let button = egui::PointerButton::Secondary;
-    harness.window.key_down(Key::W);
     let to = middle + egui::vec2(60.0, 20.0);
     pull(&mut harness, middle, to, button, Modifiers::NONE);
+    harness.window.key_down(Key::W);
+    (0..5).for_each(|_| harness.window.step());
     let flown = harness.editor().shown().camera.position;
     assert_ne!(flown, start.camera.position);
     harness.window.key_press(Key::Escape);
