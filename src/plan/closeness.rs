@@ -1,6 +1,6 @@
 //! What the eye, lights, balls or flat pieces all but touch, where the digits of single precision are lost.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::scene::{Light, Mesh, Outline, PlanePiece, Scene, Shape};
 
@@ -75,6 +75,9 @@ pub fn is_just_above(scene: &Scene, extent: f64) -> bool {
 
 /// Whether a point is nearer than this to a face of a mesh, and not in its plane.
 fn is_by_face(mesh: &Mesh, point: DVec3, least: f64) -> bool {
+    if !is_in_box_of(mesh, point, least) {
+        return false;
+    }
     let is_near = |corners: &[DVec3; 3]| {
         let low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let high = corners
@@ -89,6 +92,23 @@ fn is_by_face(mesh: &Mesh, point: DVec3, least: f64) -> bool {
         let height = piece.map_or(f64::INFINITY, |piece| piece.height(point).abs());
         0.0 < height && height < least
     })
+}
+
+/// Whether a point is nearer than this to the box around a mesh, turned with it and put into one along the axes.
+fn is_in_box_of(mesh: &Mesh, point: DVec3, least: f64) -> bool {
+    let Some((low, high)) = mesh.source.triangles().bounds() else {
+        return false;
+    };
+    let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
+    let transform = mesh.transform();
+    let DMat3 {
+        x_axis,
+        y_axis,
+        z_axis,
+    } = transform.matrix3;
+    let reach = x_axis.abs() * half.x + y_axis.abs() * half.y + z_axis.abs() * half.z;
+    let off = (point - transform.transform_point3(middle)).abs();
+    off.cmple(reach + least).all()
 }
 
 /// The lights that are looked at: all, or none of very many.
