@@ -290,6 +290,28 @@ impl Drop for Disk {
 }
 
 #[test]
+#[ignore = "mounts a small disk, which only the administrator may, and needs ffmpeg"]
+fn a_video_that_a_full_disk_cuts_short_takes_no_ones_place() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let disk = Disk::new(folder.path(), 256 << 10);
+    let make = |frames: &str, width: &str| {
+        let mut words = vec!["export", FLIGHT, "-o", frames, "--frames", frames];
+        words.extend(["--width", width, "--video", "disk/v.mp4"]);
+        glint(folder.path(), &words)
+    };
+    done(&mut make("1-2", "32"));
+    let video = disk.0.join("v.mp4");
+    let before = fs::read(&video).expect("there");
+    // Room for a third of the next one is left.
+    let fill = vec![0; 248 << 10];
+    fs::write(disk.0.join("fill"), fill).expect("written");
+    let said = fail(&mut make("1-50", "100"));
+    assert!(said.contains("No space left on device"), "{said}");
+    assert_eq!(names(&disk.0), ["fill", "v.mp4"]);
+    assert!(fs::read(&video).expect("there") == before);
+}
+
+#[test]
 #[ignore = "mounts a small disk, which only the administrator may"]
 fn a_full_disk_loses_nothing_that_was_on_it() {
     let folder = tempfile::tempdir().expect("a folder");
