@@ -1,5 +1,6 @@
 //! Words for people.
 
+use std::borrow::Cow;
 use std::fmt::Display;
 
 /// A number and what it counts: `1 frame`, `3 frames`.
@@ -27,6 +28,11 @@ const QUOTED: usize = 40;
 /// What somebody wrote, in quotation marks, as far as it is short.
 pub fn quoted(text: &str) -> String {
     format!("“{}”", shortened(text, QUOTED))
+}
+
+/// A word as a shell needs it. No path has a zero byte in it, which is all that cannot be quoted.
+pub fn for_shell(word: &str) -> String {
+    shlex::try_quote(word).map_or_else(|_| word.to_owned(), Cow::into_owned)
 }
 
 /// The first line of a text, so many letters of it at most.

@@ -1,6 +1,5 @@
 //! `glint convert`: a mesh file becomes a scene, or a scene a file for POV-Ray.
 
-use std::borrow::Cow;
 use std::path::{Path, PathBuf, absolute};
 
 use clap::Args;
@@ -10,7 +9,7 @@ use super::scene::read_scene;
 use crate::export::{povray_text, write_text};
 use crate::files::has_ending;
 use crate::scene::{Document, Scene, check};
-use crate::words::counted;
+use crate::words::{counted, for_shell};
 
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
@@ -59,8 +58,7 @@ fn input_option(path: &str) -> String {
     if path.chars().all(is_plain) {
         return format!("+I{path}");
     }
-    let option = format!("+I\"{path}\"");
-    shlex::try_quote(&option).map_or(option.clone(), Cow::into_owned)
+    for_shell(&format!("+I\"{path}\""))
 }
 
 fn write_scene(args: &ConvertArgs) -> Result<(), CliError> {

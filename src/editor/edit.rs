@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use crate::mesh::Part;
 use crate::scene::{
-    Animation, Bookmark, Camera, ColorPack, Light, List, Object, Owner, Render, Scene, Shape,
+    Animation, Bookmark, Camera, ColorPack, Keys, Light, List, Object, Owner, Render, Scene, Shape,
     Target,
 };
 use crate::words::listed;
@@ -132,6 +132,11 @@ impl Edit {
     /// Other keys; `what` is what was done to them.
     pub fn animation(animation: Animation, what: &'static str) -> Self {
         Self::Animation(Arc::new(animation), what)
+    }
+
+    /// An animation without these of its keys.
+    pub fn delete_keys(animation: &Animation, keys: &Keys) -> Self {
+        Self::animation(animation.without_keys(keys), "Delete keys")
     }
 
     /// Another object in this place; `field` is what changed.

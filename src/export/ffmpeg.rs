@@ -1,6 +1,5 @@
 //! Videos by ffmpeg.
 
-use std::borrow::Cow;
 use std::fs;
 use std::io::{self, Read as _, Write as _};
 use std::path::Path;
@@ -14,6 +13,7 @@ use super::frame_file::{as_it_is, as_ppm};
 use super::program::end_of;
 use super::sequence::Sequence;
 use crate::image::Format;
+use crate::words::for_shell;
 
 /// Has ffmpeg make a video in a file that is to be that of a path, with these words about the codec.
 ///
@@ -132,8 +132,8 @@ fn command(sequence: &Sequence, path: &Path, codec: &str) -> Option<String> {
     // What a name may begin with or have in it means something else to ffmpeg.
     let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let fps = sequence.frames_per_second();
-    let codec: Vec<String> = codec.split(' ').map(quoted).collect();
-    let output = quoted(&absolute(path).display().to_string());
+    let codec: Vec<String> = codec.split(' ').map(for_shell).collect();
+    let output = for_shell(&absolute(path).display().to_string());
     let codec = codec.join(" ");
     let first = sequence.frames.iter().next().unwrap_or(1);
     let in_a_row = first..first + sequence.frames.count() as u64;
@@ -142,20 +142,16 @@ fn command(sequence: &Sequence, path: &Path, codec: &str) -> Option<String> {
         let folder = absolute(&sequence.folder).display().to_string();
         let folder = folder.replace('%', "%%");
         let names = format!("{}.{}", sequence.pattern.text(), sequence.format.ending());
-        let input = quoted(&Path::new(&folder).join(names).display().to_string());
+        let input = for_shell(&Path::new(&folder).join(names).display().to_string());
         return Some(format!(
             "ffmpeg -framerate {fps} -start_number {first} -i {input} {codec} {output}"
         ));
     }
     let files = sequence.frames.iter();
-    let files = files.map(|frame| quoted(&absolute(&sequence.path(frame)).display().to_string()));
+    let files =
+        files.map(|frame| for_shell(&absolute(&sequence.path(frame)).display().to_string()));
     let files = files.collect::<Vec<String>>().join(" ");
     Some(format!(
         "cat {files} | ffmpeg -f image2pipe -framerate {fps} -i - {codec} {output}"
     ))
-}
-
-/// As a shell needs it. No path has a zero byte in it, which is all that cannot be quoted.
-fn quoted(word: &str) -> String {
-    shlex::try_quote(word).map_or_else(|_| word.to_owned(), Cow::into_owned)
 }

@@ -41,7 +41,7 @@ use std::path::Path;
 pub use error::MeshError;
 pub use part::{MeshFile, Part, PartColors};
 pub use solids::{SOLIDS, Solid, icosphere};
-pub use triangles::{FARTHEST, Triangles, place_key};
+pub use triangles::{FARTHEST, Triangles, are_closed, place_key};
 
 /// What a mesh is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -98,20 +98,6 @@ impl Triangles {
         self.faces.iter().map(corners)
     }
 
-    /// Whether two faces meet at every edge and pass it in different directions; points in one place are one.
-    pub fn are_closed(&self) -> bool {
-        // How often each edge is passed from its first point to its second one, and the other way.
-        let mut passed: HashMap<([u64; 3], [u64; 3]), [u32; 2]> = HashMap::new();
-        for corners in self.corners() {
-            let [a, b, c] = corners.map(place_key);
-            for (from, to) in [(a, b), (b, c), (c, a)] {
-                let passed = passed.entry((from.min(to), from.max(to))).or_default();
-                passed[usize::from(from < to)] += 1;
-            }
-        }
-        passed.values().all(|passed| *passed == [1, 1])
-    }
-
     /// Smallest and largest corner of the box around them; `None` around nothing.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         self.bounds
@@ -191,6 +177,21 @@ pub(super) fn out_of_range(face: usize, point: impl std::fmt::Display, count: us
     Fault::new(format!(
         "face {face} names point {point}, and there are only {count}, counted from 0"
     ))
+}
+
+/// Whether every edge of some triangles, given by their corners, is passed once in each direction; points in one place
+/// are one.
+pub fn are_closed(triangles: impl Iterator<Item = [DVec3; 3]>) -> bool {
+    let mut edges: HashMap<([u64; 3], [u64; 3]), u32> = HashMap::new();
+    for corners in triangles {
+        let [a, b, c] = corners.map(place_key);
+        for edge in [(a, b), (b, c), (c, a)] {
+            *edges.entry(edge).or_default() += 1;
+        }
+    }
+    edges
+        .iter()
+        .all(|(&(from, to), &count)| count == 1 && edges.contains_key(&(to, from)))
 }
 
 /// A place as a key: places are one where their coordinates are equal.

@@ -1,8 +1,8 @@
 //! What the eye, lights, balls or flat pieces all but touch, where the digits of single precision are lost.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
-use crate::scene::{Light, Mesh, Outline, PlanePiece, Scene, Shape};
+use crate::scene::{Light, Mesh, Outline, PlanePiece, Scene, Shape, Triangle};
 
 /// Smallest height of the eye or a light over a sphere, in radii, in single precision: below it, the
 /// distance to the ground right ahead has lost its digits.
@@ -58,7 +58,12 @@ pub fn is_just_above(scene: &Scene, extent: f64) -> bool {
     looked_at.any(|shape| {
         if let Shape::Mesh(mesh) = shape {
             let least = MIN_HEIGHT_PER_EXTENT * extent;
-            return has_few_faces && lights().any(|light| is_by_face(mesh, light.position, least));
+            let bounds = shape.bounds();
+            let is_in_box = |point| bounds.is_some_and(|bounds| is_near_box(point, bounds, least));
+            let by_face = |light: &Light| {
+                is_in_box(light.position) && is_by_face(mesh, light.position, least)
+            };
+            return has_few_faces && lights().any(by_face);
         }
         let Some(piece) = shape.plane_piece() else {
             return lights().any(|light| is_low(shape, light.position));
@@ -75,16 +80,9 @@ pub fn is_just_above(scene: &Scene, extent: f64) -> bool {
 
 /// Whether a point is nearer than this to a face of a mesh, and not in its plane.
 fn is_by_face(mesh: &Mesh, point: DVec3, least: f64) -> bool {
-    if !is_in_box_of(mesh, point, least) {
-        return false;
-    }
-    let is_near = |corners: &[DVec3; 3]| {
-        let low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let high = corners
-            .iter()
-            .copied()
-            .fold(DVec3::NEG_INFINITY, DVec3::max);
-        (low - least).cmple(point).all() && (high + least).cmpge(point).all()
+    let is_near = |&[a, b, c]: &[DVec3; 3]| {
+        let bounds = Shape::from(Triangle { a, b, c }).bounds();
+        bounds.is_some_and(|bounds| is_near_box(point, bounds, least))
     };
     let mut near = mesh.world_corners().filter(is_near);
     near.any(|corners| {
@@ -94,21 +92,9 @@ fn is_by_face(mesh: &Mesh, point: DVec3, least: f64) -> bool {
     })
 }
 
-/// Whether a point is nearer than this to the box around a mesh, turned with it and put into one along the axes.
-fn is_in_box_of(mesh: &Mesh, point: DVec3, least: f64) -> bool {
-    let Some((low, high)) = mesh.source.triangles().bounds() else {
-        return false;
-    };
-    let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
-    let transform = mesh.transform();
-    let DMat3 {
-        x_axis,
-        y_axis,
-        z_axis,
-    } = transform.matrix3;
-    let reach = x_axis.abs() * half.x + y_axis.abs() * half.y + z_axis.abs() * half.z;
-    let off = (point - transform.transform_point3(middle)).abs();
-    off.cmple(reach + least).all()
+/// Whether a point is in a box, or no farther beside it than this along any axis.
+fn is_near_box(point: DVec3, (low, high): (DVec3, DVec3), least: f64) -> bool {
+    (low - least).cmple(point).all() && (high + least).cmpge(point).all()
 }
 
 /// The lights that are looked at: all, or none of very many.

@@ -6,6 +6,7 @@ use std::collections::{HashMap, HashSet};
 use glam::DVec3;
 
 use super::parts::parts;
+use crate::mesh::are_closed;
 use crate::primitive::{Corner, PackedTriangle, corner};
 use crate::scene::{Scene, Shape};
 use crate::simd::{Real, Vec3};
@@ -35,7 +36,7 @@ impl Solids {
         let mut solids = connected(&triangles);
         solids.retain(|faces| {
             faces.len() <= MOST_FACES
-                && is_closed(&triangles, faces)
+                && are_closed(faces.iter().map(|&face| triangles[face]))
                 && is_convex(&triangles, faces)
         });
         Self { triangles, solids }
@@ -100,20 +101,6 @@ fn connected(triangles: &[[DVec3; 3]]) -> Vec<Vec<usize>> {
         found[part as usize].push(index);
     }
     found
-}
-
-/// Whether every edge is passed once in each direction.
-fn is_closed(triangles: &[[DVec3; 3]], faces: &[usize]) -> bool {
-    let mut edges: HashMap<(Corner, Corner), u32> = HashMap::new();
-    for &face in faces {
-        let [a, b, c] = triangles[face].map(corner);
-        for edge in [(a, b), (b, c), (c, a)] {
-            *edges.entry(edge).or_default() += 1;
-        }
-    }
-    edges
-        .iter()
-        .all(|(&(from, to), &count)| count == 1 && edges.contains_key(&(to, from)))
 }
 
 /// Whether every corner is on or behind every face.

@@ -1,10 +1,13 @@
 //! Faces of meshes that lie in something else, or that something lies in.
 
+use std::cell::OnceCell;
+
 use glam::DVec3;
 
 use super::list::List;
 use super::object::Object;
-use super::shape::{Mesh, Outline, PlanePiece, Shape};
+use super::shape::{Describe as _, Mesh, Outline, PlanePiece, Shape, Triangle};
+use crate::mesh::are_closed;
 
 /// Most faces that are held against what is around them, of all pairs of objects.
 const MOST_FACES: usize = 200_000;
@@ -111,6 +114,8 @@ struct Placed<'a> {
     index: usize,
     shape: &'a Shape,
     bounds: Option<(DVec3, DVec3)>,
+    /// See [`Self::outer_side`]: many may stand against one.
+    side: OnceCell<Option<f64>>,
 }
 
 impl<'a> Placed<'a> {
@@ -126,6 +131,7 @@ impl<'a> Placed<'a> {
             index,
             shape,
             bounds,
+            side: OnceCell::new(),
         })
     }
 
@@ -135,11 +141,15 @@ impl<'a> Placed<'a> {
 
     /// Whether the normals of its faces point out of it (1) or into it (-1); `None` if it is no solid, or a large one.
     fn outer_side(&self) -> Option<f64> {
+        *self.side.get_or_init(|| self.find_outer_side())
+    }
+
+    fn find_outer_side(&self) -> Option<f64> {
         let Shape::Mesh(mesh) = self.shape else {
             return None;
         };
         let triangles = mesh.source.triangles();
-        if triangles.faces().len() > MOST_OF_SOLID || !triangles.are_closed() {
+        if triangles.faces().len() > MOST_OF_SOLID || !are_closed(triangles.corners()) {
             return None;
         }
         let from = mesh.position;
@@ -164,9 +174,8 @@ impl<'a> Placed<'a> {
             let Outline::Triangle(corners) = piece.outline else {
                 return None;
             };
-            let low = corners.into_iter().fold(DVec3::INFINITY, DVec3::min);
-            let high = corners.into_iter().fold(DVec3::NEG_INFINITY, DVec3::max);
-            let around = widened((low, high));
+            let [a, b, c] = corners;
+            let around = widened(Triangle { a, b, c }.bounds()?);
             meet(around, within).then_some((piece, around))
         };
         mesh.pieces().filter_map(boxed).collect()
@@ -316,7 +325,7 @@ impl Search {
 mod tests {
     use super::*;
     use crate::mesh::Triangles;
-    use crate::scene::{Describe as _, Disc, Plane};
+    use crate::scene::{Disc, Plane};
 
     /// A sheet of so many squares a side, that many units wide, whose middle is at `at`, turned by so many degrees.
     fn sheet(squares: u32, width: f64, at: DVec3, rotation: DVec3) -> Mesh {

@@ -57,9 +57,7 @@ pub fn with_same_pack(scene: &Scene, item: Item) -> Selection {
 /// Deletes everything that is selected.
 pub fn delete(editor: &mut Editor) {
     let edit = match editor.selection() {
-        Selection::Keys(keys) => {
-            Edit::animation(editor.scene().animation.without_keys(keys), "Delete keys")
-        }
+        Selection::Keys(keys) => Edit::delete_keys(&editor.scene().animation, keys),
         Selection::Items(items) => Edit::Delete(items.clone()),
         Selection::Camera | Selection::World | Selection::Render => return,
     };

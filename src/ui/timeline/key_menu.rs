@@ -30,9 +30,6 @@ pub fn menu(ui: &mut Ui, place: KeyPlace, editor: &Editor, out: &mut UiRequests)
     ui.separator();
     if ui.button("Delete").clicked() {
         // Not what else is selected when an undo was heard beside the menu.
-        out.edit(Edit::animation(
-            animation.without_keys(places),
-            "Delete keys",
-        ));
+        out.edit(Edit::delete_keys(animation, places));
     }
 }
