@@ -1,6 +1,6 @@
 //! What can be done to keys: each gives a changed animation, for one step in the history.
 
-use std::collections::{BTreeSet, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use glam::DVec3;
 
@@ -171,33 +171,42 @@ impl Animation {
         animation
     }
 
-    /// The track that moves something, if one does.
-    pub fn track(&self, target: &Target) -> Option<&Track> {
-        self.tracks.iter().find(|track| track.target == *target)
-    }
-
-    /// Place of the key that something has at this time, if it has one.
-    pub fn value_at(&self, target: &Target, time: f64) -> Option<KeyPlace> {
-        let mut tracks = self.tracks.iter();
-        let track = tracks.position(|track| track.target == *target)?;
-        let index = self.place_at(&self.tracks[track].keys, time)?;
+    /// Place of the key that the track in a place has at this time, if it has one.
+    pub fn value_at(&self, track: usize, time: f64) -> Option<KeyPlace> {
+        let index = self.place_at(&self.tracks.get(track)?.keys, time)?;
         let track = Some(track);
         Some(KeyPlace { track, index })
     }
 
+    /// Where the tracks are, by what they move.
+    pub fn track_places(&self) -> HashMap<&Target, usize> {
+        let tracks = self.tracks.iter().enumerate();
+        tracks.map(|(place, track)| (&track.target, place)).collect()
+    }
+
     /// With a key of a track at this time, in place of one that is there.
     pub fn with_value(&self, target: &Target, time: f64, value: Value) -> Self {
+        self.with_values([(target, value)], time)
+    }
+
+    /// With keys of several tracks at this time; of each, in place of one that is there.
+    pub fn with_values<'a>(
+        &self,
+        values: impl IntoIterator<Item = (&'a Target, Value)>,
+        time: f64,
+    ) -> Self {
+        let places = self.track_places();
         let mut animation = self.clone();
-        let tracks = &mut animation.tracks;
-        let index = tracks.iter().position(|track| track.target == *target);
-        let index = index.unwrap_or_else(|| {
-            tracks.push(Track {
-                target: target.clone(),
-                keys: Vec::new(),
+        for (target, value) in values {
+            let place = places.get(target).copied().unwrap_or_else(|| {
+                animation.tracks.push(Track {
+                    target: target.clone(),
+                    keys: Vec::new(),
+                });
+                animation.tracks.len() - 1
             });
-            tracks.len() - 1
-        });
-        animation.put_value(index, (time, value));
+            animation.put_value(place, (time, value));
+        }
         animation
     }
 

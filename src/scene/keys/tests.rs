@@ -32,7 +32,7 @@ fn keys_beside_each_other_are_deleted_and_moved_one_by_one() {
     assert_eq!(times(&copied), [0.0, 1.0, 1.2, 1.4, 2.0, 3.0]);
     assert_eq!(copied.tracks[0].keys[4].value, Value::Number(0.12));
     assert_eq!(new, [KeyPlace { track, index: 4 }].into());
-    let nearest = animation.value_at(&target, 1.15);
+    let nearest = animation.value_at(0, 1.15);
     assert_eq!(nearest, Some(third));
     let none = animation.without_keys(&animation.places());
     assert!(none.is_still());

@@ -6,10 +6,10 @@ use egui::{Button, Id, Ui};
 
 use super::camera::place_rows;
 use super::title::{tell_different, title};
-use crate::editor::{Action, Edit, Editor, Time};
+use crate::editor::{Action, Edit, Editor, Item, Kind, Time};
 use crate::scene::{
-    Animation, Easing, Interpolation, KeyPlace, Keys, MAX_SECONDS, Orientation, Target, Value,
-    format_number,
+    Animation, Easing, Interpolation, KeyPlace, Keys, MAX_SECONDS, Orientation, Owners, Scene,
+    Shape, Target, Value, format_number,
 };
 use crate::ui::commands::Command;
 use crate::ui::hint::Hint as _;
@@ -259,17 +259,56 @@ fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
 }
 
-/// A button for each value that can carry keys: sets one at the playhead, or takes it away.
-pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[(&str, Target)], out: &mut UiRequests) {
+/// A value that can carry keys: what it is called, and what it is of each thing that has it.
+pub type Keyed = (&'static str, Vec<Target>);
+
+/// The values of these things that can carry keys.
+pub fn keyed_values(scene: &Scene, items: &[Item]) -> Vec<Keyed> {
+    let [mut positions, mut rotations, mut intensities] = [const { Vec::new() }; 3];
+    for item in items {
+        let name = || item.name(scene).unwrap_or_default().to_owned();
+        match item.kind {
+            Kind::Light => {
+                positions.push(Target::LightPosition(name()));
+                intensities.push(Target::LightIntensity(name()));
+            }
+            Kind::Object => {
+                positions.push(Target::ObjectPosition(name()));
+                let object = scene.objects.get(item.index);
+                if object.is_some_and(|object| matches!(object.shape, Shape::Mesh(_))) {
+                    rotations.push(Target::ObjectRotation(name()));
+                }
+            }
+            Kind::Pack => {}
+        }
+    }
+    let mut values = vec![
+        ("position", positions),
+        ("rotation", rotations),
+        ("intensity", intensities),
+    ];
+    values.retain(|(_, targets)| !targets.is_empty());
+    values
+}
+
+/// A button for each value that can carry keys: sets one at the playhead, for everything that has that value, or takes
+/// them away where all of it have one.
+pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[Keyed], out: &mut UiRequests) {
+    if values.is_empty() {
+        return;
+    }
     let animation: &Animation = &editor.scene().animation;
     let time = editor.shown_time();
+    let places = animation.track_places();
+    let key_of = |target: &Target| animation.value_at(*places.get(target)?, time);
     ui.horizontal(|ui| {
         ui.weak("Keys");
-        for (name, target) in values {
-            let track = animation.track(target);
-            let there = animation.value_at(target, time);
-            let has_key = there.is_some();
-            let count = track.map_or(String::new(), |track| format!(" ({})", track.keys.len()));
+        for (name, targets) in values {
+            let tracks = targets.iter().filter_map(|target| places.get(target));
+            let count = tracks.map(|place| animation.tracks[*place].keys.len()).max();
+            let there: Keys = targets.iter().filter_map(key_of).collect();
+            let has_key = there.len() == targets.len();
+            let count = count.map_or(String::new(), |count| format!(" ({count})"));
             let text = (icons::text(icons::KEY), format!("{name}{count}"));
             let button = Button::selectable(has_key, text);
             let hint = if has_key {
@@ -279,15 +318,16 @@ pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[(&str, Target)], out: &
             };
             let button = ui.add(button).hint(hint);
             if button.accessible_name(format!("key {name}")).clicked() {
-                let changed = if let Some(there) = there {
-                    Some(animation.without_keys(&Keys::from([there])))
+                let changed = if has_key {
+                    animation.without_keys(&there)
                 } else {
-                    let value = target.get(editor.shown());
-                    value.map(|value| animation.with_value(target, time, value))
+                    // What has one keeps it.
+                    let targets = targets.iter().filter(|target| key_of(target).is_none());
+                    let owners = Owners::of(editor.shown(), targets.clone());
+                    let value = |target| Some((target, owners.get(editor.shown(), target)?));
+                    animation.with_values(targets.filter_map(value), time)
                 };
-                if let Some(changed) = changed {
-                    out.edit(Edit::animation(changed, "Key value"));
-                }
+                out.edit(Edit::animation(changed, "Key value"));
             }
         }
     });

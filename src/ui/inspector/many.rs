@@ -6,6 +6,7 @@ use glam::DVec3;
 use super::alike::{for_all, packs_of, values};
 use super::as_one::as_one;
 use super::items;
+use super::keys;
 use super::title::{name_field, tell_different, title, title_field};
 use crate::editor::{Action, Edit, Editor, Item, Kind};
 use crate::scene::{ColorPack, Light, Object, Scene};
@@ -16,7 +17,7 @@ use crate::ui::obstacles::is_enabled;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, ROW};
 
-/// Most things that are compared, in every frame of the window.
+/// Most things that are compared, or whose keys are looked at, in every frame of the window.
 const MOST: usize = 500;
 
 /// The properties of what was selected last; a change is made to all that have the property.
@@ -75,6 +76,9 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
             }
             other => other,
         });
+    }
+    if selected.len() <= MOST {
+        keys::of_values(ui, editor, &keys::keyed_values(scene, selected), out);
     }
 }
 

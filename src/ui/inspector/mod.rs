@@ -10,9 +10,9 @@ mod alike;
 
 mod as_one;
 
-mod many;
-
 mod keys;
+
+mod many;
 
 mod quality;
 
@@ -33,7 +33,7 @@ use super::icons;
 use super::requests::UiRequests;
 use super::theme::GRID;
 use crate::editor::{Editor, Item, Kind, Selection};
-use crate::scene::{Shape, Target};
+use crate::scene::Target;
 
 /// Shows the selection and pushes its changes.
 pub fn show(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiRequests) {
@@ -49,7 +49,8 @@ pub fn show(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiReq
             Selection::Keys(keys) => keys::show(ui, editor, keys, out),
             Selection::World => {
                 world::show(ui, scene, out);
-                keys::of_values(ui, editor, &[("ambient", Target::AmbientIntensity)], out);
+                let ambient = ("ambient", vec![Target::AmbientIntensity]);
+                keys::of_values(ui, editor, &[ambient], out);
             }
             Selection::Render => world::show_picture(ui, editor, quality, out),
             Selection::Items(items) => match items[..] {
@@ -73,24 +74,12 @@ fn item_rows(ui: &mut Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
                 return;
             };
             items::light(ui, scene, index, value, out);
-            let owner = value.name.clone();
-            let light = [
-                ("position", Target::LightPosition(owner.clone())),
-                ("intensity", Target::LightIntensity(owner)),
-            ];
-            keys::of_values(ui, editor, &light, out);
         }
         Kind::Object => {
             let Some(value) = scene.objects.get(index) else {
                 return;
             };
             items::object(ui, scene, (index, true), value, out);
-            let owner = value.name.clone();
-            let mut tracks = vec![("position", Target::ObjectPosition(owner.clone()))];
-            if matches!(value.shape, Shape::Mesh(_)) {
-                tracks.push(("rotation", Target::ObjectRotation(owner)));
-            }
-            keys::of_values(ui, editor, &tracks, out);
         }
         Kind::Pack => {
             if let Some((name, value)) = scene.color_packs.get_index(index) {
@@ -100,4 +89,5 @@ fn item_rows(ui: &mut Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
             }
         }
     }
+    keys::of_values(ui, editor, &keys::keyed_values(scene, &[item]), out);
 }

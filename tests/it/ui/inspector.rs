@@ -383,6 +383,35 @@ fn a_typed_position_moves_a_group_as_one_and_its_name_is_the_groups() {
 }
 
 #[test]
+fn a_group_gets_keys_as_one_and_moves_from_one_to_the_other() {
+    let mut harness = EditorHarness::new();
+    let [one, other] = both_balls(&mut harness);
+    harness.press(CTRL, Key::G);
+    // One of them has a key there, which stays.
+    harness.click("Sphere 1");
+    harness.click("key position");
+    harness.click("Group 1");
+    let keys = |harness: &EditorHarness| -> Vec<usize> {
+        let tracks = harness.scene().animation.tracks.iter();
+        tracks.map(|track| track.keys.len()).collect()
+    };
+    assert_eq!(keys(&harness), [1]);
+    harness.click("key position");
+    assert_eq!(keys(&harness), [1, 1]);
+    harness.press(Modifiers::NONE, Key::End);
+    harness.type_into("center y", "70");
+    assert_eq!(keys(&harness), [2, 2], "changes set keys");
+    let shown = |harness: &EditorHarness| [0, 1].map(|ball| center(harness.editor().shown(), ball));
+    let [now, then] = shown(&harness);
+    assert!((now - one - (then - other)).length() < 1e-9, "{now} {then}");
+    assert_ne!(now, one);
+    // Both again, and both away.
+    harness.click("key position");
+    assert_eq!(keys(&harness), [1, 1]);
+    assert_eq!(shown(&harness), [one, other]);
+}
+
+#[test]
 fn what_is_typed_and_not_taken_is_told() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
