@@ -181,7 +181,9 @@ impl Animation {
     /// Where the tracks are, by what they move.
     pub fn track_places(&self) -> HashMap<&Target, usize> {
         let tracks = self.tracks.iter().enumerate();
-        tracks.map(|(place, track)| (&track.target, place)).collect()
+        tracks
+            .map(|(place, track)| (&track.target, place))
+            .collect()
     }
 
     /// With a key of a track at this time, in place of one that is there.

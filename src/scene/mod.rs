@@ -99,8 +99,8 @@ pub use orientation::Orientation;
 pub use recovery::{Leftover, Recovery};
 pub use render::{Chosen, MAX_REFLECTIONS, MAX_SIDE, Render, Setting, VisitSetting};
 pub use shape::{
-    Describe, Disc, Field, FieldValue, Mesh, MeshSource, Outline, Plane, PlanePiece, Shape, Sphere,
-    Triangle,
+    Describe, Disc, Mesh, MeshSource, Outline, Plane, PlanePiece, Property, PropertyValue, Shape,
+    Sphere, Triangle,
 };
 pub use target::Owners;
 pub use whole::{Scene, VERSION, around, default_ambient_intensity, light_pack};

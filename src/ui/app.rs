@@ -27,7 +27,7 @@ use super::start::StartWatch;
 use super::still::Still;
 use super::timeline::{Overlay, Thumbs, TimelinePanel};
 use super::toasts::Toasts;
-use super::tools::{Lens, Tools};
+use super::tools::{Screen, Tools};
 use super::why::Why;
 use super::wishes::FileOutcome;
 use super::{help, theme};
@@ -358,11 +358,11 @@ impl eframe::App for App {
         // Still pictures are looked at, not flown through: they would be gone.
         let (place, flown) = picture;
         let is_still = self.editor.mode == Mode::HighRes || self.lab.is_looking();
-        let lens = Lens::new(&self.editor.shown().camera, place.rect);
-        if let Some(lens) = lens.filter(|_| !is_still) {
+        let screen = Screen::new(&self.editor.shown().camera, place.rect);
+        if let Some(screen) = screen.filter(|_| !is_still) {
             self.why
                 .mark(&ui.painter().with_clip_rect(place.rect), |point| {
-                    lens.place(point)
+                    screen.place(point)
                 });
         }
         let flown = Some(&flown).filter(|_| !is_still && !self.tools.is_dragging());

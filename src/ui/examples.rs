@@ -3,7 +3,7 @@
 use egui::{Button, Context, Image, TextureHandle, TextureOptions, Ui, load::SizedTexture, vec2};
 
 use super::commands::{Command, Next};
-use super::hint::Hint as _;
+use super::hint::Hinted as _;
 use super::requests::UiRequests;
 use super::upload::whole;
 use crate::scene::EXAMPLES;

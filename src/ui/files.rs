@@ -12,7 +12,7 @@ use super::dialogs::{Ask, Dialogs};
 use super::folders::Folders;
 use super::interchange::{export_job, export_path, export_povray, import_path, imported};
 use super::outside::{OUTSIDE, Theirs, Watch};
-use super::prompts::{Answer, PathPrompt, ask_about_changes, ask_to_quit};
+use super::prompts::{PathPrompt, Reply, ask_about_changes, ask_to_quit};
 use super::reading::{Read, Reading};
 use super::wishes::{Answered, FileOutcome, PathRequest, Waiting};
 use crate::editor::{Action, Editor, Time};
@@ -28,7 +28,7 @@ const RECENT: usize = 10;
 pub struct Files {
     dialogs: Box<dyn Dialogs>,
     waiting: Option<Waiting>,
-    question: Option<Question>,
+    prompt: Option<Prompt>,
     /// Files that are being read, the first one first.
     reading: VecDeque<Reading>,
     watch: Watch,
@@ -39,7 +39,7 @@ pub struct Files {
 }
 
 /// A question over the window.
-enum Question {
+enum Prompt {
     Unsaved(Next),
     /// The answer was to save: as soon as a recorded flight has become keys.
     Saving(Next),
@@ -55,7 +55,7 @@ impl Files {
         Self {
             dialogs,
             waiting: None,
-            question: None,
+            prompt: None,
             reading: VecDeque::new(),
             watch: Watch::default(),
             recent,
@@ -65,19 +65,19 @@ impl Files {
 
     /// Whether something is asked of the user that keys must not talk over.
     pub fn is_asking(&self) -> bool {
-        self.question.is_some()
+        self.prompt.is_some()
     }
 
     /// Does `next`, after asking about unsaved changes. A flight that is still being recorded becomes keys, which
     /// are some.
     pub fn start(&mut self, ctx: &Context, editor: &mut Editor, next: Next) -> Option<FileOutcome> {
-        if !matches!(self.question, None | Some(Question::Saving(_))) {
+        if !matches!(self.prompt, None | Some(Prompt::Saving(_))) {
             editor.notify("Answer the open question first".to_owned());
             return None;
         }
         editor.apply(Action::Time(Time::Stop));
         if editor.is_dirty() {
-            self.question = Some(Question::Unsaved(next));
+            self.prompt = Some(Prompt::Unsaved(next));
             return None;
         }
         self.go_on(ctx, editor, next)
@@ -86,10 +86,10 @@ impl Files {
     /// Quits, after asking whether that is meant, and what becomes of changes.
     pub fn ask_to_quit(&mut self, editor: &mut Editor) {
         editor.apply(Action::Time(Time::Stop));
-        self.question = Some(if editor.is_dirty() {
-            Question::Unsaved(Next::Quit)
+        self.prompt = Some(if editor.is_dirty() {
+            Prompt::Unsaved(Next::Quit)
         } else {
-            Question::Quit
+            Prompt::Quit
         });
     }
 
@@ -129,7 +129,7 @@ impl Files {
 
     /// Whether nothing waits for an answer, which would be about another document than was asked about.
     fn is_free(&self) -> bool {
-        self.question.is_none() && self.waiting.is_none()
+        self.prompt.is_none() && self.waiting.is_none()
     }
 
     /// The file that is being read.
@@ -157,7 +157,7 @@ impl Files {
             self.reading.extend(Reading::again(editor, changed));
         }
         // One question after the other.
-        let mut waiting = self.waiting.take_if(|_| self.question.is_none())?;
+        let mut waiting = self.waiting.take_if(|_| self.prompt.is_none())?;
         match waiting.answered() {
             Answered::NotYet => self.waiting = Some(waiting),
             Answered::Path(path) => {
@@ -183,7 +183,7 @@ impl Files {
 
     fn prompt(&mut self, wish: PathRequest, suggested: &Path, label: &'static str) {
         let prompt = PathPrompt::new(wish.ask.clone(), suggested, label);
-        self.question = Some(Question::Path(wish, prompt));
+        self.prompt = Some(Prompt::Path(wish, prompt));
     }
 
     /// Draws what is being asked; exports that go on are told in words.
@@ -194,44 +194,44 @@ impl Files {
         exports: Option<&str>,
     ) -> Option<FileOutcome> {
         let ctx = ui.ctx().clone();
-        let answer = match self.question.as_mut()? {
-            Question::Unsaved(next) => {
+        let answer = match self.prompt.as_mut()? {
+            Prompt::Unsaved(next) => {
                 let going = exports.filter(|_| matches!(next, Next::Quit | Next::QuitAnyway));
                 if going.is_some() {
                     *next = Next::QuitAnyway;
                 }
                 ask_about_changes(&ctx, &editor.title(), going)
             }
-            Question::Saving(_) if editor.is_making_keys() => Answer::Open,
-            Question::Saving(_) => Answer::Yes,
-            Question::Quit => ask_to_quit(&ctx, exports),
-            Question::Path(_, prompt) => prompt.show(&ctx),
-            Question::Outside(theirs, _) => theirs.ask(&ctx, &editor.title()),
+            Prompt::Saving(_) if editor.is_making_keys() => Reply::Open,
+            Prompt::Saving(_) => Reply::Yes,
+            Prompt::Quit => ask_to_quit(&ctx, exports),
+            Prompt::Path(_, prompt) => prompt.show(&ctx),
+            Prompt::Outside(theirs, _) => theirs.ask(&ctx, &editor.title()),
         };
-        if answer == Answer::Open {
+        if answer == Reply::Open {
             return None;
         }
-        match (self.question.take()?, answer) {
-            (Question::Unsaved(next), Answer::Yes) if editor.is_making_keys() => {
-                self.question = Some(Question::Saving(next));
+        match (self.prompt.take()?, answer) {
+            (Prompt::Unsaved(next), Reply::Yes) if editor.is_making_keys() => {
+                self.prompt = Some(Prompt::Saving(next));
                 None
             }
-            (Question::Unsaved(next) | Question::Saving(next), Answer::Yes) => {
+            (Prompt::Unsaved(next) | Prompt::Saving(next), Reply::Yes) => {
                 self.save_then(&ctx, editor, Some(next))
             }
-            (Question::Unsaved(next), Answer::No) => self.go_on(&ctx, editor, next),
-            (Question::Quit, Answer::Yes) => Some(FileOutcome::Quit),
-            (Question::Path(wish, mut prompt), Answer::Yes) => {
+            (Prompt::Unsaved(next), Reply::No) => self.go_on(&ctx, editor, next),
+            (Prompt::Quit, Reply::Yes) => Some(FileOutcome::Quit),
+            (Prompt::Path(wish, mut prompt), Reply::Yes) => {
                 let outcome = self.answered(&ctx, editor, wish.clone(), prompt.path());
                 if wish.document == editor.documents()
                     && let Some(why) = editor.take_error(wish.ask.title())
                 {
                     prompt.refuse(why);
-                    self.question = Some(Question::Path(wish, prompt));
+                    self.prompt = Some(Prompt::Path(wish, prompt));
                 }
                 outcome
             }
-            (Question::Outside(theirs, wish), answer) => {
+            (Prompt::Outside(theirs, wish), answer) => {
                 self.settle_outside(&ctx, editor, (*theirs, answer), wish)
             }
             _ => None,
@@ -324,7 +324,7 @@ impl Files {
             }
             theirs => {
                 let theirs = Box::new(Theirs::new(editor, theirs));
-                self.question = Some(Question::Outside(theirs, wish));
+                self.prompt = Some(Prompt::Outside(theirs, wish));
             }
         }
         false
@@ -334,21 +334,21 @@ impl Files {
         &mut self,
         ctx: &Context,
         editor: &mut Editor,
-        (theirs, answer): (Theirs, Answer),
+        (theirs, answer): (Theirs, Reply),
         wish: Option<PathRequest>,
     ) -> Option<FileOutcome> {
         let then = wish.as_ref().and_then(|wish| wish.then.clone());
         editor.begin(OUTSIDE);
         match (theirs.document, answer) {
-            (theirs, Answer::Yes) => {
+            (theirs, Reply::Yes) => {
                 editor.keep_mine(theirs.ok());
                 return wish.and_then(|_| self.save_then(ctx, editor, then));
             }
-            (Ok(theirs), Answer::No) => {
+            (Ok(theirs), Reply::No) => {
                 editor.take_theirs(theirs);
                 return then.and_then(|next| self.go_on(ctx, editor, next));
             }
-            (_, Answer::Other) => {
+            (_, Reply::Other) => {
                 self.wish(ctx, editor, PathRequest::new(editor, Ask::SaveScene, then));
             }
             _ => {}

@@ -11,7 +11,7 @@ use indexmap::IndexSet;
 use super::add::Addition;
 use super::commands::{Command, KEYLESS, Next, SHORTCUTS, Zoom, name_of};
 use super::dialogs::Ask;
-use super::hint::Hint as _;
+use super::hint::Hinted as _;
 use super::layout::Part;
 use super::obstacles::obstacle;
 use super::requests::UiRequests;
@@ -44,17 +44,17 @@ struct Find {
     name: String,
     /// What stands to its right: its keys, what it is, or why it cannot be had.
     aside: String,
-    what: Target,
+    what: Found,
     is_enabled: bool,
 }
 
-enum Target {
+enum Found {
     Command(Command),
     Selection(Selection),
     Addition(Addition),
 }
 
-impl Target {
+impl Found {
     fn is(&self, command: &Command) -> bool {
         matches!(self, Self::Command(own) if own == command)
     }
@@ -121,16 +121,16 @@ impl Finder {
         if let Some(target) = shown.inner {
             self.is_open = false;
             match target {
-                Target::Command(command) => out.commands.push(command),
-                Target::Selection(selection) => out.select(selection),
-                Target::Addition(addition) => out.edit(addition.edit(editor.shown())),
+                Found::Command(command) => out.commands.push(command),
+                Found::Selection(selection) => out.select(selection),
+                Found::Addition(addition) => out.edit(addition.edit(editor.shown())),
             }
         } else if shown.should_close() {
             self.is_open = false;
         }
     }
 
-    fn ask(&mut self, ui: &mut Ui, known: (&Editor, &[PathBuf])) -> Option<Target> {
+    fn ask(&mut self, ui: &mut Ui, known: (&Editor, &[PathBuf])) -> Option<Found> {
         let step = |ui: &mut Ui, key: Key| {
             ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key))
         };
@@ -223,7 +223,7 @@ fn commands<'a>(
                 name,
                 aside: obstacle.map_or(keys, str::to_owned),
                 is_enabled: obstacle.is_none(),
-                what: Target::Command(command),
+                what: Found::Command(command),
             }
         })
 }
@@ -243,7 +243,7 @@ fn additions() -> impl Iterator<Item = Find> {
     Addition::all().map(|(addition, _, name)| Find {
         name,
         aside: String::new(),
-        what: Target::Addition(addition),
+        what: Found::Addition(addition),
         is_enabled: true,
     })
 }
@@ -341,7 +341,7 @@ fn settings(editor: &Editor) -> impl Iterator<Item = Find> {
     names.into_iter().map(|(name, selection)| Find {
         name,
         aside: "setting".to_owned(),
-        what: Target::Selection(selection),
+        what: Found::Selection(selection),
         is_enabled: true,
     })
 }
@@ -371,7 +371,7 @@ fn things<'a>(
         Find {
             name: name.to_owned(),
             aside: kind.to_owned(),
-            what: Target::Selection(selection),
+            what: Found::Selection(selection),
             is_enabled: true,
         }
     })

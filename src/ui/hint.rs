@@ -3,7 +3,7 @@
 use egui::{Rect, RectAlign, Response, Tooltip, Ui};
 
 /// Says what a widget does while the pointer rests on it.
-pub trait Hint {
+pub trait Hinted {
     /// Below the widget.
     fn hint(self, text: impl Into<String>) -> Self;
 
@@ -11,7 +11,7 @@ pub trait Hint {
     fn hint_beside(&self, ui: &Ui, text: &str);
 }
 
-impl Hint for Response {
+impl Hinted for Response {
     fn hint(self, text: impl Into<String>) -> Self {
         if self.ctx.input(|input| input.pointer.any_down()) {
             return self;

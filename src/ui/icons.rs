@@ -17,7 +17,7 @@ pub use egui_material_icons::icons::{
     ICON_VISIBILITY as VISIBLE, ICON_VISIBILITY_OFF as HIDDEN,
 };
 
-use super::hint::Hint as _;
+use super::hint::Hinted as _;
 use super::theme::{GRID, ICON};
 use crate::editor::{Item, Kind};
 use crate::scene::{Scene, Shape};

@@ -10,7 +10,7 @@ use super::commands::{Command, Next, Zoom};
 use super::dialogs::Ask;
 use super::examples::Examples;
 use super::flying::{FASTEST, SLOWEST};
-use super::hint::Hint as _;
+use super::hint::Hinted as _;
 use super::icons;
 use super::layout::{Below, Layout, Part};
 use super::menu_entry::{ITEM_COMMANDS, entry, offer, ticked};

@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::arithmetic::calculate;
 use super::grain::{USUAL, grain};
-use super::hint::Hint as _;
+use super::hint::Hinted as _;
 use super::theme::ROW;
 use crate::scene::{MAX_COORDINATE, parse_vec3};
 use crate::words::quoted;

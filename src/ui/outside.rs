@@ -7,7 +7,7 @@ use std::time::{Duration, Instant, SystemTime};
 
 use egui::{Context, Ui};
 
-use super::prompts::{Answer, question};
+use super::prompts::{Reply, question};
 use super::theme::GRID;
 use crate::editor::Editor;
 use crate::files::{Marks, Stamp, is_missing, marks_of, time_of};
@@ -249,10 +249,10 @@ impl Theirs {
     }
 
     /// Asks which of both is to stay: Yes for the own, No for theirs, and Other for both.
-    pub fn ask(&self, ctx: &Context, title: &str) -> Answer {
+    pub fn ask(&self, ctx: &Context, title: &str) -> Reply {
         question(
             ctx,
-            ("changed outside", 460.0, Answer::Open),
+            ("changed outside", 460.0, Reply::Open),
             |ui, answer| {
                 ui.heading(format!("{title} was changed by another program"));
                 ui.add_space(GRID);
@@ -261,15 +261,15 @@ impl Theirs {
                 ui.horizontal(|ui| {
                     // None of them is what Enter means.
                     if ui.button("Keep mine").clicked() {
-                        *answer = Answer::Yes;
+                        *answer = Reply::Yes;
                     }
                     let can_take = self.document.is_ok();
                     let take = egui::Button::new("Take theirs");
                     if ui.add_enabled(can_take, take).clicked() {
-                        *answer = Answer::No;
+                        *answer = Reply::No;
                     }
                     if ui.button("Save as…").clicked() {
-                        *answer = Answer::Other;
+                        *answer = Reply::Other;
                     }
                 });
             },

@@ -17,7 +17,7 @@ const LONGEST_PATH: usize = 200;
 
 /// What the user said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Answer {
+pub enum Reply {
     /// Nothing yet.
     Open,
     /// The primary button.
@@ -31,8 +31,8 @@ pub enum Answer {
 }
 
 /// Asks what becomes of unsaved changes: saved, lost, or neither; of exports that are given up as well.
-pub fn ask_about_changes(ctx: &Context, title: &str, going: Option<&str>) -> Answer {
-    let look = ("unsaved changes", 380.0, Answer::Yes);
+pub fn ask_about_changes(ctx: &Context, title: &str, going: Option<&str>) -> Reply {
+    let look = ("unsaved changes", 380.0, Reply::Yes);
     question(ctx, look, |ui, answer| {
         ui.heading(format!("Save changes to {title}?"));
         ui.add_space(GRID);
@@ -41,35 +41,35 @@ pub fn ask_about_changes(ctx: &Context, title: &str, going: Option<&str>) -> Ans
         ui.add_space(2.0 * GRID);
         ui.horizontal(|ui| {
             if primary(ui, "Save changes").clicked() {
-                *answer = Answer::Yes;
+                *answer = Reply::Yes;
             }
             if ui.button("Don't save").clicked() {
-                *answer = Answer::No;
+                *answer = Reply::No;
             }
             if ui.button("Keep editing").clicked() {
-                *answer = Answer::Cancel;
+                *answer = Reply::Cancel;
             }
         });
     })
 }
 
 /// Asks whether quitting is meant, also where exports are going on.
-pub fn ask_to_quit(ctx: &Context, going: Option<&str>) -> Answer {
+pub fn ask_to_quit(ctx: &Context, going: Option<&str>) -> Reply {
     let (width, heading) = match going {
         Some(_) => (380.0, "Quit while exporting?"),
         None => (160.0, "Quit Glint?"),
     };
     // Esc asks for it too, which is pressed in passing: what ends the session is not the next key.
-    question(ctx, ("quit", width, Answer::Cancel), |ui, answer| {
+    question(ctx, ("quit", width, Reply::Cancel), |ui, answer| {
         ui.heading(heading);
         tell_going(ui, going);
         ui.add_space(2.0 * GRID);
         ui.horizontal(|ui| {
             if primary(ui, "Stay").clicked() {
-                *answer = Answer::Cancel;
+                *answer = Reply::Cancel;
             }
             if ui.button("Quit now").clicked() {
-                *answer = Answer::Yes;
+                *answer = Reply::Yes;
             }
         });
     })
@@ -132,8 +132,8 @@ impl PathPrompt {
     }
 
     /// Draws the prompt.
-    pub fn show(&mut self, ctx: &Context) -> Answer {
-        question(ctx, ("path prompt", 480.0, Answer::Open), |ui, answer| {
+    pub fn show(&mut self, ctx: &Context) -> Reply {
+        question(ctx, ("path prompt", 480.0, Reply::Open), |ui, answer| {
             ui.heading(self.ask.title());
             ui.add_space(GRID);
             let label = ui.weak(self.label);
@@ -160,12 +160,12 @@ impl PathPrompt {
                 let button = ui.add_enabled_ui(can, |ui| primary(ui, self.word())).inner;
                 let is_accepted = can && (button.clicked() || entered);
                 if is_accepted && (!self.would_replace() || self.is_asked()) {
-                    *answer = Answer::Yes;
+                    *answer = Reply::Yes;
                 } else if is_accepted {
                     // Whoever types a name quickly has not read yet that there is such a file.
                     self.asked = Some(self.path());
                 }
-                if *answer == Answer::Open && entered {
+                if *answer == Reply::Open && entered {
                     // What was typed is not lost: it can be mended.
                     field.request_focus();
                 }
@@ -178,7 +178,7 @@ impl PathPrompt {
                         .map(|error| format!("{}: {error}", folder.display()));
                 }
                 if ui.button("Cancel").clicked() {
-                    *answer = Answer::Cancel;
+                    *answer = Reply::Cancel;
                 }
             });
         })
@@ -319,13 +319,13 @@ pub fn select_letters(ui: &Ui, field: Id, letters: Range<usize>) {
 }
 
 /// A question over the window, of a name, a width and what Enter answers; Escape answers it with
-/// [`Answer::Cancel`].
+/// [`Reply::Cancel`].
 pub fn question(
     ctx: &Context,
-    (name, width, on_enter): (&str, f32, Answer),
-    add: impl FnOnce(&mut Ui, &mut Answer),
-) -> Answer {
-    let mut answer = Answer::Open;
+    (name, width, on_enter): (&str, f32, Reply),
+    add: impl FnOnce(&mut Ui, &mut Reply),
+) -> Reply {
+    let mut answer = Reply::Open;
     let (id, now) = (Id::unique(name).with("asked"), ctx.cumulative_frame_nr());
     let asked = ctx.data_mut(|data| {
         let last = data.get_temp::<u64>(id);
@@ -338,12 +338,12 @@ pub fn question(
         add(ui, &mut answer);
     });
     // A click beside it, in passing, is no answer: what is typed there is lost otherwise, and goes elsewhere.
-    if answer == Answer::Open && modal.should_close() && !modal.backdrop_response.clicked() {
-        answer = Answer::Cancel;
+    if answer == Reply::Open && modal.should_close() && !modal.backdrop_response.clicked() {
+        answer = Reply::Cancel;
     }
     // The key that has led to the question does not answer it.
     let was_asked = asked.is_some_and(|last| last + 1 == now);
-    if answer == Answer::Open && was_asked && ctx.input(|input| input.key_pressed(Key::Enter)) {
+    if answer == Reply::Open && was_asked && ctx.input(|input| input.key_pressed(Key::Enter)) {
         answer = on_enter;
     }
     answer

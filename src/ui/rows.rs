@@ -10,7 +10,7 @@ use egui::{
 
 use glam::DVec3;
 
-use super::hint::Hint as _;
+use super::hint::Hinted as _;
 pub use super::number::{Field, coordinate, fraction};
 use super::number::{Number, drag, is_cancelled, tell_refused};
 use super::theme::{GRID, HEX, LABEL, ROW, palette};

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{Popup, RichText, ScrollArea, Ui};
 
-use super::hint::Hint as _;
+use super::hint::Hinted as _;
 use super::icons;
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW, palette};

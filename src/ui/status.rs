@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use egui::{Align, Label, Layout, ProgressBar, RichText, Ui};
 
 use super::commands::Command;
-use super::hint::Hint as _;
+use super::hint::Hinted as _;
 use super::requests::UiRequests;
 use super::scene_check::SceneCheck;
 use super::theme::palette;
@@ -99,7 +99,7 @@ fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut UiR
     }
     let left = if elapsed >= FORECAST && share > 0.0 {
         let seconds = elapsed.as_secs_f64() * (1.0 - share) / share;
-        format!(" · {} left", in_words(seconds))
+        format!(" · {} left", time_in_words(seconds))
     } else {
         String::new()
     };
@@ -114,7 +114,7 @@ fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut UiR
 }
 
 /// A time in seconds or minutes.
-pub fn in_words(seconds: f64) -> String {
+pub fn time_in_words(seconds: f64) -> String {
     if seconds < 90.0 {
         format!("{:.0} s", seconds.ceil())
     } else {

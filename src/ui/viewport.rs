@@ -7,7 +7,7 @@ use egui::{
     TextureHandle, TextureOptions, TextureWrapMode, Ui, UiBuilder, Vec2, pos2, vec2,
 };
 
-use super::hint::Hint as _;
+use super::hint::Hinted as _;
 use super::icons;
 use super::theme::{GRID, ROW, palette};
 use super::upload::{changes, piece, whole};

@@ -92,9 +92,9 @@ fn open(setup: Setup, persist_window: bool) -> Result<(), NoWindow> {
     drop(quiet);
     match result {
         Ok(Ok(())) => Ok(()),
-        Ok(Err(error)) => Err(NoWindow::Unavailable(in_words(&error.to_string()))),
+        Ok(Err(error)) => Err(NoWindow::Unavailable(plainly(&error.to_string()))),
         Err(panic) if is_open.load(Ordering::Relaxed) => std::panic::resume_unwind(panic),
-        Err(panic) => Err(NoWindow::Unavailable(in_words(panic_text(panic.as_ref())))),
+        Err(panic) => Err(NoWindow::Unavailable(plainly(panic_text(panic.as_ref())))),
     }
 }
 
@@ -147,7 +147,7 @@ impl Drop for Quiet {
 }
 
 /// What the window library says, for people: one line, without the places in its source.
-fn in_words(text: &str) -> String {
+fn plainly(text: &str) -> String {
     if text.contains("WAYLAND_DISPLAY nor") {
         return "there is no display".to_owned();
     }
@@ -163,21 +163,21 @@ fn in_words(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::in_words;
+    use super::plainly;
 
     #[test]
     fn reasons_are_readable() {
         let x11 = "winit EventLoopError: os error at /a/b/winit/mod.rs:788: Failed to load one of xlib's shared libraries";
         assert_eq!(
-            in_words(x11),
+            plainly(x11),
             "Failed to load one of xlib's shared libraries"
         );
         assert_eq!(
-            in_words("Library libxkbcommon-x11.so could\n not be loaded."),
+            plainly("Library libxkbcommon-x11.so could\n not be loaded."),
             "Library libxkbcommon-x11.so could not be loaded"
         );
         assert_eq!(
-            in_words("Found no glutin configs matching the template: …"),
+            plainly("Found no glutin configs matching the template: …"),
             "no OpenGL driver was found"
         );
     }

@@ -20,7 +20,7 @@ use super::material::MAX_EXPONENT;
 use super::names::MAX_NAME;
 use super::object::{LightObj, Object};
 use super::render::{MAX_REFLECTIONS, MAX_SIDE, Render};
-use super::shape::{Field, FieldValue, Shape};
+use super::shape::{Property, PropertyValue, Shape};
 use super::whole::{Scene, VERSION};
 
 /// Most pixels in a picture: 1 GiB of 8-bit RGBA.
@@ -178,16 +178,16 @@ fn check_lights(at: &At, scene: &Scene) -> Check {
 
 fn check_shape(at: &At, shape: &Shape) -> Check {
     let mut result = Ok(());
-    shape.clone().fields(&mut |Field { name, value, .. }| {
+    shape.clone().fields(&mut |Property { name, value, .. }| {
         if result.is_ok() {
             let at = at.field(name);
             result = match value {
-                FieldValue::Point(point) => at.point(*point),
-                FieldValue::Direction(direction) => at.direction(*direction),
-                FieldValue::Length(length) => at.positive(*length),
-                FieldValue::Angles(angles) => at.angles(*angles),
-                FieldValue::Angle(angle) => at.within(*angle, 0.0, 180.0),
-                FieldValue::Factors(factors) => at.factors(*factors),
+                PropertyValue::Point(point) => at.point(*point),
+                PropertyValue::Direction(direction) => at.direction(*direction),
+                PropertyValue::Length(length) => at.positive(*length),
+                PropertyValue::Angles(angles) => at.angles(*angles),
+                PropertyValue::Angle(angle) => at.within(*angle, 0.0, 180.0),
+                PropertyValue::Factors(factors) => at.factors(*factors),
             };
         }
     });

@@ -15,7 +15,7 @@ pub trait Describe: Clone + Debug + PartialEq + Sized {
     fn example(at: DVec3, size: f64) -> Self;
 
     /// Shows every property to `visit`, in the order of the file.
-    fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Field<'a>));
+    fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Property<'a>));
 
     /// What is wrong with the properties together, as a sentence without its full stop; each by itself
     /// is valid.
@@ -68,18 +68,18 @@ pub fn scaled(point: DVec3, about: DVec3, by: f64) -> DVec3 {
 
 /// One property of a primitive.
 #[derive(Debug)]
-pub struct Field<'a> {
+pub struct Property<'a> {
     /// What the file and the inspector call it.
     pub name: &'static str,
     /// What it means, in a sentence without its full stop.
     pub hint: &'static str,
     /// Its value.
-    pub value: FieldValue<'a>,
+    pub value: PropertyValue<'a>,
 }
 
 /// What a property can be.
 #[derive(Debug)]
-pub enum FieldValue<'a> {
+pub enum PropertyValue<'a> {
     /// A place in world units.
     Point(&'a mut DVec3),
     /// A direction; any length but zero.

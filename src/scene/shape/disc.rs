@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Field, FieldValue, scaled, turned};
+use super::describe::{Describe, Property, PropertyValue, scaled, turned};
 use super::plane_piece::{Outline, PlanePiece};
 use crate::scene::direction::unit;
 use crate::scene::notation;
@@ -34,21 +34,21 @@ impl Describe for Disc {
         }
     }
 
-    fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Field<'a>)) {
-        visit(Field {
+    fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Property<'a>)) {
+        visit(Property {
             name: "center",
             hint: "The middle of the disc, in world units",
-            value: FieldValue::Point(&mut self.center),
+            value: PropertyValue::Point(&mut self.center),
         });
-        visit(Field {
+        visit(Property {
             name: "normal",
             hint: "Direction across the disc; its length does not matter",
-            value: FieldValue::Direction(&mut self.normal),
+            value: PropertyValue::Direction(&mut self.normal),
         });
-        visit(Field {
+        visit(Property {
             name: "radius",
             hint: "In world units, greater than 0",
-            value: FieldValue::Length(&mut self.radius),
+            value: PropertyValue::Length(&mut self.radius),
         });
     }
 

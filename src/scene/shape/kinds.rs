@@ -8,7 +8,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, EnumAccess, MapAccess, VariantAccess as _, Visitor};
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Field, FieldValue};
+use super::describe::{Describe, Property, PropertyValue};
 use super::disc::Disc;
 use super::mesh::Mesh;
 use super::plane::Plane;
@@ -87,7 +87,7 @@ macro_rules! shapes {
             }
 
             /// Shows every property to `visit`, in the order of the file.
-            pub fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Field<'a>)) {
+            pub fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Property<'a>)) {
                 match self { $(Self::$kind(shape) => shape.fields(visit)),* }
             }
 
@@ -137,7 +137,7 @@ macro_rules! shapes {
             pub fn points(&self) -> Vec<DVec3> {
                 let mut points = Vec::new();
                 self.clone().fields(&mut |field| {
-                    if let FieldValue::Point(point) = field.value {
+                    if let PropertyValue::Point(point) = field.value {
                         points.push(*point);
                     }
                 });
@@ -150,7 +150,7 @@ macro_rules! shapes {
                 let mut placed = self.moved(place - self.position());
                 let mut points = Vec::new();
                 placed.fields(&mut |field| {
-                    if let FieldValue::Point(point) = field.value {
+                    if let PropertyValue::Point(point) = field.value {
                         points.push(point);
                     }
                 });

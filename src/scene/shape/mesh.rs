@@ -7,7 +7,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::describe::{Describe, Field, FieldValue, scaled, turned};
+use super::describe::{Describe, Property, PropertyValue, scaled, turned};
 use super::mesh_source::{MeshFiles, MeshSource};
 use super::plane_piece::PlanePiece;
 use crate::mesh::{FARTHEST, Triangles, icosphere};
@@ -272,26 +272,26 @@ impl Describe for Mesh {
         }
     }
 
-    fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Field<'a>)) {
-        visit(Field {
+    fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Property<'a>)) {
+        visit(Property {
             name: "position",
             hint: "Where the origin of the mesh is, in world units",
-            value: FieldValue::Point(&mut self.position),
+            value: PropertyValue::Point(&mut self.position),
         });
-        visit(Field {
+        visit(Property {
             name: "rotation",
             hint: "Degrees about x, then y, then z",
-            value: FieldValue::Angles(&mut self.rotation),
+            value: PropertyValue::Angles(&mut self.rotation),
         });
-        visit(Field {
+        visit(Property {
             name: "scale",
             hint: "Factors along x, y and z, before the rotation; none is 0",
-            value: FieldValue::Factors(&mut self.scale),
+            value: PropertyValue::Factors(&mut self.scale),
         });
-        visit(Field {
+        visit(Property {
             name: "smooth",
             hint: "Degrees between faces below which they are shaded as one curved surface; 0 shows them flat",
-            value: FieldValue::Angle(&mut self.smooth),
+            value: PropertyValue::Angle(&mut self.smooth),
         });
     }
 

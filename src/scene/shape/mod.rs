@@ -21,7 +21,7 @@ mod triangle;
 
 mod kinds;
 
-pub use describe::{Describe, Field, FieldValue};
+pub use describe::{Describe, Property, PropertyValue};
 pub use disc::Disc;
 pub use kinds::Shape;
 pub use mesh::Mesh;

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Field, FieldValue, scaled, turned};
+use super::describe::{Describe, Property, PropertyValue, scaled, turned};
 use super::plane_piece::{Outline, PlanePiece};
 use crate::scene::direction::unit;
 use crate::scene::notation;
@@ -30,16 +30,16 @@ impl Describe for Plane {
         }
     }
 
-    fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Field<'a>)) {
-        visit(Field {
+    fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Property<'a>)) {
+        visit(Property {
             name: "point",
             hint: "Any point on the plane",
-            value: FieldValue::Point(&mut self.point),
+            value: PropertyValue::Point(&mut self.point),
         });
-        visit(Field {
+        visit(Property {
             name: "normal",
             hint: "Direction across the plane; its length does not matter",
-            value: FieldValue::Direction(&mut self.normal),
+            value: PropertyValue::Direction(&mut self.normal),
         });
     }
 

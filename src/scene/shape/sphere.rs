@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Field, FieldValue, scaled, turned};
+use super::describe::{Describe, Property, PropertyValue, scaled, turned};
 use crate::scene::notation;
 
 /// A ball.
@@ -57,16 +57,16 @@ impl Describe for Sphere {
         }
     }
 
-    fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Field<'a>)) {
-        visit(Field {
+    fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Property<'a>)) {
+        visit(Property {
             name: "center",
             hint: "The middle of the ball, in world units",
-            value: FieldValue::Point(&mut self.center),
+            value: PropertyValue::Point(&mut self.center),
         });
-        visit(Field {
+        visit(Property {
             name: "radius",
             hint: "In world units, greater than 0",
-            value: FieldValue::Length(&mut self.radius),
+            value: PropertyValue::Length(&mut self.radius),
         });
     }
 

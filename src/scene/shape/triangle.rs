@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Field, FieldValue, scaled, turned};
+use super::describe::{Describe, Property, PropertyValue, scaled, turned};
 use super::plane_piece::{Outline, PlanePiece};
 use crate::scene::direction::unit;
 use crate::scene::notation;
@@ -63,12 +63,12 @@ impl Describe for Triangle {
         }
     }
 
-    fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Field<'a>)) {
+    fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Property<'a>)) {
         for (name, corner) in [("a", &mut self.a), ("b", &mut self.b), ("c", &mut self.c)] {
-            visit(Field {
+            visit(Property {
                 name,
                 hint: "A corner; clockwise seen from outside",
-                value: FieldValue::Point(corner),
+                value: PropertyValue::Point(corner),
             });
         }
     }

@@ -14,7 +14,7 @@ use crate::image::Format;
 use crate::scene::{Animation, FRAME_RATES, MAX_SIDE, Method as _, Problem, Sampling, Scene};
 use crate::ui::commands::Command;
 use crate::ui::dialogs::Ask;
-use crate::ui::hint::Hint as _;
+use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
 use crate::ui::number::{Field, lone};
 use crate::ui::requests::UiRequests;

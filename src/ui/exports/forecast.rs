@@ -9,7 +9,7 @@ use crate::editor::{Editor, Mode};
 use crate::export::{Sequence, Video};
 use crate::image::{Format, Image};
 use crate::ui::pictures::Pictures;
-use crate::ui::status::in_words;
+use crate::ui::status::time_in_words;
 use crate::words::counted;
 use crate::worker::Background;
 
@@ -145,7 +145,7 @@ impl Forecast {
         let pixels = f64::from(settings.width) * f64::from(settings.height);
         let about = |seconds: Option<f64>| {
             seconds.map_or(String::new(), |seconds| {
-                format!(", about {}", in_words(seconds))
+                format!(", about {}", time_in_words(seconds))
             })
         };
         let frames = if missing == 0 {

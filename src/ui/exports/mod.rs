@@ -30,12 +30,12 @@ use self::progress::seconds_left;
 use super::interchange::check_whole;
 use super::pictures::Pictures;
 use super::requests::UiRequests;
-use super::status::in_words;
+use super::status::time_in_words;
 use super::theme::{GRID, palette};
 use crate::editor::Editor;
 use crate::export::Sequence;
 use crate::scene::Scene;
-use crate::ui::hint::Hint as _;
+use crate::ui::hint::Hinted as _;
 
 /// What is left free below the list of exports, in points.
 const MARGIN: f32 = 2.0 * GRID;
@@ -148,7 +148,7 @@ impl Exports {
         };
         let done = state.done.kept + state.done.written;
         let left = match seconds_left(state) {
-            Some(seconds) => format!(" · {} left", in_words(seconds)),
+            Some(seconds) => format!(" · {} left", time_in_words(seconds)),
             None if state.is_paused => " · paused".to_owned(),
             None => String::new(),
         };

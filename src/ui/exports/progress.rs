@@ -4,9 +4,9 @@ use egui::{Button, ProgressBar, RichText, Ui};
 
 use super::fields::FIELDS;
 use super::video_maker::{VideoMaker, VideoState};
-use crate::ui::hint::Hint as _;
+use crate::ui::hint::Hinted as _;
 use crate::ui::pictures::Pictures;
-use crate::ui::status::in_words;
+use crate::ui::status::time_in_words;
 use crate::ui::theme::palette;
 use crate::words::counted;
 use crate::worker::ExportState;
@@ -33,7 +33,7 @@ fn progress(state: &ExportState, video: Option<&VideoMaker>) -> (f64, String) {
         (Some(Ok(())), None) => format!("{}, {busy:.1} s", counted(done, "frame")),
         (Some(Err(_)), _) => format!("{done} of {total}, failed"),
         (None, _) if state.is_paused => format!("{done} of {total}, paused"),
-        (None, _) => match seconds_left(state).map(in_words) {
+        (None, _) => match seconds_left(state).map(time_in_words) {
             None => format!("{done} of {total}"),
             Some(left) => {
                 let rate = state.done.written as f64 / busy.max(1e-3);
@@ -53,7 +53,7 @@ fn video_progress(video: &VideoMaker) -> (f64, String) {
         VideoState::Waiting => (0.0, counted(total, "frame")),
         VideoState::Making(done) => {
             let share = *done as f64 / total.max(1) as f64;
-            let left = video.seconds_left().map(in_words);
+            let left = video.seconds_left().map(time_in_words);
             let left = left.map_or(String::new(), |left| format!(" · {left} left"));
             (share, format!("{name}: {done} of {total}{left}"))
         }

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::items::BOTH;
 use crate::editor::{Edit, Item, Kind};
-use crate::scene::{ColorPack, FieldValue, Light, Object, Scene, Shape};
+use crate::scene::{ColorPack, Light, Object, PropertyValue, Scene, Shape};
 use crate::ui::rows::is_channel;
 
 /// A point of something that a change moves.
@@ -253,13 +253,13 @@ pub fn values(shape: &Shape) -> Vec<(&'static str, DVec3)> {
     values
 }
 
-fn value_of(value: &FieldValue) -> DVec3 {
+fn value_of(value: &PropertyValue) -> DVec3 {
     match value {
-        FieldValue::Point(vector)
-        | FieldValue::Direction(vector)
-        | FieldValue::Angles(vector)
-        | FieldValue::Factors(vector) => **vector,
-        FieldValue::Length(number) | FieldValue::Angle(number) => DVec3::splat(**number),
+        PropertyValue::Point(vector)
+        | PropertyValue::Direction(vector)
+        | PropertyValue::Angles(vector)
+        | PropertyValue::Factors(vector) => **vector,
+        PropertyValue::Length(number) | PropertyValue::Angle(number) => DVec3::splat(**number),
     }
 }
 
@@ -275,11 +275,11 @@ fn take_changes(shape: &mut Shape, old: &Shape, new: &Shape) {
             return;
         };
         match field.value {
-            FieldValue::Point(own)
-            | FieldValue::Direction(own)
-            | FieldValue::Angles(own)
-            | FieldValue::Factors(own) => *own = changed(*own, old, new),
-            FieldValue::Length(own) | FieldValue::Angle(own) => {
+            PropertyValue::Point(own)
+            | PropertyValue::Direction(own)
+            | PropertyValue::Angles(own)
+            | PropertyValue::Factors(own) => *own = changed(*own, old, new),
+            PropertyValue::Length(own) | PropertyValue::Angle(own) => {
                 *own = changed(DVec3::splat(*own), old, new).x;
             }
         }

@@ -7,11 +7,11 @@ use glam::DVec3;
 use super::title::title_field;
 use crate::editor::{Edit, Item, marker_radius};
 use crate::scene::{
-    self, ColorPack, FieldValue, Light, LightObj, MAX_COORDINATE, MAX_EXPONENT, MAX_FACTOR,
-    MOST_SEPARATE, Object, Scene, Shape, default_intensity,
+    self, ColorPack, Light, LightObj, MAX_COORDINATE, MAX_EXPONENT, MAX_FACTOR, MOST_SEPARATE,
+    Object, PropertyValue, Scene, Shape, default_intensity,
 };
 use crate::ui::commands::Command;
-use crate::ui::hint::Hint as _;
+use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, color_names, coordinate, fraction};
@@ -220,15 +220,15 @@ fn count_users(ui: &Ui, scene: &Scene, name: &str) -> usize {
 }
 
 fn shape_rows(rows: &mut Rows, shape: &mut Shape) {
-    shape.fields(&mut |scene::Field { name, hint, value }| match value {
-        FieldValue::Point(point) => rows.vector(&coordinate(name, hint), DVec3::ZERO, point),
-        FieldValue::Direction(direction) => {
+    shape.fields(&mut |scene::Property { name, hint, value }| match value {
+        PropertyValue::Point(point) => rows.vector(&coordinate(name, hint), DVec3::ZERO, point),
+        PropertyValue::Direction(direction) => {
             rows.vector(&coordinate(name, hint), DVec3::Y, direction);
         }
-        FieldValue::Length(length) => rows.number(&self::length(name, hint, 50.0), length),
-        FieldValue::Angles(angles) => rows.vector(&angle(name, hint), DVec3::ZERO, angles),
-        FieldValue::Angle(angle) => rows.number(&half_turn(name, hint), angle),
-        FieldValue::Factors(factors) => rows.vector(&factor(name, hint), DVec3::ONE, factors),
+        PropertyValue::Length(length) => rows.number(&self::length(name, hint, 50.0), length),
+        PropertyValue::Angles(angles) => rows.vector(&angle(name, hint), DVec3::ZERO, angles),
+        PropertyValue::Angle(angle) => rows.number(&half_turn(name, hint), angle),
+        PropertyValue::Factors(factors) => rows.vector(&factor(name, hint), DVec3::ONE, factors),
     });
 }
 

@@ -12,7 +12,7 @@ use crate::scene::{
     Shape, Target, Value, format_number,
 };
 use crate::ui::commands::Command;
-use crate::ui::hint::Hint as _;
+use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, Rows, coordinate, fraction};
@@ -305,7 +305,9 @@ pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[Keyed], out: &mut UiReq
         ui.weak("Keys");
         for (name, targets) in values {
             let tracks = targets.iter().filter_map(|target| places.get(target));
-            let count = tracks.map(|place| animation.tracks[*place].keys.len()).max();
+            let count = tracks
+                .map(|place| animation.tracks[*place].keys.len())
+                .max();
             let there: Keys = targets.iter().filter_map(key_of).collect();
             let has_key = there.len() == targets.len();
             let count = count.map_or(String::new(), |count| format!(" ({count})"));

@@ -11,7 +11,7 @@ use super::title::{name_field, tell_different, title, title_field};
 use crate::editor::{Action, Edit, Editor, Item, Kind};
 use crate::scene::{ColorPack, Light, Object, Scene};
 use crate::ui::commands::Command;
-use crate::ui::hint::Hint as _;
+use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
 use crate::ui::obstacles::is_enabled;
 use crate::ui::requests::UiRequests;

@@ -7,7 +7,7 @@ use egui::{CollapsingHeader, Id, RichText, Ui};
 use crate::editor::Editor;
 use crate::lab::Choice;
 use crate::plan::{Need, RenderRequest, needs};
-use crate::ui::hint::Hint as _;
+use crate::ui::hint::Hinted as _;
 use crate::ui::theme::GRID;
 
 /// The lines of the plan, made when the section is opened and on every edit while it is.

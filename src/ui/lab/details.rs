@@ -11,7 +11,7 @@ use crate::editor::{Edit, Editor};
 use crate::lab::{Candidate, Family, account};
 use crate::plan::Model;
 use crate::scene::Render;
-use crate::ui::hint::Hint as _;
+use crate::ui::hint::Hinted as _;
 
 /// Whether the scene can be made to be traced in a way, what the button for that says, and its hint.
 fn adoption(candidate: &Candidate, is_used: bool) -> (bool, &'static str, &'static str) {

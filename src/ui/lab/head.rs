@@ -9,7 +9,7 @@ use super::dots::{CostAxis, ErrorAxis};
 use super::panel::{Lab, LabRequest, Tab};
 use crate::editor::Editor;
 use crate::lab::{cheapest_within, closest_within, costs_of_choices};
-use crate::ui::hint::Hint as _;
+use crate::ui::hint::Hinted as _;
 
 /// Something to choose, what it is called, and what that means.
 type Choice<T> = (T, &'static str, &'static str);

@@ -6,7 +6,7 @@ use super::super::theme::{GRID, ROW, palette};
 use super::heat;
 use crate::lab::stability::{Map, maps};
 use crate::scene::Scene;
-use crate::ui::hint::Hint as _;
+use crate::ui::hint::Hinted as _;
 use crate::worker::Background;
 
 /// How many times more tries than for a first look: a second of computing.

@@ -5,7 +5,7 @@ use egui_material_icons::MaterialIcon;
 
 use crate::editor::{Edit, Item, Kind};
 use crate::scene::Scene;
-use crate::ui::hint::Hint as _;
+use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
 use crate::ui::inspector::name_field;
 use crate::ui::prompts::select_letters;

@@ -7,7 +7,7 @@ use super::scale::Scale;
 use crate::animate::{CameraChange, CameraPath, motion_between};
 use crate::editor::Editor;
 use crate::scene::{Animation, Camera, Interpolation, Key, SAME_TIME};
-use crate::ui::hint::Hint as _;
+use crate::ui::hint::Hinted as _;
 use crate::ui::theme::{GRAPH, palette};
 use crate::words::counted;
 

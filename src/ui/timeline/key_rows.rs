@@ -10,7 +10,7 @@ use super::scale::Scale;
 use super::strip::{KEY, band, diamond, label};
 use crate::editor::{Action, Edit, Editor, Selection};
 use crate::scene::{Animation, Interpolation, Key, KeyPlace, Keys};
-use crate::ui::hint::Hint as _;
+use crate::ui::hint::Hinted as _;
 use crate::ui::inspector::told_of_replaced;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, TRACK, palette};

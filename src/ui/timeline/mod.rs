@@ -34,7 +34,7 @@ use super::theme::{GRID, TRACK_LABEL};
 use crate::animate::paused_seconds;
 use crate::editor::Editor;
 use crate::scene::Animation;
-use crate::ui::hint::Hint as _;
+use crate::ui::hint::Hinted as _;
 
 /// Least time that the line shows, in seconds.
 const LEAST: f64 = 4.0;

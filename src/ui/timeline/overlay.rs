@@ -10,7 +10,7 @@ use crate::editor::{Action, Edit, Editor};
 use crate::scene::{Camera, KeyPlace, Keys, Projection};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{Palette, in_picture};
-use crate::ui::tools::Lens;
+use crate::ui::tools::Screen;
 use crate::worker::Question;
 
 /// Most ticks that are drawn.
@@ -54,20 +54,20 @@ impl Overlay {
             self.dragged = None;
             return;
         }
-        let Some(lens) = Lens::new(&editor.shown().camera, view) else {
+        let Some(screen) = Screen::new(&editor.shown().camera, view) else {
             return;
         };
         self.update(editor, out);
         let painter = ui.painter().with_clip_rect(view);
         let colors = in_picture();
         let thin = Stroke::new(1.0, colors.text.gamma_multiply(0.6));
-        let recorded = self.recorded.iter().map(|&point| lens.place(point));
+        let recorded = self.recorded.iter().map(|&point| screen.place(point));
         for pair in recorded.collect::<Vec<_>>().windows(2) {
             if let (Some(from), Some(to)) = (pair[0], pair[1]) {
                 painter.line_segment([from, to], thin);
             }
         }
-        self.draw_way(&painter, &lens, &colors);
+        self.draw_way(&painter, &screen, &colors);
         let extent = self.extent();
         let size = extent * CAMERA_SHARE;
         let selected = editor.selection().keys();
@@ -81,14 +81,14 @@ impl Overlay {
             let color = if is_on {
                 colors.accent
             } else {
-                let fade = fade(&lens, extent, key.value.position);
+                let fade = fade(&screen, extent, key.value.position);
                 colors.curve.gamma_multiply(fade)
             };
-            let eye = lens.place(key.value.position);
+            let eye = screen.place(key.value.position);
             let is_apart = |eye: Pos2| drawn.iter().all(|other| other.distance(eye) > APART);
             if is_selected || eye.is_some_and(is_apart) {
                 drawn.extend(eye);
-                draw_camera(&painter, &lens, &key.value, size, color);
+                draw_camera(&painter, &screen, &key.value, size, color);
             } else if let Some(eye) = eye {
                 painter.circle_filled(eye, EYE, color);
             }
@@ -96,11 +96,11 @@ impl Overlay {
             let is_first = eye.is_some_and(|eye| taken.insert(cell(eye)));
             let is_held = self.dragged.is_some_and(|(held, _)| held == place);
             if is_first || is_selected || is_held {
-                self.handle(ui, editor, &lens, place, out);
+                self.handle(ui, editor, &screen, place, out);
             }
         }
         if let Some(shot) = editor.path_of_camera().at(editor.shown_time()) {
-            draw_camera(&painter, &lens, &shot, size * 1.6, colors.accent);
+            draw_camera(&painter, &screen, &shot, size * 1.6, colors.accent);
         }
     }
 
@@ -144,11 +144,11 @@ impl Overlay {
         }
     }
 
-    fn draw_way(&self, painter: &Painter, lens: &Lens, colors: &Palette) {
+    fn draw_way(&self, painter: &Painter, screen: &Screen, colors: &Palette) {
         let places: Vec<(Option<Pos2>, bool)> = self
             .ticks
             .iter()
-            .map(|&(point, is_clear)| (lens.place(point), is_clear))
+            .map(|&(point, is_clear)| (screen.place(point), is_clear))
             .collect();
         let share = |is_clear: bool| if is_clear { 1.0 } else { HIDDEN };
         let shade = |is_clear: bool| colors.curve.gamma_multiply(share(is_clear));
@@ -189,18 +189,18 @@ impl Overlay {
         &mut self,
         ui: &Ui,
         editor: &Editor,
-        lens: &Lens,
+        screen: &Screen,
         place: usize,
         out: &mut UiRequests,
     ) {
         let animation = &editor.scene().animation;
         let position = animation.keys[place].value.position;
-        let Some(at) = lens.place(position) else {
+        let Some(at) = screen.place(position) else {
             return;
         };
         // One that is dragged out of the picture may be brought back.
         let is_held = self.dragged.is_some_and(|(held, _)| held == place);
-        if !is_held && !lens.view.contains(at) {
+        if !is_held && !screen.view.contains(at) {
             return;
         }
         let near = Rect::from_center_size(at, vec2(2.0, 2.0) * REACH);
@@ -213,7 +213,7 @@ impl Overlay {
             out.select(own.clone());
         }
         if response.drag_started_by(egui::PointerButton::Primary) {
-            let (origin, direction) = lens.ray(at);
+            let (origin, direction) = screen.ray(at);
             self.dragged = Some((place, (position - origin).dot(direction)));
             out.select(own.clone());
         }
@@ -229,9 +229,9 @@ impl Overlay {
             return;
         };
         // As deep in the view as it was: along the ray by as much more as that leans.
-        let (_, straight) = lens.ray(lens.view.center());
-        let (_, before) = lens.ray(at);
-        let (origin, direction) = lens.ray(pointer);
+        let (_, straight) = screen.ray(screen.view.center());
+        let (_, before) = screen.ray(at);
+        let (origin, direction) = screen.ray(pointer);
         let depth = depth * before.dot(straight) / direction.dot(straight);
         self.dragged = Some((dragged, depth));
         let to = origin + direction * depth;
@@ -241,14 +241,14 @@ impl Overlay {
 }
 
 /// How strongly a camera is drawn: what is near to the eye covers much of the picture and says little.
-fn fade(lens: &Lens, extent: f64, position: DVec3) -> f32 {
-    let (eye, _) = lens.ray(lens.view.center());
+fn fade(screen: &Screen, extent: f64, position: DVec3) -> f32 {
+    let (eye, _) = screen.ray(screen.view.center());
     let far = extent * FADING;
     (eye.distance(position) / far).clamp(f64::from(HIDDEN), 1.0) as f32
 }
 
 /// A pyramid from the eye to the frame of the picture, or the frame alone where rays run side by side.
-fn draw_camera(painter: &Painter, lens: &Lens, camera: &Camera, size: f64, color: Color32) {
+fn draw_camera(painter: &Painter, screen: &Screen, camera: &Camera, size: f64, color: Color32) {
     let Some(framing) = camera.framing() else {
         return;
     };
@@ -261,13 +261,13 @@ fn draw_camera(painter: &Painter, lens: &Lens, camera: &Camera, size: f64, color
         let places: Option<Vec<Pos2>> = corners
             .map(|at| {
                 let (origin, direction) = framing.ray(at);
-                lens.place(origin + direction * depth)
+                screen.place(origin + direction * depth)
             })
             .collect();
         places.unwrap_or_default()
     };
     let stroke = Stroke::new(1.0, color);
-    let (eye, mut corners) = (lens.place(camera.position), frame(size));
+    let (eye, mut corners) = (screen.place(camera.position), frame(size));
     let width = Rect::from_points(&corners).size().max_elem();
     if width > LARGEST {
         corners = frame(size * f64::from(LARGEST / width));

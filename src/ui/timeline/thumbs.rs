@@ -10,7 +10,7 @@ use crate::editor::Editor;
 use crate::image::Image;
 use crate::scene::{Animation, Scene};
 use crate::ui::commands::{Command, with_key};
-use crate::ui::hint::Hint as _;
+use crate::ui::hint::Hinted as _;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, THUMB, palette};
 use crate::ui::upload::{paint, whole};

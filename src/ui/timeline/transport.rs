@@ -7,7 +7,7 @@ use crate::animate::{longest_flight, stretched};
 use crate::editor::{Edit, Editor, Repeat, Time};
 use crate::scene::{Animation, FRAME_RATES, KeyPlace, Keys};
 use crate::ui::commands::{Command, with_key};
-use crate::ui::hint::Hint as _;
+use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
 use crate::ui::number::{Field, lone};
 use crate::ui::requests::UiRequests;

@@ -5,8 +5,8 @@ use glam::DVec3;
 
 use super::gizmo::{Handle, label};
 use super::grip::{Grip, Pull};
-use super::lens::Lens;
 use super::navigate::{panned, turn};
+use super::screen::Screen;
 use super::sight::{Sight, ends, item_of};
 use super::subject::Subject;
 use crate::editor::{Action, Edit, Editor, Selection};
@@ -43,7 +43,7 @@ pub struct View<'a> {
     /// Where the picture is.
     pub place: Place,
     /// Between it and the scene.
-    pub lens: Lens,
+    pub screen: Screen,
     /// What is drawn over it.
     pub painter: Painter,
 }
@@ -62,11 +62,11 @@ impl View<'_> {
             Some(Thing::Light(index)) => scene.lights.get(index).map(|light| light.position),
             _ => scene.middle(),
         };
-        let on_shape = shape.and_then(|shape| self.lens.on_shape(at, shape));
-        let forward = self.lens.forward();
-        let level = || self.lens.on_plane(at, middle?, forward);
+        let on_shape = shape.and_then(|shape| self.screen.on_shape(at, shape));
+        let forward = self.screen.forward();
+        let level = || self.screen.on_plane(at, middle?, forward);
         on_shape.or_else(level).unwrap_or_else(|| {
-            let (origin, direction) = self.lens.ray(at);
+            let (origin, direction) = self.screen.ray(at);
             origin + direction * SOMEWHERE
         })
     }
@@ -77,7 +77,7 @@ impl View<'_> {
         let selected = Subject::of(self.editor.selection(), self.editor.shown());
         let has_end = selected.iter().all(|subject| subject.bounds().is_some());
         let middle = Subject::middle_of(&selected).filter(|middle| {
-            let place = self.lens.place(*middle);
+            let place = self.screen.place(*middle);
             has_end && place.is_some_and(|place| self.place.rect.contains(place))
         });
         middle.unwrap_or_else(|| self.point_at(sight, at))
@@ -110,7 +110,7 @@ impl Drag {
         let editor = view.editor;
         if let Some(handle) = handle {
             let before = Subject::of(editor.selection(), editor.shown());
-            return Grip::new(&view.lens, before, handle, at)
+            return Grip::new(&view.screen, before, handle, at)
                 .map(|grip| Self::Grip(Box::new(grip)));
         }
         if editor.looks_through() || editor.timeline().is_playing {
@@ -180,7 +180,7 @@ impl Drag {
                 out.actions.push(Action::Orbit(*about, turn(moved)));
             }
             Self::Pan(point) if moved != egui::Vec2::ZERO => {
-                let camera = panned(&view.editor.shown().camera, &view.lens, *point, moved);
+                let camera = panned(&view.editor.shown().camera, &view.screen, *point, moved);
                 out.edit(Edit::Camera(camera, "move"));
             }
             Self::Orbit(_) | Self::Pan(_) | Self::Undecided(..) => {}
@@ -204,7 +204,7 @@ impl Drag {
                     is_level: modifiers.shift,
                 };
                 if response.dragged() {
-                    let (edit, words) = grip.pull(&view.lens, pull).unwrap_or_default();
+                    let (edit, words) = grip.pull(&view.screen, pull).unwrap_or_default();
                     out.actions.extend(edit.map(Action::Edit));
                     grip.label(&view.painter, at, &words);
                 }

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use egui::{Color32, FontId, Painter, Pos2, Stroke, StrokeKind, TextStyle, vec2};
 use glam::DVec3;
 
-use super::lens::Lens;
+use super::screen::Screen;
 use super::subject::Subject;
 use crate::editor::{Editor, Selection};
 use crate::scene::{Scene, Shape};
@@ -104,39 +104,40 @@ fn is_inside(corners: &[Pos2], at: Pos2) -> bool {
 }
 
 /// A circle on the screen around an axis of length 1.
-fn ring(lens: &Lens, middle: DVec3, axis: DVec3, radius: f64) -> Vec<Pos2> {
+fn ring(screen: &Screen, middle: DVec3, axis: DVec3, radius: f64) -> Vec<Pos2> {
     let (u, v) = axis.any_orthonormal_pair();
     let at = |n: usize| {
         let (sine, cosine) = (n as f64 / CORNERS as f64 * TAU).sin_cos();
-        lens.place(middle + (u * cosine + v * sine) * radius)
+        screen.place(middle + (u * cosine + v * sine) * radius)
     };
     let all: Option<Vec<Pos2>> = (0..CORNERS).map(at).collect();
     all.unwrap_or_default()
 }
 
 /// The rim of a ball as it is seen.
-fn rim(lens: &Lens, center: DVec3, radius: f64) -> Vec<Pos2> {
-    let Some(at) = lens.place(center) else {
+fn rim(screen: &Screen, center: DVec3, radius: f64) -> Vec<Pos2> {
+    let Some(at) = screen.place(center) else {
         return Vec::new();
     };
-    let (origin, axis) = lens.ray(at);
+    let (origin, axis) = screen.ray(at);
     let arm = center - origin;
     let distance = arm.length();
     // In parallel projection rays start anywhere along the axis: the rim is that around the middle.
-    let is_parallel = axis.dot(lens.forward()) > 1.0 - 1e-12 && lens.ray(lens.view.min).1 == axis;
+    let is_parallel =
+        axis.dot(screen.forward()) > 1.0 - 1e-12 && screen.ray(screen.view.min).1 == axis;
     if is_parallel {
-        return ring(lens, center, axis, radius);
+        return ring(screen, center, axis, radius);
     }
     if distance <= radius {
         return Vec::new();
     }
     let nearer = radius * radius / distance;
     let seen = radius * (1.0 - (radius / distance).powi(2)).sqrt();
-    ring(lens, center - axis * nearer, axis, seen)
+    ring(screen, center - axis * nearer, axis, seen)
 }
 
 /// Everything that can be grabbed at what is selected.
-fn handles(lens: &Lens, selected: &Selection, scene: &Scene) -> Vec<Drawn> {
+fn handles(screen: &Screen, selected: &Selection, scene: &Scene) -> Vec<Drawn> {
     let Some(middle) = selected.pivot(scene) else {
         return Vec::new();
     };
@@ -144,19 +145,19 @@ fn handles(lens: &Lens, selected: &Selection, scene: &Scene) -> Vec<Drawn> {
     let only = selected
         .only_placed()
         .and_then(|item| Subject::new(scene, item));
-    let Some(place) = lens.place(middle) else {
+    let Some(place) = screen.place(middle) else {
         return Vec::new();
     };
-    let length = lens.unit_at(middle) * LENGTH;
+    let length = screen.unit_at(middle) * LENGTH;
     let mut drawn = Vec::new();
     let mut add = |handle: Handle, line: Option<Vec<Pos2>>| {
         if let Some(line) = line.filter(|line| !line.is_empty()) {
             drawn.push(Drawn { handle, line });
         }
     };
-    let at = |point: DVec3| lens.place(point);
+    let at = |point: DVec3| screen.place(point);
     if let Some(subject) = &only {
-        own_handles(lens, subject, length, &mut add);
+        own_handles(screen, subject, length, &mut add);
     }
     for (axis, (direction, _)) in AXES.iter().enumerate() {
         let line = at(middle + *direction * length * GAP).zip(at(middle + *direction * length));
@@ -182,7 +183,7 @@ fn handles(lens: &Lens, selected: &Selection, scene: &Scene) -> Vec<Drawn> {
             square.filter(|line| !is_edge_on(line)),
         );
         if only.as_ref().is_none_or(is_mesh) {
-            let line = ring(lens, middle, *direction, length * RING);
+            let line = ring(screen, middle, *direction, length * RING);
             add(Handle::Turn(axis), Some(line));
         }
     }
@@ -214,35 +215,35 @@ fn is_mesh(subject: &Subject) -> bool {
 
 /// The handles that only this kind of thing has.
 fn own_handles(
-    lens: &Lens,
+    screen: &Screen,
     subject: &Subject,
     length: f64,
     add: &mut impl FnMut(Handle, Option<Vec<Pos2>>),
 ) {
     let normal = |from: DVec3, normal: DVec3| {
         let tip = from + normal.normalize_or_zero() * length * RING;
-        Some(vec![lens.place(from)?, lens.place(tip)?])
+        Some(vec![screen.place(from)?, screen.place(tip)?])
     };
     match subject {
         Subject::Light(_, light) => {
             let radius = light.marker.as_ref().map(|marker| marker.radius);
-            let line = radius.map(|radius| rim(lens, light.position, radius));
+            let line = radius.map(|radius| rim(screen, light.position, radius));
             add(Handle::Radius, line);
         }
         Subject::Object(_, object) => match &object.shape {
             Shape::Sphere(ball) => {
-                add(Handle::Radius, Some(rim(lens, ball.center, ball.radius)));
+                add(Handle::Radius, Some(rim(screen, ball.center, ball.radius)));
             }
             Shape::Disc(disc) => {
                 let axis = disc.normal.normalize_or(DVec3::Y);
-                let rim = ring(lens, disc.center, axis, disc.radius);
+                let rim = ring(screen, disc.center, axis, disc.radius);
                 add(Handle::Radius, Some(rim));
                 add(Handle::Normal, normal(disc.center, disc.normal));
             }
             Shape::Plane(plane) => add(Handle::Normal, normal(plane.point, plane.normal)),
             Shape::Triangle(triangle) => {
                 for (corner, point) in triangle.corners().into_iter().enumerate() {
-                    let dot = lens.place(point).map(|dot| vec![dot]);
+                    let dot = screen.place(point).map(|dot| vec![dot]);
                     add(Handle::Corner(corner), dot);
                 }
             }
@@ -252,8 +253,8 @@ fn own_handles(
 }
 
 /// The handle under the pointer.
-pub fn handle_at(lens: &Lens, selected: &Selection, scene: &Scene, at: Pos2) -> Option<Handle> {
-    let drawn = handles(lens, selected, scene);
+pub fn handle_at(screen: &Screen, selected: &Selection, scene: &Scene, at: Pos2) -> Option<Handle> {
+    let drawn = handles(screen, selected, scene);
     let near = drawn.iter().map(|drawn| (drawn.distance(at), drawn.handle));
     let near = near.filter(|(distance, _)| *distance <= REACH);
     near.min_by(|a, b| a.0.total_cmp(&b.0))
@@ -261,10 +262,10 @@ pub fn handle_at(lens: &Lens, selected: &Selection, scene: &Scene, at: Pos2) -> 
 }
 
 /// Draws the handles; the one that is meant is bright.
-pub fn show(painter: &Painter, lens: &Lens, editor: &Editor, meant: Option<Handle>) {
+pub fn show(painter: &Painter, screen: &Screen, editor: &Editor, meant: Option<Handle>) {
     let colors = palette(painter.ctx());
     let (selected, scene) = (editor.selection(), editor.shown());
-    for Drawn { handle, line } in handles(lens, selected, scene) {
+    for Drawn { handle, line } in handles(screen, selected, scene) {
         let is_meant = meant == Some(handle);
         let color = match handle {
             _ if is_meant => colors.accent,

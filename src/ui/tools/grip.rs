@@ -4,7 +4,7 @@ use egui::{Painter, Pos2};
 use glam::{DQuat, DVec3};
 
 use super::gizmo::{AXES, Handle, LENGTH, RING, label};
-use super::lens::Lens;
+use super::screen::Screen;
 use super::subject::{Subject, together};
 use crate::editor::Edit;
 use crate::scene::{Disc, Plane, Shape, format_number};
@@ -42,7 +42,7 @@ pub struct Pull {
 
 impl Grip {
     /// Grabs a handle of these things at a place on the screen.
-    pub fn new(lens: &Lens, before: Vec<Subject>, handle: Handle, at: Pos2) -> Option<Self> {
+    pub fn new(screen: &Screen, before: Vec<Subject>, handle: Handle, at: Pos2) -> Option<Self> {
         let middle = Subject::pivot_of(&before)?;
         let mut grip = Self {
             handle,
@@ -51,7 +51,7 @@ impl Grip {
             from: (at, middle),
             typed: String::new(),
         };
-        grip.from.1 = grip.pointed_at(lens, at)?;
+        grip.from.1 = grip.pointed_at(screen, at)?;
         Some(grip)
     }
 
@@ -80,18 +80,18 @@ impl Grip {
     }
 
     /// The point that a place on the screen means to the handle.
-    fn pointed_at(&self, lens: &Lens, at: Pos2) -> Option<DVec3> {
+    fn pointed_at(&self, screen: &Screen, at: Pos2) -> Option<DVec3> {
         let held = self.from.1;
         match self.handle {
             Handle::Along(axis) => {
                 let direction = AXES[axis].0;
-                Some(self.middle + direction * lens.along(at, self.middle, direction)?)
+                Some(self.middle + direction * screen.along(at, self.middle, direction)?)
             }
             Handle::Across(axis) | Handle::Turn(axis) => {
-                lens.on_plane(at, self.middle, AXES[axis].0)
+                screen.on_plane(at, self.middle, AXES[axis].0)
             }
-            Handle::Free | Handle::Normal => lens.on_plane(at, held, lens.forward()),
-            Handle::Corner(corner) => lens.on_plane(at, self.corner(corner)?, lens.forward()),
+            Handle::Free | Handle::Normal => screen.on_plane(at, held, screen.forward()),
+            Handle::Corner(corner) => screen.on_plane(at, self.corner(corner)?, screen.forward()),
             Handle::Radius | Handle::Size => Some(held),
         }
     }
@@ -112,14 +112,14 @@ impl Grip {
     }
 
     /// What a pull comes to: the change, and by how much in words. `None` where the pointer has no meaning.
-    pub fn pull(&self, lens: &Lens, pull: Pull) -> Option<(Option<Edit>, String)> {
-        let unit = lens.unit_at(self.middle);
+    pub fn pull(&self, screen: &Screen, pull: Pull) -> Option<(Option<Edit>, String)> {
+        let unit = screen.unit_at(self.middle);
         let round = |value: f64| rounded(value, unit, pull.snaps);
         let typed = read_number(&self.typed);
         match self.handle {
             Handle::Along(axis) => {
                 let (direction, name) = AXES[axis];
-                let to = self.pointed_at(lens, pull.at)?;
+                let to = self.pointed_at(screen, pull.at)?;
                 let mut place = self.place();
                 let start = place[axis];
                 let pulled = (to - self.from.1).dot(direction);
@@ -129,9 +129,9 @@ impl Grip {
             }
             Handle::Across(_) | Handle::Free => {
                 let to = if pull.is_level && self.handle == Handle::Free {
-                    lens.on_plane(pull.at, self.from.1, DVec3::Y)?
+                    screen.on_plane(pull.at, self.from.1, DVec3::Y)?
                 } else {
-                    self.pointed_at(lens, pull.at)?
+                    self.pointed_at(screen, pull.at)?
                 };
                 let by = to - self.from.1;
                 let fixed = |axis: usize| match self.handle {
@@ -153,7 +153,7 @@ impl Grip {
             }
             Handle::Radius => {
                 let typed = typed.filter(|radius| *radius > 0.0);
-                let radius = typed.map_or_else(|| self.radius(lens, pull.at).map(round), Some)?;
+                let radius = typed.map_or_else(|| self.radius(screen, pull.at).map(round), Some)?;
                 let subject = self.before.first()?;
                 let edit = (radius > 0.0)
                     .then(|| subject.with_radius(radius))
@@ -162,11 +162,11 @@ impl Grip {
             }
             Handle::Size => {
                 let typed = typed.filter(|times| *times > 0.0);
-                let times = typed.map_or_else(|| self.times(lens, pull), Some)?;
+                let times = typed.map_or_else(|| self.times(screen, pull), Some)?;
                 Some((self.scale_all(times), format!("× {}", plain(times))))
             }
             Handle::Corner(corner) => {
-                let to = self.pointed_at(lens, pull.at)?;
+                let to = self.pointed_at(screen, pull.at)?;
                 let to = DVec3::new(round(to.x), round(to.y), round(to.z));
                 let subject = self.before.first()?;
                 let Shape::Triangle(mut triangle) = subject.shape()?.clone() else {
@@ -176,9 +176,9 @@ impl Grip {
                 let words = [to.x, to.y, to.z].map(plain).join(", ");
                 Some((Some(subject.reshaped(triangle.into(), "corner")), words))
             }
-            Handle::Normal => self.face(lens, pull),
+            Handle::Normal => self.face(screen, pull),
             Handle::Turn(axis) => {
-                let degrees = typed.map_or_else(|| self.degrees(lens, axis, pull), Some)?;
+                let degrees = typed.map_or_else(|| self.degrees(screen, axis, pull), Some)?;
                 let by = DQuat::from_axis_angle(AXES[axis].0, degrees.to_radians());
                 let edits = self
                     .before
@@ -211,25 +211,25 @@ impl Grip {
     }
 
     /// How many times as far from the middle a place on the screen is as where it was grabbed.
-    fn times(&self, lens: &Lens, pull: Pull) -> Option<f64> {
-        let middle = lens.place(self.middle)?;
+    fn times(&self, screen: &Screen, pull: Pull) -> Option<f64> {
+        let middle = screen.place(self.middle)?;
         let times = (pull.at - middle).length() / (self.from.0 - middle).length().max(1.0);
         let parts = if pull.snaps { 10.0 } else { 100.0 };
         Some((f64::from(times) * parts).round().max(1.0) / parts)
     }
 
     /// How far the ray through a place passes from the middle; on a disc, where it meets it.
-    fn radius(&self, lens: &Lens, at: Pos2) -> Option<f64> {
+    fn radius(&self, screen: &Screen, at: Pos2) -> Option<f64> {
         if let Some(Shape::Disc(disc)) = self.before.first()?.shape() {
-            let to = lens.on_plane(at, disc.center, disc.normal)?;
+            let to = screen.on_plane(at, disc.center, disc.normal)?;
             return Some((to - disc.center).length());
         }
-        let (origin, direction) = lens.ray(at);
+        let (origin, direction) = screen.ray(at);
         Some((self.middle - origin).cross(direction).length())
     }
 
-    fn degrees(&self, lens: &Lens, axis: usize, pull: Pull) -> Option<f64> {
-        let to = self.pointed_at(lens, pull.at)? - self.middle;
+    fn degrees(&self, screen: &Screen, axis: usize, pull: Pull) -> Option<f64> {
+        let to = self.pointed_at(screen, pull.at)? - self.middle;
         let from = self.from.1 - self.middle;
         let direction = AXES[axis].0;
         let degrees = direction
@@ -241,7 +241,7 @@ impl Grip {
     }
 
     /// The normal points to where the pointer is on a ball around where it starts.
-    fn face(&self, lens: &Lens, pull: Pull) -> Option<(Option<Edit>, String)> {
+    fn face(&self, screen: &Screen, pull: Pull) -> Option<(Option<Edit>, String)> {
         let subject = self.before.first()?;
         let mut shape = subject.shape()?.clone();
         let (Shape::Plane(Plane { point, normal })
@@ -253,8 +253,8 @@ impl Grip {
         else {
             return None;
         };
-        let length = lens.unit_at(*point) * LENGTH * RING;
-        let (origin, direction) = lens.ray(pull.at);
+        let length = screen.unit_at(*point) * LENGTH * RING;
+        let (origin, direction) = screen.ray(pull.at);
         let arm = *point - origin;
         let along = arm.dot(direction);
         let off = (arm - direction * along).length();

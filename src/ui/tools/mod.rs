@@ -1,6 +1,6 @@
 //! Hands in the picture: a click selects, a drag moves what is grabbed, or the camera around it.
 
-mod lens;
+mod screen;
 
 mod outline;
 
@@ -17,7 +17,7 @@ mod grip;
 mod drag;
 
 pub use gizmo::label;
-pub use lens::Lens;
+pub use screen::Screen;
 
 use egui::{CursorIcon, Modifiers, PointerButton, Popup, Pos2, Rect, Response, Ui};
 use glam::DVec3;
@@ -112,7 +112,7 @@ impl Tools {
         (wheel, is_busy): (f64, bool),
         out: &mut UiRequests,
     ) {
-        let Some(lens) = Lens::new(&editor.shown().camera, place.rect) else {
+        let Some(screen) = Screen::new(&editor.shown().camera, place.rect) else {
             return;
         };
         if self.document != editor.documents() {
@@ -123,7 +123,7 @@ impl Tools {
         let view = View {
             editor,
             place,
-            lens,
+            screen,
             painter: ui.painter().with_clip_rect(place.rect),
         };
         // What plays would set a key in every frame.
@@ -131,11 +131,11 @@ impl Tools {
         let hovered = response.hover_pos().filter(|_| self.drag.is_none());
         let meant = hovered
             .filter(|_| has_gizmo)
-            .and_then(|at| handle_at(&view.lens, editor.selection(), editor.shown(), at));
+            .and_then(|at| handle_at(&view.screen, editor.selection(), editor.shown(), at));
         self.start(ui, &view, response, has_gizmo, out);
         let show_gizmo = |meant| {
             if has_gizmo {
-                gizmo::show(&view.painter, &view.lens, editor, meant);
+                gizmo::show(&view.painter, &view.screen, editor, meant);
             }
         };
         if let Some(drag) = &mut self.drag {
@@ -215,7 +215,7 @@ impl Tools {
             if let Some(at) = self.menu_at
                 && ui.button("Why this colour").clicked()
             {
-                let (origin, direction) = view.lens.ray(at);
+                let (origin, direction) = view.screen.ray(at);
                 out.commands.push(Command::Why(origin, direction));
             }
             ui.separator();
@@ -253,7 +253,12 @@ impl Tools {
             return;
         };
         if response.drag_started_by(PointerButton::Primary) {
-            let handle = handle_at(&view.lens, view.editor.selection(), view.editor.shown(), at);
+            let handle = handle_at(
+                &view.screen,
+                view.editor.selection(),
+                view.editor.shown(),
+                at,
+            );
             let handle = handle.filter(|_| has_gizmo);
             let is_shifted = ui.input(|input| input.modifiers.shift);
             out.actions.push(Action::BeginGesture);

@@ -3,7 +3,7 @@
 use egui::Vec2;
 use glam::DVec3;
 
-use super::lens::Lens;
+use super::screen::Screen;
 use crate::scene::{Camera, Projection};
 
 /// Radians per point of mouse movement.
@@ -19,10 +19,10 @@ pub fn turn(moved: Vec2) -> (f64, f64) {
 }
 
 /// The camera after a movement of the mouse that a point is to follow.
-pub fn panned(camera: &Camera, lens: &Lens, point: DVec3, moved: Vec2) -> Camera {
+pub fn panned(camera: &Camera, screen: &Screen, point: DVec3, moved: Vec2) -> Camera {
     let mut next = camera.clone();
     if let Some(basis) = camera.basis() {
-        let unit = lens.unit_at(point);
+        let unit = screen.unit_at(point);
         let (right, up) = (f64::from(moved.x) * unit, f64::from(moved.y) * unit);
         next.position += basis.y_axis * up - basis.x_axis * right;
     }
@@ -86,9 +86,9 @@ mod tests {
     use super::*;
     use egui::{Rect, pos2, vec2};
 
-    fn lens(camera: &Camera) -> Lens {
+    fn screen(camera: &Camera) -> Screen {
         let view = Rect::from_min_size(pos2(0.0, 0.0), vec2(800.0, 400.0));
-        Lens::new(camera, view).expect("a basis")
+        Screen::new(camera, view).expect("a basis")
     }
 
     fn cameras() -> [Camera; 2] {
@@ -119,7 +119,7 @@ mod tests {
             }
             for depth in [0.01 * usual, 10.0 * usual] {
                 let seen = projected(&camera, Some(at(depth)), other);
-                let unit = |camera: &Camera| lens(camera).unit_at(at(depth));
+                let unit = |camera: &Camera| screen(camera).unit_at(at(depth));
                 assert_eq!(
                     projected(&camera, Some(at(depth)), camera.projection),
                     camera
@@ -134,12 +134,12 @@ mod tests {
     fn what_is_under_the_pointer_stays_there() {
         for camera in cameras() {
             let point = camera.position + DVec3::new(-60.0, -50.0, -90.0);
-            let before = lens(&camera).place(point).expect("in front");
+            let before = screen(&camera).place(point).expect("in front");
             let near = dollied(&camera, point, 120.0);
-            assert!((lens(&near).place(point).expect("in front") - before).length() < 1e-2);
+            assert!((screen(&near).place(point).expect("in front") - before).length() < 1e-2);
             let moved = vec2(31.0, -12.0);
-            let panned = panned(&camera, &lens(&camera), point, moved);
-            let after = lens(&panned).place(point).expect("in front");
+            let panned = panned(&camera, &screen(&camera), point, moved);
+            let after = screen(&panned).place(point).expect("in front");
             assert!((after - before - moved).length() < 1e-2, "{after} {before}");
         }
     }
@@ -149,11 +149,11 @@ mod tests {
         let corners = (DVec3::new(-10.0, 0.0, -30.0), DVec3::new(20.0, 15.0, 5.0));
         for camera in cameras() {
             for aspect in [2.0, 0.5] {
-                let lens = Lens::new(
+                let screen = Screen::new(
                     &camera.around(aspect, corners),
                     Rect::from_min_size(pos2(0.0, 0.0), vec2(400.0 * aspect as f32, 400.0)),
                 );
-                let lens = lens.expect("a basis");
+                let screen = screen.expect("a basis");
                 for corner in 0..8 {
                     let part = |axis: usize| {
                         if corner >> axis & 1 == 0 {
@@ -162,9 +162,9 @@ mod tests {
                             corners.1[axis]
                         }
                     };
-                    let place = lens.place(DVec3::new(part(0), part(1), part(2)));
+                    let place = screen.place(DVec3::new(part(0), part(1), part(2)));
                     assert!(
-                        lens.view.contains(place.expect("in front")),
+                        screen.view.contains(place.expect("in front")),
                         "{aspect} {place:?}"
                     );
                 }

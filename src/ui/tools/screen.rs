@@ -7,14 +7,14 @@ use crate::scene::{Camera, Framing, Projection, Shape};
 
 /// From the scene to the screen and back.
 #[derive(Clone, Debug)]
-pub struct Lens {
+pub struct Screen {
     framing: Framing,
     camera: Camera,
     /// Where the picture is.
     pub view: Rect,
 }
 
-impl Lens {
+impl Screen {
     /// Of a camera whose picture is at `view`; `None` if it has no basis.
     pub fn new(camera: &Camera, view: Rect) -> Option<Self> {
         Some(Self {
@@ -107,19 +107,19 @@ mod tests {
     use crate::scene::{Plane, Sphere};
     use egui::pos2;
 
-    fn lens(projection: Projection) -> Lens {
+    fn screen(projection: Projection) -> Screen {
         let camera = Camera {
             projection,
             ..Camera::default()
         };
         let view = Rect::from_min_size(pos2(100.0, 50.0), vec2(600.0, 400.0));
-        Lens::new(&camera, view).expect("a basis")
+        Screen::new(&camera, view).expect("a basis")
     }
 
     #[test]
     fn what_is_met_is_seen_where_it_was_pointed_at() {
         for projection in [Projection::Perspective, Projection::Orthographic] {
-            let lens = lens(projection);
+            let screen = screen(projection);
             let at = pos2(380.0, 260.0);
             let shapes = [
                 Shape::Plane(Plane {
@@ -127,16 +127,17 @@ mod tests {
                     normal: DVec3::Y,
                 }),
                 Shape::Sphere(Sphere {
-                    center: lens.ray(at).0 + lens.ray(at).1 * 90.0,
+                    center: screen.ray(at).0 + screen.ray(at).1 * 90.0,
                     radius: 40.0,
                 }),
             ];
             for shape in shapes {
-                let point = lens.on_shape(at, &shape).expect("it is met");
-                let found = lens.place(point).expect("in front");
+                let point = screen.on_shape(at, &shape).expect("it is met");
+                let found = screen.place(point).expect("in front");
                 assert!((found - at).length() < 1e-3, "{projection:?} {found}");
-                let beside = lens
-                    .place(point + lens.forward().any_orthonormal_vector() * lens.unit_at(point));
+                let beside = screen.place(
+                    point + screen.forward().any_orthonormal_vector() * screen.unit_at(point),
+                );
                 let width = (beside.expect("in front") - found).length();
                 assert!((width - 1.0).abs() < 1e-3, "{width}");
             }
@@ -145,10 +146,10 @@ mod tests {
 
     #[test]
     fn along_a_line_is_where_the_pointer_is() {
-        let lens = lens(Projection::Perspective);
+        let screen = screen(Projection::Perspective);
         let (point, direction) = (DVec3::new(60.0, 20.0, -130.0), DVec3::new(0.0, 1.0, 0.0));
-        let at = lens.place(point + direction * 25.0).expect("in front");
-        let along = lens.along(at, point, direction).expect("not along");
+        let at = screen.place(point + direction * 25.0).expect("in front");
+        let along = screen.along(at, point, direction).expect("not along");
         assert!((along - 25.0).abs() < 1e-3, "{along}");
     }
 }
