@@ -297,10 +297,7 @@ mod tests {
                     triangles.map(move |(index, of)| {
                         let thing = primitives.thing_of(first + index) - first;
                         let thing = primitives.triangles[thing].corners;
-                        format!(
-                            "{:?} {} {} {thing:?}",
-                            of.corners, of.thickness, of.has_tips
-                        )
+                        format!("{:?} {} {:?} {thing:?}", of.corners, of.thickness, of.tip)
                     })
                 })
                 .collect();

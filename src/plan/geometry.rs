@@ -15,7 +15,7 @@ use super::parts::things;
 use super::request::RenderRequest;
 use super::solids::faces_of_solids;
 use crate::primitive::{
-    BoundingBox, KINDS, Kind, PackedTriangle, Packing, Primitive, Primitives, Visit,
+    BoundingBox, KINDS, Kind, PackedTriangle, Packing, Primitive, Primitives, Tip, Visit,
     count_corner_users, number_corners,
 };
 use crate::scene::{Accelerator, Coincidence, List, Object, Sampling, Scene, Shape, coincidences};
@@ -419,7 +419,7 @@ pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>, apart: &BTreeSet<u
         let things = things(&parts);
         for (index, (&place, mut triangle)) in group.iter().zip(triangles).enumerate() {
             let thing = things.get(index).copied().flatten();
-            triangle.has_tips |= thing.is_none();
+            triangle.tip = thing.map_or(Tip::Narrow, |_| triangle.tip);
             primitives.triangles[place] = triangle.in_precision();
             found[place] = thing.map(|first| group[first as usize] as u32);
         }

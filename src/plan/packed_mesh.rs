@@ -218,7 +218,7 @@ impl<R: Real> PackedMesh<R> {
                 triangle.turn();
             }
             triangle.thickness = own.thickness.to_f64();
-            triangle.has_tips = own.has_tips;
+            triangle.tip = own.tip;
             Some(triangle)
         });
         let triangles: Vec<PackedTriangle<f64>> = triangles.collect::<Option<_>>()?;
@@ -286,9 +286,9 @@ pub fn measure(
 ) {
     let measures = measures(triangles, faces, bvh, borders);
     let measured = measures.thicknesses.iter().zip(&measures.tips);
-    for (triangle, (&thickness, &has_tips)) in triangles.iter_mut().zip(measured) {
+    for (triangle, (&thickness, &tip)) in triangles.iter_mut().zip(measured) {
         triangle.thickness = triangle.thickness.max(thickness);
-        triangle.has_tips = has_tips;
+        triangle.tip = tip;
     }
     bvh.refit(|number| member(&triangles[number]));
 }

@@ -8,7 +8,7 @@ use super::bvh::{Bvh, Node};
 use super::cast::cast;
 use super::parts::inside_out;
 use super::tips::tips;
-use crate::primitive::PackedTriangle;
+use crate::primitive::{PackedTriangle, Tip};
 use crate::simd::Vec3;
 
 /// Of the faces in a node, one of so many is measured for all of them, and those that look elsewhere.
@@ -65,8 +65,8 @@ struct Faces<'a> {
 pub struct Measures {
     /// For each triangle how thick the mesh is there, at least.
     pub thicknesses: Vec<f64>,
-    /// For each triangle whether it ends in something narrower, see [`tips`].
-    pub tips: Vec<bool>,
+    /// For each triangle where it ends in something narrower, see [`tips`].
+    pub tips: Vec<Tip>,
 }
 
 impl Faces<'_> {

@@ -1,13 +1,15 @@
 //! Where meshes end in something narrower than they are: their borders, and sharp points.
 
-use crate::primitive::PackedTriangle;
+use crate::primitive::{PackedTriangle, Tip, Which};
 use crate::simd::Vec3;
 
 /// Cosine of the angle that all edges of a sharp point make with their middle, at least.
 const SHARP: f64 = 0.75;
-/// Most faces around a sharp point that are looked at one by one: those of a round cone are narrow everywhere, and
-/// hardly differ.
+/// Most faces around a sharp point that are looked at one by one, wherever they are narrow: those of a round cone are
+/// everywhere, and only where they meet is it narrow itself.
 const FEW: u32 = 8;
+/// Around more faces nothing is looked for: each of them would be, by every ray near their point.
+const MOST: u32 = 128;
 
 /// The edges of a point.
 #[derive(Clone, Copy)]
@@ -17,31 +19,56 @@ struct Point {
     axis: Vec3<f64>,
     /// The least cosine of one of them with the axis.
     least: f64,
+    /// The greatest one.
+    greatest: f64,
+}
+
+impl Point {
+    /// What the faces around it have there, as far as they have it as their corner `which`.
+    fn tip(&self, which: Which) -> Tip {
+        if self.least <= SHARP || MOST < self.faces {
+            return Tip::Nowhere;
+        }
+        if self.faces <= FEW {
+            return Tip::Narrow;
+        }
+        // From one side to the other, seen from where that is least.
+        let tangent = (1.0 - self.greatest.powi(2)).max(0.0).sqrt() / self.greatest;
+        Tip::round(which, 2.0 * tangent)
+    }
 }
 
 /// For each triangle whether it has an edge that no other has, or a corner that sticks out: seen from the side it is
-/// narrower than the mesh is thick. `points` numbers the corners, `borders` are the triangles on borders.
+/// narrower there than the mesh is thick. `points` numbers the corners, `borders` are the triangles on borders.
 pub fn tips(
     triangles: &[PackedTriangle<f64>],
     points: &[[u32; 3]],
     borders: impl Iterator<Item = u32>,
-) -> Vec<bool> {
-    let sharp = sharp_points(triangles, points);
-    let is_sharp = |corners: &[u32; 3]| corners.iter().any(|&point| sharp[point as usize]);
-    let mut tips: Vec<bool> = points.iter().map(is_sharp).collect();
+) -> Vec<Tip> {
+    let around = around_points(triangles, points);
+    let tip = |corners: &[u32; 3]| {
+        let tips = [0, 1, 2].map(|at| around[corners[at] as usize].tip(Which::ALL[at]));
+        let mut tips = tips.into_iter().filter(|tip| *tip != Tip::Nowhere);
+        match (tips.next(), tips.next()) {
+            (only, None) => only.unwrap_or(Tip::Nowhere),
+            _ => Tip::Narrow,
+        }
+    };
+    let mut tips: Vec<Tip> = points.iter().map(tip).collect();
     for face in borders {
-        tips[face as usize] = true;
+        tips[face as usize] = Tip::Narrow;
     }
     tips
 }
 
-/// For each point whether it sticks out.
-fn sharp_points(triangles: &[PackedTriangle<f64>], points: &[[u32; 3]]) -> Vec<bool> {
+/// The edges of each point.
+fn around_points(triangles: &[PackedTriangle<f64>], points: &[[u32; 3]]) -> Vec<Point> {
     let count = points.iter().flatten().max().map_or(0, |last| last + 1);
     let empty = Point {
         faces: 0,
         axis: Vec3::splat(0.0),
         least: 1.0,
+        greatest: 0.0,
     };
     let mut around = vec![empty; count as usize];
     for (triangle, numbers) in triangles.iter().zip(points) {
@@ -59,12 +86,13 @@ fn sharp_points(triangles: &[PackedTriangle<f64>], points: &[[u32; 3]]) -> Vec<b
             let axis = point.axis.try_normalize();
             let axis = axis.unwrap_or(Vec3::splat(0.0));
             for edge in edges_from(triangle, corner) {
-                point.least = point.least.min(axis.dot(edge));
+                let cosine = axis.dot(edge);
+                point.least = point.least.min(cosine);
+                point.greatest = point.greatest.max(cosine);
             }
         }
     }
-    let is_sharp = |point: &Point| point.faces <= FEW && SHARP < point.least;
-    around.iter().map(is_sharp).collect()
+    around
 }
 
 /// The unit directions from a corner of a triangle to the others.
@@ -81,7 +109,7 @@ mod tests {
     use super::*;
 
     /// A closed pyramid of so many sides, this high, its top first; with its base, or open.
-    fn pyramid(sides: u32, height: f64, has_base: bool) -> Vec<bool> {
+    fn pyramid(sides: u32, height: f64, has_base: bool) -> Vec<Tip> {
         let place = |number: u32| match number {
             0 => DVec3::Y * height,
             1 => DVec3::ZERO,
@@ -107,14 +135,19 @@ mod tests {
 
     #[test]
     fn the_sides_of_a_spike_have_a_tip_and_its_base_has_none() {
+        let are_all = |tips: &[Tip], tip: Tip| tips.iter().all(|found| *found == tip);
         let found = pyramid(4, 5.0, true);
-        assert!(found[..4].iter().all(|tip| *tip), "{found:?}");
-        assert!(!found[4..].iter().any(|tip| *tip), "{found:?}");
+        assert!(are_all(&found[..4], Tip::Narrow), "{found:?}");
+        assert!(are_all(&found[4..], Tip::Nowhere), "{found:?}");
         let flat = pyramid(4, 0.5, true);
-        assert!(!flat.iter().any(|tip| *tip), "{flat:?}");
-        let cone = pyramid(40, 5.0, true);
-        assert!(!cone.iter().any(|tip| *tip), "{cone:?}");
+        assert!(are_all(&flat, Tip::Nowhere), "{flat:?}");
         let open = pyramid(4, 0.5, false);
-        assert!(open.iter().all(|tip| *tip), "{open:?}");
+        assert!(are_all(&open, Tip::Narrow), "{open:?}");
+        // Two fifths as wide as it is far from its top, which each face has as its first corner.
+        let cone = pyramid(40, 5.0, true);
+        assert!(are_all(&cone[..40], Tip::round(Which::A, 0.4)), "{cone:?}");
+        assert!(are_all(&cone[40..], Tip::Nowhere), "{cone:?}");
+        let rounder = pyramid(MOST + 1, 5.0, true);
+        assert!(are_all(&rounder, Tip::Nowhere), "{rounder:?}");
     }
 }

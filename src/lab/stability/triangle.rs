@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::map::{Map, Tries, places, scales, scattered};
 use super::subject::Subject;
-use crate::primitive::{PackedTriangle, Primitive as _, Ray, Spared};
+use crate::primitive::{PackedTriangle, Primitive as _, Ray, Spared, Tip};
 use crate::scene::{Method as _, Methods, TriangleMethod};
 use crate::simd::Vec3;
 
@@ -80,7 +80,7 @@ fn placed(corners: [DVec3; 3], away: f64, scale: f64) -> PackedTriangle<f32> {
         normal: Vec3::from_dvec3(normal.try_normalize().unwrap_or(normal)),
         in_mesh: true,
         thickness: 1.0,
-        has_tips: false,
+        tip: Tip::Nowhere,
         spared: Spared::Lit,
         longest: 1.0,
         material: 0,

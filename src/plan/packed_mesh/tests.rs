@@ -56,7 +56,7 @@ fn a_mesh_is_the_same_whichever_way_it_was_turned_before() {
     let sorted = |mesh: &PackedMesh<f64>| {
         let faces = mesh.triangles.iter();
         let mut faces: Vec<_> = faces
-            .map(|face| (format!("{:?}", face.corners), face.has_tips, face.thickness))
+            .map(|face| (format!("{:?}", face.corners), face.tip, face.thickness))
             .collect();
         faces.sort_by(|a, b| a.0.cmp(&b.0));
         faces

@@ -12,7 +12,8 @@ mod in_doubt;
 
 pub use curved::{CornerNormals, Curved};
 use in_doubt::watertight_in_doubt;
-pub use packed::{PackedTriangle, Spared, corner, count_corner_users, number_corners};
+use packed::WHOLE;
+pub use packed::{PackedTriangle, Spared, Tip, Which, corner, count_corner_users, number_corners};
 use watertight::{Passing, Shear, watertight};
 
 use glam::DVec3;
@@ -29,6 +30,13 @@ use crate::simd::{Real, SimdFloat, Vec3};
 /// How many times as wide a triangle counts at its tips as it is: what is narrow all along is looked for up to 2 pixels,
 /// of tips 1.1 are enough, with a third fewer rays for them.
 const WIDER_AT_TIPS: f64 = 2.0 / 1.1;
+
+/// How far rays pass a point, seen along them.
+#[inline(always)]
+fn beside<L: SimdFloat>(rays: &Ray<L>, point: Vec3<L::Real>) -> L {
+    let to = rays.origin.like(point) - rays.origin;
+    (to - rays.direction * to.dot(rays.direction)).length()
+}
 
 /// What is needed of a triangle where it is hit, for each ray of its own triangle.
 #[derive(Clone, Copy, Debug)]
@@ -86,7 +94,7 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
             normal: Vec3::from_dvec3(normal),
             in_mesh: [a, b, c].iter().any(is_shared),
             thickness: R::from_f64(description.thickness()),
-            has_tips: true,
+            tip: Tip::Narrow,
             spared: if packing.faces_of_solids.contains(&[a, b, c].map(corner)) {
                 Spared::Far
             } else {
@@ -114,10 +122,10 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
     }
 
     fn thickness(&self) -> R {
-        if self.has_tips {
-            R::ZERO
-        } else {
+        if self.tip == Tip::Nowhere {
             self.thickness
+        } else {
+            R::ZERO
         }
     }
 
@@ -131,7 +139,7 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
     }
 
     fn has_outline(&self) -> bool {
-        self.has_tips && !self.in_mesh
+        self.tip == Tip::Narrow && !self.in_mesh
     }
 
     #[inline(always)]
@@ -208,11 +216,19 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
         let b = shear.apply(rays.origin.like(b) - rays.origin);
         let c = shear.apply(rays.origin.like(c) - rays.origin);
         let (t, u, v) = (a[2] * shear.z, b[2] * shear.z, c[2] * shear.z);
+        let mut size = t.like(self.thickness);
+        let mut least = t.like(Primitive::thickness(self));
+        if let Tip::Round(corner, share) = self.tip {
+            let width = beside(rays, self.corners[corner as usize]);
+            let share = f64::from(share) / WHOLE;
+            size = size.min(width * width.like_f64(share * WIDER_AT_TIPS));
+            least = size;
+        }
         let rough = Approach {
             from: t.min(u).min(v),
             to: t.max(u).max(v),
             distance: shear.least_beside([a, b, c]),
-            size: t.like(Primitive::thickness(self)),
+            size: least,
         };
         if !matters(&rough) {
             return None;
@@ -223,12 +239,10 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
             second,
             at,
         } = shear.passing([a, b, c]);
-        let zero = shear.x.like(R::ZERO);
-        let mut size = zero.like(self.thickness);
-        if self.has_tips {
+        if self.tip == Tip::Narrow {
             // Beside one edge it is about as wide as the next is farther away.
             let width = second - nearest;
-            size = size.min(width * zero.like_f64(WIDER_AT_TIPS));
+            size = size.min(width * width.like_f64(WIDER_AT_TIPS));
         }
         Some(Approach {
             from: at,

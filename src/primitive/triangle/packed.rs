@@ -20,6 +20,43 @@ pub enum Spared {
     Far,
 }
 
+/// Where a triangle may slip between samples, however large it is: most of a mesh go on behind their corners.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tip {
+    /// Nowhere.
+    Nowhere,
+    /// Wherever it is narrow itself.
+    Narrow,
+    /// Around this corner, which many faces share: what they surround is so many 64ths as wide as it is far from there.
+    Round(Which, u8),
+}
+
+impl Tip {
+    /// [`Self::Round`] for something so many times as wide as it is far from the corner.
+    pub fn round(which: Which, share: f64) -> Self {
+        Self::Round(which, (share * WHOLE).clamp(0.0, f64::from(u8::MAX)) as u8)
+    }
+}
+
+/// What is as wide as it is far from its tip.
+pub const WHOLE: f64 = 64.0;
+
+/// One of the corners of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// The first one.
+    A,
+    /// The second one.
+    B,
+    /// The third one.
+    C,
+}
+
+impl Which {
+    /// All, in order.
+    pub const ALL: [Self; 3] = [Self::A, Self::B, Self::C];
+}
+
 /// A flat triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct PackedTriangle<R> {
@@ -32,8 +69,8 @@ pub struct PackedTriangle<R> {
     pub in_mesh: bool,
     /// Its smallest altitude.
     pub thickness: R,
-    /// Whether its corners may slip between samples, however large it is: most of a mesh go on behind them.
-    pub has_tips: bool,
+    /// Where it may slip between samples.
+    pub tip: Tip,
     /// What it may be left out of.
     pub spared: Spared,
     /// The length of its longest edge.
@@ -53,7 +90,7 @@ impl<R: Real> PackedTriangle<R> {
             normal: Vec3::from_dvec3(normal),
             in_mesh: true,
             thickness: R::from_f64(triangle.thickness()),
-            has_tips: false,
+            tip: Tip::Nowhere,
             spared: Spared::Lit,
             longest: R::from_f64(triangle.longest_side()),
             material: 0,
@@ -67,7 +104,7 @@ impl<R: Real> PackedTriangle<R> {
             normal: self.normal.in_precision(),
             in_mesh: self.in_mesh,
             thickness: S::from_f64(self.thickness.to_f64()),
-            has_tips: self.has_tips,
+            tip: self.tip,
             spared: self.spared,
             longest: S::from_f64(self.longest.to_f64()),
             material: self.material,
@@ -78,6 +115,11 @@ impl<R: Real> PackedTriangle<R> {
     pub fn turn(&mut self) {
         self.corners.swap(1, 2);
         self.normal = -self.normal;
+        self.tip = match self.tip {
+            Tip::Round(Which::B, share) => Tip::Round(Which::C, share),
+            Tip::Round(Which::C, share) => Tip::Round(Which::B, share),
+            tip => tip,
+        };
     }
 }
 
