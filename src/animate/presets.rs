@@ -60,8 +60,15 @@ impl Preset {
             Self::Turntable => {
                 let place = |share: f64| target + turned(arm, share * TAU);
                 let mut keys = looking(camera, target, 4, seconds, place);
+                // From above or below, the picture turns.
+                let is_upright = arm.x.hypot(arm.z) <= arm.length() * 1e-9;
                 for key in &mut keys {
                     key.interpolation = Interpolation::Orbit { around: target };
+                    if is_upright {
+                        let angle = key.time / seconds * TAU;
+                        key.value.look_at = turned(camera.look_at, angle);
+                        key.value.up = turned(camera.up, angle);
+                    }
                 }
                 keys
             }

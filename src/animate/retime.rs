@@ -230,8 +230,14 @@ fn with_steps(keys: &[Key<Camera>], step: impl Fn(usize) -> f64) -> Vec<Key<Came
 fn smoothed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
     let mut smooth = keys.to_vec();
     for i in 1..keys.len() - 1 {
-        let is_cut = |key: &Key<Camera>| key.interpolation == Interpolation::Hold;
-        if is_cut(&keys[i - 1]) || is_cut(&keys[i]) {
+        // A cut is one on purpose, and an arc has no corners.
+        let has_no_corner = |key: &Key<Camera>| {
+            matches!(
+                key.interpolation,
+                Interpolation::Hold | Interpolation::Orbit { .. }
+            )
+        };
+        if has_no_corner(&keys[i - 1]) || has_no_corner(&keys[i]) {
             continue;
         }
         let (before, here, after) = (&keys[i - 1].value, &keys[i].value, &keys[i + 1].value);

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use glam::DVec3;
 
-use crate::scene::{Camera, Key, Orientation, Projection, format_number};
+use super::path::unwound;
+use crate::scene::{Camera, Document, Key, Orientation, Projection, SAME_TIME, format_number};
 
 const HEAD: &str = "time,x,y,z,yaw,pitch,roll,projection,projection_distance,orthographic_height";
 
@@ -21,8 +22,11 @@ pub struct TableError {
 /// A path as comma-separated values, one line for each camera: seconds, world units, degrees.
 pub fn to_table<'c>(cameras: impl IntoIterator<Item = (f64, &'c Camera)>) -> String {
     let mut text = format!("{HEAD}\n");
-    for (time, camera) in cameras {
-        let Orientation { yaw, pitch, roll } = Orientation::of(camera);
+    let cameras: Vec<_> = cameras.into_iter().collect();
+    let angles = cameras.iter().map(|(_, camera)| Orientation::of(camera));
+    // What is between two lines is between their numbers: a round is no step.
+    let angles = unwound(angles).into_iter();
+    for ((time, camera), Orientation { yaw, pitch, roll }) in cameras.into_iter().zip(angles) {
         let [x, y, z] = camera.position.to_array();
         let degrees = [yaw, pitch, roll].map(f64::to_degrees);
         let numbers = [time, x, y, z, degrees[0], degrees[1], degrees[2]];
@@ -83,7 +87,7 @@ pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableEr
             format!("there is no column {missing}; expected {HEAD}"),
         ));
     }
-    let mut keys = Vec::new();
+    let mut keys: Vec<(usize, Key<Camera>)> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|error| fail(1, error.to_string()))?;
         let line = record.position().map_or(1, |place| place.line() as usize);
@@ -124,9 +128,20 @@ pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableEr
             orthographic_height: number("orthographic_height", like.orthographic_height)?,
             ..like.clone()
         };
-        keys.push(Key::new(number("time", 0.0)?, angles.apply(&camera)));
+        let key = Key::new(number("time", 0.0)?, angles.apply(&camera));
+        keys.push((line, key));
     }
-    Ok(keys)
+    // The lines of a table may be in any order.
+    keys.sort_by(|(_, a), (_, b)| a.time.total_cmp(&b.time));
+    let mut pairs = keys.array_windows();
+    if let Some([_, (line, key)]) = pairs.find(|[a, b]| b.1.time - a.1.time < SAME_TIME) {
+        let time = format_number(key.time);
+        return Err(fail(
+            *line,
+            format!("there are two lines for the time {time}"),
+        ));
+    }
+    Ok(keys.into_iter().map(|(_, key)| key).collect())
 }
 
 /// A path as RON: the list of keys as the scene file has it, one key in a line.
@@ -142,11 +157,18 @@ pub fn to_text(keys: &[Key<Camera>]) -> Result<String, ron::Error> {
     Ok(text + "\n")
 }
 
-/// Keys from such a text.
+/// Keys from such a text, or those of the camera in a scene.
 ///
 /// # Errors
 /// [`TableError`], with the line.
 pub fn from_text(text: &str) -> Result<Vec<Key<Camera>>, TableError> {
+    let start = text.lines().map(str::trim_start);
+    let mut start = start.skip_while(|line| line.is_empty() || line.starts_with("//"));
+    if start.next().is_some_and(|line| line.starts_with("Scene"))
+        && let Ok(document) = Document::from_text(text)
+    {
+        return Ok(document.scene.animation.keys.clone());
+    }
     ron::from_str(text).map_err(|error| TableError {
         line: error.span.start.line,
         what: error.code.to_string(),

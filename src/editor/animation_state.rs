@@ -126,7 +126,8 @@ impl AnimationState {
             let at = |time: f64| first.1 + (time - first.0) * scale;
             (scale.is_finite() && scale > 0.0).then(|| (at(start), at(end)))
         });
-        told.next().or_else(|| ends_of(keys))
+        let ends = || ends_of(keys).filter(|(first, last)| first < last);
+        told.next().or_else(ends)
     }
 
     /// These keys were made of the recording with this tolerance.
@@ -157,6 +158,7 @@ impl AnimationState {
         // From outside one may fly while it plays.
         self.timeline.is_playing &= !self.timeline.wants_shot;
         self.timeline.wants_shot = false;
+        self.timeline.is_flown = true;
     }
 
     /// Takes up what has changed: the scene, the time, the camera that is looked through.

@@ -274,9 +274,9 @@ impl Editor {
     /// # Errors
     /// Why it could not be written; the document then still counts as changed.
     pub fn save(&mut self, path: &Path) -> Result<(), SceneError> {
-        let lost = self.lost_meshes();
         let path = &absolute(path);
         let document = self.document().at(path);
+        let lost = self.lost_meshes(&document.scene);
         let (backup, stamp) = document.save_stamped(path)?;
         // What is in the scene file now follows no other file.
         if document.scene != *self.scene {

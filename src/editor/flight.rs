@@ -43,15 +43,17 @@ impl Editor {
             Time::Play(is_playing) => {
                 timeline.play(is_playing, animation);
                 if is_playing {
+                    timeline.is_flown = false;
                     self.show_time();
                 }
             }
-            Time::Tick(seconds) => timeline.tick(seconds, animation.duration()),
+            Time::Tick(seconds) => timeline.tick(seconds, animation),
             Time::Repeat(repeat) => timeline.repeat = repeat,
             Time::Speed(speed) => timeline.speed = speed,
             Time::LookThrough(looks_through) => {
                 timeline.wants_shot = looks_through;
                 timeline.stays_outside = !looks_through;
+                timeline.is_flown = false;
                 self.leave_still();
             }
             Time::Record if is_making_keys => {
@@ -98,8 +100,12 @@ impl Editor {
     /// stay outside.
     fn show_time(&mut self) {
         let timeline = &mut self.animation_state.timeline;
+        // Where the shot stands still, a view that was flown to is left for the next key.
+        let is_kept = timeline.is_flown && !timeline.is_in_flight(&self.scene.animation);
         // What is recorded is where the camera is flown, and not where it was.
-        timeline.wants_shot = !timeline.stays_outside && timeline.recording.is_none();
+        let is_free = timeline.stays_outside || timeline.recording.is_some() || is_kept;
+        timeline.wants_shot = !is_free;
+        timeline.is_flown &= is_free;
         self.leave_still();
     }
 

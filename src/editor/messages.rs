@@ -6,8 +6,8 @@ use indexmap::IndexSet;
 
 use super::action::{Message, STEP};
 use super::document::Editor;
-use crate::scene::{Scene, Shape, Target};
-use crate::words::listed;
+use crate::scene::{Animation, Scene, Shape, Target};
+use crate::words::{counted, listed};
 
 /// What messages about edits are about.
 const EDIT: &str = "edit";
@@ -154,4 +154,16 @@ impl Editor {
             self.begin(EDIT);
         }
     }
+}
+
+/// What new keys of the camera, which `name` has brought, have replaced, in words; `None` if nothing.
+pub fn replaced_flight(name: &str, animation: &Animation) -> Option<String> {
+    let keys = counted(animation.keys.len(), "key");
+    let recording = match animation.take {
+        Some(_) => " and the recording",
+        None => "",
+    };
+    let words =
+        format!("{name} has replaced {keys} of the camera{recording}; undo brings them back");
+    (!animation.keys.is_empty()).then_some(words)
 }

@@ -42,6 +42,7 @@ pub use document::Editor;
 pub use edit::{Edit, EditError};
 pub use fly::Motion;
 pub use item::{Item, Kind};
+pub use messages::replaced_flight;
 pub use names::{free_bookmark_name, free_group_name};
 pub use selection::Selection;
 pub use timeline::{MEASURED_AT, Repeat, Time, Timeline};

@@ -129,19 +129,29 @@ impl Editor {
         }
     }
 
-    /// Says which meshes are in the scene file once it is saved, because their own files are gone or broken; nothing
-    /// for none.
-    pub(super) fn lost_meshes(&self) -> String {
+    /// Says which meshes are in the scene file once it is saved like this, because their own files are gone, broken, or
+    /// in another folder; nothing for none.
+    pub(super) fn lost_meshes(&self, saved: &Scene) -> String {
         let broken = self.scene.shown_of(&self.broken).into_iter();
         let broken = broken.filter_map(|path| path.file_name()?.to_str());
         let gone = self.scene.gone_mesh_files().into_iter();
         let lost: BTreeSet<&str> = gone.chain(broken).collect();
-        match &lost.into_iter().collect::<Vec<_>>().join(", ")[..] {
-            "" => String::new(),
-            names => format!(
-                "; what was in {names} is in the scene file now: that is gone, or cannot be read any more"
-            ),
-        }
+        let elsewhere = &self.scene.mesh_paths() - &saved.mesh_paths();
+        let elsewhere = &elsewhere - &lost;
+        let told = |names: BTreeSet<&str>, why| {
+            let names = names.into_iter().collect::<Vec<_>>().join(", ");
+            let words = format!("; what was in {names} is in the scene file now: {why}");
+            if names.is_empty() {
+                String::new()
+            } else {
+                words
+            }
+        };
+        told(lost, "that is gone, or cannot be read any more")
+            + &told(
+                elsewhere,
+                "that lies in another folder, and is not followed any more",
+            )
     }
 
     /// A part of the scene, as it was copied, with what mesh files hold now.

@@ -75,6 +75,8 @@ pub struct Timeline {
     pub is_edited: bool,
     /// Whether the user has chosen to see the shot camera from outside.
     pub(super) stays_outside: bool,
+    /// Whether the view was flown by hand since it was that of the shot camera.
+    pub(super) is_flown: bool,
     is_returning: bool,
     pub(super) recording: Option<Recording>,
 }
@@ -100,6 +102,7 @@ impl Default for Timeline {
             jumps: 0,
             is_edited: false,
             stays_outside: false,
+            is_flown: false,
             is_returning: false,
             recording: None,
         }
@@ -144,12 +147,22 @@ impl Timeline {
         }
     }
 
+    /// Whether the shot camera is on its way at the time that is on show.
+    pub(super) fn is_in_flight(&self, animation: &Animation) -> bool {
+        let time = self.shown_time(animation);
+        match &animation.keys[..] {
+            [first, .., last] => (first.time..=last.time).contains(&time),
+            _ => false,
+        }
+    }
+
     /// Time passes; at the ends, what was chosen happens.
-    pub(super) fn tick(&mut self, seconds: f64, duration: f64) {
+    pub(super) fn tick(&mut self, seconds: f64, animation: &Animation) {
         if !self.is_playing {
             return;
         }
         let step = seconds * self.speed;
+        let duration = animation.duration();
         match self.repeat {
             _ if duration <= 0.0 => (self.playhead, self.is_playing) = (0.0, false),
             Repeat::Once => {
@@ -159,18 +172,27 @@ impl Timeline {
                     self.is_playing = false;
                 }
             }
-            Repeat::Loop => self.playhead = (self.playhead + step).rem_euclid(duration),
+            Repeat::Loop => {
+                let round = animation.seconds_of_round();
+                let is_in = self.playhead < round;
+                let start = if is_in { self.playhead } else { 0.0 };
+                self.playhead = (start + step).rem_euclid(round);
+            }
             Repeat::PingPong => {
-                // On a line of twice the length, whose second half is the way back.
+                // On a line whose second half is the way back; both have the last frame in common, which is on show as
+                // long as others.
+                let frame = 1.0 / animation.frames_per_second;
+                let last = animation.time_of(animation.frame_count());
+                let behind = last + frame;
                 let there = if self.is_returning {
-                    2.0 * duration - self.playhead
+                    last + behind - self.playhead
                 } else {
                     self.playhead
                 };
-                let there = (there + step).rem_euclid(2.0 * duration);
-                self.is_returning = there > duration;
+                let there = (there + step).rem_euclid((2.0 * last).max(frame));
+                self.is_returning = there >= behind;
                 self.playhead = if self.is_returning {
-                    2.0 * duration - there
+                    last + behind - there
                 } else {
                     there
                 };
@@ -182,7 +204,9 @@ impl Timeline {
         self.is_playing = is_playing;
         if !is_playing {
             self.playhead = self.shown_time(animation);
-        } else if self.repeat == Repeat::Once && self.playhead >= animation.duration() - 1e-9 {
+        } else if self.repeat == Repeat::Once
+            && animation.frame_at(self.playhead) >= animation.frame_count()
+        {
             self.playhead = 0.0;
         }
     }

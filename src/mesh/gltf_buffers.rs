@@ -15,7 +15,7 @@ use gltf::{Accessor, Document};
 
 use super::error::{Fault, excerpt};
 use super::limits::{check_points, read_companion};
-use crate::files::stays_inside;
+use crate::files::{is_missing, stays_inside};
 
 /// Exporters do and do not pad.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
@@ -181,7 +181,8 @@ impl<'a> Buffers<'a> {
         let buffer = view.buffer().index();
         let loaded = self.loaded.get(buffer).and_then(Option::as_ref);
         let loaded = loaded.map(|bytes| bytes.as_slice());
-        let Some(bytes) = loaded.or(self.chunk) else {
+        // Only the first can be what stands behind the JSON.
+        let Some(bytes) = loaded.or(self.chunk.filter(|_| buffer == 0)) else {
             return refuse("names a buffer that is not there");
         };
         let bytes = slice(bytes, view.offset(), view.length());
@@ -264,7 +265,11 @@ fn read_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, Fault> {
             "its buffer {uri} is not on this machine"
         )));
     }
-    let name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
+    let mut name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
+    // Written on Windows, whose separators mean nothing elsewhere.
+    if name.contains('\\') && is_missing(&folder.join(name.as_ref())) {
+        name = name.replace('\\', "/").into();
+    }
     if !stays_inside(folder, Path::new(name.as_ref())) {
         let name = excerpt(&name, 80);
         return Err(Fault::new(format!(

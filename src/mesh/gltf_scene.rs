@@ -22,11 +22,14 @@ const MAX_OBJECTS: usize = 1_000_000;
 /// How often points are gone through, on average, where many parts share one list.
 const MOST_SCANS: usize = 100;
 /// Extensions without which the triangles cannot be read.
-const GEOMETRY_EXTENSIONS: [&str; 3] = [
-    "EXT_mesh_gpu_instancing",
+const GEOMETRY_EXTENSIONS: [&str; 4] = [
+    INSTANCES,
     "KHR_draco_mesh_compression",
     "EXT_meshopt_compression",
+    "KHR_meshopt_compression",
 ];
+/// The extension by which a node stands in many places.
+const INSTANCES: &str = "EXT_mesh_gpu_instancing";
 
 /// Reads the primitives of the default scene, or of the first if none is said to be, or of all nodes if there is none.
 pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, Fault> {
@@ -90,6 +93,7 @@ fn roots(document: &Document) -> Vec<Node<'_>> {
 fn notes(document: &Document, animates: bool) -> Vec<String> {
     let primitives = || document.meshes().flat_map(|mesh| mesh.primitives());
     let has_colors = |one: Primitive| one.get(&Semantic::Colors(0)).is_some();
+    let uses = |extension| document.extensions_used().any(|name| name == extension);
     [
         (primitives().any(has_colors), COLORS_OF_POINTS),
         (
@@ -98,18 +102,21 @@ fn notes(document: &Document, animates: bool) -> Vec<String> {
         ),
         (document.textures().len() > 0, "its textures are left out"),
         (document.cameras().len() > 0, "its cameras are left out"),
-        (has_lights(document), "its lights are left out"),
+        (uses("KHR_lights_punctual"), "its lights are left out"),
         (animates, "its animations are left out"),
+        (
+            uses("KHR_materials_pbrSpecularGlossiness"),
+            "some of its colours are left out: they are those of KHR_materials_pbrSpecularGlossiness",
+        ),
+        (
+            uses(INSTANCES),
+            "of what stands in many places by EXT_mesh_gpu_instancing, there is one",
+        ),
     ]
     .into_iter()
     .filter(|(is_there, _)| *is_there)
     .map(|(_, note)| note.to_owned())
     .collect()
-}
-
-fn has_lights(document: &Document) -> bool {
-    let mut names = document.extensions_used();
-    names.any(|name| name == "KHR_lights_punctual")
 }
 
 type Chunks<'a> = (Cow<'a, [u8]>, Option<Cow<'a, [u8]>>);

@@ -16,6 +16,8 @@ mod polygon;
 
 mod part;
 
+mod text;
+
 mod mtl;
 
 mod obj_lines;
@@ -37,6 +39,8 @@ mod gltf_skin;
 mod gltf_scene;
 
 use std::path::Path;
+
+use crate::files::{Marks, has_ending, marks_of};
 
 pub use error::MeshError;
 pub use part::{MeshFile, Part, PartColors};
@@ -70,6 +74,23 @@ pub fn is_mesh_file(path: &Path) -> bool {
     MeshFormat::of_path(path).is_some()
 }
 
+/// What marks a mesh file now; of a glTF file, together with the files of numbers beside it, which are its own as a rule
+/// and may be written later. `None` where the system does not say.
+pub fn marks_of_mesh(path: &Path) -> Option<Marks> {
+    let own = marks_of(path)?;
+    if !has_ending(path, "gltf") {
+        return Some(own);
+    }
+    let folder = path.parent().and_then(|folder| folder.read_dir().ok());
+    let beside = folder.into_iter().flatten().flatten();
+    let numbers = beside.map(|entry| entry.path());
+    let numbers = numbers.filter(|path| has_ending(path, "bin"));
+    let marks = numbers.filter_map(|path| marks_of(&path));
+    Some(marks.fold(own, |(time, length), (other, more)| {
+        (time.max(other), length.saturating_add(more))
+    }))
+}
+
 /// Reads the parts of a mesh file that have triangles.
 ///
 /// # Errors
@@ -80,7 +101,9 @@ pub fn read_mesh_file(path: &Path) -> Result<MeshFile, MeshError> {
             path: path.to_owned(),
         });
     };
-    let bytes = limits::read_mesh_bytes(path)?;
+    let mut bytes = limits::read_mesh_bytes(path)?;
+    let mark = bytes.len() - text::without_mark(&bytes).len();
+    bytes.drain(..mark);
     let folder = path.parent().unwrap_or(Path::new(""));
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let read = match format {

@@ -12,6 +12,7 @@ use tobj::{LoadError, MTLLoadResult, Material};
 use super::error::excerpt;
 use super::limits::read_bounded;
 use super::part::PartColors;
+use super::text::text_of;
 use crate::files::stays_inside;
 
 /// Most bytes of the material files of one OBJ file: room for thousands of materials.
@@ -39,6 +40,8 @@ pub(super) struct Libraries<'a> {
     missing: RefCell<Option<String>>,
     /// The first material that was named and is in no file.
     unknown: RefCell<Option<String>>,
+    /// The first material that was named before any file was read.
+    early: RefCell<Option<String>>,
     /// Whether a material has a picture for a colour.
     has_textures: Cell<bool>,
 }
@@ -53,6 +56,7 @@ impl<'a> Libraries<'a> {
             names: RefCell::default(),
             missing: RefCell::default(),
             unknown: RefCell::default(),
+            early: RefCell::default(),
             has_textures: Cell::default(),
         }
     }
@@ -71,9 +75,16 @@ impl<'a> Libraries<'a> {
                 "its colours are missing: there is no readable file {name} beside it"
             ));
         }
-        let unknown = self.unknown.take()?;
-        let name = excerpt(&unknown, LONGEST_NAME);
-        Some(format!("no material file of it has {name}, which it names"))
+        if let Some(unknown) = self.unknown.take() {
+            let name = excerpt(&unknown, LONGEST_NAME);
+            return Some(format!("no material file of it has {name}, which it names"));
+        }
+        let has_any = !self.names.borrow().is_empty();
+        let early = self.early.take().filter(|_| has_any)?;
+        let name = excerpt(&early, LONGEST_NAME);
+        Some(format!(
+            "some colours are missing: it names {name} before its material file"
+        ))
     }
 
     /// A line that names a material, without a remark behind the name: there may be a `#` in it.
@@ -88,11 +99,14 @@ impl<'a> Libraries<'a> {
         if let Some(without) = without.filter(|without| is_known(without)) {
             return without;
         }
-        // Where none was read, nobody expects colours, or it is said already; and some names mean none.
-        let is_meant = |name: &&str| !names.is_empty() && !NO_MATERIAL.contains(name);
-        if let Some(name) = name(line).filter(is_meant) {
-            let mut unknown = self.unknown.borrow_mut();
-            unknown.get_or_insert_with(|| name.to_owned());
+        // Some names mean none; and where no file is read at all, nobody expects colours, or it is said already.
+        if let Some(name) = name(line).filter(|name| !NO_MATERIAL.contains(name)) {
+            let place = if names.is_empty() {
+                &self.early
+            } else {
+                &self.unknown
+            };
+            place.borrow_mut().get_or_insert_with(|| name.to_owned());
         }
         line
     }
@@ -100,9 +114,8 @@ impl<'a> Libraries<'a> {
     /// Reads one. One that is not there or not in the folder, or cannot be read, only means that there are no colours.
     pub(super) fn load(&self, name: &Path) -> MTLLoadResult {
         let loaded = self.load_known(name);
-        if let Ok((materials, _)) = &loaded {
-            let names = materials.iter().map(|material| material.name.clone());
-            self.names.borrow_mut().extend(names);
+        if let Ok((_, numbers)) = &loaded {
+            self.names.borrow_mut().extend(numbers.keys().cloned());
         } else {
             let mut missing = self.missing.borrow_mut();
             missing.get_or_insert_with(|| name.to_string_lossy().into_owned());
@@ -113,7 +126,10 @@ impl<'a> Libraries<'a> {
     fn load_known(&self, name: &Path) -> MTLLoadResult {
         // Exporters on Windows write its separators.
         let name = name.to_string_lossy().replace('\\', "/");
-        let text = match self.text(&name) {
+        let name = name.trim_matches('"');
+        // The folder that others write may be one of theirs.
+        let beside = || self.text(name.rsplit('/').next()?);
+        let text = match self.text(name).or_else(beside) {
             Some(text) => text,
             // Several files may be named in one line, or one whose name has spaces.
             None => name
@@ -128,7 +144,15 @@ impl<'a> Libraries<'a> {
         let lines = text.lines().map(|line| whole_color(line.trim()));
         let lines = lines.filter(|line| is_color(line));
         let kept = lines.collect::<Vec<_>>().join("\n");
-        tobj::load_mtl_buf(&mut kept.as_bytes())
+        let (materials, mut numbers) = tobj::load_mtl_buf(&mut kept.as_bytes())?;
+        // Behind a name there may be a remark.
+        for (number, material) in materials.iter().enumerate() {
+            if let Some((name, _)) = material.name.split_once(" #") {
+                let name = name.trim_end().to_owned();
+                numbers.entry(name).or_insert(number);
+            }
+        }
+        Ok((materials, numbers))
     }
 
     /// What is in a file.
@@ -141,7 +165,7 @@ impl<'a> Libraries<'a> {
         // An empty file costs something too.
         self.left
             .set(left.saturating_sub(bytes.len() as u64 + 1024));
-        Some(with_line_breaks(&String::from_utf8_lossy(&bytes)).into_owned())
+        Some(text_of(&bytes).into_owned())
     }
 }
 
@@ -160,15 +184,6 @@ impl Libraries<'_> {
         let mut names = entries.map(|entry| entry.file_name());
         let same = names.find(|name| name.eq_ignore_ascii_case(wanted));
         same.map_or(name.to_owned(), |same| name.with_file_name(same))
-    }
-}
-
-/// A text with line breaks as we know them: old programs end lines with a carriage return alone.
-pub(super) fn with_line_breaks(text: &str) -> Cow<'_, str> {
-    if text.contains('\r') && !text.contains('\n') {
-        Cow::Owned(text.replace('\r', "\n"))
-    } else {
-        Cow::Borrowed(text)
     }
 }
 
@@ -208,10 +223,15 @@ fn is_color(line: &str) -> bool {
 /// The colours of a material, if it says what it looks like in diffuse light.
 pub(super) fn colors_of(material: &Material) -> Option<PartColors> {
     let clamp = |color: [f64; 3]| color.map(|channel| channel.clamp(0.0, 1.0));
+    // The first two models have no highlights; and one as wide as with an exponent below 1, as which some write what is
+    // quite rough, would be as bright as the light on the whole side that it falls on.
+    let is_matte = material.illumination_model.is_some_and(|model| model < 2)
+        || material.shininess.is_some_and(|exponent| exponent < 1.0);
+    let specular = material.specular.filter(|_| !is_matte);
     Some(PartColors {
         name: material.name.clone(),
         diffuse: clamp(material.diffuse?),
-        specular: material.specular.map(clamp),
+        specular: specular.map(clamp).or(is_matte.then_some([0.0; 3])),
         exponent: material.shininess.map(|exponent| exponent.max(0.0)),
         reflective: material
             .illumination_model

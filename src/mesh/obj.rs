@@ -7,11 +7,12 @@ use indexmap::IndexMap;
 use tobj::{LoadOptions, Model};
 
 use super::error::Fault;
-use super::mtl::{Libraries, colors_of, with_line_breaks};
+use super::mtl::{Libraries, colors_of};
 use super::obj_fault::find_fault;
 use super::obj_lines::ObjLines;
 use super::part::{COLORS_OF_POINTS, MeshFile, Part};
-use super::polygon::mend_fan;
+use super::polygon::{mend_fan, note_of_uncut};
+use super::text::text_of;
 use super::triangles::Triangles;
 
 /// Only positions matter: the corners of a face need no texture coordinates or normals.
@@ -29,9 +30,7 @@ const UNNAMED: &str = "unnamed_object";
 /// Reads the groups and objects of an OBJ file. Of each, what has one material is a part.
 pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, Fault> {
     // Names may be in any encoding; everything else is ASCII.
-    let text = String::from_utf8_lossy(bytes);
-    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-    let text = &*with_line_breaks(text);
+    let text = &*text_of(bytes);
     let libraries = Libraries::new(folder);
     let mut lines = ObjLines::new(text, &libraries);
     let loaded = tobj::load_obj_buf(&mut lines, &OPTIONS, |name| libraries.load(name));
@@ -49,13 +48,15 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
         let own = pieces.entry((group, model.mesh.material_id)).or_default();
         own.push(model);
     }
+    let mut uncut = 0;
     let parts = pieces.into_iter().map(|((_, material), models)| {
         let name = match models[0].name.as_str() {
             "" | UNNAMED => stem.to_owned(),
             name => name.to_owned(),
         };
         let material = material.and_then(|id| materials.get(id));
-        let triangles: Result<Vec<_>, _> = models.iter().map(triangles_of).collect();
+        let triangles = models.iter().map(|model| triangles_of(model, &mut uncut));
+        let triangles: Result<Vec<_>, _> = triangles.collect();
         let triangles = triangles.and_then(|pieces| match <[_; 1]>::try_from(pieces) {
             Ok([only]) => Ok(only),
             Err(several) => Triangles::join(several.iter()),
@@ -73,7 +74,7 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
     let colors = has_lost.then(|| COLORS_OF_POINTS.to_owned());
     let textures = libraries.texture_note();
     let notes = libraries.note().into_iter().chain(textures).chain(colors);
-    let notes = notes.collect();
+    let notes = notes.chain(note_of_uncut(uncut)).collect();
     Ok(MeshFile { parts, notes })
 }
 
@@ -85,7 +86,8 @@ fn polygons_of(model: &Model) -> usize {
     }
 }
 
-fn triangles_of(model: &Model) -> Result<Triangles, Fault> {
+/// The triangles, and to `uncut` the number of faces that may cover their notches.
+fn triangles_of(model: &Model, uncut: &mut usize) -> Result<Triangles, Fault> {
     let (points, _) = model.mesh.positions.as_chunks::<3>();
     let point = |index: usize| DVec3::from_array(points[index]);
     // Where all faces are triangles, there are no numbers of corners.
@@ -102,7 +104,8 @@ fn triangles_of(model: &Model) -> Result<Triangles, Fault> {
         if let [first, others @ ..] = polygon {
             faces.extend(others.windows(2).map(|pair| [*first, pair[0], pair[1]]));
         }
-        mend_fan(&mut faces[start..], |corner| point(corner as usize));
+        let is_uncut = mend_fan(&mut faces[start..], |corner| point(corner as usize));
+        *uncut += usize::from(is_uncut);
     }
     Triangles::weld(points.len(), point, faces.into_iter())
 }

@@ -13,7 +13,7 @@ use super::error::Fault;
 use super::limits::{check_faces, check_points};
 use super::part::{COLORS_OF_POINTS, MeshFile};
 use super::ply_element::{Element, is_corners, least_bytes};
-use super::polygon::mend_fan;
+use super::polygon::{mend_fan, note_of_uncut};
 use super::triangles::{Triangles, out_of_range};
 
 /// Longest header; one without an end is not searched for gigabytes.
@@ -41,14 +41,16 @@ pub(super) fn read(bytes: &[u8], stem: &str) -> Result<MeshFile, Fault> {
         mut faces,
         fans,
     } = body.read(&header)?;
+    let mut uncut = 0;
     for fan in fans {
-        mend_fan(&mut faces[fan], |corner| points[corner as usize]);
+        uncut += usize::from(mend_fan(&mut faces[fan], |corner| points[corner as usize]));
     }
     let triangles = Triangles::weld(points.len(), |index| points[index], faces.into_iter())?;
     let mut file = MeshFile::of_one(stem.to_owned(), triangles);
     if has_colors(&header) {
         file.notes.push(COLORS_OF_POINTS.to_owned());
     }
+    file.notes.extend(note_of_uncut(uncut));
     Ok(file)
 }
 

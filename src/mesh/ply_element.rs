@@ -43,7 +43,10 @@ impl Element {
             match property.data_type {
                 PropertyType::Scalar(_) => {
                     let word = next()?;
-                    read.set_scalar(name, word.parse().map_err(|_| wrong(word))?);
+                    // What nobody asks for may be no number.
+                    if matches!(name.as_str(), "x" | "y" | "z") {
+                        read.set_scalar(name, word.parse().map_err(|_| wrong(word))?);
+                    }
                 }
                 PropertyType::List(..) => {
                     let word = next()?;

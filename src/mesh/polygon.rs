@@ -2,13 +2,17 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::words::counted;
+
 /// Corners of the largest polygon whose ears are looked for: that takes the square of their number.
-const MOST_CORNERS: usize = 1024;
+const MOST_CORNERS: usize = 4096;
+/// What is a straight line but for rounding turns by no more than this share of a square around the polygon.
+const ROUNDED: f64 = 1e-12;
 
 /// Cuts a polygon anew that was cut into a fan around its first corner, where that leaves its outline: where it is
 /// concave, ears are clipped (Meisters, "Polygons have ears", American Mathematical Monthly 82, 1975). What has no
-/// ear because it crosses itself, or has more than 1024 corners, stays a fan.
-pub(super) fn mend_fan(fan: &mut [[u32; 3]], point: impl Fn(u32) -> DVec3) {
+/// ear because it crosses itself, or has more than 4096 corners, stays a fan; whether it has that many.
+pub(super) fn mend_fan(fan: &mut [[u32; 3]], point: impl Fn(u32) -> DVec3) -> bool {
     let area = |[a, b, c]: [u32; 3]| {
         let a = point(a);
         (point(b) - a).cross(point(c) - a)
@@ -16,7 +20,7 @@ pub(super) fn mend_fan(fan: &mut [[u32; 3]], point: impl Fn(u32) -> DVec3) {
     let normal: DVec3 = fan.iter().map(|&face| area(face)).sum();
     // All of its parts on one side: the first corner sees the whole outline.
     if fan.len() < 2 || fan.iter().all(|&face| area(face).dot(normal) >= 0.0) {
-        return;
+        return false;
     }
     let first = &fan[0][..2];
     let corners: Vec<u32> = first
@@ -25,7 +29,7 @@ pub(super) fn mend_fan(fan: &mut [[u32; 3]], point: impl Fn(u32) -> DVec3) {
         .chain(fan.iter().map(|face| face[2]))
         .collect();
     if corners.len() > MOST_CORNERS {
-        return;
+        return true;
     }
     let flat: Vec<DVec2> = corners
         .iter()
@@ -36,6 +40,15 @@ pub(super) fn mend_fan(fan: &mut [[u32; 3]], point: impl Fn(u32) -> DVec3) {
             *face = ear.map(|corner| corners[corner]);
         }
     }
+    false
+}
+
+/// The note of faces of which [`mend_fan`] says that they have too many corners, if there are any.
+pub(super) fn note_of_uncut(count: usize) -> Option<String> {
+    (count > 0).then(|| {
+        let faces = counted(count, "face");
+        format!("{faces} with more than {MOST_CORNERS} corners may cover their notches")
+    })
 }
 
 /// A point without the axis along which the polygon is largest; what turns left around its normal turns left.
@@ -57,22 +70,24 @@ fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
 
 /// The triangles of a polygon that turns left, by the places of its corners.
 fn ears(points: &[DVec2]) -> Option<Vec<[usize; 3]>> {
+    let rounded = rounding(points);
     let mut left: Vec<usize> = (0..points.len()).collect();
     let mut ears = Vec::with_capacity(points.len());
     let (mut at, mut tried) = (0, 0);
     while left.len() > 3 {
         let count = left.len();
-        if tried == count {
-            return None;
-        }
-        let ear = [
-            left[(at + count - 1) % count],
-            left[at % count],
-            left[(at + 1) % count],
-        ];
-        if is_ear(points, &left, ear) {
-            ears.push(ear);
-            left.remove(at % count);
+        let around =
+            |at: usize| [(at + count - 1) % count, at, (at + 1) % count].map(|at| left[at]);
+        let turn_at = |at: &usize| turn_of(points, around(*at)).abs();
+        let is_ear = is_ear(points, &left, around(at), rounded);
+        if is_ear || tried == count {
+            // Where there is no ear, a corner on a straight line is taken out, with a triangle that has no area.
+            let straightest = || (0..count).min_by(|a, b| turn_at(a).total_cmp(&turn_at(b)));
+            let cut = if is_ear { Some(at) } else { straightest() };
+            let cut = cut.filter(|at| is_ear || turn_at(at) <= rounded)?;
+            ears.push(around(cut));
+            left.remove(cut);
+            at = cut;
             tried = 0;
         } else {
             at += 1;
@@ -84,20 +99,34 @@ fn ears(points: &[DVec2]) -> Option<Vec<[usize; 3]>> {
     Some(ears)
 }
 
+/// How far points turn at most that are on a straight line but for rounding.
+fn rounding(points: &[DVec2]) -> f64 {
+    let start = points.first().copied().unwrap_or_default();
+    let around = points.iter().fold((start, start), |(least, most), &point| {
+        (least.min(point), most.max(point))
+    });
+    let size = (around.1 - around.0).element_sum();
+    ROUNDED * size * size
+}
+
+fn turn_of(points: &[DVec2], [a, b, c]: [usize; 3]) -> f64 {
+    turn(points[a], points[b], points[c])
+}
+
 /// Whether a corner can be cut off: it turns left, and no other corner is in the triangle.
-fn is_ear(points: &[DVec2], left: &[usize], [a, b, c]: [usize; 3]) -> bool {
-    let (a, b, c) = (points[a], points[b], points[c]);
+fn is_ear(points: &[DVec2], left: &[usize], ear: [usize; 3], rounded: f64) -> bool {
+    let [a, b, c] = ear.map(|corner| points[corner]);
     let is_within = |&other: &usize| {
         let p = points[other];
         // Corners that touch it are those of cuts that lead to holes.
         p != a
             && p != b
             && p != c
-            && turn(a, b, p) >= 0.0
-            && turn(b, c, p) >= 0.0
-            && turn(c, a, p) >= 0.0
+            && turn(a, b, p) >= -rounded
+            && turn(b, c, p) >= -rounded
+            && turn(c, a, p) >= -rounded
     };
-    turn(a, b, c) > 0.0 && !left.iter().any(is_within)
+    turn(a, b, c) > rounded && !left.iter().any(is_within)
 }
 
 #[cfg(test)]
@@ -147,6 +176,28 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn corners_on_straight_edges_are_rounded_and_cut() {
+        // An L with corners in the middle of its edges, turned, with eight decimals; its area is 4.
+        let outline = [
+            (1.782_414_72, -0.907_192_24),
+            (0.891_207_36, -0.453_596_12),
+            (0.0, 0.0),
+            (-0.891_207_36, 0.453_596_12),
+            (-0.437_611_24, 1.344_803_48),
+            (0.015_984_88, 2.236_010_84),
+            (0.907_192_24, 1.782_414_72),
+            (0.453_596_12, 0.891_207_36),
+            (1.344_803_48, 0.437_611_24),
+            (2.236_010_84, -0.015_984_88),
+        ];
+        let points = outline.map(|(x, y)| DVec3::new(x, y, 0.0));
+        let areas = areas(&points, &mended(&points));
+        let whole: DVec3 = areas.iter().sum();
+        let sum: f64 = areas.iter().map(|area| area.length()).sum();
+        assert!((sum - whole.length()).abs() < 1e-6, "{sum} {whole}");
     }
 
     #[test]

@@ -20,8 +20,10 @@ const SHORTEST: usize = 80;
 /// Reads an STL file; several solids are one part.
 pub(super) fn read(mut bytes: Vec<u8>, stem: &str) -> Result<MeshFile, Fault> {
     let is_text = is_text(&bytes);
+    let mut vertices = Vec::new();
     let (name, note, loaded) = if is_text {
-        (prepare_text(&mut bytes)?, None, load_text(&bytes))
+        let name = prepare_text(&mut bytes, &mut vertices)?;
+        (name, None, load_text(&bytes))
     } else {
         let note = prepare_binary(&mut bytes)?;
         (None, note, mesh_loader::stl::from_slice(&bytes))
@@ -36,9 +38,13 @@ pub(super) fn read(mut bytes: Vec<u8>, stem: &str) -> Result<MeshFile, Fault> {
     });
     let points = points.unwrap_or_default();
     check_points(points.len())?;
+    let is_whole = vertices.len() == points.len();
     let triangles = Triangles::weld(
         points.len(),
-        |index| DVec3::from_array(points[index].map(f64::from)),
+        |index| {
+            let rounded = || DVec3::from_array(points[index].map(f64::from));
+            if is_whole { vertices[index] } else { rounded() }
+        },
         (0..points.len() as u32 / 3).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]),
     )?;
     let name = name.unwrap_or_else(|| stem.to_owned());
@@ -90,8 +96,9 @@ fn prepare_binary(bytes: &mut Vec<u8>) -> Result<Option<String>, Fault> {
 }
 
 /// Makes the text what the reader wants: keywords small, everything else ASCII, a space behind
-/// `solid`. What it does not take for text it would read as binary numbers. Returns the name.
-fn prepare_text(bytes: &mut Vec<u8>) -> Result<Option<String>, Fault> {
+/// `solid`. What it does not take for text it would read as binary numbers. Returns the name; `vertices` are the points
+/// with all their decimals, which the reader rounds.
+fn prepare_text(bytes: &mut Vec<u8>, vertices: &mut Vec<DVec3>) -> Result<Option<String>, Fault> {
     let is_line_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
     let start = bytes.len() - bytes.trim_ascii_start().len();
     let line = bytes[start..].split(is_line_end).next().unwrap_or_default();
@@ -108,7 +115,7 @@ fn prepare_text(bytes: &mut Vec<u8>) -> Result<Option<String>, Fault> {
             b'?'
         };
     }
-    blank_normals(bytes);
+    *vertices = take_vertices(bytes);
     // Faces cannot be counted before they are read; there are no more than this.
     if check_faces(bytes.len() / SHORTEST).is_err() {
         let facets = bytes.windows(8).filter(|window| *window == b"endfacet");
@@ -122,9 +129,11 @@ fn prepare_text(bytes: &mut Vec<u8>) -> Result<Option<String>, Fault> {
     Ok((!name.is_empty()).then_some(name))
 }
 
-/// Nobody looks at normals, and of a face without an area some programs write what is no number: `-nan(ind)`.
-fn blank_normals(text: &mut [u8]) {
+/// The numbers of all points. Nobody looks at normals, of which zeros are left: of a face without an area some programs
+/// write what is no number: `-nan(ind)`.
+fn take_vertices(text: &mut [u8]) -> Vec<DVec3> {
     let (mut at, mut left, mut is_facet) = (0, 0, false);
+    let (mut vertices, mut numbers) = (Vec::new(), None);
     while at < text.len() {
         if text[at].is_ascii_whitespace() {
             // What is missing in a line is not taken from the next.
@@ -144,7 +153,18 @@ fn blank_normals(text: &mut [u8]) {
             left = 3;
         }
         is_facet = word == b"facet";
+        if word == b"vertex" {
+            numbers = Some(Vec::with_capacity(3));
+        } else if let Some(own) = &mut numbers {
+            let number = str::from_utf8(word).ok().and_then(|word| word.parse().ok());
+            own.push(number.unwrap_or(f64::NAN));
+            if let [x, y, z] = own[..] {
+                vertices.push(DVec3::new(x, y, z));
+                numbers = None;
+            }
+        }
     }
+    vertices
 }
 
 /// Reads a text; later solids without a name need the space, too.

@@ -92,6 +92,20 @@ impl Triangles {
         &self.faces
     }
 
+    /// About how many bytes they take as text in a scene file.
+    pub fn bytes_of_text(&self) -> u64 {
+        // Of some points, the digits; of faces, the largest.
+        let step = self.points.len() / MEASURED_POINTS + 1;
+        let digits = |point: &DVec3| format!("{}{}{}", point.x, point.y, point.z).len();
+        let some = self.points.iter().step_by(step);
+        let (count, bytes) = some.fold((0, 0), |(count, bytes), point| {
+            (count + 1, bytes + digits(point) + AROUND)
+        });
+        let points = self.points.len() as u64 * bytes as u64 / count.max(1);
+        let digits = self.points.len().max(1).ilog10() as usize + 1;
+        points + (self.faces.len() * (3 * digits + AROUND)) as u64
+    }
+
     /// The corners of each triangle.
     pub fn corners(&self) -> impl ExactSizeIterator<Item = [DVec3; 3]> {
         let corners = |face: &[u32; 3]| face.map(|point| self.points[point as usize]);
@@ -161,6 +175,10 @@ impl Triangles {
     }
 }
 
+/// Of about so many points the digits are counted.
+const MEASURED_POINTS: usize = 1000;
+/// Bytes of brackets, commas and spaces around three numbers in a scene file.
+const AROUND: usize = 8;
 /// Points, or faces, that are hashed at once.
 const HASHED: usize = 1024;
 

@@ -199,6 +199,20 @@ impl Animation {
         tracks.map(|key| key.time).fold(last, f64::max)
     }
 
+    /// Seconds of a round of what is played again and again: its last frame is on show as long as others, unless it is
+    /// the first one again.
+    pub fn seconds_of_round(&self) -> f64 {
+        fn is_closed<T: PartialEq>(keys: &[Key<T>]) -> bool {
+            let ends = keys.first().zip(keys.last());
+            ends.is_none_or(|(first, last)| first.value == last.value)
+        }
+        let mut tracks = self.tracks.iter();
+        if is_closed(&self.keys) && tracks.all(|track| is_closed(&track.keys)) {
+            return self.duration();
+        }
+        self.time_of(self.frame_count() + 1)
+    }
+
     /// Number of frames: one at the start and one every 1/fps seconds, up to the last key.
     pub fn frame_count(&self) -> u64 {
         Self::frames_in(self.duration(), self.frames_per_second)

@@ -18,10 +18,8 @@ use crate::mesh::is_mesh_file;
 /// The RON text of the demo scene, as embedded in the program.
 pub const DEMO_TEXT: &str = include_str!("../../scenes/demo.ron");
 
-/// Longest scene file that is read, in bytes: room for [`OWN_FACES`] or 1,500,000 objects.
-const MAX_BYTES: u64 = 256 << 20;
-/// How many faces of meshes a scene file has room for; those of other files do not count.
-pub const OWN_FACES: usize = 4_000_000;
+/// Longest scene file that is read, in bytes: room for meshes of 4,000,000 faces or 1,500,000 objects.
+pub const MAX_BYTES: u64 = 256 << 20;
 /// Deepest nesting of brackets; a scene needs five.
 const MAX_DEPTH: usize = 32;
 /// Most characters of a line that an error shows, so that a file on one line stays readable.
@@ -238,12 +236,14 @@ impl Document {
         self.at(path).save_stamped(path).map(|(backup, _)| backup)
     }
 
-    /// The document as a file in this place has it: what is in no file beside it is in the scene itself.
+    /// The document as a file in this place has it: what is in no file beside it is in the scene itself, and what could
+    /// not be read elsewhere is looked for there.
     #[must_use]
     pub fn at(&self, path: &Path) -> Self {
+        let folder = &folder_of(path);
         Self {
             header: self.header.clone(),
-            scene: self.scene.taken_to(&folder_of(path)),
+            scene: self.scene.taken_to(folder).looking_in(folder),
         }
     }
 

@@ -264,6 +264,13 @@ impl Track {
 fn put<T>(keys: &mut Vec<Key<T>>, there: Option<usize>, (time, value): (f64, T)) -> usize {
     if let Some(there) = there {
         keys[there].value = value;
+        let is_behind = |before: &Key<T>| before.time + SAME_TIME < time;
+        let is_before = |next: &Key<T>| time + SAME_TIME < next.time;
+        let (before, others) = keys.split_at_mut(there);
+        // At that time it is seen as it is put there, not only nearly.
+        if before.last().is_none_or(is_behind) && others.get(1).is_none_or(is_before) {
+            others[0].time = time;
+        }
         return there;
     }
     let at = keys.partition_point(|key| key.time < time);

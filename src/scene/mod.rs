@@ -79,7 +79,7 @@ pub use coincidence::{Coincidence, Extent, coincidences};
 pub use differences::differences;
 pub use direction::unit;
 pub use examples::{EXAMPLES, Example};
-pub use file::{DEMO_TEXT, Document, OWN_FACES, SceneError, read_text};
+pub use file::{DEMO_TEXT, Document, MAX_BYTES, SceneError, read_text};
 pub use frame::Frame;
 pub use hints::{About, Hint, camera_hints, hints, thing_hints};
 pub use join::MOST_SEPARATE;

@@ -1,5 +1,6 @@
 //! The scene itself.
 
+use std::cell::RefCell;
 use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -175,6 +176,26 @@ impl Scene {
         })
     }
 
+    /// The same scene for a file in this folder: those files of meshes that could not be read elsewhere are looked for
+    /// there.
+    #[must_use]
+    pub fn looking_in(&self, folder: &Path) -> Self {
+        let files = RefCell::new(MeshFiles::new());
+        self.with_sources(|source| {
+            let (own, _) = source.reference().filter(|_| source.problem().is_some())?;
+            let mut new = source.clone();
+            let is_elsewhere = !is_same_file(own, folder);
+            is_elsewhere.then(|| new.load(Some(folder), &mut files.borrow_mut()))?;
+            Some(new)
+        })
+    }
+
+    /// The files of meshes that were read, by their paths.
+    pub fn mesh_paths(&self) -> BTreeSet<&str> {
+        let files = self.mesh_sources().filter_map(MeshSource::file);
+        files.map(|(_, path)| path).collect()
+    }
+
     /// The files of meshes that were read, and are not there any more. Each is looked for once, however many show it.
     pub fn gone_mesh_files(&self) -> BTreeSet<&str> {
         let files: BTreeSet<_> = self.mesh_sources().filter_map(MeshSource::file).collect();
@@ -282,11 +303,11 @@ impl Scene {
         self.objects.iter().map(Object::faces).sum()
     }
 
-    /// How many triangles are written into the file of the scene.
-    pub fn own_faces(&self) -> usize {
+    /// About how many bytes the triangles take that are written into the file of the scene.
+    pub fn own_bytes(&self) -> u64 {
         let inline = |source: &MeshSource| matches!(source, MeshSource::Inline(_));
         let own = self.mesh_sources().filter(|source| inline(source));
-        own.map(|source| source.triangles().faces().len()).sum()
+        own.map(|source| source.triangles().bytes_of_text()).sum()
     }
 
     /// Whether the triangles of some mesh are in a file of their own.

@@ -7,13 +7,13 @@ use glam::DVec3;
 
 use super::dialogs::Ask;
 use crate::animate::{from_table, from_text, to_table, to_text};
-use crate::editor::{Action, Edit, Editor, Item, Selection, free_group_name};
+use crate::editor::{Action, Edit, Editor, Item, Selection, free_group_name, replaced_flight};
 use crate::export::{Job, Pattern, Sequence, povray_text, write_job, write_text};
 use crate::files::{has_ending, is_same_file};
 use crate::image::Format;
 use crate::mesh::{MeshFile, Part};
-use crate::scene::{Animation, Camera, OWN_FACES, Scene, around, check, read_text};
-use crate::words::counted;
+use crate::scene::{Animation, Camera, MAX_BYTES, Scene, around, check, read_text};
+use crate::words::{counted, for_shell};
 
 /// How many times as large as a scene, or as small, a mesh is whose size is told.
 const ODD: f64 = 20.0;
@@ -49,8 +49,11 @@ pub fn import_path(editor: &mut Editor, path: &Path) {
                 ..Animation::clone(&editor.scene().animation)
             };
             let edit = Edit::animation(animation, "Import path");
+            let replaced = replaced_flight("it", &editor.scene().animation);
             if is_made(editor, edit) {
-                editor.notify(format!("{} from {}", counted(count, "key"), path.display()));
+                let replaced = replaced.map_or(String::new(), |words| format!("; {words}"));
+                let keys = counted(count, "key");
+                editor.notify(format!("{keys} from {}{replaced}", path.display()));
             }
         }
         Err(error) => {
@@ -176,11 +179,12 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
         editor.scene().objects.len(),
         editor.scene().objects.len() + parts.len(),
     );
-    let room = OWN_FACES.saturating_sub(editor.scene().own_faces());
-    if count > room {
-        let (path, limit) = (path.display(), OWN_FACES);
+    let bytes = parts.iter().map(|part| part.triangles.bytes_of_text());
+    if editor.scene().own_bytes() + bytes.sum::<u64>() > MAX_BYTES {
+        let (name, limit) = (path.display(), MAX_BYTES >> 20);
+        let quoted = for_shell(&name.to_string());
         let why = format!(
-            "{path} has {count} triangles, and a scene file has room for {limit}; `glint convert {path} -o NAME.ron` makes a scene beside it that refers to it"
+            "{name} has {count} triangles, more than there is room for in the {limit} MiB of a scene file; `glint convert {quoted} -o NAME.ron` makes a scene beside it that refers to it"
         );
         return editor.report_error_in(Ask::ImportMesh.title(), why);
     }

@@ -15,6 +15,7 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             let has = matches!(editor.selection(), Selection::Items(_) | Selection::Keys(_));
             (!has).then_some(nothing)
         }
+        Command::Duplicate if !editor.selection().keys().is_empty() => None,
         Command::Duplicate | Command::Copy | Command::Cut | Command::SelectSamePack => {
             let has = editor.selection().item().is_some();
             (!has).then_some(nothing)

@@ -10,7 +10,8 @@ use egui::{Context, Ui};
 use super::prompts::{Reply, question};
 use super::theme::GRID;
 use crate::editor::Editor;
-use crate::files::{Marks, Stamp, is_missing, marks_of, time_of};
+use crate::files::{Marks, Stamp, is_missing, time_of};
+use crate::mesh::marks_of_mesh;
 use crate::scene::{Document, List, Object, SceneError, differences};
 use crate::worker::Background;
 
@@ -77,7 +78,7 @@ impl Watch {
             self.left = self.left.saturating_sub(1);
             let marked = self.watched.iter();
             self.marked = marked
-                .map(|(file, read)| (marks_of(file), file.clone(), *read))
+                .map(|(file, read)| (marks_of_mesh(file), file.clone(), *read))
                 .collect();
         } else if self.left == 0 {
             self.guard = Some(Guard::new(ctx, std::mem::take(&mut self.marked)));
@@ -121,12 +122,12 @@ impl Watch {
         let mut is_moving = false;
         let changed = files.filter(|file| {
             let full = file.full();
-            let now = marks_of(&full);
+            let now = marks_of_mesh(&full);
             let [found, asked] = seen.entry(full).or_default();
             let is_still = std::mem::replace(found, now) == now;
             is_moving |= !is_still;
-            // What is gone stays as it is in the window.
-            let is_new = is_still && now.is_some() && now != file.read && now != *asked;
+            // What is gone stays as it is in the window. What was broken meanwhile may be as it was.
+            let is_new = is_still && now.is_some() && now != asked.or(file.read);
             if is_new {
                 *asked = now;
             }
@@ -219,7 +220,8 @@ impl Guard {
         let is_wanted = Arc::downgrade(&alive);
         let is_there = move || {
             let mut marked = marked.iter();
-            is_wanted.strong_count() == 0 || marked.any(|(marks, file, _)| marks_of(file) != *marks)
+            is_wanted.strong_count() == 0
+                || marked.any(|(marks, file, _)| marks_of_mesh(file) != *marks)
         };
         let ctx = ctx.clone();
         let wake = move || ctx.request_repaint();

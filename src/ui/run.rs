@@ -118,6 +118,11 @@ impl App {
                     self.run(ctx, Command::Delete);
                 }
             }
+            Command::Copy | Command::Cut if !self.editor.selection().keys().is_empty() => {
+                let told =
+                    "Duplicate copies keys to the playhead, a drag with Ctrl along their row";
+                self.editor.notify(told.to_owned());
+            }
             Command::RequestPaste => ctx.send_viewport_cmd(ViewportCommand::RequestPaste),
             Command::Paste(text) => self.paste(&text),
             Command::Lab => self.toggle_below(Below::Lab),

@@ -418,7 +418,8 @@ fn playing_is_real_time_whatever_the_frames() {
     for (repeat, seconds, expected) in [
         (Repeat::Loop, 1.5, 1.5),
         (Repeat::Loop, 2.5, 0.5),
-        (Repeat::PingPong, 2.5, 1.5),
+        // The last frame stays a frame long, as others do.
+        (Repeat::PingPong, 2.5, 1.5 + 1.0 / 14.0),
         (Repeat::PingPong, 4.5, 0.5),
         (Repeat::Once, 3.0, 2.0),
     ] {
@@ -441,6 +442,40 @@ fn playing_is_real_time_whatever_the_frames() {
             "{repeat:?} {seconds}: {playhead}"
         );
         assert_eq!(editor.timeline().is_playing, repeat != Repeat::Once);
+    }
+}
+
+#[test]
+fn the_last_frame_is_played_and_a_round_is_as_long_as_its_frames() {
+    for (repeat, expected) in [
+        (Repeat::Loop, [1, 2, 3, 1, 2, 3, 1]),
+        (Repeat::PingPong, [1, 2, 3, 2, 1, 2, 3]),
+        (Repeat::Once, [1, 2, 3, 3, 3, 3, 3]),
+    ] {
+        let mut editor = Editor::demo();
+        let light = Target::LightIntensity("Light 1".to_owned());
+        let mut animation = Animation {
+            frames_per_second: 1.0,
+            ..Animation::default()
+        };
+        for time in [0.0, 1.0, 2.0] {
+            animation = animation.with_value(&light, time, Value::Number(time / 2.0));
+        }
+        editor.apply(Action::Edit(Edit::animation(animation, "keys")));
+        editor.apply(Action::Time(Time::Repeat(repeat)));
+        editor.apply(Action::Time(Time::Play(true)));
+        editor.apply(Action::Time(Time::Tick(0.5)));
+        let frames = expected.map(|_| {
+            let shown = editor.shown_time();
+            editor.apply(Action::Time(Time::Tick(1.0)));
+            shown as u32 + 1
+        });
+        assert_eq!(frames, expected, "{repeat:?}");
+        // From its last frame, it begins again.
+        if repeat == Repeat::Once {
+            editor.apply(Action::Time(Time::Play(true)));
+            assert_eq!(editor.shown_time(), 0.0);
+        }
     }
 }
 
@@ -952,7 +987,7 @@ fn paths_go_out_to_a_table_and_come_back() {
     harness.choose("Animate", "Import path…");
     harness
         .window
-        .get_by_label_contains("keys must be in order of time");
+        .get_by_label_contains("line 3: there are two lines for the time 0");
     assert_eq!(
         harness.scene().animation.keys,
         kept,

@@ -177,6 +177,22 @@ fn a_turntable_is_a_circle_that_looks_at_its_middle() {
 }
 
 #[test]
+fn a_turntable_from_above_turns_the_picture_evenly() {
+    let target = DVec3::new(10.0, 20.0, -30.0);
+    let start = camera(target + DVec3::Y * 100.0, 10.0, -90.0);
+    let path = CameraPath::new(&Preset::Turntable.keys(&start, target, 8.0));
+    for time in times(&path, 80) {
+        let ahead = at(&path, time).basis().expect("a basis").y_axis;
+        let first = at(&path, 0.0).basis().expect("a basis").y_axis;
+        let angle = (time / 8.0 * 360.0).to_radians();
+        assert!(
+            (ahead.dot(first) - angle.cos()).abs() < 1e-9,
+            "{time}: {ahead}"
+        );
+    }
+}
+
+#[test]
 fn a_dolly_comes_nearer_in_both_projections() {
     let target = DVec3::new(10.0, 20.0, -30.0);
     for projection in [Projection::Perspective, Projection::Orthographic] {
@@ -210,6 +226,12 @@ fn a_table_of_a_spreadsheet_is_a_path() {
     ] {
         assert_eq!(keys(text).as_ref(), Ok(&plain), "{text}");
     }
+    // Its lines have no order of their own.
+    let sorted = keys("time,x,y,z,yaw\n1.25,-4,2,3,20\n0,1.5,2,3,10\n");
+    assert_eq!(sorted.as_ref(), Ok(&plain));
+    let error = keys("time,x,y,z\n1,1,2,3\n0,1,2,3\n1,4,2,3\n").expect_err("twice");
+    let twice = (4, "there are two lines for the time 1");
+    assert_eq!((error.line, &*error.what), twice);
     let error = keys("time;x;y;z\n0;1;2;1,2,3\n").expect_err("no number");
     assert_eq!(
         (error.line, &*error.what),

@@ -268,6 +268,37 @@ fn smoothing_takes_corners_off_and_keeps_the_ends() {
     let smooth = Retime::Smooth.apply(path.keys());
     let x: Vec<f64> = smooth.iter().map(|key| key.value.position.x).collect();
     assert_eq!(x, [0.0, 20.0, 25.0, 30.0]);
+    // A circle has no corners.
+    let round = Preset::Turntable.keys(&Camera::default(), DVec3::ZERO, 8.0);
+    assert_eq!(Retime::Smooth.apply(&round), round);
+}
+
+#[test]
+fn the_columns_of_a_table_go_on_where_a_round_ends() {
+    let round = Preset::Turntable.keys(&Camera::default(), DVec3::ZERO, 8.0);
+    let table = to_table(round.iter().map(|key| (key.time, &key.value)));
+    let yaw = |line: &str| -> f64 {
+        line.split(',')
+            .nth(4)
+            .expect("a column")
+            .parse()
+            .expect("a number")
+    };
+    let yaws: Vec<f64> = table.lines().skip(1).map(yaw).collect();
+    let steps = yaws.array_windows().map(|[one, next]| (next - one).abs());
+    for step in steps {
+        assert!((step - 90.0).abs() < 1e-6, "{yaws:?}");
+    }
+}
+
+#[test]
+fn the_flight_of_a_scene_is_a_path() {
+    let mut scene = Scene::demo();
+    scene.animation_mut().keys = Preset::Turntable.keys(&Camera::default(), DVec3::ZERO, 8.0);
+    let header = "// by hand\n".to_owned();
+    let document = Document { header, scene };
+    let read = from_text(&document.to_text().expect("a text"));
+    assert_eq!(read.as_ref(), Ok(&document.scene.animation.keys));
 }
 
 #[test]

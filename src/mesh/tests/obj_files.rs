@@ -233,3 +233,94 @@ fn lines_end_as_on_old_machines_and_remarks_as_they_like() {
     let said = sample.error();
     assert!(said.contains(":3:") || said.contains("line 3"), "{said}");
 }
+
+/// The diffuse colours of the parts of an OBJ file with this text and this material file beside it.
+fn diffuse(obj: &str, mtl: impl AsRef<[u8]>) -> Vec<[f64; 3]> {
+    let sample = Sample::new("m.obj", obj);
+    sample.beside("m.mtl", mtl);
+    let colors = sample.parts().into_iter().filter_map(|part| part.colors);
+    colors.map(|colors| colors.diffuse).collect()
+}
+
+#[test]
+fn material_files_are_found_by_the_paths_of_other_machines() {
+    let red = [[1.0, 0.0, 0.0]];
+    for name in [
+        "C:\\Users\\x\\m.mtl",
+        "/home/x/m.mtl",
+        "\"m.mtl\"",
+        "sub/M.MTL",
+    ] {
+        let obj = format!("mtllib {name}\n{SQUARE}usemtl red\nf 1 2 3\n");
+        for mtl in [
+            "newmtl red\nKd 1 0 0\n",
+            "\u{feff}newmtl red # warm\nKd 1 0 0\n",
+        ] {
+            assert_eq!(diffuse(&obj, mtl), red, "{name} {mtl}");
+        }
+    }
+    let early = format!("{SQUARE}usemtl red\nf 1 2 3\nmtllib m.mtl\n");
+    let sample = Sample::new("m.obj", early);
+    sample.beside("m.mtl", "newmtl red\nKd 1 0 0\n");
+    let told = "some colours are missing: it names red before its material file";
+    assert_eq!(sample.notes(), [told]);
+}
+
+#[test]
+fn names_that_differ_in_a_letter_of_another_encoding_are_two() {
+    let latin = |text: &str| -> Vec<u8> { text.chars().map(|c| c as u8).collect() };
+    let obj = latin(&format!(
+        "mtllib m.mtl\n{SQUARE}usemtl rotä\nf 1 2 3\nusemtl rotö\nf 2 3 4\n"
+    ));
+    let sample = Sample::new("m.obj", obj);
+    sample.beside(
+        "m.mtl",
+        latin("newmtl rotä\nKd 1 0 0\nnewmtl rotö\nKd 0 1 0\n"),
+    );
+    let colors = sample.parts().into_iter().filter_map(|part| part.colors);
+    let names: Vec<_> = colors.map(|colors| (colors.name, colors.diffuse)).collect();
+    let expected = [("rotä", [1.0, 0.0, 0.0]), ("rotö", [0.0, 1.0, 0.0])];
+    assert_eq!(
+        names,
+        expected.map(|(name, color)| (name.to_owned(), color))
+    );
+}
+
+#[test]
+fn what_is_matte_has_no_highlight() {
+    let highlight = |lines: &str| {
+        let sample = Sample::new(
+            "m.obj",
+            format!("mtllib m.mtl\n{SQUARE}usemtl a\nf 1 2 3\n"),
+        );
+        sample.beside(
+            "m.mtl",
+            format!("newmtl a\nKd 1 0 0\nKs 0.5 0.5 0.5\n{lines}"),
+        );
+        let colors = sample.parts().remove(0).colors.expect("colours");
+        colors.specular
+    };
+    for matte in ["Ns 0\nillum 2\n", "Ns 50\nillum 1\n", "illum 0\n"] {
+        assert_eq!(highlight(matte), Some([0.0; 3]), "{matte}");
+    }
+    for shiny in ["Ns 50\nillum 2\n", "Ns 1\n", ""] {
+        assert_eq!(highlight(shiny), Some([0.5; 3]), "{shiny}");
+    }
+}
+
+#[test]
+fn faces_with_too_many_corners_to_be_cut_are_told() {
+    let star = |corners: u32| {
+        let corner = |at: u32| {
+            let angle = f64::from(at) / f64::from(corners) * std::f64::consts::TAU;
+            let radius = if at.is_multiple_of(2) { 3.0 } else { 1.0 };
+            format!("v {} {} 0\n", angle.cos() * radius, angle.sin() * radius)
+        };
+        let points: String = (0..corners).map(corner).collect();
+        let face: Vec<String> = (1..=corners).map(|number| number.to_string()).collect();
+        Sample::new("m.obj", format!("{points}f {}\n", face.join(" "))).notes()
+    };
+    assert!(star(2000).is_empty());
+    let told = "1 face with more than 4096 corners may cover their notches";
+    assert_eq!(star(4098), [told]);
+}

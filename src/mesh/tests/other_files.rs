@@ -57,6 +57,28 @@ fn stl_texts_differ() {
 }
 
 #[test]
+fn points_of_stl_texts_have_all_their_decimals() {
+    let far = "\u{feff}solid a\nfacet normal 0 0 1\nouter loop\nvertex 500000.123456789 5400000.25 0\nvertex 500001.123456789 5400000.25 0\nvertex 500000.123456789 5400001.25 1e-3\nendloop\nendfacet\nendsolid a\n";
+    let triangles = Sample::new("m.stl", far).triangles();
+    let first = triangles.points()[0];
+    assert_eq!(first.to_array(), [500_000.123_456_789, 5_400_000.25, 0.0]);
+}
+
+#[test]
+fn numbers_of_ply_texts_that_nobody_asks_for_may_be_none() {
+    let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    let body = "0 0 0 -nan(ind)\n1 0 0 0\n0 1 0 0\n3 0 1 2\n";
+    let triangles = Sample::new("m.ply", format!("\u{feff}{header}{body}")).triangles();
+    assert_eq!(triangles.faces().len(), 1);
+    let error = Sample::new(
+        "m.ply",
+        format!("{header}{}", body.replace("1 0 0", "1 a 0")),
+    )
+    .error();
+    assert!(error.contains("\"a\" is no number for y"), "{error}");
+}
+
+#[test]
 fn ply_polygons_become_fans() {
     let header = "ply\r\nformat ascii 1.0\r\ncomment é\r\nelement face 3\r\nproperty uchar flags\r\nproperty list uint8 uint32 vertex_index\r\nelement edge 1\r\nproperty list int int other\r\nelement vertex 5\r\nproperty double z\r\nproperty double y\r\nproperty double x\r\nend_header\r\n";
     let body = "9 5 0 1 2 3 4\r\n\r\n9 3 0 0 1\r\n9 2 0 1\r\n2 8 8\r\n0 .5 0\r\n0 0. 1\r\n0 1e0 2\r\n0 2 1\r\n0 2 0";
@@ -171,6 +193,9 @@ fn what_is_left_out_of_a_file_is_told() {
         Sample::new("m.gltf", with).notes(),
         ["its cameras are left out"]
     );
+    let with = json.replacen('{', r#"{"extensionsUsed":["EXT_mesh_gpu_instancing"],"#, 1);
+    let told = "of what stands in many places by EXT_mesh_gpu_instancing, there is one";
+    assert_eq!(Sample::new("m.gltf", with).notes(), [told]);
     let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
     let notes = Sample::new(
         "m.ply",

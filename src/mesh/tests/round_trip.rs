@@ -88,6 +88,10 @@ fn buffers_lie_in_the_file_beside_it_or_behind_its_json() {
     let colors = sample.parts()[0].colors.clone().expect("colours");
     assert_eq!(colors.name, "gold");
     assert_eq!((colors.diffuse[0], colors.diffuse[2]), (1.0, 0.0));
+    // By the separators of another system, too.
+    let sample = Sample::new("m.gltf", gltf_json("", r#","uri":".%5Ca%20b.bin""#));
+    sample.beside("a b.bin", gltf_bytes());
+    assert_eq!(sample.parts().len(), 1);
     // Half the light is more than half of what a screen is sent.
     assert!((colors.diffuse[1] - 0.735_36).abs() < 1e-4);
 }

@@ -67,7 +67,7 @@ pub fn text_stl() -> String {
     let mut text = "solid ico sahedron\n".to_owned();
     for face in faces {
         text += "facet normal 0 0 0\n outer loop\n";
-        for [x, y, z] in face.map(|index| points[index as usize]) {
+        for [x, y, z] in face.map(|index| exact(points[index as usize])) {
             let _ = writeln!(text, "  vertex {x:e} {y:e} {z:e}");
         }
         text += " endloop\nendfacet\n";

@@ -3,10 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::angles::{angles_of, orientation_of, turned_about};
 use super::describe::{Describe, Property, PropertyValue, scaled, turned};
 use super::mesh_source::{MeshFiles, MeshSource};
 use super::plane_piece::PlanePiece;
@@ -209,8 +210,17 @@ impl Mesh {
 
     /// Rotation.
     pub fn orientation(&self) -> DQuat {
-        let [x, y, z] = self.rotation.to_array().map(f64::to_radians);
-        DQuat::from_euler(EulerRot::ZYX, z, y, x)
+        orientation_of(self.rotation)
+    }
+
+    /// Turned about a point, by so many degrees about an axis of length 1: its angles count the rounds.
+    #[must_use]
+    pub fn turned_by(&self, about: DVec3, (axis, degrees): (DVec3, f64)) -> Self {
+        let by = DQuat::from_axis_angle(axis, degrees.to_radians());
+        Self {
+            rotation: turned_about(self.rotation, axis, degrees),
+            ..self.turned(about, by)
+        }
     }
 
     /// From the triangles' own coordinates to the world's.
@@ -231,34 +241,6 @@ impl Mesh {
     /// Its faces in the world; those without an area are none.
     pub fn pieces(&self) -> impl Iterator<Item = PlanePiece> {
         self.world_corners().filter_map(PlanePiece::between)
-    }
-}
-
-/// Degrees about x, then y, then z; of the two ways there are, each with any number of turns, the one nearer to
-/// those before.
-fn angles_of(orientation: DQuat, before: DVec3) -> DVec3 {
-    let (z, y, x) = orientation.to_euler(EulerRot::ZYX);
-    let one = DVec3::new(x.to_degrees(), y.to_degrees(), z.to_degrees());
-    let other = DVec3::new(one.x + 180.0, 180.0 - one.y, one.z + 180.0);
-    let [one, other] = [one, other].map(|angles| {
-        let turns = ((before - angles) / 360.0).round();
-        angles + turns * 360.0
-    });
-    let nearer = if one.distance_squared(before) <= other.distance_squared(before) {
-        one
-    } else {
-        other
-    };
-    DVec3::from(nearer.to_array().map(without_noise))
-}
-
-/// An angle of few digits as it was meant: -50, and not -50.00000000000001.
-fn without_noise(degrees: f64) -> f64 {
-    let round = (degrees * 1e9).round() / 1e9;
-    if (round - degrees).abs() < 1e-12 {
-        round
-    } else {
-        degrees
     }
 }
 

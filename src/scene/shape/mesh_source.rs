@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::files::{Marks, is_missing, marks_of, stays_inside};
-use crate::mesh::{Triangles, read_triangles};
+use crate::files::{Marks, is_missing, stays_inside};
+use crate::mesh::{Triangles, marks_of_mesh, read_triangles};
 
 /// Where the triangles of a mesh come from.
 #[derive(Clone, Debug)]
@@ -73,7 +73,7 @@ impl MeshSource {
         // What is not read is not looked at either.
         let allowed = folder.filter(|folder| stays_inside(folder, Path::new(path)));
         *own_folder = allowed.map(Path::to_owned);
-        *marks = allowed.and_then(|folder| marks_of(&folder.join(&path)));
+        *marks = allowed.and_then(|folder| marks_of_mesh(&folder.join(&path)));
         let read = match folder {
             None => Err(format!(
                 "cannot read {path}: the scene has no folder before it is saved"

@@ -5,6 +5,8 @@
 
 mod plane_piece;
 
+mod angles;
+
 mod describe;
 
 mod disc;

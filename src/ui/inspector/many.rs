@@ -46,6 +46,9 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     if join.hint(hint).on_disabled_hover_text(hint).clicked() {
         out.commands.push(Command::Join);
     }
+    if selected.len() <= MOST {
+        keys::of_values(ui, editor, &keys::keyed_values(scene, selected), out);
+    }
     ui.add_space(GRID);
     let mut own = UiRequests::default();
     match last.kind {
@@ -76,9 +79,6 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
             }
             other => other,
         });
-    }
-    if selected.len() <= MOST {
-        keys::of_values(ui, editor, &keys::keyed_values(scene, selected), out);
     }
 }
 

@@ -40,6 +40,8 @@ use crate::ui::hint::Hinted as _;
 const LEAST: f64 = 4.0;
 /// Room behind the last key, as a share of the time before it.
 const BEHIND: f64 = 0.08;
+/// How many times as much time the wheel shows as is needed: there is room for keys to come.
+const ROOM: f64 = 4.0;
 /// How much of its width labels of tracks have.
 const LABEL_SHARE: f32 = 0.14;
 
@@ -119,7 +121,7 @@ impl TimelinePanel {
         let end = shown_end(animation);
         self.chosen = self
             .chosen
-            .filter(|(_, last)| self.document == editor.documents() && *last <= end);
+            .filter(|(_, last)| self.document == editor.documents() && *last <= end * ROOM);
         self.document = editor.documents();
         self.frame = ui.cumulative_frame_nr();
         if self.chosen.is_some() || !ui.input(|input| input.pointer.any_down()) {
@@ -198,11 +200,13 @@ impl TimelinePanel {
             return;
         }
         let held = scale.time(at.x);
-        let seconds = ((last - start) / f64::from(factor)).clamp(LEAST / 20.0, end);
+        let most = end * ROOM;
+        let seconds = ((last - start) / f64::from(factor)).clamp(LEAST / 20.0, most);
         // What the pointer is over stays there.
         let start = held - (held - start) * seconds / (last - start) + by;
-        let start = start.clamp(0.0, (end - seconds).max(0.0));
-        self.chosen = (seconds < end).then_some((start, start + seconds));
+        let start = start.clamp(0.0, (most - seconds).max(0.0));
+        let is_all = start == 0.0 && seconds == end;
+        self.chosen = (!is_all).then_some((start, start + seconds));
     }
 }
 

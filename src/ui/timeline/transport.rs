@@ -4,11 +4,12 @@ use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, PopupCloseBehavior, RichText, Slider, Ui};
 
 use crate::animate::{longest_flight, stretched};
-use crate::editor::{Edit, Editor, Repeat, Time};
-use crate::scene::{Animation, FRAME_RATES, KeyPlace, Keys};
+use crate::editor::{Action, Edit, Editor, Repeat, Time, replaced_flight};
+use crate::scene::{Animation, FRAME_RATES, KeyPlace, Keys, MAX_SECONDS};
 use crate::ui::commands::{Command, with_key};
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
+use crate::ui::inspector::told_of_replaced;
 use crate::ui::number::{Field, lone};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
@@ -69,14 +70,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
     ui.label(RichText::new(times).monospace());
     let width = ui.content_rect().width();
     if width >= NARROW {
-        let frame = animation.frame_at(timeline.playhead);
-        let frames = match animation.frame_count() {
-            count if count < frame => format!("{frame:>4}, last {count}"),
-            count => format!("{frame:>4}/{count}"),
-        };
-        let hint = "Frame, from 1; the number that glint render --frame takes";
-        ui.label(RichText::new(frames).monospace().weak())
-            .hint(hint);
+        frame_field(ui, editor, out);
     }
     ui.separator();
     record_button(ui, editor, out);
@@ -113,6 +107,28 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
         ui.label(RichText::new(text).monospace().weak())
             .hint("Pictures a second on screen; a slow scene loses resolution, never time");
     }
+}
+
+/// Which frame is on show, of how many.
+fn frame_field(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+    let animation = &editor.scene().animation;
+    let before = animation.frame_at(editor.timeline().playhead) as f64;
+    let mut frame = before;
+    let last = animation.frame_at(MAX_SECONDS) as f64;
+    let field = Field {
+        name: "frame",
+        hint: "Frame, from 1; the number that glint render --frame takes. Behind the last one there is room for more keys",
+        unit: "",
+        default: 1.0,
+        range: 1.0..=last,
+        speed: Some(0.2),
+    };
+    lone(ui, &field, &mut frame);
+    if frame != before {
+        out.time(Time::Seek(animation.time_of(frame.round() as u64)));
+    }
+    let count = format!("/{}", animation.frame_count());
+    ui.label(RichText::new(count).monospace().weak());
 }
 
 fn through_shot(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
@@ -271,21 +287,30 @@ pub fn clock(seconds: f64) -> String {
     )
 }
 
-/// What the ready-made flight of this name replaces, in words; `None` if nothing.
-fn replaced_flight(name: &str, animation: &Animation) -> Option<String> {
-    let keys = counted(animation.keys.len(), "key");
-    let recording = match animation.take {
-        Some(_) => " and the recording",
-        None => "",
+/// Copies of the selected keys, the earliest at the playhead; nothing where no keys are selected.
+fn copied_keys(editor: &Editor) -> Vec<Action> {
+    let (animation, places) = (&editor.scene().animation, editor.selection().keys());
+    let Some((first, _)) = animation.span_of(places) else {
+        return Vec::new();
     };
-    let words =
-        format!("{name} has replaced {keys} of the camera{recording}; undo brings them back");
-    (!animation.keys.is_empty()).then_some(words)
+    let later = editor.shown_time() - first;
+    if later == 0.0 {
+        let told = "Copies of keys go to the playhead: move it to where they shall be";
+        return vec![Action::Tell(told.to_owned())];
+    }
+    let (changed, new) = animation.with_moved(places, later, true);
+    let added = places.len() + animation.places().len();
+    let replaced = added.saturating_sub(changed.places().len());
+    let made = [
+        Action::Edit(Edit::animation(changed, "Copy keys")),
+        Action::Select(new.into()),
+    ];
+    let told = told_of_replaced(replaced).map(Action::Tell);
+    made.into_iter().chain(told).collect()
 }
 
 /// What a command of the timeline comes to, where it makes sense; nothing of others.
-pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action> {
-    use crate::editor::Action;
+pub fn actions(command: &Command, editor: &Editor) -> Vec<Action> {
     let animation = &editor.scene().animation;
     let time = editor.shown_time();
     // The playhead goes to the frame nearest to a key, which may be before or behind it.
@@ -320,6 +345,7 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<crate::editor::Action>
         Command::StopRecording => timed(Time::Stop),
         Command::SelectKeys => vec![Action::Select(animation.places().into())],
         Command::LookThrough => timed(Time::LookThrough(!editor.looks_through())),
+        Command::Duplicate => copied_keys(editor),
         Command::AddKey => {
             let view = editor.shown().camera.clone();
             let (changed, place) = animation.with_key(time, view);

@@ -1,7 +1,9 @@
 //! A handle that is held: what pulling it comes to.
 
+use std::cell::Cell;
+
 use egui::{Painter, Pos2};
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
 use super::gizmo::{AXES, Handle, LENGTH, RING, label};
 use super::screen::Screen;
@@ -27,6 +29,8 @@ pub struct Grip {
     from: (Pos2, DVec3),
     /// What is typed in place of being pointed at.
     pub typed: String,
+    /// By how many degrees it was turned last, rounds included.
+    turned: Cell<f64>,
 }
 
 /// How the pointer is meant.
@@ -50,6 +54,7 @@ impl Grip {
             middle,
             from: (at, middle),
             typed: String::new(),
+            turned: Cell::default(),
         };
         grip.from.1 = grip.pointed_at(screen, at)?;
         Some(grip)
@@ -63,6 +68,7 @@ impl Grip {
             before,
             from: (at, point),
             typed: String::new(),
+            turned: Cell::default(),
         })
     }
 
@@ -179,7 +185,7 @@ impl Grip {
             Handle::Normal => self.face(screen, pull),
             Handle::Turn(axis) => {
                 let degrees = typed.map_or_else(|| self.degrees(screen, axis, pull), Some)?;
-                let by = DQuat::from_axis_angle(AXES[axis].0, degrees.to_radians());
+                let by = (AXES[axis].0, degrees);
                 let edits = self
                     .before
                     .iter()
@@ -236,6 +242,10 @@ impl Grip {
             .dot(from.cross(to))
             .atan2(from.dot(to))
             .to_degrees();
+        // Pulled around more than half of it, it goes on.
+        let rounds = ((self.turned.get() - degrees) / 360.0).round();
+        let degrees = degrees + rounds * 360.0;
+        self.turned.set(degrees);
         let step = if pull.snaps { DEGREES } else { 0.5 };
         Some((degrees / step).round() * step)
     }

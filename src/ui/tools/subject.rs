@@ -106,9 +106,16 @@ impl Subject {
     }
 
     /// The change that turns it about a point.
-    pub fn turned(&self, about: DVec3, by: DQuat) -> Edit {
+    pub fn turned(&self, about: DVec3, (axis, degrees): (DVec3, f64)) -> Edit {
+        let by = DQuat::from_axis_angle(axis, degrees.to_radians());
         match self {
-            Self::Object(_, object) => self.reshaped(object.shape.turned(about, by), "turn"),
+            Self::Object(_, object) => {
+                let turned = match &object.shape {
+                    Shape::Mesh(mesh) => mesh.turned_by(about, (axis, degrees)).into(),
+                    shape => shape.turned(about, by),
+                };
+                self.reshaped(turned, "turn")
+            }
             Self::Light(_, light) => {
                 self.moved(by * (light.position - about) + about - light.position)
             }

@@ -11,6 +11,7 @@ use glint::scene::{Sampling, Scene, Shape, Sphere};
 
 use super::tools::{center, click, drop_at, place, pull};
 use crate::harness::{CTRL, EditorHarness, radius};
+use crate::timeline::animation;
 
 #[test]
 fn a_drag_changes_the_radius_and_one_undo_brings_it_back() {
@@ -384,7 +385,7 @@ fn a_typed_position_moves_a_group_as_one_and_its_name_is_the_groups() {
 
 #[test]
 fn a_group_gets_keys_as_one_and_moves_from_one_to_the_other() {
-    let mut harness = EditorHarness::new();
+    let mut harness = animation(&[(0.0, 0.0), (2.0, 0.0)]);
     let [one, other] = both_balls(&mut harness);
     harness.press(CTRL, Key::G);
     // One of them has a key there, which stays.

@@ -45,6 +45,71 @@ fn the_second_key_goes_where_there_was_no_time_yet() {
 }
 
 #[test]
+fn a_view_that_was_flown_to_is_kept_for_the_next_key() {
+    let mut harness = EditorHarness::new();
+    harness.press(Modifiers::NONE, Key::K);
+    let fly = |harness: &mut EditorHarness| {
+        harness.window.key_down(Key::D);
+        (0..30).for_each(|_| harness.window.step());
+        harness.window.key_up(Key::D);
+        harness.settle();
+        harness.editor().shown().camera.clone()
+    };
+    let seek = |harness: &mut EditorHarness, seconds: f32| {
+        let at = on_ruler(harness, seconds);
+        harness.window.drag_at(at);
+        harness.window.drop_at(at);
+        harness.settle();
+    };
+    let flown = fly(&mut harness);
+    seek(&mut harness, 3.0);
+    assert_eq!(harness.editor().shown().camera, flown);
+    harness.press(Modifiers::NONE, Key::K);
+    assert_eq!(harness.scene().animation.keys[1].value, flown);
+    // On its way, the shot is what is looked at.
+    fly(&mut harness);
+    seek(&mut harness, 1.0);
+    assert!(harness.editor().looks_through());
+}
+
+#[test]
+fn a_value_that_is_set_on_a_key_between_frames_is_seen() {
+    let mut harness = window(&[0.0, 0.34, 1.02]);
+    harness.press(Modifiers::NONE, Key::CloseBracket);
+    assert!((harness.editor().shown_time() - 0.3).abs() < 1e-9);
+    harness.window.key_down(Key::D);
+    (0..30).for_each(|_| harness.window.step());
+    harness.window.key_up(Key::D);
+    harness.settle();
+    let flown = harness.editor().shown().camera.clone();
+    harness.press(Modifiers::NONE, Key::K);
+    assert_eq!(
+        times(&harness).len(),
+        3,
+        "in place of the one that is there"
+    );
+    harness.press(Modifiers::NONE, Key::Period);
+    harness.press(Modifiers::NONE, Key::Comma);
+    assert_eq!(harness.editor().shown().camera, flown);
+}
+
+#[test]
+fn selected_keys_are_copied_to_the_playhead_and_frames_are_typed() {
+    let mut harness = window(&[0.0, 1.0]);
+    harness.type_into("frame", "31");
+    assert!((harness.editor().shown_time() - 3.0).abs() < 1e-9);
+    harness.click("Key 2");
+    harness.press(CTRL, Key::D);
+    assert_eq!(times(&harness), [0.0, 1.0, 3.0]);
+    assert_eq!(harness.editor().undo_label(), Some("Copy keys"));
+    harness.press(CTRL, Key::D);
+    assert_eq!(times(&harness), [0.0, 1.0, 3.0]);
+    harness
+        .window
+        .get_by_label_contains("move it to where they shall be");
+}
+
+#[test]
 fn brackets_go_from_key_to_key_wherever_those_are_between_frames() {
     let mut harness = window(&[0.0, 0.34, 0.36, 1.02, 1.98]);
     let mut shown = vec![harness.editor().shown_time()];
@@ -142,7 +207,8 @@ fn a_key_takes_the_place_of_one_in_the_same_frame() {
         harness.press(Modifiers::NONE, Key::CloseBracket);
         harness.press(Modifiers::NONE, Key::K);
     }
-    assert_eq!(times(&harness), [0.0, 0.46, 1.04, 2.0]);
+    // In their frames, where the view was put into them.
+    assert_eq!(times(&harness), [0.0, 0.5, 1.0, 2.0]);
     harness.press(Modifiers::NONE, Key::Period);
     harness.press(Modifiers::NONE, Key::K);
     assert_eq!(harness.scene().animation.keys.len(), 5);

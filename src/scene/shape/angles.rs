@@ -1,0 +1,74 @@
+//! The angles by which meshes are turned.
+
+use glam::{DQuat, DVec3, EulerRot};
+
+/// Most degrees of one of the steps in which a turn is followed.
+const STEP: f64 = 90.0;
+/// Most of those steps: who turns farther means no number of rounds.
+const MOST_STEPS: f64 = 4000.0;
+
+/// The turn by degrees about x, then y, then z.
+pub fn orientation_of(angles: DVec3) -> DQuat {
+    let [x, y, z] = angles.to_array().map(f64::to_radians);
+    DQuat::from_euler(EulerRot::ZYX, z, y, x)
+}
+
+/// Degrees about x, then y, then z; of the two ways there are, each with any number of turns, the one nearer to
+/// those before.
+pub fn angles_of(orientation: DQuat, before: DVec3) -> DVec3 {
+    let (z, y, x) = orientation.to_euler(EulerRot::ZYX);
+    let one = DVec3::new(x.to_degrees(), y.to_degrees(), z.to_degrees());
+    let other = DVec3::new(one.x + 180.0, 180.0 - one.y, one.z + 180.0);
+    let [one, other] = [one, other].map(|angles| {
+        let turns = ((before - angles) / 360.0).round();
+        angles + turns * 360.0
+    });
+    let nearer = if one.distance_squared(before) <= other.distance_squared(before) {
+        one
+    } else {
+        other
+    };
+    DVec3::from(nearer.to_array().map(without_noise))
+}
+
+/// Those angles after a turn by so many degrees about an axis of length 1, however many rounds that is.
+pub fn turned_about(angles: DVec3, axis: DVec3, degrees: f64) -> DVec3 {
+    let steps = (degrees.abs() / STEP).ceil().clamp(1.0, MOST_STEPS) as u32;
+    let start = orientation_of(angles);
+    (1..=steps).fold(angles, |before, step| {
+        let degrees = degrees * f64::from(step) / f64::from(steps);
+        let by = DQuat::from_axis_angle(axis, degrees.to_radians());
+        angles_of(by * start, before)
+    })
+}
+
+/// An angle of few digits as it was meant: -50, and not -50.00000000000001.
+fn without_noise(degrees: f64) -> f64 {
+    let round = (degrees * 1e9).round() / 1e9;
+    if (round - degrees).abs() < 1e-12 {
+        round
+    } else {
+        degrees
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounds_are_counted() {
+        let level = DVec3::new(0.0, 20.0, 0.0);
+        for degrees in [270.0, 360.0, -1000.0, 15.0] {
+            let turned = turned_about(level, DVec3::Y, degrees);
+            let expected = DVec3::new(0.0, 20.0 + degrees, 0.0);
+            assert!((turned - expected).length() < 1e-9, "{degrees}: {turned}");
+        }
+        // About an axis of its own it goes the way of its turn, whatever that is in angles.
+        let angles = DVec3::new(12.0, 20.0, -40.0);
+        let axis = DVec3::new(0.6, 0.0, -0.8);
+        let expected = DQuat::from_axis_angle(axis, 4.0) * orientation_of(angles);
+        let turned = orientation_of(turned_about(angles, axis, 4.0_f64.to_degrees()));
+        assert!(turned.dot(expected).abs() > 1.0 - 1e-12);
+    }
+}
