@@ -5,7 +5,7 @@ use std::path::{PathBuf, absolute};
 use std::sync::Arc;
 use std::time::Instant;
 
-use clap::Args;
+use clap::{Args, ValueHint};
 use indicatif::ProgressBar;
 
 use super::args::{SizeArgs, ThreadsArgs};
@@ -31,11 +31,11 @@ struct What {
     #[arg(long, value_name = "PATTERN", default_value = "rayTrace%d", value_parser = Pattern::parse)]
     name: Pattern,
     /// Format of the frames: ppm, png or exr (the same numbers, 0–1, not rounded)
-    #[arg(long, default_value = "ppm", value_parser = format_of)]
+    #[arg(long, default_value = "ppm", value_parser = format_of, value_hint = ValueHint::Other)]
     format: Format,
     #[command(flatten)]
     size: SizeArgs,
-    #[arg(long, value_name = "METHOD", value_parser = Sampling::parse, help = antialias_help())]
+    #[arg(long, value_name = "METHOD", value_parser = Sampling::parse, help = antialias_help(), value_hint = ValueHint::Other)]
     antialias: Option<Sampling>,
 }
 

@@ -66,7 +66,7 @@ struct CliArgs {
     /// Write a picture of the window once it is complete (PNG or PPM), and quit
     #[arg(long, value_name = "IMAGE")]
     screenshot: Option<PathBuf>,
-    /// Open the window of exports first
+    /// With --screenshot: open the window of exports first
     #[arg(long, requires = "screenshot")]
     exports: bool,
     /// Open the editor until its first traced picture is on the screen, print as JSON how long that took and how much
@@ -76,7 +76,7 @@ struct CliArgs {
     /// Put Glint into the menu of the desktop, with its icon, manual and shell completions, for this user
     #[arg(long, exclusive = true)]
     install_desktop: bool,
-    /// Select the object or light of this name first; may be given more than once
+    /// With --screenshot: select the object or light of this name first; may be given more than once
     #[arg(long, value_name = "NAME", requires = "screenshot")]
     select: Vec<String>,
     #[command(subcommand)]

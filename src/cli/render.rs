@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use clap::{Args, ValueEnum};
+use clap::{Args, ValueEnum, ValueHint};
 use serde::Serialize;
 
 use super::args::{MAX_TIMES, SizeArgs, ThreadsArgs, whole};
@@ -46,12 +46,12 @@ pub struct RenderArgs {
     #[arg(long, value_name = "TIME", value_parser = time, allow_negative_numbers = true, conflicts_with_all = ["antialias", "show"])]
     budget: Option<Duration>,
     /// Instruction set of the tracer; all give the same picture [default: the widest of this processor]
-    #[arg(long, value_name = "LEVEL", value_parser = lanes)]
+    #[arg(long, value_name = "LEVEL", value_parser = lanes, value_hint = ValueHint::Other)]
     lanes: Option<Level>,
     /// Frame of the animation, from 1 [default: the scene's own camera and values]
     #[arg(long, value_name = "N", value_parser = frame)]
     frame: Option<u64>,
-    #[arg(long, value_name = "ASPECT", value_parser = aspect, help = aspect_help())]
+    #[arg(long, value_name = "ASPECT", value_parser = aspect, help = aspect_help(), value_hint = ValueHint::Other)]
     show: Option<Aspect>,
     #[command(flatten)]
     threads: ThreadsArgs,

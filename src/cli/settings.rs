@@ -1,6 +1,6 @@
 //! Flags for the tracer's settings, made from the scene's own list.
 
-use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
+use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches, ValueHint};
 
 use crate::scene::{Method, Render, Setting, VisitSetting};
 
@@ -33,6 +33,8 @@ impl VisitSetting for Flags {
             .value_name("METHOD")
             .long_help(format!("{help}{}", lines.collect::<String>()))
             .help(help)
+            // Shells offer no files for it.
+            .value_hint(ValueHint::Other)
             .value_parser(|id: &str| M::parse(id).map(|_| id.to_owned()));
         self.0 = std::mem::take(&mut self.0).arg(arg);
     }

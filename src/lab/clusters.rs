@@ -8,11 +8,13 @@ use crate::plan::Model;
 
 /// Errors that differ by less are equal.
 const SAME_ERROR: f64 = 0.02;
+/// Rays of a pixel that differ by less are equal.
+const SAME_RAYS: f64 = 0.02;
 /// Times that differ by less are equal, however little the runs differ.
 const SAME_TIME: f64 = 0.08;
 
 /// Groups of measurements, by their places, that differ neither in time nor in error by more than the runs of
-/// each do, certain ones and doubtful ones apart; the first of a group is the first of the list. What is not fully
+/// each do, nor in the rays that they take; certain ones and doubtful ones apart; the first of a group is the first of the list. What is not fully
 /// measured is in no group.
 pub fn clusters(study: &Study) -> Vec<Vec<usize>> {
     let known = |dot: &Measurement| Some((dot.timing()?, dot.metrics?));
@@ -20,7 +22,14 @@ pub fn clusters(study: &Study) -> Vec<Vec<usize>> {
     for (place, dot) in study.measurements.iter().enumerate() {
         let Some(figures) = known(dot) else { continue };
         // One that is certain does not stand behind one that is not.
-        let is_like = |place: usize| study.measurements[place].is_doubtful() == dot.is_doubtful();
+        let is_like = |place: usize| {
+            let other = &study.measurements[place];
+            let (most, least) = (
+                other.rays_per_pixel.max(dot.rays_per_pixel),
+                other.rays_per_pixel.min(dot.rays_per_pixel),
+            );
+            other.is_doubtful() == dot.is_doubtful() && most - least <= SAME_RAYS * most
+        };
         match clusters
             .iter_mut()
             .find(|(first, cluster)| is_like(cluster[0]) && is_same(*first, figures))

@@ -5,7 +5,12 @@
 
 use glam::DVec3;
 
-use crate::scene::{ColorPack, Frame, Scene, Shape, coincidences, unit};
+use crate::image::render;
+use crate::plan::RenderRequest;
+use crate::scene::{
+    Camera, ColorPack, Frame, Projection, Sampling, Scene, Shape, coincidences, unit,
+};
+use crate::trace::RenderControl;
 
 /// Roundings of the largest coordinate by which a ray must have left a surface to meet it again.
 const LEFT: f64 = 1e-10;
@@ -92,6 +97,27 @@ impl Lit {
 /// meshes are flat here.
 pub fn explain(scene: &Scene, origin: DVec3, direction: DVec3) -> Sight {
     look(scene, (origin, direction), 0)
+}
+
+/// The colour that the picture has where this ray goes, linear 0–1, by the formulas and in the precision that the scene
+/// has chosen, without what clean edges mix into it; `None` where nothing is drawn.
+pub fn drawn(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<DVec3> {
+    let camera = Camera {
+        position: origin,
+        look_at: direction,
+        up: direction.any_orthogonal_vector(),
+        projection: Projection::Perspective,
+        ..scene.camera.clone()
+    };
+    let mut alone = Scene {
+        camera,
+        ..scene.clone()
+    };
+    alone.render.antialias = Sampling::Centres;
+    let request = RenderRequest::of(&alone, 1, 1);
+    let (picture, _) = render(&alone, &request, &RenderControl::default())?;
+    let [red, green, blue, _] = picture.pixels.first()?.map(f64::from);
+    Some(linear(DVec3::new(red, green, blue)))
 }
 
 /// The object that a ray with a unit direction meets first, by its place in the scene's list, and how far away; nothing
@@ -311,105 +337,4 @@ fn meet_triangle([a, b, c]: [DVec3; 3], origin: DVec3, direction: DVec3) -> Opti
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::image::render;
-    use crate::plan::RenderRequest;
-    use crate::scene::{EXAMPLES, Precision, Shape};
-    use crate::trace::RenderControl;
-
-    const SIDE: usize = 40;
-
-    /// Channels that differ by more than a level from the picture of the tracer.
-    fn differences(scene: &Scene) -> usize {
-        let request = RenderRequest {
-            precision: Precision::Double,
-            ..RenderRequest::sized(SIDE as u32, SIDE as u32)
-        };
-        let picture = render(scene, &request, &RenderControl::default());
-        let picture = picture.expect("nobody stops it").0;
-        let framing = scene.camera.framing().expect("a basis");
-        let mut count = 0;
-        for (index, pixel) in picture.pixels.iter().enumerate() {
-            let middle = |place: usize| (place as f64 + 0.5) / SIDE as f64 - 0.5;
-            let (x, y) = (middle(index % SIDE), -middle(index / SIDE));
-            let (origin, direction) = framing.ray([x, y]);
-            let color = explain(scene, origin, direction).color() * 255.0;
-            let off = color.to_array().into_iter().zip(pixel);
-            count += off
-                .filter(|(channel, level)| (channel - f64::from(**level)).abs() > 0.51)
-                .count();
-        }
-        count
-    }
-
-    #[test]
-    fn the_terms_add_up_to_what_the_tracer_draws() {
-        for example in &EXAMPLES {
-            let mut scene = example.document().scene;
-            // A ray against each of 24,000 faces takes long.
-            if scene.faces() > 1000 {
-                continue;
-            }
-            scene.render.reflection_limit = 3;
-            assert_eq!(differences(&scene), 0, "{}", example.name);
-        }
-        let mut wrong = Scene::demo();
-        wrong.lights[0].intensity += 0.05;
-        let Shape::Sphere(ball) = &mut wrong.objects[0].shape else {
-            panic!("a ball");
-        };
-        ball.radius += 1.0;
-        assert_eq!(differences(&wrong), 0);
-    }
-
-    #[test]
-    fn what_stands_before_a_light_is_named() {
-        let scene = Scene::demo();
-        // Sphere 1 over the floor, Light 1 above to the left.
-        let lamp = scene.lights[0].position;
-        let ball = scene.objects[0].shape.position();
-        let towards = (ball - lamp).normalize();
-        let floor = lamp + towards * (lamp.y / -towards.y);
-        let eye = floor + DVec3::new(0.0, 1.0, 0.0);
-        let Sight::Surface(lit) = explain(&scene, eye, DVec3::NEG_Y) else {
-            panic!("the floor");
-        };
-        assert_eq!(lit.object, "Plane");
-        let first = &lit.lights[0];
-        assert_eq!(
-            (first.light.as_str(), first.blocker.as_deref()),
-            ("Light 1", Some("Sphere 1"))
-        );
-        assert_eq!((first.diffuse, first.specular), (DVec3::ZERO, DVec3::ZERO));
-        assert!(lit.mirror.is_some());
-    }
-
-    #[test]
-    fn of_what_fills_one_surface_the_first_is_named() {
-        let mut scene = Scene::demo();
-        scene.objects.retain(|object| object.name == "Plane");
-        let normal = DVec3::new(0.3, 1.0, 0.2);
-        let plane = crate::scene::Plane {
-            point: DVec3::ZERO,
-            normal,
-        };
-        scene.objects[0].shape = plane.into();
-        let (along, across) = (normal.cross(DVec3::X), normal.cross(normal.cross(DVec3::X)));
-        let [a, b, c] = [along, across, -along - across].map(|corner| corner * 50.0);
-        let piece = crate::scene::Triangle { a, b, c };
-        scene
-            .objects
-            .push(crate::scene::Object::new("Piece", "light", piece));
-        for place in 0..40 {
-            let place = f64::from(place);
-            let target = along * (place * 0.7 - 10.0) + across * (place * 0.3);
-            let origin = DVec3::new(3.0, 170.0, 11.0 + place);
-            let direction = (target - origin).normalize();
-            let Sight::Surface(lit) = explain(&scene, origin, direction) else {
-                panic!("the plane is met");
-            };
-            assert_eq!(lit.object, "Plane");
-        }
-    }
-}
+mod tests;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::candidates::{OWN, POVRAY};
 use super::measure::ErrorMetrics;
-use super::study::{Measurement, REFERENCE_SAMPLES, Reference, Study};
+use super::study::{REFERENCE_SAMPLES, Reference, Study};
 use crate::export::{fingerprint, save_image, write_text};
 use crate::files::{make_folder, remove_oldest};
 use crate::image::{Film, Format, Image};
@@ -26,6 +26,9 @@ struct Kept {
     /// What the errors are measured against: with another, they are others.
     reference_samples: u32,
     reference_rmse: f64,
+    /// The scene's own settings, if they were measured as a way of their own.
+    #[serde(default)]
+    own: Option<Render>,
     dots: Vec<KeptDot>,
 }
 
@@ -57,9 +60,11 @@ fn place(folder: &Path, scene: &Scene) -> Option<(PathBuf, PathBuf)> {
     Some((file("ron"), file("png")))
 }
 
-/// Whether a dot means the same later: the scene's own settings may then be others.
-fn is_lasting(dot: &Measurement) -> bool {
-    dot.candidate.name != OWN
+/// The scene's own settings, if they are a way of their own: later they may be others.
+fn own_of(study: &Study) -> Option<Render> {
+    let mut dots = study.measurements.iter();
+    let own = dots.find(|dot| dot.candidate.name == OWN)?;
+    Some(own.candidate.render.clone())
 }
 
 /// Writes a study that is done, its pictures below each other. One that cannot be kept is measured again.
@@ -73,7 +78,7 @@ fn try_keep(study: &Study, machine: &str, folder: &Path) -> Option<()> {
     let reference = study.reference.as_ref()?;
     let mut all = Image::clone(&reference.picture);
     let mut dots = Vec::new();
-    for dot in study.measurements.iter().filter(|dot| is_lasting(dot)) {
+    for dot in &study.measurements {
         let (metrics, picture) = (dot.metrics?, dot.picture.as_ref()?);
         all.pixels.extend(&picture.pixels);
         dots.push(KeptDot {
@@ -94,6 +99,7 @@ fn try_keep(study: &Study, machine: &str, folder: &Path) -> Option<()> {
         height,
         reference_samples: REFERENCE_SAMPLES,
         reference_rmse: reference.rmse,
+        own: own_of(study),
         dots,
     };
     make_folder(folder).ok()?;
@@ -111,8 +117,11 @@ pub fn kept(scene: &Arc<Scene>, side: u32, machine: &str, folder: &Path) -> Opti
     if kept.dots.last().is_some_and(|dot| dot.name == POVRAY) {
         study = study.with_povray();
     }
-    study.measurements.retain(is_lasting);
+    let is_own_same = own_of(&study) == kept.own;
+    let counts = |name: &str| is_own_same || name != OWN;
+    study.measurements.retain(|dot| counts(&dot.candidate.name));
     let names = kept.dots.iter().map(|dot| &dot.name);
+    let names = names.filter(|name| counts(name));
     let is_same = names.eq(study.measurements.iter().map(|dot| &dot.candidate.name))
         && kept.machine == machine
         && kept.reference_samples == REFERENCE_SAMPLES
@@ -134,7 +143,12 @@ pub fn kept(scene: &Arc<Scene>, side: u32, machine: &str, folder: &Path) -> Opti
         rmse: kept.reference_rmse,
         picture: images.next()?,
     });
-    for (dot, kept) in study.measurements.iter_mut().zip(kept.dots) {
+    if images.len() < kept.dots.len() {
+        return None;
+    }
+    let figures = kept.dots.into_iter().zip(images);
+    let figures = figures.filter(|(dot, _)| counts(&dot.name));
+    for (dot, (kept, picture)) in study.measurements.iter_mut().zip(figures) {
         dot.metrics = Some(ErrorMetrics {
             rmse: kept.rmse,
             max: kept.max,
@@ -143,7 +157,7 @@ pub fn kept(scene: &Arc<Scene>, side: u32, machine: &str, folder: &Path) -> Opti
         dot.rays_per_pixel = kept.rays_per_pixel;
         dot.times = kept.times;
         dot.lanes = kept.lanes;
-        dot.picture = Some(images.next()?);
+        dot.picture = Some(picture);
     }
     Some(study)
 }
@@ -151,6 +165,7 @@ pub fn kept(scene: &Arc<Scene>, side: u32, machine: &str, folder: &Path) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Sampling, SphereMethod};
     use crate::trace::RenderControl;
 
     #[test]
@@ -178,6 +193,21 @@ mod tests {
         let mut other = Scene::demo();
         other.ambient_intensity += 0.01;
         assert!(kept(&Arc::new(other), 16, "here", &folder).is_none());
+        // Settings of its own are there again as long as the scene has them.
+        let mut own = Scene::clone(&scene);
+        own.render.sphere = SphereMethod::Classic;
+        own.render.antialias = Sampling::Grid(3);
+        let own = Arc::new(own);
+        let mut study = Study::of_side(Arc::clone(&own), 16);
+        while study.step(&RenderControl::default()) {}
+        keep(&study, "here", &folder);
+        let again = kept(&own, 16, "here", &folder).expect("it was kept");
+        assert!(own_of(&again).is_some());
+        assert_eq!(again.costs(), study.costs());
+        assert_eq!(pictures(&again), pictures(&study));
+        let without = kept(&scene, 16, "here", &folder).expect("it was kept");
+        assert!(own_of(&without).is_none());
+        assert_eq!(without.progress(), 1.0);
         let (_, pictures) = place(&folder, &scene).expect("files");
         std::fs::write(pictures, "no picture").expect("written");
         assert!(kept(&scene, 16, "here", &folder).is_none());

@@ -38,7 +38,7 @@ mod figure;
 pub use account::account;
 pub use candidates::{Candidate, Family, candidates};
 pub use clusters::{clusters, costs_of_choices, costs_of_dots};
-pub use explain::{Lit, Share, Sight, explain, first_met, meet};
+pub use explain::{Lit, Share, Sight, drawn, explain, first_met, meet};
 pub use figure::Figure;
 pub use finding::finding;
 pub use growth::{Cost, Crowd, Growth, Way};

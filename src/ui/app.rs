@@ -354,7 +354,7 @@ impl eframe::App for App {
         }
         self.finder
             .show(&ctx, &self.editor, &self.files.recent, &mut out);
-        self.why.show(&ctx, &self.editor);
+        self.why.show(&ctx, &self.editor, self.layout.aspect);
         // Still pictures are looked at, not flown through: they would be gone.
         let (place, flown) = picture;
         let is_still = self.editor.mode == Mode::HighRes || self.lab.is_looking();

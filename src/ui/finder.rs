@@ -61,7 +61,7 @@ impl Found {
 }
 
 /// What menus and buttons call commands whose names here say more, in small letters.
-const ALSO: [(Command, &str); 15] = [
+const ALSO: [(Command, &str); 23] = [
     (Command::Ask(Ask::SaveScene), "save as"),
     (Command::Ask(Ask::SaveImage), "save image render"),
     (Command::HighRes, "render"),
@@ -73,7 +73,15 @@ const ALSO: [(Command, &str); 15] = [
     (Command::FrameSelected, "frame what is selected zoom to"),
     (Command::FrameAll, "frame everything zoom out"),
     (Command::Timeline, "panel"),
-    (Command::Lab, "panel"),
+    (Command::Lab, "panel measure stability chart"),
+    (Command::PictureAlone, "picture alone fullscreen"),
+    (Command::ViewFront, "look from the front"),
+    (Command::ViewRight, "look from the right"),
+    (Command::ViewTop, "look from the top"),
+    (Command::MoveUp, "move up in the list"),
+    (Command::MoveDown, "move down in the list"),
+    (Command::SelectSamePack, "select all with this pack"),
+    (Command::Shortcuts, "help keys shortcuts"),
     (Command::Zoom(Zoom::In), "zoom in"),
     (Command::Zoom(Zoom::Out), "zoom out"),
     (Command::Zoom(Zoom::Usual), "reset zoom"),
@@ -193,7 +201,7 @@ fn finds(ui: &Ui, (editor, recent): (&Editor, &[PathBuf]), text: &str) -> Vec<Fi
     let mut finds: Vec<Find> = named
         .filter(|find| has(&format!("{} {}", find.name, also(find))))
         .collect();
-    finds.extend(settings(editor).filter(|find| has(&find.name)));
+    finds.extend(settings(editor).filter(|find| has(&format!("{} {}", find.name, find.aside))));
     // There may be very many.
     let room = MOST.saturating_sub(finds.len());
     finds.extend(things(editor, has).take(room));

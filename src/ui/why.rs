@@ -7,22 +7,31 @@ use glam::DVec3;
 
 use super::theme::{GRID, ROW, palette};
 use crate::editor::Editor;
-use crate::lab::{Lit, Share, Sight, explain};
-use crate::scene::{Scene, format_number};
+use crate::lab::{Lit, Share, Sight, drawn, explain};
+use crate::scene::{Aspect, Scene, format_number};
 use crate::worker::Background;
 
 /// Radius of the ring around the place, in points.
 const RING: f32 = 7.0;
 /// Decimals of the numbers.
 const DECIMALS: usize = 3;
+/// What a picture of 8 bits may be off by.
+const SEEN: f64 = 1.01 / 255.0;
 
 /// What is asked, and the answer.
 #[derive(Default)]
 pub struct Why {
     /// The ray, from where and where to, and the scene that it was sent into last.
     asked: Option<(DVec3, DVec3, Arc<Scene>)>,
-    answer: Option<Sight>,
-    waiting: Background<Sight>,
+    answer: Option<Answer>,
+    waiting: Background<Answer>,
+}
+
+/// What a ray sees, and what the picture has there.
+#[derive(Debug)]
+struct Answer {
+    sight: Sight,
+    drawn: Option<DVec3>,
 }
 
 impl Why {
@@ -30,7 +39,10 @@ impl Why {
     pub fn ask(&mut self, scene: &Arc<Scene>, (origin, direction): (DVec3, DVec3)) {
         self.asked = Some((origin, direction, Arc::clone(scene)));
         let scene = Arc::clone(scene);
-        let look = move || explain(&scene, origin, direction);
+        let look = move || Answer {
+            sight: explain(&scene, origin, direction),
+            drawn: drawn(&scene, origin, direction),
+        };
         self.waiting = Background::start("glint-why", look);
     }
 
@@ -41,7 +53,8 @@ impl Why {
 
     /// Marks the place that the answer is about, if it is on something; `on_screen` finds it.
     pub fn mark(&self, painter: &Painter, on_screen: impl FnOnce(DVec3) -> Option<Pos2>) {
-        if let Some(Sight::Surface(lit)) = &self.answer
+        if let Some(answer) = &self.answer
+            && let Sight::Surface(lit) = &answer.sight
             && let Some(at) = on_screen(lit.point)
         {
             let colors = palette(painter.ctx());
@@ -69,7 +82,7 @@ impl Why {
     }
 
     /// Shows the answer, once it is there, for the scene as it is now; as it was, while something moves.
-    pub fn show(&mut self, ctx: &Context, editor: &Editor) {
+    pub fn show(&mut self, ctx: &Context, editor: &Editor, aspect: Aspect) {
         if let Some(Ok(answer)) = self.waiting.take() {
             self.answer = Some(answer);
         }
@@ -87,12 +100,31 @@ impl Why {
             .default_width(480.0)
             .default_pos([300.0, 60.0])
             .show(ctx, |ui| {
-                egui::ScrollArea::vertical().show(ui, |ui| show(ui, answer, 0));
+                egui::ScrollArea::vertical().show(ui, |ui| {
+                    if aspect != Aspect::default() {
+                        ui.weak(
+                            "Of the picture with everything, whatever the view shows of it now.",
+                        );
+                    }
+                    show(ui, &answer.sight, 0);
+                    show_drawn(ui, answer);
+                });
             });
         if !is_open {
             self.close();
         }
     }
+}
+
+/// Says so where the picture has something else there.
+fn show_drawn(ui: &mut Ui, answer: &Answer) {
+    let Some(drawn) = answer.drawn else { return };
+    if (drawn - answer.sight.color()).abs().max_element() <= SEEN {
+        return;
+    }
+    ui.separator();
+    term(ui, "is what the picture has there", drawn);
+    ui.weak("The terms are those of exact formulas, and of flat faces: other formulas, single precision or a mesh that is shaded as curved may come to something else.");
 }
 
 fn show(ui: &mut Ui, sight: &Sight, depth: usize) {
@@ -126,7 +158,9 @@ fn show_surface(ui: &mut Ui, lit: &Lit, depth: usize) {
         place(lit.normal)
     ));
     if lit.is_smooth {
-        ui.weak("The picture shades this mesh as curved: its numbers are nearly these, of the flat face.");
+        ui.weak(
+            "The picture shades this mesh as curved, and these are the numbers of the flat face.",
+        );
     }
     ui.indent(("why", depth), |ui| {
         term(ui, "ambient intensity · ambient", lit.ambient);

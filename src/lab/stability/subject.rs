@@ -71,6 +71,14 @@ impl Subject {
         }
     }
 
+    /// Whether it is tried in single precision alone.
+    pub fn is_of_single_precision(self) -> bool {
+        matches!(
+            self,
+            Self::Sphere | Self::Triangle | Self::Highlight | Self::Disc
+        )
+    }
+
     /// The id of the method that a scene asks for; `None` where there is no choice.
     pub fn method_in_use(self, render: &Render) -> Option<String> {
         match self {

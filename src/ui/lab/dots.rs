@@ -39,6 +39,8 @@ pub struct ChartView<'a> {
     pub machine: &'a str,
     /// What the axes measure.
     pub axes: (CostAxis, ErrorAxis),
+    /// The settings that the scene has by now.
+    pub render: &'a Render,
     /// The measurement that is looked at.
     pub chosen: Option<usize>,
 }
@@ -109,7 +111,7 @@ pub fn chart(study: &Study, view: &ChartView) -> (Chart, Vec<Vec<usize>>) {
             .chain(is_rmse.then_some(("below 8-bit rounding", EIGHT_BIT_FLOOR)))
             .collect(),
         invisible: is_rmse.then_some(EIGHT_BIT_FLOOR),
-        in_use: in_use(study).and_then(spot_of),
+        in_use: in_use(study, view.render).and_then(spot_of),
         chosen: view.chosen.and_then(spot_of),
         bounds: None,
         is_one_of_several: false,
@@ -127,13 +129,13 @@ fn name_of(dot: &Measurement, equals: usize) -> String {
     }
 }
 
-/// The measurement of the scene's own settings, if they were measured.
-fn in_use(study: &Study) -> Option<usize> {
-    let ((width, height), render) = (study.size(), study.scene().render.clone());
+/// The measurement of the settings that the scene has by now, if they were measured.
+fn in_use(study: &Study, render: &Render) -> Option<usize> {
+    let (width, height) = study.size();
     let own = Render {
         width,
         height,
-        ..render
+        ..render.clone()
     };
     let is_own = |dot: &Measurement| {
         let candidate = &dot.candidate;
@@ -190,7 +192,8 @@ fn wrapped(text: &str) -> String {
 pub fn figures(dot: &Measurement) -> String {
     let time = dot.timing().map_or("not timed yet".to_owned(), |timing| {
         let doubt = if dot.is_doubtful() { " (doubtful)" } else { "" };
-        let spread = timing.spread * 100.0;
+        // To either side of the median.
+        let spread = timing.spread * 50.0;
         format!(
             "{:.3} ms ± {spread:.0} %{doubt}, {} runs",
             timing.median, timing.runs

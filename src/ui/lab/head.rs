@@ -152,7 +152,11 @@ impl Lab {
         } else {
             return;
         };
-        self.notice = if found.is_none() { "no dot is" } else { "" };
+        self.notice = match found {
+            Some(_) => "",
+            None if by_error => "no way is as near",
+            None => "no way is as fast",
+        };
         self.chosen = found;
     }
 }

@@ -151,7 +151,8 @@ impl Lab {
             && self.looked_for != Some(document)
         {
             self.looked_for = Some(document);
-            let (scene, machine) = (Arc::clone(editor.scene()), self.machine.clone());
+            // As it is measured: with the values that its keys give it.
+            let (scene, machine) = (Arc::clone(editor.shown()), self.machine.clone());
             self.found =
                 Background::start("glint-lab", move || kept(&scene, SIDE, &machine, &folder));
         }
@@ -223,7 +224,7 @@ impl Lab {
             self.stability.show(ui, editor.shown());
             return wish;
         }
-        let Some((chart, members)) = self.chart() else {
+        let Some((chart, members)) = self.chart(&editor.shown().render) else {
             return self.show_invitation(ui, editor).or(wish);
         };
         ui.horizontal_top(|ui| {
@@ -313,11 +314,12 @@ impl Lab {
         })
     }
 
-    fn chart(&self) -> Option<(Chart, Vec<Vec<usize>>)> {
+    fn chart(&self, render: &Render) -> Option<(Chart, Vec<Vec<usize>>)> {
         let view = ChartView {
             name: &self.name,
             machine: &self.machine,
             axes: (self.cost, self.error),
+            render,
             chosen: self.chosen,
         };
         Some(chart(self.study.as_deref()?, &view))

@@ -43,6 +43,7 @@ pub fn chart_picture(studies: &[(String, Study)], machine: &str, look: PictureLo
             name,
             machine,
             axes: (CostAxis::Time, ErrorAxis::Rmse),
+            render: &study.scene().render,
             chosen: None,
         };
         chart(study, &view).0

@@ -5,7 +5,7 @@ use egui::{Button, RichText, ScrollArea, Ui, vec2};
 use super::super::theme::{GRID, ROW, palette};
 use super::heat;
 use crate::lab::stability::{Map, maps};
-use crate::scene::Scene;
+use crate::scene::{Precision, Scene};
 use crate::ui::hint::Hinted as _;
 use crate::worker::Background;
 
@@ -42,7 +42,14 @@ impl Stability {
                 ui.label(headline(map));
                 ui.weak(map.sentence());
                 let warning = stand.filter(|&stand| heat::is_near_failing(map, stand));
-                match (warning, is_used(scene, map)) {
+                let is_double = scene.render.precision == Precision::Double;
+                match (warning, self.is_used(scene, map)) {
+                    _ if stand.is_none() => {
+                        ui.weak("Where your scene stands on this map cannot be said.");
+                    }
+                    (Some(_), true) if is_double && map.subject.is_of_single_precision() => {
+                        ui.weak("Your scene uses this near where it fails in single precision, and is traced in double.");
+                    }
                     (Some(_), true) => {
                         let text = "Your scene uses this, within a decade of where it fails.";
                         ui.colored_label(palette(ui.ctx()).error, text);
@@ -53,6 +60,12 @@ impl Stability {
                     _ => {
                         ui.weak("The frame is where your scene stands.");
                     }
+                }
+                let asked = map.subject.method_in_use(&scene.render);
+                if let Some(asked) = asked.filter(|asked| *asked != map.method)
+                    && self.is_used(scene, map)
+                {
+                    ui.weak(format!("This is {}; your scene has {asked}.", map.method));
                 }
                 let size = ui.available_size() - vec2(GRID, GRID);
                 heat::show(ui, map, size.min(vec2(720.0, 600.0)), stand);
@@ -79,9 +92,23 @@ impl Stability {
         ui.request_repaint_after(std::time::Duration::from_millis(100));
     }
 
+    /// Whether the scene asks for this method; for one with a number of its own, those with another are meant.
+    fn is_used(&self, scene: &Scene, map: &Map) -> bool {
+        let Some(asked) = map.subject.method_in_use(&scene.render) else {
+            return map.is_default;
+        };
+        let mut alike = self
+            .maps
+            .iter()
+            .filter(|other| other.subject == map.subject);
+        let is_tried = alike.any(|other| other.method == asked);
+        let kind = |method: &str| method.split(':').next().map(str::to_owned);
+        asked == map.method || !is_tried && kind(&asked) == kind(&map.method)
+    }
+
     fn show_list(&mut self, ui: &mut Ui, scene: &Scene) {
         for (place, map) in self.maps.iter().enumerate() {
-            let used = if is_used(scene, map) { "●" } else { " " };
+            let used = if self.is_used(scene, map) { "●" } else { " " };
             let text = format!("{used} {}: {}", map.subject.name(), map.method);
             let share = format!("{:.3} %", map.total().rate() * 100.0);
             // The sign of what is used is in no other font.
@@ -106,10 +133,4 @@ fn headline(map: &Map) -> String {
         map.method,
         map.failure
     )
-}
-
-/// Whether the scene asks for this method.
-fn is_used(scene: &Scene, map: &Map) -> bool {
-    let asked = map.subject.method_in_use(&scene.render);
-    asked.map_or(map.is_default, |asked| asked == map.method)
 }
