@@ -164,10 +164,15 @@ pub fn to_text(keys: &[Key<Camera>]) -> Result<String, ron::Error> {
 pub fn from_text(text: &str) -> Result<Vec<Key<Camera>>, TableError> {
     let start = text.lines().map(str::trim_start);
     let mut start = start.skip_while(|line| line.is_empty() || line.starts_with("//"));
-    if start.next().is_some_and(|line| line.starts_with("Scene"))
-        && let Ok(document) = Document::from_text(text)
-    {
-        return Ok(document.scene.animation.keys.clone());
+    if start.next().is_some_and(|line| line.starts_with("Scene")) {
+        let document = Document::from_text(text);
+        return match document {
+            Ok(document) => Ok(document.scene.animation.keys.clone()),
+            Err(error) => Err(TableError {
+                line: 1,
+                what: format!("this is a scene, and cannot be read: {error}"),
+            }),
+        };
     }
     ron::from_str(text).map_err(|error| TableError {
         line: error.span.start.line,

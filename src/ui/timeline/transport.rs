@@ -1,7 +1,7 @@
 //! The buttons above the keys.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
-use egui::{Button, PopupCloseBehavior, RichText, Slider, Ui};
+use egui::{Button, Id, PopupCloseBehavior, RichText, Slider, Ui};
 
 use crate::animate::{longest_flight, stretched};
 use crate::editor::{Action, Edit, Editor, Repeat, Time, replaced_flight};
@@ -23,6 +23,8 @@ const NARROW: f32 = 860.0;
 const SHORTEST: f64 = 0.1;
 /// Seconds that a ready-made flight takes.
 const PRESET_SECONDS: f64 = 8.0;
+/// Samples of a recording of a minute or two.
+const LONG: usize = 5000;
 
 /// Playing, keys, and what time it is.
 pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out: &mut UiRequests) {
@@ -229,7 +231,10 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, paused: f64, out: &mut UiRequests
     let animation = &editor.scene().animation;
     let Some(take) = &animation.take else { return };
     let before = editor.timeline().tolerance;
-    let mut tolerance = before;
+    // Of a long one, keys take seconds to make: they are, once the slider is let go.
+    let is_long = take.samples.len() > LONG;
+    let held = Id::unique("tolerance of a long recording");
+    let mut tolerance = ui.data(|data| data.get_temp(held)).unwrap_or(before);
     ui.weak("tolerance");
     let slider = Slider::new(&mut tolerance, 0.05..=1000.0)
         .clamping(egui::SliderClamping::Edits)
@@ -238,8 +243,18 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, paused: f64, out: &mut UiRequests
         .max_decimals(2);
     let slider = ui.add(slider).accessible_name("tolerance");
     let hint = "Make the keys anew from the recording: how far they may be off. Other changes of the keys are lost (undo brings them back)";
+    let slider = slider.hint(hint);
+    let is_held = is_long && slider.dragged();
+    let is_let_go = ui.data_mut(|data| {
+        let was_held = data.remove_temp::<f64>(held).is_some();
+        if is_held {
+            data.insert_temp(held, tolerance);
+        }
+        was_held && !is_held
+    });
     // The widget rounds what it is given: that is no wish of the user's.
-    if slider.hint(hint).changed() && (tolerance - before).abs() > 0.006 {
+    let is_other = (tolerance - before).abs() > 0.006;
+    if is_other && !is_held && (slider.changed() || is_let_go) {
         out.time(Time::Simplify(tolerance));
     }
     // Behind what is dragged, which must not move.
