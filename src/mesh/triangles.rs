@@ -176,7 +176,7 @@ impl Triangles {
 }
 
 /// Of about so many points the digits are counted.
-const MEASURED_POINTS: usize = 1000;
+const MEASURED_POINTS: usize = 100;
 /// Bytes of brackets, commas and spaces around three numbers in a scene file.
 const AROUND: usize = 8;
 /// Points, or faces, that are hashed at once.

@@ -34,6 +34,8 @@ mod solids;
 
 mod geometry;
 
+mod flats;
+
 mod closeness;
 
 mod precision;
@@ -68,6 +70,7 @@ pub use balls::Balls;
 pub use bvh::{Bvh, Child, GROUP, Node};
 pub use contacts::Others;
 pub use crossed::tests_spared;
+pub use flats::AskFlat;
 pub use geometry::{Geometry, Kept, Planner};
 pub use hit_order::HitOrder;
 pub use idle::IdleFaces;

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::balls::{Balls, balls_of};
 use super::contacts::{Contacts, Tie};
+use super::flats::Flats;
 use super::geometry::{Geometry, Kept, is_planted, is_tree, material_number, measure_loose};
 use super::hit_order::HitOrder;
 use super::idle::IdleFaces;
@@ -90,6 +91,8 @@ pub struct Plan<R> {
     pub clearance: R,
     /// How many objects are visible.
     pub things: usize,
+    /// How large what is flat is.
+    pub flats: Flats<R>,
     /// The largest coordinate of what ends.
     pub farthest: R,
     /// The same without what is much farther away than most, see [`Frame`].
@@ -148,6 +151,7 @@ impl<R: Real> Plan<R> {
             ties: Vec::new(),
             clearance: R::ZERO,
             things: scene.visible_objects().count(),
+            flats: Flats::NONE,
             farthest: R::from_f64(frame.farthest),
             extent: R::from_f64(frame.extent),
             blur: Blur::NONE,
@@ -184,6 +188,7 @@ impl<R: Real> Plan<R> {
         if matches!(request.sampling, Sampling::Adaptive { .. }) {
             let apart = contacts.apart().iter().filter_map(number).collect();
             measure_loose(&mut plan.primitives, &apart);
+            plan.flats = Flats::of(&plan.primitives, plan.geometry.as_deref());
         }
         if may_cull {
             plan.bound();

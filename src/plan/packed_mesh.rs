@@ -32,6 +32,8 @@ pub struct PackedMesh<R> {
     pub has_flat: bool,
     /// How far above them rays that go on from there may start.
     pub lift: R,
+    /// The length of their longest edge.
+    pub longest: R,
     /// The way to them.
     pub bvh: Bvh<R>,
     /// How far they reach from the middle of the box around them.
@@ -173,6 +175,7 @@ impl PackedMesh<f64> {
         Self {
             has_flat: has_flat(&smooth),
             lift: largest_lift(&triangles, &smooth),
+            longest: longest(&triangles),
             reach: reach(&triangles, bvh.bounds.ball().0),
             smooth,
             faces: faces.into(),
@@ -245,6 +248,7 @@ impl<R: Real> PackedMesh<R> {
         PackedMesh {
             has_flat: has_flat(&smooth),
             lift: largest_lift(&triangles, &smooth),
+            longest: longest(&triangles),
             reach: reach(&triangles, bvh.bounds.ball().0),
             triangles,
             smooth,
@@ -312,6 +316,12 @@ fn reach<R: Real>(triangles: &[PackedTriangle<R>], from: Vec3<R>) -> R {
     let corners = triangles.iter().flat_map(|triangle| triangle.corners);
     let farthest = corners.map(|corner| (corner - from).length());
     farthest.fold(R::ZERO, R::max) * R::from_f64(1.0 + CAUTION)
+}
+
+/// The longest edge of triangles.
+fn longest<R: Real>(triangles: &[PackedTriangle<R>]) -> R {
+    let edges = triangles.iter().map(|triangle| triangle.longest);
+    edges.fold(R::ZERO, R::max)
 }
 
 /// A triangle as a member of a tree.

@@ -51,6 +51,10 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
         Some(BoundingBox::around_ball(self.center, self.radius))
     }
 
+    fn flat(&self) -> Option<(Vec3<R>, R)> {
+        Some((self.normal, self.radius + self.radius))
+    }
+
     fn material(&self) -> u32 {
         self.material
     }

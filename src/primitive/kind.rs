@@ -107,6 +107,11 @@ pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
         directions.x.like(self.thickness())
     }
 
+    /// The unit normal of what is flat, and how far that goes at most; `None` for what is not.
+    fn flat(&self) -> Option<(Vec3<R>, R)> {
+        None
+    }
+
     /// Whether it has an outline of its own, beside which nothing of the same thing goes on.
     #[inline(always)]
     fn has_outline(&self) -> bool {

@@ -46,6 +46,10 @@ impl<R: Real> Primitive<R> for PackedPlane<R> {
         None
     }
 
+    fn flat(&self) -> Option<(Vec3<R>, R)> {
+        Some((self.normal, R::INFINITY))
+    }
+
     fn material(&self) -> u32 {
         self.material
     }

@@ -20,6 +20,13 @@ impl<L: SimdFloat> Ray<L> {
     pub fn at(&self, t: L) -> Vec3<L> {
         self.origin + self.direction * t
     }
+
+    /// How far they pass a point, seen along them.
+    #[inline(always)]
+    pub fn beside(&self, point: Vec3<L::Real>) -> L {
+        let to = self.origin.like(point) - self.origin;
+        (to - self.direction * to.dot(self.direction)).length()
+    }
 }
 
 /// One over each component of directions; a large number where that is nothing.

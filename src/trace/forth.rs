@@ -17,7 +17,7 @@ use super::samples::{Edges, Samples};
 use super::shade::Shader;
 use super::slip::may_slip;
 use super::stats::Rays;
-use super::thresholds::{GRAZING, GRAZING_ON_PLANES, SLIPPING};
+use super::thresholds::SLIPPING;
 use super::walk::Stack;
 use crate::plan::{HitOrder, IdleFaces, Plan, Show};
 use crate::primitive::{Blur, CAUTION, Kind, Ray, roundings};
@@ -26,29 +26,6 @@ use crate::simd::{Mask as _, Real, SimdFloat};
 /// So many packets are shown where to start in trees: to find that takes as long as the way of one of them. Two packets
 /// are most of what is traced again; with a start of their own a mesh of 100,000 faces takes 1.05 times as long.
 const FEWEST_NARROWED: usize = 3;
-
-/// The smallest of `least` and the cosines at which a packet meets the planes that it has hit there.
-#[inline(always)]
-fn least_cosine<L: SimdFloat, const TREE: bool>(
-    kernel: Kernel<L, TREE>,
-    packet: &Packet<L>,
-    (on_planes, least): (L::Mask, L),
-) -> L {
-    let (plan, numbers) = (kernel.plan, packet.near.number);
-    let first = plan.primitives.firsts()[Kind::Plane as usize];
-    let (mut least, mut left) = (least, on_planes.bits());
-    while left != 0 {
-        let lane = left.trailing_zeros() as usize;
-        let number = numbers.lane(lane).to_f64() as usize;
-        let here = numbers.same(numbers.like(real(number)));
-        left &= !here.bits();
-        let direction = packet.rays.direction;
-        let normal = direction.like(plan.primitives.planes[number - first].normal);
-        let cosine = normal.dot(direction).abs();
-        least = L::select(here & on_planes, least.min(cosine), least);
-    }
-    least
-}
 
 impl<L: SimdFloat> Bounce<L> {
     /// Becomes the rays from the camera through the samples, which can meet what is in `seen`.
@@ -271,23 +248,17 @@ impl<L: SimdFloat> Bounce<L> {
         (width.greatest(), spread.greatest())
     }
 
-    /// The longest pixel at what was hit, at most; zero without edges. Of all but planes, nobody knows yet how they lie.
+    /// The longest pixel at what was hit, at most; zero without edges.
     #[inline(always)]
     fn longest<const TREE: bool>(&self, kernel: Kernel<L, TREE>) -> L::Real {
-        let (mut widest, mut widest_on_planes) = (kernel.splat(0.0), kernel.splat(0.0));
-        let mut least = kernel.splat(1.0);
+        let mut longest = kernel.splat(0.0);
         for (edge, packet) in self.edges.iter().zip(&self.packets) {
             let hit = packet.near.t.less(kernel.infinity()) & packet.active;
-            let on_planes = hit & kernel.are_planes(packet.near.number);
             let width = edge.cone.width_at(packet.near.t);
-            widest = L::select(hit & !on_planes, widest.max(width), widest);
-            widest_on_planes = L::select(on_planes, widest_on_planes.max(width), widest_on_planes);
-            least = least_cosine(kernel, packet, (on_planes, least));
+            let there = (hit, packet.rays.direction, width);
+            longest = longest.max(kernel.longest_on(packet.near.number, there));
         }
-        let all = |real: f64| L::Real::from_f64(real);
-        let longest = widest.greatest() * all(1.0 / GRAZING);
-        let least = least.least().max(all(GRAZING_ON_PLANES));
-        longest.max(widest_on_planes.greatest() / least) * all(1.0 + CAUTION)
+        longest.greatest() * L::Real::from_f64(1.0 + CAUTION)
     }
 
     /// Shades the packets; `next` gets the rays that mirrors send on.

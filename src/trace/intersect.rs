@@ -5,10 +5,9 @@ use super::candidates::Among;
 use super::doubt::Doubt;
 use super::paths::{NOTHING, Paths, real};
 use super::scan::{Test, Thicket, scan_lists};
-use super::thresholds::{GRAZING, GRAZING_ON_PLANES};
 use super::walk::Stack;
 use crate::plan::{Geometry, Plan, RayOrigin};
-use crate::primitive::{Blur, FAR_CAUTION, Kind, Primitive};
+use crate::primitive::{Blur, FAR_CAUTION, Primitive};
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
@@ -93,22 +92,6 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     #[inline(always)]
     pub fn infinity(self) -> L {
         L::splat(self.token, L::Real::INFINITY)
-    }
-
-    /// Where what has these numbers is an endless plane.
-    #[inline(always)]
-    pub fn are_planes(self, numbers: L) -> L::Mask {
-        let first = self.plan.primitives.firsts()[Kind::Plane as usize];
-        let end = first + self.plan.primitives.planes.len();
-        let (first, end) = (numbers.like(real(first)), numbers.like(real(end)));
-        first.at_most(numbers) & numbers.less(end)
-    }
-
-    /// Cosine below which what has these numbers does not stretch a pixel any further.
-    #[inline(always)]
-    pub fn grazing(self, numbers: L) -> L {
-        let on_planes = self.splat(GRAZING_ON_PLANES);
-        L::select(self.are_planes(numbers), on_planes, self.splat(GRAZING))
     }
 
     /// The nearest primitives along the paths where the mask is set, and where that is in doubt.

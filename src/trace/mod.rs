@@ -38,6 +38,8 @@ mod scan;
 
 mod intersect;
 
+mod stretch;
+
 mod settle;
 
 mod columns;

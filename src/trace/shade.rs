@@ -220,7 +220,8 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             Some(edge) => {
                 let cosine = hit.surface.normal.dot(view);
                 let (cone, t) = (edge.cone, packet.near.t);
-                let grazing = self.kernel.grazing(packet.near.number);
+                let seen = (cosine, cone.width_at(t));
+                let grazing = self.kernel.grazing(packet.near.number, seen);
                 let seen = (t, cosine, grazing);
                 Some(Footprint::new(cone, seen, hit.surface.curvature))
             }

@@ -11,16 +11,17 @@ pub const HIDDEN: f64 = 1.5;
 /// within the pixel beside the rays in which boxes are looked for at all: what a ray finds does not depend on how
 /// far the others of its packet look.
 pub const ONE_THING: f64 = 0.5;
-/// A mesh that is less than so many pixels large may slip between samples as a whole.
-pub const SMALL: f64 = 8.0;
+/// A mesh that is less than so many pixels large may slip between samples as a whole. With 8, shadows of a row of gates,
+/// of 12 faces each, break into dashes: 49 dB in place of 52; a city of 144 boxes takes 0.7 of the rays, for 1 dB less.
+pub const SMALL: f64 = 1.0;
 /// So does a larger one that has more faces than this for each pixel of the square around it.
 pub const CROWDED: f64 = 16.0;
 /// Cosine below which a surface seen at a grazing angle does not stretch a pixel any further.
 pub const GRAZING: f64 = 0.25;
-/// The same of endless planes, which are seen like that up to the horizon: shadows on them are as flat, and slip between
-/// samples. With 0.25, of the shadows of 60 parasols, seen by somebody who stands among them, most are missing: 37 dB in
-/// place of 61. Of meshes as well, a knot on a floor takes 1.3 times as long, for nothing.
-pub const GRAZING_ON_PLANES: f64 = 0.04;
+/// The same of what is flat, as far as it goes: floors are seen like that up to the horizon, and shadows on them are as
+/// flat, and slip between samples. With 0.25, of the shadows of 60 parasols, seen by somebody who stands among them, most
+/// are missing: 37 dB in place of 61. On all faces, however small, a knot on a floor takes 1.3 times as long, for nothing.
+pub const GRAZING_ON_FLATS: f64 = 0.04;
 /// Half the width of a highlight of exponent p, in units of 1/√p: it has fallen to 1 % there.
 pub const HIGHLIGHT_REACH: f64 = 3.0;
 /// Steps of the finest grid in a pixel: half of the side of the smallest cells.

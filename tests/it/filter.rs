@@ -5,8 +5,8 @@ use glam::DVec3;
 use glint::mesh::{SOLIDS, Triangles};
 use glint::plan::RenderRequest;
 use glint::scene::{
-    Accelerator, Camera, Disc, Document, List, Mesh, Object, Plane, Precision, Sampling, Scene,
-    Shape, Sphere, check,
+    Accelerator, Camera, Disc, Document, List, Mesh, Object, Plane, Precision, Projection,
+    Sampling, Scene, Shape, Sphere, check,
 };
 use glint::simd::Level;
 
@@ -237,6 +237,53 @@ fn clean_edges_need_no_filter_inside_of_pixels() {
             let off = differing(&clean(Precision::Auto), &clean(Precision::Double), 1);
             assert_eq!(off, 0, "scene {seed} of kind {kind}");
         }
+    }
+}
+
+/// Walls seen exactly from above, whose sides are those of pixels and of their halves.
+fn plan() -> Scene {
+    let mut scene = Scene::demo();
+    scene.light_visualization = false;
+    scene.camera = Camera {
+        position: DVec3::Y * 200.0,
+        look_at: DVec3::NEG_Y,
+        up: DVec3::NEG_Z,
+        projection: Projection::Orthographic,
+        orthographic_height: f64::from(HEIGHT),
+        ..Camera::default()
+    };
+    scene.lights.truncate(1);
+    scene.lights[0].position = DVec3::new(13.0, 90.0, 7.0);
+    let floor = Plane {
+        point: DVec3::ZERO,
+        normal: DVec3::Y,
+    };
+    let walls = (0..10).map(|n| {
+        let step = f64::from(n);
+        let wall = Mesh {
+            position: DVec3::new(step * 0.25, 15.0, 10.0 * step - 45.0 + step * 0.125),
+            scale: DVec3::new(120.0 - step, 30.0, 3.0),
+            ..Mesh::of((SOLIDS[0].make)(1.0))
+        };
+        Object::new(format!("Wall {n}"), "sphere 1", wall)
+    });
+    let floor = [Object::new("Floor", "plane", floor)];
+    scene.objects = floor.into_iter().chain(walls).collect();
+    scene
+}
+
+#[test]
+fn walls_along_the_sides_of_pixels_are_those_of_double_precision() {
+    let scene = plan();
+    for sampling in [Sampling::ADAPTIVE, Sampling::Centres] {
+        let [found, exact] = [Precision::Auto, Precision::Double].map(|precision| {
+            let request = RenderRequest {
+                sampling,
+                ..with(precision)
+            };
+            picture(&scene, &request).0
+        });
+        assert_eq!(differing(&found, &exact, 1), 0, "{sampling:?}");
     }
 }
 

@@ -31,13 +31,6 @@ use crate::simd::{Real, SimdFloat, Vec3};
 /// of tips 1.1 are enough, with a third fewer rays for them.
 const WIDER_AT_TIPS: f64 = 2.0 / 1.1;
 
-/// How far rays pass a point, seen along them.
-#[inline(always)]
-fn beside<L: SimdFloat>(rays: &Ray<L>, point: Vec3<L::Real>) -> L {
-    let to = rays.origin.like(point) - rays.origin;
-    (to - rays.direction * to.dot(rays.direction)).length()
-}
-
 /// What is needed of a triangle where it is hit, for each ray of its own triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Flat<L: SimdFloat> {
@@ -115,6 +108,10 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
 
     fn bounds(&self) -> Option<BoundingBox<R>> {
         Some(BoundingBox::around(&self.corners))
+    }
+
+    fn flat(&self) -> Option<(Vec3<R>, R)> {
+        Some((self.normal, self.longest))
     }
 
     fn material(&self) -> u32 {
@@ -219,7 +216,7 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
         let mut size = t.like(self.thickness);
         let mut least = t.like(Primitive::thickness(self));
         if let Tip::Round(corner, share) = self.tip {
-            let width = beside(rays, self.corners[corner as usize]);
+            let width = rays.beside(self.corners[corner as usize]);
             let share = f64::from(share) / WHOLE;
             size = size.min(width * width.like_f64(share * WIDER_AT_TIPS));
             least = size;

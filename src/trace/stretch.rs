@@ -1,0 +1,91 @@
+//! How far pixels stretch on what they fall on at a grazing angle.
+
+use super::intersect::Kernel;
+use super::paths::real;
+use super::thresholds::{GRAZING, GRAZING_ON_FLATS};
+use crate::plan::AskFlat;
+use crate::primitive::Kind;
+use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
+
+impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
+    /// Where what has these numbers is an endless plane.
+    #[inline(always)]
+    fn are_planes(self, numbers: L) -> L::Mask {
+        let first = self.plan.primitives.firsts()[Kind::Plane as usize];
+        let end = first + self.plan.primitives.planes.len();
+        let (first, end) = (numbers.like(real(first)), numbers.like(real(end)));
+        first.at_most(numbers) & numbers.less(end)
+    }
+
+    /// Where what has these numbers may be flat, and so large that pixels of this width stretch farther on it than on
+    /// anything: no plane, which they always do.
+    #[inline(always)]
+    fn may_be_large(self, numbers: L, width: L) -> L::Mask {
+        let flats = self.plan.flats;
+        let mut largest = numbers.like(flats.loose);
+        if let Some((geometry, first)) = self.geometry() {
+            let first = first + geometry.primitives.len();
+            let in_meshes = numbers.like(real::<L::Real>(first)).at_most(numbers);
+            largest = L::select(in_meshes, numbers.like(flats.in_meshes), largest);
+        }
+        width.less(largest * largest.like_f64(GRAZING)) & !self.are_planes(numbers)
+    }
+
+    /// The normal of what has a number, if that is flat, and how far it goes at most.
+    #[inline(never)]
+    fn flat_at(self, number: usize) -> Option<(Vec3<L::Real>, L::Real)> {
+        match self.geometry() {
+            Some((geometry, first)) if first <= number => geometry.flat_at(number - first),
+            _ => self.plan.primitives.with(number, AskFlat),
+        }
+    }
+
+    /// Cosine below which what has these numbers, and is met at this cosine by pixels of this width, does not stretch
+    /// them any further: on what is flat, they stretch as far as that goes.
+    #[inline(always)]
+    pub fn grazing(self, numbers: L, (cosine, width): (L, L)) -> L {
+        let on_flats = self.splat(GRAZING_ON_FLATS);
+        let mut grazing = L::select(self.are_planes(numbers), on_flats, self.splat(GRAZING));
+        let is_slanted = cosine.abs().less(self.splat(GRAZING));
+        let mut left = (is_slanted & self.may_be_large(numbers, width)).bits();
+        while left != 0 {
+            let number = numbers.lane(left.trailing_zeros() as usize);
+            let here = numbers.same(numbers.like(number));
+            left &= !here.bits();
+            if let Some((_, extent)) = self.flat_at(number.to_f64() as usize) {
+                grazing = L::select(here, least_cosine(width, extent), grazing);
+            }
+        }
+        grazing
+    }
+
+    /// The longest pixel of those of this width on what has these numbers and was hit there along these directions, at
+    /// most.
+    #[inline(always)]
+    pub fn longest_on(self, numbers: L, (hit, directions, width): (L::Mask, Vec3<L>, L)) -> L {
+        let usual = width * width.like_f64(1.0 / GRAZING);
+        let mut length = L::select(hit, usual, self.splat(0.0));
+        let flat = hit & (self.may_be_large(numbers, width) | self.are_planes(numbers));
+        let mut left = flat.bits();
+        while left != 0 {
+            let number = numbers.lane(left.trailing_zeros() as usize);
+            let here = numbers.same(numbers.like(number));
+            left &= !here.bits();
+            if let Some((normal, extent)) = self.flat_at(number.to_f64() as usize) {
+                let cosine = directions.like(normal).dot(directions).abs();
+                let own = width / cosine.max(least_cosine(width, extent));
+                length = L::select(here & hit, own, length);
+            }
+        }
+        length
+    }
+}
+
+/// Cosine below which pixels of a width do not stretch any further on something flat that goes so far.
+#[inline(always)]
+fn least_cosine<L: SimdFloat>(width: L, extent: L::Real) -> L {
+    let whole = width / width.like(extent);
+    whole
+        .max(width.like_f64(GRAZING_ON_FLATS))
+        .min(width.like_f64(GRAZING))
+}
