@@ -61,13 +61,14 @@ impl Preset {
                 let place = |share: f64| target + turned(arm, share * TAU);
                 let mut keys = looking(camera, target, 4, seconds, place);
                 // From above or below, the picture turns.
-                let is_upright = arm.x.hypot(arm.z) <= arm.length() * 1e-9;
+                let is_upright = arm.x.hypot(arm.z) < arm.length() * 1e-9;
+                let heading = heading(camera).filter(|_| is_upright);
                 for key in &mut keys {
                     key.interpolation = Interpolation::Orbit { around: target };
-                    if is_upright {
-                        let angle = key.time / seconds * TAU;
-                        key.value.look_at = turned(camera.look_at, angle);
-                        key.value.up = turned(camera.up, angle);
+                    if let Some(heading) = heading {
+                        let angle = key.time / seconds % 1.0 * TAU;
+                        key.value.look_at = -arm;
+                        key.value.up = turned(heading, angle);
                     }
                 }
                 keys
@@ -101,6 +102,17 @@ impl Preset {
             }),
         }
     }
+}
+
+/// Where on a map a camera looks; straight down, where its picture has its upper edge.
+fn heading(camera: &Camera) -> Option<DVec3> {
+    let basis = camera.basis()?;
+    let [up, ahead] = [basis.y_axis, -basis.z_axis].map(|way| DVec3::new(way.x, 0.0, way.z));
+    Some(if up.length() < ahead.length() {
+        ahead
+    } else {
+        up
+    })
 }
 
 /// Turned about the vertical axis by an angle in radians.

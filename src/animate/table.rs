@@ -5,7 +5,9 @@ use std::fmt::Write as _;
 use glam::DVec3;
 
 use super::path::unwound;
-use crate::scene::{Camera, Document, Key, Orientation, Projection, SAME_TIME, format_number};
+use crate::scene::{
+    Camera, Document, Key, Orientation, Projection, SAME_TIME, SceneError, format_number,
+};
 
 const HEAD: &str = "time,x,y,z,yaw,pitch,roll,projection,projection_distance,orthographic_height";
 
@@ -162,17 +164,20 @@ pub fn to_text(keys: &[Key<Camera>]) -> Result<String, ron::Error> {
 /// # Errors
 /// [`TableError`], with the line.
 pub fn from_text(text: &str) -> Result<Vec<Key<Camera>>, TableError> {
-    let start = text.lines().map(str::trim_start);
-    let mut start = start.skip_while(|line| line.is_empty() || line.starts_with("//"));
-    if start.next().is_some_and(|line| line.starts_with("Scene")) {
-        let document = Document::from_text(text);
-        return match document {
-            Ok(document) => Ok(document.scene.animation.keys.clone()),
-            Err(error) => Err(TableError {
+    let text = text.trim_start_matches('\u{feff}');
+    let is_list = text.trim_start().starts_with('[');
+    if !is_list {
+        let document = Document::from_text(text).map_err(|error| match error {
+            SceneError::Refused(refusal) => TableError {
+                line: refusal.line,
+                what: refusal.sentence,
+            },
+            other => TableError {
                 line: 1,
-                what: format!("this is a scene, and cannot be read: {error}"),
-            }),
-        };
+                what: other.to_string(),
+            },
+        })?;
+        return Ok(document.scene.animation.keys.clone());
     }
     ron::from_str(text).map_err(|error| TableError {
         line: error.span.start.line,

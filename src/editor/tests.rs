@@ -2,7 +2,7 @@ use glam::DVec3;
 
 use super::action::STEP;
 use super::*;
-use crate::scene::{Animation, Scene, Target, Value, check};
+use crate::scene::{Animation, Document, Scene, Target, Value, check};
 use crate::scene::{Shape, Sphere};
 use proptest::prelude::*;
 
@@ -382,4 +382,36 @@ fn a_gesture_that_is_cancelled_takes_back_its_own_and_nothing_else() {
     assert_eq!(editor.scene().ambient_intensity, 0.1);
     editor.apply(Action::Undo);
     assert_eq!(editor.scene(), &std::sync::Arc::new(Scene::demo()));
+}
+
+#[test]
+fn saved_elsewhere_a_scene_tells_what_it_follows_no_more_and_looks_for_what_is_missing() {
+    let [here, there] = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
+    let mesh = "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n";
+    std::fs::write(here.path().join("roof.obj"), mesh).expect("written");
+    std::fs::write(there.path().join("late.obj"), mesh).expect("written");
+    let text = r#"Scene(version: 1, color_packs: {"a": ColorPack()}, lights: [], objects: [
+        Object(name: "roof", color_pack: "a", shape: Mesh(file: "roof.obj")),
+        Object(name: "late", color_pack: "a", shape: Mesh(file: "late.obj")),
+    ])"#;
+    let path = here.path().join("s.ron");
+    std::fs::write(&path, text).expect("written");
+    let mut editor = Editor::demo();
+    editor.replace(Document::load(&path).expect("a scene"), Some(path));
+    assert_eq!(editor.scene().mesh_problems().count(), 1);
+    editor.save(&there.path().join("s.ron")).expect("saved");
+    let said = &editor.messages.last().expect("a message").text;
+    let lost = "what was in roof.obj is in the scene file now: that lies in another folder";
+    assert!(said.contains(lost), "{said}");
+    assert_eq!(editor.scene().mesh_problems().count(), 0);
+    assert_eq!(editor.scene().mesh_paths().len(), 1);
+    // Of a text that was pasted into no file, they are looked for beside the first one.
+    editor.replace(Document::from_text(text).expect("a scene"), None);
+    editor.save(&there.path().join("new.ron")).expect("saved");
+    let problems: Vec<_> = editor
+        .scene()
+        .mesh_problems()
+        .map(|(index, _)| index)
+        .collect();
+    assert_eq!(problems, [0]);
 }

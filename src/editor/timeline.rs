@@ -151,7 +151,10 @@ impl Timeline {
     pub(super) fn is_in_flight(&self, animation: &Animation) -> bool {
         let time = self.shown_time(animation);
         match &animation.keys[..] {
-            [first, .., last] => (first.time..=last.time).contains(&time),
+            [first, .., last] => {
+                // Keys may be between frames.
+                (first.time..=last.time).contains(&time) || animation.key_at(time).is_some()
+            }
             _ => false,
         }
     }

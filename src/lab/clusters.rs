@@ -14,8 +14,8 @@ const SAME_RAYS: f64 = 0.02;
 const SAME_TIME: f64 = 0.08;
 
 /// Groups of measurements, by their places, that differ neither in time nor in error by more than the runs of
-/// each do, nor in the rays that they take; certain ones and doubtful ones apart; the first of a group is the first of the list. What is not fully
-/// measured is in no group.
+/// each do, nor in the rays that they take; certain ones and doubtful ones apart. The first of a group is the first of
+/// the list. What is not fully measured is in no group.
 pub fn clusters(study: &Study) -> Vec<Vec<usize>> {
     let known = |dot: &Measurement| Some((dot.timing()?, dot.metrics?));
     let mut clusters: Vec<((Timing, ErrorMetrics), Vec<usize>)> = Vec::new();
@@ -102,6 +102,15 @@ mod tests {
             });
         }
         study
+    }
+
+    #[test]
+    fn ways_that_take_other_rays_are_told_apart() {
+        let mut study = study(&[([10.0, 10.1, 10.2], 1e-3); 3]);
+        for (dot, rays) in study.measurements.iter_mut().zip([2.64, 2.65, 2.89]) {
+            dot.rays_per_pixel = rays;
+        }
+        assert_eq!(clusters(&study), [vec![0, 1], vec![2]]);
     }
 
     #[test]

@@ -74,21 +74,14 @@ pub fn is_mesh_file(path: &Path) -> bool {
     MeshFormat::of_path(path).is_some()
 }
 
-/// What marks a mesh file now; of a glTF file, together with the files of numbers beside it, which are its own as a rule
-/// and may be written later. `None` where the system does not say.
+/// What marks a mesh file now; of a glTF file, together with the file of the same name with its numbers, which most
+/// programs write beside it, and may write later. `None` where the system does not say.
 pub fn marks_of_mesh(path: &Path) -> Option<Marks> {
-    let own = marks_of(path)?;
-    if !has_ending(path, "gltf") {
-        return Some(own);
-    }
-    let folder = path.parent().and_then(|folder| folder.read_dir().ok());
-    let beside = folder.into_iter().flatten().flatten();
-    let numbers = beside.map(|entry| entry.path());
-    let numbers = numbers.filter(|path| has_ending(path, "bin"));
-    let marks = numbers.filter_map(|path| marks_of(&path));
-    Some(marks.fold(own, |(time, length), (other, more)| {
-        (time.max(other), length.saturating_add(more))
-    }))
+    let (time, length) = marks_of(path)?;
+    let is_gltf = has_ending(path, "gltf");
+    let numbers = is_gltf.then(|| marks_of(&path.with_extension("bin")));
+    let (later, more) = numbers.flatten().unwrap_or((time, 0));
+    Some((time.max(later), length.saturating_add(more)))
 }
 
 /// Reads the parts of a mesh file that have triangles.
@@ -102,8 +95,11 @@ pub fn read_mesh_file(path: &Path) -> Result<MeshFile, MeshError> {
         });
     };
     let mut bytes = limits::read_mesh_bytes(path)?;
-    let mark = bytes.len() - text::without_mark(&bytes).len();
-    bytes.drain(..mark);
+    let marked = bytes.len() - text::without_mark(&bytes).len();
+    // The header of a binary STL file is anything.
+    if format != MeshFormat::Stl || stl::is_text(&bytes[marked..]) {
+        bytes.drain(..marked);
+    }
     let folder = path.parent().unwrap_or(Path::new(""));
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let read = match format {

@@ -144,12 +144,14 @@ impl<'a> Libraries<'a> {
         let lines = text.lines().map(|line| whole_color(line.trim()));
         let lines = lines.filter(|line| is_color(line));
         let kept = lines.collect::<Vec<_>>().join("\n");
-        let (materials, mut numbers) = tobj::load_mtl_buf(&mut kept.as_bytes())?;
-        // Behind a name there may be a remark.
-        for (number, material) in materials.iter().enumerate() {
-            if let Some((name, _)) = material.name.split_once(" #") {
-                let name = name.trim_end().to_owned();
-                numbers.entry(name).or_insert(number);
+        let (mut materials, mut numbers) = tobj::load_mtl_buf(&mut kept.as_bytes())?;
+        // Behind a name there may be a remark. Some names have a `#` themselves: `Material #25`.
+        for (number, material) in materials.iter_mut().enumerate() {
+            let before = material.name.split_once("# ").map(|(name, _)| name);
+            let name = before.filter(|name| name.ends_with([' ', '\t']));
+            if let Some(name) = name.map(|name| name.trim_end().to_owned()) {
+                numbers.entry(name.clone()).or_insert(number);
+                material.name = name;
             }
         }
         Ok((materials, numbers))

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::words::counted;
 
-/// Corners of the largest polygon whose ears are looked for: that takes the square of their number.
+/// Corners of the largest polygon whose ears are looked for: that takes the square of their number, as a rule.
 const MOST_CORNERS: usize = 4096;
 /// What is a straight line but for rounding turns by no more than this share of a square around the polygon.
 const ROUNDED: f64 = 1e-12;
@@ -87,7 +87,8 @@ fn ears(points: &[DVec2]) -> Option<Vec<[usize; 3]>> {
             let cut = cut.filter(|at| is_ear || turn_at(at) <= rounded)?;
             ears.push(around(cut));
             left.remove(cut);
-            at = cut;
+            // The corner before may be one now, as along an arc.
+            at = cut.checked_sub(1).unwrap_or(left.len() - 1);
             tried = 0;
         } else {
             at += 1;
@@ -198,6 +199,25 @@ mod tests {
         let whole: DVec3 = areas.iter().sum();
         let sum: f64 = areas.iter().map(|area| area.length()).sum();
         assert!((sum - whole.length()).abs() < 1e-6, "{sum} {whole}");
+    }
+
+    #[test]
+    fn arcs_are_cut_in_a_moment() {
+        // A strip along half a circle; looked at all around after each cut, it takes seconds.
+        let corner = |at: u32| {
+            let (along, radius) = if at < 2000 {
+                (at, 10.0)
+            } else {
+                (3999 - at, 9.999)
+            };
+            let angle = f64::from(along) / 1999.0 * std::f64::consts::PI;
+            DVec3::new(angle.cos(), angle.sin(), 0.0) * radius
+        };
+        let points: Vec<DVec3> = (0..4000).map(corner).collect();
+        let areas = areas(&points, &mended(&points));
+        let whole: DVec3 = areas.iter().sum();
+        let sum: f64 = areas.iter().map(|area| area.length()).sum();
+        assert!((sum - whole.length()).abs() < 1e-9, "{sum} {whole}");
     }
 
     #[test]

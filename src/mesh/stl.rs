@@ -54,7 +54,7 @@ pub(super) fn read(mut bytes: Vec<u8>, stem: &str) -> Result<MeshFile, Fault> {
 }
 
 /// Whether this is the text form. The header of a binary file may begin with the same word.
-fn is_text(bytes: &[u8]) -> bool {
+pub(super) fn is_text(bytes: &[u8]) -> bool {
     let start = bytes.trim_ascii_start();
     let is_word = start.len() > WORD.len() && start[..WORD.len()].eq_ignore_ascii_case(WORD);
     is_word
@@ -133,7 +133,8 @@ fn prepare_text(bytes: &mut Vec<u8>, vertices: &mut Vec<DVec3>) -> Result<Option
 /// write what is no number: `-nan(ind)`.
 fn take_vertices(text: &mut [u8]) -> Vec<DVec3> {
     let (mut at, mut left, mut is_facet) = (0, 0, false);
-    let (mut vertices, mut numbers) = (Vec::new(), None);
+    let (mut vertices, mut point, mut read) = (Vec::new(), [0.0; 3], None);
+    let mut is_loop = false;
     while at < text.len() {
         if text[at].is_ascii_whitespace() {
             // What is missing in a line is not taken from the next.
@@ -153,15 +154,18 @@ fn take_vertices(text: &mut [u8]) -> Vec<DVec3> {
             left = 3;
         }
         is_facet = word == b"facet";
-        if word == b"vertex" {
-            numbers = Some(Vec::with_capacity(3));
-        } else if let Some(own) = &mut numbers {
-            let number = str::from_utf8(word).ok().and_then(|word| word.parse().ok());
-            own.push(number.unwrap_or(f64::NAN));
-            if let [x, y, z] = own[..] {
-                vertices.push(DVec3::new(x, y, z));
-                numbers = None;
+        match read {
+            Some(place) => {
+                let number = str::from_utf8(word).ok().and_then(|word| word.parse().ok());
+                point[place] = number.unwrap_or(f64::NAN);
+                read = Some(place + 1).filter(|next| *next < point.len());
+                if read.is_none() {
+                    vertices.push(DVec3::from_array(point));
+                }
             }
+            // Names may have this word, too.
+            None if is_loop && word == b"vertex" => read = Some(0),
+            None => is_loop = word == b"loop",
         }
     }
     vertices

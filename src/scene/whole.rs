@@ -182,10 +182,13 @@ impl Scene {
     pub fn looking_in(&self, folder: &Path) -> Self {
         let files = RefCell::new(MeshFiles::new());
         self.with_sources(|source| {
-            let (own, _) = source.reference().filter(|_| source.problem().is_some())?;
+            source.problem()?;
+            let own = source.reference().map(|(own, _)| own);
+            if own.is_some_and(|own| is_same_file(own, folder)) {
+                return None;
+            }
             let mut new = source.clone();
-            let is_elsewhere = !is_same_file(own, folder);
-            is_elsewhere.then(|| new.load(Some(folder), &mut files.borrow_mut()))?;
+            new.load(Some(folder), &mut files.borrow_mut());
             Some(new)
         })
     }

@@ -3,8 +3,9 @@
 
 use super::beside::Beside;
 use super::bundle::Shaft;
-use super::thresholds::{CROWDED, SMALL};
+use super::thresholds::{CROWDED, ONE_THING, SMALL};
 use crate::plan::{Bvh, Child, GROUP, Geometry, PackedMesh};
+use crate::primitive::BoundingBox;
 use crate::simd::{Real, SimdFloat};
 
 /// Nodes that are looked at; where that is not enough, something thin may be there.
@@ -90,6 +91,8 @@ fn is_close<L: SimdFloat>(
                 Child::Member(member) if is_so(member, widths[place], left) => return true,
                 Child::Member(_) => {}
                 Child::Node(_) if count == waiting.len() => return true,
+                // Looked at as one thing, it is not told from what is in it.
+                Child::Node(_) if is_one(node.bounds(place), widths[place]) => return true,
                 Child::Node(inner) => {
                     waiting[count] = inner;
                     count += 1;
@@ -100,6 +103,13 @@ fn is_close<L: SimdFloat>(
     false
 }
 
+/// Whether what is in a box may be looked at as one thing where pixels are so wide.
+#[inline(always)]
+fn is_one<R: Real>(bounds: BoundingBox<R>, width: R) -> bool {
+    let (_, radius) = bounds.ball();
+    radius + radius < width * R::from_f64(ONE_THING)
+}
+
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
@@ -107,7 +117,6 @@ mod tests {
     use super::*;
     use crate::mesh::SOLIDS;
     use crate::plan::{Kept, Plan, RenderRequest};
-    use crate::primitive::BoundingBox;
     use crate::scene::{Mesh, Object, Scene, Shape};
     use crate::simd::Vec3;
 

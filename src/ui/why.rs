@@ -15,6 +15,8 @@ use crate::worker::Background;
 const RING: f32 = 7.0;
 /// Decimals of the numbers.
 const DECIMALS: usize = 3;
+/// Scenes of more faces are not planned anew for it.
+const MOST_FACES: usize = 500_000;
 /// What a picture of 8 bits may be off by.
 const SEEN: f64 = 1.01 / 255.0;
 
@@ -23,27 +25,27 @@ const SEEN: f64 = 1.01 / 255.0;
 pub struct Why {
     /// The ray, from where and where to, and the scene that it was sent into last.
     asked: Option<(DVec3, DVec3, Arc<Scene>)>,
-    answer: Option<Answer>,
-    waiting: Background<Answer>,
-}
-
-/// What a ray sees, and what the picture has there.
-#[derive(Debug)]
-struct Answer {
-    sight: Sight,
+    answer: Option<Sight>,
+    waiting: Background<Sight>,
+    /// What the picture has there, once it is known.
     drawn: Option<DVec3>,
+    /// Who finds that out, which takes longer.
+    drawing: Background<Option<DVec3>>,
 }
 
 impl Why {
     /// Asks what a ray sees, and why. It is found out elsewhere: a mesh may have many faces.
     pub fn ask(&mut self, scene: &Arc<Scene>, (origin, direction): (DVec3, DVec3)) {
         self.asked = Some((origin, direction, Arc::clone(scene)));
-        let scene = Arc::clone(scene);
-        let look = move || Answer {
-            sight: explain(&scene, origin, direction),
-            drawn: drawn(&scene, origin, direction),
-        };
+        let [seen, traced] = [Arc::clone(scene), Arc::clone(scene)];
+        let look = move || explain(&seen, origin, direction);
         self.waiting = Background::start("glint-why", look);
+        self.drawn = None;
+        // All of it is planned for a pixel.
+        if scene.faces() <= MOST_FACES {
+            let draw = move || drawn(&traced, origin, direction);
+            self.drawing = Background::start("glint-drawn", draw);
+        }
     }
 
     /// Whether an answer is shown.
@@ -53,8 +55,7 @@ impl Why {
 
     /// Marks the place that the answer is about, if it is on something; `on_screen` finds it.
     pub fn mark(&self, painter: &Painter, on_screen: impl FnOnce(DVec3) -> Option<Pos2>) {
-        if let Some(answer) = &self.answer
-            && let Sight::Surface(lit) = &answer.sight
+        if let Some(Sight::Surface(lit)) = &self.answer
             && let Some(at) = on_screen(lit.point)
         {
             let colors = palette(painter.ctx());
@@ -76,9 +77,13 @@ impl Why {
         };
         let is_same = of.has_same_things(scene)
             && (of.light_visualization, &of.render) == (scene.light_visualization, &scene.render);
-        if !is_same && !self.waiting.is_awaited() {
+        if !is_same && !self.is_awaited() {
             self.ask(scene, (*origin, *direction));
         }
+    }
+
+    fn is_awaited(&self) -> bool {
+        self.waiting.is_awaited() || self.drawing.is_awaited()
     }
 
     /// Shows the answer, once it is there, for the scene as it is now; as it was, while something moves.
@@ -86,10 +91,13 @@ impl Why {
         if let Some(Ok(answer)) = self.waiting.take() {
             self.answer = Some(answer);
         }
+        if let Some(Ok(drawn)) = self.drawing.take() {
+            self.drawn = drawn;
+        }
         if !editor.is_moving() {
             self.follow(editor.shown());
         }
-        if self.waiting.is_awaited() {
+        if self.is_awaited() {
             ctx.request_repaint();
         }
         let Some(answer) = &self.answer else { return };
@@ -106,8 +114,8 @@ impl Why {
                             "Of the picture with everything, whatever the view shows of it now.",
                         );
                     }
-                    show(ui, &answer.sight, 0);
-                    show_drawn(ui, answer);
+                    show(ui, answer, 0);
+                    show_drawn(ui, answer, self.drawn);
                 });
             });
         if !is_open {
@@ -117,11 +125,11 @@ impl Why {
 }
 
 /// Says so where the picture has something else there.
-fn show_drawn(ui: &mut Ui, answer: &Answer) {
-    let Some(drawn) = answer.drawn else { return };
-    if (drawn - answer.sight.color()).abs().max_element() <= SEEN {
+fn show_drawn(ui: &mut Ui, sight: &Sight, drawn: Option<DVec3>) {
+    let is_other = |drawn: &DVec3| (drawn - sight.color()).abs().max_element() > SEEN;
+    let Some(drawn) = drawn.filter(is_other) else {
         return;
-    }
+    };
     ui.separator();
     term(ui, "is what the picture has there", drawn);
     ui.weak("The terms are those of exact formulas, and of flat faces: other formulas, single precision or a mesh that is shaded as curved may come to something else.");

@@ -180,7 +180,12 @@ fn a_turntable_is_a_circle_that_looks_at_its_middle() {
 fn a_turntable_from_above_turns_the_picture_evenly() {
     let target = DVec3::new(10.0, 20.0, -30.0);
     let start = camera(target + DVec3::Y * 100.0, 10.0, -90.0);
-    let path = CameraPath::new(&Preset::Turntable.keys(&start, target, 8.0));
+    let keys = Preset::Turntable.keys(&start, target, 8.0);
+    assert_eq!(keys[0].value, keys[4].value, "a round");
+    // A view that was tilted looks at the target all the same.
+    let tilted = camera(start.position, 10.0, -60.0);
+    assert_eq!(Preset::Turntable.keys(&tilted, target, 8.0), keys);
+    let path = CameraPath::new(&keys);
     for time in times(&path, 80) {
         let ahead = at(&path, time).basis().expect("a basis").y_axis;
         let first = at(&path, 0.0).basis().expect("a basis").y_axis;

@@ -299,6 +299,9 @@ fn the_flight_of_a_scene_is_a_path() {
     let document = Document { header, scene };
     let read = from_text(&document.to_text().expect("a text"));
     assert_eq!(read.as_ref(), Ok(&document.scene.animation.keys));
+    let error = from_text("\u{feff}/* by hand */\nScene(\n  version: 1,\n  lights: 7,\n)")
+        .expect_err("broken");
+    assert_eq!(error.line, 4, "{error}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Sample, error_of};
+use super::{PartColors, Sample, error_of};
 
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
@@ -234,17 +234,16 @@ fn lines_end_as_on_old_machines_and_remarks_as_they_like() {
     assert!(said.contains(":3:") || said.contains("line 3"), "{said}");
 }
 
-/// The diffuse colours of the parts of an OBJ file with this text and this material file beside it.
-fn diffuse(obj: &str, mtl: impl AsRef<[u8]>) -> Vec<[f64; 3]> {
+/// The colours of the parts of an OBJ file with this text and this material file beside it.
+fn colors(obj: &str, mtl: impl AsRef<[u8]>) -> Vec<PartColors> {
     let sample = Sample::new("m.obj", obj);
     sample.beside("m.mtl", mtl);
-    let colors = sample.parts().into_iter().filter_map(|part| part.colors);
-    colors.map(|colors| colors.diffuse).collect()
+    let parts = sample.parts().into_iter();
+    parts.filter_map(|part| part.colors).collect()
 }
 
 #[test]
 fn material_files_are_found_by_the_paths_of_other_machines() {
-    let red = [[1.0, 0.0, 0.0]];
     for name in [
         "C:\\Users\\x\\m.mtl",
         "/home/x/m.mtl",
@@ -256,7 +255,9 @@ fn material_files_are_found_by_the_paths_of_other_machines() {
             "newmtl red\nKd 1 0 0\n",
             "\u{feff}newmtl red # warm\nKd 1 0 0\n",
         ] {
-            assert_eq!(diffuse(&obj, mtl), red, "{name} {mtl}");
+            let colors = colors(&obj, mtl);
+            assert_eq!(colors[0].diffuse, [1.0, 0.0, 0.0], "{name} {mtl}");
+            assert_eq!(colors[0].name, "red", "{name} {mtl}");
         }
     }
     let early = format!("{SQUARE}usemtl red\nf 1 2 3\nmtllib m.mtl\n");

@@ -4,8 +4,8 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use glam::DVec3;
 
-use super::Sample;
 use super::solid::{binary_stl, embedded_gltf, text_stl};
+use super::{Sample, marks_of_mesh};
 
 #[test]
 fn stl_texts_differ() {
@@ -178,6 +178,20 @@ fn without_a_scene_all_nodes_are_shown() {
     let (_, rest) = rest.split_once("]}],").expect("its nodes");
     let without = format!("{start}{rest}").replace("\"scene\":0,", "");
     assert_eq!(Sample::new("m.gltf", without).triangles(), expected);
+}
+
+#[test]
+fn a_gltf_file_is_another_one_once_its_numbers_are_written() {
+    let sample = Sample::new("m.gltf", embedded_gltf(""));
+    let marks = || marks_of_mesh(&sample.path);
+    let alone = marks();
+    sample.beside("other.bin", "numbers of another one");
+    assert_eq!(marks(), alone);
+    sample.beside("m.bin", "half");
+    let half = marks();
+    assert!(alone.is_some() && half != alone);
+    sample.beside("m.bin", "half and half");
+    assert_ne!(marks(), half);
 }
 
 #[test]

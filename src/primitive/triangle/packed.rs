@@ -34,7 +34,9 @@ pub enum Tip {
 impl Tip {
     /// [`Self::Round`] for something so many times as wide as it is far from the corner.
     pub fn round(which: Which, share: f64) -> Self {
-        Self::Round(which, (share * WHOLE).clamp(0.0, f64::from(u8::MAX)) as u8)
+        // One that is nothing would be thin all along.
+        let share = (share * WHOLE).ceil().clamp(1.0, f64::from(u8::MAX));
+        Self::Round(which, share as u8)
     }
 }
 

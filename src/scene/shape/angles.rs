@@ -2,7 +2,8 @@
 
 use glam::{DQuat, DVec3, EulerRot};
 
-/// Most degrees of one of the steps in which a turn is followed.
+/// Most degrees of one of the steps in which a turn is followed. Of finer ones, one may end where two of the three angles
+/// turn about one axis, and which of them has turned is then anybody's guess.
 const STEP: f64 = 90.0;
 /// Most of those steps: who turns farther means no number of rounds.
 const MOST_STEPS: f64 = 4000.0;
@@ -64,6 +65,11 @@ mod tests {
             let expected = DVec3::new(0.0, 20.0 + degrees, 0.0);
             assert!((turned - expected).length() < 1e-9, "{degrees}: {turned}");
         }
+        let lying = turned_about(DVec3::X * 90.0, DVec3::Y, 360.0);
+        assert!(
+            (lying - DVec3::new(90.0, 360.0, 0.0)).length() < 1e-9,
+            "{lying}"
+        );
         // About an axis of its own it goes the way of its turn, whatever that is in angles.
         let angles = DVec3::new(12.0, 20.0, -40.0);
         let axis = DVec3::new(0.6, 0.0, -0.8);

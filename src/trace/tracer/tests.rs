@@ -95,7 +95,7 @@ const BOXES: u32 = 81;
 
 /// Boxes from above, turned differently: pixels tell those beside them, of other tiles and strips too, of corners that
 /// end in them.
-fn boxes() -> Scene {
+fn boxes(turn: f64) -> Scene {
     let solid = SOLIDS.iter().find(|solid| solid.name == "Box");
     let solid = Mesh::of((solid.expect("there is").make)(0.6));
     let mut scene = Scene::demo();
@@ -106,7 +106,7 @@ fn boxes() -> Scene {
         let (along, down) = (f64::from(index % 9) - 4.0, f64::from(index / 9) - 4.0);
         let mesh = Mesh {
             position: DVec3::new(along * 0.9 + down * 0.03, 0.0, down * 0.9),
-            rotation: DVec3::new(0.0, 7.0 * f64::from(index), 0.0),
+            rotation: DVec3::new(0.0, turn * f64::from(index), 0.0),
             ..solid.clone()
         };
         Object {
@@ -121,18 +121,17 @@ fn boxes() -> Scene {
 
 #[test]
 fn a_picture_in_strips_has_the_same_bits() {
-    for (scene, sampling) in [
-        (Scene::demo(), Sampling::Grid(2)),
-        (Scene::demo(), Sampling::ADAPTIVE),
-        (boxes(), Sampling::ADAPTIVE),
-    ] {
+    let boxes = (1..24).map(|turn| (boxes(f64::from(turn)), Sampling::ADAPTIVE));
+    let demos = [Sampling::Grid(2), Sampling::ADAPTIVE].map(|sampling| (Scene::demo(), sampling));
+    let mut matters = 0;
+    for (scene, sampling) in demos.into_iter().chain(boxes) {
         let request = RenderRequest {
             sampling,
             ..RenderRequest::sized(83, 61)
         };
         let control = RenderControl::default();
         let tracer = Tracer {
-            strip: 7,
+            strip: 3,
             ..Tracer::new(&scene, &request)
         };
         let mut whole = vec![[0_u64; 3]; 83 * 61];
@@ -140,7 +139,7 @@ fn a_picture_in_strips_has_the_same_bits() {
         let mut strips = Vec::new();
         let mut sum = Rays::default();
         for first in (0..61).step_by(tracer.strip()) {
-            let mut strip = vec![[0_u64; 3]; 83 * (61 - first).min(7)];
+            let mut strip = vec![[0_u64; 3]; 83 * (61 - first).min(3)];
             sum += tracer
                 .rows(&mut strip, first, &control)
                 .expect("not stopped");
@@ -152,9 +151,10 @@ fn a_picture_in_strips_has_the_same_bits() {
             let unbroken = Tracer::new(&scene, &request);
             let mut other = vec![[0_u64; 3]; 83 * 61];
             unbroken.pass(&mut other, Pass::Whole, &control);
-            assert!(other != whole, "here it matters that strips tell nothing");
+            matters += usize::from(other != whole);
         }
     }
+    assert!(matters > 0, "in some it matters that strips tell nothing");
 }
 
 #[test]

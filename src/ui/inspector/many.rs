@@ -48,6 +48,8 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
     if selected.len() <= MOST {
         keys::of_values(ui, editor, &keys::keyed_values(scene, selected), out);
+    } else {
+        ui.weak(format!("Keys are set for up to {MOST} things at once."));
     }
     ui.add_space(GRID);
     let mut own = UiRequests::default();

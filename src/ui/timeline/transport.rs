@@ -1,6 +1,8 @@
 //! The buttons above the keys.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
+use std::sync::Arc;
+
 use egui::{Button, Id, PopupCloseBehavior, RichText, Slider, Ui};
 
 use crate::animate::{longest_flight, stretched};
@@ -233,7 +235,7 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, paused: f64, out: &mut UiRequests
     let before = editor.timeline().tolerance;
     // Of a long one, keys take seconds to make: they are, once the slider is let go.
     let is_long = take.samples.len() > LONG;
-    let held = Id::unique("tolerance of a long recording");
+    let held = Id::unique(("tolerance of a long recording", Arc::as_ptr(take).addr()));
     let mut tolerance = ui.data(|data| data.get_temp(held)).unwrap_or(before);
     ui.weak("tolerance");
     let slider = Slider::new(&mut tolerance, 0.05..=1000.0)
@@ -308,12 +310,13 @@ fn copied_keys(editor: &Editor) -> Vec<Action> {
     let Some((first, _)) = animation.span_of(places) else {
         return Vec::new();
     };
-    let later = editor.shown_time() - first;
-    if later == 0.0 {
+    let shown = editor.shown_time();
+    // Recorded keys are between frames.
+    if animation.nearest_frame(first) == animation.nearest_frame(shown) {
         let told = "Copies of keys go to the playhead: move it to where they shall be";
         return vec![Action::Tell(told.to_owned())];
     }
-    let (changed, new) = animation.with_moved(places, later, true);
+    let (changed, new) = animation.with_moved(places, shown - first, true);
     let added = places.len() + animation.places().len();
     let replaced = added.saturating_sub(changed.places().len());
     let made = [

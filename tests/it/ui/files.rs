@@ -628,11 +628,20 @@ fn a_mesh_file_that_another_program_writes_is_read_anew_before_and_after_what_is
     harness.press(CTRL, Key::Z);
     wait(&mut harness, "roof.obj", 0, 7.0);
     assert!(!harness.editor().is_dirty());
-    // What is broken stays as it was, and is told.
-    std::fs::write(folder.join("roof.obj"), "f 1 2 3\n").expect("written");
-    harness.wait_for("the message", |harness| {
-        harness.sees("what was read of it before stays")
-    });
+    // What is broken stays as it was, and is told; until it is as it was before, to the second.
+    let roof = folder.join("roof.obj");
+    let good = std::fs::read(&roof).expect("there");
+    let time = std::fs::metadata(&roof).expect("there").modified();
+    let is_told = |harness: &EditorHarness| harness.sees("what was read of it before stays");
+    std::fs::write(&roof, "f 1 2 3\n").expect("written");
+    harness.wait_for("the message", is_told);
+    std::fs::write(&roof, good).expect("written");
+    let file = std::fs::File::options().write(true).open(&roof);
+    let file = file.expect("there");
+    file.set_modified(time.expect("a time")).expect("set");
+    harness.wait_for("the mesh again", |harness| !is_told(harness));
+    std::fs::write(&roof, "f 1 2 3\n").expect("written");
+    harness.wait_for("the message", is_told);
     assert_eq!(top(&harness, 0), 7.0);
     // It is saved in the scene then, which follows the file no more.
     harness.click("roof");

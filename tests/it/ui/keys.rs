@@ -107,6 +107,12 @@ fn selected_keys_are_copied_to_the_playhead_and_frames_are_typed() {
     harness
         .window
         .get_by_label_contains("move it to where they shall be");
+    // The playhead is on the frame nearest to a key.
+    let mut harness = window(&[0.0, 0.34, 1.0]);
+    harness.click("Key 2");
+    harness.press(Modifiers::NONE, Key::CloseBracket);
+    harness.press(CTRL, Key::D);
+    assert_eq!(times(&harness), [0.0, 0.34, 1.0]);
 }
 
 #[test]
