@@ -108,11 +108,12 @@ impl Preset {
 fn heading(camera: &Camera) -> Option<DVec3> {
     let basis = camera.basis()?;
     let [up, ahead] = [basis.y_axis, -basis.z_axis].map(|way| DVec3::new(way.x, 0.0, way.z));
-    Some(if up.length() < ahead.length() {
+    let way = if up.length() < ahead.length() {
         ahead
     } else {
         up
-    })
+    };
+    way.try_normalize()
 }
 
 /// Turned about the vertical axis by an angle in radians.

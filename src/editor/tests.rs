@@ -406,7 +406,9 @@ fn saved_elsewhere_a_scene_tells_what_it_follows_no_more_and_looks_for_what_is_m
     assert_eq!(editor.scene().mesh_problems().count(), 0);
     assert_eq!(editor.scene().mesh_paths().len(), 1);
     // Of a text that was pasted into no file, they are looked for beside the first one.
-    editor.replace(Document::from_text(text).expect("a scene"), None);
+    let mut pasted = Document::from_text(text).expect("a scene");
+    pasted.scene.load_meshes(None);
+    editor.replace(pasted, None);
     editor.save(&there.path().join("new.ron")).expect("saved");
     let problems: Vec<_> = editor
         .scene()

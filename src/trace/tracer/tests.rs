@@ -97,7 +97,7 @@ const BOXES: u32 = 81;
 /// end in them.
 fn boxes(turn: f64) -> Scene {
     let solid = SOLIDS.iter().find(|solid| solid.name == "Box");
-    let solid = Mesh::of((solid.expect("there is").make)(0.6));
+    let solid = Mesh::of((solid.expect("there is").make)(0.75));
     let mut scene = Scene::demo();
     let object = scene.objects[0].clone();
     scene.camera.position = DVec3::new(0.0, 10.0, 0.1);
@@ -105,7 +105,8 @@ fn boxes(turn: f64) -> Scene {
     let boxes = (0..BOXES).map(|index| {
         let (along, down) = (f64::from(index % 9) - 4.0, f64::from(index / 9) - 4.0);
         let mesh = Mesh {
-            position: DVec3::new(along * 0.9 + down * 0.03, 0.0, down * 0.9),
+            // Wider than what is looked for, and with corners that end in pixels.
+            position: DVec3::new(along * 1.1 + down * 0.03, 0.0, down * 1.1),
             rotation: DVec3::new(0.0, turn * f64::from(index), 0.0),
             ..solid.clone()
         };
