@@ -310,6 +310,16 @@ pub fn is_missing(path: &Path) -> bool {
     found.is_err_and(|error| error.kind() == io::ErrorKind::NotFound)
 }
 
+/// A path below a folder as it is written here: on Windows it may have been written with separators that mean nothing
+/// elsewhere.
+pub fn with_separators(folder: &Path, path: &str) -> String {
+    if path.contains('\\') && is_missing(&folder.join(path)) {
+        path.replace('\\', "/")
+    } else {
+        path.to_owned()
+    }
+}
+
 /// What a file held when it was read or written last.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stamp {

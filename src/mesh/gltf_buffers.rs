@@ -15,7 +15,7 @@ use gltf::{Accessor, Document};
 
 use super::error::{Fault, excerpt};
 use super::limits::{check_points, read_companion};
-use crate::files::{is_missing, stays_inside};
+use crate::files::{stays_inside, with_separators};
 
 /// Exporters do and do not pad.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
@@ -265,18 +265,15 @@ fn read_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, Fault> {
             "its buffer {uri} is not on this machine"
         )));
     }
-    let mut name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
-    // Written on Windows, whose separators mean nothing elsewhere.
-    if name.contains('\\') && is_missing(&folder.join(name.as_ref())) {
-        name = name.replace('\\', "/").into();
-    }
-    if !stays_inside(folder, Path::new(name.as_ref())) {
+    let name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
+    let name = with_separators(folder, &name);
+    if !stays_inside(folder, Path::new(&name)) {
         let name = excerpt(&name, 80);
         return Err(Fault::new(format!(
             "its buffer {name} is not read: it must lie in the folder of the file, or in one within it"
         )));
     }
-    let path = folder.join(name.as_ref());
+    let path = folder.join(&name);
     read_companion(&path).map_err(|error| {
         let name = excerpt(&name, 80);
         Fault::new(format!("cannot read its buffer {name}: {error}"))

@@ -20,13 +20,15 @@ const SHORTEST: usize = 80;
 /// Reads an STL file; several solids are one part.
 pub(super) fn read(mut bytes: Vec<u8>, stem: &str) -> Result<MeshFile, Fault> {
     let is_text = is_text(&bytes);
-    let mut vertices = Vec::new();
-    let (name, note, loaded) = if is_text {
-        let name = prepare_text(&mut bytes, &mut vertices)?;
-        (name, None, load_text(&bytes))
+    let ((name, vertices), note, loaded) = if is_text {
+        (prepare_text(&mut bytes)?, None, load_text(&bytes))
     } else {
         let note = prepare_binary(&mut bytes)?;
-        (None, note, mesh_loader::stl::from_slice(&bytes))
+        (
+            (None, Vec::new()),
+            note,
+            mesh_loader::stl::from_slice(&bytes),
+        )
     };
     let scene = loaded.map_err(|error| fault_of(&error, is_text))?;
     drop(bytes);
@@ -96,9 +98,9 @@ fn prepare_binary(bytes: &mut Vec<u8>) -> Result<Option<String>, Fault> {
 }
 
 /// Makes the text what the reader wants: keywords small, everything else ASCII, a space behind
-/// `solid`. What it does not take for text it would read as binary numbers. Returns the name; `vertices` are the points
-/// with all their decimals, which the reader rounds.
-fn prepare_text(bytes: &mut Vec<u8>, vertices: &mut Vec<DVec3>) -> Result<Option<String>, Fault> {
+/// `solid`. What it does not take for text it would read as binary numbers. Returns the name, and the points with all
+/// their decimals, which the reader rounds.
+fn prepare_text(bytes: &mut Vec<u8>) -> Result<(Option<String>, Vec<DVec3>), Fault> {
     let is_line_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
     let start = bytes.len() - bytes.trim_ascii_start().len();
     let line = bytes[start..].split(is_line_end).next().unwrap_or_default();
@@ -115,7 +117,7 @@ fn prepare_text(bytes: &mut Vec<u8>, vertices: &mut Vec<DVec3>) -> Result<Option
             b'?'
         };
     }
-    *vertices = take_vertices(bytes);
+    let vertices = take_vertices(bytes);
     // Faces cannot be counted before they are read; there are no more than this.
     if check_faces(bytes.len() / SHORTEST).is_err() {
         let facets = bytes.windows(8).filter(|window| *window == b"endfacet");
@@ -126,7 +128,7 @@ fn prepare_text(bytes: &mut Vec<u8>, vertices: &mut Vec<DVec3>) -> Result<Option
     while bytes.len() < HEADER || (bytes.len() - HEADER) % TRIANGLE != TRIANGLE / 2 {
         bytes.push(b' ');
     }
-    Ok((!name.is_empty()).then_some(name))
+    Ok(((!name.is_empty()).then_some(name), vertices))
 }
 
 /// The numbers of all points. Nobody looks at normals, of which zeros are left: of a face without an area some programs

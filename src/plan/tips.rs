@@ -38,7 +38,7 @@ impl Point {
     }
 }
 
-/// For each triangle whether it has an edge that no other has, or a corner that sticks out: seen from the side it is
+/// For each triangle where it has an edge that no other has, or a corner that sticks out: seen from the side it is
 /// narrower there than the mesh is thick. `points` numbers the corners, `borders` are the triangles on borders.
 pub fn tips(
     triangles: &[PackedTriangle<f64>],

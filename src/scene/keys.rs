@@ -178,9 +178,14 @@ impl Animation {
         Some(KeyPlace { track, index })
     }
 
-    /// Where the tracks are, by what they move.
-    pub fn track_places(&self) -> HashMap<&Target, usize> {
+    /// Where the tracks are that move some of these, by what they move.
+    pub fn track_places<'t>(
+        &self,
+        wanted: impl IntoIterator<Item = &'t Target>,
+    ) -> HashMap<&Target, usize> {
+        let wanted: HashSet<&Target> = wanted.into_iter().collect();
         let tracks = self.tracks.iter().enumerate();
+        let tracks = tracks.filter(|(_, track)| wanted.contains(&track.target));
         tracks
             .map(|(place, track)| (&track.target, place))
             .collect()
@@ -197,7 +202,8 @@ impl Animation {
         values: impl IntoIterator<Item = (&'a Target, Value)>,
         time: f64,
     ) -> Self {
-        let places = self.track_places();
+        let values: Vec<_> = values.into_iter().collect();
+        let places = self.track_places(values.iter().map(|(target, _)| *target));
         let mut animation = self.clone();
         for (target, value) in values {
             let place = places.get(target).copied().unwrap_or_else(|| {

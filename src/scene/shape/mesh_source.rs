@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::files::{Marks, is_missing, stays_inside};
+use crate::files::{Marks, stays_inside, with_separators};
 use crate::mesh::{Triangles, marks_of_mesh, read_triangles};
 
 /// Where the triangles of a mesh come from.
@@ -66,9 +66,8 @@ impl MeshSource {
         else {
             return;
         };
-        // Written on Windows, whose separators mean nothing elsewhere.
-        if path.contains('\\') && folder.is_some_and(|folder| is_missing(&folder.join(&*path))) {
-            *path = path.replace('\\', "/");
+        if let Some(folder) = folder {
+            *path = with_separators(folder, path);
         }
         // What is not read is not looked at either.
         let allowed = folder.filter(|folder| stays_inside(folder, Path::new(path)));

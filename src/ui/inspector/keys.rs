@@ -299,7 +299,7 @@ pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[Keyed], out: &mut UiReq
     }
     let animation: &Animation = &editor.scene().animation;
     let time = editor.shown_time();
-    let places = animation.track_places();
+    let places = animation.track_places(values.iter().flat_map(|(_, targets)| targets));
     let key_of = |target: &Target| animation.value_at(*places.get(target)?, time);
     ui.horizontal(|ui| {
         ui.weak("Keys");
