@@ -409,3 +409,28 @@ fn a_mesh_turns_along_its_track() {
         "{refused}"
     );
 }
+
+#[test]
+fn how_long_meshes_become_is_known_before_they_are_written() {
+    let ball = bumpy(1000.0);
+    // Coordinates of few digits, and of all.
+    let short = |point: &DVec3| point.round();
+    let long = |point: &DVec3| *point * 1e6 / 3.0;
+    for change in [&short as &dyn Fn(&DVec3) -> DVec3, &long] {
+        let points = ball.points().iter().map(change).collect();
+        let ball = Triangles::new(points, ball.faces().to_vec()).expect("a mesh");
+        let mut scene = Scene::empty();
+        let bytes = |scene: &Scene| {
+            let text = Document::of(scene.clone()).to_text();
+            text.expect("a text").len() as f64
+        };
+        let without = bytes(&scene);
+        let object = Object {
+            shape: Shape::Mesh(Mesh::of(ball)),
+            ..Scene::demo().objects[0].clone()
+        };
+        scene.objects = [object].into_iter().collect();
+        let told = scene.own_bytes() as f64 / (bytes(&scene) - without);
+        assert!((0.85..=1.25).contains(&told), "{told}");
+    }
+}

@@ -323,3 +323,41 @@ fn signed(value: f64) -> String {
     let sign = if value >= 0.0 { "+" } else { "" };
     format!("{sign}{}", plain(value))
 }
+
+#[cfg(test)]
+mod tests {
+    use egui::{Rect, pos2, vec2};
+
+    use super::*;
+    use crate::editor::Item;
+    use crate::scene::Scene;
+
+    #[test]
+    fn a_ring_counts_the_rounds_it_is_pulled_around() {
+        let scene = Scene::demo();
+        let view = Rect::from_min_size(pos2(0.0, 0.0), vec2(1000.0, 1000.0));
+        let screen = Screen::new(&scene.camera, view).expect("a view");
+        let ball = |index| Subject::new(&scene, Item::object(index)).expect("a ball");
+        let both = vec![ball(0), ball(1)];
+        let middle = screen.place(Subject::middle_of(&both).expect("a middle"));
+        // It circles as a clock does, seen from where the axis comes from.
+        let at = |degrees: f32| {
+            let angle = -degrees.to_radians();
+            middle.expect("in front") + vec2(angle.cos(), angle.sin()) * 100.0
+        };
+        let grip = Grip::new(&screen, both, Handle::Turn(2), at(0.0)).expect("a ring");
+        let pulled = |degrees: f32| {
+            let pull = Pull {
+                at: at(degrees),
+                snaps: true,
+                is_level: false,
+            };
+            grip.pull(&screen, pull).expect("a turn").1
+        };
+        // In steps, as a hand does, forth and far back.
+        for degrees in (0..600).chain((-600..=600).rev()).step_by(60) {
+            let sign = if degrees < 0 { "" } else { "+" };
+            assert_eq!(pulled(degrees as f32), format!("z {sign}{degrees}°"));
+        }
+    }
+}
