@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use super::item::{Item, Kind};
-use super::names::{copy_offset, free_light_name, free_object_name, free_pack_name, past_lights};
+use super::names::{
+    Placed, copy_offset, free_light_name, free_object_name, free_pack_name, way_past,
+};
 use crate::scene::{
     ColorPack, Light, LightObj, Object, Owner, Scene, Shape, Track, default_intensity, light_pack,
 };
@@ -31,10 +33,14 @@ pub fn add_object(scene: &mut Scene, name: &str, shape: Shape) -> Item {
         Shape::Plane(_) => &[FLOOR][..],
         _ => &COLORS,
     };
-    let color_pack = free_pack(scene, colors).unwrap_or_else(|| {
-        let color = colors[scene.color_packs.len() % colors.len()];
-        insert_pack(scene, &name.to_lowercase(), new_pack(color)).1
-    });
+    let color = colors[scene.color_packs.len() % colors.len()];
+    let color_pack = free_pack(scene, colors)
+        .unwrap_or_else(|| insert_pack(scene, &name.to_lowercase(), new_pack(color)).1);
+    if let Some(pack) = scene.packs_mut().get_mut(&color_pack)
+        && *pack == ColorPack::default()
+    {
+        *pack = new_pack(color);
+    }
     scene.objects.push(Object::new(name, color_pack, shape));
     Item::object(scene.objects.len() - 1)
 }
@@ -50,7 +56,7 @@ pub fn add_light(scene: &mut Scene, position: DVec3) -> Item {
     };
     // Two in one place would look like one. Far away, the radius of a marker may be less than a rounding.
     let step = DVec3::X * (4.0 * radius).max(position.x.abs() * 1e-9);
-    let position = position + past_lights(scene, position, (step, 0));
+    let position = position + way_past(scene, &[Placed::light(position)], (step, 0));
     scene.lights.push(Light {
         name,
         position,
@@ -96,8 +102,9 @@ pub fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
             let mut copy = original.clone();
             copy.name = free_light_name(scene, &copy.name);
             let marker = copy.marker.as_ref();
-            let step = DVec3::X * marker.map_or(1.0, |marker| marker.radius * 2.0);
-            let by = past_lights(scene, copy.position, (step, 1));
+            let radius = marker.map_or_else(|| marker_radius(scene), |marker| marker.radius);
+            let step = DVec3::X * radius * 2.0;
+            let by = way_past(scene, &[Placed::light(copy.position)], (step, 1));
             copy.position += by;
             copy_tracks(scene, Owner::Light(&original.name), &copy.name, by);
             scene.lights.insert(index + 1, copy);

@@ -7,17 +7,15 @@ use std::ops::Range;
 use glam::DVec3;
 use indexmap::IndexMap;
 
+use super::adding::marker_radius;
 use super::arrange::{Arrangement, arrange};
 use super::item::{Item, Kind};
-use super::names::{past_lights, past_objects, step_aside};
+use super::names::{Placed, step_aside, way_past};
 use super::selection::Selection;
 use crate::scene::{
     ColorPack, Document, List, Names, Owner, Owners, Scene, SceneError, Track, header, names_field,
     without_number,
 };
-
-/// How far a copy of a light alone is from it, in world units.
-const LIGHT_APART: f64 = 10.0;
 
 /// How deep a row is, as a share of its length, whose copy stands before it.
 const THINNEST: f64 = 0.05;
@@ -209,14 +207,17 @@ fn behind_originals(scene: &Scene, pasted: &Scene, new: Range<usize>) -> Option<
 }
 
 /// What groups are called of which all is pasted once more, or that are others of the same name: each is a group of its
-/// own. Alone, a member stays in its group.
+/// own. Some members of a group stay in it, and one alone in any case: it may have been cut out there.
 fn new_groups(scene: &Scene, pasted: &Scene) -> HashMap<String, String> {
     let there = members(scene);
     let mut taken = Names::new(there.keys().copied());
     let mut new = HashMap::new();
     for (group, own) in members(pasted) {
-        let is_other = |others: &HashSet<&str>| own == *others || own.is_disjoint(others);
-        if own.len() > 1 && there.get(group).is_some_and(is_other) {
+        let Some(others) = there.get(group) else {
+            continue;
+        };
+        let is_part = own.is_subset(others) && own.len() < others.len();
+        if own.len() > 1 && !is_part {
             new.insert(group.to_owned(), taken.take(group));
         }
     }
@@ -242,16 +243,10 @@ fn members(scene: &Scene) -> IndexMap<&str, HashSet<&str>> {
 /// From where things were copied to where they do not stand in each other: two things in one place would
 /// shadow each other. All of them go the same way.
 fn way_aside(scene: &Scene, pasted: &Scene) -> DVec3 {
-    let Some(first) = pasted.objects.first() else {
-        let step = (DVec3::X * LIGHT_APART, 0);
-        let first = pasted.lights.first();
-        return first.map_or(DVec3::ZERO, |light| {
-            past_lights(scene, light.position, step)
-        });
-    };
-    let step = match pasted.objects_bounds() {
+    let step = match (pasted.objects.first(), pasted.objects_bounds()) {
+        (None, _) => DVec3::X * marker_radius(scene) * 4.0,
         // What stands in a row has its copy before it, and not where the picture ends.
-        Some((low, high)) => {
+        (_, Some((low, high))) => {
             let size = high - low;
             let is_row = pasted.objects.len() > 1 && size.x * THINNEST < size.z && size.z < size.x;
             if is_row {
@@ -260,9 +255,10 @@ fn way_aside(scene: &Scene, pasted: &Scene) -> DVec3 {
                 DVec3::X * size.max_element()
             }
         }
-        None => step_aside(scene, &first.shape),
+        (Some(first), None) => step_aside(scene, &first.shape),
     };
-    past_objects(scene, &first.shape, (step, 0))
+    let new: Vec<Placed> = Placed::all_of(pasted).collect();
+    way_past(scene, &new, (step, 0))
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ pub struct Snapshot {
 }
 
 /// A step that was done, or taken back.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Step {
     label: String,
     /// The state on the other side of it.
@@ -45,12 +45,14 @@ pub struct History {
 
 impl History {
     /// Notes that `before` was left for `after` by doing `label`. During a gesture, edits of the same
-    /// name are one step.
+    /// name are one step. What was undone can be done again after a look from elsewhere.
     pub fn record(&mut self, label: String, before: Snapshot, after: &Scene) {
+        let undone = self.undone_after(&before.scene, after);
+        let undone = std::mem::replace(&mut self.undone, undone);
         if self.gesture.as_ref() == Some(&label) {
             return;
         }
-        self.aside = std::mem::take(&mut self.undone);
+        self.aside = undone;
         self.gesture = Some(label.clone());
         let bytes = before.scene.bytes_apart(after);
         self.done.push_back(Step {
@@ -64,6 +66,25 @@ impl History {
             let forgotten = self.done.pop_front();
             bytes -= forgotten.map_or(0, |step| step.bytes);
         }
+    }
+
+    /// What can be done again after a change: nothing, if it is one of more than the view. What was done where the camera
+    /// was before is seen from where it is now.
+    fn undone_after(&self, before: &Scene, after: &Scene) -> Vec<Step> {
+        let camera = after.camera.clone();
+        let looking = |scene: &Scene| Scene {
+            camera: camera.clone(),
+            ..scene.clone()
+        };
+        if self.undone.is_empty() || looking(before) != *after {
+            return Vec::new();
+        }
+        let mut undone = self.undone.clone();
+        let from_there = |step: &&mut Step| step.there.scene.camera == before.camera;
+        for step in undone.iter_mut().rev().take_while(from_there) {
+            step.there.scene = Arc::new(looking(&step.there.scene));
+        }
+        undone
     }
 
     /// Notes what the step that goes on has selected: doing it again selects that.
@@ -193,6 +214,48 @@ mod tests {
                 (Some("Move"), None)
             );
         }
+    }
+
+    #[test]
+    fn what_was_undone_is_done_again_after_a_look_from_elsewhere() {
+        let scene = Scene::demo();
+        let with = |ambient: f64, x: f64| {
+            let mut scene = Scene::demo();
+            scene.ambient_intensity = ambient;
+            scene.camera.position.x = x;
+            scene
+        };
+        let x = scene.camera.position.x;
+        let mut history = History::default();
+        // Darker, and then seen from elsewhere.
+        history.record("Darker".to_owned(), snapshot(&scene), &with(0.1, x));
+        history.end_gesture(&with(0.1, x));
+        history.record("Fly".to_owned(), snapshot(&with(0.1, x)), &with(0.1, 7.0));
+        history.end_gesture(&with(0.1, 7.0));
+        for here in [with(0.1, 7.0), with(0.1, x)] {
+            assert!(history.undo(snapshot(&here)).is_some());
+        }
+        // A drag of the camera, in two parts.
+        history.record("Orbit".to_owned(), snapshot(&scene), &with(0.5, 1.0));
+        let ambient = scene.ambient_intensity;
+        let here = [with(ambient, x), with(ambient, 1.0), with(ambient, 2.0)];
+        let mut history = history;
+        history.cancel_gesture();
+        for pair in here.windows(2) {
+            history.record("Orbit".to_owned(), snapshot(&pair[0]), &pair[1]);
+        }
+        history.end_gesture(&here[2]);
+        assert_eq!(history.undo_label(), Some("Orbit"));
+        let again = history.redo(snapshot(&here[2])).expect("darker");
+        assert_eq!(*again.scene, with(0.1, 2.0));
+        let again = history.redo(snapshot(&again.scene)).expect("flown");
+        assert_eq!(*again.scene, with(0.1, 7.0));
+        for scene in [with(0.1, 2.0), here[2].clone(), here[0].clone()] {
+            let before = history.undo(snapshot(&again.scene)).expect("a step");
+            assert_eq!(*before.scene, scene);
+        }
+        history.record("Lighter".to_owned(), snapshot(&here[0]), &with(0.9, x));
+        assert_eq!(history.redo_label(), None);
     }
 
     #[test]

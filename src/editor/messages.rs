@@ -30,12 +30,17 @@ impl Editor {
         self.say(false, "", text);
     }
 
+    /// Tells the user something, in place of what was said about the same before.
+    pub fn notify_about(&mut self, about: &'static str, text: String) {
+        self.begin(about);
+        self.say(false, about, text);
+    }
+
     /// Tells the user what the last step has done; nothing any more once that is undone.
     pub fn notify_of_step(&mut self, text: String) {
         self.told_of = self.revision();
         // Of the step before it, nothing is to be undone at once.
-        self.begin(STEP);
-        self.say(false, STEP, text);
+        self.notify_about(STEP, text);
     }
 
     /// What was said of the last step is forgotten, if there was no other since: it is undone.

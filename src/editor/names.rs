@@ -1,5 +1,7 @@
 //! What a new thing is called, and where it stands.
 
+use std::collections::HashMap;
+
 use glam::DVec3;
 
 use crate::scene::{Bookmark, Names, Scene, Shape};
@@ -38,38 +40,70 @@ pub fn free_bookmark_name(bookmarks: &[Bookmark], wanted: &str) -> String {
 
 /// From a shape to where its copy stands: two things in one place would shadow each other, as would two copies.
 pub fn copy_offset(scene: &Scene, shape: &Shape) -> DVec3 {
-    past_objects(scene, shape, (step_aside(scene, shape), 1))
+    let new = [Placed::of(shape)];
+    way_past(scene, &new, (step_aside(scene, shape), 1))
 }
 
-/// Steps, at least so many, after which no shape of this kind is where this one would be.
-pub fn past_objects(scene: &Scene, shape: &Shape, (step, least): (DVec3, u32)) -> DVec3 {
-    let alike = || {
-        let shapes = scene.objects.iter().map(|object| &object.shape);
-        shapes.filter(|other| other.kind() == shape.kind())
+/// Something where others of its kind would shadow it.
+#[derive(Clone, Copy, Debug)]
+pub struct Placed {
+    /// The kind of a shape; lights have none.
+    kind: Option<&'static str>,
+    /// Where it is.
+    pub place: DVec3,
+}
+
+impl Placed {
+    /// Of a shape.
+    pub fn of(shape: &Shape) -> Self {
+        Self {
+            kind: Some(shape.kind()),
+            place: shape.position(),
+        }
+    }
+
+    /// Of a light at this place.
+    pub fn light(place: DVec3) -> Self {
+        Self { kind: None, place }
+    }
+
+    /// All that a scene has.
+    pub fn all_of(scene: &Scene) -> impl Iterator<Item = Self> {
+        let objects = scene.objects.iter().map(|object| Self::of(&object.shape));
+        let lights = scene.lights.iter().map(|light| Self::light(light.position));
+        objects.chain(lights)
+    }
+}
+
+/// Steps, at least so many, after which none of these is where something of its kind is in the scene.
+pub fn way_past(scene: &Scene, new: &[Placed], (step, least): (DVec3, u32)) -> DVec3 {
+    // Steps one after the other are rounded otherwise than all of them at once.
+    let near = step.length() * 1e-6;
+    let cell = |place: DVec3| {
+        let cell = place / (near * 4.0).max(f64::MIN_POSITIVE);
+        cell.floor().to_array().map(|part| part as i64)
     };
-    let from = shape.position();
-    free_step((step, least), |by| {
-        alike().any(|other| is_there(other.position(), from + by, step))
-    })
-}
-
-/// The same of lights, for one that is there.
-pub fn past_lights(scene: &Scene, from: DVec3, (step, least): (DVec3, u32)) -> DVec3 {
-    free_step((step, least), |by| {
-        let mut lights = scene.lights.iter();
-        lights.any(|light| is_there(light.position, from + by, step))
-    })
-}
-
-fn free_step((step, least): (DVec3, u32), is_taken: impl Fn(DVec3) -> bool) -> DVec3 {
+    let mut there: HashMap<(Option<&str>, [i64; 3]), Vec<DVec3>> = HashMap::new();
+    for Placed { kind, place } in Placed::all_of(scene) {
+        there.entry((kind, cell(place))).or_default().push(place);
+    }
+    let is_taken = |by: DVec3| {
+        new.iter().any(|Placed { kind, place }| {
+            let wanted = *place + by;
+            let ([x0, y0, z0], [x1, y1, z1]) = (cell(wanted - near), cell(wanted + near));
+            // Two along each axis at most.
+            let cells = (x0..=x1).flat_map(|x| (y0..=y1).map(move |y| (x, y)));
+            let mut cells = cells.flat_map(|(x, y)| (z0..=z1).map(move |z| [x, y, z]));
+            cells.any(|cell| {
+                let places = there.get(&(*kind, cell));
+                let mut places = places.into_iter().flatten();
+                places.any(|place| (*place - wanted).length() <= near)
+            })
+        })
+    };
     let steps = (least..least + MOST_STEPS).map(|count| step * f64::from(count));
     let mut free = steps.filter(|by| !is_taken(*by));
     free.next().unwrap_or(step)
-}
-
-/// Steps one after the other are rounded otherwise than all of them at once.
-fn is_there(place: DVec3, wanted: DVec3, step: DVec3) -> bool {
-    (place - wanted).length() <= step.length() * 1e-6
 }
 
 /// From a shape to one beside it.

@@ -46,16 +46,11 @@ impl From<Keys> for Selection {
 impl Selection {
     /// The group that is selected: all of its objects, of which there are several, and nothing else.
     pub fn group<'a>(&self, scene: &'a Scene) -> Option<&'a str> {
-        let group_of = |item: &Item| {
-            let objects = scene.objects.get(item.index);
-            let object = objects.filter(|_| item.kind == Kind::Object)?;
-            Some(object.group.as_str()).filter(|group| !group.is_empty())
-        };
         let [first, _, ..] = self.items() else {
             return None;
         };
-        let group = group_of(first)?;
-        let is_in_it = |item: &Item| group_of(item) == Some(group);
+        let group = group_of(scene, *first)?;
+        let is_in_it = |item: &Item| group_of(scene, *item) == Some(group);
         let members = scene.objects.iter().filter(|object| object.group == group);
         let is_whole = self.items().iter().all(is_in_it) && members.count() == self.items().len();
         is_whole.then_some(group)
@@ -68,27 +63,43 @@ impl Selection {
         Self::all(members.map(|(index, _)| Item::object(index)))
     }
 
-    /// What is taken hold of with a thing of the picture: the group that it is in; of one of which something is selected,
-    /// the thing itself.
+    /// What is taken hold of with things of the picture: the groups that they are in; of those of which something is
+    /// selected, the things themselves.
     #[must_use]
-    pub fn picked(&self, scene: &Scene, item: Item) -> Self {
-        let object = scene.objects.get(item.index);
-        let object = object.filter(|object| item.kind == Kind::Object && !object.group.is_empty());
-        let mut selected = self.of_kind(Kind::Object).into_iter();
-        let closed = object.filter(|object| {
-            let group = |index: usize| Some(&scene.objects.get(index)?.group);
-            !selected.any(|other| group(other.index) == Some(&object.group))
-        });
-        closed.map_or_else(
-            || Self::from(item),
-            |object| Self::of_group(scene, &object.group),
-        )
+    pub fn picked(&self, scene: &Scene, items: &[Item]) -> Self {
+        let group = |item: &Item| group_of(scene, *item);
+        let open: HashSet<&str> = self.items().iter().filter_map(group).collect();
+        let closed = items.iter().filter_map(group);
+        let closed: HashSet<&str> = closed.filter(|group| !open.contains(group)).collect();
+        let is_alone = |item: &&Item| group(item).is_none_or(|group| !closed.contains(group));
+        let alone = items.iter().filter(is_alone).copied();
+        if closed.is_empty() {
+            return Self::all(alone);
+        }
+        let objects = scene.objects.iter().enumerate();
+        let members = objects.filter(|(_, object)| closed.contains(&*object.group));
+        Self::all(alone.chain(members.map(|(index, _)| Item::object(index))))
     }
 
-    /// The same with all of `others`, or without one that was among them.
+    /// The same with what is taken hold of with a thing of the picture, or without it if it was among them: of a group
+    /// that is selected beside other things, all of it.
     #[must_use]
-    pub fn toggled_with(&self, others: &Self) -> Self {
-        match others.items() {
+    pub fn toggled_at(&self, scene: &Scene, item: Item) -> Self {
+        let group = group_of(scene, item).map(|group| Self::of_group(scene, group));
+        let is_beside = |group: &Self| {
+            let count = group.items().len();
+            count < self.items().len() && self.has_all(group.items().iter().copied())
+        };
+        if let Some(group) = group.filter(is_beside) {
+            let own: HashSet<&Item> = group.items().iter().collect();
+            return Self::all(
+                self.items()
+                    .iter()
+                    .filter(|item| !own.contains(item))
+                    .copied(),
+            );
+        }
+        match self.picked(scene, &[item]).items() {
             [one] => self.toggled(*one),
             // Of a group that is selected by itself, nothing was.
             all => Self::all(self.items().iter().chain(all).copied()),
@@ -263,4 +274,11 @@ impl Selection {
         });
         Self::all(followed)
     }
+}
+
+/// The group that something is in.
+fn group_of(scene: &Scene, item: Item) -> Option<&str> {
+    let object = scene.objects.get(item.index);
+    let group = &object.filter(|_| item.kind == Kind::Object)?.group;
+    (!group.is_empty()).then_some(group)
 }

@@ -29,7 +29,7 @@ impl App {
                 }
                 Answer::Visible(revision, ticks) => self.overlay.take_visible(revision, ticks),
                 Answer::Objects(revision, map, without) => {
-                    let selected = self.tools.take(revision, map, &without);
+                    let selected = self.tools.take(&self.editor, (revision, map), &without);
                     if let Some(selected) = selected {
                         self.editor.apply(Action::Select(selected));
                     }

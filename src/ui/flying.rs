@@ -239,7 +239,7 @@ impl Flying {
             Ctrl::Up if self.keys_fly => Ctrl::Flying,
             Ctrl::Up | Ctrl::Waiting(_) | Ctrl::FlyingAlone if any_key => Ctrl::Shortcut,
             // Elsewhere it is held for a click that comes later.
-            Ctrl::Up if !picture.contains_pointer() => Ctrl::Shortcut,
+            Ctrl::Up | Ctrl::Waiting(_) if !picture.contains_pointer() => Ctrl::Shortcut,
             Ctrl::Up => Ctrl::Waiting(now),
             Ctrl::Waiting(since) if now - since >= CTRL_DELAY => Ctrl::Flying,
             going_on => going_on,

@@ -219,8 +219,8 @@ pub struct Number<'a> {
     pub axis: Option<(&'static str, Color32)>,
 }
 
-/// One draggable number.
-pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
+/// One draggable number. Whether what is in it was confirmed with Enter, changed or not.
+pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) -> bool {
     let Number {
         field,
         name,
@@ -252,7 +252,9 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) {
         });
         placed.inner
     };
-    enter(ui, (field, pasted), value, add).hint_beside(ui, field.hint);
+    let (response, is_confirmed) = enter(ui, (field, pasted), value, add);
+    response.hint_beside(ui, field.hint);
+    is_confirmed
 }
 
 /// A draggable number in a bar, with nothing beside it that says its name.
@@ -262,16 +264,16 @@ pub fn lone(ui: &mut Ui, field: &Field, value: &mut f64) {
         let widget = ui.add(widget.speed(speed).suffix(field.unit));
         widget.accessible_name(field.name)
     };
-    enter(ui, (field, None), value, add).hint(field.hint);
+    enter(ui, (field, None), value, add).0.hint(field.hint);
 }
 
-/// A number that `add` shows: what is typed counts when it is left.
+/// A number that `add` shows: what is typed counts when it is left. Whether it was confirmed with Enter.
 fn enter(
     ui: &mut Ui,
     (field, pasted): (&Field, Option<&Cell<Option<DVec3>>>),
     value: &mut f64,
     add: impl FnOnce(&mut Ui, DragValue) -> Response,
-) -> Response {
+) -> (Response, bool) {
     // Three in a row have less room.
     let most = if pasted.is_some() { NARROW } else { WIDE };
     let shown = |value: f64| rounded(value, field.unit, most);
@@ -304,20 +306,24 @@ fn enter(
     if let Some(start) = given_up(ui, &response, *value) {
         // Of the scene, that is undone besides, see [`dragged`]; other numbers have this alone.
         *value = start;
-        return response;
+        return (response, false);
     }
     // Formatting rounds what is shown; only a change by hand may reach the scene.
     let is_cancelled = is_cancelled(ui, &response);
     if let Some(pasted) = pasted.filter(|_| is_cancelled) {
         pasted.set(None);
     }
-    tell_refused(&response, is_cancelled, refused.take());
+    let refused = refused.take();
+    let is_confirmed = response.lost_focus()
+        && refused.is_none()
+        && ui.input(|input| input.key_pressed(Key::Enter));
+    tell_refused(&response, is_cancelled, refused);
     // A field that is left as it was entered gives back what it showed.
     let is_as_shown = !response.dragged() && is_as_shown.get();
     if response.changed() && edited.is_finite() && !is_cancelled && !is_as_shown {
         *value = edited.clamp(*field.range.start(), *field.range.end());
     }
-    response
+    (response, is_confirmed)
 }
 
 /// Whether the field was left with Escape, which gives what was typed up. A field counts as left

@@ -1,6 +1,9 @@
 //! Things that are put down on what is below them.
 
+use std::collections::HashMap;
+
 use glam::DVec3;
+use indexmap::IndexMap;
 
 use crate::editor::{Edit, Kind, Selection};
 use crate::lab::meet;
@@ -25,16 +28,13 @@ struct Line {
     high: f64,
 }
 
-/// Puts each selected object, or the group that they are, down on what is below it; what has sunk in is lifted.
+/// Puts each selected object, and each group that is selected as a whole, down on what is below it; what has sunk in is
+/// lifted.
 ///
 /// # Errors
 /// Why nothing moves, in words.
 pub fn put_down(scene: &Scene, selected: &Selection) -> Result<Edit, &'static str> {
-    let places = selected.places(Kind::Object);
-    let mut bodies = match selected.group(scene) {
-        Some(_) => vec![places],
-        None => places.into_iter().map(|place| vec![place]).collect(),
-    };
+    let mut bodies = bodies(scene, selected);
     let ends = |index: &usize| lowest_point(&scene.objects[*index].shape).is_some();
     bodies.retain(|body: &Vec<usize>| body.iter().all(ends));
     if bodies.is_empty() {
@@ -53,10 +53,15 @@ pub fn put_down(scene: &Scene, selected: &Selection) -> Result<Edit, &'static st
     let low = |body: &Vec<usize>| bounds(scene, body).0.y;
     bodies.sort_by(|one, other| low(one).total_cmp(&low(other)));
     let (mut scene, mut edits) = (scene.clone(), Vec::new());
+    let mut has_ground = false;
     for body in bodies {
         let Some(gap) = gap_below(&scene, &body, lines) else {
             continue;
         };
+        has_ground = true;
+        if gap == 0.0 {
+            continue;
+        }
         for index in body {
             let mut object = scene.objects[index].clone();
             object.shape = object.shape.moved(DVec3::NEG_Y * gap);
@@ -65,14 +70,40 @@ pub fn put_down(scene: &Scene, selected: &Selection) -> Result<Edit, &'static st
         }
     }
     let label = match edits.len() {
-        0 => return Err("It stands already, or nothing is below"),
+        0 if has_ground => return Err("It stands already"),
+        0 => return Err("Nothing is below it"),
         1 => "Put down".to_owned(),
         count => format!("Put down {count} items"),
     };
     Ok(Edit::Each(edits, label))
 }
 
-/// How far these objects are above what is below them; `None` where they stand, or nothing is.
+/// The selected objects that come down together, by their places in ascending order: those of whole groups, and the
+/// others one by one.
+fn bodies(scene: &Scene, selected: &Selection) -> Vec<Vec<usize>> {
+    let mut members: HashMap<&str, usize> = HashMap::new();
+    for object in &scene.objects {
+        *members.entry(&object.group).or_default() += 1;
+    }
+    let mut bodies = Vec::new();
+    let mut groups: IndexMap<&str, Vec<usize>> = IndexMap::new();
+    for place in selected.places(Kind::Object) {
+        match scene.objects[place].group.as_str() {
+            "" => bodies.push(vec![place]),
+            group => groups.entry(group).or_default().push(place),
+        }
+    }
+    for (group, own) in groups {
+        if members.get(group) == Some(&own.len()) {
+            bodies.push(own);
+        } else {
+            bodies.extend(own.into_iter().map(|place| vec![place]));
+        }
+    }
+    bodies
+}
+
+/// How far these objects are above what is below them; 0 where they stand. `None` where nothing is.
 fn gap_below(scene: &Scene, body: &[usize], lines: usize) -> Option<f64> {
     let gaps = lines_through(scene, body, lines).into_iter();
     let gaps = gaps.filter_map(|line| Some(line.low - ground_below(scene, body, &line)?));
@@ -85,7 +116,8 @@ fn gap_below(scene: &Scene, body: &[usize], lines: usize) -> Option<f64> {
     } else {
         gap
     };
-    (gap.abs() > STANDING * (1.0 + size)).then_some(gap)
+    let is_standing = gap.abs() <= STANDING * (1.0 + size);
+    Some(if is_standing { 0.0 } else { gap })
 }
 
 /// Lines through these objects: so many along each side, and the one through their lowest point.
@@ -256,9 +288,20 @@ mod tests {
         for place in [0, 1] {
             group.objects[place].group = "both".to_owned();
         }
-        assert!(put(&mut group, &[0, 1]));
-        assert!(low(&group, 1).abs() < 1e-9);
-        assert!((low(&group, 0) - 30.0).abs() < 1e-9);
+        let above = Object {
+            shape: ball(100.0, 7.0, 1.0),
+            ..group.objects[2].clone()
+        };
+        group.objects.push(above);
+        // Beside something else, it is one as well.
+        for places in [&[0, 1][..], &[0, 1, 3]] {
+            let mut group = group.clone();
+            assert!(put(&mut group, places));
+            assert!(low(&group, 1).abs() < 1e-9);
+            assert!((low(&group, 0) - 30.0).abs() < 1e-9);
+        }
+        assert!(put(&mut group, &[0, 3]), "a part of it is by itself");
+        assert!((low(&group, 0) - 35.0).abs() < 1e-9);
     }
 
     #[test]

@@ -22,17 +22,26 @@ pub struct Rows<'u> {
     /// Where the rows go.
     pub ui: &'u mut Ui,
     changed: Option<&'static str>,
-    picked: Option<&'static str>,
+    chosen: Option<Chosen>,
+}
+
+/// A value that was chosen by hand, whether or not it was another one before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Chosen {
+    /// The field.
+    pub field: &'static str,
+    /// Which of three numbers; `None` for all of them, or the only one.
+    pub part: Option<usize>,
 }
 
 impl<'u> Rows<'u> {
     /// No rows yet.
     pub fn new(ui: &'u mut Ui) -> Self {
-        let (changed, picked) = (None, None);
+        let (changed, chosen) = (None, None);
         Self {
             ui,
             changed,
-            picked,
+            chosen,
         }
     }
 
@@ -41,9 +50,9 @@ impl<'u> Rows<'u> {
         self.changed
     }
 
-    /// The choice that was made in this frame, if one was, whether or not it was made before.
-    pub fn picked(&self) -> Option<&'static str> {
-        self.picked
+    /// What was chosen in this frame – picked, confirmed with Enter, or brought back –, if something was.
+    pub fn chosen(&self) -> Option<Chosen> {
+        self.chosen
     }
 
     fn note(&mut self, name: &'static str, changed: bool) {
@@ -60,7 +69,7 @@ impl<'u> Rows<'u> {
 
     /// A number.
     pub fn number(&mut self, field: &Field, value: &mut f64) {
-        let before = *value;
+        let (before, mut is_chosen) = (*value, false);
         row(
             self.ui,
             field,
@@ -77,18 +86,27 @@ impl<'u> Rows<'u> {
                     pasted: None,
                     axis: None,
                 };
-                drag(ui, &number, value);
+                is_chosen = drag(ui, &number, value) || reset;
             },
         );
         self.note(field.name, *value != before);
+        if is_chosen {
+            let (field, part) = (field.name, None);
+            self.chosen = Some(Chosen { field, part });
+        }
     }
 
     /// Three numbers in one row.
     pub fn vector(&mut self, field: &Field, default: DVec3, value: &mut DVec3) {
-        let before = *value;
+        let (before, mut chosen) = (*value, None);
         row(self.ui, field, &format_vec3(default), |ui, reset| {
+            let part_of = |part| Chosen {
+                field: field.name,
+                part,
+            };
             if reset {
                 *value = default;
+                chosen = Some(part_of(None));
             }
             let pasted = Cell::new(None);
             let width = (ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0;
@@ -99,7 +117,7 @@ impl<'u> Rows<'u> {
             ];
             let colors = palette(ui.ctx()).axis_letters;
             let size = before.abs().max_element();
-            for ((axis, part), color) in parts.into_iter().zip(colors) {
+            for (place, ((axis, part), color)) in parts.into_iter().zip(colors).enumerate() {
                 let name = format!("{} {axis}", field.name);
                 let number = Number {
                     field,
@@ -109,13 +127,17 @@ impl<'u> Rows<'u> {
                     pasted: Some(&pasted),
                     axis: Some((axis, color)),
                 };
-                drag(ui, &number, part);
+                if drag(ui, &number, part) {
+                    chosen = Some(part_of(Some(place)));
+                }
             }
             if let Some(whole) = pasted.get() {
                 *value = whole;
+                chosen = Some(part_of(None));
             }
         });
         self.note(field.name, *value != before);
+        self.chosen = chosen.or(self.chosen);
     }
 
     /// A colour: a swatch that opens a picker, and its channels 0–255, of which each has a name too.
@@ -135,10 +157,15 @@ impl<'u> Rows<'u> {
             range: 0.0..=255.0,
             speed: Some(1.0),
         };
-        let mut changed = name;
+        let (mut changed, mut chosen) = (name, None);
+        let all = Chosen {
+            field: name,
+            part: None,
+        };
         row(self.ui, &field, &format_vec3(default), |ui, reset| {
             if reset {
                 *value = default;
+                chosen = Some(all);
             }
             ui.spacing_mut().interact_size.x = ROW;
             swatch(ui, name, value);
@@ -146,7 +173,7 @@ impl<'u> Rows<'u> {
             let width = (ui.available_width() - HEX - gaps) / 3.0;
             let pasted = Cell::new(None);
             let parts = [&mut value.x, &mut value.y, &mut value.z];
-            for (name, part) in channels.into_iter().zip(parts) {
+            for (place, (name, part)) in channels.into_iter().zip(parts).enumerate() {
                 let own = *part;
                 let number = Number {
                     field: &field,
@@ -156,13 +183,16 @@ impl<'u> Rows<'u> {
                     pasted: Some(&pasted),
                     axis: None,
                 };
-                drag(ui, &number, part);
+                if drag(ui, &number, part) {
+                    let part = Some(place);
+                    chosen = Some(Chosen { field: name, part });
+                }
                 if *part != own {
                     changed = name;
                 }
             }
             if let Some(whole) = pasted.get() {
-                (*value, changed) = (whole, name);
+                (*value, changed, chosen) = (whole, name, Some(all));
             }
             let own = *value;
             hex(ui, name, value);
@@ -171,6 +201,7 @@ impl<'u> Rows<'u> {
             }
         });
         self.note(changed, *value != before);
+        self.chosen = chosen.or(self.chosen);
     }
 
     /// A tick box.
@@ -218,7 +249,8 @@ impl<'u> Rows<'u> {
             let changed = option != *value;
             *value = option;
             self.note(name, changed);
-            self.picked = Some(name);
+            let part = None;
+            self.chosen = Some(Chosen { field: name, part });
         }
     }
 }

@@ -10,6 +10,7 @@ mod aspects;
 mod bytes;
 mod cli;
 mod contacts;
+mod copies;
 mod dependencies;
 mod export;
 mod extremes;

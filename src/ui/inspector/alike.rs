@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 
-use super::items::BOTH;
+use super::items::{BOTH, COLOR_PACK};
 use crate::editor::{Edit, Item, Kind};
 use crate::scene::{ColorPack, Light, Object, PropertyValue, Scene, Shape};
-use crate::ui::rows::is_channel;
+use crate::ui::rows::{Chosen, is_channel};
 
 /// A point of something that a change moves.
 struct MovedPoint {
@@ -121,6 +121,61 @@ pub fn for_all(scene: &Scene, selected: &[Item], edit: Edit, is_together: bool) 
         other => return other,
     };
     Edit::Each(edits, format!("{count} items: {field}"))
+}
+
+/// The change that gives all others what was chosen for what was selected last, which has it already.
+pub fn chosen_for_all(
+    scene: &Scene,
+    selected: &[Item],
+    (edit, Chosen { field, part }): (Edit, Chosen),
+) -> Edit {
+    // As if it had nothing there: then it is one more that changes.
+    let nothing = |own: &mut DVec3| match part {
+        Some(part) => own[part] = f64::NAN,
+        None => *own = DVec3::NAN,
+    };
+    let mut scene = scene.clone();
+    match &edit {
+        Edit::Object(index, ..) => {
+            let mut object = scene.objects[*index].clone();
+            if field == COLOR_PACK {
+                object.color_pack.clear();
+            }
+            object.shape.fields(&mut |own| match own.value {
+                _ if own.name != field => {}
+                PropertyValue::Point(own)
+                | PropertyValue::Direction(own)
+                | PropertyValue::Angles(own)
+                | PropertyValue::Factors(own) => nothing(own),
+                PropertyValue::Length(own) | PropertyValue::Angle(own) => *own = f64::NAN,
+            });
+            scene.objects[*index] = object;
+        }
+        Edit::Light(index, ..) => {
+            let light = &mut scene.lights[*index];
+            match (field, &mut light.marker) {
+                ("position", _) => nothing(&mut light.position),
+                ("intensity", _) => light.intensity = f64::NAN,
+                ("radius", Some(marker)) => marker.radius = f64::NAN,
+                (COLOR_PACK, Some(marker)) => marker.color_pack.clear(),
+                _ => {}
+            }
+        }
+        Edit::Pack(index, ..) => {
+            if let Some((_, pack)) = scene.packs_mut().get_index_mut(*index) {
+                let name = field.split(' ').next();
+                match name.unwrap_or_default() {
+                    "ambient" => nothing(&mut pack.ambient),
+                    "specular" => nothing(&mut pack.specular),
+                    "phong" => pack.phong_exponent = f64::NAN,
+                    // Or both, of which this is shown.
+                    _ => nothing(&mut pack.diffuse),
+                }
+            }
+        }
+        _ => {}
+    }
+    for_all(&scene, selected, edit, false)
 }
 
 /// The packs that are selected, and those that the selected objects wear, each once.

@@ -5,6 +5,9 @@ use glam::{DQuat, DVec3};
 use crate::editor::{Edit, Item, Kind};
 use crate::scene::{Mesh, Object, Scene, Shape};
 
+/// Why a group is not stretched.
+const SHEARED: &str = "A group with parts that are turned, or no meshes, is stretched by one factor for x, y and z alone";
+
 /// What is done to all members.
 #[derive(Clone, Copy)]
 enum Change {
@@ -53,9 +56,11 @@ impl Change {
 }
 
 /// The change that turns or stretches all members of a group about the mean of their places, as `edit` does one of
-/// them: that stays where it is then, however often it is done. `None` where `edit` does neither, or some would be
-/// sheared.
-pub fn as_one(scene: &Scene, members: &[Item], edit: &Edit) -> Option<Edit> {
+/// them: that stays where it is then, however often it is done. `None` where `edit` does neither.
+///
+/// # Errors
+/// Some would be sheared, in words.
+pub fn as_one(scene: &Scene, members: &[Item], edit: &Edit) -> Option<Result<Edit, &'static str>> {
     let Edit::Object(own, new, field) = edit else {
         return None;
     };
@@ -85,9 +90,11 @@ pub fn as_one(scene: &Scene, members: &[Item], edit: &Edit) -> Option<Edit> {
         };
         Some(Edit::object(index, changed, field))
     });
-    let edits: Vec<Edit> = edits.collect::<Option<_>>()?;
+    let Some(edits) = edits.collect::<Option<Vec<Edit>>>() else {
+        return Some(Err(SHEARED));
+    };
     let label = format!("{} {} items", change.verb(), edits.len());
-    Some(Edit::Each(edits, label))
+    Some(Ok(Edit::Each(edits, label)))
 }
 
 #[cfg(test)]
@@ -121,7 +128,7 @@ mod tests {
             "rotation",
         );
         let edit = as_one(&scene, &[Item::object(1), Item::object(0)], &edit)?;
-        edit.apply(&mut scene).expect("made");
+        edit.ok()?.apply(&mut scene).expect("made");
         match (&scene.objects[0].shape, &scene.objects[1].shape) {
             (Shape::Mesh(mesh), Shape::Sphere(ball)) => Some((mesh.clone(), *ball)),
             _ => panic!("other shapes"),
@@ -140,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn what_would_be_sheared_is_left_to_each_alone() {
+    fn what_would_be_sheared_stays() {
         assert!(changed(|mesh| mesh.scale.x = 2.0).is_none(), "a ball");
         assert!(changed(|mesh| mesh.position.x = 2.0).is_none(), "moved");
     }

@@ -14,17 +14,26 @@ use crate::ui::commands::Command;
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
-use crate::ui::rows::{Field, Rows, color_names, coordinate, fraction};
+use crate::ui::rows::{Chosen, Field, Rows, color_names, coordinate, fraction};
 use crate::words::counted;
 
 /// Most things that are listed as wearing a pack.
 const MOST_USERS: usize = 100;
 
+/// What the pack of something is called.
+pub const COLOR_PACK: &str = "color pack";
+
 /// What ambient and diffuse colour are called at once.
 pub const BOTH: (&str, [&str; 3]) = color_names!("color");
 
-/// A light and its marker.
-pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut UiRequests) {
+/// A light and its marker. What was chosen and is what it was.
+pub fn light(
+    ui: &mut Ui,
+    scene: &Scene,
+    index: usize,
+    before: &Light,
+    out: &mut UiRequests,
+) -> Option<(Edit, Chosen)> {
     title_field(ui, icons::LIGHT, Item::light(index), &before.name, out);
     let mut light = before.clone();
     let mut rows = Rows::new(ui);
@@ -50,15 +59,12 @@ pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut
         &mut has_marker,
     );
     if has_marker != light.marker.is_some() {
-        let names = scene.color_packs.keys();
-        let pack = names
-            .clone()
-            .find(|name| *name == "light")
-            .or(scene.color_packs.keys().next());
-        light.marker = pack.filter(|_| has_marker).map(|pack| LightObj {
-            color_pack: pack.clone(),
-            radius: marker_radius(scene),
-        });
+        light.marker = marker_pack(scene)
+            .filter(|_| has_marker)
+            .map(|pack| LightObj {
+                color_pack: pack.clone(),
+                radius: marker_radius(scene),
+            });
     }
     if let Some(marker) = &mut light.marker {
         let radius = length(
@@ -69,9 +75,27 @@ pub fn light(ui: &mut Ui, scene: &Scene, index: usize, before: &Light, out: &mut
         rows.number(&radius, &mut marker.radius);
         pack_choice(&mut rows, scene, &mut marker.color_pack);
     }
-    if let Some(field) = rows.changed().filter(|_| light != *before) {
+    if light == *before {
+        let chosen = rows.chosen()?;
+        return Some((Edit::Light(index, light, chosen.field), chosen));
+    }
+    if let Some(field) = rows.changed() {
         out.edit(Edit::Light(index, light, field));
     }
+    None
+}
+
+/// What the marker of a light wears that has none yet: what those of others wear, a pack that is called like one, or any.
+fn marker_pack(scene: &Scene) -> Option<&String> {
+    let markers = scene
+        .lights
+        .iter()
+        .filter_map(|light| light.marker.as_ref());
+    let names = || scene.color_packs.keys();
+    let mut worn = markers.map(|marker| &marker.color_pack);
+    worn.next()
+        .or_else(|| names().find(|name| *name == "light"))
+        .or_else(|| names().next())
 }
 
 fn length(name: &'static str, hint: &'static str, default: f64) -> Field {
@@ -114,21 +138,22 @@ fn pack_choice(rows: &mut Rows, scene: &Scene, name: &mut String) {
         .keys()
         .map(|name| (name.clone(), name.clone()));
     rows.choice(
-        "color pack",
+        COLOR_PACK,
         "The material, shared by everything that names it",
         name,
         options,
     );
 }
 
-/// An object: its shape and its pack; by itself it can be joined and taken apart besides.
+/// An object: its shape and its pack; by itself it can be joined and taken apart besides. What was chosen and is what it
+/// was.
 pub fn object(
     ui: &mut Ui,
     scene: &Scene,
     (index, is_alone): (usize, bool),
     before: &Object,
     out: &mut UiRequests,
-) {
+) -> Option<(Edit, Chosen)> {
     title_field(
         ui,
         icons::of_shape(&before.shape),
@@ -150,13 +175,15 @@ pub fn object(
     }
     rows.heading("ColorPack");
     pack_choice(&mut rows, scene, &mut object.color_pack);
+    let chosen = rows.chosen().filter(|_| object == *before);
     if let Some(field) = rows.changed().filter(|_| object != *before) {
-        out.edit(Edit::object(index, object, field));
+        out.edit(Edit::object(index, object.clone(), field));
     }
+    let chosen = chosen.map(|chosen| (Edit::object(index, object, chosen.field), chosen));
     let Some((place, name, value)) = scene.color_packs.get_full(&before.color_pack) else {
-        return;
+        return chosen;
     };
-    pack(ui, place, value, out);
+    let chosen = pack(ui, place, value, out).or(chosen);
     let users = count_users(ui, scene, name);
     ui.horizontal(|ui| {
         ui.weak(format!("used by {users}"));
@@ -172,6 +199,7 @@ pub fn object(
             out.edit(Edit::MakePackUnique(index));
         }
     });
+    chosen
 }
 
 /// What turns triangles into a mesh and back: what is shown is all that is selected.
@@ -232,8 +260,13 @@ fn shape_rows(rows: &mut Rows, shape: &mut Shape) {
     });
 }
 
-/// The colours of a pack.
-pub fn pack(ui: &mut Ui, index: usize, before: &ColorPack, out: &mut UiRequests) {
+/// The colours of a pack. What was chosen and is what it was.
+pub fn pack(
+    ui: &mut Ui,
+    index: usize,
+    before: &ColorPack,
+    out: &mut UiRequests,
+) -> Option<(Edit, Chosen)> {
     let mut pack = before.clone();
     let defaults = ColorPack::default();
     let mut rows = Rows::new(ui);
@@ -281,9 +314,14 @@ pub fn pack(ui: &mut Ui, index: usize, before: &ColorPack, out: &mut UiRequests)
         "Whether the surface mirrors the scene: through its specular color, as bright as all lights together",
         &mut pack.reflective,
     );
-    if let Some(field) = rows.changed().filter(|_| pack != *before) {
+    if pack == *before {
+        let chosen = rows.chosen()?;
+        return Some((Edit::Pack(index, pack, chosen.field), chosen));
+    }
+    if let Some(field) = rows.changed() {
         out.edit(Edit::Pack(index, pack, field));
     }
+    None
 }
 
 /// What uses a pack, each a way to it.

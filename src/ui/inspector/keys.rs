@@ -61,7 +61,8 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     pace_rows(&mut rows, editor, &mut new_pace);
     let new_value = only.and_then(|only| value_rows(&mut rows, animation, only));
     // Of several, what all of them have may be picked for those that have not.
-    let changed = rows.changed().or(rows.picked().filter(|_| only.is_none()));
+    let chosen = rows.chosen().map(|chosen| chosen.field);
+    let changed = rows.changed().or(chosen.filter(|_| only.is_none()));
     ui.horizontal_wrapped(|ui| buttons(ui, editor, out));
     if new_time != time {
         move_key(ui, editor, new_time, out);

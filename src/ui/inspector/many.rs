@@ -3,7 +3,7 @@
 use egui::{Id, Ui};
 use glam::DVec3;
 
-use super::alike::{for_all, packs_of, values};
+use super::alike::{chosen_for_all, for_all, packs_of, values};
 use super::as_one::as_one;
 use super::items;
 use super::keys;
@@ -53,32 +53,37 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
     ui.add_space(GRID);
     let mut own = UiRequests::default();
-    match last.kind {
+    let index = last.index;
+    let chosen = match last.kind {
         Kind::Object => {
-            if let Some(object) = scene.objects.get(last.index) {
-                items::object(ui, scene, (last.index, false), object, &mut own);
-            }
+            let object = scene.objects.get(index);
+            object.and_then(|object| items::object(ui, scene, (index, false), object, &mut own))
         }
         Kind::Light => {
-            if let Some(light) = scene.lights.get(last.index) {
-                items::light(ui, scene, last.index, light, &mut own);
-            }
+            let light = scene.lights.get(index);
+            light.and_then(|light| items::light(ui, scene, index, light, &mut own))
         }
         Kind::Pack => {
-            if let Some((name, pack)) = scene.color_packs.get_index(last.index) {
+            let pack = scene.color_packs.get_index(index);
+            pack.and_then(|(name, pack)| {
                 title_field(ui, icons::PACK, last, name, &mut own);
-                items::pack(ui, last.index, pack, &mut own);
-            }
+                items::pack(ui, index, pack, &mut own)
+            })
         }
+    };
+    // A group is where it is, and has no others.
+    if let Some(chosen) = chosen.filter(|_| group.is_none()) {
+        out.edit(chosen_for_all(scene, selected, chosen));
     }
     // A group stays what it is; and it is not the click elsewhere that ends what was typed.
     let is_together = group.is_some() || ui.input(|input| input.pointer.is_decidedly_dragging());
     for action in own.actions {
         out.actions.push(match action {
-            Action::Edit(edit) => {
-                let all = group.and_then(|_| as_one(scene, selected, &edit));
-                Action::Edit(all.unwrap_or_else(|| for_all(scene, selected, edit, is_together)))
-            }
+            Action::Edit(edit) => match group.and_then(|_| as_one(scene, selected, &edit)) {
+                Some(Ok(all)) => Action::Edit(all),
+                Some(Err(why)) => Action::Tell(why.to_owned()),
+                None => Action::Edit(for_all(scene, selected, edit, is_together)),
+            },
             other => other,
         });
     }
@@ -166,7 +171,7 @@ fn object_differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'sta
         .iter()
         .any(|other| other.color_pack != object.color_pack)
     {
-        names.push("color pack");
+        names.push(items::COLOR_PACK);
     }
     names
 }

@@ -13,7 +13,6 @@ use crate::editor::{Action, Edit, Editor, Selection};
 use crate::image::Thing;
 use crate::scene::Shape;
 use crate::ui::flying::drag_of;
-use crate::ui::number::read_number;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
 use crate::ui::viewport::Place;
@@ -123,7 +122,7 @@ impl Drag {
             let item = item_of(body);
             let mut selected = editor.selection().clone();
             if !selected.has(item) {
-                selected = selected.picked(editor.scene(), item);
+                selected = selected.picked(editor.scene(), &[item]);
                 out.actions.push(Action::Select(selected.clone()));
             }
             let before = Subject::of(&selected, editor.shown());
@@ -187,8 +186,11 @@ impl Drag {
             Self::Frame(from, before) => {
                 let part = Rect::from_two_pos(*from, at);
                 let found = sight.within(view.editor, view.place.rect, part);
+                // Groups as with a click: others would be torn apart by what is done next.
+                let found = before.picked(view.editor.scene(), &found);
+                let found = found.items();
                 if !response.dragged() {
-                    let items = before.items().iter().copied().chain(found);
+                    let items = before.items().iter().chain(found).copied();
                     out.actions.push(Action::Select(Selection::all(items)));
                     return false;
                 }
@@ -196,7 +198,8 @@ impl Drag {
             }
             Self::Grip(grip) => {
                 ui.set_cursor_icon(CursorIcon::Grabbing);
-                let is_done = grip.takes_numbers() && type_into(ui, &mut grip.typed);
+                let is_entered = grip.takes_numbers() && type_into(ui, &mut grip.typed);
+                let is_done = is_entered && grip.wrong().is_none();
                 let modifiers = ui.input(|input| input.modifiers);
                 let pull = Pull {
                     at,
@@ -225,7 +228,7 @@ fn show_frame(view: &View, part: Rect, (at, count): (Pos2, usize)) {
     label(&view.painter, at, &counted(count, "item"));
 }
 
-/// Takes digits up. Whether Enter was pressed after some that are a number.
+/// Takes digits up. Whether Enter was pressed.
 fn type_into(ui: &Ui, typed: &mut String) -> bool {
     let events = ui.input(|input| input.filtered_events(&egui::EventFilter::default()));
     let mut is_done = false;
@@ -248,7 +251,7 @@ fn type_into(ui: &Ui, typed: &mut String) -> bool {
                 key: Key::Enter,
                 pressed: true,
                 ..
-            } => is_done = read_number(typed).is_some(),
+            } => is_done = true,
             _ => {}
         }
     }

@@ -80,6 +80,18 @@ impl Grip {
         )
     }
 
+    /// What is wrong with what is typed.
+    pub fn wrong(&self) -> Option<String> {
+        let is_size = matches!(self.handle, Handle::Radius | Handle::Size);
+        match read_number(&self.typed) {
+            None => Some(format!("{} is no number yet", self.typed)),
+            Some(number) if is_size && number <= 0.0 => {
+                Some(format!("{} is not above 0", self.typed))
+            }
+            Some(_) => None,
+        }
+    }
+
     /// What is held.
     pub fn handle(&self) -> Handle {
         self.handle
@@ -287,10 +299,9 @@ impl Grip {
     pub fn label(&self, painter: &Painter, at: Pos2, words: &str) {
         let words = if self.typed.is_empty() {
             words.to_owned()
-        } else if read_number(&self.typed).is_none() {
-            format!("{} is no number yet", self.typed)
         } else {
-            format!("{words} (Enter)")
+            let wrong = self.wrong();
+            wrong.unwrap_or_else(|| format!("{words} (Enter)"))
         };
         label(painter, at, &words);
     }

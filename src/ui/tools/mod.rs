@@ -84,7 +84,12 @@ impl Tools {
 
     /// Takes up what is seen in the picture of a revision, as if nothing of `without` were there. What is to
     /// be selected, if that was asked for.
-    pub fn take(&mut self, revision: u64, map: ObjectMap, without: &[Thing]) -> Option<Selection> {
+    pub fn take(
+        &mut self,
+        editor: &Editor,
+        (revision, map): (u64, ObjectMap),
+        without: &[Thing],
+    ) -> Option<Selection> {
         if without.is_empty() {
             self.sight.take(revision, map);
             return None;
@@ -99,7 +104,8 @@ impl Tools {
             Some(next) => before.push(next),
             None => before.truncate(1),
         }
-        before.last().map(|thing| Selection::all([item_of(*thing)]))
+        let item = item_of(*before.last()?);
+        Some(editor.selection().picked(editor.scene(), &[item]))
     }
 
     /// The tools over the picture at `place`, which `response` is of; `wheel` is how far the wheel was turned
@@ -207,7 +213,7 @@ impl Tools {
             if let Some(item) = seen.map(item_of)
                 && !view.editor.selection().has(item)
             {
-                let selected = view.editor.selection().picked(view.editor.scene(), item);
+                let selected = view.editor.selection().picked(view.editor.scene(), &[item]);
                 out.actions.push(Action::Select(selected));
             }
         }
@@ -277,7 +283,7 @@ impl Tools {
         let outlined = seen.filter(|thing| ends(view.editor.shown(), *thing));
         let outlined = outlined.map(item_of).filter(|_| meant.is_none());
         let (scene, selected) = (view.editor.scene(), view.editor.selection());
-        let outlined = outlined.map(|item| selected.picked(scene, item));
+        let outlined = outlined.map(|item| selected.picked(scene, &[item]));
         let group = outlined.as_ref().and_then(|picked| picked.group(scene));
         let outlined = outlined.as_ref().map_or(&[][..], Selection::items);
         self.sight.show(
@@ -343,9 +349,9 @@ impl Tools {
         let before = view.editor.selection();
         let scene = view.editor.scene();
         let selected = match (item, modifiers.shift || modifiers.command) {
-            (Some(item), true) => before.toggled_with(&before.picked(scene, item)),
+            (Some(item), true) => before.toggled_at(scene, item),
             (None, true) => return,
-            (Some(item), false) => before.picked(scene, item),
+            (Some(item), false) => before.picked(scene, &[item]),
             (None, false) => Selection::default(),
         };
         out.actions.push(Action::Select(selected));

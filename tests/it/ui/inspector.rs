@@ -489,6 +489,43 @@ fn what_is_typed_for_several_is_for_all_however_it_is_ended() {
 }
 
 #[test]
+fn others_get_what_the_last_of_them_has_already() {
+    let mut harness = EditorHarness::new();
+    both_balls(&mut harness);
+    let (x, other) = (center(harness.scene(), 1).x, center(harness.scene(), 0));
+    // Confirmed without a change: Enter in a field that was only looked at.
+    for field in ["radius", "center x", "specular green"] {
+        harness
+            .window
+            .get_by_role_and_label(Role::SpinButton, field)
+            .click();
+        harness.settle();
+        harness.press(Modifiers::NONE, Key::Enter);
+    }
+    let scene = harness.scene();
+    assert_eq!([0, 1].map(|ball| radius(scene, ball)), [20.0; 2]);
+    assert_eq!(center(scene, 0), DVec3::new(x, other.y, other.z));
+    assert_eq!(center(scene, 1).x, x);
+    // Left without that, a field changes nothing.
+    harness.press(CTRL, Key::Z);
+    harness.press(CTRL, Key::Z);
+    let before = harness.scene().clone();
+    harness
+        .window
+        .get_by_role_and_label(Role::SpinButton, "radius")
+        .click();
+    harness.settle();
+    harness.press(Modifiers::NONE, Key::Tab);
+    assert_eq!(*harness.scene(), before);
+    harness.unfold("color pack");
+    let choices = harness.window.get_all_by_label("sphere 2");
+    choices.last().expect("a choice").click();
+    harness.settle();
+    let packs = [0, 1].map(|ball| harness.scene().objects[ball].color_pack.clone());
+    assert_eq!(packs, ["sphere 2"; 2]);
+}
+
+#[test]
 fn a_change_of_a_pack_is_for_the_packs_of_all() {
     let mut harness = EditorHarness::new();
     both_balls(&mut harness);

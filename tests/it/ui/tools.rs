@@ -354,6 +354,47 @@ fn a_frame_selects_what_is_seen_in_it() {
 }
 
 #[test]
+fn groups_come_whole_into_frames_and_go_whole_again() {
+    let mut scene = Scene::demo();
+    let mut triangles = Vec::new();
+    for (index, object) in scene.objects.iter_mut().enumerate() {
+        if matches!(object.shape, Shape::Triangle(_)) {
+            object.group = "Tetrahedron".to_owned();
+            triangles.push(Item::object(index));
+        }
+    }
+    let group = Selection::all(triangles.iter().copied());
+    let mut harness = EditorHarness::on(scene);
+    let view = harness.view();
+    let (from, to) = (view.min + vec2(4.0, 4.0), view.max - vec2(4.0, 4.0));
+    drag(&mut harness, from, to, PointerButton::Primary, SHIFT);
+    assert!(triangles.len() > 2);
+    let selected = harness.editor().selection().clone();
+    assert!(selected.has_all(triangles.iter().copied()), "{selected:?}");
+
+    let scene = harness.scene().clone();
+    let ball = Selection::from(Item::object(0));
+    let both = ball.toggled_at(&scene, triangles[1]);
+    assert_eq!(both.items().len(), triangles.len() + 1);
+    assert_eq!(both.toggled_at(&scene, triangles[2]), ball);
+    // By itself, a group is open.
+    let without = group.toggled_at(&scene, triangles[2]);
+    assert_eq!(without.items().len(), triangles.len() - 1);
+}
+
+#[test]
+fn what_a_key_cannot_do_is_told() {
+    let mut harness = EditorHarness::new();
+    harness.press(NONE, Key::Delete);
+    harness
+        .window
+        .get_by_label("Delete what is selected: nothing is selected");
+    harness.press(CTRL, Key::Z);
+    harness.window.get_by_label("Undo: nothing to undo");
+    assert!(!harness.sees("Delete what is selected: nothing is selected"));
+}
+
+#[test]
 fn the_camera_circles_pans_and_comes_nearer() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
