@@ -32,14 +32,16 @@ pub fn finding(study: &Study, name: &str) -> String {
         );
     }
     if error <= EIGHT_BIT_FLOOR {
-        return format!("{name}: the default is below what 8 bits show at {ms:.1} ms");
+        return format!(
+            "{name}: on average, the default is below what 8 bits show at {ms:.1}\u{a0}ms"
+        );
     }
     let decibels = decibels(error);
     match within(EIGHT_BIT_FLOOR) {
         Some(place) => {
             let (way, cost) = (&study.measurements[place].candidate.name, costs[place].0);
             format!(
-                "{name}: {way} is below what 8 bits show at {cost:.1} ms; the default has {decibels:.0} dB at {ms:.1}"
+                "{name}: on average, {way} is below what 8 bits show at {cost:.1}\u{a0}ms; the default has {decibels:.0}\u{a0}dB at {ms:.1}"
             )
         }
         None => format!(

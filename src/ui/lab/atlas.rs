@@ -82,30 +82,7 @@ fn show_scale(ui: &Ui, area: Rect) -> f32 {
         pos2(area.right() - 220.0, words.top() + 2.0),
         vec2(160.0, words.height() - 4.0),
     );
-    let steps = 80_u16;
-    for step in 0..steps {
-        let at = f32::from(step) / f32::from(steps);
-        let rate = ramp::LOWEST.powf(1.0 - f64::from(at));
-        let left = bar.left() + at * bar.width();
-        let part = Rect::from_min_size(
-            pos2(left, bar.top()),
-            vec2(bar.width() / f32::from(steps) + 0.5, bar.height()),
-        );
-        painter.rect_filled(part, 0, ramp::color(rate));
-    }
-    let beside = |at: Pos2, anchor: Align2, text: &str| {
-        painter.text(at, anchor, text, small.clone(), colors.muted);
-    };
-    beside(
-        bar.left_center() - vec2(4.0, 0.0),
-        Align2::RIGHT_CENTER,
-        "10⁻⁵",
-    );
-    beside(
-        bar.right_center() + vec2(4.0, 0.0),
-        Align2::LEFT_CENTER,
-        "always",
-    );
+    ramp::show_bar(ui, bar);
     words.height() + 2.0 * GRID
 }
 

@@ -115,6 +115,16 @@ impl Chart {
             }
         });
         self.draw(ui, &response.transform);
+        // How wide the axes are is known one frame later.
+        let (id, frame) = (
+            response.response.id.with("frame"),
+            *response.transform.frame(),
+        );
+        let before =
+            ui.data_mut(|data| std::mem::replace(data.get_temp_mut_or(id, Rect::NOTHING), frame));
+        if before != frame {
+            ui.request_repaint();
+        }
         let click = response.response.clicked();
         let pointer = response.response.interact_pointer_pos().filter(|_| click)?;
         self.nearest(pointer, |point| {
@@ -223,11 +233,13 @@ impl Chart {
             painter.line(line, Stroke::new(0.75, color.gamma_multiply(0.6)));
         }
         painter.line(stairs, Stroke::new(1.5, colors.accent));
+        let mut bars = Vec::new();
         for (index, (spot, at)) in self.spots.iter().zip(&dots).enumerate() {
             let color = marks::color(ui, spot.family);
             let x = |cost: f64| on_screen([cost.log10(), 0.0]).x;
             let (low, high) = (x(spot.quartiles.0), x(spot.quartiles.1));
             painter.hline(low..=high, at.y, Stroke::new(1.0, color));
+            bars.push(Rect::from_x_y_ranges(low..=high, at.y..=at.y));
             marks::draw(&painter, *at, spot.family, color, spot.is_doubtful);
             if self.in_use == Some(index) {
                 painter.circle_stroke(*at, marks::RADIUS + 4.0, Stroke::new(1.5, colors.text));
@@ -239,9 +251,8 @@ impl Chart {
         self.write_names(
             &painter,
             (&dots, &front),
-            (&taken, small),
-            colors.text,
-            colors.muted,
+            (&taken, &bars, small),
+            [colors.text, colors.muted],
         );
     }
 
@@ -250,9 +261,8 @@ impl Chart {
         &self,
         painter: &Painter,
         (dots, front): (&[Pos2], &[usize]),
-        (taken, font): (&[Rect], FontId),
-        strong: Color32,
-        weak: Color32,
+        (taken, bars, font): (&[Rect], &[Rect], FontId),
+        [strong, weak]: [Color32; 2],
     ) {
         let frame = painter.clip_rect();
         let rank = |index: &usize| {
@@ -284,7 +294,7 @@ impl Chart {
             .map(|(&index, text)| (dots[index], text.size()))
             .collect();
         let frame = frame.shrink(GRID / 2.0);
-        let places = place(&names, (dots, marks::RADIUS + 2.0), (frame, taken));
+        let places = place(&names, (dots, marks::RADIUS + 2.0), (frame, taken, bars));
         for ((index, text), place) in order.into_iter().zip(texts).zip(places) {
             let Some(place) = place else { continue };
             let near = place.clamp(dots[index]);

@@ -60,22 +60,6 @@ impl Lab {
         let account = study
             .zip(self.chosen)
             .map(|(study, place)| account(study, place));
-        ui.label(account.unwrap_or_default())
-            .hint(dot.candidate.words());
-        ui.add_space(GRID / 2.0);
-        ui.label(RichText::new(figures(dot)).monospace());
-        if equals.len() > 1 {
-            ui.weak("One dot with");
-            ui.horizontal_wrapped(|ui| {
-                let chosen = self.chosen;
-                for (place, name) in equals.iter().filter(|(place, _)| Some(*place) != chosen) {
-                    if ui.link(name).clicked() {
-                        self.chosen = Some(*place);
-                    }
-                }
-            });
-        }
-        ui.add_space(GRID / 2.0);
         ui.horizontal_wrapped(|ui| {
             for (face, name, hint) in FACES {
                 ui.selectable_value(&mut self.face, face, name).hint(hint);
@@ -93,6 +77,26 @@ impl Lab {
         let adopt = adopt.hint(hint).on_disabled_hover_text(hint);
         if adopt.clicked() {
             out.edit(Edit::Render(render, "settings from the lab"));
+        }
+        ui.add_space(GRID / 2.0);
+        ui.label(account.unwrap_or_default())
+            .hint(dot.candidate.words());
+        ui.add_space(GRID / 2.0);
+        ui.label(RichText::new(figures(dot)).monospace());
+        if equals.len() > 1 {
+            ui.weak("One dot with");
+            ui.horizontal_wrapped(|ui| {
+                let chosen = self.chosen;
+                let others = equals.iter().filter(|(place, _)| Some(*place) != chosen);
+                for (number, (place, name)) in others.enumerate() {
+                    if number > 0 {
+                        ui.weak("·");
+                    }
+                    if ui.link(name).clicked() {
+                        self.chosen = Some(*place);
+                    }
+                }
+            });
         }
     }
 

@@ -86,9 +86,9 @@ impl Lab {
         }
         let wish = self.show_measuring(ui, editor);
         if self.is_stale(editor) {
-            let stale = RichText::new("stale").color(palette(ui.ctx()).accent);
+            let stale = RichText::new("stale: measure again").color(palette(ui.ctx()).accent);
             ui.add(Label::new(stale).extend())
-                .hint("The scene has changed since; measure again");
+                .hint("The scene has changed since it was measured");
         }
         ui.separator();
         choose(ui, &mut self.cost, COSTS);

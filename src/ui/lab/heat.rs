@@ -121,7 +121,7 @@ pub fn paint_squares(ui: &Ui, map: &Map, area: Rect) {
         }
         let color = match tries.failures {
             0 => colors.raised,
-            _ => ramp::color(tries.rate()),
+            _ => ramp::color(ui.theme(), tries.rate()),
         };
         ui.painter().rect_filled(square, 1, color);
     }

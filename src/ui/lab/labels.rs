@@ -21,11 +21,12 @@ const GAP: f32 = 2.0;
 const ALONG: f32 = 8.0;
 
 /// A place for each name of this size beside its dot, in their order; `None` where none is free within
-/// `frame`. None lies over another, over a dot (of `radius`) or over what is `taken`.
+/// `frame`. None lies over another, over a dot (of `radius`) or over what is `taken`; where there is room, none is closer
+/// to the dot of another or lies over `lines`.
 pub fn place(
     names: &[(Pos2, Vec2)],
     (dots, radius): (&[Pos2], f32),
-    (frame, taken): (Rect, &[Rect]),
+    (frame, taken, lines): (Rect, &[Rect], &[Rect]),
 ) -> Vec<Option<Rect>> {
     let mut blocked: Vec<Rect> = dots
         .iter()
@@ -34,16 +35,24 @@ pub fn place(
     blocked.extend_from_slice(taken);
     let mut places: Vec<Option<Rect>> = Vec::with_capacity(names.len());
     for &(dot, size) in names {
-        let tries = STEPS
-            .iter()
-            .flat_map(|&step| WAYS.map(|way| beside(dot, size, way, radius + step)));
+        let tries = || {
+            let steps = STEPS.iter();
+            steps.flat_map(|&step| WAYS.map(|way| beside(dot, size, way, radius + step)))
+        };
+        let is_clear = |at: &Rect| {
+            let away = at.distance_to_pos(dot);
+            let mut others = dots.iter().filter(|other| **other != dot);
+            !lines.iter().any(|line| at.intersects(*line))
+                && others.all(|other| away < at.distance_to_pos(*other))
+        };
         let is_free = |at: &Rect| {
             let mut others = blocked.iter();
             frame.contains_rect(*at)
                 && !others.any(|other| at.expand(GAP).intersects(*other))
                 && !places.iter().flatten().any(|name| crosses(dot, *at, *name))
         };
-        let found = tries.into_iter().find(is_free);
+        let clear = tries().filter(is_clear).find(is_free);
+        let found = clear.or_else(|| tries().find(is_free));
         if let Some(at) = found {
             blocked.push(at);
             blocked.extend(tie(dot, at).map(|point| Rect::from_center_size(point, Vec2::ZERO)));
@@ -98,7 +107,7 @@ mod tests {
             let names: Vec<_> = dots.iter().map(|&(x, y, width)| (pos2(x, y), vec2(width, 12.0))).collect();
             let at: Vec<Pos2> = names.iter().map(|(dot, _)| *dot).collect();
             let taken = [Rect::from_min_size(pos2(250.0, 100.0), vec2(80.0, 20.0))];
-            let places = place(&names, (&at, 5.0), (frame, &taken));
+            let places = place(&names, (&at, 5.0), (frame, &taken, &[]));
             prop_assert_eq!(places.len(), names.len());
             let found: Vec<Rect> = places.into_iter().flatten().collect();
             for (index, one) in found.iter().enumerate() {
@@ -128,8 +137,24 @@ mod tests {
     fn a_lonely_dot_has_its_name_close_by() {
         let frame = Rect::from_min_size(Pos2::ZERO, vec2(600.0, 300.0));
         let dot = pos2(300.0, 150.0);
-        let place = place(&[(dot, vec2(60.0, 12.0))], (&[dot], 5.0), (frame, &[]));
+        let place = place(&[(dot, vec2(60.0, 12.0))], (&[dot], 5.0), (frame, &[], &[]));
         let place = place[0].expect("room enough");
         assert!(place.distance_to_pos(dot) < 16.0);
+    }
+
+    #[test]
+    fn a_name_is_closest_to_its_own_dot_and_beside_lines_where_there_is_room() {
+        let frame = Rect::from_min_size(Pos2::ZERO, vec2(600.0, 300.0));
+        // The usual place of the first name is beside the second dot.
+        let dots = [pos2(300.0, 150.0), pos2(370.0, 140.0)];
+        let names = dots.map(|dot| (dot, vec2(60.0, 12.0)));
+        let line = Rect::from_two_pos(pos2(250.0, 140.0), pos2(299.0, 140.0));
+        let places = place(&names, (&dots, 5.0), (frame, &[], &[line]));
+        for (place, own) in places.iter().zip(dots) {
+            let place = place.expect("room enough");
+            let away = |dot: Pos2| place.distance_to_pos(dot);
+            assert!(dots.iter().all(|&dot| dot == own || away(own) < away(dot)));
+            assert!(!place.intersects(line), "{place}");
+        }
     }
 }

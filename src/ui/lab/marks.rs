@@ -1,6 +1,6 @@
 //! The marks of the chart: a shape and a colour for each family.
 
-use egui::{Color32, Painter, Pos2, Shape, Stroke, Ui, Vec2, pos2, vec2};
+use egui::{Color32, Painter, Pos2, Shape, Stroke, Ui, Vec2, vec2};
 
 use super::super::theme::{GRID, palette};
 use crate::lab::Family;
@@ -67,10 +67,19 @@ pub fn legend(ui: &mut Ui, families: &[Family]) {
         if !families.contains(&family) {
             continue;
         }
-        let (area, _) = ui.allocate_exact_size(vec2(2.0 * GRID, 2.0 * GRID), egui::Sense::hover());
-        let at = pos2(area.center().x, area.center().y);
-        draw(ui.painter(), at, family, color(ui, family), false);
-        ui.label(egui::RichText::new(name).small());
+        // A line ends before a mark, and not behind it.
+        ui.horizontal(|ui| {
+            let size = vec2(2.0 * GRID, 2.0 * GRID);
+            let (area, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+            draw(
+                ui.painter(),
+                area.center(),
+                family,
+                color(ui, family),
+                false,
+            );
+            ui.label(egui::RichText::new(name).small());
+        });
         ui.add_space(GRID);
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use egui::{Align, Button, Key, Layout, Response, RichText, Ui};
+use egui::{Align, Button, Key, Layout, Response, RichText, ScrollArea, Ui};
 
 use super::super::requests::UiRequests;
 use super::super::theme::{GRID, ROW, palette};
@@ -16,7 +16,7 @@ use super::stability::Stability;
 use crate::editor::Editor;
 use crate::files::processor;
 use crate::lab::{EIGHT_BIT_FLOOR, Study, keep, kept};
-use crate::scene::{Render, Scene};
+use crate::scene::{Light, Object, Render, Scene};
 use crate::trace::Threads;
 use crate::words::counted;
 use crate::worker::Background;
@@ -25,6 +25,8 @@ use crate::worker::Background;
 const LOOK: Duration = Duration::from_millis(50);
 /// Longer side of the pictures that are measured, in pixels: a study then takes seconds.
 const SIDE: u32 = 256;
+/// Most objects whose names are left out of what is compared.
+const MOST_COMPARED: usize = 10_000;
 /// Width of the column that tells of a dot.
 pub(super) const DETAILS: f32 = 300.0;
 
@@ -228,7 +230,7 @@ impl Lab {
             return self.show_invitation(ui, editor).or(wish);
         };
         ui.horizontal_top(|ui| {
-            let width = (ui.available_width() - DETAILS - 3.0 * GRID).max(120.0);
+            let width = (ui.available_width() - DETAILS - 5.0 * GRID).max(120.0);
             let size = egui::vec2(width, ui.available_height());
             ui.allocate_ui_with_layout(size, Layout::top_down(Align::Min), |ui| {
                 if let Some(chosen) = chart.show(ui) {
@@ -237,7 +239,9 @@ impl Lab {
                         .and_then(|members| members.first().copied());
                 }
             });
-            ui.vertical(|ui| self.show_details(ui, editor, &members, out));
+            // The panel stays as high as it is, whatever there is to say.
+            let details = ScrollArea::vertical().id_salt("details").auto_shrink(false);
+            details.show(ui, |ui| self.show_details(ui, editor, &members, out));
         });
         wish
     }
@@ -310,7 +314,7 @@ impl Lab {
             let mut ways = study.measurements.iter().map(|dot| &dot.candidate.render);
             !Arc::ptr_eq(study.scene(), editor.shown())
                 && (ways.all(|way| way.reflection_limit != limit)
-                    || bare(study.scene()) != bare(editor.shown()))
+                    || !looks_like(&bare(study.scene()), &bare(editor.shown())))
         })
     }
 
@@ -329,4 +333,53 @@ impl Lab {
 /// Whether the key is held with which the reference is seen.
 fn asks_for_reference(ui: &Ui) -> bool {
     !ui.text_edit_focused() && ui.input(|input| input.key_down(Key::B))
+}
+/// Whether two scenes look alike, whatever things are called in them. Of very many things, their names count: they are
+/// compared in every frame of the window.
+fn looks_like(one: &Scene, other: &Scene) -> bool {
+    if one == other || one.objects.len() > MOST_COMPARED {
+        return one == other;
+    }
+    let named = |scene: &Scene, names: &Scene| {
+        let objects = scene.objects.iter().zip(names.objects.iter());
+        let objects = objects.map(|(object, other)| Object {
+            name: other.name.clone(),
+            group: other.group.clone(),
+            ..object.clone()
+        });
+        let lights = scene.lights.iter().zip(names.lights.iter());
+        let lights = lights.map(|(light, other)| Light {
+            name: other.name.clone(),
+            ..light.clone()
+        });
+        Scene {
+            objects: objects.collect(),
+            lights: lights.collect(),
+            ..scene.clone()
+        }
+    };
+    one.objects.len() == other.objects.len()
+        && one.lights.len() == other.lights.len()
+        && *other == named(one, other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Shape;
+
+    #[test]
+    fn names_change_nothing_that_was_measured() {
+        let scene = Scene::demo();
+        let mut named = scene.clone();
+        named.objects[0].name = "Moon".to_owned();
+        named.objects[1].group = "Planets".to_owned();
+        named.lights[0].name = "Sun".to_owned();
+        assert!(looks_like(&scene, &named) && looks_like(&named, &scene));
+        let Shape::Sphere(ball) = &mut named.objects[1].shape else {
+            panic!("a ball");
+        };
+        ball.radius += 1.0;
+        assert!(!looks_like(&scene, &named));
+    }
 }

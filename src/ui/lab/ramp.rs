@@ -1,6 +1,8 @@
 //! The colours of failure rates.
 
-use egui::{Color32, Painter, Rect, Stroke, pos2};
+use egui::{Align2, Color32, Painter, Pos2, Rect, Stroke, TextStyle, Theme, Ui, pos2, vec2};
+
+use super::super::theme::palette;
 
 /// The lowest rate that has a colour of its own; each decade above it is a step brighter.
 pub const LOWEST: f64 = 1e-5;
@@ -23,11 +25,38 @@ pub fn share(rate: f64) -> f64 {
     (1.0 - rate.log10() / LOWEST.log10()).clamp(0.0, 1.0)
 }
 
-/// The colour of a rate above 0.
-pub fn color(rate: f64) -> Color32 {
-    let at = share(rate) * (STOPS.len() - 1) as f64;
+/// The colour of a rate above 0: the higher, the farther from the background.
+pub fn color(theme: Theme, rate: f64) -> Color32 {
+    let share = match theme {
+        Theme::Dark => share(rate),
+        Theme::Light => 1.0 - share(rate),
+    };
+    let at = share * (STOPS.len() - 1) as f64;
     let first = (at.floor() as usize).min(STOPS.len() - 2);
     STOPS[first].lerp_to_gamma(STOPS[first + 1], (at - first as f64) as f32)
+}
+
+/// The colours in a bar, with what its ends mean beside it.
+pub fn show_bar(ui: &Ui, bar: Rect) {
+    let painter = ui.painter();
+    let steps = 80_u16;
+    for step in 0..steps {
+        let at = f32::from(step) / f32::from(steps);
+        let rate = LOWEST.powf(1.0 - f64::from(at));
+        let left = bar.left() + at * bar.width();
+        let part = Rect::from_min_size(
+            pos2(left, bar.top()),
+            vec2(bar.width() / f32::from(steps) + 0.5, bar.height()),
+        );
+        painter.rect_filled(part, 0, color(ui.theme(), rate));
+    }
+    let small = TextStyle::Small.resolve(ui.style());
+    let beside = |at: Pos2, anchor: Align2, text: &str| {
+        painter.text(at, anchor, text, small.clone(), palette(ui.ctx()).muted);
+    };
+    let gap = vec2(4.0, 0.0);
+    beside(bar.left_center() - gap, Align2::RIGHT_CENTER, "10⁻⁵");
+    beside(bar.right_center() + gap, Align2::LEFT_CENTER, "always");
 }
 
 /// Slanting lines: nothing was tried there.
@@ -46,14 +75,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn more_failures_are_brighter() {
-        let brightness = |rate: f64| {
-            let [r, g, b, _] = color(rate).to_array().map(u32::from);
+    fn more_failures_are_farther_from_the_background() {
+        let brightness = |theme: Theme, rate: f64| {
+            let [r, g, b, _] = color(theme, rate).to_array().map(u32::from);
             2 * r + 3 * g + b
         };
         let rates = [1e-7, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.5, 1.0];
         for pair in rates.windows(2) {
-            assert!(brightness(pair[0]) <= brightness(pair[1]), "{pair:?}");
+            let dark = |rate: f64| brightness(Theme::Dark, rate);
+            assert!(dark(pair[0]) <= dark(pair[1]), "{pair:?}");
+            let light = |rate: f64| brightness(Theme::Light, rate);
+            assert!(light(pair[0]) >= light(pair[1]), "{pair:?}");
         }
         assert_eq!((share(1.0), share(1e-9)), (1.0, 0.0));
     }

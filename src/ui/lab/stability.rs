@@ -1,9 +1,9 @@
 //! The maps of where formulas break, and where the open scene stands on them.
 
-use egui::{Button, RichText, ScrollArea, Ui, vec2};
+use egui::{Align2, Button, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, vec2};
 
 use super::super::theme::{GRID, ROW, palette};
-use super::heat;
+use super::{heat, ramp};
 use crate::lab::stability::{Map, maps};
 use crate::scene::{Precision, Scene};
 use crate::ui::hint::Hinted as _;
@@ -13,6 +13,10 @@ use crate::worker::Background;
 const EFFORT: u32 = 4;
 /// Width of the list of methods.
 const LIST: f32 = 440.0;
+/// Width of the bar of colours.
+const BAR: f32 = 160.0;
+/// Room for the word beside it.
+const BESIDE: f32 = 40.0;
 
 /// The tab's state.
 #[derive(Default)]
@@ -67,8 +71,10 @@ impl Stability {
                 {
                     ui.weak(format!("This is {}; your scene has {asked}.", map.method));
                 }
-                let size = ui.available_size() - vec2(GRID, GRID);
-                heat::show(ui, map, size.min(vec2(720.0, 600.0)), stand);
+                let size = ui.available_size() - vec2(GRID, GRID + ROW);
+                let size = size.min(vec2(720.0, 600.0));
+                heat::show(ui, map, size, stand);
+                show_scale(ui, size.x);
             });
         });
     }
@@ -123,6 +129,20 @@ impl Stability {
             }
         }
     }
+}
+
+/// What the colours mean.
+fn show_scale(ui: &mut Ui, width: f32) {
+    let (row, _) = ui.allocate_exact_size(vec2(width, ROW), Sense::hover());
+    let words = "Share of tries that fail";
+    let small = TextStyle::Small.resolve(ui.style());
+    let color = palette(ui.ctx()).muted;
+    let at = row.left_center();
+    ui.painter()
+        .text(at, Align2::LEFT_CENTER, words, small, color);
+    let size = vec2(BAR, GRID);
+    let middle = row.right_center() - vec2(BAR / 2.0 + BESIDE, 0.0);
+    ramp::show_bar(ui, Rect::from_center_size(middle, size));
 }
 
 fn headline(map: &Map) -> String {

@@ -23,7 +23,12 @@ fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
     );
     harness.click("Cheapest way below");
     harness.window.get_by_label("Lab picture");
-    assert!(harness.window.query_by_label("stale").is_none());
+    assert!(
+        harness
+            .window
+            .query_by_label("stale: measure again")
+            .is_none()
+    );
     harness.click("×64");
     let steps = harness.editor().undo_label().map(str::to_owned);
     harness.click("Use this");
@@ -41,7 +46,10 @@ fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
     harness.window.get_by_label("Lab picture");
     harness.window.get_by_label_contains("Leave Lab: ");
     assert!(
-        harness.window.query_by_label("stale").is_none(),
+        harness
+            .window
+            .query_by_label("stale: measure again")
+            .is_none(),
         "settings are what is compared"
     );
     harness.press(Modifiers::NONE, Key::Escape);
@@ -49,7 +57,7 @@ fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
     harness.press(CTRL, Key::Z);
     assert_eq!(*harness.scene(), before);
     harness.press(Modifiers::NONE, Key::O);
-    harness.window.get_by_label("stale");
+    harness.window.get_by_label("stale: measure again");
     harness.press(CTRL, Key::L);
     assert!(harness.window.query_by_label("Measure").is_none());
     // What was measured of one document is not looked at in another.
