@@ -232,7 +232,7 @@ fn hidden(scene: &Scene) -> Need {
         .filter(|object| !object.visible)
         .count();
     if hidden == 0 {
-        need("hidden", "every object", "none is hidden", "nothing")
+        need("hidden", "every object drawn", "none is hidden", "nothing")
     } else {
         let what = format!("{} left out", counted(hidden, "object"));
         need(

@@ -9,7 +9,7 @@ use super::requests::UiRequests;
 use crate::editor::Edit;
 use crate::lab::first_met;
 use crate::mesh::SOLIDS;
-use crate::scene::{Mesh, Object, Projection, Scene, Shape};
+use crate::scene::{Framing, Mesh, Object, Projection, Scene, Shape};
 
 /// Something that can be added.
 #[derive(Clone, Copy, Debug)]
@@ -117,6 +117,8 @@ const LEVEL: f64 = 0.7;
 const FARTHEST_GROUND: f64 = 2_000.0;
 /// What is nearer than this, in distances where a new thing goes, is not gone before.
 const NEAREST: f64 = 0.1;
+/// How far from its middle a new thing is looked at, in sizes.
+const WITHIN: f64 = 0.45;
 /// The smallest that a new thing is, in world units.
 const SMALLEST: f64 = 1e-6;
 
@@ -134,25 +136,30 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     let has_floor = planes(scene).next().is_some();
     // Side by side first, then also between, then smaller.
     let rounds = [(1.0, 1.0), (0.5, 1.0), (0.5, SMALLER)];
-    let places = rounds.into_iter().flat_map(|(part, share)| {
-        let step = SHARE * APART * part;
-        let down = outwards(step).filter(move |&y| is_inside(y, 0.5) && !(has_floor && y < 0.0));
-        down.flat_map(move |y| {
-            let across = outwards(step).filter(move |&x| is_inside(x, half));
-            across.map(move |x| ([x, -y], share))
+    let places = || {
+        rounds.into_iter().flat_map(|(part, share)| {
+            let step = SHARE * APART * part;
+            let down =
+                outwards(step).filter(move |&y| is_inside(y, 0.5) && !(has_floor && y < 0.0));
+            down.flat_map(move |y| {
+                let across = outwards(step).filter(move |&x| is_inside(x, half));
+                across.map(move |x| ([x, -y], share))
+            })
         })
-    });
+    };
     // To look costs as much as there is to be looked at.
     let tries = if scene.faces() + scene.objects.len() > CROWDED {
         1
     } else {
         TRIES
     };
-    let mut free = places
-        .take(tries)
-        .filter_map(|(place, share)| free_place(scene, framing.ray(place), (usual, share)));
-    let (at, size) = free
-        .next()
+    let free = || {
+        let places = places().take(tries);
+        places.filter_map(|(place, share)| free_place(scene, framing.ray(place), (usual, share)))
+    };
+    let (at, size) = free()
+        .find(|&new| hides_nothing(scene, &framing, new))
+        .or_else(|| free().next())
         .unwrap_or_else(|| before_what_is_seen(scene, framing.ray([0.0, 0.0]), usual));
     // Whole numbers read better in the inspector, where the scene is large enough for them.
     let tidy = |x: f64| if size > 10.0 { x.round() } else { x };
@@ -269,6 +276,23 @@ fn free_place(
     let visible = scene.visible_objects();
     let mut bounds = visible.filter_map(|object| object.shape.bounds());
     (!bounds.any(is_in_the_way)).then_some((at, size))
+}
+
+/// Whether something of this size there is within the picture, and before nothing but floors and walls.
+fn hides_nothing(scene: &Scene, framing: &Framing, (at, size): (DVec3, f64)) -> bool {
+    let half = scene.render.aspect() / 2.0;
+    let across = scene.camera.look_at.cross(DVec3::Y).normalize_or_zero();
+    let ways = [DVec3::Y, DVec3::NEG_Y, across, -across];
+    ways.into_iter().all(|way| {
+        let Some([x, y]) = framing.project(at + way * size * WITHIN) else {
+            return false;
+        };
+        let (origin, direction) = framing.ray([x, y]);
+        let seen = first_met(scene, origin, direction);
+        let is_plane =
+            |(seen, _): (usize, f64)| matches!(scene.objects[seen].shape, Shape::Plane(_));
+        x.abs() <= half && y.abs() <= 0.5 && seen.is_none_or(is_plane)
+    })
 }
 
 /// The place before what a ray sees, however near that is.

@@ -298,6 +298,14 @@ pub const KEYLESS: &[(Command, &str)] = &[
     (Command::Theme(Theme::Light), "Light theme"),
 ];
 
+/// What a command does, in words.
+pub fn what_of(command: &Command) -> Option<&'static str> {
+    let keyed = SHORTCUTS.iter().map(|keyed| (&keyed.command, keyed.what));
+    let keyless = KEYLESS.iter().map(|(command, what)| (command, *what));
+    let mut all = keyed.chain(keyless);
+    all.find_map(|(other, what)| (other == command).then_some(what))
+}
+
 /// The commands whose keys were pressed in this frame. A key that repeats because it is held
 /// commands nothing more, but undo and redo; while keys fly the camera, none with Ctrl counts. Keys
 /// of commands that are not heard stay for others.

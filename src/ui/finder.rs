@@ -61,18 +61,19 @@ impl Found {
 }
 
 /// What menus and buttons call commands whose names here say more, in small letters.
-const ALSO: [(Command, &str); 23] = [
+const ALSO: [(Command, &str); 24] = [
     (Command::Ask(Ask::SaveScene), "save as"),
     (Command::Ask(Ask::SaveImage), "save image render"),
     (Command::HighRes, "render"),
-    (Command::Export, "render frames video"),
+    (Command::Export, "render frames video mp4 gif png"),
     (Command::PutDown, "put down drop on the floor"),
     (Command::Ask(Ask::ExportJob), "export farm job"),
     (Command::AddKey, "add key"),
     (Command::AddBookmark, "add this view"),
     (Command::FrameSelected, "frame what is selected zoom to"),
     (Command::FrameAll, "frame everything zoom out"),
-    (Command::Timeline, "panel"),
+    (Command::Timeline, "panel frames per second fps"),
+    (Command::Delete, "remove delete key"),
     (Command::Lab, "panel measure stability chart"),
     (Command::PictureAlone, "picture alone fullscreen"),
     (Command::ViewFront, "look from the front"),
@@ -189,7 +190,7 @@ impl Finder {
     }
 }
 
-/// Everything whose name has all the words, first what begins with them.
+/// Everything whose name has all the words, first what is possible, and of that what begins with them.
 fn finds(ui: &Ui, (editor, recent): (&Editor, &[PathBuf]), text: &str) -> Vec<Find> {
     let text = text.trim().to_lowercase();
     let words: Vec<&str> = text.split_whitespace().collect();
@@ -201,11 +202,16 @@ fn finds(ui: &Ui, (editor, recent): (&Editor, &[PathBuf]), text: &str) -> Vec<Fi
     let mut finds: Vec<Find> = named
         .filter(|find| has(&format!("{} {}", find.name, also(find))))
         .collect();
-    finds.extend(settings(editor).filter(|find| has(&format!("{} {}", find.name, find.aside))));
+    finds.extend(settings(editor).filter_map(|(find, also)| {
+        has(&format!("{} {} {also}", find.name, find.aside)).then_some(find)
+    }));
     // There may be very many.
     let room = MOST.saturating_sub(finds.len());
     finds.extend(things(editor, has).take(room));
-    finds.sort_by_key(|find| !find.name.to_lowercase().starts_with(&text));
+    finds.sort_by_key(|find| {
+        let begins = find.name.to_lowercase().starts_with(&text);
+        (!find.is_enabled, !begins)
+    });
     finds
 }
 
@@ -325,32 +331,39 @@ fn worn_by_selected(editor: &Editor) -> Option<Item> {
     Some(Item::pack(place))
 }
 
-/// What stands on top of the outliner, and the settings of the picture.
-fn settings(editor: &Editor) -> impl Iterator<Item = Find> {
+/// What stands on top of the outliner, and the settings of the picture; each with what else it is called.
+fn settings(editor: &Editor) -> impl Iterator<Item = (Find, &'static str)> {
     let mut names = vec![
-        ("Camera".to_owned(), Selection::Camera),
+        ("Camera".to_owned(), Selection::Camera, ""),
         (
             "World: background, ambient intensity".to_owned(),
             Selection::World,
+            "",
         ),
         (
             "Picture: width, height, reflections".to_owned(),
             Selection::Render,
+            "picture settings",
         ),
     ];
     let packs = Item::pack(0).name(editor.scene()).map(|_| Item::pack(0));
     if let Some(pack) = worn_by_selected(editor).or(packs) {
         let name = "Color pack: ambient, diffuse, specular, phong, reflective";
-        names.push((name.to_owned(), Selection::from(pack)));
+        names.push((name.to_owned(), Selection::from(pack), ""));
     }
     let chosen = editor.scene().render.chosen().into_iter();
-    let labels = chosen.map(|chosen| format!("Picture: {}", chosen.setting.label));
-    names.extend(labels.map(|label| (label, Selection::Render)));
-    names.into_iter().map(|(name, selection)| Find {
-        name,
-        aside: "setting".to_owned(),
-        what: Found::Selection(selection),
-        is_enabled: true,
+    names.extend(chosen.map(|chosen| {
+        let name = format!("Picture: {}", chosen.setting.label);
+        (name, Selection::Render, chosen.setting.name)
+    }));
+    names.into_iter().map(|(name, selection, also)| {
+        let find = Find {
+            name,
+            aside: "setting".to_owned(),
+            what: Found::Selection(selection),
+            is_enabled: true,
+        };
+        (find, also)
     })
 }
 

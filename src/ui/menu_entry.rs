@@ -4,9 +4,10 @@ use egui::{Button, Color32, Response, Role, Ui, WidgetInfo};
 
 use super::commands::{Command, key_of};
 use super::icons;
-use super::obstacles::is_enabled;
+use super::obstacles::obstacle;
 use super::requests::UiRequests;
 use crate::editor::Editor;
+use crate::lab::capitalised;
 
 /// What can be done to the selected item.
 pub const ITEM_COMMANDS: [(&str, Command); 14] = [
@@ -28,19 +29,29 @@ pub const ITEM_COMMANDS: [(&str, Command); 14] = [
 
 /// A menu entry with its key. Whether it was chosen.
 pub fn entry(ui: &mut Ui, text: &str, command: Command, out: &mut UiRequests) -> bool {
-    add(ui, (text, true), command, out)
+    add(ui, (text, None), command, out)
 }
 
 /// The same where the command would do something now.
 pub fn offer(ui: &mut Ui, editor: &Editor, text: &str, command: Command, out: &mut UiRequests) {
-    let enabled = is_enabled(&command, editor);
-    add(ui, (text, enabled), command, out);
+    let obstacle = obstacle(&command, editor);
+    add(ui, (text, obstacle), command, out);
 }
 
-fn add(ui: &mut Ui, (text, enabled): (&str, bool), command: Command, out: &mut UiRequests) -> bool {
+fn add(
+    ui: &mut Ui,
+    (text, obstacle): (&str, Option<&str>),
+    command: Command,
+    out: &mut UiRequests,
+) -> bool {
     let key = key_of(ui, &command).unwrap_or_default();
     let button = Button::new(text).shortcut_text(key);
-    let entry = ui.add_enabled(enabled, button).accessible_name(text);
+    let entry = ui.add_enabled(obstacle.is_none(), button);
+    let entry = entry.accessible_name(text);
+    let entry = match obstacle {
+        Some(why) => entry.on_disabled_hover_text(capitalised(why)),
+        None => entry,
+    };
     let is_chosen = entry.clicked();
     if is_chosen {
         out.commands.push(command);

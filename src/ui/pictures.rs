@@ -160,13 +160,6 @@ impl Pictures {
         frame.filter(|frame| frame.is_still || !is_part)
     }
 
-    /// What a pixel of the finished picture on screen took, in milliseconds.
-    pub fn millis_per_pixel(&self, editor: &Editor) -> Option<f64> {
-        let frame = self.whole(editor)?;
-        let pixels = (frame.image.width * frame.image.height) as f64;
-        Some(frame.cost.time.as_secs_f64() * 1e3 / pixels.max(1.0))
-    }
-
     /// Passes a wish of the lab on to the render thread.
     pub fn fulfil(&self, wish: LabRequest) {
         match wish {

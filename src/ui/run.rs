@@ -7,11 +7,11 @@ use egui::{Context, Key, Popup, ViewportCommand};
 use glam::DVec3;
 
 use super::app::App;
-use super::commands::{Command, Next, Zoom};
+use super::commands::{Command, Next, Zoom, what_of};
 use super::dropped::Dropped;
 use super::interchange::import_path;
 use super::layout::Below;
-use super::obstacles::is_enabled;
+use super::obstacles::{is_enabled, obstacle};
 use super::on_selected::{delete, duplicate_all, joined, step, toggle_visible, with_same_pack};
 use super::put_down::put_down;
 use super::requests::UiRequests;
@@ -30,6 +30,8 @@ const TWICE: f64 = 3.0;
 /// Most triangles that are copied as text.
 const COPIED_FACES: usize = 100_000;
 
+/// What messages about commands are about that are not possible.
+const OBSTACLE: &str = "obstacle";
 /// What messages about pasting are about.
 const PASTE: &str = "paste";
 
@@ -157,8 +159,12 @@ impl App {
             }
             Command::Find => self.finder.open(),
             Command::Shortcuts => self.shortcuts_open = !self.shortcuts_open,
-            other if !is_enabled(&other, &self.editor) => {}
             other => {
+                // Menus show what is not possible; keys do not.
+                if let Some(why) = obstacle(&other, &self.editor) {
+                    let what = what_of(&other).unwrap_or_default();
+                    return self.editor.notify_about(OBSTACLE, format!("{what}: {why}"));
+                }
                 for action in actions(&other, &self.editor) {
                     self.editor.apply(action);
                 }

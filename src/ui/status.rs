@@ -116,9 +116,9 @@ fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut UiR
 /// A time in seconds or minutes.
 pub fn time_in_words(seconds: f64) -> String {
     if seconds < 90.0 {
-        format!("{:.0} s", seconds.ceil())
+        format!("{:.0}\u{a0}s", seconds.ceil())
     } else {
-        format!("{:.0} min", (seconds / 60.0).ceil())
+        format!("{:.0}\u{a0}min", (seconds / 60.0).ceil())
     }
 }
 

@@ -2,12 +2,15 @@
 
 use std::io::Cursor;
 use std::sync::Arc;
+use std::time::Instant;
 
 use super::fields::Settings;
 use super::video_maker::video_threads;
 use crate::editor::{Editor, Mode};
 use crate::export::{Sequence, Video};
-use crate::image::{Format, Image};
+use crate::image::{Format, Image, render_into};
+use crate::plan::{Planner, RenderRequest};
+use crate::trace::{RenderControl, Threads};
 use crate::ui::pictures::Pictures;
 use crate::ui::status::time_in_words;
 use crate::words::counted;
@@ -17,6 +20,13 @@ use crate::worker::Background;
 const PNG_SHARE: f64 = 0.35;
 /// Bytes of an EXR for each of its numbers as they are in memory, about.
 const EXR_SHARE: f64 = 0.6;
+
+/// Most pixels of the frame that is traced to see how long one takes.
+const MEASURED: f64 = 1.5e6;
+/// How often it is.
+const TRIES: usize = 3;
+/// Unless once takes so long, in seconds.
+const LONG: f64 = 0.2;
 
 /// Frames of a sequence that are not in their folder as they should be.
 #[derive(Default)]
@@ -36,6 +46,8 @@ struct Missing {
 struct Sample {
     /// Bytes of a PNG for each of a PPM.
     png_share: Option<f64>,
+    /// Seconds that a frame takes.
+    frame: Option<f64>,
     /// Seconds that making the video takes.
     video: Option<f64>,
 }
@@ -115,7 +127,8 @@ impl Forecast {
         };
         let subject = (frame.revision, frame.image.width, settings.clone());
         if self.subject.as_ref() != Some(&subject) {
-            (self.subject, self.sample.video) = (Some(subject), None);
+            (self.sample.frame, self.sample.video) = (None, None);
+            self.subject = Some(subject);
             let (image, video) = (Arc::clone(&frame.image), settings.video);
             let sequence = sequence.clone();
             let measure = move || Sample::of(&image, &sequence, video);
@@ -123,13 +136,8 @@ impl Forecast {
         }
     }
 
-    /// In words, where a pixel takes so many milliseconds to trace, if that is known.
-    pub fn describe(
-        &self,
-        settings: &Settings,
-        sequence: &Sequence,
-        millis: Option<f64>,
-    ) -> String {
+    /// In words.
+    pub fn describe(&self, settings: &Settings, sequence: &Sequence) -> String {
         let total = sequence.frames.count();
         let (missing, what) = match &self.found {
             None => (
@@ -143,6 +151,8 @@ impl Forecast {
             Some(Ok(missing)) => (missing.count, missing.describe(total)),
         };
         let pixels = f64::from(settings.width) * f64::from(settings.height);
+        let is_of_this = |(.., of): &(u64, usize, Settings)| of == settings;
+        let is_known = self.subject.as_ref().is_some_and(is_of_this);
         let about = |seconds: Option<f64>| {
             seconds.map_or(String::new(), |seconds| {
                 format!(", about {}", time_in_words(seconds))
@@ -152,13 +162,12 @@ impl Forecast {
             String::new()
         } else {
             let megabytes = pixels * self.bytes(settings.format) * missing as f64 / 1e6;
-            let seconds = millis.map(|millis| millis * pixels * missing as f64 / 1e3);
+            let frame = self.sample.frame.filter(|_| is_known);
+            let seconds = frame.map(|seconds| seconds * missing as f64);
             format!("{}, {megabytes:.0} MB", about(seconds))
         };
         let video = settings.video(sequence).map(|(path, video)| {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            let is_of_this = |(.., of): &(u64, usize, Settings)| of == settings;
-            let is_known = self.subject.as_ref().is_some_and(is_of_this);
             let time = about(self.sample.video.filter(|_| is_known));
             let remark = video.check(sequence).ok().flatten();
             let remark = remark.map_or(String::new(), |remark| format!("; {remark}"));
@@ -209,15 +218,51 @@ impl Sample {
     fn of(image: &Image, sequence: &Sequence, video: Option<Video>) -> Self {
         let pixels = image.pixels.len().max(1) as f64;
         let mut file = Cursor::new(Vec::new());
+        let since = Instant::now();
         let encoded = image.encode(Format::Png, &mut file);
+        // On one thread, while others trace.
+        let packing = since.elapsed().as_secs_f64() / pixels / Threads::available() as f64;
+        let packing = match sequence.format {
+            Format::Ppm => 0.0,
+            Format::Png | Format::Exr => packing,
+        };
+        let (width, height) = sequence.size();
+        let whole = f64::from(width) * f64::from(height);
+        let frame = seconds_of_frame(sequence).map(|seconds| seconds + packing * whole);
         let time = video.and_then(|video| video.forecast(sequence, image, video_threads()));
         Self {
             png_share: encoded
                 .ok()
                 .map(|()| file.into_inner().len() as f64 / (3.0 * pixels)),
+            frame,
             video: time.map(|time| time.as_secs_f64()),
         }
     }
+}
+
+/// Seconds that tracing a frame takes, once what all have in common is planned: one of them, in its size, or as large as
+/// [`MEASURED`].
+fn seconds_of_frame(sequence: &Sequence) -> Option<f64> {
+    let frames = &sequence.frames;
+    let shown = sequence.shown(frames.iter().nth(frames.count() / 2)?);
+    let (width, height) = sequence.size();
+    let whole = f64::from(width) * f64::from(height);
+    let smaller = (MEASURED / whole).sqrt().min(1.0);
+    let side = |side: u32| (f64::from(side) * smaller).ceil() as u32;
+    let (width, height) = (side(width), side(height));
+    let request = RenderRequest::of(&shown, width, height);
+    let mut planner = Planner::default();
+    let mut image = Image::default();
+    let mut seconds = f64::INFINITY;
+    for _ in 0..TRIES {
+        let control = RenderControl::default();
+        let cost = render_into(&mut image, &mut planner, &shown, &request, &control)?;
+        seconds = seconds.min(cost.time.as_secs_f64());
+        if seconds > LONG {
+            break;
+        }
+    }
+    Some(seconds * whole / (f64::from(width) * f64::from(height)))
 }
 
 fn missing(sequence: &Sequence) -> Result<Missing, String> {

@@ -273,8 +273,7 @@ impl Exports {
                 let forecast = &mut self.forecast;
                 forecast.look((&settings, sequence), editor, self.ended);
                 forecast.measure((&settings, sequence), editor, pictures);
-                let millis = pictures.millis_per_pixel(editor);
-                ui.label(forecast.describe(&settings, sequence, millis));
+                ui.label(forecast.describe(&settings, sequence));
             }
         }
         let text = RichText::new("Export").color(colors.on_accent);

@@ -118,7 +118,7 @@ impl TimelinePanel {
             });
             return;
         }
-        let end = shown_end(animation);
+        let end = shown_end(animation, editor.timeline().playhead);
         self.chosen = self
             .chosen
             .filter(|(_, last)| self.document == editor.documents() && *last <= end * ROOM);
@@ -210,7 +210,7 @@ impl TimelinePanel {
     }
 }
 
-/// Where the line of time ends on screen, in seconds.
-fn shown_end(animation: &Animation) -> f64 {
-    (animation.duration() * (1.0 + BEHIND)).max(LEAST)
+/// Where the line of time ends on screen, in seconds: behind the last key, and the playhead.
+fn shown_end(animation: &Animation, playhead: f64) -> f64 {
+    (animation.duration().max(playhead) * (1.0 + BEHIND)).max(LEAST)
 }

@@ -21,6 +21,8 @@ use crate::words::counted;
 const WIDE: f32 = 1040.0;
 /// Width of a window in which all but the rates has its place, in points.
 const NARROW: f32 = 860.0;
+/// Width of a window in which buttons have words beside their symbols, in points.
+const TINY: f32 = 720.0;
 /// The shortest flight that is asked for, in seconds.
 const SHORTEST: f64 = 0.1;
 /// Seconds that a ready-made flight takes.
@@ -77,10 +79,16 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
         frame_field(ui, editor, out);
     }
     ui.separator();
-    record_button(ui, editor, out);
+    record_button(ui, editor, width >= TINY, out);
     let words = "Set a key at the playhead from the view, in place of one that is there";
     let hint = with_key(ui, words, &Command::AddKey);
-    if ui.button("Add key").hint(hint).clicked() {
+    let add_key = if width >= TINY {
+        Button::new("Add key")
+    } else {
+        Button::new(icons::text(icons::KEY))
+    };
+    let add_key = ui.add(add_key).accessible_name("Add key");
+    if add_key.hint(hint).clicked() {
         out.commands.push(Command::AddKey);
     }
     if width >= NARROW {
@@ -88,15 +96,19 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
     }
     ui.separator();
     if width >= WIDE {
-        rates(ui, editor, graph, out);
+        rates(ui, editor, (graph, false), out);
     } else {
         let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
         let more = MenuButton::from_button(Button::new(icons::text(icons::OTHER))).config(stays);
         let (button, _) = more.ui(ui, |ui| {
             if width < NARROW {
+                ui.horizontal(|ui| {
+                    ui.weak("frame");
+                    frame_field(ui, editor, out);
+                });
                 through_shot(ui, editor, out);
             }
-            rates(ui, editor, graph, out);
+            rates(ui, editor, (graph, true), out);
         });
         button
             .accessible_name("More of the timeline")
@@ -145,7 +157,7 @@ fn through_shot(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
 }
 
-fn record_button(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+fn record_button(ui: &mut Ui, editor: &Editor, has_words: bool, out: &mut UiRequests) {
     let accent = palette(ui.ctx()).accent;
     if let Some((samples, seconds)) = editor.timeline().recorded() {
         let stop = Button::new((icons::text(icons::STOP).color(accent), "Stop"));
@@ -158,7 +170,11 @@ fn record_button(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         ui.label(RichText::new(text).monospace().color(accent));
         return;
     }
-    let record = Button::new((icons::text(icons::RECORD), "Record"));
+    let record = if has_words {
+        Button::new((icons::text(icons::RECORD), "Record"))
+    } else {
+        Button::new(icons::text(icons::RECORD))
+    };
     let hint = with_key(ui, "Record the flight of the camera", &Command::Record);
     let record = ui.add(record).hint(hint);
     if record.accessible_name("Record").clicked() {
@@ -166,11 +182,26 @@ fn record_button(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
 }
 
-fn rates(ui: &mut Ui, editor: &Editor, graph: &mut bool, out: &mut UiRequests) {
+/// How long it is, and how fast; each with its name, where they stand below each other.
+fn rates(
+    ui: &mut Ui,
+    editor: &Editor,
+    (graph, are_named): (&mut bool, bool),
+    out: &mut UiRequests,
+) {
+    let number = |ui: &mut Ui, field: &Field, value: &mut f64| {
+        if !are_named {
+            return lone(ui, field, value);
+        }
+        ui.horizontal(|ui| {
+            ui.weak(field.name);
+            lone(ui, field, value);
+        });
+    };
     ui.toggle_value(graph, "Speed")
         .hint("Show speed and turn rate below the keys");
     let animation = &editor.scene().animation;
-    length(ui, editor, out);
+    length(ui, editor, number, out);
     let mut fps = animation.frames_per_second;
     let field = Field {
         name: "frames per second",
@@ -180,7 +211,7 @@ fn rates(ui: &mut Ui, editor: &Editor, graph: &mut bool, out: &mut UiRequests) {
         range: FRAME_RATES,
         speed: Some(0.1),
     };
-    lone(ui, &field, &mut fps);
+    number(ui, &field, &mut fps);
     if fps != animation.frames_per_second {
         let changed = Animation {
             frames_per_second: fps,
@@ -198,14 +229,19 @@ fn rates(ui: &mut Ui, editor: &Editor, graph: &mut bool, out: &mut UiRequests) {
         range: 0.05..=20.0,
         speed: Some(0.01),
     };
-    lone(ui, &field, &mut speed);
+    number(ui, &field, &mut speed);
     if speed != before {
         out.time(Time::Speed(speed));
     }
 }
 
 /// How long the flight of the camera is; another length stretches it.
-fn length(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+fn length(
+    ui: &mut Ui,
+    editor: &Editor,
+    number: impl Fn(&mut Ui, &Field, &mut f64),
+    out: &mut UiRequests,
+) {
     let animation = &editor.scene().animation;
     let [first, .., last] = &animation.keys[..] else {
         return;
@@ -221,7 +257,7 @@ fn length(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         range: SHORTEST..=longest_flight(animation).max(SHORTEST),
         speed: Some(0.05),
     };
-    lone(ui, &field, &mut seconds);
+    number(ui, &field, &mut seconds);
     if seconds != before {
         out.edit(Edit::animation(stretched(animation, seconds), "Stretch"));
         out.time(Time::Stretched(first.time, seconds / before));
