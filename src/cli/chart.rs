@@ -1,7 +1,7 @@
 //! `glint chart`: what every way of tracing a scene costs, and how far it is off.
 
 use std::ops::RangeInclusive;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ use super::bar::{SHARE, progress_bar};
 use super::error::{CliError, report_warning, say};
 use super::goal::{error, time};
 use super::scene::read_scene;
-use super::target::{check_text, picture_format};
+use super::target::{check_table, picture_format};
 use crate::export::write_text;
 use crate::files::{is_same_file, processor};
 use crate::lab::{
@@ -101,7 +101,7 @@ impl ChartArgs {
 pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
     // A name that cannot be written is known before the first ray.
     picture_format(args.png.as_deref())?;
-    check_text(args.csv.as_deref())?;
+    check_table(args.csv.as_deref())?;
     if let Some(path) = &args.csv
         && args.scenes.iter().any(|scene| is_same_file(scene, path))
     {
@@ -121,7 +121,7 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
     }
     let mut studies = Vec::new();
     for (path, scene) in scenes {
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let name = name_of(path, &args.scenes);
         let mut study = Study::of_side(Arc::new(scene), args.side);
         if args.povray {
             study = study.with_povray();
@@ -131,7 +131,7 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
             report_warning(obstacle);
         }
         if args.scenes.len() > 1 {
-            say(&format!("{stem}:"));
+            say(&format!("{name}:"));
         }
         say(table(&study).trim_end());
         if args.within.is_some() || args.budget.is_some() {
@@ -141,7 +141,7 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
         for dot in &mut study.measurements {
             dot.picture = None;
         }
-        studies.push((capitalised(&stem), study));
+        studies.push((name, study));
     }
     if let Some(path) = &args.csv {
         let machine = format!("{}, {}", processor(), std::env::consts::ARCH);
@@ -154,6 +154,18 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
         machine,
         look,
     }))
+}
+
+/// What a scene is called: by its file, or all of its path where others have a file of the same name.
+fn name_of(path: &Path, scenes: &[PathBuf]) -> String {
+    let name = |path: &Path| capitalised(&path.file_stem().unwrap_or_default().to_string_lossy());
+    let own = name(path);
+    let alike = scenes.iter().filter(|other| name(other) == own);
+    if alike.count() == 1 {
+        own
+    } else {
+        path.display().to_string()
+    }
 }
 
 /// A size such as `1600x960`.
@@ -197,18 +209,11 @@ fn grow(args: &ChartArgs, threads: &Threads) -> Result<Option<CliAction>, CliErr
 
 /// What more cores would do for the scenes.
 fn share(args: &ChartArgs, scenes: &[(&PathBuf, Scene)]) -> Result<Option<CliAction>, CliError> {
-    let stems = || scenes.iter().map(|(path, _)| path.file_stem());
     // Planning is what one worker does alone.
     let alone = Threads::new(Some(1))?;
     let mut pictures = Vec::new();
     for (path, scene) in scenes {
-        let stem = path.file_stem();
-        let is_one = stems().filter(|other| *other == stem).count() == 1;
-        let name = if is_one {
-            capitalised(&stem.unwrap_or_default().to_string_lossy())
-        } else {
-            path.display().to_string()
-        };
+        let name = name_of(path, &args.scenes);
         let (width, height) = Study::size_of_side(scene, args.side);
         let request = RenderRequest {
             sampling: Sampling::Centres,

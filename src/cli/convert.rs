@@ -8,6 +8,7 @@ use super::error::{CliError, report_warning, say};
 use super::scene::read_scene;
 use crate::export::{povray_text, write_text};
 use crate::files::has_ending;
+use crate::mesh::is_mesh_file;
 use crate::scene::{Document, Scene, check};
 use crate::words::{counted, for_shell};
 
@@ -28,13 +29,13 @@ pub struct ConvertArgs {
 /// [`CliError`]: a file that cannot be read, or one that cannot be written.
 pub fn run(args: &ConvertArgs) -> Result<(), CliError> {
     let output = args.output.display();
-    match (has_ending(&args.input, "ron"), &args.output) {
-        (true, path) if has_ending(path, "pov") => write_povray(args),
-        (true, _) => Err(CliError::usage(format!(
+    match (is_mesh_file(&args.input), &args.output) {
+        (false, path) if has_ending(path, "pov") => write_povray(args),
+        (false, _) if has_ending(&args.input, "ron") => Err(CliError::usage(format!(
             "{output}: what is made of a scene ends in .pov"
         ))),
-        (false, path) if has_ending(path, "ron") => write_scene(args),
-        (false, _) => Err(CliError::usage(format!(
+        (_, path) if has_ending(path, "ron") => write_scene(args),
+        _ => Err(CliError::usage(format!(
             "{output}: a scene file ends in .ron"
         ))),
     }
@@ -45,6 +46,11 @@ fn write_povray(args: &ConvertArgs) -> Result<(), CliError> {
     write_text(&args.output, &povray_text(&scene))?;
     let (width, height) = (scene.render.width, scene.render.height);
     let path = args.output.display().to_string();
+    if path.contains(['\\', '"']) {
+        let sentence = "POV-Ray reads no file of such a name: rename it to draw it";
+        say(&format!("{path}: {sentence}"));
+        return Ok(());
+    }
     let input = input_option(&path);
     say(&format!(
         "{path}: draw it with povray {input} +W{width} +H{height} -A File_Gamma=1.0 Dither=off"
@@ -64,7 +70,14 @@ fn input_option(path: &str) -> String {
 fn write_scene(args: &ConvertArgs) -> Result<(), CliError> {
     let whole = |path: &Path| {
         let named = |error| CliError::usage(format!("{}: {error}", path.display()));
-        absolute(path).map_err(named)
+        let path = absolute(path).map_err(named)?;
+        // One folder has one name here, whatever leads there.
+        let folder = path.parent().and_then(|folder| folder.canonicalize().ok());
+        let file = path.file_name().map(ToOwned::to_owned);
+        Ok::<_, CliError>(match (folder, file) {
+            (Some(folder), Some(file)) => folder.join(file),
+            _ => path,
+        })
     };
     let (input, output) = (whole(&args.input)?, whole(&args.output)?);
     let read = Scene::of_mesh_file(&input, output.parent());

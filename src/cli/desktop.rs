@@ -36,7 +36,8 @@ pub fn install(mut command: Command) -> Result<(), CliError> {
     let failed = |error| CliError::failed(format!("{}: {error}", manual.display()));
     make_folder(&manual).map_err(failed)?;
     clap_mangen::generate_to(command.clone(), &manual).map_err(failed)?;
-    say(&manual.join("glint.1").display().to_string());
+    let pages = manual.join("glint*.1");
+    say(&pages.display().to_string());
     for (shell, file) in SHELLS {
         let mut text = Vec::new();
         generate(shell, &mut command, "glint", &mut text);

@@ -13,7 +13,7 @@ use super::bar::{TICK, progress_bar, restyle};
 use super::error::{CliError, report_warning, say};
 use super::scene::read_whole_document;
 use crate::export::{ExportError, ExportStep, Exported, Exporting};
-use crate::export::{Frames, Pattern, Sequence, Video, check_place, write_job};
+use crate::export::{Frames, JobError, Pattern, Sequence, Video, check_place, write_job};
 use crate::image::Format;
 use crate::scene::{Method as _, Sampling, Scene};
 use crate::trace::{RenderControl, Threads};
@@ -260,7 +260,10 @@ pub fn run_job(args: &JobArgs) -> Result<(), CliError> {
         .what
         .sequence(document.scene.clone(), PathBuf::from("frames"))?;
     let job = write_job(&document, Some(file), &sequence, path);
-    let job = job.map_err(CliError::failed)?;
+    let job = job.map_err(|error| match error {
+        JobError::IsScene { .. } | JobError::TooManyPieces(_) => CliError::usage(error),
+        other => CliError::failed(other),
+    })?;
     let frames = counted(sequence.frames.count(), "frame");
     say(&format!("{}: a job of {frames}", path.display()));
     if job.is_copied {

@@ -48,6 +48,12 @@ pub use action::CliAction;
 use error::WRONG;
 pub use error::{CliError, finish, say};
 pub use fallback::picture_instead_of_window;
+
+/// Whether letters may have colours, by what users set where they want none (<https://no-color.org>).
+fn has_colors() -> bool {
+    let set = |name| std::env::var_os(name).unwrap_or_default();
+    set("NO_COLOR").is_empty() && set("TERM") != "dumb"
+}
 use target::picture_format;
 
 use crate::scene::{Document, Scene};
@@ -63,7 +69,7 @@ use crate::scene::{Document, Scene};
 struct CliArgs {
     /// The scene to open in the editor (RON)
     scene: Option<PathBuf>,
-    /// Write a picture of the window once it is complete (PNG or PPM), and quit
+    /// Write a picture of the window once it is complete (PNG, PPM or EXR), and quit
     #[arg(long, value_name = "IMAGE")]
     screenshot: Option<PathBuf>,
     /// With --screenshot: open the window of exports first
@@ -141,7 +147,7 @@ fn run_words(words: Vec<OsString>) -> CliAction {
                 return CliAction::Done(WRONG.into());
             }
             let text = error.render();
-            let text = if stdout().is_terminal() {
+            let text = if stdout().is_terminal() && has_colors() {
                 text.ansi().to_string()
             } else {
                 text.to_string()

@@ -7,7 +7,7 @@ use clap::Args;
 use super::action::CliAction;
 use super::args::{MAX_TIMES, whole};
 use super::error::{CliError, say};
-use super::target::{check_text, picture_format};
+use super::target::{check_table, picture_format};
 use crate::export::write_text;
 use crate::lab::Figure;
 use crate::lab::stability::{cells_csv, maps, summary};
@@ -33,7 +33,7 @@ pub struct StabilityArgs {
 pub fn run(args: &StabilityArgs) -> Result<Option<CliAction>, CliError> {
     // A name that cannot be written is known before the first ray.
     picture_format(args.png.as_deref())?;
-    check_text(args.csv.as_deref())?;
+    check_table(args.csv.as_deref())?;
     let maps = maps(args.effort);
     say(summary(&maps).trim_end());
     if let Some(path) = &args.csv {

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use super::error::CliError;
 use crate::export::check_place;
+use crate::files::has_ending;
 use crate::image::Format;
+use crate::mesh::is_mesh_file;
 
 /// The format of a picture that is to be written, known before the first ray, as is whether it can be.
 ///
@@ -19,10 +21,19 @@ pub fn picture_format(path: Option<&Path>) -> Result<Option<Format>, CliError> {
     Ok(Some(format))
 }
 
-/// Whether a text can be written, if it is to be.
+/// Whether figures can be written as a table, if they are to be.
 ///
 /// # Errors
-/// [`CliError`], for a place where nothing can be written.
-pub fn check_text(path: Option<&Path>) -> Result<(), CliError> {
-    Ok(path.map_or(Ok(()), check_place)?)
+/// [`CliError`], for a place where nothing can be written, and the ending of a scene, a mesh or a picture.
+pub fn check_table(path: Option<&Path>) -> Result<(), CliError> {
+    let Some(path) = path else {
+        return Ok(());
+    };
+    if has_ending(path, "ron") || is_mesh_file(path) || Format::of_path(path).is_ok() {
+        let path = path.display();
+        let sentence =
+            format!("{path}: figures are a table, and no scene, mesh or picture; end it in .csv");
+        return Err(CliError::usage(sentence));
+    }
+    Ok(check_place(path)?)
 }

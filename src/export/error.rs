@@ -86,6 +86,15 @@ pub enum VideoError {
         /// Its width and height in pixels.
         size: (u32, u32),
     },
+    /// The same, of the same size.
+    #[error(
+        "{path} is not the frame that was made, any more: another export has put it there; give each a folder of its own",
+        path = .path.display()
+    )]
+    Changed {
+        /// The file of the frame.
+        path: PathBuf,
+    },
     /// A frame could not be read.
     #[error("cannot read {path}: {source}", path = .path.display())]
     Frame {

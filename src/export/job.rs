@@ -121,7 +121,9 @@ fn write_scene(
         fs::read(file).map_err(disk)?
     } else {
         let (header, scene) = (document.header.clone(), document.scene.taken_in());
-        Document { header, scene }.to_text()?.into_bytes()
+        let text = Document { header, scene }.to_text()?;
+        Document::check_length(path, &text)?;
+        text.into_bytes()
     };
     let is_other = read_file(path).is_ok_and(|there| there != text);
     let backup = is_other.then(|| back_up(path)).transpose();

@@ -47,8 +47,11 @@ impl Pattern {
         if text.starts_with(UNFINISHED) {
             return wrong("such a name would be taken for that of an unfinished file");
         }
-        if text.contains(['/', '\\']) || text.chars().any(char::is_control) {
+        if text.contains(['/', '\\']) {
             return wrong("a name has no folders in it");
+        }
+        if text.chars().any(char::is_control) {
+            return wrong("a name has no control characters in it");
         }
         Ok(Self {
             before: before.to_owned(),

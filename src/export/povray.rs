@@ -17,8 +17,8 @@ use super::program::end_of;
 use crate::image::Image;
 use crate::plan::PackedMesh;
 use crate::scene::{
-    Camera, ColorPack, Disc, Light, Mesh, Object, Plane, Projection, Render, Scene, Shape, Sphere,
-    Triangle, unit,
+    Camera, Coincidence, ColorPack, Disc, Extent, Light, Mesh, Object, Plane, Projection, Render,
+    Scene, Shape, Sphere, Triangle, coincidences, unit,
 };
 use crate::trace::RenderControl;
 
@@ -62,7 +62,7 @@ pub fn povray_text(scene: &Scene) -> String {
     let Render { width, height, .. } = scene.render;
     let _ = writeln!(
         pov,
-        "// By Glint. povray +Iscene.pov +W{width} +H{height} -A File_Gamma=1.0 Dither=off\n#version 3.7;\nglobal_settings {{ assumed_gamma 1 max_trace_level {level} adc_bailout 0 ambient_light rgb {:?} }}\nbackground {{ {} }}",
+        "// By Glint. Draw it with povray +W{width} +H{height} -A File_Gamma=1.0 Dither=off, and +I with its name.\n#version 3.7;\nglobal_settings {{ assumed_gamma 1 max_trace_level {level} adc_bailout 0 ambient_light rgb {:?} }}\nbackground {{ {} }}",
         scene.ambient_intensity,
         color(scene.background)
     );
@@ -278,7 +278,17 @@ pub fn povray_differences(scene: &Scene) -> Vec<&'static str> {
     let lost = (!visible().all(is_seen_there)).then_some(
         "what is smaller than a hundred-thousandth of a unit, or larger than a million, is seen here, and may not be there",
     );
-    clipped.into_iter().chain(lifted).chain(lost).collect()
+    let centre = scene.middle().unwrap_or_default();
+    let is_seen = |found: &Coincidence| {
+        let is_hidden = matches!(found.extent, Extent::Standing | Extent::Touching);
+        !is_hidden && !scene.look_alike(found.later, found.earlier)
+    };
+    let found = coincidences(&scene.objects, centre);
+    let coincident = found.iter().any(is_seen).then_some(
+        "where surfaces lie in each other, the first in the list is seen here, and either of them there",
+    );
+    let all = [clipped, lifted, lost, coincident];
+    all.into_iter().flatten().collect()
 }
 
 /// What POV-Ray has drawn.

@@ -105,6 +105,13 @@ impl Video {
         if !go_on(sequence.frames.count()) {
             return Err(VideoError::Stopped);
         }
+        // Another export may have put frames of its own in the place of some while they were read.
+        let missing = sequence.missing().unwrap_or_default();
+        if let Some(frame) = missing.first() {
+            return Err(VideoError::Changed {
+                path: sequence.path(*frame),
+            });
+        }
         let placed = beside.place();
         placed.map_err(|error| VideoError::disk(path, &error))
     }

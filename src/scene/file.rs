@@ -181,7 +181,12 @@ impl Document {
             .err();
             return Err(refuse_problem(name, text, problem));
         }
-        let scene: Scene = options().from_str(text).map_err(|error| {
+        let read: Result<Scene, _> = options().from_str(text);
+        // At the end of the last line, the parser is a letter behind.
+        if read.is_err() && !text.ends_with(char::is_whitespace) {
+            return Self::parse(name, &format!("{text}\n"));
+        }
+        let scene = read.map_err(|error| {
             let start = error.span.start;
             // The parser stops within a comment that ends the file.
             let is_bare = text[header(text).len()..].trim().is_empty();
@@ -247,21 +252,29 @@ impl Document {
         }
     }
 
+    /// Whether a text can be read again that is to be written to `path`.
+    ///
+    /// # Errors
+    /// [`SceneError::TooLarge`].
+    pub fn check_length(path: &Path, text: &str) -> Result<(), SceneError> {
+        let found = text.len() as u64;
+        if found <= MAX_BYTES {
+            return Ok(());
+        }
+        Err(SceneError::TooLarge {
+            path: path.to_owned(),
+            found,
+            limit: MAX_BYTES,
+        })
+    }
+
     /// [`Self::save`] for a document that is [`Self::at`] this place, with what the file holds now.
     ///
     /// # Errors
     /// See [`Self::save`].
     pub fn save_stamped(&self, path: &Path) -> Result<(Option<PathBuf>, Stamp), SceneError> {
         let text = self.to_text()?;
-        // What could not be read again is not written.
-        let found = text.len() as u64;
-        if found > MAX_BYTES {
-            return Err(SceneError::TooLarge {
-                path: path.to_owned(),
-                found,
-                limit: MAX_BYTES,
-            });
-        }
+        Self::check_length(path, &text)?;
         let disk = |source| SceneError::Disk {
             verb: "write",
             path: path.to_owned(),

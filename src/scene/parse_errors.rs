@@ -2,6 +2,16 @@
 
 use ron::Error;
 
+/// What is said of digits behind this text: a comma behind others may be meant for a point.
+fn hint_of_decimals(before: &str) -> &'static str {
+    let number = before.trim_end().strip_suffix(',');
+    if number.is_some_and(|number| number.ends_with(|c: char| c.is_ascii_digit())) {
+        ": decimals stand behind a point"
+    } else {
+        ""
+    }
+}
+
 /// The sentence for a parser's error, without a full stop, given the text up to there and from there on. `max_depth` is
 /// the parser's limit.
 pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) -> String {
@@ -13,7 +23,8 @@ pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) 
             "expected the closing bracket: this is a number more than there may be".to_owned()
         }
         Error::SuggestRawIdentifier(name) if name.starts_with(is_of_number) => {
-            format!("expected the name of a field, found {name}: decimals stand behind a point")
+            let hint = hint_of_decimals(before);
+            format!("expected the name of a field, found {name}{hint}")
         }
         // It has taken what is before the point for a whole number, and wonders about the rest.
         Error::ExpectedComma

@@ -382,9 +382,19 @@ fn chart_prints_the_front_and_writes_every_figure() {
             .is_some_and(|line| line.starts_with("take ")),
         "{said}"
     );
-    // Not in the place of the scene.
+    // Not in the place of the scene, of a mesh, or of a picture.
     let scene = folder.path().join("own.ron");
     std::fs::copy(DEMO, &scene).expect("copied");
+    for name in ["knot.ply", "c.png", "other.ron"] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, "precious").expect("written");
+        for command in [&["chart", DEMO, "--side", "16"][..], &["stability"]] {
+            let refused = glint(folder.path(), &[command, &["--csv", name]].concat());
+            assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+        }
+        assert_eq!(std::fs::read_to_string(&path).expect("there"), "precious");
+        std::fs::remove_file(&path).expect("removed");
+    }
     let refused = glint(
         folder.path(),
         &["chart", "own.ron", "--side", "16", "--csv", "./own.ron"],

@@ -759,6 +759,35 @@ fn gives_up(frames: &Path, name: &str) {
 }
 
 #[test]
+fn no_video_is_made_of_frames_that_another_export_has_put_there() {
+    let folder = tempfile::tempdir().expect("a folder");
+    done(&mut export(folder.path(), &["--frames", "1-9"]));
+    let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
+    (scene.render.width, scene.render.height) = (48, 48);
+    let (shown, pattern) = (Frames::parse("1-9").ok(), Pattern::default());
+    let sequence = Sequence::new(
+        scene.into(),
+        shown,
+        pattern,
+        Format::Ppm,
+        folder.path().into(),
+    );
+    let sequence = sequence.expect("they are there");
+    let path = folder.path().join("a.apng");
+    let video = Video::of_path(&path).expect("known");
+    let made = video.make(&sequence, &path, |done| {
+        // Of the same size, while others are read.
+        if done == 3 {
+            fs::copy(sequence.path(1), sequence.path(7)).expect("copied");
+        }
+        true
+    });
+    let is_told = matches!(&made, Err(VideoError::Changed { path }) if *path == sequence.path(7));
+    assert!(is_told, "{made:?}");
+    assert!(!path.exists());
+}
+
+#[test]
 fn a_video_that_is_not_wanted_any_more_leaves_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     done(&mut export(folder.path(), &["--frames", "1-9"]));

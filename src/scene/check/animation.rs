@@ -101,10 +101,16 @@ fn check_track(at: &At, sample: Value, track: &Track) -> Check {
     for (index, key) in track.keys.iter().enumerate() {
         let here = at.index(index);
         let is_orbit = matches!(key.interpolation, Interpolation::Orbit { .. });
-        if is_orbit && matches!(track.target, Target::ObjectRotation(_)) {
-            return here
-                .field("interpolation")
-                .refuse("a rotation goes around no point: give it Smooth or Linear".to_owned());
+        let what = match track.target {
+            Target::ObjectRotation(_) => Some("a rotation"),
+            Target::AmbientIntensity | Target::LightIntensity(_) => Some("an intensity"),
+            Target::ObjectPosition(_) | Target::LightPosition(_) => None,
+        };
+        if let Some(what) = what.filter(|_| is_orbit) {
+            let at = here.field("interpolation");
+            return at.refuse(format!(
+                "{what} goes around no point: give it Smooth or Linear"
+            ));
         }
         let at = here.field("value");
         match (key.value, sample) {

@@ -179,9 +179,9 @@ impl<'a> At<'a> {
         }
     }
 
-    /// A direction of any length but zero.
+    /// A direction of any length but zero that places have.
     pub fn direction(&self, value: DVec3) -> Check {
-        self.point(value)?;
+        self.bounded(value, "must have parts of at most 1e12")?;
         match unit(value) {
             Some(_) => Ok(()),
             None => self.refuse(format!(
