@@ -262,3 +262,15 @@ fn advice(study: &Study, within: Option<f64>, budget: Option<Duration>) -> Strin
         },
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scenes_of_one_name_are_told_apart() {
+        let scenes = ["a/x.ron", "b/X.ron", "b/y.ron"].map(PathBuf::from);
+        let names = scenes.each_ref().map(|path| name_of(path, &scenes));
+        assert_eq!(names, ["a/x.ron", "b/X.ron", "Y"]);
+    }
+}

@@ -67,19 +67,29 @@ fn input_option(path: &str) -> String {
     for_shell(&format!("+I\"{path}\""))
 }
 
+/// A path whose folder has the name that it has without links and steps back, if it is there.
+fn in_real_folder(path: PathBuf) -> PathBuf {
+    let folder = path.parent().and_then(|folder| folder.canonicalize().ok());
+    match (folder, path.file_name()) {
+        (Some(folder), Some(file)) => folder.join(file),
+        _ => path,
+    }
+}
+
 fn write_scene(args: &ConvertArgs) -> Result<(), CliError> {
     let whole = |path: &Path| {
         let named = |error| CliError::usage(format!("{}: {error}", path.display()));
-        let path = absolute(path).map_err(named)?;
-        // One folder has one name here, whatever leads there.
-        let folder = path.parent().and_then(|folder| folder.canonicalize().ok());
-        let file = path.file_name().map(ToOwned::to_owned);
-        Ok::<_, CliError>(match (folder, file) {
-            (Some(folder), Some(file)) => folder.join(file),
-            _ => path,
-        })
+        absolute(path).map_err(named)
     };
-    let (input, output) = (whole(&args.input)?, whole(&args.output)?);
+    let (mut input, mut output) = (whole(&args.input)?, whole(&args.output)?);
+    let is_below = |input: &Path, output: &Path| {
+        let folder = output.parent();
+        folder.is_some_and(|folder| input.starts_with(folder))
+    };
+    if !is_below(&input, &output) {
+        // One folder may have several names.
+        (input, output) = (in_real_folder(input), in_real_folder(output));
+    }
     let read = Scene::of_mesh_file(&input, output.parent());
     let (scene, notes) = read.map_err(CliError::usage)?;
     for note in notes {

@@ -36,8 +36,11 @@ pub fn install(mut command: Command) -> Result<(), CliError> {
     let failed = |error| CliError::failed(format!("{}: {error}", manual.display()));
     make_folder(&manual).map_err(failed)?;
     clap_mangen::generate_to(command.clone(), &manual).map_err(failed)?;
-    let pages = manual.join("glint*.1");
-    say(&pages.display().to_string());
+    let commands = command.get_subcommands().filter(|one| !one.is_hide_set());
+    let names = commands.map(|one| format!("glint-{}.1", one.get_name()));
+    for page in ["glint.1".to_owned()].into_iter().chain(names) {
+        say(&manual.join(page).display().to_string());
+    }
     for (shell, file) in SHELLS {
         let mut text = Vec::new();
         generate(shell, &mut command, "glint", &mut text);

@@ -48,12 +48,6 @@ pub use action::CliAction;
 use error::WRONG;
 pub use error::{CliError, finish, say};
 pub use fallback::picture_instead_of_window;
-
-/// Whether letters may have colours, by what users set where they want none (<https://no-color.org>).
-fn has_colors() -> bool {
-    let set = |name| std::env::var_os(name).unwrap_or_default();
-    set("NO_COLOR").is_empty() && set("TERM") != "dumb"
-}
 use target::picture_format;
 
 use crate::scene::{Document, Scene};
@@ -210,6 +204,12 @@ impl CliArgs {
             ))),
         }
     }
+}
+
+/// Whether letters may have colours, by what users set where they want none (<https://no-color.org>).
+fn has_colors() -> bool {
+    let set = |name| std::env::var_os(name).unwrap_or_default();
+    set("NO_COLOR").is_empty() && set("TERM") != "dumb"
 }
 
 /// The first word, if it was meant as a command that there is not: the editor takes one scene only, and a name

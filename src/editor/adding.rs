@@ -54,17 +54,25 @@ pub fn add_light(scene: &mut Scene, position: DVec3) -> Item {
     } else {
         insert_pack(scene, "light", light_pack()).1
     };
-    // Two in one place would look like one. Far away, the radius of a marker may be less than a rounding.
-    let step = DVec3::X * (4.0 * radius).max(position.x.abs() * 1e-9);
-    let position = position + way_past(scene, &[Placed::light(position)], (step, 0));
-    scene.lights.push(Light {
+    let mut light = Light {
         name,
         position,
         intensity: default_intensity(),
         marker: Some(LightObj { radius, color_pack }),
         visible: true,
-    });
+    };
+    // Two in one place would look like one.
+    let step = step_of_light(scene, &light);
+    light.position += way_past(scene, &[Placed::light(position)], (step, 0));
+    scene.lights.push(light);
     Item::light(scene.lights.len() - 1)
+}
+
+/// From a light to one beside it. Far away, the radius of a marker may be less than a rounding.
+pub fn step_of_light(scene: &Scene, light: &Light) -> DVec3 {
+    let marker = light.marker.as_ref();
+    let radius = marker.map_or_else(|| marker_radius(scene), |marker| marker.radius);
+    DVec3::X * (4.0 * radius).max(light.position.x.abs() * 1e-9)
 }
 
 /// How large the marker of a light is that has none yet: as those of the others, or as the scene is large.
@@ -101,9 +109,7 @@ pub fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
             let original = scene.lights.get(index)?.clone();
             let mut copy = original.clone();
             copy.name = free_light_name(scene, &copy.name);
-            let marker = copy.marker.as_ref();
-            let radius = marker.map_or_else(|| marker_radius(scene), |marker| marker.radius);
-            let step = DVec3::X * radius * 2.0;
+            let step = step_of_light(scene, &copy);
             let by = way_past(scene, &[Placed::light(copy.position)], (step, 1));
             copy.position += by;
             copy_tracks(scene, Owner::Light(&original.name), &copy.name, by);

@@ -7,7 +7,7 @@ use std::ops::Range;
 use glam::DVec3;
 use indexmap::IndexMap;
 
-use super::adding::marker_radius;
+use super::adding::step_of_light;
 use super::arrange::{Arrangement, arrange};
 use super::item::{Item, Kind};
 use super::names::{Placed, step_aside, way_past};
@@ -244,7 +244,10 @@ fn members(scene: &Scene) -> IndexMap<&str, HashSet<&str>> {
 /// shadow each other. All of them go the same way.
 fn way_aside(scene: &Scene, pasted: &Scene) -> DVec3 {
     let step = match (pasted.objects.first(), pasted.objects_bounds()) {
-        (None, _) => DVec3::X * marker_radius(scene) * 4.0,
+        (None, _) => {
+            let first = pasted.lights.first();
+            first.map_or(DVec3::ZERO, |light| step_of_light(scene, light))
+        }
         // What stands in a row has its copy before it, and not where the picture ends.
         (_, Some((low, high))) => {
             let size = high - low;

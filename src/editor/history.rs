@@ -47,12 +47,14 @@ impl History {
     /// Notes that `before` was left for `after` by doing `label`. During a gesture, edits of the same
     /// name are one step. What was undone can be done again after a look from elsewhere.
     pub fn record(&mut self, label: String, before: Snapshot, after: &Scene) {
-        let undone = self.undone_after(&before.scene, after);
-        let undone = std::mem::replace(&mut self.undone, undone);
-        if self.gesture.as_ref() == Some(&label) {
+        let is_going_on = self.gesture.as_ref() == Some(&label);
+        if !is_going_on {
+            self.aside = self.undone.clone();
+        }
+        self.keep_undone(&before.scene, after);
+        if is_going_on {
             return;
         }
-        self.aside = undone;
         self.gesture = Some(label.clone());
         let bytes = before.scene.bytes_apart(after);
         self.done.push_back(Step {
@@ -68,23 +70,20 @@ impl History {
         }
     }
 
-    /// What can be done again after a change: nothing, if it is one of more than the view. What was done where the camera
-    /// was before is seen from where it is now.
-    fn undone_after(&self, before: &Scene, after: &Scene) -> Vec<Step> {
-        let camera = after.camera.clone();
+    /// Keeps what can be done again after a change: nothing, if it is one of more than the view. What was done where the
+    /// camera was before is seen from where it is now.
+    fn keep_undone(&mut self, before: &Scene, after: &Scene) {
         let looking = |scene: &Scene| Scene {
-            camera: camera.clone(),
+            camera: after.camera.clone(),
             ..scene.clone()
         };
         if self.undone.is_empty() || looking(before) != *after {
-            return Vec::new();
+            return self.undone.clear();
         }
-        let mut undone = self.undone.clone();
         let from_there = |step: &&mut Step| step.there.scene.camera == before.camera;
-        for step in undone.iter_mut().rev().take_while(from_there) {
+        for step in self.undone.iter_mut().rev().take_while(from_there) {
             step.there.scene = Arc::new(looking(&step.there.scene));
         }
-        undone
     }
 
     /// Notes what the step that goes on has selected: doing it again selects that.
@@ -235,12 +234,12 @@ mod tests {
         for here in [with(0.1, 7.0), with(0.1, x)] {
             assert!(history.undo(snapshot(&here)).is_some());
         }
+        // What is given up takes nothing away.
+        history.record("Lighter".to_owned(), snapshot(&scene), &with(0.5, 1.0));
+        history.cancel_gesture();
         // A drag of the camera, in two parts.
-        history.record("Orbit".to_owned(), snapshot(&scene), &with(0.5, 1.0));
         let ambient = scene.ambient_intensity;
         let here = [with(ambient, x), with(ambient, 1.0), with(ambient, 2.0)];
-        let mut history = history;
-        history.cancel_gesture();
         for pair in here.windows(2) {
             history.record("Orbit".to_owned(), snapshot(&pair[0]), &pair[1]);
         }

@@ -1,6 +1,6 @@
 //! What a new thing is called, and where it stands.
 
-use std::collections::HashMap;
+use std::collections::HashSet;
 
 use glam::DVec3;
 
@@ -83,10 +83,8 @@ pub fn way_past(scene: &Scene, new: &[Placed], (step, least): (DVec3, u32)) -> D
         let cell = place / (near * 4.0).max(f64::MIN_POSITIVE);
         cell.floor().to_array().map(|part| part as i64)
     };
-    let mut there: HashMap<(Option<&str>, [i64; 3]), Vec<DVec3>> = HashMap::new();
-    for Placed { kind, place } in Placed::all_of(scene) {
-        there.entry((kind, cell(place))).or_default().push(place);
-    }
+    let there = Placed::all_of(scene).map(|Placed { kind, place }| (kind, cell(place)));
+    let there: HashSet<(Option<&str>, [i64; 3])> = there.collect();
     let is_taken = |by: DVec3| {
         new.iter().any(|Placed { kind, place }| {
             let wanted = *place + by;
@@ -94,11 +92,7 @@ pub fn way_past(scene: &Scene, new: &[Placed], (step, least): (DVec3, u32)) -> D
             // Two along each axis at most.
             let cells = (x0..=x1).flat_map(|x| (y0..=y1).map(move |y| (x, y)));
             let mut cells = cells.flat_map(|(x, y)| (z0..=z1).map(move |z| [x, y, z]));
-            cells.any(|cell| {
-                let places = there.get(&(*kind, cell));
-                let mut places = places.into_iter().flatten();
-                places.any(|place| (*place - wanted).length() <= near)
-            })
+            cells.any(|cell| there.contains(&(*kind, cell)))
         })
     };
     let steps = (least..least + MOST_STEPS).map(|count| step * f64::from(count));

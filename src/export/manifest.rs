@@ -61,6 +61,11 @@ impl Manifest {
         self.notes.contains_key(file) && self.folder.join(file).exists()
     }
 
+    /// Whether a file was written since, by these newer notes.
+    pub fn is_other(&self, newer: &Self, file: &str) -> bool {
+        self.notes.get(file) != newer.notes.get(file)
+    }
+
     /// Whether the file is there, whole, as it was written, and shows what it would show now.
     pub fn is_valid(&self, file: &str, fingerprint: &Hash) -> bool {
         let Some(note) = self.notes.get(file) else {

@@ -397,6 +397,28 @@ mod tests {
     }
 
     #[test]
+    fn surfaces_that_lie_in_each_other_are_known_to_differ() {
+        let mut scene = Scene::demo();
+        let say_so = |scene: &Scene| {
+            let said = povray_differences(scene);
+            said.iter().any(|words| words.contains("lie in each other"))
+        };
+        assert!(!say_so(&scene));
+        let copy = Object {
+            name: "copy".to_owned(),
+            ..scene.objects[0].clone()
+        };
+        scene.objects.push(copy.clone());
+        assert!(!say_so(&scene), "they look alike");
+        let place = scene.objects.len() - 1;
+        scene.objects[place] = Object {
+            color_pack: "sphere 2".to_owned(),
+            ..copy
+        };
+        assert!(say_so(&scene));
+    }
+
+    #[test]
     fn what_has_highlights_in_a_colour_has_lights_of_its_own() {
         let mut scene = Scene::demo();
         for pack in scene.packs_mut().values_mut() {

@@ -7,6 +7,7 @@ use std::time::Duration;
 use super::animated::{LONGEST_IN_APNG, LONGEST_IN_GIF, apng, gif, left_out, time_of_gif};
 use super::error::VideoError;
 use super::ffmpeg::by_ffmpeg;
+use super::manifest::{MANIFEST, Manifest};
 use super::sequence::Sequence;
 use crate::files::NewFile;
 use crate::image::Image;
@@ -92,6 +93,7 @@ impl Video {
         path: &Path,
         mut go_on: impl FnMut(usize) -> bool,
     ) -> Result<(), VideoError> {
+        let before = notes(sequence)?;
         let beside = NewFile::beside(path).map_err(|error| VideoError::disk(path, &error))?;
         let lent = || (beside.lend(), path);
         match self {
@@ -106,10 +108,14 @@ impl Video {
             return Err(VideoError::Stopped);
         }
         // Another export may have put frames of its own in the place of some while they were read.
-        let missing = sequence.missing().unwrap_or_default();
-        if let Some(frame) = missing.first() {
+        let after = notes(sequence)?;
+        let mut changed = sequence.frames.iter().filter(|frame| {
+            let file = sequence.file(*frame);
+            before.is_other(&after, &file)
+        });
+        if let Some(frame) = changed.next() {
             return Err(VideoError::Changed {
-                path: sequence.path(*frame),
+                path: sequence.path(frame),
             });
         }
         let placed = beside.place();
@@ -159,6 +165,13 @@ impl Video {
             _ => with(None),
         }
     }
+}
+
+/// What is noted about the frames of a sequence.
+fn notes(sequence: &Sequence) -> Result<Manifest, VideoError> {
+    let path = sequence.folder.join(MANIFEST);
+    let notes = Manifest::read(&sequence.folder);
+    notes.map_err(|source| VideoError::unreadable(&path, source.into()))
 }
 
 #[cfg(test)]

@@ -28,7 +28,7 @@ pub fn finding(study: &Study, name: &str) -> String {
         let way = &study.measurements[place].candidate.name;
         let cost = costs[place].0;
         return format!(
-            "{name}: {way} is as close as the default, in {cost:.1} ms and not {ms:.1}"
+            "{name}: {way} is as close as the default, in {cost:.1}\u{a0}ms and not {ms:.1}"
         );
     }
     if error <= EIGHT_BIT_FLOOR {
@@ -45,7 +45,7 @@ pub fn finding(study: &Study, name: &str) -> String {
             )
         }
         None => format!(
-            "{name}: the default has {decibels:.0} dB at {ms:.1} ms, and {} ways are worth their time",
+            "{name}: the default has {decibels:.0}\u{a0}dB at {ms:.1}\u{a0}ms, and {} ways are worth their time",
             front_of(study).len()
         ),
     }

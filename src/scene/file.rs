@@ -181,19 +181,21 @@ impl Document {
             .err();
             return Err(refuse_problem(name, text, problem));
         }
-        let read: Result<Scene, _> = options().from_str(text);
-        // At the end of the last line, the parser is a letter behind.
-        if read.is_err() && !text.ends_with(char::is_whitespace) {
-            return Self::parse(name, &format!("{text}\n"));
-        }
-        let scene = read.map_err(|error| {
-            let start = error.span.start;
+        let scene: Scene = options().from_str(text).map_err(|error| {
+            let found = offset_of(text, error.span.start.line, error.span.start.col);
+            // At the end of the last line, the parser is a letter behind.
+            if !text[found..].contains('\n')
+                && !text.ends_with(char::is_whitespace)
+                && let Err(error) = Self::parse(name, &format!("{text}\n"))
+            {
+                return error;
+            }
             // The parser stops within a comment that ends the file.
             let is_bare = text[header(text).len()..].trim().is_empty();
             let at = if is_bare {
                 text.trim_end().len()
             } else {
-                offset_of(text, start.line, start.col)
+                found
             };
             let sentence = sentence(&error.code, text.split_at(at), MAX_DEPTH);
             let is_end = text[at..].trim().is_empty() && error.code != ron::Error::Eof;

@@ -9,7 +9,7 @@ use super::requests::UiRequests;
 use crate::editor::Edit;
 use crate::lab::first_met;
 use crate::mesh::SOLIDS;
-use crate::scene::{Framing, Mesh, Object, Projection, Scene, Shape};
+use crate::scene::{Camera, Framing, Mesh, Object, Projection, Scene, Shape};
 
 /// Something that can be added.
 #[derive(Clone, Copy, Debug)]
@@ -153,13 +153,14 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     } else {
         TRIES
     };
-    let free = || {
+    let free = |least: f64| {
         let places = places().take(tries);
+        let places = places.filter(move |(_, share)| *share >= least);
         places.filter_map(|(place, share)| free_place(scene, framing.ray(place), (usual, share)))
     };
-    let (at, size) = free()
+    let (at, size) = free(1.0)
         .find(|&new| hides_nothing(scene, &framing, new))
-        .or_else(|| free().next())
+        .or_else(|| free(SMALLER).next())
         .unwrap_or_else(|| before_what_is_seen(scene, framing.ray([0.0, 0.0]), usual));
     // Whole numbers read better in the inspector, where the scene is large enough for them.
     let tidy = |x: f64| if size > 10.0 { x.round() } else { x };
@@ -281,8 +282,10 @@ fn free_place(
 /// Whether something of this size there is within the picture, and before nothing but floors and walls.
 fn hides_nothing(scene: &Scene, framing: &Framing, (at, size): (DVec3, f64)) -> bool {
     let half = scene.render.aspect() / 2.0;
-    let across = scene.camera.look_at.cross(DVec3::Y).normalize_or_zero();
-    let ways = [DVec3::Y, DVec3::NEG_Y, across, -across];
+    let Camera { look_at, up, .. } = scene.camera;
+    let across = look_at.cross(up).normalize_or_zero();
+    let up = across.cross(look_at).normalize_or_zero();
+    let ways = [up, -up, across, -across];
     ways.into_iter().all(|way| {
         let Some([x, y]) = framing.project(at + way * size * WITHIN) else {
             return false;
@@ -383,6 +386,25 @@ mod tests {
                 let apart = low.cmpgt(*other_high).any() || high.cmplt(*other_low).any();
                 assert!(apart, "{index} in another");
             }
+        }
+    }
+
+    #[test]
+    fn what_is_added_hides_nothing_where_there_is_room() {
+        let mut scene = Scene::empty();
+        scene.objects.clear();
+        let names = ["Add Plane", "Add Sphere", "Add Sphere", "Add Sphere"];
+        added(&mut scene, &names);
+        added(&mut scene, &["Add Cylinder", "Add Cone"]);
+        let floor = &scene.color_packs[&scene.objects[0].color_pack];
+        assert_eq!(floor.diffuse, DVec3::new(196.0, 192.0, 186.0), "grey");
+        let framing = scene.camera.framing().expect("a basis");
+        for (index, object) in scene.objects.iter().enumerate().skip(1) {
+            let (low, high) = object.shape.bounds().expect("it ends");
+            let place = framing.project(low.midpoint(high)).expect("in front");
+            let (origin, direction) = framing.ray(place);
+            let seen = first_met(&scene, origin, direction).map(|(seen, _)| seen);
+            assert_eq!(seen, Some(index), "{}", object.name);
         }
     }
 

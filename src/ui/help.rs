@@ -10,8 +10,12 @@ use super::theme::{GRID, palette};
 const SIZE: Vec2 = vec2(1180.0, 640.0);
 /// Width of what is said about a key, at most, in points.
 const WIDEST: f32 = 225.0;
-/// Width in which commands and the keys of hands have room side by side, in points.
-const TWO_COLUMNS: f32 = 845.0;
+/// Width in which two columns have room side by side, in points.
+const TWO_COLUMNS: f32 = 745.0;
+/// Width in which they have room as wide as that.
+const ROOMY: f32 = 845.0;
+/// Width of what is said in narrower ones.
+const SLIM: f32 = 170.0;
 
 /// Shows the list while `open`.
 pub fn show(ctx: &Context, open: &mut bool) {
@@ -41,43 +45,55 @@ fn lists(ui: &mut Ui, width: f32) {
     });
     let mut commands: Vec<_> = commands.collect();
     if width < TWO_COLUMNS {
-        list(ui, "Commands", commands);
+        list(ui, ("Commands", WIDEST), commands);
         ui.add_space(2.0 * GRID);
-        flying_and_mouse(ui);
+        flying_and_mouse(ui, WIDEST);
         return;
     }
-    let rest = if width < SIZE.x {
-        Vec::new()
+    let is_wide = width >= SIZE.x;
+    // Two columns are as long as each other.
+    let first = if is_wide {
+        commands.len().div_ceil(2)
     } else {
-        commands.split_off(commands.len().div_ceil(2))
+        (commands.len() + FLIGHT.len() + MOUSE.len()).div_ceil(2)
     };
+    let rest = commands.split_off(first.min(commands.len()));
+    let widest = if width < ROOMY { SLIM } else { WIDEST };
     ui.horizontal_top(|ui| {
-        list(ui, "Commands", commands);
+        list(ui, ("Commands", widest), commands);
         ui.add_space(2.0 * GRID);
-        if !rest.is_empty() {
-            list(ui, "More commands", rest);
+        let more = |ui: &mut Ui| {
+            list(ui, ("More commands", widest), rest);
             ui.add_space(2.0 * GRID);
+        };
+        if is_wide {
+            more(ui);
+            ui.vertical(|ui| flying_and_mouse(ui, widest));
+        } else {
+            ui.vertical(|ui| {
+                more(ui);
+                flying_and_mouse(ui, widest);
+            });
         }
-        ui.vertical(flying_and_mouse);
     });
 }
 
-fn flying_and_mouse(ui: &mut Ui) {
+fn flying_and_mouse(ui: &mut Ui, widest: f32) {
     let flight = FLIGHT.iter().map(|key| (key.name().to_owned(), key.what));
-    list(ui, "Flying (hold)", flight.collect());
+    list(ui, ("Flying (hold)", widest), flight.collect());
     ui.add_space(2.0 * GRID);
     let mouse = MOUSE.iter().map(|(name, what)| ((*name).to_owned(), *what));
-    list(ui, "Mouse", mouse.collect());
+    list(ui, ("Mouse", widest), mouse.collect());
 }
 
-fn list(ui: &mut Ui, title: &str, keys: Vec<(String, &str)>) {
+fn list(ui: &mut Ui, (title, widest): (&str, f32), keys: Vec<(String, &str)>) {
     ui.vertical(|ui| {
         ui.label(RichText::new(title).strong());
         ui.spacing_mut().interact_size.y = 0.0;
         Grid::new(title)
             .num_columns(2)
             .spacing([GRID, GRID / 4.0])
-            .max_col_width(WIDEST)
+            .max_col_width(widest)
             .show(ui, |ui| {
                 for (key, what) in keys {
                     ui.label(

@@ -337,7 +337,14 @@ mod tests {
     fn what_has_nothing_below_stays_and_so_does_what_never_ends() {
         let mut scene = scene(vec![ball(0.0, 9.0, 1.0)]);
         assert!(!put(&mut scene, &[1]), "the ground");
+        let why = |scene: &Scene| {
+            let selected = Selection::from(Item::object(0));
+            put_down(scene, &selected).err()
+        };
+        assert!(put(&mut scene, &[0]));
+        assert_eq!(why(&scene), Some("It stands already"));
         scene.objects.remove(1);
+        assert_eq!(why(&scene), Some("Nothing is below it"));
         let before = scene.clone();
         assert!(!put(&mut scene, &[0]));
         assert_eq!(scene, before);

@@ -876,3 +876,46 @@ fn what_is_thin_inside_of_something_wide_costs_few_rays() {
         few.camera
     );
 }
+
+/// A ball with spikes of one triangle each all around, in one mesh.
+fn fur(spikes: usize) -> Scene {
+    let mut dice = random::Dice(11);
+    let mut unit = move || loop {
+        let way = DVec3::from([(); 3].map(|()| dice.real(-1.0, 1.0)));
+        if (0.01..1.0).contains(&way.length_squared()) {
+            return way.normalize();
+        }
+    };
+    let (mut points, mut faces) = (Vec::new(), Vec::new());
+    for _ in 0..spikes {
+        let (out, side) = (unit(), unit());
+        let side = out.cross(side).normalize() * 0.8;
+        let first = points.len() as u32;
+        points.extend([out * 40.0 - side, out * 40.0 + side, out * 58.0]);
+        faces.push([first, first + 1, first + 2]);
+    }
+    let mut scene = Scene::demo();
+    scene.camera.position = DVec3::new(0.0, 0.0, 150.0);
+    scene.camera.look_at = DVec3::NEG_Z;
+    let ball = Sphere {
+        center: DVec3::ZERO,
+        radius: 40.0,
+    };
+    let fur = Triangles::new(points, faces).expect("a mesh");
+    scene.objects = [
+        Object::new("Ball".to_owned(), "sphere 1", ball),
+        Object::new("Fur".to_owned(), "sphere 2", Mesh::of(fur)),
+    ]
+    .into_iter()
+    .collect();
+    scene
+}
+
+#[test]
+fn fur_is_as_clean_as_a_grid_of_as_many_rays_shows_it() {
+    let (scene, size) = (fur(2000), RenderRequest::sized(64, 64));
+    let truth = truth_of(&scene, &size);
+    let at = |sampling| quality_against(&truth, &scene, &RenderRequest { sampling, ..size });
+    let (got, grid) = (at(Sampling::ADAPTIVE), at(Sampling::Grid(12)));
+    assert!(got.rays < 0.0, "{got:?} {grid:?}");
+}

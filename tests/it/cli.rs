@@ -257,7 +257,12 @@ fn failed_work_exits_with_1_and_names_the_file() {
         &["--screenshot"],
     ];
     for words in cases {
-        let path = "no/such/folder/a.png";
+        let is_table = words.last() == Some(&"--csv");
+        let path = if is_table {
+            "no/such/folder/a.csv"
+        } else {
+            "no/such/folder/a.png"
+        };
         let run = glint(folder().path(), &[words, &[path]].concat());
         assert_eq!(run.status.code(), Some(1), "{words:?}");
         let said = text(&run.stderr);
@@ -385,7 +390,7 @@ fn chart_prints_the_front_and_writes_every_figure() {
     // Not in the place of the scene, of a mesh, or of a picture.
     let scene = folder.path().join("own.ron");
     std::fs::copy(DEMO, &scene).expect("copied");
-    for name in ["knot.ply", "c.png", "other.ron"] {
+    for name in ["knot.ply", "p.png", "other.ron"] {
         let path = folder.path().join(name);
         std::fs::write(&path, "precious").expect("written");
         for command in [&["chart", DEMO, "--side", "16"][..], &["stability"]] {

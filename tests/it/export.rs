@@ -775,10 +775,11 @@ fn no_video_is_made_of_frames_that_another_export_has_put_there() {
     let sequence = sequence.expect("they are there");
     let path = folder.path().join("a.apng");
     let video = Video::of_path(&path).expect("known");
-    let made = video.make(&sequence, &path, |done| {
+    let made = video.make(&sequence, &path, |count| {
         // Of the same size, while others are read.
-        if done == 3 {
-            fs::copy(sequence.path(1), sequence.path(7)).expect("copied");
+        if count == 3 {
+            let other = ["--frames", "7", "--antialias", "none"];
+            done(&mut export(folder.path(), &other));
         }
         true
     });
@@ -1147,6 +1148,17 @@ fn the_window_and_the_command_line_write_the_same_scene_for_povray() {
     let said = done(&mut glint(&["convert", demo, "-o", to]));
     assert!(said.contains("povray +I"), "{said}");
     assert_eq!(fs::read_to_string(to).expect("written"), by_window);
+    // Whatever the scene's file is called.
+    let other = folder.path().join("demo.txt");
+    fs::copy(demo, &other).expect("copied");
+    fs::remove_file(to).expect("there");
+    done(&mut glint(&[
+        "convert",
+        other.to_str().expect("plain"),
+        "-o",
+        to,
+    ]));
+    assert_eq!(fs::read_to_string(to).expect("written"), by_window);
 }
 
 #[test]
@@ -1294,7 +1306,7 @@ fn a_job_takes_no_ones_place_and_no_backup_that_of_another() {
     let path = scene.to_str().expect("plain");
     let output = run(&mut glint(&["job", path, "-o", path]));
     let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert_eq!(output.status.code(), Some(2), "{said}");
     assert!(
         said.contains("is the scene") && said.contains("s.yaml"),
         "{said}"

@@ -78,6 +78,18 @@ pub struct Settings {
     pub video: Option<Video>,
 }
 
+impl Settings {
+    /// The same files, wherever they go and whatever they are called.
+    pub fn unnamed(&self) -> Self {
+        let (folder, name) = (String::new(), String::new());
+        Self {
+            folder,
+            name,
+            ..self.clone()
+        }
+    }
+}
+
 /// A video by its ending.
 fn video_word(video: Option<Video>) -> &'static str {
     video.map_or(NO_VIDEO, Video::ending)

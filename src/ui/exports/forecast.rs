@@ -21,12 +21,12 @@ const PNG_SHARE: f64 = 0.35;
 /// Bytes of an EXR for each of its numbers as they are in memory, about.
 const EXR_SHARE: f64 = 0.6;
 
-/// Most pixels of the frame that is traced to see how long one takes.
+/// Most pixels of the frame that is traced to see how long one takes; fewer where they would take more than a second.
 const MEASURED: f64 = 1.5e6;
-/// How often it is.
-const TRIES: usize = 3;
-/// Unless once takes so long, in seconds.
-const LONG: f64 = 0.2;
+/// The fewest.
+const LEAST: f64 = 4096.0;
+/// What takes no longer, in seconds, is traced twice.
+const SHORT: f64 = 2e-3;
 
 /// Frames of a sequence that are not in their folder as they should be.
 #[derive(Default)]
@@ -41,7 +41,7 @@ struct Missing {
     is_loop: bool,
 }
 
-/// What was measured on the picture on screen.
+/// What was measured on the picture on screen, and on a frame.
 #[derive(Default)]
 struct Sample {
     /// Bytes of a PNG for each of a PPM.
@@ -125,7 +125,7 @@ impl Forecast {
         let Some(frame) = frame.filter(|_| is_meant && !self.measuring.is_awaited()) else {
             return;
         };
-        let subject = (frame.revision, frame.image.width, settings.clone());
+        let subject = (frame.revision, frame.image.width, settings.unnamed());
         if self.subject.as_ref() != Some(&subject) {
             (self.sample.frame, self.sample.video) = (None, None);
             self.subject = Some(subject);
@@ -151,7 +151,8 @@ impl Forecast {
             Some(Ok(missing)) => (missing.count, missing.describe(total)),
         };
         let pixels = f64::from(settings.width) * f64::from(settings.height);
-        let is_of_this = |(.., of): &(u64, usize, Settings)| of == settings;
+        let own = settings.unnamed();
+        let is_of_this = |(.., of): &(u64, usize, Settings)| *of == own;
         let is_known = self.subject.as_ref().is_some_and(is_of_this);
         let about = |seconds: Option<f64>| {
             seconds.map_or(String::new(), |seconds| {
@@ -215,6 +216,7 @@ impl Missing {
 }
 
 impl Sample {
+    /// Of an export whose frames are like an image.
     fn of(image: &Image, sequence: &Sequence, video: Option<Video>) -> Self {
         let pixels = image.pixels.len().max(1) as f64;
         let mut file = Cursor::new(Vec::new());
@@ -240,29 +242,34 @@ impl Sample {
     }
 }
 
-/// Seconds that tracing a frame takes, once what all have in common is planned: one of them, in its size, or as large as
-/// [`MEASURED`].
+/// Seconds that tracing a frame takes, once what all have in common is planned: the one in the middle, in its size or, where
+/// that would take long, in a smaller one.
 fn seconds_of_frame(sequence: &Sequence) -> Option<f64> {
-    let frames = &sequence.frames;
-    let shown = sequence.shown(frames.iter().nth(frames.count() / 2)?);
     let (width, height) = sequence.size();
     let whole = f64::from(width) * f64::from(height);
-    let smaller = (MEASURED / whole).sqrt().min(1.0);
-    let side = |side: u32| (f64::from(side) * smaller).ceil() as u32;
-    let (width, height) = (side(width), side(height));
-    let request = RenderRequest::of(&shown, width, height);
-    let mut planner = Planner::default();
-    let mut image = Image::default();
-    let mut seconds = f64::INFINITY;
-    for _ in 0..TRIES {
+    let (mut planner, mut image) = (Planner::default(), Image::default());
+    let mut seconds_of = |frame: u64, most: f64| {
+        let shown = sequence.shown(frame);
+        let smaller = (most / whole).sqrt().min(1.0);
+        let side = |side: u32| (f64::from(side) * smaller).ceil() as u32;
+        let request = RenderRequest::of(&shown, side(width), side(height));
         let control = RenderControl::default();
         let cost = render_into(&mut image, &mut planner, &shown, &request, &control)?;
-        seconds = seconds.min(cost.time.as_secs_f64());
-        if seconds > LONG {
-            break;
-        }
-    }
-    Some(seconds * whole / (f64::from(width) * f64::from(height)))
+        Some(cost.time.as_secs_f64())
+    };
+    let mut frames = sequence.frames.iter().skip(sequence.frames.count() / 2);
+    let first = frames.next()?;
+    let next = frames.next().unwrap_or(first);
+    seconds_of(first, LEAST)?;
+    // Mostly what each frame has to plan by itself.
+    let least = seconds_of(next, LEAST)?;
+    let most = (LEAST / least).clamp(LEAST, MEASURED).min(whole);
+    // A small size may be slow by chance, and is once more where it costs little.
+    let again = (least < SHORT).then(|| seconds_of(first, most)).flatten();
+    let seconds = seconds_of(next, most)?;
+    let seconds = again.map_or(seconds, |again| again.min(seconds));
+    let scale = (whole / most).max(1.0);
+    Some(least + (seconds - least).max(0.0) * scale)
 }
 
 fn missing(sequence: &Sequence) -> Result<Missing, String> {

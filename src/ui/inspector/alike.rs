@@ -168,8 +168,9 @@ pub fn chosen_for_all(
                     "ambient" => nothing(&mut pack.ambient),
                     "specular" => nothing(&mut pack.specular),
                     "phong" => pack.phong_exponent = f64::NAN,
-                    // Or both, of which this is shown.
-                    _ => nothing(&mut pack.diffuse),
+                    // Of both at once, this is shown.
+                    name if name == "diffuse" || name == BOTH.0 => nothing(&mut pack.diffuse),
+                    _ => {}
                 }
             }
         }

@@ -103,8 +103,10 @@ mod tests {
     use crate::mesh::SOLIDS;
     use crate::scene::Sphere;
 
+    type Changed = Result<(Mesh, Sphere), &'static str>;
+
     /// A box and a ball beside it, and both as they are after a change of the box.
-    fn changed(change: impl FnOnce(&mut Mesh)) -> Option<(Mesh, Sphere)> {
+    fn changed(change: impl FnOnce(&mut Mesh)) -> Option<Changed> {
         let mut scene = Scene::demo();
         let mesh = Mesh {
             position: DVec3::new(10.0, 0.0, 0.0),
@@ -128,27 +130,35 @@ mod tests {
             "rotation",
         );
         let edit = as_one(&scene, &[Item::object(1), Item::object(0)], &edit)?;
-        edit.ok()?.apply(&mut scene).expect("made");
+        match edit {
+            Ok(edit) => edit.apply(&mut scene).expect("made"),
+            Err(why) => return Some(Err(why)),
+        };
         match (&scene.objects[0].shape, &scene.objects[1].shape) {
-            (Shape::Mesh(mesh), Shape::Sphere(ball)) => Some((mesh.clone(), *ball)),
+            (Shape::Mesh(mesh), Shape::Sphere(ball)) => Some(Ok((mesh.clone(), *ball))),
             _ => panic!("other shapes"),
         }
     }
 
+    fn turned(change: impl FnOnce(&mut Mesh)) -> (Mesh, Sphere) {
+        changed(change).expect("a change").expect("of all")
+    }
+
     #[test]
     fn a_group_is_turned_and_grows_about_its_middle() {
-        let (mesh, ball) = changed(|mesh| mesh.rotation.y = 90.0).expect("turned");
+        let (mesh, ball) = turned(|mesh| mesh.rotation.y = 90.0);
         assert_eq!(mesh.rotation, DVec3::new(0.0, 90.0, 0.0));
         assert!((mesh.position - DVec3::NEG_Z * 10.0).length() < 1e-9);
         assert!((ball.center - DVec3::Z * 10.0).length() < 1e-9);
-        let (mesh, ball) = changed(|mesh| mesh.scale *= 3.0).expect("grown");
+        let (mesh, ball) = turned(|mesh| mesh.scale *= 3.0);
         assert_eq!((mesh.position.x, ball.center.x), (30.0, -30.0));
         assert_eq!((mesh.scale, ball.radius), (DVec3::splat(3.0), 9.0));
     }
 
     #[test]
     fn what_would_be_sheared_stays() {
-        assert!(changed(|mesh| mesh.scale.x = 2.0).is_none(), "a ball");
+        let of_a_ball = changed(|mesh| mesh.scale.x = 2.0);
+        assert_eq!(of_a_ball.and_then(Result::err), Some(SHEARED));
         assert!(changed(|mesh| mesh.position.x = 2.0).is_none(), "moved");
     }
 }

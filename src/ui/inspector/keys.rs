@@ -62,7 +62,8 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     let new_value = only.and_then(|only| value_rows(&mut rows, animation, only));
     // Of several, what all of them have may be picked for those that have not.
     let chosen = rows.chosen().map(|chosen| chosen.field);
-    let changed = rows.changed().or(chosen.filter(|_| only.is_none()));
+    let chosen = chosen.filter(|field| only.is_none() && ["way", "pace"].contains(field));
+    let changed = rows.changed().or(chosen);
     ui.horizontal_wrapped(|ui| buttons(ui, editor, out));
     if new_time != time {
         move_key(ui, editor, new_time, out);

@@ -15,6 +15,7 @@ use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
 use crate::ui::obstacles::is_enabled;
 use crate::ui::requests::UiRequests;
+use crate::ui::rows::Chosen;
 use crate::ui::theme::{GRID, ROW};
 
 /// Most things that are compared, or whose keys are looked at, in every frame of the window.
@@ -71,8 +72,12 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
             })
         }
     };
-    // A group is where it is, and has no others.
-    if let Some(chosen) = chosen.filter(|_| group.is_none()) {
+    // A group stays what it is: its members are not to be in one place.
+    let stays = |chosen: &(Edit, Chosen)| {
+        let is_pack = matches!(chosen.0, Edit::Pack(..));
+        group.is_none() || is_pack || ["radius", items::COLOR_PACK].contains(&chosen.1.field)
+    };
+    if let Some(chosen) = chosen.filter(stays) {
         out.edit(chosen_for_all(scene, selected, chosen));
     }
     // A group stays what it is; and it is not the click elsewhere that ends what was typed.

@@ -35,10 +35,9 @@ pub fn place(
     blocked.extend_from_slice(taken);
     let mut places: Vec<Option<Rect>> = Vec::with_capacity(names.len());
     for &(dot, size) in names {
-        let tries = || {
-            let steps = STEPS.iter();
-            steps.flat_map(|&step| WAYS.map(|way| beside(dot, size, way, radius + step)))
-        };
+        let tries = STEPS
+            .iter()
+            .flat_map(|&step| WAYS.map(|way| beside(dot, size, way, radius + step)));
         let is_clear = |at: &Rect| {
             let away = at.distance_to_pos(dot);
             let mut others = dots.iter().filter(|other| **other != dot);
@@ -51,8 +50,16 @@ pub fn place(
                 && !others.any(|other| at.expand(GAP).intersects(*other))
                 && !places.iter().flatten().any(|name| crosses(dot, *at, *name))
         };
-        let clear = tries().filter(is_clear).find(is_free);
-        let found = clear.or_else(|| tries().find(is_free));
+        let mut found = None;
+        for at in tries.filter(is_free) {
+            let is_best = is_clear(&at);
+            if is_best || found.is_none() {
+                found = Some(at);
+            }
+            if is_best {
+                break;
+            }
+        }
         if let Some(at) = found {
             blocked.push(at);
             blocked.extend(tie(dot, at).map(|point| Rect::from_center_size(point, Vec2::ZERO)));

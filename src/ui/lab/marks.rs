@@ -68,9 +68,16 @@ pub fn legend(ui: &mut Ui, families: &[Family]) {
             continue;
         }
         // A line ends before a mark, and not behind it.
-        ui.horizontal(|ui| {
-            let size = vec2(2.0 * GRID, 2.0 * GRID);
-            let (area, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+        let small = egui::TextStyle::Small.resolve(ui.style());
+        let text = ui
+            .painter()
+            .layout_no_wrap(name.to_owned(), small, Color32::WHITE);
+        let mark = vec2(2.0 * GRID, 2.0 * GRID);
+        let gap = ui.spacing().item_spacing.x;
+        let room = vec2(mark.x + gap + text.size().x, mark.y.max(text.size().y));
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        ui.allocate_ui_with_layout(room, layout, |ui| {
+            let (area, _) = ui.allocate_exact_size(mark, egui::Sense::hover());
             draw(
                 ui.painter(),
                 area.center(),

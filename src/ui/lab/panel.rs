@@ -16,7 +16,7 @@ use super::stability::Stability;
 use crate::editor::Editor;
 use crate::files::processor;
 use crate::lab::{EIGHT_BIT_FLOOR, Study, keep, kept};
-use crate::scene::{Light, Object, Render, Scene};
+use crate::scene::{Render, Scene};
 use crate::trace::Threads;
 use crate::words::counted;
 use crate::worker::Background;
@@ -25,8 +25,6 @@ use crate::worker::Background;
 const LOOK: Duration = Duration::from_millis(50);
 /// Longer side of the pictures that are measured, in pixels: a study then takes seconds.
 const SIDE: u32 = 256;
-/// Most objects whose names are left out of what is compared.
-const MOST_COMPARED: usize = 10_000;
 /// Width of the column that tells of a dot.
 pub(super) const DETAILS: f32 = 300.0;
 
@@ -334,33 +332,27 @@ impl Lab {
 fn asks_for_reference(ui: &Ui) -> bool {
     !ui.text_edit_focused() && ui.input(|input| input.key_down(Key::B))
 }
-/// Whether two scenes look alike, whatever things are called in them. Of very many things, their names count: they are
-/// compared in every frame of the window.
+
+/// Whether two scenes look alike, whatever lights and objects are called in them.
 fn looks_like(one: &Scene, other: &Scene) -> bool {
-    if one == other || one.objects.len() > MOST_COMPARED {
-        return one == other;
-    }
-    let named = |scene: &Scene, names: &Scene| {
-        let objects = scene.objects.iter().zip(names.objects.iter());
-        let objects = objects.map(|(object, other)| Object {
-            name: other.name.clone(),
-            group: other.group.clone(),
-            ..object.clone()
-        });
-        let lights = scene.lights.iter().zip(names.lights.iter());
-        let lights = lights.map(|(light, other)| Light {
-            name: other.name.clone(),
-            ..light.clone()
-        });
-        Scene {
-            objects: objects.collect(),
-            lights: lights.collect(),
-            ..scene.clone()
-        }
+    let mut objects = one.objects.iter().zip(other.objects.iter());
+    let mut lights = one.lights.iter().zip(other.lights.iter());
+    let rest = Scene {
+        objects: other.objects.clone(),
+        lights: other.lights.clone(),
+        ..one.clone()
     };
-    one.objects.len() == other.objects.len()
+    rest == *other
+        && one.objects.len() == other.objects.len()
         && one.lights.len() == other.lights.len()
-        && *other == named(one, other)
+        && lights.all(|(one, other)| {
+            let place = one.position == other.position && one.intensity == other.intensity;
+            place && one.visible == other.visible && one.marker == other.marker
+        })
+        && objects.all(|(one, other)| {
+            let look = one.visible == other.visible && one.color_pack == other.color_pack;
+            look && one.shape == other.shape
+        })
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use egui::{Align2, Color32, Painter, Pos2, Rect, Stroke, TextStyle, Theme, Ui, p
 
 use super::super::theme::palette;
 
-/// The lowest rate that has a colour of its own; each decade above it is a step brighter.
+/// The lowest rate that has a colour of its own; each decade above it is a step farther from the background.
 pub const LOWEST: f64 = 1e-5;
 
 /// From rare to always: the upper part of *cividis*, which is as even for eyes without red or green.

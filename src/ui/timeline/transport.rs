@@ -112,7 +112,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
         });
         button
             .accessible_name("More of the timeline")
-            .hint("Length, frames per second, playing speed, graph of the speed");
+            .hint("Length, frames per second, playing speed, graph of the speed; in a narrow window the frame and the shot as well");
     }
     // Beside the shot, where nothing else has keys, the picture stays as it is.
     if timeline.is_playing && (editor.looks_through() || per_second > 0.0) {

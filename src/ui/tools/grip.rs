@@ -344,6 +344,30 @@ mod tests {
     use crate::scene::Scene;
 
     #[test]
+    fn a_size_that_is_typed_is_above_0() {
+        let scene = Scene::demo();
+        let ball = Subject::new(&scene, Item::object(0)).expect("a ball");
+        let mut grip = Grip {
+            handle: Handle::Radius,
+            before: vec![ball],
+            middle: DVec3::ZERO,
+            from: (Pos2::ZERO, DVec3::ZERO),
+            typed: String::new(),
+            turned: Cell::default(),
+        };
+        let mut wrong = |typed: &str| {
+            grip.typed = typed.to_owned();
+            grip.wrong()
+        };
+        assert_eq!(wrong("2.5"), None);
+        assert_eq!(wrong("-5").as_deref(), Some("-5 is not above 0"));
+        assert_eq!(wrong("1e").as_deref(), Some("1e is no number yet"));
+        grip.handle = Handle::Along(0);
+        grip.typed = "-5".to_owned();
+        assert_eq!(grip.wrong(), None);
+    }
+
+    #[test]
     fn a_ring_counts_the_rounds_it_is_pulled_around() {
         let scene = Scene::demo();
         let view = Rect::from_min_size(pos2(0.0, 0.0), vec2(1000.0, 1000.0));

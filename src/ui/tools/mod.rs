@@ -105,7 +105,8 @@ impl Tools {
             None => before.truncate(1),
         }
         let item = item_of(*before.last()?);
-        Some(editor.selection().picked(editor.scene(), &[item]))
+        // Whatever was taken hold of on the way there.
+        Some(Selection::default().picked(editor.scene(), &[item]))
     }
 
     /// The tools over the picture at `place`, which `response` is of; `wheel` is how far the wheel was turned

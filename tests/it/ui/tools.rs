@@ -552,6 +552,14 @@ fn everything_is_found_by_its_name() {
             .query_by_label_contains("Enter does what")
             .is_none()
     );
+    // First what is possible: nothing is in a group yet.
+    harness.click("Sphere 1");
+    harness.press(CTRL, Key::K);
+    harness.window.event(Event::Text("group".to_owned()));
+    harness.settle();
+    harness.press(NONE, Key::Enter);
+    assert_eq!(harness.scene().objects[0].group, "Group 1");
+    harness.press(CTRL, Key::Z);
     // Groups, too; what is one already does not become another.
     harness.click("Triangle 2");
     let other = harness.window.get_by_label("Triangle 4");
