@@ -153,14 +153,22 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     } else {
         TRIES
     };
-    let free = |least: f64| {
+    let free = |least: f64, nearer: f64| {
         let places = places().take(tries);
         let places = places.filter(move |(_, share)| *share >= least);
-        places.filter_map(|(place, share)| free_place(scene, framing.ray(place), (usual, share)))
+        places.filter_map(move |(place, share)| {
+            let size = (usual, share, nearer);
+            free_place(scene, framing.ray(place), size)
+        })
     };
-    let (at, size) = free(1.0)
-        .find(|&new| hides_nothing(scene, &framing, new))
-        .or_else(|| free(SMALLER).next())
+    // As large as the others, or only as large in the picture, where that hides none of them.
+    let clear = |nearer: f64| {
+        let mut free = free(1.0, nearer);
+        free.find(|&new| hides_nothing(scene, &framing, new))
+    };
+    let (at, size) = clear(NEARER)
+        .or_else(|| clear(1.0))
+        .or_else(|| free(SMALLER, NEARER).next())
         .unwrap_or_else(|| before_what_is_seen(scene, framing.ray([0.0, 0.0]), usual));
     // Whole numbers read better in the inspector, where the scene is large enough for them.
     let tidy = |x: f64| if size > 10.0 { x.round() } else { x };
@@ -242,11 +250,12 @@ fn size_at(scene: &Scene, distance: f64) -> f64 {
         }
 }
 
-/// The place along a ray, and this share of the size there, if nothing is in the way.
+/// The place along a ray, and this share of the size there, if nothing is in the way; near on a floor, at most so many
+/// times as large in the picture as far away.
 fn free_place(
     scene: &Scene,
     ray: (DVec3, DVec3),
-    (usual, share): (f64, f64),
+    (usual, share, nearer): (f64, f64, f64),
 ) -> Option<(DVec3, f64)> {
     let (origin, direction) = ray;
     let (mut at, mut size) = (origin + direction * usual, size_at(scene, usual) * share);
@@ -255,7 +264,7 @@ fn free_place(
         let is_floor = matches!(scene.objects[seen].shape, Shape::Plane(_));
         is_on_floor = is_floor && distance < usual * FARTHEST_FLOOR;
         if is_on_floor {
-            size = size.min(size_at(scene, distance) * NEARER * share);
+            size = size.min(size_at(scene, distance) * nearer * share);
             at = origin + direction * distance;
         } else if distance < usual + size {
             return None;
