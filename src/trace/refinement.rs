@@ -6,10 +6,13 @@ use super::cell::Cell;
 use super::coverage::{CrossedCell, Found};
 use super::lattice::{Inside, Lattice, Limits};
 use super::samples::{Edges, Samples, Traced};
-use super::thresholds::{FINEST, MOST_BUSY, TELLING};
+use super::thresholds::{FINEST, TELLING};
 use super::tile::{Tile, TileColors};
 use super::told::{ALL, Told};
 use crate::simd::Real;
+
+/// Parts of a pixel that is divided twice.
+const PARTS: u8 = 16;
 
 /// The cells of a tile whose inside is not known. Where their corners say that one edge crosses them, [`CrossedCell`]
 /// takes a third of the samples of quarters, and where they show one thing whose colour changes evenly,
@@ -32,7 +35,7 @@ pub struct Refinement<R> {
     were_told: Vec<[usize; 2]>,
     /// How many of the sixteen parts of each pixel of the tile are divided, row by row, as far as some are.
     busy: Vec<u8>,
-    /// Row and column of those of which nearly all are.
+    /// Row and column of those of which all are.
     crowded: Vec<[usize; 2]>,
 }
 
@@ -210,8 +213,8 @@ impl<R: Real> Refinement<R> {
         self.divide();
     }
 
-    /// Leaves pixels alone of which nearly all parts are to be divided. Which these are depends on nothing but what is
-    /// seen in each of them.
+    /// Leaves pixels alone of which all parts are to be divided. Which these are depends on nothing but what is seen in
+    /// each of them.
     fn leave_crowded(&mut self, stride: usize) {
         let before = self.crowded.len();
         for cell in &self.split {
@@ -223,7 +226,7 @@ impl<R: Real> Refinement<R> {
                 self.busy.resize(pixel + 1, 0);
             }
             self.busy[pixel] += 1;
-            if self.busy[pixel] == MOST_BUSY {
+            if self.busy[pixel] == PARTS {
                 self.crowded.push(cell.row_and_column());
             }
         }
@@ -233,7 +236,7 @@ impl<R: Real> Refinement<R> {
         let busy = &self.busy;
         let is_left = |cell: &Cell| {
             let parts = busy.get(cell.pixel_in(stride));
-            parts.is_none_or(|&parts| parts < MOST_BUSY)
+            parts.is_none_or(|&parts| parts < PARTS)
         };
         self.split.retain(is_left);
         self.crossed.retain(|crossed| is_left(crossed.cell()));

@@ -33,13 +33,11 @@ pub const EDGE_ERROR: f64 = 0.025;
 /// How far a colour on a side of a pixel may be from all between those at its ends, summed over the channels, before the
 /// pixel beside it is divided for it: what ends in there covers a quarter of it at most.
 pub const TELLING: f64 = 0.1;
-/// Of how many of the sixteen parts of a pixel too much is in it if they are to be divided: then [`SPREAD_OUT`] is as
-/// close for less. Fur of 2,000 triangles is 3 dB closer for as many rays, a railing in a chrome pipe 6 dB; with 12 of
-/// them, 10,000 balls, of which few parts are divided again, take 1.1 times the rays.
-pub const MOST_BUSY: u8 = 14;
-/// Samples in place of so many of the smallest cells to a side of a pixel, and the step from one to the next: two numbers
-/// of Fibonacci, whose lattice no edge in it runs along. A grid of 12 × 12 is as far off as one of 144 of these along
-/// upright edges is not: of a forest, eight pixels are off by more than 8 levels with it, and one with this.
+/// Samples all over a pixel of which all sixteen parts are to be divided, in place of so many of the smallest cells to its
+/// side, and the step from one to the next: two numbers of Fibonacci, along whose lattice no edge runs. A ball of fur is
+/// 2 dB closer for as many rays, a railing in a chrome pipe 6 dB. With a grid of 12 × 12, of a forest eight pixels are off
+/// by more than 8 levels, and one with this; where twelve parts are enough, two mirror balls between mirror walls take 1.2
+/// times the rays for nothing.
 pub const SPREAD_OUT: [(usize, (usize, usize)); 3] =
     [(16, (233, 144)), (8, (55, 34)), (4, (13, 8))];
 /// Contrast of what may be seen in a gap between two things, which is looked for along with their edges: gaps that are
