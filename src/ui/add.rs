@@ -294,8 +294,9 @@ fn hides_nothing(scene: &Scene, framing: &Framing, (at, size): (DVec3, f64)) -> 
     let Camera { look_at, up, .. } = scene.camera;
     let across = look_at.cross(up).normalize_or_zero();
     let up = across.cross(look_at).normalize_or_zero();
-    let ways = [up, -up, across, -across];
-    ways.into_iter().all(|way| {
+    let steps = || [-1.0, 0.0, 1.0].into_iter();
+    let mut ways = steps().flat_map(|x| steps().map(move |y| across * x + up * y));
+    ways.all(|way| {
         let Some([x, y]) = framing.project(at + way * size * WITHIN) else {
             return false;
         };
