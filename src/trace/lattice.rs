@@ -273,20 +273,6 @@ impl<R: Real> Lattice<R> {
         {
             return Inside::Anything;
         }
-        let may_hide =
-            HIDING <= cell.side && (differing & THING != 0 || !is_one && cell.swaps_lights);
-        let has_contrast = self.has_contrast(cell, (limits, is_one));
-        match (has_contrast || may_hide, is_one) {
-            (false, _) => Inside::Known,
-            (true, true) => Inside::One,
-            (true, false) => Inside::Several,
-        }
-    }
-
-    /// Whether the colours at the corners of a cell, which see the same or not, differ by more than they may.
-    #[inline(always)]
-    fn has_contrast(&self, cell: &Cell, (limits, is_one): (Limits<R>, bool)) -> bool {
-        let [a, b, c, d] = self.corners(cell);
         let mut ranges = [R::ZERO; 4];
         for (index, span) in ranges.iter_mut().enumerate() {
             let (a, b) = (a.values[index], b.values[index]);
@@ -295,15 +281,13 @@ impl<R: Real> Lattice<R> {
         }
         let contrast = ranges[0] + ranges[1] + ranges[2];
         let limit = limits.at(R::from_f64(cell.width())).contrast(is_one);
-        limit < contrast
-    }
-
-    /// Whether the corners of a cell see different things, or colours that differ by more than they may.
-    pub fn differs(&self, cell: &Cell, limits: Limits<R>) -> bool {
-        let [a, b, c, d] = self.corners(cell);
-        let differing =
-            (a.signature ^ b.signature) | (a.signature ^ c.signature) | (a.signature ^ d.signature);
-        differing & THING != 0 || self.has_contrast(cell, (limits, differing == 0))
+        let may_hide =
+            HIDING <= cell.side && (differing & THING != 0 || !is_one && cell.swaps_lights);
+        match (limit < contrast || may_hide, is_one) {
+            (false, _) => Inside::Known,
+            (true, true) => Inside::One,
+            (true, false) => Inside::Several,
+        }
     }
 
     /// Whether light of two lamps or of none may be hidden between the corners of a pixel. Of smaller cells nobody knows:

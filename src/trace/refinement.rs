@@ -33,8 +33,7 @@ pub struct Refinement<R> {
     told: Vec<Cell>,
     /// Row and column of all of them in the tile.
     were_told: Vec<[usize; 2]>,
-    /// How many of the sixteen parts of each pixel of the tile are divided for what their corners see, row by row, as far
-    /// as some are.
+    /// How many of the sixteen parts of each pixel of the tile are divided, row by row, as far as some are.
     busy: Vec<u8>,
     /// Row and column of those of which all are.
     crowded: Vec<[usize; 2]>,
@@ -210,16 +209,16 @@ impl<R: Real> Refinement<R> {
             }
         }
         self.sort(limits, colors);
-        self.leave_crowded(limits, colors.stride);
+        self.leave_crowded(colors.stride);
         self.divide();
     }
 
-    /// Leaves pixels alone of which all parts are to be divided for what is seen at their corners. What may be near them
-    /// does not count: packets, lists and trees know of more or less of that.
-    fn leave_crowded(&mut self, limits: Limits<R>, stride: usize) {
+    /// Leaves pixels alone of which all parts are to be divided. Which these are depends on nothing but what is seen in
+    /// each of them.
+    fn leave_crowded(&mut self, stride: usize) {
         let before = self.crowded.len();
         for cell in &self.split {
-            if usize::from(cell.side) != FINEST / 4 || !self.lattice.differs(cell, limits) {
+            if usize::from(cell.side) != FINEST / 4 {
                 continue;
             }
             let pixel = cell.pixel_in(stride);

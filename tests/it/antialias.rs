@@ -916,7 +916,7 @@ fn fur_is_cleaner_than_dividing_its_pixels_further_makes_it() {
     let got = quality_of_clean_edges(&fur(2000), 64);
     // Divided ever further, it was 50 dB, with twelve pixels far off, for 45 rays.
     assert!(
-        got.psnr >= 51.5 && got.visible <= 8 && got.rays <= 45.0,
+        got.psnr >= 51.0 && got.visible <= 10 && got.rays <= 40.0,
         "{got:?}"
     );
 }
