@@ -5,7 +5,7 @@ use super::faces::may_hide_light;
 use super::points::Points;
 use super::samples::{Edges, Samples, THING, Traced};
 use super::shadows::{may_leave_gap, may_swap_lights};
-use super::thresholds::{EDGE_ERROR, FINEST, NEAR, SPREAD_OUT, TWISTED, UNEVEN};
+use super::thresholds::{EDGE_ERROR, FINEST, NEAR, TWISTED, UNEVEN};
 use super::tile::{Tile, TileColors};
 use crate::scene::MAX_HALVINGS;
 use crate::simd::{Real, SimdFloat};
@@ -104,15 +104,6 @@ impl<R: Real> Limits<R> {
     /// The side of the smallest cells, in steps of the finest grid.
     pub fn least_side(self) -> u16 {
         (FINEST >> (self.depth + 1)) as u16
-    }
-
-    /// How many samples are taken in a pixel that has too much in it to be divided, and the step between them, see
-    /// [`SPREAD_OUT`].
-    pub fn spread_out(self) -> (usize, usize) {
-        let cells = FINEST / usize::from(self.least_side());
-        let mut lattices = SPREAD_OUT.iter();
-        let lattice = lattices.find(|(side, _)| *side <= cells);
-        lattice.map_or((1, 1), |(_, lattice)| *lattice)
     }
 
     /// The contrast above which a cell is subdivided whose corners see the same.
