@@ -9,7 +9,7 @@ use super::requests::UiRequests;
 use crate::editor::Edit;
 use crate::lab::first_met;
 use crate::mesh::SOLIDS;
-use crate::scene::{Camera, Framing, Mesh, Object, Projection, Scene, Shape};
+use crate::scene::{Mesh, Object, Projection, Scene, Shape};
 
 /// Something that can be added.
 #[derive(Clone, Copy, Debug)]
@@ -117,8 +117,6 @@ const LEVEL: f64 = 0.7;
 const FARTHEST_GROUND: f64 = 2_000.0;
 /// What is nearer than this, in distances where a new thing goes, is not gone before.
 const NEAREST: f64 = 0.1;
-/// How far from its middle a new thing is looked at, in sizes.
-const WITHIN: f64 = 0.45;
 /// The smallest that a new thing is, in world units.
 const SMALLEST: f64 = 1e-6;
 
@@ -136,39 +134,25 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     let has_floor = planes(scene).next().is_some();
     // Side by side first, then also between, then smaller.
     let rounds = [(1.0, 1.0), (0.5, 1.0), (0.5, SMALLER)];
-    let places = || {
-        rounds.into_iter().flat_map(|(part, share)| {
-            let step = SHARE * APART * part;
-            let down =
-                outwards(step).filter(move |&y| is_inside(y, 0.5) && !(has_floor && y < 0.0));
-            down.flat_map(move |y| {
-                let across = outwards(step).filter(move |&x| is_inside(x, half));
-                across.map(move |x| ([x, -y], share))
-            })
+    let places = rounds.into_iter().flat_map(|(part, share)| {
+        let step = SHARE * APART * part;
+        let down = outwards(step).filter(move |&y| is_inside(y, 0.5) && !(has_floor && y < 0.0));
+        down.flat_map(move |y| {
+            let across = outwards(step).filter(move |&x| is_inside(x, half));
+            across.map(move |x| ([x, -y], share))
         })
-    };
+    });
     // To look costs as much as there is to be looked at.
     let tries = if scene.faces() + scene.objects.len() > CROWDED {
         1
     } else {
         TRIES
     };
-    let free = |least: f64, nearer: f64| {
-        let places = places().take(tries);
-        let places = places.filter(move |(_, share)| *share >= least);
-        places.filter_map(move |(place, share)| {
-            let size = (usual, share, nearer);
-            free_place(scene, framing.ray(place), size)
-        })
-    };
-    // As large as the others, or only as large in the picture, where that hides none of them.
-    let clear = |nearer: f64| {
-        let mut free = free(1.0, nearer);
-        free.find(|&new| hides_nothing(scene, &framing, new))
-    };
-    let (at, size) = clear(NEARER)
-        .or_else(|| clear(1.0))
-        .or_else(|| free(SMALLER, NEARER).next())
+    let mut free = places
+        .take(tries)
+        .filter_map(|(place, share)| free_place(scene, framing.ray(place), (usual, share)));
+    let (at, size) = free
+        .next()
         .unwrap_or_else(|| before_what_is_seen(scene, framing.ray([0.0, 0.0]), usual));
     // Whole numbers read better in the inspector, where the scene is large enough for them.
     let tidy = |x: f64| if size > 10.0 { x.round() } else { x };
@@ -250,12 +234,11 @@ fn size_at(scene: &Scene, distance: f64) -> f64 {
         }
 }
 
-/// The place along a ray, and this share of the size there, if nothing is in the way; near on a floor, at most so many
-/// times as large in the picture as far away.
+/// The place along a ray, and this share of the size there, if nothing is in the way.
 fn free_place(
     scene: &Scene,
     ray: (DVec3, DVec3),
-    (usual, share, nearer): (f64, f64, f64),
+    (usual, share): (f64, f64),
 ) -> Option<(DVec3, f64)> {
     let (origin, direction) = ray;
     let (mut at, mut size) = (origin + direction * usual, size_at(scene, usual) * share);
@@ -264,7 +247,7 @@ fn free_place(
         let is_floor = matches!(scene.objects[seen].shape, Shape::Plane(_));
         is_on_floor = is_floor && distance < usual * FARTHEST_FLOOR;
         if is_on_floor {
-            size = size.min(size_at(scene, distance) * nearer * share);
+            size = size.min(size_at(scene, distance) * NEARER * share);
             at = origin + direction * distance;
         } else if distance < usual + size {
             return None;
@@ -286,26 +269,6 @@ fn free_place(
     let visible = scene.visible_objects();
     let mut bounds = visible.filter_map(|object| object.shape.bounds());
     (!bounds.any(is_in_the_way)).then_some((at, size))
-}
-
-/// Whether something of this size there is within the picture, and before nothing but floors and walls.
-fn hides_nothing(scene: &Scene, framing: &Framing, (at, size): (DVec3, f64)) -> bool {
-    let half = scene.render.aspect() / 2.0;
-    let Camera { look_at, up, .. } = scene.camera;
-    let across = look_at.cross(up).normalize_or_zero();
-    let up = across.cross(look_at).normalize_or_zero();
-    let steps = || [-1.0, 0.0, 1.0].into_iter();
-    let mut ways = steps().flat_map(|x| steps().map(move |y| across * x + up * y));
-    ways.all(|way| {
-        let Some([x, y]) = framing.project(at + way * size * WITHIN) else {
-            return false;
-        };
-        let (origin, direction) = framing.ray([x, y]);
-        let seen = first_met(scene, origin, direction);
-        let is_plane =
-            |(seen, _): (usize, f64)| matches!(scene.objects[seen].shape, Shape::Plane(_));
-        x.abs() <= half && y.abs() <= 0.5 && seen.is_none_or(is_plane)
-    })
 }
 
 /// The place before what a ray sees, however near that is.
@@ -373,6 +336,8 @@ mod tests {
             let mut scene = Scene::empty();
             scene.objects.clear();
             added(&mut scene, &["Add Plane", &format!("Add {}", solid.name)]);
+            let pack = &scene.color_packs[&scene.objects[0].color_pack];
+            assert_eq!(pack.diffuse, DVec3::new(196.0, 192.0, 186.0), "grey");
             let floor = scene.objects[0].shape.plane_piece().expect("a floor");
             assert_eq!(floor.point.y, 0.0, "the ground");
             let Shape::Mesh(mesh) = &scene.objects[1].shape else {
@@ -396,25 +361,6 @@ mod tests {
                 let apart = low.cmpgt(*other_high).any() || high.cmplt(*other_low).any();
                 assert!(apart, "{index} in another");
             }
-        }
-    }
-
-    #[test]
-    fn what_is_added_hides_nothing_where_there_is_room() {
-        let mut scene = Scene::empty();
-        scene.objects.clear();
-        let names = ["Add Plane", "Add Sphere", "Add Sphere", "Add Sphere"];
-        added(&mut scene, &names);
-        added(&mut scene, &["Add Cylinder", "Add Cone"]);
-        let floor = &scene.color_packs[&scene.objects[0].color_pack];
-        assert_eq!(floor.diffuse, DVec3::new(196.0, 192.0, 186.0), "grey");
-        let framing = scene.camera.framing().expect("a basis");
-        for (index, object) in scene.objects.iter().enumerate().skip(1) {
-            let (low, high) = object.shape.bounds().expect("it ends");
-            let place = framing.project(low.midpoint(high)).expect("in front");
-            let (origin, direction) = framing.ray(place);
-            let seen = first_met(&scene, origin, direction).map(|(seen, _)| seen);
-            assert_eq!(seen, Some(index), "{}", object.name);
         }
     }
 
