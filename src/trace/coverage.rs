@@ -106,6 +106,11 @@ impl<R: Real> CrossedCell<R> {
         })
     }
 
+    /// The cell.
+    pub fn cell(&self) -> &Cell {
+        &self.cell
+    }
+
     /// The sides that the edge crosses, as bits.
     pub fn sides(&self) -> u8 {
         self.crossings[0].side(&self.cell) | self.crossings[1].side(&self.cell)

@@ -5,7 +5,7 @@ use super::faces::may_hide_light;
 use super::points::Points;
 use super::samples::{Edges, Samples, THING, Traced};
 use super::shadows::{may_leave_gap, may_swap_lights};
-use super::thresholds::{EDGE_ERROR, FINEST, NEAR, TWISTED, UNEVEN};
+use super::thresholds::{EDGE_ERROR, FINEST, NEAR, SPREAD_OUT, TWISTED, UNEVEN};
 use super::tile::{Tile, TileColors};
 use crate::scene::MAX_HALVINGS;
 use crate::simd::{Real, SimdFloat};
@@ -104,6 +104,15 @@ impl<R: Real> Limits<R> {
     /// The side of the smallest cells, in steps of the finest grid.
     pub fn least_side(self) -> u16 {
         (FINEST >> (self.depth + 1)) as u16
+    }
+
+    /// How many samples are taken in a pixel that has too much in it to be divided, and the step between them, see
+    /// [`SPREAD_OUT`].
+    pub fn spread_out(self) -> (usize, usize) {
+        let cells = FINEST / usize::from(self.least_side());
+        let mut lattices = SPREAD_OUT.iter();
+        let lattice = lattices.find(|(side, _)| *side <= cells);
+        lattice.map_or((1, 1), |(_, lattice)| *lattice)
     }
 
     /// The contrast above which a cell is subdivided whose corners see the same.
@@ -264,6 +273,20 @@ impl<R: Real> Lattice<R> {
         {
             return Inside::Anything;
         }
+        let may_hide =
+            HIDING <= cell.side && (differing & THING != 0 || !is_one && cell.swaps_lights);
+        let has_contrast = self.has_contrast(cell, (limits, is_one));
+        match (has_contrast || may_hide, is_one) {
+            (false, _) => Inside::Known,
+            (true, true) => Inside::One,
+            (true, false) => Inside::Several,
+        }
+    }
+
+    /// Whether the colours at the corners of a cell, which see the same or not, differ by more than they may.
+    #[inline(always)]
+    fn has_contrast(&self, cell: &Cell, (limits, is_one): (Limits<R>, bool)) -> bool {
+        let [a, b, c, d] = self.corners(cell);
         let mut ranges = [R::ZERO; 4];
         for (index, span) in ranges.iter_mut().enumerate() {
             let (a, b) = (a.values[index], b.values[index]);
@@ -272,13 +295,15 @@ impl<R: Real> Lattice<R> {
         }
         let contrast = ranges[0] + ranges[1] + ranges[2];
         let limit = limits.at(R::from_f64(cell.width())).contrast(is_one);
-        let may_hide =
-            HIDING <= cell.side && (differing & THING != 0 || !is_one && cell.swaps_lights);
-        match (limit < contrast || may_hide, is_one) {
-            (false, _) => Inside::Known,
-            (true, true) => Inside::One,
-            (true, false) => Inside::Several,
-        }
+        limit < contrast
+    }
+
+    /// Whether the corners of a cell see different things, or colours that differ by more than they may.
+    pub fn differs(&self, cell: &Cell, limits: Limits<R>) -> bool {
+        let [a, b, c, d] = self.corners(cell);
+        let differing =
+            (a.signature ^ b.signature) | (a.signature ^ c.signature) | (a.signature ^ d.signature);
+        differing & THING != 0 || self.has_contrast(cell, (limits, differing == 0))
     }
 
     /// Whether light of two lamps or of none may be hidden between the corners of a pixel. Of smaller cells nobody knows:

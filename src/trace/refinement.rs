@@ -11,6 +11,11 @@ use super::tile::{Tile, TileColors};
 use super::told::{ALL, Told};
 use crate::simd::Real;
 
+/// Parts of a pixel that is divided twice.
+const PARTS: u8 = 16;
+/// Of how many of them the corners see the same, at least, where the pixel is left alone.
+const ALIKE: u8 = 4;
+
 /// The cells of a tile whose inside is not known. Where their corners say that one edge crosses them, [`CrossedCell`]
 /// takes a third of the samples of quarters, and where they show one thing whose colour changes evenly,
 /// [`Lattice::accumulate_even`] takes one.
@@ -30,6 +35,11 @@ pub struct Refinement<R> {
     told: Vec<Cell>,
     /// Row and column of all of them in the tile.
     were_told: Vec<[usize; 2]>,
+    /// How many of the sixteen parts of each pixel of the tile are divided, and of how many of these the corners see the
+    /// same, row by row, as far as some are.
+    busy: Vec<[u8; 2]>,
+    /// Row and column of the pixels that are left alone.
+    crowded: Vec<[usize; 2]>,
 }
 
 impl<R: Real> Refinement<R> {
@@ -45,6 +55,8 @@ impl<R: Real> Refinement<R> {
             heard: 0,
             told: Vec::new(),
             were_told: Vec::new(),
+            busy: Vec::new(),
+            crowded: Vec::new(),
         }
     }
 
@@ -55,6 +67,13 @@ impl<R: Real> Refinement<R> {
         self.crossed.clear();
         self.even.clear();
         self.were_told.clear();
+        self.busy.clear();
+        self.crowded.clear();
+    }
+
+    /// The pixels that are left alone because there is too much in them, by row and column in the tile.
+    pub fn crowded(&self) -> &[[usize; 2]] {
+        &self.crowded
     }
 
     /// The pixels that were told something since, by row and column in the tile.
@@ -193,7 +212,40 @@ impl<R: Real> Refinement<R> {
             }
         }
         self.sort(limits, colors);
+        self.leave_crowded(limits, colors.stride);
         self.divide();
+    }
+
+    /// Leaves pixels alone of which all parts are to be divided, some of them for what is near alone: in smaller parts,
+    /// nobody looks for that. Which these are depends on nothing but what is seen in each of them.
+    fn leave_crowded(&mut self, limits: Limits<R>, stride: usize) {
+        let before = self.crowded.len();
+        for cell in &self.split {
+            if usize::from(cell.side) != FINEST / 4 {
+                continue;
+            }
+            let pixel = cell.pixel_in(stride);
+            if self.busy.len() <= pixel {
+                self.busy.resize(pixel + 1, [0; 2]);
+            }
+            let [parts, alike] = &mut self.busy[pixel];
+            *parts += 1;
+            *alike += u8::from(!self.lattice.differs(cell, limits));
+            if *parts == PARTS && *alike >= ALIKE {
+                self.crowded.push(cell.row_and_column());
+            }
+        }
+        if self.crowded.len() == before {
+            return;
+        }
+        let busy = &self.busy;
+        let is_left = |cell: &Cell| {
+            let busy = busy.get(cell.pixel_in(stride));
+            busy.is_none_or(|&[parts, alike]| parts < PARTS || alike < ALIKE)
+        };
+        self.split.retain(is_left);
+        self.crossed.retain(|crossed| is_left(crossed.cell()));
+        self.even.retain(|(cell, _)| is_left(cell));
     }
 
     /// Divides the pixels of which a sample on one of their sides tells that nothing that was taken for their colour has
@@ -236,6 +288,9 @@ impl<R: Real> Refinement<R> {
         self.lattice.add(tile, corners, &mut self.told);
         for pixel in self.told.drain(..) {
             colors.blacken(pixel.pixel_in(colors.stride));
+            if let Some(busy) = self.busy.get_mut(pixel.pixel_in(colors.stride)) {
+                *busy = [0; 2];
+            }
             self.were_told.push(pixel.row_and_column());
             let first = self.split.len();
             self.lattice.subdivide(&pixel, &mut self.split);

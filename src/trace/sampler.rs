@@ -14,6 +14,9 @@ use super::tile::{Tile, TileColors};
 use super::told::Told;
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
 
+/// Pixels with too much in them that are traced at once.
+const AT_ONCE: usize = 64;
+
 /// Samples the pixels of tiles; its buffers are used again.
 pub struct Sampler<L: SimdFloat> {
     /// Whether packets look at squares, as they should where they see many small things.
@@ -214,8 +217,53 @@ impl<L: SimdFloat> Sampler<L> {
                 self.refinement.settle(limits, colors);
             }
             let corners = (&self.corners, told);
-            if engine.is_stopped() || !self.refinement.listen(tile, corners, colors) {
+            if engine.is_stopped() {
                 return;
+            }
+            if !self.refinement.listen(tile, corners, colors) {
+                break;
+            }
+        }
+        if !self.refinement.crowded().is_empty() {
+            self.fill_crowded(engine, seen, tile, limits, colors);
+        }
+    }
+
+    /// Sets the pixels that have too much in them to the means of samples all over them: of a lattice by Fibonacci's
+    /// numbers (Zaremba, "Good lattice points, discrepancy, and numerical integration", Ann. Mat. Pura Appl. 73, 1966).
+    #[inline(never)]
+    fn fill_crowded<const TREE: bool>(
+        &mut self,
+        engine: &mut Engine<L, TREE>,
+        seen: &Candidates,
+        tile: &Tile,
+        limits: Limits<L::Real>,
+        colors: &mut TileColors<L::Real>,
+    ) {
+        let (count, step) = limits.spread_out();
+        let share = L::Real::from_f64(1.0 / count as f64);
+        let place = |pixel: usize, part: usize| {
+            L::Real::from_f64(pixel as f64 + (part as f64 + 0.5) / count as f64)
+        };
+        for pixels in self.refinement.crowded().chunks(AT_ONCE) {
+            self.samples.clear();
+            for &[row, column] in pixels {
+                let (x, y) = (tile.columns.start + column, tile.rows.start + row);
+                for part in 0..count {
+                    self.samples
+                        .push(place(x, part), place(y, part * step % count));
+                }
+            }
+            self.samples.pad(L::WIDTH);
+            engine.trace(&self.samples, seen, Edges::Ignored, &mut self.traced);
+            for (number, &[row, column]) in pixels.iter().enumerate() {
+                let own = number * count..(number + 1) * count;
+                let pixel = row * colors.stride + column;
+                for (mean, traced) in colors.channels.iter_mut().zip(self.traced.channels()) {
+                    let sum = traced[own.clone()].iter();
+                    let sum = sum.fold(L::Real::ZERO, |sum, &one| sum + one);
+                    mean[pixel] = sum * share;
+                }
             }
         }
     }

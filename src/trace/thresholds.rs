@@ -33,6 +33,12 @@ pub const EDGE_ERROR: f64 = 0.025;
 /// How far a colour on a side of a pixel may be from all between those at its ends, summed over the channels, before the
 /// pixel beside it is divided for it: what ends in there covers a quarter of it at most.
 pub const TELLING: f64 = 0.1;
+/// Samples all over a pixel of which all sixteen parts are to be divided, some of them for what is near alone, in place of
+/// so many of the smallest cells to its side, and the step from one to the next: two numbers of Fibonacci, along whose
+/// lattice no edge runs. A ball of fur is 2 dB closer for as many rays, a railing in a chrome pipe 6 dB for fewer. Without
+/// regard to what is near, of thousands of balls in few pixels the picture is 2 dB farther off; in a grid of 12 × 12, eight
+/// pixels of a forest are off by more than 8 levels, and one with this.
+pub const SPREAD_OUT: [(usize, (usize, usize)); 3] = [(16, (144, 89)), (8, (34, 21)), (4, (8, 5))];
 /// Contrast of what may be seen in a gap between two things, which is looked for along with their edges: gaps that are
 /// wider than they are known within are found.
 pub const GAP_CONTRAST: f64 = 0.2;
