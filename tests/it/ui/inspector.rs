@@ -13,6 +13,15 @@ use super::tools::{center, click, drop_at, place, pull};
 use crate::harness::{CTRL, EditorHarness, radius};
 use crate::timeline::animation;
 
+/// Clicks a number, which then waits for what is typed.
+fn put_cursor_into(harness: &mut EditorHarness, field: &str) {
+    let number = harness
+        .window
+        .get_by_role_and_label(Role::SpinButton, field);
+    number.click();
+    harness.settle();
+}
+
 #[test]
 fn a_drag_changes_the_radius_and_one_undo_brings_it_back() {
     let mut harness = EditorHarness::new();
@@ -111,11 +120,7 @@ fn invalid_edits_are_refused_and_explained() {
 fn escape_in_a_field_gives_up_what_was_typed_and_nothing_else() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
-    harness
-        .window
-        .get_by_role_and_label(Role::SpinButton, "radius")
-        .click();
-    harness.settle();
+    put_cursor_into(&mut harness, "radius");
     harness.window.event(Event::Text("3".to_owned()));
     harness.settle();
     harness.press(Modifiers::NONE, Key::Escape);
@@ -252,11 +257,7 @@ fn panels_keep_their_width_while_numbers_change() {
 fn a_field_that_is_left_as_it_was_changes_nothing() {
     let mut harness = EditorHarness::new();
     for field in ["view angle", "distance", "yaw", "look_at x", "position y"] {
-        harness
-            .window
-            .get_by_role_and_label(Role::SpinButton, field)
-            .click();
-        harness.settle();
+        put_cursor_into(&mut harness, field);
         harness.press(Modifiers::NONE, Key::Enter);
         assert!(!harness.editor().is_dirty(), "{field}");
     }
@@ -267,11 +268,7 @@ fn escape_gives_a_typed_vector_up() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
     let before = harness.scene().objects[0].clone();
-    harness
-        .window
-        .get_by_role_and_label(Role::SpinButton, "center x")
-        .click();
-    harness.settle();
+    put_cursor_into(&mut harness, "center x");
     harness.window.event(Event::Text("1, 2, 3".to_owned()));
     harness.settle();
     harness.press(Modifiers::NONE, Key::Escape);
@@ -337,11 +334,7 @@ fn what_is_typed_is_a_step_of_its_own_though_a_drag_ends_it() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
     let start = center(harness.scene(), 0);
-    harness
-        .window
-        .get_by_role_and_label(Role::SpinButton, "center x")
-        .click();
-    harness.settle();
+    put_cursor_into(&mut harness, "center x");
     harness.window.event(Event::Text("5".to_owned()));
     harness.settle();
     harness.drag("center y", 40.0);
@@ -495,11 +488,7 @@ fn others_get_what_the_last_of_them_has_already() {
     let (x, other) = (center(harness.scene(), 1).x, center(harness.scene(), 0));
     // Confirmed without a change: Enter in a field that was only looked at.
     for field in ["radius", "center x", "specular green"] {
-        harness
-            .window
-            .get_by_role_and_label(Role::SpinButton, field)
-            .click();
-        harness.settle();
+        put_cursor_into(&mut harness, field);
         harness.press(Modifiers::NONE, Key::Enter);
     }
     let scene = harness.scene();
@@ -510,11 +499,7 @@ fn others_get_what_the_last_of_them_has_already() {
     harness.press(CTRL, Key::Z);
     harness.press(CTRL, Key::Z);
     let before = harness.scene().clone();
-    harness
-        .window
-        .get_by_role_and_label(Role::SpinButton, "radius")
-        .click();
-    harness.settle();
+    put_cursor_into(&mut harness, "radius");
     harness.press(Modifiers::NONE, Key::Tab);
     assert_eq!(*harness.scene(), before);
     harness.unfold("color pack");
