@@ -7,7 +7,7 @@ use crate::simd::{Real, Vec3};
 /// The largest of what is flat and ends, in scene units; 0 where nobody asks how pixels lie on it.
 #[derive(Clone, Copy, Debug)]
 pub struct Flats<R> {
-    /// Of what is in no mesh.
+    /// Of what is in no mesh, large balls among it: where they are the ground, they are seen as flat.
     pub loose: R,
     /// Of the faces of meshes.
     pub in_meshes: R,
@@ -39,8 +39,8 @@ impl<R: Real> Flats<R> {
 }
 
 impl<R: Real> Geometry<R> {
-    /// The unit normal of the primitive of a number, counted from the first, if that is flat and looks so, and how far
-    /// it goes at most.
+    /// The normal of the primitive of a number, counted from the first, if that is flat and looks so, and how far it goes
+    /// at most, see [`Primitive::flat`].
     pub fn flat_at(&self, number: usize) -> Option<(Vec3<R>, R)> {
         let Some(instance) = self.mesh_of(number) else {
             return self.primitives.with(number, AskFlat);
@@ -57,7 +57,8 @@ fn largest_of<R: Real>(primitives: &Primitives<R>) -> R {
         let flats = primitives.iter().filter_map(P::flat);
         flats.map(|(_, extent)| extent).fold(R::ZERO, R::max)
     }
-    largest(&primitives.discs).max(largest(&primitives.triangles))
+    let ending = largest(&primitives.discs).max(largest(&primitives.triangles));
+    ending.max(largest(&primitives.spheres))
 }
 
 /// Asks a primitive for [`Primitive::flat`].

@@ -56,6 +56,8 @@ mod hit_order;
 
 mod pack;
 
+mod doubt;
+
 mod ties;
 
 mod holding;

@@ -99,6 +99,8 @@ pub struct Plan<R> {
     pub extent: R,
     /// How far the camera's rays may be beside their place; nothing where nobody asks what that leaves undecided.
     pub blur: Blur<R>,
+    /// The largest coordinate of the middle of a mesh; 0 where nobody asks that.
+    pub farthest_middle: R,
 }
 
 /// Pixels added around everything for the rounding of the kernel.
@@ -155,6 +157,7 @@ impl<R: Real> Plan<R> {
             farthest: R::from_f64(frame.farthest),
             extent: R::from_f64(frame.extent),
             blur: Blur::NONE,
+            farthest_middle: R::ZERO,
         };
         let found = kept.coincidences(&scene.objects, centre);
         let contacts = Contacts::new(scene, request, (&found, kept.light_contacts(scene)));
@@ -200,16 +203,6 @@ impl<R: Real> Plan<R> {
         }
         kept.idle().end();
         plan
-    }
-
-    /// Whether what rounding may decide is told.
-    pub fn is_doubted(&self) -> bool {
-        R::ZERO < self.blur.spread
-    }
-
-    /// From now on it is.
-    pub fn doubt(&mut self) {
-        self.blur = Blur::of_size(self.view.farthest_start());
     }
 
     /// Takes what stands in a tree, and surrounds it.

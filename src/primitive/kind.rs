@@ -107,7 +107,8 @@ pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
         directions.x.like(self.thickness())
     }
 
-    /// The unit normal of what is flat, and how far that goes at most; `None` for what is not.
+    /// The unit normal of what is flat, and how far that goes at most; `None` for what is not. What is round is flat as
+    /// far as it hardly turns, and has no one normal there: it is 0.
     fn flat(&self) -> Option<(Vec3<R>, R)> {
         None
     }

@@ -22,6 +22,10 @@ pub struct PackedSphere<R> {
     pub material: u32,
 }
 
+/// The part of its radius within which a ball is as flat as pixels see it: it turns by as many radians there. Where a ball
+/// of the size of the Earth is the ground, the shadows at its horizon are found then.
+const FLAT_PART: f64 = 1.0 / 64.0;
+
 /// Distances along the ray to where its line enters and leaves a sphere; NaN if it passes by.
 type Roots<L> = (L, L);
 
@@ -86,6 +90,11 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
 
     fn bounds(&self) -> Option<BoundingBox<R>> {
         Some(BoundingBox::around_ball(self.center, self.radius))
+    }
+
+    fn flat(&self) -> Option<(Vec3<R>, R)> {
+        let none = Vec3::new(R::ZERO, R::ZERO, R::ZERO);
+        Some((none, self.radius * R::from_f64(FLAT_PART)))
     }
 
     fn material(&self) -> u32 {

@@ -111,16 +111,17 @@ impl<R: Real> Beam<R> {
         is_met.bits()
     }
 
-    /// Lists the places of the balls that it meets, in order.
+    /// Lists the places of the balls that it meets, in order: at least of those from a place on.
     #[inline(always)]
     pub fn gather<L: SimdFloat<Real = R>>(
         &self,
         token: L::Token,
-        balls: &Balls<R>,
+        (balls, from): (&Balls<R>, usize),
         met: &mut Vec<u32>,
     ) {
         met.clear();
-        for first in (0..balls.x.len()).step_by(L::WIDTH) {
+        let from = from - from % L::WIDTH;
+        for first in (from..balls.x.len()).step_by(L::WIDTH) {
             let mut bits = self.meets::<L>(token, balls, first);
             while bits != 0 {
                 met.push(first as u32 + bits.trailing_zeros());

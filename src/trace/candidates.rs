@@ -71,11 +71,19 @@ impl Candidates {
 
     /// Everything that casts shadows from a light.
     pub fn all_casting<R: Real>(plan: &Plan<R>, light: &PointLight<R>) -> Self {
-        let mut all = Self::all(plan);
-        all.lists[Kind::Sphere as usize].drain(..plan.markers);
+        // Each light has such a list in each thread: none has room for what is not in it.
+        let mut counts = plan.primitives.counts();
+        let first_ball = plan.markers as u32;
+        let balls = first_ball..counts[Kind::Sphere as usize] as u32;
+        counts[Kind::Sphere as usize] = 0;
         if !plan.planes_cast {
-            all.lists[Kind::Plane as usize].clear();
+            counts[Kind::Plane as usize] = 0;
         }
+        let mut all = Self {
+            lists: counts.map(|count| (0..count as u32).collect()),
+            has_geometry: plan.geometry.is_some(),
+        };
+        all.lists[Kind::Sphere as usize] = balls.collect();
         all.leave_out(plan, &light.holders);
         all
     }

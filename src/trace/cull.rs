@@ -94,7 +94,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         scratch: &mut Scratch<L::Real>,
     ) {
         let plan = self.plan;
-        beam.gather::<L>(self.token, &plan.balls, &mut scratch.met);
+        beam.gather::<L>(self.token, (&plan.balls, 0), &mut scratch.met);
         candidates.sort_by_kind(plan, &scratch.met, Omit::Nothing);
         candidates.has_geometry = plan.geometry.is_some();
         for (index, plane) in plan.primitives.planes.iter().enumerate() {
@@ -131,7 +131,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             *is_umbra = false;
             return;
         };
-        beam.gather::<L>(self.token, &plan.balls, &mut scratch.met);
+        // The first ones are those of the markers.
+        beam.gather::<L>(self.token, (&plan.balls, plan.markers), &mut scratch.met);
         let omit = Omit::MarkersAndFaces(&light.shadow_culled_faces);
         casters.sort_by_kind(plan, &scratch.met, omit);
         casters.has_geometry = plan.geometry.is_some();

@@ -145,6 +145,8 @@ pub struct Uncertainty<L: SimdFloat> {
     pub weight: L,
     /// Where rounding may decide what comes back.
     pub doubt: L::Mask,
+    /// How far away from where coordinates count from some of their own do, in which meshes are met.
+    farthest_middle: L,
     /// The same blur and weight of the rays that mirrors send on.
     mirrored: (Blur<L>, L),
 }
@@ -158,6 +160,7 @@ impl<L: SimdFloat> Uncertainty<L> {
             blur: Blur::splat(token, plan.blur),
             weight,
             doubt: weight.less(weight),
+            farthest_middle: L::splat(token, plan.farthest_middle),
             mirrored: (Blur::splat(token, Blur::NONE), weight),
         }
     }
@@ -210,8 +213,9 @@ pub struct Slant<L: SimdFloat> {
 impl<L: SimdFloat> Slant<L> {
     /// Of rays that have come so far, and meet the surface with this cosine between them and its normal.
     #[inline(always)]
-    pub fn new(blur: &Blur<L>, (t, cosine): (L, L), surface: &SurfacePoint<L>) -> Self {
-        let own = Blur::of_sizes(surface.size);
+    pub fn new(rays: &Uncertainty<L>, (t, cosine): (L, L), surface: &SurfacePoint<L>) -> Self {
+        let blur = &rays.blur;
+        let own = Blur::of_sizes(surface.size + rays.farthest_middle);
         let cosine = cosine.abs();
         Self {
             off: (blur.at(t) + own.start) / cosine,

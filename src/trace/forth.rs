@@ -162,7 +162,8 @@ impl<L: SimdFloat> Bounce<L> {
         } else {
             let blur = widest_blur(kernel.token, &self.uncertainties);
             let around = bounds.around().max_abs();
-            farthest_off(blur.at(farthest), around + plan.farthest + plan.farthest)
+            let size = plan.farthest + plan.farthest + plan.farthest_middle;
+            farthest_off(blur.at(farthest), around + size)
         };
         ball.radius += off.to_f64();
         if plan.screen.is_some() {

@@ -17,6 +17,15 @@ use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
 /// Pixels with too much in them that are traced at once.
 const AT_ONCE: usize = 64;
 
+/// Steps of places in a pixel: single precision has them in all of a picture of 16,384 pixels, so that both precisions
+/// trace the same rays.
+const STEPS: f64 = 512.0;
+
+/// The nearest place in a pixel that both precisions have.
+fn whole_steps(place: f64) -> f64 {
+    (place * STEPS).round() / STEPS
+}
+
 /// Samples the pixels of tiles; its buffers are used again.
 pub struct Sampler<L: SimdFloat> {
     /// Whether packets look at squares, as they should where they see many small things.
@@ -93,7 +102,7 @@ impl<L: SimdFloat> Sampler<L> {
         (columns, rows): (Range<usize>, Range<usize>),
         ((x, y), edges): ((f64, f64), Edges),
     ) {
-        let place = |index: usize, off: f64| L::Real::from_f64(index as f64 + off);
+        let place = |index: usize, off: f64| L::Real::from_f64(index as f64 + whole_steps(off));
         self.columns.clear();
         self.columns.extend(columns.map(|column| place(column, x)));
         if TREE && self.in_squares && seen.has_geometry {
@@ -243,7 +252,8 @@ impl<L: SimdFloat> Sampler<L> {
         let (count, step) = limits.spread_out();
         let share = L::Real::from_f64(1.0 / count as f64);
         let place = |pixel: usize, part: usize| {
-            L::Real::from_f64(pixel as f64 + (part as f64 + 0.5) / count as f64)
+            let part = (part as f64 + 0.5) / count as f64;
+            L::Real::from_f64(pixel as f64 + whole_steps(part))
         };
         for pixels in self.refinement.crowded().chunks(AT_ONCE) {
             self.samples.clear();

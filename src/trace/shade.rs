@@ -213,16 +213,15 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let away = self.kernel.splat(0.0).less(along);
         hit.surface.normal = Vec3::select(away, -normal, normal);
         let slant = match uncertainty {
-            Some(own) => Some(Slant::new(&own.blur, (packet.near.t, along), &hit.surface)),
+            Some(own) => Some(Slant::new(own, (packet.near.t, along), &hit.surface)),
             None => None,
         };
         let footprint = match edge {
             Some(edge) => {
-                let cosine = hit.surface.normal.dot(view);
                 let (cone, t) = (edge.cone, packet.near.t);
+                let cosine = hit.surface.normal.dot(view);
                 let seen = (cosine, cone.width_at(t));
-                let grazing = self.kernel.grazing(packet.near.number, seen);
-                let seen = (t, cosine, grazing);
+                let seen = (t, cosine, self.kernel.grazing(packet.near.number, seen));
                 Some(Footprint::new(cone, seen, hit.surface.curvature))
             }
             None => None,

@@ -31,7 +31,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         width.less(largest * largest.like_f64(GRAZING)) & !self.are_planes(numbers)
     }
 
-    /// The normal of what has a number, if that is flat, and how far it goes at most.
+    /// The normal of what has a number, if that is flat, and how far it goes at most; the normal of what is round is 0.
     #[inline(never)]
     fn flat_at(self, number: usize) -> Option<(Vec3<L::Real>, L::Real)> {
         match self.geometry() {

@@ -209,6 +209,74 @@ fn the_filtered_picture_is_that_of_double_precision() {
     assert!(alone[3] > 3, "{alone:?}");
 }
 
+/// Hills with a tower in them that reaches far into the sky: the coordinates of the mesh count from the middle of that.
+fn hills(seed: u64) -> Scene {
+    const SIDE: u32 = 40;
+    let dice = &mut Dice(seed.wrapping_mul(9_001) + 13);
+    let [steep, wide] = [dice.real(0.5, 1.5), dice.real(0.2, 0.5)];
+    let place = |column: u32, row: u32| {
+        let [x, z] = [column, row].map(|part| f64::from(part) * 0.75 - 15.0);
+        let top = if (column, row) == (18, 18) { 1e5 } else { 0.0 };
+        DVec3::new(
+            x,
+            steep * ((x * wide).sin() + (z * wide * 1.3).cos()) + top,
+            z,
+        )
+    };
+    let squares = (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| (column, row)));
+    let number = |column: u32, row: u32| row * (SIDE + 1) + column;
+    let faces = squares.flat_map(|(x, y)| {
+        let [a, b] = [number(x, y), number(x + 1, y)];
+        let [c, d] = [number(x + 1, y + 1), number(x, y + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    let points = (0..=SIDE).flat_map(|row| (0..=SIDE).map(move |column| place(column, row)));
+    let mesh = Mesh::of(Triangles::new(points.collect(), faces.collect()).expect("hills"));
+    let ball = Sphere {
+        center: DVec3::new(2.0, 4.0, 2.0),
+        radius: 1.0,
+    };
+    let mut scene = random::scene(seed);
+    scene.objects = List::from(vec![
+        Object::new("Hills", "pack 0", mesh),
+        Object::new("Ball", "pack 1", ball),
+    ]);
+    scene.lights.truncate(1);
+    scene.lights[0].position = DVec3::new(10.0, 20.0, 20.0);
+    scene.camera = Camera {
+        position: DVec3::new(4.0, 6.0, 12.0),
+        look_at: DVec3::new(-4.0, -4.0, -12.0),
+        ..Camera::default()
+    };
+    scene
+}
+
+/// Thirds of pixels are no numbers of either precision, and rays through them other ones in each.
+#[test]
+fn neither_grids_nor_meshes_that_count_from_far_away_are_other_than_in_double_precision() {
+    for (seed, kind) in (0..4).flat_map(|seed| [(seed, hills as fn(u64) -> Scene), (seed, rings)]) {
+        let scene = kind(seed);
+        for sampling in [Sampling::Centres, Sampling::Grid(3)] {
+            let [filtered, exact] = [Precision::Auto, Precision::Double].map(|precision| {
+                let request = RenderRequest {
+                    sampling,
+                    ..with(precision)
+                };
+                picture(&scene, &request)
+            });
+            assert!(
+                filtered.1.again > 0,
+                "{sampling:?} of {seed}: all is traced in double precision"
+            );
+            assert_eq!(
+                differing(&filtered.0, &exact.0, 1),
+                0,
+                "{sampling:?} of {seed}"
+            );
+        }
+    }
+}
+
 /// Scenes of which much is in doubt.
 const DOUBTFUL: [fn(u64) -> Scene; 5] = [
     |seed| mirroring(with_solids(seed)),
