@@ -6,6 +6,7 @@ use std::path::Path;
 use glam::{DMat4, DQuat, Vec3};
 use gltf::json::Root;
 use gltf::json::validation::Checked;
+use gltf::material::AlphaMode;
 use gltf::mesh::{Mode, Primitive};
 use gltf::scene::Transform;
 use gltf::{Document, Glb, Material, Node, Semantic};
@@ -14,7 +15,7 @@ use super::error::Fault;
 use super::gltf_buffers::Buffers;
 use super::gltf_skin::Placing;
 use super::limits::{check_faces, check_groups, check_points};
-use super::part::{COLORS_OF_POINTS, MeshFile, Part, PartColors};
+use super::part::{CLEAR, COLORS_OF_POINTS, GLOWING, MeshFile, Part, PartColors};
 use super::triangles::Triangles;
 
 /// Most objects and lists in the JSON: each can cost hundreds of bytes.
@@ -94,7 +95,14 @@ fn notes(document: &Document, animates: bool) -> Vec<String> {
     let primitives = || document.meshes().flat_map(|mesh| mesh.primitives());
     let has_colors = |one: Primitive| one.get(&Semantic::Colors(0)).is_some();
     let uses = |extension| document.extensions_used().any(|name| name == extension);
+    let is_clear = |material: &Material| {
+        let [.., alpha] = material.pbr_metallic_roughness().base_color_factor();
+        material.alpha_mode() != AlphaMode::Opaque && alpha < 1.0
+    };
+    let glows = |material: &Material| material.emissive_factor() != [0.0; 3];
     [
+        (document.materials().any(|material| is_clear(&material)), CLEAR),
+        (document.materials().any(|material| glows(&material)), GLOWING),
         (primitives().any(has_colors), COLORS_OF_POINTS),
         (
             primitives().any(|one| one.morph_targets().len() > 0),
@@ -107,6 +115,10 @@ fn notes(document: &Document, animates: bool) -> Vec<String> {
         (
             uses("KHR_materials_pbrSpecularGlossiness"),
             "some of its colours are left out: they are those of KHR_materials_pbrSpecularGlossiness",
+        ),
+        (
+            uses("KHR_node_visibility"),
+            "what is hidden by KHR_node_visibility is shown",
         ),
         (
             uses(INSTANCES),
@@ -182,9 +194,17 @@ fn root_of(json: &[u8]) -> Result<(Root, bool), Fault> {
         }
         Err(error) => error,
     };
-    if let Ok(mut root) = serde_json::from_slice::<serde_json::Map<_, _>>(json)
-        && root.remove("animations").is_some()
-        && let Ok(root) = serde_json::from_value(root.into())
+    let values = serde_json::from_slice::<serde_json::Map<_, _>>(json);
+    let mut values = values.unwrap_or_default();
+    let version = values
+        .get("asset")
+        .and_then(|asset| asset["version"].as_str());
+    if version.is_some_and(|version| version.starts_with("1.")) {
+        let sentence = "this is a glTF file of version 1; those of version 2 are read";
+        return Err(Fault::new(sentence));
+    }
+    if values.remove("animations").is_some()
+        && let Ok(root) = serde_json::from_value(values.into())
     {
         return Ok((root, true));
     }

@@ -11,7 +11,7 @@ use tobj::{LoadError, MTLLoadResult, Material};
 
 use super::error::excerpt;
 use super::limits::read_bounded;
-use super::part::PartColors;
+use super::part::{CLEAR, GLOWING, PartColors};
 use super::text::text_of;
 use crate::files::stays_inside;
 
@@ -44,6 +44,10 @@ pub(super) struct Libraries<'a> {
     early: RefCell<Option<String>>,
     /// Whether a material has a picture for a colour.
     has_textures: Cell<bool>,
+    /// Whether something is transparent in one of them.
+    is_clear: Cell<bool>,
+    /// Whether something glows.
+    glows: Cell<bool>,
 }
 
 impl<'a> Libraries<'a> {
@@ -58,13 +62,20 @@ impl<'a> Libraries<'a> {
             unknown: RefCell::default(),
             early: RefCell::default(),
             has_textures: Cell::default(),
+            is_clear: Cell::default(),
+            glows: Cell::default(),
         }
     }
 
-    /// What is to be said about pictures that materials have.
-    pub(super) fn texture_note(&self) -> Option<String> {
-        let note = "its textures are left out";
-        self.has_textures.get().then(|| note.to_owned())
+    /// What is to be said about what materials have that is left out.
+    pub(super) fn left_out(&self) -> impl Iterator<Item = String> {
+        let notes = [
+            (&self.has_textures, "its textures are left out"),
+            (&self.is_clear, CLEAR),
+            (&self.glows, GLOWING),
+        ];
+        let notes = notes.into_iter().filter(|(is_there, _)| is_there.get());
+        notes.map(|(_, note)| note.to_owned())
     }
 
     /// What is to be said about files that could not be read, or materials that are not in them.
@@ -138,8 +149,16 @@ impl<'a> Libraries<'a> {
                 .reduce(|all, one| format!("{all}\n{one}"))
                 .ok_or(LoadError::OpenFileFailed)?,
         };
-        if text.lines().any(|line| line.trim().starts_with("map_")) {
-            self.has_textures.set(true);
+        for line in text.lines() {
+            let mut words = line.split_whitespace();
+            let keyword = words.next().unwrap_or_default();
+            let mut numbers = words.filter_map(|word| word.parse::<f64>().ok());
+            match keyword {
+                "d" if numbers.next().is_some_and(|share| share < 1.0) => self.is_clear.set(true),
+                "Ke" if numbers.any(|light| light > 0.0) => self.glows.set(true),
+                word if word.starts_with("map_") => self.has_textures.set(true),
+                _ => {}
+            }
         }
         let lines = text.lines().map(|line| whole_color(line.trim()));
         let lines = lines.filter(|line| is_color(line));

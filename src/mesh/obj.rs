@@ -72,8 +72,8 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
     let parts = parts.collect::<Result<Vec<_>, Fault>>()?;
     let has_lost = lines.has_colors && parts.iter().any(|part| part.colors.is_none());
     let colors = has_lost.then(|| COLORS_OF_POINTS.to_owned());
-    let textures = libraries.texture_note();
-    let notes = libraries.note().into_iter().chain(textures).chain(colors);
+    let left_out = libraries.left_out();
+    let notes = libraries.note().into_iter().chain(left_out).chain(colors);
     let notes = notes.chain(note_of_uncut(uncut)).collect();
     Ok(MeshFile { parts, notes })
 }

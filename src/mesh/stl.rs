@@ -65,10 +65,15 @@ pub(super) fn is_text(bytes: &[u8]) -> bool {
         && !bytes.iter().take(HEADER).any(|&byte| byte == 0)
 }
 
-/// How many triangles the header of a binary file promises, and how long the file is then.
+/// How many triangles the header of a binary file promises, and how long the file is then. Whoever writes a file in one
+/// go, before it knows how many there are, leaves 0 or the largest number there: then it is as long as it is.
 fn promised(bytes: &[u8]) -> Option<(usize, u64)> {
     let (_, count) = bytes.get(..HEADER)?.split_last_chunk()?;
-    let count = u32::from_le_bytes(*count) as usize;
+    let found = bytes.len() - HEADER;
+    let count = match u32::from_le_bytes(*count) {
+        0 | u32::MAX if found.is_multiple_of(TRIANGLE) => found / TRIANGLE,
+        count => count as usize,
+    };
     Some((count, HEADER as u64 + count as u64 * TRIANGLE as u64))
 }
 

@@ -13,6 +13,9 @@ pub(super) fn without_mark(bytes: &[u8]) -> &[u8] {
 /// A text whose lines are in UTF-8, or else in Latin-1, in which different names stay different; with line breaks as we
 /// know them: old programs end lines with a carriage return alone.
 pub(super) fn text_of(bytes: &[u8]) -> Cow<'_, str> {
+    if let Some(text) = from_utf16(bytes) {
+        return Cow::Owned(text);
+    }
     let bytes = without_mark(bytes);
     let line = |line| match str::from_utf8(line) {
         Ok(text) => Cow::Borrowed(text),
@@ -36,6 +39,22 @@ pub(super) fn text_of(bytes: &[u8]) -> Cow<'_, str> {
     }
 }
 
+/// A text of 16 bits a letter, as some editors on Windows save it, with the mark that tells their order.
+fn from_utf16(bytes: &[u8]) -> Option<String> {
+    let (order, bytes): (fn([u8; 2]) -> u16, _) = match bytes {
+        [0xff, 0xfe, rest @ ..] => (u16::from_le_bytes, rest),
+        [0xfe, 0xff, rest @ ..] => (u16::from_be_bytes, rest),
+        _ => return None,
+    };
+    let letters: Vec<u16> = bytes
+        .as_chunks()
+        .0
+        .iter()
+        .map(|&pair| order(pair))
+        .collect();
+    Some(String::from_utf16_lossy(&letters))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -45,6 +64,8 @@ mod tests {
         assert_eq!(text_of("\u{feff}rotä".as_bytes()), "rotä");
         assert_eq!(text_of(b"rot\xe4\rrot\xf6"), "rotä\nrotö");
         assert_eq!(text_of(b"a\r\nb"), "a\r\nb");
+        assert_eq!(text_of(b"\xff\xfev\0 \x001\0"), "v 1");
+        assert_eq!(text_of(b"\xfe\xff\0v\0 \x001"), "v 1");
         let mixed = [b"# B\xfcro\n", "usemtl rotä".as_bytes()].concat();
         assert_eq!(text_of(&mixed), "# Büro\nusemtl rotä");
     }

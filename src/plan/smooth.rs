@@ -1,5 +1,11 @@
 //! Normals at the corners of faces that are shaded as one curved surface.
 
+use glam::DVec3;
+use rayon::iter::{
+    IndexedParallelIterator as _, IntoParallelIterator as _, IntoParallelRefIterator as _,
+    ParallelIterator as _,
+};
+
 use crate::primitive::{CornerNormals, PackedTriangle, number_corners};
 use crate::simd::{Real, Vec3};
 
@@ -19,26 +25,33 @@ pub fn corner_normals(triangles: &[PackedTriangle<f64>], degrees: f64) -> Vec<Co
     let least_cosine = degrees.to_radians().cos() + JUST;
     let numbers = number_corners(triangles);
     let around = Around::of(&numbers);
-    let faces = triangles.iter().zip(&numbers).enumerate();
+    let turned = turned_faces(&numbers, &around);
+    let is_turned = |face: usize| turned.get(face) == Some(&true);
+    let normal = |face: usize| {
+        let normal = triangles[face].normal.to_dvec3();
+        if is_turned(face) { -normal } else { normal }
+    };
+    let faces = triangles.par_iter().zip(&numbers).enumerate();
     let normals = faces.map(|(index, (triangle, numbers))| {
-        let own = triangle.normal.to_dvec3();
+        let own = normal(index);
         let normals = numbers.map(|number| {
             let meeting = around.of_corner(number);
             if meeting.len() > MOST_AROUND {
                 return triangle.normal;
             }
             let alike = meeting.iter().filter(|&&(face, _)| {
-                let other = triangles[face as usize].normal.to_dvec3();
-                face as usize == index || least_cosine < own.dot(other)
+                face as usize == index || least_cosine < own.dot(normal(face as usize))
             });
             let sum = alike
                 .map(|&(face, corner)| {
-                    let face = &triangles[face as usize];
-                    face.normal.to_dvec3() * angle(face, corner as usize)
+                    let face = face as usize;
+                    normal(face) * angle(&triangles[face], corner as usize)
                 })
                 .filter(|weighted| weighted.is_finite())
-                .sum::<glam::DVec3>();
-            Vec3::from_dvec3(sum.try_normalize().unwrap_or(own))
+                .sum::<DVec3>();
+            let mean = Vec3::from_dvec3(sum.try_normalize().unwrap_or(own));
+            // On the side of its own that the face is on.
+            if is_turned(index) { -mean } else { mean }
         });
         CornerNormals {
             normals,
@@ -46,6 +59,56 @@ pub fn corner_normals(triangles: &[PackedTriangle<f64>], degrees: f64) -> Vec<Co
         }
     });
     normals.collect()
+}
+
+/// Which faces are to be turned so that neighbours go along their common edge in opposite directions, and have their
+/// normals on one side: files do not say them all in one order. Empty where none is.
+fn turned_faces(faces: &[[u32; 3]], around: &Around) -> Vec<bool> {
+    let beside = |face: usize| (0..3).filter_map(move |edge| neighbour(faces, around, face, edge));
+    let all = (0..faces.len()).into_par_iter();
+    if all.all(|face| beside(face).all(|(_, is_along)| !is_along)) {
+        return Vec::new();
+    }
+    let mut turned = vec![None; faces.len()];
+    let mut waiting = Vec::new();
+    for first in 0..faces.len() {
+        if turned[first].is_none() {
+            turned[first] = Some(false);
+            waiting.push(first);
+        }
+        while let Some(face) = waiting.pop() {
+            for (other, is_along) in beside(face) {
+                if turned[other].is_none() {
+                    turned[other] = Some((turned[face] == Some(true)) != is_along);
+                    waiting.push(other);
+                }
+            }
+        }
+    }
+    turned.into_iter().map(|turn| turn == Some(true)).collect()
+}
+
+/// The face on the other side of an edge of a face, and whether it goes along it in the same direction; `None` if there
+/// is none or more than one, and at a corner where too many meet.
+fn neighbour(
+    faces: &[[u32; 3]],
+    around: &Around,
+    face: usize,
+    edge: usize,
+) -> Option<(usize, bool)> {
+    let (from, to) = (faces[face][edge], faces[face][(edge + 1) % 3]);
+    let meeting = around.of_corner(from);
+    if meeting.len() > MOST_AROUND {
+        return None;
+    }
+    let others = meeting.iter().filter(|(other, _)| *other as usize != face);
+    let mut beside = others.filter_map(|&(other, corner)| {
+        let at = |step: usize| faces[other as usize][(corner as usize + step) % 3];
+        let is_along = at(1) == to;
+        (is_along || at(2) == to).then_some((other as usize, is_along))
+    });
+    let only = beside.next();
+    only.filter(|_| beside.next().is_none())
 }
 
 /// How far points of the faces are lifted at most onto the surface that they stand for, whichever side of it is seen,
@@ -117,10 +180,47 @@ impl Around {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
     use crate::primitive::{Curved, Primitive as _, Ray};
+
+    /// The faces of an octahedron, of which every second goes the other way around.
+    #[test]
+    fn faces_in_any_order_have_the_normals_of_those_in_one() {
+        let mut faces = Vec::new();
+        for x in [-1.0, 1.0] {
+            for y in [-1.0, 1.0] {
+                for z in [-1.0, 1.0] {
+                    let [a, b, c] = [DVec3::X * x, DVec3::Y * y, DVec3::Z * z];
+                    faces.push(if x * y * z > 0.0 {
+                        [a, c, b]
+                    } else {
+                        [a, b, c]
+                    });
+                }
+            }
+        }
+        let packed = |faces: &[[DVec3; 3]]| -> Vec<PackedTriangle<f64>> {
+            let faces = faces
+                .iter()
+                .filter_map(|face| PackedTriangle::of_mesh(*face));
+            faces.collect()
+        };
+        let even = packed(&faces);
+        let expected = corner_normals(&even, 120.0);
+        for face in faces.iter_mut().step_by(2) {
+            face.swap(1, 2);
+        }
+        let mixed = packed(&faces);
+        let found = corner_normals(&mixed, 120.0);
+        for (face, (found, expected)) in found.iter().zip(&expected).enumerate() {
+            let side = even[face].normal.dot(mixed[face].normal);
+            let place = |corner: usize| if side > 0.0 { corner } else { (3 - corner) % 3 };
+            for corner in 0..3 {
+                let off = found.normals[place(corner)] * side - expected.normals[corner];
+                assert!(off.length() < 1e-12, "{face} {corner}: {off:?}");
+            }
+        }
+    }
 
     #[test]
     fn nothing_is_lifted_farther_than_told_whichever_side_is_seen() {

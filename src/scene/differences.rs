@@ -3,28 +3,26 @@
 use std::collections::BTreeMap;
 
 use super::whole::Scene;
-
-/// Most names that are listed.
-const NAMED: usize = 3;
+use crate::words::{counted, listed};
 
 /// What is different in `other`, one line for each kind of thing: `2 objects added: A, B`. Nothing for equal
 /// scenes.
 pub fn differences(scene: &Scene, other: &Scene) -> Vec<String> {
     let mut lines = Vec::new();
     named(
-        ("object", "objects"),
+        "object",
         scene.objects.iter().map(|object| (&object.name, object)),
         other.objects.iter().map(|object| (&object.name, object)),
         &mut lines,
     );
     named(
-        ("light", "lights"),
+        "light",
         scene.lights.iter().map(|light| (&light.name, light)),
         other.lights.iter().map(|light| (&light.name, light)),
         &mut lines,
     );
     named(
-        ("colour pack", "colour packs"),
+        "color pack",
         scene.color_packs.iter(),
         other.color_packs.iter(),
         &mut lines,
@@ -55,7 +53,7 @@ pub fn differences(scene: &Scene, other: &Scene) -> Vec<String> {
 
 /// Things that are known by their names.
 fn named<'a, T: PartialEq + 'a>(
-    (one, many): (&str, &str),
+    one: &str,
     before: impl Iterator<Item = (&'a String, &'a T)>,
     after: impl Iterator<Item = (&'a String, &'a T)>,
     lines: &mut Vec<String>,
@@ -72,17 +70,9 @@ fn named<'a, T: PartialEq + 'a>(
     let removed: Vec<_> = removed.collect();
     let changed: Vec<_> = changed.collect();
     for (what, names) in [("added", added), ("removed", removed), ("changed", changed)] {
-        if names.is_empty() {
-            continue;
-        }
-        let kind = if names.len() == 1 { one } else { many };
-        let listed: Vec<&str> = names.iter().take(NAMED).map(|name| name.as_str()).collect();
-        let more = if names.len() > NAMED { ", …" } else { "" };
-        lines.push(format!(
-            "{} {kind} {what}: {}{more}",
-            names.len(),
-            listed.join(", ")
-        ));
+        let count = counted(names.len(), one);
+        let named = listed(names.into_iter().map(|name| (*name).clone()));
+        lines.extend(named.map(|named| format!("{count} {what}: {named}")));
     }
 }
 

@@ -11,15 +11,13 @@ use ron::ser::PrettyConfig;
 use super::check::{Problem, check};
 use super::locate::{claimed_version, has_inner_comments, header, locate};
 use super::parse_errors::sentence;
-use super::whole::{Scene, VERSION};
+use super::whole::{MAX_BYTES, Scene, VERSION};
 use crate::files::{Stamp, back_up, read_at_most, read_file, time_of, write_atomic};
 use crate::mesh::is_mesh_file;
 
 /// The RON text of the demo scene, as embedded in the program.
 pub const DEMO_TEXT: &str = include_str!("../../scenes/demo.ron");
 
-/// Longest scene file that is read, in bytes: room for meshes of 4,000,000 faces or 1,500,000 objects.
-pub const MAX_BYTES: u64 = 256 << 20;
 /// Deepest nesting of brackets; a scene needs five.
 const MAX_DEPTH: usize = 32;
 /// Most characters of a line that an error shows, so that a file on one line stays readable.

@@ -79,7 +79,7 @@ pub use coincidence::{Coincidence, Extent, coincidences};
 pub use differences::differences;
 pub use direction::unit;
 pub use examples::{EXAMPLES, Example};
-pub use file::{DEMO_TEXT, Document, MAX_BYTES, SceneError, read_text};
+pub use file::{DEMO_TEXT, Document, SceneError, read_text};
 pub use frame::Frame;
 pub use hints::{About, Hint, camera_hints, hints, thing_hints};
 pub use join::MOST_SEPARATE;
@@ -103,4 +103,4 @@ pub use shape::{
     Sphere, Triangle,
 };
 pub use target::Owners;
-pub use whole::{Scene, VERSION, around, default_ambient_intensity, light_pack};
+pub use whole::{MAX_BYTES, Scene, VERSION, around, default_ambient_intensity, light_pack};

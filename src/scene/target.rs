@@ -29,11 +29,6 @@ impl Target {
         })
     }
 
-    /// Puts a value into a scene; one of the wrong kind, or for what is not there, changes nothing.
-    pub fn set(&self, scene: &mut Scene, value: Value) {
-        Owners::of(scene, [self]).set(scene, self, value);
-    }
-
     fn set_at(&self, scene: &mut Scene, index: Option<usize>, value: Value) {
         let Some(index) = index else {
             if let (Self::AmbientIntensity, Value::Number(number)) = (self, value) {
@@ -109,7 +104,8 @@ impl<'a> Owners<'a> {
         target.get_at(scene, self.index(target))
     }
 
-    /// [`Target::set`] for one of the targets in this scene.
+    /// Puts a value of one of the targets into this scene; one of the wrong kind, or for what is not there, changes
+    /// nothing.
     pub fn set(&self, scene: &mut Scene, target: &Target, value: Value) {
         target.set_at(scene, self.index(target), value);
     }

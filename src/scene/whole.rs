@@ -10,6 +10,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
 use crate::files::{Marks, is_same_file};
+use crate::mesh::Triangles;
 
 use super::animation::Animation;
 use super::camera::{Bookmark, Camera};
@@ -22,6 +23,8 @@ use super::shape::{Mesh, MeshFiles, MeshSource, Shape};
 
 /// The scene-file version that this program writes and the newest that it reads.
 pub const VERSION: u32 = 1;
+/// Longest scene file that is read, in bytes: room for meshes of 4,000,000 faces or 1,500,000 objects.
+pub const MAX_BYTES: u64 = 256 << 20;
 
 /// Everything that makes a picture. A copy shares what is not changed. What a file leaves out has the
 /// value that the demo scene has.
@@ -71,6 +74,13 @@ impl Scene {
             && self.color_packs.is_same(&other.color_packs)
             && self.background == other.background
             && self.ambient_intensity == other.ambient_intensity
+    }
+
+    /// Whether the same camera sees the same picture of both; `false` may be wrong.
+    pub fn has_same_look(&self, other: &Self) -> bool {
+        self.has_same_things(other)
+            && self.light_visualization == other.light_visualization
+            && self.render == other.render
     }
 
     /// An empty scene with the demo's camera, held level, and a pack and a light to start from.
@@ -308,9 +318,21 @@ impl Scene {
 
     /// About how many bytes the triangles take that are written into the file of the scene.
     pub fn own_bytes(&self) -> u64 {
-        let inline = |source: &MeshSource| matches!(source, MeshSource::Inline(_));
-        let own = self.mesh_sources().filter(|source| inline(source));
-        own.map(|source| source.triangles().bytes_of_text()).sum()
+        let own = self.own_triangles();
+        own.map(|triangles| triangles.bytes_of_text()).sum()
+    }
+
+    /// How many of them there are.
+    pub fn own_faces(&self) -> usize {
+        let own = self.own_triangles();
+        own.map(|triangles| triangles.faces().len()).sum()
+    }
+
+    fn own_triangles(&self) -> impl Iterator<Item = &Arc<Triangles>> {
+        let inline = |source: &&MeshSource| matches!(source, MeshSource::Inline(_));
+        self.mesh_sources()
+            .filter(inline)
+            .map(MeshSource::triangles)
     }
 
     /// Whether the triangles of some mesh are in a file of their own.

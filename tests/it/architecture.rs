@@ -35,6 +35,7 @@ const HOMES: &[(&[&str], &[&str])] = &[
             "plan/borders",
             "plan/idle",
             "plan/packed_mesh",
+            "plan/smooth",
             "plan/thickness",
             "trace/tracer",
             "trace/threads",

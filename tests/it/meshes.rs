@@ -8,6 +8,7 @@ use glint::mesh::{Triangles, icosphere};
 use glint::plan::{Model, RenderRequest};
 use glint::scene::{
     Accelerator, Document, Mesh, Object, Precision, Sampling, Scene, Shape, Sphere, Triangle,
+    check_edit,
 };
 
 use crate::pictures::{differing, picture};
@@ -53,6 +54,26 @@ fn bumpy(triangles: f64) -> Triangles {
         }
     }
     Triangles::new(points, faces).expect("a mesh")
+}
+
+/// Joined or pasted, they would be in a scene that could be neither saved nor read.
+#[test]
+fn no_edit_makes_more_triangles_than_a_file_has_room_for() {
+    let mesh = Mesh::of(bumpy(20_000.0));
+    let with = |count: usize| {
+        let mut scene = Scene::demo();
+        let one = |number| Object::new(format!("Ball {number}"), "sphere 1", mesh.clone());
+        let objects = scene.objects.iter().cloned();
+        scene.objects = objects.chain((0..count).map(one)).collect();
+        scene
+    };
+    let [few, many, more] = [100, 400, 401].map(with);
+    assert_eq!(check_edit(&few, &Scene::demo()), Ok(()));
+    let refused = check_edit(&many, &few).expect_err("too many");
+    assert!(refused.sentence.contains("256 MiB"), "{}", refused.sentence);
+    assert!(check_edit(&more, &many).is_err());
+    // The way back is open.
+    assert_eq!(check_edit(&many, &more), Ok(()));
 }
 
 /// The demo with two meshes, one of them twice, turned and squeezed.

@@ -62,7 +62,8 @@ fn broken_stl() {
         "m.stl: the header promises 20 triangles, which take 1084 bytes, and the file ends after 700"
     );
     binary[80..84].fill(255);
-    assert!(error_of("m.stl", &binary).contains("promises 4294967295 triangles"));
+    let cut = error_of("m.stl", &binary[..700]);
+    assert!(cut.contains("promises 4294967295 triangles"), "{cut}");
     assert!(error_of("m.stl", "").contains("too short"));
     let text = text_stl();
     assert_eq!(

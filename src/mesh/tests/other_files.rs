@@ -7,6 +7,21 @@ use glam::DVec3;
 use super::solid::{binary_stl, embedded_gltf, text_stl};
 use super::{Sample, marks_of_mesh};
 
+/// Who writes a file in one go does not know how many there are, and leaves the room for the number as it is.
+#[test]
+fn stl_files_without_a_number_are_as_long_as_they_are() {
+    let expected = Sample::new("m.stl", binary_stl()).triangles();
+    for count in [0, u32::MAX] {
+        let mut binary = binary_stl();
+        binary[80..84].copy_from_slice(&count.to_le_bytes());
+        assert_eq!(
+            Sample::new("m.stl", binary).triangles(),
+            expected,
+            "{count}"
+        );
+    }
+}
+
 #[test]
 fn stl_texts_differ() {
     let expected = Sample::new("m.stl", text_stl()).triangles();
@@ -138,6 +153,33 @@ fn what_is_only_about_looks_or_programs_does_not_keep_gltf_from_being_read() {
     let broken = json.replacen(r#""meshes":["#, r#""animations":3,"meshes":7,"more":["#, 1);
     let error = Sample::new("m.gltf", broken).error();
     assert!(error.contains("this is no valid glTF file"), "{error}");
+}
+
+#[test]
+fn what_gltf_and_mtl_files_show_otherwise_is_told() {
+    let looks = r#"{"alphaMode":"BLEND","emissiveFactor":[1,1,0.8],"name":"gold""#;
+    let gltf = embedded_gltf("")
+        .replace(r#"{"name":"gold""#, looks)
+        .replace("[1,0.5,0,1]", "[1,0.5,0,0.1]")
+        .replacen(
+            r#""asset""#,
+            r#""extensionsUsed":["KHR_node_visibility"],"asset""#,
+            1,
+        );
+    let notes = Sample::new("m.gltf", &gltf).notes().join("; ");
+    let obj = "mtllib m.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let sample = Sample::new("m.obj", obj);
+    sample.beside("m.mtl", "newmtl a\nKd 1 0 0\nd 0.1\nKe 1 1 1\n");
+    for notes in [&notes, &sample.notes().join("; ")] {
+        assert!(
+            notes.contains("transparent") && notes.contains("glows"),
+            "{notes}"
+        );
+    }
+    assert!(notes.contains("KHR_node_visibility"), "{notes}");
+    let old = r#"{"asset":{"version":"1.0"},"meshes":{"a":{}}}"#;
+    let error = Sample::new("m.gltf", old).error();
+    assert!(error.contains("version 1;"), "{error}");
 }
 
 #[test]

@@ -21,7 +21,10 @@ use super::names::MAX_NAME;
 use super::object::{LightObj, Object};
 use super::render::{MAX_REFLECTIONS, MAX_SIDE, Render};
 use super::shape::{Property, PropertyValue, Shape};
-use super::whole::{Scene, VERSION};
+use super::whole::{MAX_BYTES, Scene, VERSION};
+
+/// So many faces have room in a scene file, unless their points are written with hundreds of digits.
+const FACES_WITH_ROOM: usize = 1_000_000;
 
 /// Most pixels in a picture: 1 GiB of 8-bit RGBA.
 const MAX_PIXELS: u64 = 1 << 28;
@@ -39,7 +42,20 @@ pub fn check(scene: &Scene) -> Result<(), Problem> {
 /// # Errors
 /// The [`Problem`], as a sentence for the user.
 pub fn check_edit(scene: &Scene, valid: &Scene) -> Result<(), Problem> {
-    check_since(scene, Some(valid))
+    check_since(scene, Some(valid))?;
+    // To measure them takes long, and most changes make no more.
+    let is_same = scene.objects.is_same(&valid.objects);
+    if is_same || scene.own_faces() <= valid.own_faces().max(FACES_WITH_ROOM) {
+        return Ok(());
+    }
+    let bytes = scene.own_bytes();
+    if bytes <= MAX_BYTES {
+        return Ok(());
+    }
+    let (limit, bytes) = (MAX_BYTES >> 20, bytes.div_ceil(1 << 20));
+    At::root().field("objects").refuse(format!(
+        "the triangles of all objects would take {bytes} of the {limit} MiB that a scene file has at most, and could not be saved"
+    ))
 }
 
 fn check_since(scene: &Scene, valid: Option<&Scene>) -> Result<(), Problem> {
